@@ -1,0 +1,98 @@
+#pragma once
+/// The scene of one gate: who pushes, what is in the way, how time is stepped.
+/// Defaults are the paper's field study (Sec. III-C, Tables I and IV) where it says, else the
+/// decisions of the README's "Departures" table.
+
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace gatewalk::dynamics {
+
+struct Body {
+  double mass = 1.0;     // kg
+  double radius = 10.0;  // m
+};
+
+struct Beams {
+  double length = 25.0;            // m
+  double mass = 0.1;               // kg
+  double stiffness_left = 400.0;   // N m / rad
+  double stiffness_right = 400.0;  // N m / rad
+  double damping = 50.0;           // N m s / rad
+  double joint_x = 25.0;           // m; joints at (+-joint_x, joint_y), also half the gate's width
+  double joint_y = 30.0;           // m
+
+  /// Moment of inertia of one beam about its joint (kg m^2): a uniform rod, m L^2 / 3.
+  [[nodiscard]] double inertia() const { return mass * length * length / 3.0; }
+};
+
+struct Forces {
+  double propulsion = 8.0;    // N, along +y
+  double random = 40.0;       // N, Rm of Eq. (1), along x
+  double random_rate = 50.0;  // Hz; one draw is held for 1/random_rate
+  double drag = 0.06;         // N s / m, D of Sec. III-C
+};
+
+struct Contact {
+  double restitution = 0.8;         // -, interior of a beam and joint pin, Sec. II-A
+  double tip_restitution = 1.0;     // -, free end, Eq. (6): elastic
+  double impulse_threshold = 0.04;  // N s, epsilon of Sec. II-B: below it contact is a constraint
+};
+
+struct Run {
+  std::string method = "stable";  // a name of method_names()
+  double step = 0.004;            // s
+  double time_limit = 12.0;       // s, 3000 steps of the paper
+  double traverse_y = 60.0;       // m; traversed beyond it, and the length of a gate in the field
+};
+
+struct GateParams {
+  Body body;
+  Beams beams;
+  Forces forces;
+  Contact contact;
+  Run run;
+};
+
+/// One numeric key of a scene: its public name with unit, where it lives, what is allowed.
+struct ParamInfo {
+  std::string_view key;  // "body.mass_kg"
+  double& (*ref)(GateParams&);
+  double low, high;      // permitted range
+  bool low_open;         // true: `low` itself is not permitted
+  std::string_view meaning;
+
+  [[nodiscard]] double get(const GateParams& p) const { return ref(const_cast<GateParams&>(p)); }
+  [[nodiscard]] bool permits(double v) const {
+    return std::isfinite(v) && v <= high && (low_open ? v > low : v >= low);
+  }
+  /// "(0, 1e+06]" or "[0, 1]"
+  [[nodiscard]] std::string range() const;
+};
+
+/// Every numeric key of GateParams: the one table that the scene reader, validate(), the
+/// provenance of a matrix and the comparison of two scenes all use.
+[[nodiscard]] std::span<const ParamInfo> gate_param_table();
+
+/// A value that no scene may have. `key()` names it as the scene file does.
+class InvalidParameter : public std::invalid_argument {
+ public:
+  InvalidParameter(std::string key, const std::string& what)
+      : std::invalid_argument(what), key_(std::move(key)) {}
+  [[nodiscard]] const std::string& key() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
+/// Throws InvalidParameter naming key, value and what is allowed: ranges of the table, a known
+/// method, and a step that fits a whole number of times into one hold of the random force.
+void validate(const GateParams& params);
+
+/// Steps in one hold of the random force: 1 / (random_rate * step), a whole number.
+[[nodiscard]] int steps_per_hold(const GateParams& params);
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,68 @@
+#pragma once
+/// A Markov chain over the states in which a walker enters a cell of a lattice.
+/// One row per input state, one column per output. Where an output leads is data (`Exit`), so the
+/// module knows nothing about what the states mean.
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gatewalk::markov {
+
+using Counts = Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor>;     // (n_in x n_out)
+using Probabilities = Eigen::SparseMatrix<double, Eigen::RowMajor>;    // (n_in x n_out)
+
+/// Where one output leads: the input state of the neighbouring cell (di_x, di_y) away, or nowhere.
+struct Exit {
+  static constexpr int kTrapped = -1;
+  int next_input = kTrapped;
+  int di_x = 0;
+  int di_y = 0;
+  friend bool operator==(const Exit&, const Exit&) = default;
+};
+
+/// Immutable, row-stochastic, sparse. A row without samples is kept apart ("unsampled"): whoever
+/// walks into it is reported as such, it never absorbs by accident.
+class Chain {
+ public:
+  /// Rows become counts / row sum; an all-zero row becomes "unsampled".
+  /// Throws std::invalid_argument naming the row on a negative count, and on exits that do not fit
+  /// (one per column; next_input in [0, n_in) or kTrapped; a trapped exit does not move).
+  static Chain from_counts(const Counts& counts, std::vector<Exit> exits);
+
+  /// Rows must be finite, non-negative and sum to 1 within 1e-12 (nothing is normalised silently);
+  /// an empty row is "unsampled". Throws std::invalid_argument naming row and sum.
+  static Chain from_probabilities(Probabilities matrix, std::vector<Exit> exits);
+
+  [[nodiscard]] int inputs() const { return static_cast<int>(p_.rows()); }
+  [[nodiscard]] int outputs() const { return static_cast<int>(p_.cols()); }
+  [[nodiscard]] const Probabilities& matrix() const { return p_; }
+  [[nodiscard]] const std::vector<Exit>& exits() const { return exits_; }
+  [[nodiscard]] bool is_sampled(int row) const { return p_.outerIndexPtr()[row + 1] > p_.outerIndexPtr()[row]; }
+  [[nodiscard]] int unsampled_rows() const;
+
+ private:
+  Chain(Probabilities p, std::vector<Exit> exits);
+  Probabilities p_;
+  std::vector<Exit> exits_;
+};
+
+/// A rectangle of cells; a move that ends outside has left the field.
+struct Field {
+  int columns = 9;
+  int rows = 9;
+};
+
+/// Where a walk begins: cell (column, row), both from 0, and the input state there.
+struct Start {
+  int column = 0;
+  int row = 0;
+  int input = 0;
+};
+
+/// Throws std::invalid_argument if field, start or max_cells (0: no limit) cannot belong together.
+void validate(const Chain& chain, const Field& field, const Start& start, int max_cells);
+
+}  // namespace gatewalk::markov

@@ -1,0 +1,58 @@
+#pragma once
+/// Monte Carlo walks: what the paper's "Markov Chain Monte Carlo" pseudo-code does, per cell one
+/// draw from the row of Eq. (16)'s matrix.
+
+#include <cstdint>
+#include <vector>
+
+#include "markov/chain.h"
+
+namespace gatewalk::markov {
+
+/// Walks first, first + 1, ... first + count - 1: a walk is named by its number, so any split over
+/// calls, threads or machines gives the same walks.
+struct WalkRange {
+  std::int64_t first = 0;
+  std::int64_t count = 0;
+};
+
+using CellCounts = Eigen::Array<std::int64_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct WalkTally {
+  CellCounts final_cells;       // (rows x columns), last cell inside the field
+  std::int64_t walks = 0;
+  std::int64_t trapped = 0;     // ended by a trapped output
+  std::int64_t left_field = 0;  // moved out of the field
+  std::int64_t cut_off = 0;     // max_cells cells visited, would have gone on
+  std::int64_t unsampled = 0;   // entered a state whose row was never sampled
+  std::int64_t steps = 0;       // draws over all walks
+  WalkTally& operator+=(const WalkTally& other);
+};
+
+/// Draws from the rows of a chain: Walker's alias method (Vose's construction), one table per row.
+class Walker {
+ public:
+  explicit Walker(const Chain& chain);
+
+  /// An output of `row` for a uniform 64-bit word; never one of probability zero.
+  [[nodiscard]] int draw(int row, std::uint64_t word) const;
+
+  /// Runs `range` on all threads of the current TBB arena. At most `max_cells` cells are visited
+  /// (0: no limit; then a walk is still cut off after 10^6 cells, and counted so). Same tally for
+  /// any number of threads. `final_cell_of_walk`, if given, gets row * columns + column per walk.
+  [[nodiscard]] WalkTally walk(const Field& field, const Start& start, int max_cells,
+                               std::uint64_t seed, WalkRange range,
+                               std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
+
+ private:
+  struct Slot {
+    std::uint64_t keep;  // keep `here` when the word's low part is at most this
+    std::int32_t here;
+    std::int32_t other;
+  };
+  Chain chain_;
+  std::vector<Slot> slots_;            // one per nonzero, row by row
+  std::vector<std::int32_t> row_begin_;  // (n_in + 1)
+};
+
+}  // namespace gatewalk::markov
