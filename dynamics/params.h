@@ -57,6 +57,12 @@ struct GateParams {
   Run run;
 };
 
+/// Where and how fast the disc's centre is, in a gate's own frame (joints at (+-joint_x, joint_y)).
+struct BodyState {
+  double x = 0.0, y = 0.0;    // m
+  double vx = 0.0, vy = 0.0;  // m/s
+};
+
 /// One numeric key of a scene: its public name with unit, where it lives, what is allowed.
 struct ParamInfo {
   std::string_view key;  // "body.mass_kg"
@@ -76,6 +82,9 @@ struct ParamInfo {
 /// Every numeric key of GateParams: the one table that the scene reader, validate(), the
 /// provenance of a matrix and the comparison of two scenes all use.
 [[nodiscard]] std::span<const ParamInfo> gate_param_table();
+
+/// What `run.method` may be (see methods/method.h).
+[[nodiscard]] std::span<const std::string_view> method_names();
 
 /// A value that no scene may have. `key()` names it as the scene file does.
 class InvalidParameter : public std::invalid_argument {
