@@ -1,0 +1,115 @@
+#include "dynamics/contact.h"
+
+#include <limits>
+
+namespace gatewalk::dynamics {
+
+Touch nearest(const GateParams& p, Side side, const BodyState& body, double theta) {
+  // Centre from the joint, in the beam's own frame.
+  const double px = side == kLeft ? body.x + p.beams.joint_x : p.beams.joint_x - body.x;
+  const double py = body.y - p.beams.joint_y;
+  const double c = std::cos(theta), s = std::sin(theta);  // unit vector along the beam: (c, s)
+  const double along = px * c + py * s;
+  Touch t;
+  double nx, ny;
+  if (along > 0.0 && along < p.beams.length) {
+    const double across = c * py - s * px;  // > 0: the centre is ahead of the beam
+    const double sign = across < 0.0 ? -1.0 : 1.0;
+    nx = -sign * s;
+    ny = sign * c;
+    t.kind = ContactKind::interior;
+    t.gap = std::abs(across) - p.body.radius;
+    t.lever = sign * along;
+  } else {
+    const double r = along > 0.0 ? p.beams.length : 0.0;  // contact point's distance from the joint
+    const double qx = px - r * c, qy = py - r * s;
+    const double dist = std::sqrt(qx * qx + qy * qy);
+    const bool degenerate = dist < std::numeric_limits<double>::min();
+    nx = degenerate ? -s : qx / dist;
+    ny = degenerate ? c : qy / dist;
+    t.kind = r > 0.0 ? ContactKind::tip : ContactKind::pin;
+    t.gap = dist - p.body.radius;
+    t.lever = r * (c * ny - s * nx);
+    t.bend = nx * c + ny * s;
+  }
+  t.nx = side == kLeft ? nx : -nx;
+  t.ny = ny;
+  return t;
+}
+
+double gap_rate_bias(const GateParams& p, Side side, const Touch& t, const BodyState& body,
+                     const BeamState& beam) {
+  const double vx = side == kLeft ? body.vx : -body.vx;  // into the beam's own frame
+  const double nx = side == kLeft ? t.nx : -t.nx;
+  const double vy = body.vy, ny = t.ny, w = beam.omega;
+  const double dist = t.gap + p.body.radius;
+  if (t.kind == ContactKind::interior) {
+    // n = sign * (-sin, cos), l = sign * r: differentiate u = n.v - l w along the motion.
+    const double sign = t.lever < 0.0 ? -1.0 : 1.0;
+    const double v_along = (sign * ny) * vx - (sign * nx) * vy;  // beam = (cos, sin) = sign*(ny, -nx)
+    return -2.0 * sign * w * v_along - w * w * dist;
+  }
+  // Relative velocity of centre and contact point; only its part across n turns n.
+  double rx = vx, ry = vy;
+  double centripetal = 0.0;
+  if (t.kind == ContactKind::tip) {
+    const double c = std::cos(beam.theta), s = std::sin(beam.theta), L = p.beams.length;
+    rx += L * w * s;
+    ry -= L * w * c;
+    centripetal = L * w * w * t.bend;
+  }
+  const double across = rx * ny - ry * nx;
+  return across * across / dist + centripetal;
+}
+
+void apply_impulses(const GateParams& p, const std::array<Touch, 2>& touch,
+                    const std::array<double, 2>& impulse, GateState& s) {
+  s.body.vx += (impulse[kLeft] * touch[kLeft].nx + impulse[kRight] * touch[kRight].nx) / p.body.mass;
+  s.body.vy += (impulse[kLeft] * touch[kLeft].ny + impulse[kRight] * touch[kRight].ny) / p.body.mass;
+  for (const Side side : {kLeft, kRight})
+    s.beams[side].omega -= impulse[side] * touch[side].lever / p.beams.inertia();
+}
+
+Coupling coupling(const GateParams& p, const std::array<Touch, 2>& touch) {
+  const Touch &l = touch[kLeft], &r = touch[kRight];
+  const double inertia = p.beams.inertia();
+  return {compliance(p.body.mass, inertia, l.lever), compliance(p.body.mass, inertia, r.lever),
+          (l.nx * r.nx + l.ny * r.ny) / p.body.mass};
+}
+
+std::array<double, 2> push_or_pull(const Coupling& w, const std::array<double, 2>& b,
+                                   const std::array<bool, 2>& active) {
+  if (active[kLeft] && active[kRight]) {
+    // det > 0 unless both contacts coincide (two pins in one place); then share equally.
+    const double det = w.left * w.right - w.cross * w.cross;
+    if (det <= 1e-14 * (w.left * w.right)) {
+      const double z = -(b[kLeft] + b[kRight]) / ((w.left + w.right) + 2.0 * w.cross);
+      return {z, z};
+    }
+    return {(b[kRight] * w.cross - b[kLeft] * w.right) / det,
+            (b[kLeft] * w.cross - b[kRight] * w.left) / det};
+  }
+  if (active[kLeft]) return {-b[kLeft] / w.left, 0.0};
+  if (active[kRight]) return {0.0, -b[kRight] / w.right};
+  return {0.0, 0.0};
+}
+
+std::array<double, 2> push_only(const Coupling& w, const std::array<double, 2>& b,
+                                const std::array<bool, 2>& active) {
+  const bool need_left = active[kLeft] && b[kLeft] < 0.0;
+  const bool need_right = active[kRight] && b[kRight] < 0.0;
+  if (!need_left && !need_right) return {0.0, 0.0};
+  // One alone, if it leaves the other open.
+  if (need_left) {
+    const double z = -b[kLeft] / w.left;
+    if (!active[kRight] || b[kRight] + w.cross * z >= 0.0) return {z, 0.0};
+  }
+  if (need_right) {
+    const double z = -b[kRight] / w.right;
+    if (!active[kLeft] || b[kLeft] + w.cross * z >= 0.0) return {0.0, z};
+  }
+  const auto z = push_or_pull(w, b, {true, true});
+  return {std::fmax(z[kLeft], 0.0), std::fmax(z[kRight], 0.0)};
+}
+
+}  // namespace gatewalk::dynamics

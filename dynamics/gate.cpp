@@ -1,0 +1,43 @@
+#include "dynamics/gate.h"
+
+#include <algorithm>
+
+namespace gatewalk::dynamics {
+namespace {
+
+bool finite(const GateState& s) {
+  const double sum = s.body.x + s.body.y + s.body.vx + s.body.vy + s.beams[kLeft].theta +
+                     s.beams[kLeft].omega + s.beams[kRight].theta + s.beams[kRight].omega;
+  return std::isfinite(sum);
+}
+
+Ending ending(const GateParams& p, const GateState& s) {
+  if (!finite(s)) return Ending::broken;
+  if (s.body.y > p.run.traverse_y) return Ending::traversed;
+  if (s.body.x < -p.beams.joint_x) return Ending::exited_left;
+  if (s.body.x > p.beams.joint_x) return Ending::exited_right;
+  return Ending::trapped;
+}
+
+}  // namespace
+
+GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,
+                 RandomForce& force) {
+  GateState s{start, {}};
+  GateRun run;
+  EnergyLedger ledger(p, s);
+  const double nearly_over = p.run.time_limit - 1e-6 * p.run.step;
+  while (!outside(p, s.body) && run.seconds < nearly_over) {
+    const double f = force.value();
+    const double spell = std::min(force.left(), p.run.time_limit - run.seconds);
+    const double passed = method.advance(s, f, spell, ledger, run.watch);
+    force.pass(passed);
+    run.seconds += passed;
+    if (!finite(s)) break;
+  }
+  run.exit = s.body;
+  run.ending = ending(p, s);
+  return run;
+}
+
+}  // namespace gatewalk::dynamics

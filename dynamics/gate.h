@@ -1,0 +1,27 @@
+#pragma once
+/// One run of one gate: flow until an exit, and what was seen on the way.
+
+#include <cstdint>
+
+#include "dynamics/contact.h"
+#include "dynamics/methods/method.h"
+#include "dynamics/random.h"
+
+namespace gatewalk::dynamics {
+
+/// How a run ends. `broken`: the state stopped being finite numbers; only a fault of the method.
+enum class Ending : std::uint8_t { traversed, exited_left, exited_right, trapped, broken };
+
+struct GateRun {
+  Ending ending = Ending::broken;
+  BodyState exit;          // state at the end, in this gate's frame
+  double seconds = 0.0;    // simulated time
+  Watch watch;             // largest deflections, faults, work done
+};
+
+/// Runs one gate from `start` with both beams at rest, until the body is beyond traverse_y, beyond a
+/// side, or time_limit is over. There is no exit at the bottom: propulsion brings the body back.
+[[nodiscard]] GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,
+                               RandomForce& force);
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,35 @@
+#include "dynamics/methods/method.h"
+
+#include <array>
+#include <string_view>
+
+#include "dynamics/methods/paper.h"
+#include "dynamics/methods/stable.h"
+
+namespace gatewalk::dynamics {
+
+std::span<const std::string_view> method_names() {
+  static constexpr std::array<std::string_view, 2> names{"paper", "stable"};
+  return names;
+}
+
+std::unique_ptr<Method> make_method(const GateParams& params) {
+  validate(params);
+  if (params.run.method == "paper") return std::make_unique<PaperMethod>(params);
+  return std::make_unique<StableMethod>(params);
+}
+
+double energy(const GateParams& p, const GateState& s) {
+  const BeamState &l = s.beams[kLeft], &r = s.beams[kRight];
+  const double body = p.body.mass * (s.body.vx * s.body.vx + s.body.vy * s.body.vy);
+  const double beams = p.beams.inertia() * (l.omega * l.omega + r.omega * r.omega);
+  const double joints = p.beams.stiffness_left * l.theta * l.theta +
+                        p.beams.stiffness_right * r.theta * r.theta;
+  return 0.5 * (body + beams + joints);
+}
+
+double EnergyLedger::balance(const GateState& s) const {
+  return energy(p_, s) - p_.forces.propulsion * (s.body.y - y0_) - random_work_;
+}
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,72 @@
+#pragma once
+/// What every time-stepping method is: something that carries a gate's state through a spell of
+/// constant force. One file per method; `make_method` is the only list of them.
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+
+#include "dynamics/contact.h"
+
+namespace gatewalk::dynamics {
+
+/// Kept during a run: what decides left or right, and the evidence that the numbers can be trusted.
+struct Watch {
+  std::array<double, 2> max_theta{0.0, 0.0};  // rad, largest deflection of each beam, either way
+  double max_penetration = 0.0;     // m
+  double energy_created = 0.0;      // J, largest rise of (energy - work done by the forces) ever seen
+  double max_speed = 0.0;           // m/s
+  std::int64_t steps = 0;           // time steps
+  std::int64_t impacts = 0;         // resolved hits
+  std::int64_t forced_holds = 0;    // steps in which hits piled up and were turned into constraints
+  std::int64_t undefined_contacts = 0;  // contacts for which the method has no formula
+
+  void penetration(double gap) { max_penetration = std::fmax(max_penetration, -gap); }
+};
+
+/// Energy less the work of propulsion and random force: it may only fall. Follows one run.
+class EnergyLedger {
+ public:
+  EnergyLedger(const GateParams& p, const GateState& s) : p_(p), x_(s.body.x), y0_(s.body.y) {
+    lowest_ = balance(s);
+  }
+  /// To be called after every step with the random force that acted during it.
+  void step(const GateState& s, double force_x, Watch& w) {
+    random_work_ += force_x * (s.body.x - x_);
+    x_ = s.body.x;
+    const double now = balance(s);
+    w.energy_created = std::fmax(w.energy_created, now - lowest_);
+    lowest_ = std::fmin(lowest_, now);
+  }
+
+ private:
+  [[nodiscard]] double balance(const GateState& s) const;
+  const GateParams& p_;
+  double x_, y0_;
+  double random_work_ = 0.0;
+  double lowest_ = 0.0;
+};
+
+/// Total energy (J): kinetic of body and beams, elastic of the joints (Eq. (14)).
+[[nodiscard]] double energy(const GateParams& p, const GateState& s);
+
+/// True once the body has left the gate.
+[[nodiscard]] inline bool outside(const GateParams& p, const BodyState& b) {
+  return b.y > p.run.traverse_y || b.x < -p.beams.joint_x || b.x > p.beams.joint_x;
+}
+
+class Method {
+ public:
+  virtual ~Method() = default;
+
+  /// Advances `s` by at most `duration` seconds under lateral force `force_x` (N), stopping at the
+  /// first step after which the body is outside or not finite. Returns the seconds advanced, > 0.
+  virtual double advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
+                         Watch& watch) const = 0;
+};
+
+/// The method named by params.run.method. Throws InvalidParameter when the scene cannot be run by
+/// it. `params` must outlive the method.
+[[nodiscard]] std::unique_ptr<Method> make_method(const GateParams& params);
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,322 @@
+#include "dynamics/methods/stable.h"
+
+#include <algorithm>
+#include <string>
+
+namespace gatewalk::dynamics {
+namespace {
+
+constexpr double kRest = 1e-12;           // m/s, a held contact this slow does not close
+constexpr double kPaperStep = 0.004;      // s, the step that the threshold of Sec. II-B belongs to
+constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
+constexpr int kMaxPieces = 1000;
+constexpr int kMaxHits = 12;              // in one substep, then contacts are held
+
+int pieces_needed(const GateParams& p) {
+  const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
+  const double inertia = p.beams.inertia();
+  const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
+  const double pieces = std::ceil(p.run.step * rate / kMaxPhase);
+  if (!(pieces <= kMaxPieces)) {
+    throw InvalidParameter("run.step_s",
+                           "run.step_s = " + std::to_string(p.run.step) +
+                               " is too long for these beams: their fastest rate is " +
+                               std::to_string(rate) + " 1/s, method stable permits a step up to " +
+                               std::to_string(kMaxPieces * kMaxPhase / rate) + " s");
+  }
+  return std::max(1, static_cast<int>(pieces));
+}
+
+/// Contact points of the wanted beams; an unwanted one has no direction and no lever.
+std::array<Touch, 2> touches(const GateParams& p, const GateState& s, std::array<bool, 2> wanted) {
+  std::array<Touch, 2> t{};
+  for (const Side side : {kLeft, kRight})
+    if (wanted[side]) t[side] = nearest(p, side, s.body, s.beams[side].theta);
+  return t;
+}
+
+/// Cubic Hermite interpolation of positions between two states dt apart, at t.
+GateState between(const GateState& a, const GateState& b, double dt, double t) {
+  const double z = t / dt, z2 = z * z, z3 = z2 * z;
+  const double wb = 3 * z2 - 2 * z3, da = dt * (z - 2 * z2 + z3), db = dt * (z3 - z2);
+  const auto mix = [&](double xa, double va, double xb, double vb) {
+    return xa + wb * (xb - xa) + da * va + db * vb;
+  };
+  GateState s;
+  s.body.x = mix(a.body.x, a.body.vx, b.body.x, b.body.vx);
+  s.body.y = mix(a.body.y, a.body.vy, b.body.y, b.body.vy);
+  for (const Side side : {kLeft, kRight})
+    s.beams[side].theta = mix(a.beams[side].theta, a.beams[side].omega, b.beams[side].theta,
+                              b.beams[side].omega);
+  return s;
+}
+
+/// Contact forces as accelerations of body and beams.
+struct Push {
+  double ax = 0.0, ay = 0.0;
+  std::array<double, 2> beta{0.0, 0.0};
+  Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force)
+      : ax((force[kLeft] * t[kLeft].nx + force[kRight] * t[kRight].nx) / p.body.mass),
+        ay((force[kLeft] * t[kLeft].ny + force[kRight] * t[kRight].ny) / p.body.mass),
+        beta{-t[kLeft].lever * force[kLeft] / p.beams.inertia(),
+             -t[kRight].lever * force[kRight] / p.beams.inertia()} {}
+};
+
+/// When `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which keeps a
+/// bracket and is superlinear on smooth functions. Stops at |gap| <= tolerance.
+/// gap(0) = start > 0, gap(dt) = end < 0; or, `from_zero`, gap(0) = 0 and `start` is its rate > 0:
+/// then gap/t is searched, whose sign is safe from round-off near t = 0.
+template <class Gap>
+double crossing(double dt, double start, double end, bool from_zero, double tolerance, Gap gap) {
+  double a = 0.0, fa = start, b = dt, fb = from_zero ? end / dt : end;
+  int kept = 0;  // which end stayed in the last round: -1 a, +1 b
+  for (int i = 0; i < 100; ++i) {
+    const double margin = 1e-15 * dt;
+    if (b - a <= 4 * margin) break;
+    const double t = std::clamp(b - fb * (b - a) / (fb - fa), a + margin, b - margin);
+    const double value = gap(t);
+    if (std::abs(value) <= tolerance) return t;
+    const double f = from_zero ? value / t : value;
+    if (f < 0.0) {
+      b = t;
+      fb = f;
+      if (kept == -1) fa *= 0.5;
+      kept = -1;
+    } else {
+      a = t;
+      fa = f;
+      if (kept == +1) fb *= 0.5;
+      kept = +1;
+    }
+  }
+  return b;
+}
+
+void fly(const GateParams& p, const GateFlow& flow, double force_x, const Push* push, GateState& s) {
+  double ax = force_x / p.body.mass, ay = p.forces.propulsion / p.body.mass;
+  if (push != nullptr) {
+    ax += push->ax;
+    ay += push->ay;
+  }
+  flow.body.apply(s.body, ax, ay);
+  flow.left.apply(s.beams[kLeft], push != nullptr ? push->beta[kLeft] : 0.0);
+  flow.right.apply(s.beams[kRight], push != nullptr ? push->beta[kRight] : 0.0);
+}
+
+}  // namespace
+
+StableMethod::StableMethod(const GateParams& p)
+    : p_(p),
+      threshold_(p.contact.impulse_threshold * p.run.step / kPaperStep),
+      touching_(1e-10 * p.body.radius),
+      pieces_(pieces_needed(p)),
+      flow_(p, p.run.step / pieces_),
+      half_flow_(p, 0.5 * p.run.step / pieces_) {}
+
+double StableMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
+                             Watch& watch) const {
+  const auto steps = std::max<long>(1, std::lround(duration / p_.run.step));
+  for (long i = 1; i <= steps; ++i) {
+    step(s, force_x, watch);
+    ++watch.steps;
+    ledger.step(s, force_x, watch);
+    const double speed2 = s.body.vx * s.body.vx + s.body.vy * s.body.vy;
+    if (!std::isfinite(speed2)) return static_cast<double>(i) * p_.run.step;
+    if (speed2 > watch.max_speed * watch.max_speed) watch.max_speed = std::sqrt(speed2);
+    for (const Side side : {kLeft, kRight})
+      watch.max_theta[side] = std::fmax(watch.max_theta[side], std::abs(s.beams[side].theta));
+    if (outside(p_, s.body)) return static_cast<double>(i) * p_.run.step;
+  }
+  return static_cast<double>(steps) * p_.run.step;
+}
+
+void StableMethod::step(GateState& s, double force_x, Watch& watch) const {
+  for (int i = 0; i < pieces_; ++i) substep(s, force_x, watch);
+}
+
+void StableMethod::glide(GateState& s, double force_x, const GateFlow& flow) const {
+  if (s.beams[kLeft].held || s.beams[kRight].held)
+    glide_held(s, force_x, flow);
+  else
+    fly(p_, flow, force_x, nullptr, s);
+}
+
+void StableMethod::glide(GateState& s, double force_x, double dt) const {
+  glide(s, force_x, GateFlow(p_, dt));
+}
+
+void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow) const {
+  const std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
+  // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
+  const auto start = touches(p_, s, held);
+  const Push first(p_, start, contact_forces(p_, s, start, force_x, held, push_only));
+  GateState mid = s;
+  if (flow.dt == flow_.dt)
+    fly(p_, half_flow_, force_x, &first, mid);
+  else
+    fly(p_, GateFlow(p_, 0.5 * flow.dt), force_x, &first, mid);
+  const auto middle = touches(p_, mid, held);
+  const auto force = contact_forces(p_, mid, middle, force_x, held, push_only);
+  const Push second(p_, middle, force);
+  fly(p_, flow, force_x, &second, s);
+
+  // Only push: without force at mid-step the contact is over, unless the bodies still overlap.
+  std::array<bool, 2> keep = held;
+  const auto end = touches(p_, s, held);
+  for (const Side side : {kLeft, kRight}) {
+    if (held[side] && force[side] == 0.0 && end[side].gap >= 0.0) {
+      keep[side] = false;
+      s.beams[side].held = false;
+    }
+  }
+  restore(s, keep);
+}
+
+void StableMethod::restore(GateState& s, std::array<bool, 2> contacts) const {
+  if (!contacts[kLeft] && !contacts[kRight]) return;
+  auto touch = touches(p_, s, contacts);
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    const std::array<double, 2> gap{contacts[kLeft] ? touch[kLeft].gap : 0.0,
+                                    contacts[kRight] ? touch[kRight].gap : 0.0};
+    if (std::fmax(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p_.body.radius) break;
+    // Shift along the mass metric: the same 2 x 2 system as for impulses, with gaps for rates.
+    const auto shift = push_or_pull(coupling(p_, touch), gap, contacts);
+    s.body.x += (shift[kLeft] * touch[kLeft].nx + shift[kRight] * touch[kRight].nx) / p_.body.mass;
+    s.body.y += (shift[kLeft] * touch[kLeft].ny + shift[kRight] * touch[kRight].ny) / p_.body.mass;
+    for (const Side side : {kLeft, kRight})
+      s.beams[side].theta -= shift[side] * touch[side].lever / p_.beams.inertia();
+    touch = touches(p_, s, contacts);
+  }
+  const std::array<double, 2> rate{gap_rate(touch[kLeft], s.body, s.beams[kLeft]),
+                                   gap_rate(touch[kRight], s.body, s.beams[kRight])};
+  apply_impulses(p_, touch, push_or_pull(coupling(p_, touch), rate, contacts), s);
+}
+
+void StableMethod::substep(GateState& s, double force_x, Watch& watch) const {
+  double left = flow_.dt;
+  for (int hits = 0;; ++hits) {
+    GateState end = s;
+    if (hits == 0)
+      glide(end, force_x, flow_);
+    else
+      glide(end, force_x, left);
+
+    std::array<bool, 2> hit{false, false};
+    std::array<double, 2> gap{0.0, 0.0};
+    for (const Side side : {kLeft, kRight}) {
+      const BeamState& beam = end.beams[side];
+      if (beam.held || out_of_reach(p_, side, end.body, beam.theta)) continue;
+      gap[side] = nearest(p_, side, end.body, beam.theta).gap;
+      hit[side] = gap[side] < -touching_;
+    }
+    if (!hit[kLeft] && !hit[kRight]) {
+      s = end;
+      watch.penetration(std::fmin(gap[kLeft], gap[kRight]));
+      return;
+    }
+    if (hits == kMaxHits) {
+      // Hits pile up faster than the step resolves them: finish the substep held together.
+      ++watch.forced_holds;
+      s = end;
+      for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
+      restore(s, {s.beams[kLeft].held, s.beams[kRight].held});
+      return;
+    }
+    const double when = first_hit(s, force_x, end, left, hit);
+    resolve(s, false, watch);
+    left -= when;
+    if (left <= 1e-15 * flow_.dt) return;
+  }
+}
+
+double StableMethod::first_hit(GateState& s, double force_x, const GateState& end, double dt,
+                               std::array<bool, 2> hit) const {
+  double earliest = dt;
+  GateState at_hit = end;
+  for (const Side side : {kLeft, kRight}) {
+    if (!hit[side]) continue;
+    const Touch now = nearest(p_, side, s.body, s.beams[side].theta);
+    const double rate = gap_rate(now, s.body, s.beams[side]);
+    // From contact, the next hit is where the gap comes back to what it is now; with u <= 0 there
+    // is nothing to wait for.
+    const bool from_contact = now.gap <= touching_;
+    if (from_contact && rate <= 0.0) return 0.0;
+    const double level = from_contact ? now.gap : 0.0;
+    const auto gap_of = [&](const GateState& g) {
+      return nearest(p_, side, g.body, g.beams[side].theta).gap - level;
+    };
+    const auto moved = [&](double t) {
+      GateState g = s;
+      glide(g, force_x, t);
+      return g;
+    };
+    const double start = from_contact ? rate : now.gap;
+
+    // A first guess from the interpolated motion, which is cheap, and one Newton step on the motion
+    // itself. If that does not land on the contact, a safe search on the motion itself does.
+    double when = crossing(dt, start, gap_of(end), from_contact, 1e1 * touching_, [&](double t) {
+      return gap_of(between(s, end, dt, t));
+    });
+    GateState there = moved(when);
+    const Touch t = nearest(p_, side, there.body, there.beams[side].theta);
+    when -= (t.gap - level) / gap_rate(t, there.body, there.beams[side]);
+    if (when > 0.0 && when <= dt) there = moved(when);
+    if (!(when > 0.0 && when <= dt) || std::abs(gap_of(there)) > 0.1 * touching_) {
+      when = crossing(dt, start, gap_of(end), from_contact, 0.01 * touching_,
+                      [&](double time) { return gap_of(moved(time)); });
+      there = moved(when);
+    }
+    if (when < earliest) {
+      earliest = when;
+      at_hit = there;
+    }
+  }
+  s = at_hit;
+  return earliest;
+}
+
+void StableMethod::resolve(GateState& s, bool hold_all, Watch& watch) const {
+  const auto touch = touches(p_, s, {true, true});
+  const Coupling w = coupling(p_, touch);
+  constexpr int kRounds = 20;
+  for (int round = 0; round < kRounds; ++round) {
+    std::array<double, 2> u{}, b{};
+    std::array<bool, 2> active{};
+    for (const Side side : {kLeft, kRight}) {
+      const bool held = s.beams[side].held;
+      u[side] = gap_rate(touch[side], s.body, s.beams[side]);
+      // Only contacts that close take part. A contact that opens must not be pushed by the other's
+      // restitution, that could create energy; if it closes after this round, it takes the next.
+      active[side] = held || (touch[side].gap <= touching_ && u[side] <= 0.0);
+      const double e = touch[side].kind == ContactKind::tip ? p_.contact.tip_restitution
+                                                            : p_.contact.restitution;
+      const bool elastic = !held && !hold_all && round < kRounds - 1;
+      b[side] = elastic ? (1.0 + e) * u[side] : u[side];
+    }
+    const auto done = [&](Side side) {
+      return !active[side] || (s.beams[side].held && u[side] >= -kRest);
+    };
+    if (done(kLeft) && done(kRight)) return;
+
+    auto impulse = push_only(w, b, active);
+    // A hit below the threshold ends the bouncing: perfectly inelastic, then a constraint.
+    for (const Side side : {kLeft, kRight}) {
+      if (active[side] && !s.beams[side].held && impulse[side] < threshold_) {
+        s.beams[side].held = true;
+        b[side] = u[side];
+      }
+    }
+    impulse = push_only(w, b, active);
+    apply_impulses(p_, touch, impulse, s);
+    for (const Side side : {kLeft, kRight}) {
+      if (!active[side]) continue;
+      ++watch.impacts;
+      // A held beam that the other side's hit has thrown off is free again.
+      if (s.beams[side].held && impulse[side] == 0.0 &&
+          gap_rate(touch[side], s.body, s.beams[side]) > 0.0)
+        s.beams[side].held = false;
+    }
+  }
+}
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,50 @@
+#pragma once
+/// `stable`: hits found inside the step, both beams resolved together, constraints without drift.
+///
+/// Free motion is closed-form (flow.h). A beam that the disc has run into by the end of a step is
+/// followed back to the moment of the hit; the impact law acts there and the step goes on. A hit
+/// weaker than the threshold turns the contact into a constraint: contact forces at mid-step
+/// (explicit midpoint, second order), then positions and velocities are put back onto the
+/// constraint, along the mass metric, so that it can neither drift nor add energy. Contact forces
+/// only push: a contact whose force would pull is released.
+///
+/// The impulse threshold shrinks with the step, epsilon * step / 0.004 s: with a fixed one the
+/// error of a trajectory stops falling.
+
+#include "dynamics/flow.h"
+#include "dynamics/methods/method.h"
+
+namespace gatewalk::dynamics {
+
+class StableMethod final : public Method {
+ public:
+  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be cut
+  /// into more than 1000 pieces.
+  explicit StableMethod(const GateParams& p);
+
+  double advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
+                 Watch& watch) const override;
+
+ private:
+  void step(GateState& s, double force_x, Watch& watch) const;
+  void substep(GateState& s, double force_x, Watch& watch) const;
+  /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
+  void glide(GateState& s, double force_x, const GateFlow& flow) const;
+  void glide(GateState& s, double force_x, double dt) const;
+  void glide_held(GateState& s, double force_x, const GateFlow& flow) const;
+  /// Puts held contacts back to gap = 0 and u = 0.
+  void restore(GateState& s, std::array<bool, 2> contacts) const;
+  /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
+  [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
+                                 double dt, std::array<bool, 2> hit) const;
+  void resolve(GateState& s, bool hold_all, Watch& watch) const;
+
+  const GateParams& p_;
+  double threshold_;      // N s
+  double touching_;       // m, gaps up to this count as contact at a moment of impact
+  int pieces_;            // substeps per step, 1 unless the beams are very stiff
+  GateFlow flow_;         // one substep
+  GateFlow half_flow_;
+};
+
+}  // namespace gatewalk::dynamics

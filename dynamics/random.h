@@ -1,0 +1,92 @@
+#pragma once
+/// The lateral random force of Eq. (1): F_rand = Rm N(0,1), drawn at 50 Hz and held in between.
+
+#include <Random123/philox.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace gatewalk::dynamics {
+
+/// Names one random sequence. Counter-based: any trial can be replayed alone, on any thread.
+struct Stream {
+  std::uint64_t seed = 1;
+  std::uint64_t row = 0;    // what is run: a row of the matrix, or a start
+  std::uint64_t trial = 0;  // which repeat
+};
+
+/// Which experiment a stream belongs to; keeps rows of a matrix and starts of a field apart.
+enum class Purpose : std::uint64_t { gate = 1, row = 2, field = 3 };
+
+/// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53.
+[[nodiscard]] inline double open_uniform(std::uint64_t word) {
+  return (static_cast<double>(word >> 11) + 0.5) * 0x1p-53;
+}
+
+/// Words, uniforms and standard normals of one stream (Philox 4x64, Salmon et al. 2011).
+class Random {
+ public:
+  Random(Purpose purpose, const Stream& s)
+      : key_{{s.seed, (static_cast<std::uint64_t>(purpose) << 56) ^ s.row}}, trial_(s.trial) {}
+
+  [[nodiscard]] std::uint64_t word() {
+    if (used_ == 4) {
+      words_ = r123::Philox4x64()({{block_++, trial_, 0, 0}}, key_);
+      used_ = 0;
+    }
+    return words_[used_++];
+  }
+  [[nodiscard]] double uniform() { return open_uniform(word()); }
+
+  /// Box-Muller in double; two uniforms give two normals.
+  [[nodiscard]] double normal() {
+    if (has_spare_) {
+      has_spare_ = false;
+      return spare_;
+    }
+    const double radius = std::sqrt(-2.0 * std::log(uniform()));
+    const double angle = 2.0 * std::numbers::pi * uniform();
+    spare_ = radius * std::sin(angle);
+    has_spare_ = true;
+    return radius * std::cos(angle);
+  }
+
+ private:
+  r123::Philox4x64::key_type key_;
+  std::uint64_t trial_;
+  std::uint64_t block_ = 0;
+  r123::Philox4x64::ctr_type words_{};
+  std::size_t used_ = 4;
+  double spare_ = 0.0;
+  bool has_spare_ = false;
+};
+
+/// The held force. It goes on across gates: its clock is the body's, not the gate's.
+class RandomForce {
+ public:
+  /// `sign` -1 gives the mirror image of the same sequence.
+  RandomForce(const Forces& f, Random random, double sign = 1.0)
+      : random_(random), scale_(sign * f.random), hold_(1.0 / f.random_rate) {}
+
+  /// Force in force now (N), for another left() seconds > 0. Draws when the last one has run out.
+  [[nodiscard]] double value() {
+    if (left_ <= 1e-9 * hold_) {  // round-off of steps that add up to a hold
+      value_ = scale_ * random_.normal();
+      left_ = hold_;
+    }
+    return value_;
+  }
+  [[nodiscard]] double left() const { return left_; }
+  void pass(double seconds) { left_ -= seconds; }
+
+ private:
+  Random random_;
+  double scale_;
+  double hold_;
+  double left_ = 0.0;
+  double value_ = 0.0;
+};
+
+}  // namespace gatewalk::dynamics
