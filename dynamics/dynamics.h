@@ -1,0 +1,20 @@
+#pragma once
+/// gatewalk::dynamics: a disc pushing through one gate of two hinged, springy beams.
+///
+///   params.h       the scene: body, beams, forces, contact, run
+///   contact.h      where disc and beam touch, impact laws Eqs. (4)-(9), constraints Eqs. (10)-(13)
+///   flow.h         free motion in closed form
+///   methods/       time stepping, one file per method behind methods/method.h
+///   random.h       counter-based random streams, the held lateral force of Eq. (1)
+///   gate.h         one run of one gate
+///   ensemble.h     many runs, their outcomes and their health
+///   state_space.h  Table III: how a body enters a gate, as a number
+///   transitions.h  runs -> counts, the matrix of Eq. (16)
+
+#include "dynamics/ensemble.h"
+#include "dynamics/flow.h"
+#include "dynamics/gate.h"
+#include "dynamics/params.h"
+#include "dynamics/random.h"
+#include "dynamics/state_space.h"
+#include "dynamics/transitions.h"

@@ -1,0 +1,66 @@
+#pragma once
+/// Many gate runs at once, and the record of how far they can be trusted.
+
+#include <cstdint>
+
+#include "dynamics/gate.h"
+
+namespace gatewalk::dynamics {
+
+/// Trials first, first + 1, ... first + count - 1. A trial is named by its number, so any split
+/// over calls, threads or machines gives the same trials.
+struct TrialRange {
+  std::int64_t first = 0;
+  std::int64_t count = 0;
+};
+
+/// What went wrong, or nearly, over many runs. A run is counted as
+/// - penetrating: the disc sank into a beam by more than 1 % of its radius;
+/// - creating energy: energy less work done rose by more than 1e-4 of propulsion * traverse_y plus
+///   the largest kinetic energy of the body;
+/// - broken: the state stopped being finite.
+struct Health {
+  std::int64_t runs = 0;
+  std::int64_t penetrating = 0;
+  std::int64_t creating_energy = 0;
+  std::int64_t broken = 0;
+  std::int64_t undefined_contacts = 0;
+  std::int64_t forced_holds = 0;
+  std::int64_t impacts = 0;
+  std::int64_t steps = 0;
+  double worst_penetration = 0.0;     // m
+  double worst_energy_created = 0.0;  // J
+  double worst_speed = 0.0;           // m/s
+
+  void add(const GateParams& p, const GateRun& run);
+  Health& operator+=(const Health& other);
+  /// No run penetrated, created energy, broke or met a contact that its method has no formula for.
+  [[nodiscard]] bool clean() const {
+    return penetrating == 0 && creating_energy == 0 && broken == 0 && undefined_contacts == 0;
+  }
+};
+
+/// Outcomes of single-gate trials.
+struct GateTally {
+  std::int64_t trials = 0;
+  std::int64_t traversed_left = 0;   // the left beam had the larger deflection (Sec. III-B)
+  std::int64_t traversed_right = 0;
+  std::int64_t traversed_even = 0;   // both deflected equally, to the last bit
+  std::int64_t exited_left = 0;
+  std::int64_t exited_right = 0;
+  std::int64_t trapped = 0;
+  std::int64_t broken = 0;
+  Health health;
+
+  [[nodiscard]] std::int64_t traversed() const {
+    return traversed_left + traversed_right + traversed_even;
+  }
+  GateTally& operator+=(const GateTally& other);
+};
+
+/// Runs `range` from one start, on all threads of the current TBB arena. Throws InvalidParameter
+/// for a scene that cannot be run.
+[[nodiscard]] GateTally run_gate_trials(const GateParams& p, const BodyState& start,
+                                        std::uint64_t seed, TrialRange range);
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,134 @@
+#include "dynamics/state_space.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace gatewalk::dynamics {
+namespace {
+
+int count(const std::vector<double>& edges) { return static_cast<int>(edges.size()) - 1; }
+
+/// Bin of v; outside all bins the nearest one, and `clamped` is set.
+int bin_of(const std::vector<double>& edges, double v, bool& clamped) {
+  if (v < edges.front() || v > edges.back()) clamped = true;
+  const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, v);
+  return static_cast<int>(above - edges.begin()) - 1;
+}
+
+}  // namespace
+
+Move move_into(Boundary b) {
+  switch (b) {
+    case Boundary::enter: return {0, 1};
+    case Boundary::right_deflect:
+    case Boundary::right_traverse: return {-1, 0};
+    case Boundary::left_deflect:
+    case Boundary::left_traverse: return {1, 0};
+  }
+  throw std::logic_error("no such boundary");
+}
+
+Crossing crossing_of(const GateParams& p, Ending ending, const BodyState& exit) {
+  const bool below = exit.y < p.beams.joint_y;
+  const double from_joint = std::abs(exit.y - p.beams.joint_y);
+  switch (ending) {
+    case Ending::traversed: return {Boundary::enter, exit.x, exit.vx, exit.vy};
+    case Ending::exited_left:
+      return {below ? Boundary::right_deflect : Boundary::right_traverse, from_joint, exit.vx,
+              exit.vy};
+    case Ending::exited_right:
+      return {below ? Boundary::left_deflect : Boundary::left_traverse, from_joint, exit.vx,
+              exit.vy};
+    case Ending::trapped:
+    case Ending::broken: break;
+  }
+  throw std::logic_error("this run did not leave its gate");
+}
+
+BodyState entry_state(const GateParams& p, const Crossing& c) {
+  BodyState b{0.0, 0.0, c.vx, c.vy};
+  switch (c.boundary) {
+    case Boundary::enter: b.x = c.d; return b;
+    case Boundary::right_deflect: b.x = p.beams.joint_x; b.y = p.beams.joint_y - c.d; return b;
+    case Boundary::left_deflect: b.x = -p.beams.joint_x; b.y = p.beams.joint_y - c.d; return b;
+    case Boundary::right_traverse: b.x = p.beams.joint_x; b.y = p.beams.joint_y + c.d; return b;
+    case Boundary::left_traverse: b.x = -p.beams.joint_x; b.y = p.beams.joint_y + c.d; return b;
+  }
+  throw std::logic_error("no such boundary");
+}
+
+BodyState shifted_into_next(const GateParams& p, Ending ending, BodyState exit) {
+  const double width = 2.0 * p.beams.joint_x;
+  if (ending == Ending::traversed) exit.y -= p.run.traverse_y;
+  if (ending == Ending::exited_left) exit.x += width;
+  if (ending == Ending::exited_right) exit.x -= width;
+  return exit;
+}
+
+StateSpace::StateSpace(std::array<Bins, kBoundaries> bins) : bins_(std::move(bins)) {
+  for (int b = 0; b < kBoundaries; ++b) {
+    const Bins& g = bins_[b];
+    for (const auto* edges : {&g.d, &g.vx, &g.vy}) {
+      const bool ascending =
+          std::adjacent_find(edges->begin(), edges->end(), std::greater_equal<>()) == edges->end();
+      if (edges->size() < 2 || !ascending ||
+          !std::all_of(edges->begin(), edges->end(), [](double e) { return std::isfinite(e); }))
+        throw std::invalid_argument("state space: boundary " + std::string(kBoundaryNames[b]) +
+                                    " needs at least two ascending, finite bin edges");
+    }
+    offset_[b + 1] = offset_[b] + count(g.d) * count(g.vx) * count(g.vy);
+  }
+}
+
+StateSpace StateSpace::paper(const GateParams& p) {
+  const double w = p.beams.joint_x, y = p.beams.joint_y, r = p.body.radius;
+  const std::vector<double> to_right{-30, -20, -10, 0}, to_left{0, 10, 20, 30};
+  const std::vector<double> side_vy{-20, -10, 0, 10, 20, 30};
+  const std::vector<double> below{r, (r + y) / 2, y}, above{r, p.run.traverse_y - y};
+  return StateSpace({Bins{{-w, -0.6 * w, -0.2 * w, 0.2 * w, 0.6 * w, w}, {-25, -15, -5, 5, 15, 25}, {10, 20}},
+                     Bins{below, to_right, side_vy},
+                     Bins{below, to_left, side_vy},
+                     Bins{above, {-30, 0}, {-20, 30}},
+                     Bins{above, {0, 30}, {-20, 30}}});
+}
+
+StateSpace::Index StateSpace::index_of(const Crossing& c) const {
+  const int b = static_cast<int>(c.boundary);
+  const Bins& g = bins_[b];
+  Index index;
+  const int d = bin_of(g.d, c.d, index.clamped);
+  const int vx = bin_of(g.vx, c.vx, index.clamped);
+  const int vy = bin_of(g.vy, c.vy, index.clamped);
+  index.state = offset_[b] + (d * count(g.vx) + vx) * count(g.vy) + vy;
+  return index;
+}
+
+Boundary StateSpace::boundary(int state) const {
+  const auto above = std::upper_bound(offset_.begin(), offset_.end(), state);
+  return static_cast<Boundary>(above - offset_.begin() - 1);
+}
+
+Cell StateSpace::cell(int state) const {
+  const Boundary b = boundary(state);
+  const Bins& g = bins_[static_cast<int>(b)];
+  const int in_boundary = state - first(b);
+  const int vy = in_boundary % count(g.vy);
+  const int vx = in_boundary / count(g.vy) % count(g.vx);
+  const int d = in_boundary / count(g.vy) / count(g.vx);
+  return {b, {g.d[d], g.d[d + 1]}, {g.vx[vx], g.vx[vx + 1]}, {g.vy[vy], g.vy[vy + 1]}};
+}
+
+Crossing StateSpace::sample(int state, Random& random) const {
+  const Cell c = cell(state);
+  const auto inside = [&](const std::array<double, 2>& edge) {
+    return edge[0] + (edge[1] - edge[0]) * random.uniform();
+  };
+  Crossing crossing{c.boundary, 0.0, 0.0, 0.0};
+  crossing.d = inside(c.d);
+  crossing.vx = inside(c.vx);
+  crossing.vy = inside(c.vy);
+  return crossing;
+}
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,93 @@
+#pragma once
+/// The discrete states of the chain: how a body enters a gate (Table III), as data.
+/// A crossing out of one gate is an entry into the next; `index_of` turns it into a state, says so
+/// when it lay outside every bin, and `sample` puts a body back into a state's bin.
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/gate.h"
+
+namespace gatewalk::dynamics {
+
+/// Where a body enters a gate. `right_*`: through the right side, coming from the right neighbour.
+enum class Boundary : std::uint8_t {
+  enter,           // EN, from below; d = x
+  right_deflect,   // RD, right side below the joint; d = joint_y - y
+  left_deflect,    // LD
+  right_traverse,  // RT, right side above the joint; d = y - joint_y
+  left_traverse,   // LT
+};
+inline constexpr int kBoundaries = 5;
+inline constexpr std::array<std::string_view, kBoundaries> kBoundaryNames{"EN", "RD", "LD", "RT",
+                                                                          "LT"};
+
+/// Step in gate indices that leads to entering at this boundary.
+struct Move {
+  int di_x = 0, di_y = 0;
+};
+[[nodiscard]] Move move_into(Boundary b);
+
+/// An entry into a gate: boundary, distance d along it (m), velocity (m/s).
+struct Crossing {
+  Boundary boundary = Boundary::enter;
+  double d = 0.0, vx = 0.0, vy = 0.0;
+};
+
+/// The entry into the next gate that ends a run. Only for runs that left the gate.
+[[nodiscard]] Crossing crossing_of(const GateParams& p, Ending ending, const BodyState& exit);
+
+/// Body on the boundary of its new gate, in that gate's frame.
+[[nodiscard]] BodyState entry_state(const GateParams& p, const Crossing& c);
+
+/// The same body in the frame of the gate it has moved into: nothing is rounded to the boundary.
+[[nodiscard]] BodyState shifted_into_next(const GateParams& p, Ending ending, BodyState exit);
+
+/// Edges of the bins of one boundary, ascending; n + 1 edges make n bins.
+struct Bins {
+  std::vector<double> d, vx, vy;
+  friend bool operator==(const Bins&, const Bins&) = default;
+};
+
+/// One state's bin.
+struct Cell {
+  Boundary boundary = Boundary::enter;
+  std::array<double, 2> d{}, vx{}, vy{};
+};
+
+class StateSpace {
+ public:
+  /// Throws std::invalid_argument unless every boundary has at least one bin and ascending edges.
+  explicit StateSpace(std::array<Bins, kBoundaries> bins);
+
+  /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size (they are the
+  /// table's for the paper's gate), velocities are the table's. RT and LT are one state each; their
+  /// bin is what the README's "Departures" says: y from joint + R up, velocities of RD and LD.
+  static StateSpace paper(const GateParams& p);
+
+  [[nodiscard]] int size() const { return offset_[kBoundaries]; }
+  /// Column of "trapped", one past the states.
+  [[nodiscard]] int trapped() const { return size(); }
+  [[nodiscard]] const std::array<Bins, kBoundaries>& bins() const { return bins_; }
+  [[nodiscard]] int first(Boundary b) const { return offset_[static_cast<int>(b)]; }
+
+  struct Index {
+    int state = 0;
+    bool clamped = false;  // outside every bin of its boundary, put into the nearest
+  };
+  [[nodiscard]] Index index_of(const Crossing& c) const;
+  [[nodiscard]] Cell cell(int state) const;
+  [[nodiscard]] Boundary boundary(int state) const;
+
+  /// Uniform in the state's bin.
+  [[nodiscard]] Crossing sample(int state, Random& random) const;
+
+  friend bool operator==(const StateSpace&, const StateSpace&) = default;
+
+ private:
+  std::array<Bins, kBoundaries> bins_;
+  std::array<int, kBoundaries + 1> offset_{};
+};
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,63 @@
+#include "dynamics/transitions.h"
+
+#include <tbb/parallel_for.h>
+
+namespace gatewalk::dynamics {
+
+Transitions::Transitions(StateSpace state_space)
+    : space(std::move(state_space)),
+      rows(space.size()),
+      trials(space.size(), 0),
+      clamped(space.size(), 0) {}
+
+Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor> Transitions::counts() const {
+  std::vector<Eigen::Triplet<std::int64_t>> entries;
+  for (int row = 0; row < space.size(); ++row)
+    for (const auto& [column, n] : rows[row]) entries.emplace_back(row, column, n);
+  Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor> m(space.size(), space.size() + 1);
+  m.setFromTriplets(entries.begin(), entries.end());
+  return m;
+}
+
+void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range) {
+  const auto method = make_method(p);
+  struct Outcome {
+    int column = -1;
+    bool clamped = false;
+  };
+  std::vector<Outcome> outcomes(static_cast<std::size_t>(t.space.size()) * range.count);
+  std::vector<Health> health(t.space.size());
+
+  tbb::parallel_for(0, t.space.size(), [&](int row) {
+    for (std::int64_t i = 0; i < range.count; ++i) {
+      const Stream stream{seed, static_cast<std::uint64_t>(row),
+                          static_cast<std::uint64_t>(range.first + i)};
+      Random random(Purpose::row, stream);
+      const BodyState start = entry_state(p, t.space.sample(row, random));
+      RandomForce force(p.forces, random);
+      const GateRun run = run_gate(p, *method, start, force);
+      health[row].add(p, run);
+      Outcome& out = outcomes[row * range.count + i];
+      if (run.ending == Ending::broken) continue;
+      if (run.ending == Ending::trapped) {
+        out.column = t.space.trapped();
+        continue;
+      }
+      const auto index = t.space.index_of(crossing_of(p, run.ending, run.exit));
+      out = {index.state, index.clamped};
+    }
+  });
+
+  for (int row = 0; row < t.space.size(); ++row) {
+    t.health += health[row];
+    for (std::int64_t i = 0; i < range.count; ++i) {
+      const Outcome& out = outcomes[row * range.count + i];
+      if (out.column < 0) continue;
+      ++t.rows[row][out.column];
+      ++t.trials[row];
+      t.clamped[row] += out.clamped;
+    }
+  }
+}
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,32 @@
+#pragma once
+/// Runs -> integer counts: the input-output matrix of Eq. (16) before it is divided by anything.
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "dynamics/ensemble.h"
+#include "dynamics/state_space.h"
+
+namespace gatewalk::dynamics {
+
+/// Counts of a state space's n rows and n + 1 columns, the last one "trapped".
+struct Transitions {
+  explicit Transitions(StateSpace state_space);
+
+  StateSpace space;
+  std::vector<std::map<int, std::int64_t>> rows;  // (n) column -> count
+  std::vector<std::int64_t> trials;               // (n)
+  std::vector<std::int64_t> clamped;              // (n) crossings of this row outside every bin
+  Health health;
+
+  [[nodiscard]] Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor> counts() const;  // (n x n+1)
+};
+
+/// Adds trials `range` of every row: starts uniform in the row's bin, random force from the stream
+/// {seed, row, trial}. On all threads of the current TBB arena; same counts for any number of them.
+/// A broken run is counted in `health` and in no column; the caller decides.
+void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range);
+
+}  // namespace gatewalk::dynamics
