@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "dynamics/params.h"
+
 namespace gatewalk::dynamics {
 
 /// Names one random sequence. Counter-based: any trial can be replayed alone, on any thread.
@@ -17,8 +19,8 @@ struct Stream {
   std::uint64_t trial = 0;  // which repeat
 };
 
-/// Which experiment a stream belongs to; keeps rows of a matrix and starts of a field apart.
-enum class Purpose : std::uint64_t { gate = 1, row = 2, field = 3 };
+/// Which experiment a stream belongs to, so that no two experiments share their randomness.
+enum class Purpose : std::uint64_t { gate = 1, row = 2, field = 3, comparison = 4 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53.
 [[nodiscard]] inline double open_uniform(std::uint64_t word) {

@@ -1,0 +1,219 @@
+#include "lattice/compare.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "dynamics/random.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Purpose;
+using dynamics::Random;
+
+void require_same_shape(Eigen::Index rows_a, Eigen::Index cols_a, Eigen::Index rows_b,
+                        Eigen::Index cols_b) {
+  if (rows_a != rows_b || cols_a != cols_b)
+    throw std::invalid_argument("compare: the two fields differ in size");
+}
+
+/// The gates that either distribution can reach, and the distances between them.
+struct Support {
+  std::vector<Eigen::Index> gates;  // linear index
+  Eigen::MatrixXd distance;
+};
+
+Support support_of(const CellProbabilities& pooled) {
+  Support s;
+  for (Eigen::Index i = 0; i < pooled.size(); ++i)
+    if (pooled.data()[i] > 0.0) s.gates.push_back(i);
+  const auto n = static_cast<Eigen::Index>(s.gates.size());
+  s.distance.resize(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const auto dx = static_cast<double>(s.gates[i] % pooled.cols() - s.gates[j] % pooled.cols());
+      const auto dy = static_cast<double>(s.gates[i] / pooled.cols() - s.gates[j] / pooled.cols());
+      s.distance(i, j) = std::hypot(dx, dy);
+    }
+  return s;
+}
+
+double energy_of(const Eigen::VectorXd& difference, const Support& s) {
+  return -difference.dot(s.distance * difference);
+}
+
+Eigen::VectorXd on_support(const CellProbabilities& p, const Support& s) {
+  Eigen::VectorXd v(static_cast<Eigen::Index>(s.gates.size()));
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = p.data()[s.gates[i]];
+  return v;
+}
+
+/// Statistics that grow with the difference.
+struct Statistics {
+  double chi_squared = 0.0, total_variation = 0.0, energy = 0.0;
+};
+
+/// a, b: shares on the support; `expected`: shares against whose sampling noise a difference counts.
+Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                      const Eigen::VectorXd& expected, const Support& support) {
+  const Eigen::VectorXd difference = a - b;
+  Statistics s;
+  for (Eigen::Index i = 0; i < difference.size(); ++i) {
+    const double d2 = difference[i] * difference[i];
+    if (d2 > 0.0) s.chi_squared += expected[i] > 0.0 ? d2 / expected[i] : std::numeric_limits<double>::infinity();
+  }
+  s.total_variation = 0.5 * difference.cwiseAbs().sum();
+  s.energy = energy_of(difference, support);
+  return s;
+}
+
+/// p-values and the mean null total variation over `null_draws` calls of draw(k), in any order.
+template <class Draw>
+void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draws, Draw draw) {
+  if (null_draws < 1) throw std::invalid_argument("compare: null_draws must be at least 1");
+  std::vector<Statistics> null(null_draws);
+  tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) { null[k] = draw(k); });
+  // Equal results of different rounding count as equal.
+  const auto p_value = [&](double Statistics::*what) {
+    const double bar = seen.*what * (1.0 - 1e-12);
+    const auto as_large = std::count_if(null.begin(), null.end(),
+                                        [&](const Statistics& s) { return s.*what >= bar; });
+    return static_cast<double>(as_large + 1) / static_cast<double>(null_draws + 1);
+  };
+  c.p_chi_squared = p_value(&Statistics::chi_squared);
+  c.p_total_variation = p_value(&Statistics::total_variation);
+  c.p_energy = p_value(&Statistics::energy);
+  c.null_draws = null_draws;
+  double sum = 0.0;
+  for (const Statistics& s : null) sum += s.total_variation;
+  c.floor_total_variation = sum / static_cast<double>(null_draws);
+}
+
+/// A whole number below n, from 64 random bits.
+std::int64_t below(std::int64_t n, Random& random) {
+  __extension__ using Wide = unsigned __int128;
+  return static_cast<std::int64_t>((static_cast<Wide>(random.word()) * static_cast<Wide>(n)) >> 64);
+}
+
+CellProbabilities shares(const CellCounts& counts) {
+  const std::int64_t total = counts.sum();
+  if (total <= 0) throw std::invalid_argument("compare: a sample without trials");
+  return counts.cast<double>() / static_cast<double>(total);
+}
+
+}  // namespace
+
+double corrcoef(const CellProbabilities& a, const CellProbabilities& b) {
+  require_same_shape(a.rows(), a.cols(), b.rows(), b.cols());
+  const CellProbabilities da = a - a.mean(), db = b - b.mean();
+  const double variance = da.square().sum() * db.square().sum();
+  return variance > 0.0 ? (da * db).sum() / std::sqrt(variance)
+                        : std::numeric_limits<double>::quiet_NaN();
+}
+
+double rmse_per_100(const CellProbabilities& a, const CellProbabilities& b) {
+  require_same_shape(a.rows(), a.cols(), b.rows(), b.cols());
+  return 100.0 * std::sqrt((a - b).square().mean());
+}
+
+double total_variation(const CellProbabilities& a, const CellProbabilities& b) {
+  require_same_shape(a.rows(), a.cols(), b.rows(), b.cols());
+  return 0.5 * (a - b).abs().sum();
+}
+
+double energy_distance(const CellProbabilities& a, const CellProbabilities& b) {
+  require_same_shape(a.rows(), a.cols(), b.rows(), b.cols());
+  const Support s = support_of(a + b);
+  return energy_of(on_support(a, s) - on_support(b, s), s);
+}
+
+double concentration(const CellCounts& counts) {
+  const auto n = static_cast<double>(counts.sum());
+  if (n < 2.0) return std::numeric_limits<double>::quiet_NaN();
+  const auto c = counts.cast<double>();
+  return (c * (c - 1.0)).sum() / (n * (n - 1.0));
+}
+
+NoiseFloor noise_floor(double s, std::int64_t gates, std::int64_t trials,
+                       std::int64_t second_trials) {
+  const auto n = static_cast<double>(gates);
+  const double first = (1.0 - s) / (n * static_cast<double>(trials));
+  const double second = second_trials > 0 ? (1.0 - s) / (n * static_cast<double>(second_trials)) : 0.0;
+  const double signal = (s - 1.0 / n) / n;
+  return {signal / std::sqrt((signal + first) * (signal + second)),
+          100.0 * std::sqrt(first + second)};
+}
+
+Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64_t null_draws,
+                   std::uint64_t seed) {
+  require_same_shape(sample.rows(), sample.cols(), other.rows(), other.cols());
+  const CellProbabilities a = shares(sample), b = shares(other);
+  const std::int64_t n = sample.sum(), m = other.sum();
+  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0};
+  const CellCounts pooled_counts = sample + other;
+  c.floor = noise_floor(concentration(pooled_counts), sample.size(), n, m);
+
+  const CellProbabilities pooled = shares(pooled_counts);
+  const Support support = support_of(pooled);
+  const Eigen::VectorXd expected = on_support(pooled, support);
+  std::vector<std::int32_t> trials;  // every pooled trial, as its place in the support
+  trials.reserve(n + m);
+  for (std::size_t i = 0; i < support.gates.size(); ++i)
+    trials.insert(trials.end(), pooled_counts.data()[support.gates[i]], static_cast<std::int32_t>(i));
+
+  const Statistics seen =
+      statistics(on_support(a, support), on_support(b, support), expected, support);
+  fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
+    Random random(Purpose::comparison, {seed, 0, static_cast<std::uint64_t>(k)});
+    // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
+    const bool first_is_smaller = n <= m;
+    const std::int64_t small = std::min(n, m);
+    std::vector<std::int32_t> deck = trials;
+    Eigen::VectorXd hand = Eigen::VectorXd::Zero(expected.size());
+    for (std::int64_t i = 0; i < small; ++i) {
+      const std::int64_t j = i + below(n + m - i, random);
+      std::swap(deck[i], deck[j]);
+      hand[deck[i]] += 1.0;
+    }
+    const Eigen::VectorXd rest = expected * static_cast<double>(n + m) - hand;
+    const Eigen::VectorXd& of_a = first_is_smaller ? hand : rest;
+    const Eigen::VectorXd& of_b = first_is_smaller ? rest : hand;
+    return statistics(of_a / static_cast<double>(n), of_b / static_cast<double>(m), expected, support);
+  });
+  return c;
+}
+
+Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
+                   std::int64_t null_draws, std::uint64_t seed) {
+  require_same_shape(sample.rows(), sample.cols(), exact.rows(), exact.cols());
+  const CellProbabilities a = shares(sample);
+  const std::int64_t n = sample.sum();
+  Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0};
+  c.floor = noise_floor(exact.square().sum(), sample.size(), n, 0);
+
+  const Support support = support_of(a + exact);
+  const Eigen::VectorXd expected = on_support(exact, support);
+  std::vector<double> cumulative(support.gates.size());
+  std::partial_sum(expected.begin(), expected.end(), cumulative.begin());
+  const Statistics seen = statistics(on_support(a, support), expected, expected, support);
+  fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
+    Random random(Purpose::comparison, {seed, 1, static_cast<std::uint64_t>(k)});
+    Eigen::VectorXd drawn = Eigen::VectorXd::Zero(expected.size());
+    for (std::int64_t i = 0; i < n; ++i) {
+      const double u = random.uniform() * cumulative.back();
+      // First place whose cumulative share exceeds u: never one of share zero.
+      const auto place = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
+      drawn[place - cumulative.begin()] += 1.0;
+    }
+    return statistics(drawn / static_cast<double>(n), expected, expected, support);
+  });
+  return c;
+}
+
+}  // namespace gatewalk::lattice

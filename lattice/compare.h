@@ -1,0 +1,55 @@
+#pragma once
+/// How alike two distributions of the final gate are, and how alike they could be at all.
+/// corrcoef and RMSE as in Sec. III-C, over all gates of the field, RMSE in trials per 100.
+
+#include <cstdint>
+
+#include "markov/exact.h"
+#include "markov/walk.h"
+
+namespace gatewalk::lattice {
+
+using markov::CellCounts;
+using markov::CellProbabilities;
+
+/// Pearson correlation over the gates; NaN when one of them is the same everywhere.
+[[nodiscard]] double corrcoef(const CellProbabilities& a, const CellProbabilities& b);
+/// Root mean squared difference over the gates, in trials per 100.
+[[nodiscard]] double rmse_per_100(const CellProbabilities& a, const CellProbabilities& b);
+/// Total variation: half the summed absolute difference.
+[[nodiscard]] double total_variation(const CellProbabilities& a, const CellProbabilities& b);
+/// Energy distance (Szekely, Rizzo) with the Euclidean distance between gates, in gates.
+[[nodiscard]] double energy_distance(const CellProbabilities& a, const CellProbabilities& b);
+
+/// sum p^2 of the distribution a sample was drawn from, without bias: sum c(c-1) / N(N-1).
+[[nodiscard]] double concentration(const CellCounts& counts);
+
+/// What two samples of the same distribution show on average, by sampling alone.
+struct NoiseFloor {
+  double corrcoef = 0.0;
+  double rmse_per_100 = 0.0;
+};
+/// E[RMSE^2] = 100^2 (1-s)(1/N + 1/m)/n and corrcoef = V / sqrt((V + e_N)(V + e_m)) with
+/// V = (s - 1/n)/n, e_N = (1-s)/(nN). `second_trials` 0: the second one is exact (m -> inf).
+[[nodiscard]] NoiseFloor noise_floor(double concentration, std::int64_t gates, std::int64_t trials,
+                                     std::int64_t second_trials);
+
+/// One comparison with its floors and p-values: how often chance alone would look at least this
+/// different if both came from one distribution.
+struct Comparison {
+  double corrcoef = 0.0, rmse_per_100 = 0.0, total_variation = 0.0;
+  NoiseFloor floor;
+  double floor_total_variation = 0.0;  // mean over the null draws
+  double p_chi_squared = 0.0, p_total_variation = 0.0, p_energy = 0.0;
+  std::int64_t null_draws = 0;
+};
+
+/// Two samples: permutation test, the pooled trials dealt out anew `null_draws` times.
+[[nodiscard]] Comparison compare(const CellCounts& sample, const CellCounts& other,
+                                 std::int64_t null_draws, std::uint64_t seed);
+
+/// A sample against an exact distribution: `null_draws` samples drawn from the latter.
+[[nodiscard]] Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
+                                 std::int64_t null_draws, std::uint64_t seed);
+
+}  // namespace gatewalk::lattice

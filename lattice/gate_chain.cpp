@@ -1,0 +1,98 @@
+#include "lattice/gate_chain.h"
+
+#include <array>
+#include <stdexcept>
+
+namespace gatewalk::lattice {
+
+using namespace dynamics;
+
+std::vector<markov::Exit> exits_of(const StateSpace& space) {
+  std::vector<markov::Exit> exits(space.size() + 1);
+  for (int state = 0; state < space.size(); ++state) {
+    const Move move = move_into(space.boundary(state));
+    exits[state] = {state, move.di_x, move.di_y};
+  }
+  return exits;  // the last one is a default Exit: trapped
+}
+
+markov::Chain make_chain(const Transitions& t) {
+  return markov::Chain::from_counts(t.counts(), exits_of(t.space));
+}
+
+ChainStart chain_start(const StateSpace& space, const FieldParams& field, const BodyState& body) {
+  if (body.y != 0.0)
+    throw std::invalid_argument(
+        "start.y_m = " + std::to_string(body.y) +
+        " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
+  const auto index = space.index_of({Boundary::enter, body.x, body.vx, body.vy});
+  return {{field.start_column(), 0, index.state}, index.clamped};
+}
+
+namespace {
+
+struct Axis {
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  std::vector<double> Bins::*edges;
+};
+constexpr std::array<Axis, 3> kAxes{
+    Axis{"d", "m", "bin edges of the distance along the boundary", &Bins::d},
+    Axis{"vx", "m s-1", "bin edges of the lateral velocity", &Bins::vx},
+    Axis{"vy", "m s-1", "bin edges of the forward velocity", &Bins::vy}};
+
+std::string array_name(int boundary, const Axis& axis) {
+  return std::string(kBoundaryNames[boundary]) + "_" + axis.name + "_edges";
+}
+
+}  // namespace
+
+void write_matrix(const std::string& path, const MatrixFile& file) {
+  const Transitions& t = file.transitions;
+  markov::CountsFile out;
+  out.counts = t.counts();
+  out.trials = t.trials;
+  out.clamped = t.clamped;
+  out.exits = exits_of(t.space);
+  for (int b = 0; b < kBoundaries; ++b)
+    for (const Axis& axis : kAxes)
+      out.arrays.push_back({array_name(b, axis), axis.unit,
+                            std::string(kBoundaryNames[b]) + ": " + axis.meaning +
+                                "; states are numbered EN, RD, LD, RT, LT, within each by d, then "
+                                "vx, then vy",
+                            t.space.bins()[b].*axis.edges});
+  out.text = file.text;
+  markov::write_counts(path, out);
+}
+
+MatrixFile read_matrix(const std::string& path) {
+  const markov::CountsFile in = markov::read_counts(path);
+  std::array<Bins, kBoundaries> bins;
+  for (int b = 0; b < kBoundaries; ++b) {
+    for (const Axis& axis : kAxes) {
+      const std::string name = array_name(b, axis);
+      for (const auto& array : in.arrays)
+        if (array.name == name) bins[b].*axis.edges = array.values;
+      if ((bins[b].*axis.edges).empty()) throw markov::BadFile(path + ": no bin edges " + name);
+    }
+  }
+  try {
+    Transitions t{StateSpace(std::move(bins))};
+    if (t.space.size() != in.counts.rows())
+      throw markov::BadFile(path + ": bins make " + std::to_string(t.space.size()) +
+                            " states, the counts have " + std::to_string(in.counts.rows()) + " rows");
+    if (in.exits != exits_of(t.space))
+      throw markov::BadFile(path + ": exits are not those of its bins");
+    for (int row = 0; row < t.space.size(); ++row)
+      for (markov::Counts::InnerIterator it(in.counts, row); it; ++it)
+        t.rows[row][static_cast<int>(it.col())] = it.value();
+    t.trials = in.trials;
+    t.clamped = in.clamped;
+    return {std::move(t), in.text};
+  } catch (const std::invalid_argument& e) {
+    throw markov::BadFile(path + ": " + e.what());
+  }
+}
+
+}  // namespace gatewalk::lattice

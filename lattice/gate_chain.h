@@ -1,0 +1,42 @@
+#pragma once
+/// Counts + state space -> chain: the only place where dynamics and markov meet. Also the file that
+/// holds a matrix with everything it came from.
+
+#include <map>
+#include <string>
+
+#include "dynamics/transitions.h"
+#include "lattice/field.h"
+#include "markov/chain_io.h"
+
+namespace gatewalk::lattice {
+
+/// Exits of a state space: output j enters the next gate in state j; the last one is "trapped".
+[[nodiscard]] std::vector<markov::Exit> exits_of(const dynamics::StateSpace& space);
+
+[[nodiscard]] markov::Chain make_chain(const dynamics::Transitions& t);
+
+/// The chain's start for a body that starts in gate (0, 0): its state, and whether it was clamped.
+/// A body inside the gate (y > 0) has no state of its own: throws std::invalid_argument.
+struct ChainStart {
+  markov::Start start;
+  bool clamped = false;
+};
+[[nodiscard]] ChainStart chain_start(const dynamics::StateSpace& space, const FieldParams& field,
+                                     const dynamics::BodyState& body);
+
+/// A matrix on disk: counts, trials and clamped crossings of every row, the bins, and `text`
+/// (scene, seed, version, command, ...).
+struct MatrixFile {
+  dynamics::Transitions transitions;
+  std::map<std::string, std::string> text;
+};
+
+/// As markov::write_counts.
+void write_matrix(const std::string& path, const MatrixFile& file);
+
+/// As markov::read_counts; throws markov::BadFile also when the bins or exits are not those of a
+/// gate's state space.
+[[nodiscard]] MatrixFile read_matrix(const std::string& path);
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,98 @@
+#include "lattice/reference.h"
+
+#include <tbb/parallel_for.h>
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+enum class Fate : std::uint8_t { trapped, left_field, cut_off, broken };
+
+/// One trial's part of the tally.
+struct Trial {
+  Fate fate = Fate::broken;
+  std::int32_t column = 0, row = 0;
+  std::array<std::int32_t, kBoundaries> entries{}, clamped{};
+  Health health;
+};
+
+Trial run_trial(const GateParams& p, const Method& method, const FieldParams& field,
+                const BodyState& start, const StateSpace& space, RandomForce& force) {
+  Trial t;
+  t.column = field.start_column();
+  BodyState body = start;
+  for (int gates = 1;; ++gates) {
+    const GateRun run = run_gate(p, method, body, force);
+    t.health.add(p, run);
+    if (run.ending == Ending::broken || run.ending == Ending::trapped) {
+      t.fate = run.ending == Ending::broken ? Fate::broken : Fate::trapped;
+      return t;
+    }
+    const Crossing crossing = crossing_of(p, run.ending, run.exit);
+    const Move move = move_into(crossing.boundary);
+    if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
+      t.fate = Fate::left_field;
+      return t;
+    }
+    if (gates == field.max_gates) {
+      t.fate = Fate::cut_off;
+      return t;
+    }
+    ++t.entries[static_cast<int>(crossing.boundary)];
+    t.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
+    t.column += move.di_x;
+    t.row += move.di_y;
+    body = shifted_into_next(p, run.ending, run.exit);
+  }
+}
+
+}  // namespace
+
+FieldTally& FieldTally::operator+=(const FieldTally& o) {
+  final_gates += o.final_gates;
+  trials += o.trials;
+  trapped += o.trapped;
+  left_field += o.left_field;
+  cut_off += o.cut_off;
+  broken += o.broken;
+  for (int b = 0; b < kBoundaries; ++b) {
+    entries[b] += o.entries[b];
+    clamped[b] += o.clamped[b];
+  }
+  health += o.health;
+  final_gate_of_trial.insert(final_gate_of_trial.end(), o.final_gate_of_trial.begin(),
+                             o.final_gate_of_trial.end());
+  return *this;
+}
+
+FieldTally run_field(const GateParams& p, const FieldParams& field, const BodyState& start,
+                     const StateSpace& space, std::uint64_t seed, TrialRange range) {
+  const auto method = make_method(p);
+  std::vector<Trial> trials(range.count);
+  tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
+    const Stream stream{seed, 0, static_cast<std::uint64_t>(range.first + i)};
+    RandomForce force(p.forces, Random(Purpose::field, stream));
+    trials[i] = run_trial(p, *method, field, start, space, force);
+  });
+
+  FieldTally tally(field);
+  tally.trials = range.count;
+  tally.final_gate_of_trial.reserve(trials.size());
+  for (const Trial& t : trials) {
+    ++tally.final_gates(t.row, t.column);
+    tally.final_gate_of_trial.push_back(t.row * field.columns + t.column);
+    tally.trapped += t.fate == Fate::trapped;
+    tally.left_field += t.fate == Fate::left_field;
+    tally.cut_off += t.fate == Fate::cut_off;
+    tally.broken += t.fate == Fate::broken;
+    for (int b = 0; b < kBoundaries; ++b) {
+      tally.entries[b] += t.entries[b];
+      tally.clamped[b] += t.clamped[b];
+    }
+    tally.health += t.health;
+  }
+  return tally;
+}
+
+}  // namespace gatewalk::lattice

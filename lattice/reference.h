@@ -1,0 +1,40 @@
+#pragma once
+/// The reference: the full dynamics of a body through the field, gate by gate, written plainly.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dynamics/ensemble.h"
+#include "dynamics/state_space.h"
+#include "lattice/field.h"
+#include "markov/walk.h"
+
+namespace gatewalk::lattice {
+
+struct FieldTally {
+  markov::CellCounts final_gates;  // (rows x columns), last gate inside the field
+  std::int64_t trials = 0;
+  std::int64_t trapped = 0;
+  std::int64_t left_field = 0;
+  std::int64_t cut_off = 0;        // max_gates gates visited, would have gone on
+  std::int64_t broken = 0;         // a run in it stopped being finite
+  std::array<std::int64_t, dynamics::kBoundaries> entries{};  // crossings between gates, by boundary
+  std::array<std::int64_t, dynamics::kBoundaries> clamped{};  // of these, outside every bin
+  dynamics::Health health;                                    // over all gate runs
+  std::vector<std::int32_t> final_gate_of_trial;              // row * columns + column, trial order
+
+  explicit FieldTally(const FieldParams& f)
+      : final_gates(markov::CellCounts::Zero(f.rows, f.columns)) {}
+  FieldTally& operator+=(const FieldTally& other);  // `other` continues this one's trials
+};
+
+/// Runs trials `range` through the field, every gate fresh: beams at rest when the body enters; the
+/// random force goes on. `space` only counts what the chain would have clamped. On all threads of
+/// the current TBB arena, same result for any number of them.
+[[nodiscard]] FieldTally run_field(const dynamics::GateParams& p, const FieldParams& field,
+                                   const dynamics::BodyState& start,
+                                   const dynamics::StateSpace& space, std::uint64_t seed,
+                                   dynamics::TrialRange range);
+
+}  // namespace gatewalk::lattice
