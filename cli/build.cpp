@@ -1,0 +1,63 @@
+#include "cli/command.h"
+#include "cli/matrix.h"
+#include "cli/report.h"
+#include "cli/version.h"
+
+namespace gatewalk::cli {
+
+int run_build(const std::vector<std::string>& arguments) {
+  Options options("build SCENE -o MATRIX.nc [options]",
+                  "Fills the input-output matrix of one gate: for every input state of Table III\n"
+                  "(87 of them) N short runs, counted by where they come out.",
+                  "gatewalk build scenes/field.toml --trials 100 --seed 1 -o matrix.nc");
+  options.positional("scene", "scene file (TOML)", true);
+  add_trials_and_seed(options, "runs per input state");
+  options.add()("output,o", po::value<std::string>()->value_name("FILE"),
+                "matrix file to write (NetCDF-4)");
+  if (!options.parse(arguments)) return kFine;
+  if (!options.has("output")) throw UsageError("missing -o MATRIX.nc: where to write the matrix");
+  const Scene scene = read_scene(options.text("scene"), options.overrides());
+  const std::int64_t trials = options.count("trials");
+
+  const Stopwatch watch;
+  lattice::MatrixFile file{build_matrix(scene, trials, options.seed(), options.talk()), {}};
+  const double seconds = watch.seconds();
+  const dynamics::Transitions& t = file.transitions;
+  file.text = {{"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},
+               {"scene", to_toml(scene)},
+               {"seed", std::to_string(options.seed())},
+               {"trials_per_row", std::to_string(trials)},
+               {"program", std::string("gatewalk ") + kVersion},
+               {"commit", kCommit},
+               {"command", options.canonical()},
+               {"status", to_json(t.health).dump()}};
+  lattice::write_matrix(options.text("output"), file);
+
+  std::int64_t clamped = 0, runs = 0;
+  for (std::size_t row = 0; row < t.trials.size(); ++row) {
+    clamped += t.clamped[row];
+    runs += t.trials[row];
+  }
+  const auto nonzeros = t.counts().nonZeros();
+  Json json;
+  json["matrix"] = options.text("output");
+  json["inputs"] = t.space.size();
+  json["outputs"] = t.space.size() + 1;
+  json["trials_per_row"] = trials;
+  json["nonzeros"] = nonzeros;
+  json["clamped_share"] = static_cast<double>(clamped) / static_cast<double>(runs);
+  json["status"] = to_json(t.health);
+  json["made_by"] = manifest(options, scene);
+  const std::string table =
+      options.text("output") + ": " + std::to_string(t.space.size()) + " x " +
+      std::to_string(t.space.size() + 1) + " matrix, " + std::to_string(runs) + " gate runs, " +
+      std::to_string(nonzeros) + " nonzeros, " +
+      percent(static_cast<double>(clamped), static_cast<double>(runs)) +
+      " of the crossings clamped into the nearest bin\n";
+  options.give_out(json, table);
+  remark(options, "built in " + fixed(seconds, 2) + " s");
+  if (!t.health.clean()) remark(options, complaint(t.health));
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,100 @@
+#pragma once
+/// What all commands share: how options are declared and read, how a scene is taken, how output is
+/// given out.
+
+#include <boost/program_options.hpp>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cli/scene.h"
+
+namespace gatewalk::cli {
+
+namespace po = boost::program_options;
+using Json = nlohmann::ordered_json;
+
+/// Exit statuses, a contract for scripts.
+enum ExitCode : int { kFine = 0, kFailure = 1, kWrongUse = 2, kStopped = 130 };
+
+/// The command line itself is wrong.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A whole number on the command line: 20000 or 2e4.
+struct Count {
+  std::int64_t value = 0;
+};
+void validate(boost::any& v, const std::vector<std::string>& values, Count*, int);
+
+struct Command {
+  const char* name;
+  const char* summary;
+  int (*run)(const std::vector<std::string>& arguments);
+};
+/// Every command, in the order of the help page.
+int run_gate(const std::vector<std::string>& arguments);
+int run_build(const std::vector<std::string>& arguments);
+int run_show(const std::vector<std::string>& arguments);
+int run_walk(const std::vector<std::string>& arguments);
+int run_predict(const std::vector<std::string>& arguments);
+int run_lattice(const std::vector<std::string>& arguments);
+int run_validate(const std::vector<std::string>& arguments);
+
+/// Options of one command with the shared ones: --set, --threads, --quiet, --json, --help.
+class Options {
+ public:
+  /// `synopsis` e.g. "gate SCENE [options]"; `about` and `example` complete the help page.
+  Options(std::string synopsis, std::string about, std::string example);
+
+  /// Declares a positional argument (in order); `required` ones must be given.
+  void positional(const std::string& name, const std::string& help, bool required);
+  po::options_description_easy_init add() { return own_.add_options(); }
+
+  /// Reads the arguments. False when --help was asked for and printed. Throws UsageError.
+  [[nodiscard]] bool parse(const std::vector<std::string>& arguments);
+
+  [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }
+  template <class T>
+  [[nodiscard]] const T& get(const std::string& name) const {
+    return values_[name].as<T>();
+  }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    return has(name) ? get<std::string>(name) : std::string();
+  }
+  /// Value of a Count option; throws UsageError unless at least `low`.
+  [[nodiscard]] std::int64_t count(const std::string& name, std::int64_t low = 1) const;
+  [[nodiscard]] std::uint64_t seed() const { return get<std::uint64_t>("seed"); }
+  [[nodiscard]] const std::vector<std::string>& overrides() const;
+  /// Progress lines and remarks are wanted.
+  [[nodiscard]] bool talk() const { return !has("quiet"); }
+
+  /// The command as it shaped the result, without what cannot change it (threads, output names).
+  [[nodiscard]] std::string canonical() const;
+
+  /// Prints the result: JSON where --json says, the table on standard output otherwise; with --json
+  /// FILE the table too, unless --quiet.
+  void give_out(const Json& json, const std::string& table) const;
+
+ private:
+  std::string synopsis_, about_, example_;
+  po::options_description own_, shared_{"Shared options"}, hidden_;
+  po::positional_options_description positions_;
+  std::vector<std::pair<std::string, std::string>> positional_help_;
+  std::vector<std::string> required_;
+  po::variables_map values_;
+  std::string canonical_;
+};
+
+/// Adds --trials / --seed with the paper's 100 and seed 1.
+void add_trials_and_seed(Options& options, const char* trials_help);
+
+/// A remark on standard error, if wanted.
+void remark(const Options& options, const std::string& text);
+
+}  // namespace gatewalk::cli

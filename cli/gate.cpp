@@ -1,0 +1,52 @@
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "cli/report.h"
+
+namespace gatewalk::cli {
+
+int run_gate(const std::vector<std::string>& arguments) {
+  Options options("gate SCENE [options]",
+                  "Runs one gate many times from the scene's start and counts how the runs end.",
+                  "gatewalk gate scenes/single_gate.toml --set beams.stiffness_left_Nm_per_rad=300 "
+                  "--trials 1000 --json -");
+  options.positional("scene", "scene file (TOML)", true);
+  add_trials_and_seed(options, "runs of the gate");
+  if (!options.parse(arguments)) return kFine;
+  const Scene scene = read_scene(options.text("scene"), options.overrides());
+  const std::int64_t trials = options.count("trials");
+
+  dynamics::GateTally tally;
+  run_in_batches("gate runs", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
+    tally += dynamics::run_gate_trials(scene.gate, scene.start, options.seed(), {first, n});
+  });
+
+  Json json;
+  json["trials"] = tally.trials;
+  json["traversed"] = tally.traversed();
+  json["traversed_left"] = tally.traversed_left;
+  json["traversed_right"] = tally.traversed_right;
+  json["traversed_even"] = tally.traversed_even;
+  json["exited_left"] = tally.exited_left;
+  json["exited_right"] = tally.exited_right;
+  json["trapped"] = tally.trapped;
+  json["not_finite"] = tally.broken;
+  json["status"] = to_json(tally.health);
+  json["made_by"] = manifest(options, scene);
+
+  const auto line = [&](const char* name, std::int64_t n) {
+    return padded(name, -18) + padded(std::to_string(n), 10) +
+           padded(percent(static_cast<double>(n), static_cast<double>(tally.trials), 2), 11) + "\n";
+  };
+  std::string table = line("trials", tally.trials) + line("traversed", tally.traversed()) +
+                      line("  left beam", tally.traversed_left) +
+                      line("  right beam", tally.traversed_right);
+  if (tally.traversed_even > 0) table += line("  both evenly", tally.traversed_even);
+  table += line("exited left", tally.exited_left) + line("exited right", tally.exited_right) +
+           line("trapped", tally.trapped);
+  if (tally.broken > 0) table += line("not finite", tally.broken);
+  options.give_out(json, table);
+  if (!tally.health.clean()) remark(options, complaint(tally.health));
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,53 @@
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "cli/report.h"
+
+namespace gatewalk::cli {
+
+int run_lattice(const std::vector<std::string>& arguments) {
+  Options options("lattice SCENE [options]",
+                  "Runs the full dynamics through the field, gate by gate, and counts the final gates.",
+                  "gatewalk lattice scenes/field.toml --trials 10000 --seed 1 --json lattice.json");
+  options.positional("scene", "scene file (TOML)", true);
+  add_trials_and_seed(options, "trials through the field");
+  if (!options.parse(arguments)) return kFine;
+  const Scene scene = read_scene(options.text("scene"), options.overrides());
+  const std::int64_t trials = options.count("trials");
+  const auto space = dynamics::StateSpace::paper(scene.gate);
+
+  const Stopwatch watch;
+  lattice::FieldTally tally(scene.field);
+  run_in_batches("field trials", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
+    tally += lattice::run_field(scene.gate, scene.field, scene.start, space, options.seed(), {first, n});
+  });
+
+  Json json;
+  json["final_gates"] = grid(tally.final_gates);
+  json["trials"] = tally.trials;
+  json["trapped"] = tally.trapped;
+  json["left_field"] = tally.left_field;
+  json["cut_off"] = tally.cut_off;
+  json["not_finite"] = tally.broken;
+  Json entries;
+  for (int b = 0; b < dynamics::kBoundaries; ++b)
+    entries[std::string(dynamics::kBoundaryNames[b])] = {{"count", tally.entries[b]},
+                                                         {"outside_bins", tally.clamped[b]}};
+  json["entries_between_gates"] = std::move(entries);
+  json["status"] = to_json(tally.health);
+  json["made_by"] = manifest(options, scene);
+
+  const auto n = static_cast<double>(tally.trials);
+  std::string table = map_of(tally.final_gates.cast<double>() / n) + "trials " +
+                      std::to_string(tally.trials) + ": trapped " +
+                      percent(static_cast<double>(tally.trapped), n, 2) + ", left the field " +
+                      percent(static_cast<double>(tally.left_field), n, 2) + ", cut off " +
+                      percent(static_cast<double>(tally.cut_off), n, 2) + "\n";
+  if (tally.broken > 0)
+    table += "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
+  options.give_out(json, table);
+  remark(options, fixed(watch.seconds(), 2) + " s");
+  if (!tally.health.clean()) remark(options, complaint(tally.health));
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,80 @@
+#include <array>
+#include <exception>
+#include <iostream>
+
+#include "cli/command.h"
+#include "cli/interrupt.h"
+#include "cli/version.h"
+#include "markov/chain_io.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr std::array<Command, 7> kCommands{{
+    {"gate", "run one gate many times and count the outcomes", run_gate},
+    {"build", "fill the input-output matrix from single-gate runs", run_build},
+    {"show", "show what a matrix file holds", run_show},
+    {"walk", "walk the field by drawing from the matrix", run_walk},
+    {"predict", "exact distribution of the final gate", run_predict},
+    {"lattice", "run the full dynamics through the field", run_lattice},
+    {"validate", "compare walks and exact prediction with the full dynamics", run_validate},
+}};
+
+void print_help(std::ostream& out) {
+  out << "gatewalk " << kVersion
+      << ": multi-scale Markov chain analysis of locomotion through cluttered obstacles\n\n"
+         "usage: gatewalk COMMAND [arguments] [options]\n\n";
+  for (const Command& c : kCommands)
+    out << "  " << c.name << std::string(11 - std::string(c.name).size(), ' ') << c.summary << "\n";
+  out << "\ngatewalk COMMAND --help explains a command and gives an example.\n"
+         "exit status: 0 fine, 1 failure, 2 wrong use or input, 130 stopped by ctrl-C\n";
+}
+
+int run(const std::vector<std::string>& words) {
+  if (words.empty()) {
+    print_help(std::cerr);
+    return kWrongUse;
+  }
+  if (words[0] == "--help" || words[0] == "help") {
+    print_help(std::cout);
+    return kFine;
+  }
+  if (words[0] == "--version") {
+    std::cout << "gatewalk " << kVersion << " (" << kCommit << ")\n";
+    return kFine;
+  }
+  for (const Command& c : kCommands)
+    if (words[0] == c.name) return c.run({words.begin() + 1, words.end()});
+  std::cerr << "gatewalk: no command '" << words[0] << "'\n\n";
+  print_help(std::cerr);
+  return kWrongUse;
+}
+
+}  // namespace
+}  // namespace gatewalk::cli
+
+int main(int argc, char** argv) {
+  using namespace gatewalk;
+  cli::install_interrupt_handler();
+  const auto fail = [](cli::ExitCode code, const std::exception& e) {
+    std::cerr << "gatewalk: " << e.what() << "\n";
+    return static_cast<int>(code);
+  };
+  try {
+    return cli::run({argv + 1, argv + argc});
+  } catch (const cli::Interrupted&) {
+    std::cerr << "gatewalk: stopped before the end; nothing was written, files that were there are "
+                 "unchanged\n";
+    return cli::kStopped;
+  } catch (const cli::UsageError& e) {
+    return fail(cli::kWrongUse, e);
+  } catch (const cli::SceneError& e) {
+    return fail(cli::kWrongUse, e);
+  } catch (const markov::BadFile& e) {
+    return fail(cli::kWrongUse, e);
+  } catch (const std::invalid_argument& e) {
+    return fail(cli::kWrongUse, e);
+  } catch (const std::exception& e) {
+    return fail(cli::kFailure, e);
+  }
+}

@@ -1,0 +1,51 @@
+#pragma once
+/// Long work in pieces: one line that says how far it is, and a place to stop between pieces.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace gatewalk::cli {
+
+/// One line on standard error, redrawn in place at most 5 times a second. Draws nothing unless
+/// `enabled` and standard error is a terminal. Not for several threads at once.
+class Progress {
+ public:
+  Progress(std::string label, std::int64_t total, bool enabled);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void update(std::int64_t done);
+  /// Clears the line, if there is one. The destructor does the same.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  std::int64_t total_;
+  bool visible_;
+  bool drawn_ = false;
+  Clock::time_point start_;
+  Clock::time_point last_drawn_;
+};
+
+/// How many items to do before looking up again: about 0.3 s of work, learnt from the batches so
+/// far. Starts with a single item and grows at most fourfold at a time.
+class BatchSize {
+ public:
+  [[nodiscard]] std::int64_t get() const { return size_; }
+  void measured(std::int64_t count, double seconds);
+
+ private:
+  std::int64_t size_ = 1;
+};
+
+/// Calls run(first, count) for consecutive ranges that cover [0, total) exactly once, with a
+/// progress line. Throws Interrupted between two batches after a first signal. The ranges depend
+/// on the machine's speed, so results must not depend on how [0, total) is cut.
+void run_in_batches(const std::string& label, std::int64_t total, bool show_progress,
+                    const std::function<void(std::int64_t first, std::int64_t count)>& run);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,130 @@
+#include "cli/report.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "cli/version.h"
+
+namespace gatewalk::cli {
+
+Json manifest(const Options& options, const Scene& scene) {
+  Json m;
+  m["program"] = "gatewalk";
+  m["version"] = kVersion;
+  m["commit"] = kCommit;
+  m["command"] = options.canonical();
+  if (options.has("seed")) m["seed"] = options.seed();
+  m["scene"] = to_toml(scene);
+  return m;
+}
+
+Json to_json(const dynamics::Health& h) {
+  Json j;
+  j["clean"] = h.clean();
+  j["runs"] = h.runs;
+  j["runs_penetrating_over_1_percent"] = h.penetrating;
+  j["runs_creating_energy"] = h.creating_energy;
+  j["runs_not_finite"] = h.broken;
+  j["contacts_without_a_formula"] = h.undefined_contacts;
+  j["steps_forced_to_hold"] = h.forced_holds;
+  j["worst_penetration_m"] = h.worst_penetration;
+  j["worst_energy_created_J"] = h.worst_energy_created;
+  j["worst_speed_m_per_s"] = h.worst_speed;
+  j["steps"] = h.steps;
+  j["impacts"] = h.impacts;
+  return j;
+}
+
+std::string complaint(const dynamics::Health& h) {
+  if (h.clean()) return "";
+  const auto share = [&](std::int64_t n) {
+    return percent(static_cast<double>(n), static_cast<double>(h.runs));
+  };
+  std::string text = "the method showed faults:";
+  if (h.penetrating > 0)
+    text += " the disc sank into a beam in " + share(h.penetrating) + " of the gate runs (worst " +
+            fixed(h.worst_penetration, 2) + " m);";
+  if (h.creating_energy > 0)
+    text += " energy appeared from nothing in " + share(h.creating_energy) + " (worst " +
+            fixed(h.worst_energy_created, 1) + " J);";
+  if (h.undefined_contacts > 0)
+    text += " " + std::to_string(h.undefined_contacts) +
+            " steps overlapped a joint, for which it has no formula;";
+  if (h.broken > 0) text += " " + std::to_string(h.broken) + " runs stopped being finite numbers;";
+  text.back() = '.';
+  return text;
+}
+
+Json to_json(const lattice::Comparison& c) {
+  Json j;
+  j["corrcoef"] = c.corrcoef;
+  j["corrcoef_floor"] = c.floor.corrcoef;
+  j["rmse_per_100"] = c.rmse_per_100;
+  j["rmse_per_100_floor"] = c.floor.rmse_per_100;
+  j["total_variation"] = c.total_variation;
+  j["total_variation_floor"] = c.floor_total_variation;
+  j["p_values"] = {{"chi_squared", c.p_chi_squared},
+                   {"total_variation", c.p_total_variation},
+                   {"energy_distance", c.p_energy},
+                   {"null_draws", c.null_draws}};
+  return j;
+}
+
+namespace {
+
+template <class Cells>
+Json rows_of(const Cells& cells) {
+  Json rows = Json::array();
+  for (Eigen::Index r = 0; r < cells.rows(); ++r) {
+    Json row = Json::array();
+    for (Eigen::Index c = 0; c < cells.cols(); ++c) row.push_back(cells(r, c));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Json grid(const markov::CellCounts& cells) { return rows_of(cells); }
+Json grid(const markov::CellProbabilities& cells) { return rows_of(cells); }
+
+std::string map_of(const markov::CellProbabilities& shares) {
+  if (shares.cols() > 15 || shares.rows() > 40) return "";
+  const auto half = static_cast<int>(shares.cols() / 2);
+  std::string text = "final gate, % of trials (i_y upwards, i_x to the right)\n";
+  for (auto r = static_cast<int>(shares.rows()) - 1; r >= 0; --r) {
+    text += padded(std::to_string(r), 4) + " |";
+    for (int c = 0; c < shares.cols(); ++c) {
+      const double share = 100.0 * shares(r, c);
+      text += share == 0.0 ? padded(".", 7) : padded(fixed(share, 2), 7);
+    }
+    text += "\n";
+  }
+  text += "  i_x ";
+  for (int c = 0; c < shares.cols(); ++c) text += padded(std::to_string(c - half), 7);
+  return text + "\n";
+}
+
+std::string fixed(double x, int digits) {
+  if (!std::isfinite(x)) return "-";
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.*f", digits, x);
+  return buffer;
+}
+
+std::string percent(double part, double whole, int digits) {
+  return fixed(whole > 0.0 ? 100.0 * part / whole : std::nan(""), digits) + " %";
+}
+
+std::string padded(const std::string& text, int width) {
+  const auto wanted = static_cast<std::size_t>(std::abs(width));
+  if (text.size() >= wanted) return text;
+  const std::string space(wanted - text.size(), ' ');
+  return width > 0 ? space + text : text + space;
+}
+
+double Stopwatch::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+}  // namespace gatewalk::cli

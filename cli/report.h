@@ -1,0 +1,43 @@
+#pragma once
+/// Results as JSON and as tables to read.
+
+#include <chrono>
+#include <string>
+
+#include "cli/command.h"
+#include "lattice/lattice.h"
+
+namespace gatewalk::cli {
+
+/// Where a result came from: program version and commit, command, seed, the whole scene.
+[[nodiscard]] Json manifest(const Options& options, const Scene& scene);
+
+/// The record of numerical faults: {"clean": bool, counts, worst values, remarks}.
+[[nodiscard]] Json to_json(const dynamics::Health& health);
+/// One sentence if something was seen, else empty.
+[[nodiscard]] std::string complaint(const dynamics::Health& health);
+
+[[nodiscard]] Json to_json(const lattice::Comparison& c);
+[[nodiscard]] Json grid(const markov::CellCounts& cells);
+[[nodiscard]] Json grid(const markov::CellProbabilities& cells);
+
+/// The field seen from above, farthest row on top, in percent; empty for fields too wide to print.
+[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares);
+
+/// Fixed-point text of x with `digits` decimals; "-" for a value that is not a number.
+[[nodiscard]] std::string fixed(double x, int digits);
+/// "12.3 %"
+[[nodiscard]] std::string percent(double part, double whole, int digits = 1);
+/// Text padded on the left or (negative width) on the right.
+[[nodiscard]] std::string padded(const std::string& text, int width);
+
+/// Seconds since construction.
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const;
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace gatewalk::cli

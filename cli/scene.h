@@ -1,0 +1,44 @@
+#pragma once
+/// The scene file: everything a run depends on, in TOML, every key optional.
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/params.h"
+#include "lattice/field.h"
+
+namespace gatewalk::cli {
+
+struct Scene {
+  dynamics::GateParams gate;
+  lattice::FieldParams field;
+  dynamics::BodyState start{0.0, 0.0, 0.0, 15.0};  // m, m, m/s, m/s; in the first gate's frame
+  std::string source;                              // the file it came from
+};
+
+/// A scene that cannot be used. what() reads
+/// "scenes/x.toml:12: forces.random_N = -3 is not permitted: must lie in [0, 1e+06] N",
+/// or begins "--set forces.random_N=-3: " when the value came from an override.
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads `path` and applies `overrides`, each "forces.random_N=20" with a TOML value behind the
+/// first '=' (text may stand without quotes); the last one of a key wins. Throws SceneError.
+[[nodiscard]] Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The same for text already in memory; `name` stands for the file in messages.
+[[nodiscard]] Scene parse_scene(std::string_view text, std::string name,
+                                const std::vector<std::string>& overrides = {});
+
+/// The complete scene, every key in a fixed order, numbers with the digits that read back the same.
+[[nodiscard]] std::string to_toml(const Scene& scene);
+
+/// What differs between two scenes among the keys that shape a transition matrix (all of
+/// GateParams; neither field nor start): "forces.random_N: 40 here, 20 there", empty if nothing.
+[[nodiscard]] std::vector<std::string> physics_differences(const Scene& here, const Scene& there);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,128 @@
+#include <sstream>
+
+#include "cli/command.h"
+#include "cli/report.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using namespace dynamics;
+
+std::string range(const std::array<double, 2>& edges) {
+  std::ostringstream text;
+  text << "[" << edges[0] << ", " << edges[1] << "]";
+  return text.str();
+}
+
+/// Share of a row's trials that came out at each boundary of the next gate, and trapped.
+std::array<double, kBoundaries + 1> outcome_shares(const Transitions& t, int row) {
+  std::array<double, kBoundaries + 1> share{};
+  if (t.trials[row] == 0) return share;
+  for (const auto& [column, n] : t.rows[row]) {
+    const int b = column == t.space.trapped() ? kBoundaries
+                                              : static_cast<int>(t.space.boundary(column));
+    share[b] += static_cast<double>(n) / static_cast<double>(t.trials[row]);
+  }
+  return share;
+}
+
+}  // namespace
+
+int run_show(const std::vector<std::string>& arguments) {
+  Options options("show MATRIX.nc [options]",
+                  "Shows what a matrix file holds: size, counts, sparsity, clamped share, where it\n"
+                  "came from; with --rows every row, with --row I one row with all its outputs.",
+                  "gatewalk show matrix.nc --rows");
+  options.positional("matrix", "matrix file written by gatewalk build", true);
+  options.add()("rows", "a line per input state")
+               ("row", po::value<int>()->value_name("I"), "all outputs of input state I (from 1)");
+  if (!options.parse(arguments)) return kFine;
+  if (options.has("set")) throw UsageError("--set has no meaning for show: a matrix keeps its scene");
+  const lattice::MatrixFile file = lattice::read_matrix(options.text("matrix"));
+  const Transitions& t = file.transitions;
+  const int n = t.space.size();
+  if (options.has("row") && (options.get<int>("row") < 1 || options.get<int>("row") > n))
+    throw UsageError("--row " + std::to_string(options.get<int>("row")) + ": must lie in [1, " +
+                     std::to_string(n) + "]");
+
+  std::int64_t runs = 0, clamped = 0, unsampled = 0, nonzeros = 0;
+  for (int row = 0; row < n; ++row) {
+    runs += t.trials[row];
+    clamped += t.clamped[row];
+    unsampled += t.trials[row] == 0;
+    nonzeros += static_cast<std::int64_t>(t.rows[row].size());
+  }
+  const double cells = static_cast<double>(n) * (n + 1);
+
+  Json json;
+  json["inputs"] = n;
+  json["outputs"] = n + 1;
+  json["gate_runs"] = runs;
+  json["nonzeros"] = nonzeros;
+  json["density"] = static_cast<double>(nonzeros) / cells;
+  json["clamped_share"] = runs > 0 ? static_cast<double>(clamped) / static_cast<double>(runs) : 0.0;
+  json["rows_never_sampled"] = unsampled;
+  json["rows"] = Json::array();
+  for (int row = 0; row < n; ++row) {
+    const Cell cell = t.space.cell(row);
+    Json outputs = Json::array();
+    for (const auto& [column, count] : t.rows[row])
+      outputs.push_back({{"output", column + 1}, {"count", count}});
+    json["rows"].push_back({{"input", row + 1},
+                            {"boundary", kBoundaryNames[static_cast<int>(cell.boundary)]},
+                            {"d_m", cell.d},
+                            {"vx_m_per_s", cell.vx},
+                            {"vy_m_per_s", cell.vy},
+                            {"trials", t.trials[row]},
+                            {"clamped", t.clamped[row]},
+                            {"outputs", std::move(outputs)}});
+  }
+  json["text"] = Json::object();
+  for (const auto& [key, value] : file.text) json["text"][key] = value;
+
+  std::ostringstream out;
+  out << options.text("matrix") << "\n"
+      << "  size                " << n << " inputs x " << n + 1 << " outputs (the last: trapped)\n"
+      << "  gate runs           " << runs << "\n"
+      << "  nonzeros            " << nonzeros << " of " << n * (n + 1) << " ("
+      << percent(static_cast<double>(nonzeros), cells) << ")\n"
+      << "  clamped crossings   " << percent(static_cast<double>(clamped), static_cast<double>(runs))
+      << "\n"
+      << "  rows never sampled  " << unsampled << "\n";
+  for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "status"})
+    if (const auto it = file.text.find(key); it != file.text.end())
+      out << "  " << padded(key, -20) << it->second << "\n";
+  if (options.has("rows")) {
+    out << "\n  in  from d (m)       vx (m/s)    vy (m/s)    trials clamped |   EN    RD    LD    RT    LT  trap (%)\n";
+    for (int row = 0; row < n; ++row) {
+      const Cell cell = t.space.cell(row);
+      const auto share = outcome_shares(t, row);
+      out << padded(std::to_string(row + 1), 4) << "  "
+          << kBoundaryNames[static_cast<int>(cell.boundary)] << " " << padded(range(cell.d), -12)
+          << padded(range(cell.vx), -12) << padded(range(cell.vy), -12)
+          << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
+          << " |";
+      for (const double s : share) out << padded(fixed(100.0 * s, 1), 6);
+      out << "\n";
+    }
+  }
+  if (options.has("row")) {
+    const int row = options.get<int>("row") - 1;
+    out << "\n  outputs of input " << row + 1 << "\n";
+    for (const auto& [column, count] : t.rows[row]) {
+      out << padded(std::to_string(column + 1), 6) << padded(std::to_string(count), 9) << "  ";
+      if (column == t.space.trapped()) {
+        out << "trapped\n";
+        continue;
+      }
+      const Cell cell = t.space.cell(column);
+      out << kBoundaryNames[static_cast<int>(cell.boundary)] << " d " << range(cell.d) << " vx "
+          << range(cell.vx) << " vy " << range(cell.vy) << "\n";
+    }
+  }
+  if (file.text.count("scene") > 0) out << "\n" << file.text.at("scene");
+  options.give_out(json, out.str());
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

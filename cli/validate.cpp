@@ -1,0 +1,322 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "cli/matrix.h"
+#include "cli/progress.h"
+#include "cli/report.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using gatewalk::cli::to_json;
+
+/// Table IV: d, vx, vy of the start, and the printed corrcoef and RMSE.
+struct PaperStart {
+  double d, vx, vy;
+  std::optional<double> corrcoef, rmse;
+};
+const std::vector<PaperStart> kTableIV{{0, 0, 15, 0.914, 1.018},
+                                       {23, -11, 16, 0.9097, 1.133},
+                                       {4, 5, 10, 0.8929, 1.252},
+                                       {-17, 13, 12, 0.9026, 0.9813}};
+
+PaperStart parse_start(const std::string& text) {
+  std::istringstream in(text);
+  PaperStart s{};
+  char first = 0, second = 0;
+  if (!(in >> s.d >> first >> s.vx >> second >> s.vy) || first != ',' || second != ',' ||
+      in.peek() != std::char_traits<char>::eof() || !std::isfinite(s.d + s.vx + s.vy))
+    throw UsageError("--start " + text + ": must be three numbers d,vx,vy in m and m/s, e.g. 4,5,10");
+  return s;
+}
+
+struct MeanAndSd {
+  double sum = 0.0, squares = 0.0;
+  std::int64_t n = 0;
+  void add(double x) {
+    if (!std::isfinite(x)) return;
+    sum += x;
+    squares += x * x;
+    ++n;
+  }
+  [[nodiscard]] double mean() const { return n > 0 ? sum / static_cast<double>(n) : std::nan(""); }
+  [[nodiscard]] double sd() const {
+    if (n < 2) return std::nan("");
+    const double m = mean();
+    return std::sqrt(std::max(0.0, (squares - static_cast<double>(n) * m * m) / static_cast<double>(n - 1)));
+  }
+};
+
+/// What the paper did: 100 trials of each, over and over, from the trials at hand in blocks of 100.
+struct PaperSized {
+  MeanAndSd exact_corrcoef, exact_rmse, walks_corrcoef, walks_rmse;
+};
+
+PaperSized in_blocks_of_100(const std::vector<std::int32_t>& dynamics,
+                            const std::vector<std::int32_t>& walks,
+                            const markov::CellProbabilities& exact) {
+  constexpr std::size_t kBlock = 100;
+  const auto block = [&](const std::vector<std::int32_t>& cells, std::size_t k) {
+    markov::CellProbabilities p = markov::CellProbabilities::Zero(exact.rows(), exact.cols());
+    for (std::size_t i = k * kBlock; i < (k + 1) * kBlock; ++i) p.data()[cells[i]] += 1.0 / kBlock;
+    return p;
+  };
+  PaperSized r;
+  for (std::size_t k = 0; (k + 1) * kBlock <= dynamics.size(); ++k) {
+    const auto seen = block(dynamics, k);
+    r.exact_corrcoef.add(lattice::corrcoef(seen, exact));
+    r.exact_rmse.add(lattice::rmse_per_100(seen, exact));
+    if ((k + 1) * kBlock > walks.size()) continue;
+    const auto walked = block(walks, k);
+    r.walks_corrcoef.add(lattice::corrcoef(seen, walked));
+    r.walks_rmse.add(lattice::rmse_per_100(seen, walked));
+  }
+  return r;
+}
+
+Json to_json(const MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; }
+
+/// Everything about one start.
+struct StartReport {
+  PaperStart start;
+  lattice::ChainStart chain_start;
+  lattice::FieldTally dynamics;
+  markov::WalkTally walks;
+  markov::FinalDistribution exact;
+  lattice::Comparison walks_against, exact_against;
+  PaperSized paper_sized;
+  lattice::NoiseFloor floor_100_exact, floor_100_walks;
+  double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
+};
+
+StartReport run_start(const Options& options, const Scene& scene, const dynamics::StateSpace& space,
+                      const markov::Chain& chain, const markov::Walker& walker,
+                      const PaperStart& start, std::int64_t trials, std::int64_t walks) {
+  const dynamics::BodyState body{start.d, 0.0, start.vx, start.vy};
+  const markov::Field field{scene.field.columns, scene.field.rows};
+  const int max_gates = scene.field.max_gates;
+  StartReport r{start, lattice::chain_start(space, scene.field, body), lattice::FieldTally(scene.field),
+                {}, {}, {}, {}, {}, {}, {}};
+
+  const Stopwatch exact_watch;
+  r.exact = markov::propagate(chain, field, r.chain_start.start, max_gates);
+  r.exact_seconds = exact_watch.seconds();
+
+  std::vector<std::int32_t> walk_cells;
+  r.walks.final_cells = markov::CellCounts::Zero(field.rows, field.columns);
+  const Stopwatch walks_watch;
+  run_in_batches("walks", walks, options.talk(), [&](std::int64_t first, std::int64_t n) {
+    std::vector<std::int32_t> cells;
+    r.walks += walker.walk(field, r.chain_start.start, max_gates, options.seed(), {first, n}, &cells);
+    walk_cells.insert(walk_cells.end(), cells.begin(), cells.end());
+  });
+  r.walks_seconds = walks_watch.seconds();
+
+  const Stopwatch dynamics_watch;
+  run_in_batches("full dynamics", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
+    r.dynamics += lattice::run_field(scene.gate, scene.field, body, space, options.seed(), {first, n});
+  });
+  r.dynamics_seconds = dynamics_watch.seconds();
+
+  // As many null draws as fit a fixed amount of dealing, 999 to 9999.
+  const std::int64_t null_draws =
+      std::clamp<std::int64_t>(100'000'000 / (trials + walks), 999, 9999);
+  r.walks_against = lattice::compare(r.dynamics.final_gates, r.walks.final_cells, null_draws, options.seed());
+  r.exact_against = lattice::compare(r.dynamics.final_gates, r.exact.final_cells, null_draws, options.seed());
+  r.paper_sized = in_blocks_of_100(r.dynamics.final_gate_of_trial, walk_cells, r.exact.final_cells);
+  const double s = lattice::concentration(r.dynamics.final_gates);
+  r.floor_100_exact = lattice::noise_floor(s, r.exact.final_cells.size(), 100, 0);
+  r.floor_100_walks = lattice::noise_floor(s, r.exact.final_cells.size(), 100, 100);
+  return r;
+}
+
+Json to_json(const StartReport& r) {
+  Json j;
+  j["start"] = {{"d_m", r.start.d}, {"vx_m_per_s", r.start.vx}, {"vy_m_per_s", r.start.vy},
+                {"clamped", r.chain_start.clamped}};
+  if (r.start.corrcoef) j["paper"] = {{"corrcoef", *r.start.corrcoef}, {"rmse_per_100", *r.start.rmse}};
+  j["exact"] = to_json(r.exact_against);
+  j["walks"] = to_json(r.walks_against);
+  const PaperSized& p = r.paper_sized;
+  j["at_100_trials"] = {
+      {"repeats", p.exact_rmse.n},
+      {"exact_corrcoef", to_json(p.exact_corrcoef)},
+      {"exact_corrcoef_floor", r.floor_100_exact.corrcoef},
+      {"exact_rmse_per_100", to_json(p.exact_rmse)},
+      {"exact_rmse_per_100_floor", r.floor_100_exact.rmse_per_100},
+      {"walks_corrcoef", to_json(p.walks_corrcoef)},
+      {"walks_corrcoef_floor", r.floor_100_walks.corrcoef},
+      {"walks_rmse_per_100", to_json(p.walks_rmse)},
+      {"walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100}};
+  j["seconds"] = {{"dynamics", r.dynamics_seconds}, {"walks", r.walks_seconds}, {"exact", r.exact_seconds}};
+  const double per_trial = r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
+  const double per_walk = r.walks_seconds / static_cast<double>(r.walks.walks);
+  j["speed_ratio"] = {{"dynamics_trial_over_walk", per_trial / per_walk},
+                      {"dynamics_over_exact", r.dynamics_seconds / r.exact_seconds}};
+  const auto fates = [](double trapped, double left, double cut) {
+    return Json{{"trapped", trapped}, {"left_field", left}, {"cut_off", cut}};
+  };
+  const auto n = static_cast<double>(r.dynamics.trials);
+  j["fates"] = {{"dynamics", fates(static_cast<double>(r.dynamics.trapped) / n,
+                                   static_cast<double>(r.dynamics.left_field) / n,
+                                   static_cast<double>(r.dynamics.cut_off) / n)},
+                {"exact", fates(r.exact.trapped, r.exact.left_field, r.exact.cut_off)}};
+  j["final_gates"] = {{"dynamics", grid(r.dynamics.final_gates)},
+                      {"walks", grid(r.walks.final_cells)},
+                      {"exact", grid(r.exact.final_cells)}};
+  j["never_sampled"] = r.exact.unsampled;
+  return j;
+}
+
+std::string with_sd(const MeanAndSd& m) { return fixed(m.mean(), 3) + " (" + fixed(m.sd(), 3) + ")"; }
+
+std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
+
+std::string table_of(const std::vector<StartReport>& reports, std::int64_t trials, std::int64_t walks) {
+  std::ostringstream out;
+  const auto start_text = [](const PaperStart& s) {
+    return padded(fixed(s.d, 0), 4) + padded(fixed(s.vx, 0), 5) + padded(fixed(s.vy, 0), 5);
+  };
+  out << "As in the paper's Table IV: 100 trials of the full dynamics against the chain, mean (sd) over\n"
+         "repeats. Floor: what chance alone gives if the chain were perfect.\n\n"
+         "                |            corrcoef                      |        RMSE, trials per 100\n"
+         "   d   vx   vy  | paper  exact chain    floor  100 walks   | paper  exact chain    floor  100 walks\n";
+  for (const StartReport& r : reports) {
+    const PaperSized& p = r.paper_sized;
+    const auto printed = [](const std::optional<double>& x) { return padded(x ? fixed(*x, 3) : "-", 6); };
+    out << start_text(r.start) << "  |" << printed(r.start.corrcoef) << "  "
+        << padded(with_sd(p.exact_corrcoef), -15) << padded(fixed(r.floor_100_exact.corrcoef, 3), 5)
+        << "  " << padded(with_sd(p.walks_corrcoef), -15) << "|" << printed(r.start.rmse) << "  "
+        << padded(with_sd(p.exact_rmse), -15) << padded(fixed(r.floor_100_exact.rmse_per_100, 3), 5)
+        << "  " << with_sd(p.walks_rmse) << "\n";
+  }
+  out << "\nAll " << trials << " trials of the full dynamics per start. p: how often chance alone would look\n"
+         "as different (chi-squared / energy distance).\n\n"
+         "   d   vx   vy  | against            corrcoef  floor    RMSE   floor      TV   floor   p chi2  p energy\n";
+  for (const StartReport& r : reports) {
+    const auto line = [&](const std::string& name, const lattice::Comparison& c) {
+      out << start_text(r.start) << "  | " << padded(name, -18) << padded(fixed(c.corrcoef, 4), 9)
+          << padded(fixed(c.floor.corrcoef, 4), 8) << padded(fixed(c.rmse_per_100, 3), 8)
+          << padded(fixed(c.floor.rmse_per_100, 3), 8) << padded(fixed(c.total_variation, 3), 8)
+          << padded(fixed(c.floor_total_variation, 3), 8) << padded(p_text(c.p_chi_squared), 9)
+          << padded(p_text(c.p_energy), 9) << "\n";
+    };
+    line("exact chain", r.exact_against);
+    line(std::to_string(walks) + " walks", r.walks_against);
+  }
+  out << "\n   d   vx   vy  |  seconds: dynamics      walks      exact | dynamics/exact  trial/walk\n";
+  for (const StartReport& r : reports) {
+    const double per_trial = r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
+    const double per_walk = r.walks_seconds / static_cast<double>(r.walks.walks);
+    out << start_text(r.start) << "  |" << padded(fixed(r.dynamics_seconds, 2), 19)
+        << padded(fixed(r.walks_seconds, 4), 11) << padded(fixed(r.exact_seconds, 6), 11) << " |"
+        << padded(fixed(r.dynamics_seconds / r.exact_seconds, 0), 15)
+        << padded(fixed(per_trial / per_walk, 0), 12) << "\n";
+  }
+  return out.str();
+}
+
+/// Shares over all crossings between gates of the dynamics.
+struct EntryShares {
+  std::int64_t entries = 0, traverse_sides = 0, clamped = 0;
+};
+
+}  // namespace
+
+int run_validate(const std::vector<std::string>& arguments) {
+  Options options("validate SCENE [options]",
+                  "Compares the chain with the full dynamics: for the four starts of the paper's\n"
+                  "Table IV, or those given, corrcoef, RMSE and total variation of walks and of the\n"
+                  "exact chain, each beside its noise floor and p-values, and the time each takes.",
+                  "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
+  options.positional("scene", "scene file (TOML)", true);
+  add_trials_and_seed(options, "trials of the full dynamics per start");
+  options.add()
+      ("matrix", po::value<std::string>()->value_name("FILE"),
+       "matrix to validate; without it one is built from the scene")
+      ("matrix-trials", po::value<Count>()->default_value(Count{100}, "100")->value_name("N"),
+       "runs per input state of the matrix that is built")
+      ("walks", po::value<Count>()->value_name("N"), "walks per start (default: as many as trials)")
+      ("start", po::value<std::vector<std::string>>()->composing()->value_name("D,VX,VY"),
+       "start at x = D m, y = 0 with this velocity in m/s (may be repeated)");
+  if (!options.parse(arguments)) return kFine;
+  const std::int64_t trials = options.count("trials");
+  const std::int64_t walks = options.has("walks") ? options.count("walks") : trials;
+  std::vector<PaperStart> starts;
+  if (options.has("start"))
+    for (const auto& text : options.get<std::vector<std::string>>("start"))
+      starts.push_back(parse_start(text));
+  else
+    starts = kTableIV;
+
+  const Stopwatch matrix_watch;
+  MatrixAndScene m = [&] {
+    if (options.has("matrix"))
+      return read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
+    const Scene scene = read_scene(options.text("scene"), options.overrides());
+    return MatrixAndScene{{build_matrix(scene, options.count("matrix-trials"), options.seed(), options.talk()), {}},
+                          scene};
+  }();
+  const double matrix_seconds = matrix_watch.seconds();
+  const Scene& scene = m.scene;
+  for (const PaperStart& s : starts)
+    if (!(std::abs(s.d) < scene.gate.beams.joint_x))
+      throw UsageError("--start: d = " + fixed(s.d, 3) + " m must lie inside the gate, (-" +
+                       fixed(scene.gate.beams.joint_x, 3) + ", " + fixed(scene.gate.beams.joint_x, 3) + ")");
+  const dynamics::Transitions& t = m.file.transitions;
+  const markov::Chain chain = lattice::make_chain(t);
+  const markov::Walker walker(chain);
+
+  std::vector<StartReport> reports;
+  EntryShares shares;
+  dynamics::Health health = t.health;
+  for (const PaperStart& start : starts) {
+    reports.push_back(run_start(options, scene, t.space, chain, walker, start, trials, walks));
+    const lattice::FieldTally& d = reports.back().dynamics;
+    health += d.health;
+    for (int b = 0; b < dynamics::kBoundaries; ++b) {
+      shares.entries += d.entries[b];
+      shares.clamped += d.clamped[b];
+    }
+    shares.traverse_sides += d.entries[static_cast<int>(dynamics::Boundary::right_traverse)] +
+                             d.entries[static_cast<int>(dynamics::Boundary::left_traverse)];
+  }
+
+  std::int64_t runs = 0, clamped = 0;
+  for (int row = 0; row < t.space.size(); ++row) {
+    runs += t.trials[row];
+    clamped += t.clamped[row];
+  }
+  const auto share = [](std::int64_t part, std::int64_t whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+  };
+  Json json;
+  json["trials"] = trials;
+  json["walks"] = walks;
+  json["starts"] = Json::array();
+  for (const StartReport& r : reports) json["starts"].push_back(to_json(r));
+  json["crossings"] = {{"between_gates", shares.entries},
+                       {"RT_and_LT_share", share(shares.traverse_sides, shares.entries)},
+                       {"clamped_share", share(shares.clamped, shares.entries)}};
+  json["matrix"] = {{"gate_runs", runs},
+                    {"clamped_share", share(clamped, runs)},
+                    {"rows_never_sampled", chain.unsampled_rows()},
+                    {"seconds", matrix_seconds}};
+  json["status"] = to_json(health);
+  json["made_by"] = manifest(options, scene);
+
+  std::string table = table_of(reports, trials, walks);
+  table += "\nMatrix: " + std::to_string(runs) + " gate runs, " + fixed(matrix_seconds, 2) +
+           " s. Crossings between gates in the dynamics: " +
+           percent(static_cast<double>(shares.traverse_sides), static_cast<double>(shares.entries)) +
+           " through RT or LT (paper: fewer than 4 %), " +
+           percent(static_cast<double>(shares.clamped), static_cast<double>(shares.entries)) +
+           " outside Table III's bins.\n";
+  if (shares.entries == 0) table += "No trial ever reached a second gate.\n";
+  options.give_out(json, table);
+  if (!health.clean()) remark(options, complaint(health));
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,58 @@
+#include "cli/matrix.h"
+#include "cli/progress.h"
+#include "cli/report.h"
+
+namespace gatewalk::cli {
+
+int run_walk(const std::vector<std::string>& arguments) {
+  Options options("walk MATRIX.nc [SCENE] [options]",
+                  "Walks the field by drawing every gate's outcome from the matrix (the paper's\n"
+                  "Markov chain Monte Carlo) and counts the final gates.",
+                  "gatewalk walk matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json walks.json");
+  options.positional("matrix", "matrix file written by gatewalk build", true);
+  options.positional("scene", "scene file; without it the matrix's own scene", false);
+  options.add()("walks", po::value<Count>()->default_value(Count{100}, "100")->value_name("N"),
+                "number of walks")
+               ("seed", po::value<std::uint64_t>()->default_value(1)->value_name("S"),
+                "seed of all random numbers; the same seed gives the same result");
+  if (!options.parse(arguments)) return kFine;
+  const auto m = read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
+  const auto [chain, start] = ready_chain(options, m);
+  const std::int64_t walks = options.count("walks");
+  const markov::Field field{m.scene.field.columns, m.scene.field.rows};
+
+  const Stopwatch watch;
+  const markov::Walker walker(chain);
+  markov::WalkTally tally;
+  tally.final_cells = markov::CellCounts::Zero(field.rows, field.columns);
+  run_in_batches("walks", walks, options.talk(), [&](std::int64_t first, std::int64_t n) {
+    tally += walker.walk(field, start.start, m.scene.field.max_gates, options.seed(), {first, n});
+  });
+  const double seconds = watch.seconds();
+
+  Json json;
+  json["final_gates"] = grid(tally.final_cells);
+  json["walks"] = tally.walks;
+  json["trapped"] = tally.trapped;
+  json["left_field"] = tally.left_field;
+  json["cut_off"] = tally.cut_off;
+  json["never_sampled"] = tally.unsampled;
+  json["gates_visited"] = tally.steps;
+  json["start_clamped"] = start.clamped;
+  json["made_by"] = manifest(options, m.scene);
+
+  const auto n = static_cast<double>(tally.walks);
+  std::string table = map_of(tally.final_cells.cast<double>() / n) + "walks " +
+                      std::to_string(tally.walks) + ": trapped " +
+                      percent(static_cast<double>(tally.trapped), n, 2) + ", left the field " +
+                      percent(static_cast<double>(tally.left_field), n, 2) + ", cut off " +
+                      percent(static_cast<double>(tally.cut_off), n, 2) + "\n";
+  if (tally.unsampled > 0)
+    table += "reached a row that was never sampled: " +
+             percent(static_cast<double>(tally.unsampled), n, 4) + "\n";
+  options.give_out(json, table);
+  remark(options, fixed(seconds, 3) + " s, " + fixed(n / seconds / 1e6, 2) + " million walks a second");
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

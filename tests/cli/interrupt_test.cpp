@@ -1,0 +1,43 @@
+#include "cli/interrupt.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+
+namespace gatewalk::cli {
+namespace {
+
+// Each in a child process: a flag that is set stays set.
+
+TEST(InterruptDeathTest, FirstSignalIsOnlyNoted) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EXIT(
+        {
+          install_interrupt_handler();
+          if (interrupted()) std::_Exit(1);
+          std::raise(signal);
+          std::_Exit(interrupted() ? 7 : 2);
+        },
+        testing::ExitedWithCode(7), "");
+  }
+}
+
+TEST(InterruptDeathTest, SecondSignalEndsAtOnce) {
+  for (const int first : {SIGINT, SIGTERM}) {
+    for (const int second : {SIGINT, SIGTERM}) {
+      EXPECT_EXIT(
+          {
+            install_interrupt_handler();
+            std::raise(first);
+            std::raise(second);
+            std::_Exit(1);
+          },
+          testing::ExitedWithCode(130), "");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gatewalk::cli

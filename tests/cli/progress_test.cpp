@@ -1,0 +1,201 @@
+#include "cli/progress.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <regex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "cli/interrupt.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using std::chrono::milliseconds;
+
+// ---- Batches
+
+TEST(RunInBatches, CoversEachIndexOnceAndInOrder) {
+  for (const std::int64_t total : {0, 1, 2, 3, 5, 7, 97, 4095, 4096, 100003}) {
+    std::vector<int> visits(static_cast<std::size_t>(total));
+    std::int64_t next = 0;
+    run_in_batches("test", total, false, [&](std::int64_t first, std::int64_t count) {
+      EXPECT_EQ(first, next);
+      ASSERT_GT(count, 0);
+      ASSERT_LE(first + count, total);
+      for (std::int64_t i = first; i < first + count; ++i) ++visits[static_cast<std::size_t>(i)];
+      next = first + count;
+    });
+    EXPECT_EQ(next, total);
+    EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), total);
+  }
+}
+
+TEST(RunInBatches, StartsWithOneAndGrowsFourfoldAtMost) {
+  std::vector<std::int64_t> counts;
+  run_in_batches("test", 100000, false,
+                 [&](std::int64_t, std::int64_t count) { counts.push_back(count); });
+  EXPECT_EQ(counts.front(), 1);
+  for (std::size_t i = 1; i < counts.size(); ++i) EXPECT_LE(counts[i], 4 * counts[i - 1]);
+  EXPECT_LT(counts.size(), 1000u);  // and does grow
+}
+
+TEST(RunInBatches, PassesOnWhatTheWorkThrows) {
+  int calls = 0;
+  EXPECT_THROW(run_in_batches("test", 100, false,
+                              [&](std::int64_t, std::int64_t) {
+                                ++calls;
+                                throw std::runtime_error("broken");
+                              }),
+               std::runtime_error);
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(RunInBatchesDeathTest, StopsBetweenBatchesAfterASignal) {
+  EXPECT_EXIT(
+      {
+        install_interrupt_handler();
+        int calls = 0;
+        try {
+          run_in_batches("test", 1000, false, [&](std::int64_t, std::int64_t) {
+            if (++calls == 3) std::raise(SIGINT);
+          });
+        } catch (const Interrupted&) {
+          std::_Exit(calls == 3 ? 7 : 2);
+        }
+        std::_Exit(1);
+      },
+      testing::ExitedWithCode(7), "");
+}
+
+TEST(RunInBatchesDeathTest, WorkThatIsDoneStaysDone) {
+  EXPECT_EXIT(
+      {
+        install_interrupt_handler();
+        run_in_batches("test", 1, false, [](std::int64_t, std::int64_t) { std::raise(SIGINT); });
+        std::_Exit(7);
+      },
+      testing::ExitedWithCode(7), "");
+}
+
+TEST(BatchSize, AimsAtAThirdOfASecond) {
+  BatchSize batch;
+  for (int i = 0; i < 20; ++i) batch.measured(batch.get(), static_cast<double>(batch.get()) * 1e-5);
+  EXPECT_EQ(batch.get(), 30000);  // 0.3 s of 10 us each
+  batch.measured(batch.get(), static_cast<double>(batch.get()) * 1e-3);
+  EXPECT_EQ(batch.get(), 300);  // shrinks at once
+  batch.measured(batch.get(), static_cast<double>(batch.get()) * 1e-5);
+  EXPECT_EQ(batch.get(), 1200);  // grows fourfold at most
+}
+
+TEST(BatchSize, NeverFallsBelowOneNorOverflows) {
+  BatchSize batch;
+  batch.measured(1, 1e6);
+  EXPECT_EQ(batch.get(), 1);
+  for (int i = 0; i < 100; ++i) batch.measured(batch.get(), 0.0);  // a clock that does not move
+  EXPECT_GT(batch.get(), 1'000'000);
+  EXPECT_LT(batch.get(), std::numeric_limits<std::int64_t>::max() / 4);
+}
+
+// ---- The line
+
+/// What `work` writes to standard error when that is a terminal of `columns` columns.
+std::string on_terminal(unsigned short columns, const std::function<void()>& work) {
+  const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
+  if (master < 0 || ::grantpt(master) != 0 || ::unlockpt(master) != 0) return "(no terminal)";
+  const int slave = ::open(::ptsname(master), O_RDWR | O_NOCTTY);
+  const winsize size = {24, columns, 0, 0};
+  ::ioctl(slave, TIOCSWINSZ, &size);
+  const int saved = ::dup(STDERR_FILENO);
+  ::dup2(slave, STDERR_FILENO);
+  work();
+  ::dup2(saved, STDERR_FILENO);
+  ::close(saved);
+  ::fcntl(master, F_SETFL, O_NONBLOCK);
+  std::string text;
+  char chunk[4096];
+  for (ssize_t length; (length = ::read(master, chunk, sizeof chunk)) > 0;) {
+    text.append(chunk, static_cast<std::size_t>(length));
+  }
+  ::close(slave);
+  ::close(master);
+  return text;
+}
+
+std::size_t times(const std::string& text, char c) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), c));
+}
+
+TEST(Progress, SaysHowFarItIsAndClearsTheLine) {
+  const std::string text = on_terminal(80, [] {
+    Progress progress("runs", 400, true);
+    std::this_thread::sleep_for(milliseconds(250));
+    progress.update(100);
+    progress.finish();
+    progress.finish();  // once is enough
+  });
+  EXPECT_TRUE(std::regex_match(
+      text, std::regex(
+                "\rruns  25%  [0-9.e+]+/s  0:[0-9]{2} elapsed, 0:[0-9]{2} left\x1b\\[K\r\x1b\\[K")))
+      << text;
+}
+
+TEST(Progress, RedrawsAtMostFiveTimesASecond) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const std::string text = on_terminal(80, [start] {
+    Progress progress("runs", 1'000'000'000'000, true);
+    for (std::int64_t i = 1; Clock::now() - start < milliseconds(700); ++i) progress.update(i);
+  });
+  EXPECT_GE(times(text, '%'), 1u) << text;
+  EXPECT_LE(times(text, '%'), static_cast<std::size_t>((Clock::now() - start) / milliseconds(200)))
+      << text;
+  EXPECT_TRUE(text.ends_with("\r\x1b[K")) << text;
+}
+
+TEST(Progress, NeverWraps) {
+  const std::string text = on_terminal(20, [] {
+    Progress progress("a label that alone is longer than the line", 4, true);
+    std::this_thread::sleep_for(milliseconds(250));
+    progress.update(1);
+  });
+  EXPECT_EQ(text, "\ra label that alone \x1b[K\r\x1b[K");
+}
+
+TEST(Progress, StaysSilentWhenShortOrUnwanted) {
+  const auto silent = [](bool enabled, std::int64_t total, int wait_ms) {
+    return on_terminal(80, [=] {
+      Progress progress("runs", total, enabled);
+      std::this_thread::sleep_for(milliseconds(wait_ms));
+      progress.update(total / 2);
+      progress.finish();
+    });
+  };
+  EXPECT_EQ(silent(true, 10, 0), "");
+  EXPECT_EQ(silent(false, 10, 250), "");
+  EXPECT_EQ(silent(true, 0, 250), "");
+}
+
+TEST(Progress, StaysSilentWhereThereIsNoTerminal) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("runs", 10, true);
+    std::this_thread::sleep_for(milliseconds(250));
+    progress.update(5);
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace gatewalk::cli
