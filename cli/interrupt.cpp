@@ -13,6 +13,13 @@ static_assert(std::atomic<bool>::is_always_lock_free, "touched from a signal han
 
 void on_signal(int) {
   if (asked_to_stop.exchange(true)) ::_exit(130);
+  ::alarm(1);  // work that does not come in batches is given a second
+}
+
+void on_alarm(int) {
+  // Only async-signal-safe calls here.
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kStoppedText, sizeof kStoppedText - 1);
+  ::_exit(130);
 }
 
 }  // namespace
@@ -22,6 +29,9 @@ void install_interrupt_handler() {
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;  // a write under way goes on
   sigemptyset(&action.sa_mask);
+  struct sigaction alarm_action = action;
+  alarm_action.sa_handler = on_alarm;
+  ::sigaction(SIGALRM, &alarm_action, nullptr);
   for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
 }
 

@@ -1,12 +1,18 @@
 #pragma once
-/// Ctrl-C and SIGTERM: the first asks to stop at the next safe point, the second ends at once.
+/// Ctrl-C and SIGTERM: the first asks to stop at the next safe point and ends after a second if none
+/// comes, the second ends at once. Files are replaced in one go, so an end at any time harms none.
 
 namespace gatewalk::cli {
+
+/// What a stopped program says.
+inline constexpr char kStoppedText[] =
+    "gatewalk: stopped before the end; nothing was written, files that were there are unchanged\n";
 
 /// Thrown between two batches of work once interrupted() is true.
 struct Interrupted {};
 
-/// From now on SIGINT and SIGTERM make interrupted() true; a second one ends with status 130.
+/// From now on SIGINT and SIGTERM make interrupted() true; a second one, or a second without
+/// a safe point, ends with status 130.
 void install_interrupt_handler();
 
 [[nodiscard]] bool interrupted();

@@ -63,8 +63,7 @@ int main(int argc, char** argv) {
   try {
     return cli::run({argv + 1, argv + argc});
   } catch (const cli::Interrupted&) {
-    std::cerr << "gatewalk: stopped before the end; nothing was written, files that were there are "
-                 "unchanged\n";
+    std::cerr << cli::kStoppedText;
     return cli::kStopped;
   } catch (const cli::UsageError& e) {
     return fail(cli::kWrongUse, e);

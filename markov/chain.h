@@ -23,13 +23,17 @@ struct Exit {
   friend bool operator==(const Exit&, const Exit&) = default;
 };
 
+/// Throws std::invalid_argument naming the output (counted from 1) unless there is one exit per
+/// output, next_input is in [0, inputs) or kTrapped, and a trapped exit does not move.
+void validate(const std::vector<Exit>& exits, std::int64_t inputs, std::int64_t outputs);
+
 /// Immutable, row-stochastic, sparse. A row without samples is kept apart ("unsampled"): whoever
 /// walks into it is reported as such, it never absorbs by accident.
 class Chain {
  public:
   /// Rows become counts / row sum; an all-zero row becomes "unsampled".
-  /// Throws std::invalid_argument naming the row on a negative count, and on exits that do not fit
-  /// (one per column; next_input in [0, n_in) or kTrapped; a trapped exit does not move).
+  /// Throws std::invalid_argument naming the row (counted from 1, as all messages here) on a
+  /// negative count or an overflowing sum, and on exits that do not fit.
   static Chain from_counts(const Counts& counts, std::vector<Exit> exits);
 
   /// Rows must be finite, non-negative and sum to 1 within 1e-12 (nothing is normalised silently);
@@ -40,12 +44,14 @@ class Chain {
   [[nodiscard]] int outputs() const { return static_cast<int>(p_.cols()); }
   [[nodiscard]] const Probabilities& matrix() const { return p_; }
   [[nodiscard]] const std::vector<Exit>& exits() const { return exits_; }
-  [[nodiscard]] bool is_sampled(int row) const { return p_.outerIndexPtr()[row + 1] > p_.outerIndexPtr()[row]; }
+  [[nodiscard]] bool is_sampled(int row) const {
+    return p_.outerIndexPtr()[row + 1] > p_.outerIndexPtr()[row];
+  }
   [[nodiscard]] int unsampled_rows() const;
 
  private:
   Chain(Probabilities p, std::vector<Exit> exits);
-  Probabilities p_;
+  Probabilities p_;  // compressed, no stored zeros
   std::vector<Exit> exits_;
 };
 

@@ -1,5 +1,12 @@
 #pragma once
 /// Counts on disk: one NetCDF-4 (HDF5) file that MATLAB, Python, R and Octave open as it is.
+///
+/// Dimensions input_state, output_state, nonzero. Variables count_row, count_column (from 0), count
+/// (nonzero); trials, clamped (input_state); exit_next_input, exit_di_x, exit_di_y (output_state);
+/// each NamedArray by its name. Global attributes format, format_version, checksum and `text`.
+/// checksum = "crc64-xz:" + 16 hexadecimal digits: CRC-64/XZ of the whole file with these digits
+/// read as zeros. The mark "crc64-xz:" may stand nowhere else in the file.
+/// Same content, same bytes. NetCDF is not thread-safe: one call at a time.
 
 #include <cstdint>
 #include <map>
@@ -13,7 +20,7 @@ namespace gatewalk::markov {
 
 /// A named table of numbers that travels with the counts (bin edges, for example).
 struct NamedArray {
-  std::string name;  // a legal NetCDF name
+  std::string name;  // letters, digits and _, a letter first
   std::string unit;
   std::string meaning;
   std::vector<double> values;
@@ -25,8 +32,8 @@ struct CountsFile {
   std::vector<std::int64_t> trials;    // (n_in) runs per row; the row's counts must add up to it
   std::vector<std::int64_t> clamped;   // (n_in) of these, crossings outside every bin
   std::vector<Exit> exits;             // (n_out)
-  std::vector<NamedArray> arrays;
-  std::map<std::string, std::string> text;
+  std::vector<NamedArray> arrays;      // names unique; read back sorted by name
+  std::map<std::string, std::string> text;  // named as arrays are; up to 60 000 bytes each
 };
 
 /// The file is damaged, is not ours, or does not add up. what() names the file and, where there is
@@ -36,8 +43,10 @@ class BadFile : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes to a temporary name beside `path`, syncs, renames. On failure throws std::runtime_error
-/// naming the file and the reason; an old file at `path` stays as it was.
+/// Writes to a temporary name beside `path`, syncs, renames. Content that does not add up throws
+/// std::invalid_argument, a failure std::runtime_error, both naming the file and the reason; an old
+/// file at `path` stays as it was (only if the folder cannot be synced, the last thing done, the new
+/// one has already taken its place). Devices, pipes, folders and links are not written to.
 void write_counts(const std::string& path, const CountsFile& file);
 
 /// Throws BadFile when anything is missing, truncated, altered (checksum) or does not add up.

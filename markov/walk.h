@@ -18,6 +18,7 @@ struct WalkRange {
 
 using CellCounts = Eigen::Array<std::int64_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// trapped + left_field + cut_off + unsampled == walks == final_cells.sum().
 struct WalkTally {
   CellCounts final_cells;       // (rows x columns), last cell inside the field
   std::int64_t walks = 0;
@@ -26,10 +27,18 @@ struct WalkTally {
   std::int64_t cut_off = 0;     // max_cells cells visited, would have gone on
   std::int64_t unsampled = 0;   // entered a state whose row was never sampled
   std::int64_t steps = 0;       // draws over all walks
+  /// Throws std::invalid_argument if both have cells, of different fields.
   WalkTally& operator+=(const WalkTally& other);
 };
 
-/// Draws from the rows of a chain: Walker's alias method (Vose's construction), one table per row.
+/// The key of walk w under `seed` is {seed, kWalkStream}, its counter {block, w, 0, 0}: Philox4x64-10
+/// gives four words per block, one word a draw. Other users of the same seed take another second key
+/// word, so no two ever share a stream.
+inline constexpr std::uint64_t kWalkStream = 0x77616c6b'00000001;  // "walk", version 1
+
+/// Draws from the rows of a chain: Walker's alias method (Vose's construction), one table per row,
+/// built in integers: each probability is met to a few words of 2^64, except that what a row lacks
+/// from 1 (rounding, at most 1e-12) goes to its largest entry.
 class Walker {
  public:
   explicit Walker(const Chain& chain);
@@ -37,9 +46,9 @@ class Walker {
   /// An output of `row` for a uniform 64-bit word; never one of probability zero.
   [[nodiscard]] int draw(int row, std::uint64_t word) const;
 
-  /// Runs `range` on all threads of the current TBB arena. At most `max_cells` cells are visited
-  /// (0: no limit; then a walk is still cut off after 10^6 cells, and counted so). Same tally for
-  /// any number of threads. `final_cell_of_walk`, if given, gets row * columns + column per walk.
+  /// Runs `range` (from 0 up) on all threads of the current TBB arena. At most `max_cells` cells are
+  /// visited (0: no limit; then a walk is still cut off after 10^6 cells, and counted so). Same tally
+  /// for any number of threads. `final_cell_of_walk`, if given, gets row * columns + column per walk.
   [[nodiscard]] WalkTally walk(const Field& field, const Start& start, int max_cells,
                                std::uint64_t seed, WalkRange range,
                                std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
@@ -50,9 +59,11 @@ class Walker {
     std::int32_t here;
     std::int32_t other;
   };
+  [[nodiscard]] static std::int32_t pick(const Slot* slots, std::uint64_t count,
+                                         std::uint64_t word);
+
   Chain chain_;
-  std::vector<Slot> slots_;            // one per nonzero, row by row
-  std::vector<std::int32_t> row_begin_;  // (n_in + 1)
+  std::vector<Slot> slots_;  // one per nonzero, in the order of the matrix: its rows begin alike
 };
 
 }  // namespace gatewalk::markov

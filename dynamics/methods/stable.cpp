@@ -169,12 +169,12 @@ void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow
       s.beams[side].held = false;
     }
   }
-  restore(s, keep);
+  restore(s, keep, end);
 }
 
-void StableMethod::restore(GateState& s, std::array<bool, 2> contacts) const {
+void StableMethod::restore(GateState& s, std::array<bool, 2> contacts,
+                           std::array<Touch, 2> touch) const {
   if (!contacts[kLeft] && !contacts[kRight]) return;
-  auto touch = touches(p_, s, contacts);
   for (int iteration = 0; iteration < 6; ++iteration) {
     const std::array<double, 2> gap{contacts[kLeft] ? touch[kLeft].gap : 0.0,
                                     contacts[kRight] ? touch[kRight].gap : 0.0};
@@ -219,7 +219,8 @@ void StableMethod::substep(GateState& s, double force_x, Watch& watch) const {
       ++watch.forced_holds;
       s = end;
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
-      restore(s, {s.beams[kLeft].held, s.beams[kRight].held});
+      const std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
+      restore(s, held, touches(p_, s, held));
       return;
     }
     const double when = first_hit(s, force_x, end, left, hit);

@@ -32,8 +32,8 @@ class StableMethod final : public Method {
   void glide(GateState& s, double force_x, const GateFlow& flow) const;
   void glide(GateState& s, double force_x, double dt) const;
   void glide_held(GateState& s, double force_x, const GateFlow& flow) const;
-  /// Puts held contacts back to gap = 0 and u = 0.
-  void restore(GateState& s, std::array<bool, 2> contacts) const;
+  /// Puts these contacts back to gap = 0 and u = 0; `touch` is where they are in `s`.
+  void restore(GateState& s, std::array<bool, 2> contacts, std::array<Touch, 2> touch) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
                                  double dt, std::array<bool, 2> hit) const;

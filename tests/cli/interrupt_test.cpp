@@ -24,6 +24,17 @@ TEST(InterruptDeathTest, FirstSignalIsOnlyNoted) {
   }
 }
 
+TEST(InterruptDeathTest, WorkWithoutASafePointEndsWithinTwoSeconds) {
+  EXPECT_EXIT(
+      {
+        install_interrupt_handler();
+        std::raise(SIGINT);
+        for (int i = 0; i < 40; ++i) ::usleep(50'000);
+        std::_Exit(1);
+      },
+      testing::ExitedWithCode(130), "stopped before the end");
+}
+
 TEST(InterruptDeathTest, SecondSignalEndsAtOnce) {
   for (const int first : {SIGINT, SIGTERM}) {
     for (const int second : {SIGINT, SIGTERM}) {

@@ -1,0 +1,126 @@
+#include "markov/chain.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "markov/sum.h"
+
+namespace gatewalk::markov {
+namespace {
+
+// Decimal input with 13 digits passes; a forgotten output or a rounded table does not.
+constexpr double kRowSumTolerance = 1e-12;
+
+std::string row_name(std::int64_t row) {
+  return "row " + std::to_string(row + 1) + " (counted from 1)";
+}
+
+std::string printed(double value) {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << value;
+  return text.str();
+}
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+
+}  // namespace
+
+void validate(const std::vector<Exit>& exits, std::int64_t inputs, std::int64_t outputs) {
+  if (inputs < 1 || outputs < 1) {
+    refuse("a chain needs at least one input and one output, not " + std::to_string(inputs) +
+           " x " + std::to_string(outputs));
+  }
+  if (static_cast<std::int64_t>(exits.size()) != outputs) {
+    refuse(std::to_string(exits.size()) + " exits for " + std::to_string(outputs) + " outputs");
+  }
+  for (std::size_t j = 0; j < exits.size(); ++j) {
+    const Exit& exit = exits[j];
+    const std::string name = "exit of output " + std::to_string(j + 1) + " (counted from 1): ";
+    if (exit.next_input == Exit::kTrapped) {
+      if (exit.di_x != 0 || exit.di_y != 0) refuse(name + "trapped, and yet it moves");
+    } else if (exit.next_input < 0 || exit.next_input >= inputs) {
+      refuse(name + "next_input " + std::to_string(exit.next_input) + " is not in [0, " +
+             std::to_string(inputs) + ")");
+    }
+  }
+}
+
+Chain::Chain(Probabilities p, std::vector<Exit> exits)
+    : p_(std::move(p)), exits_(std::move(exits)) {}
+
+Chain Chain::from_counts(const Counts& counts, std::vector<Exit> exits) {
+  validate(exits, counts.rows(), counts.cols());
+  Probabilities p(counts.rows(), counts.cols());
+  p.reserve(counts.nonZeros());
+  for (Eigen::Index row = 0; row < counts.rows(); ++row) {
+    std::int64_t total = 0;
+    for (Counts::InnerIterator it(counts, row); it; ++it) {
+      if (it.value() < 0) {
+        refuse(row_name(row) + ": count " + std::to_string(it.value()) + " of output " +
+               std::to_string(it.col() + 1) + " is negative");
+      }
+      if (__builtin_add_overflow(total, it.value(), &total)) {
+        refuse(row_name(row) + ": the sum of counts overflows");
+      }
+    }
+    p.startVec(row);
+    for (Counts::InnerIterator it(counts, row); it; ++it) {
+      if (it.value() == 0) continue;
+      p.insertBack(row, it.col()) = static_cast<double>(it.value()) / static_cast<double>(total);
+    }
+  }
+  p.finalize();
+  return {std::move(p), std::move(exits)};
+}
+
+Chain Chain::from_probabilities(Probabilities matrix, std::vector<Exit> exits) {
+  validate(exits, matrix.rows(), matrix.cols());
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    CompensatedSum sum;
+    bool empty = true;
+    for (Probabilities::InnerIterator it(matrix, row); it; ++it) {
+      if (!(std::isfinite(it.value()) && it.value() >= 0.0)) {
+        refuse(row_name(row) + ": " + printed(it.value()) + " of output " +
+               std::to_string(it.col() + 1) + " is not a probability");
+      }
+      empty = empty && it.value() == 0.0;
+      sum += it.value();
+    }
+    if (!empty && !(std::abs(sum.value() - 1.0) <= kRowSumTolerance)) {
+      refuse(row_name(row) + ": probabilities sum to " + printed(sum.value()) + ", not 1");
+    }
+  }
+  matrix.prune([](Eigen::Index, Eigen::Index, double p) { return p != 0.0; });
+  return {std::move(matrix), std::move(exits)};
+}
+
+int Chain::unsampled_rows() const {
+  int count = 0;
+  for (int row = 0; row < inputs(); ++row) count += is_sampled(row) ? 0 : 1;
+  return count;
+}
+
+void validate(const Chain& chain, const Field& field, const Start& start, int max_cells) {
+  if (field.columns < 1 || field.rows < 1 ||
+      std::int64_t{field.columns} * field.rows > std::numeric_limits<std::int32_t>::max()) {
+    refuse("field: " + std::to_string(field.columns) + " columns x " +
+           std::to_string(field.rows) + " rows is not between 1 and 2^31 - 1 cells");
+  }
+  if (start.column < 0 || start.column >= field.columns || start.row < 0 ||
+      start.row >= field.rows) {
+    refuse("start: cell (" + std::to_string(start.column) + ", " + std::to_string(start.row) +
+           ") lies outside the field");
+  }
+  if (start.input < 0 || start.input >= chain.inputs()) {
+    refuse("start: input " + std::to_string(start.input) + " is not in [0, " +
+           std::to_string(chain.inputs()) + ")");
+  }
+  if (max_cells < 0) refuse("max_cells: " + std::to_string(max_cells) + " is negative");
+}
+
+}  // namespace gatewalk::markov

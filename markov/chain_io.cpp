@@ -1,0 +1,545 @@
+#include "markov/chain_io.h"
+
+#include <fcntl.h>
+#include <netcdf.h>
+#include <netcdf_mem.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/crc.hpp>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace gatewalk::markov {
+namespace {
+
+constexpr const char* kFormat = "gatewalk transition counts";
+constexpr int kFormatVersion = 1;
+const std::set<std::string> kOwnVariables = {"count_row", "count_column",    "count",
+                                             "trials",    "clamped",         "exit_next_input",
+                                             "exit_di_x", "exit_di_y",       "input_state",
+                                             "nonzero",   "output_state"};
+const std::set<std::string> kOwnAttributes = {"format", "format_version", "checksum"};
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+
+std::string row_name(std::int64_t row) {
+  return "row " + std::to_string(row + 1) + " (counted from 1)";
+}
+
+// ---- Content: the same rules for what is written and what was read ----
+
+// Letters, digits and underscores: legal for NetCDF, and a variable name in MATLAB, R and Python.
+void check_name(const std::string& name, const std::set<std::string>& taken) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  bool legal = !name.empty() && name.size() < 128 && is_letter(name.front());
+  for (const char c : name) legal = legal && (is_letter(c) || is_digit(c) || c == '_');
+  if (!legal) refuse("name \"" + name + "\": must be letters, digits and _, and begin with a letter");
+  if (taken.contains(name)) refuse("name \"" + name + "\" is taken");
+}
+
+void check_text(const std::string& name, const std::string& text) {
+  constexpr std::size_t kMostBytes = 60'000;  // an HDF5 attribute ends below 64 KB
+  if (text.size() > kMostBytes) {
+    refuse("text of \"" + name + "\" has " + std::to_string(text.size()) + " bytes, more than " +
+           std::to_string(kMostBytes));
+  }
+  if (text.find('\0') != std::string::npos) refuse("text of \"" + name + "\" holds a zero byte");
+}
+
+void check_content(const CountsFile& file) {
+  const std::int64_t n_in = file.counts.rows();
+  validate(file.exits, n_in, file.counts.cols());
+  if (static_cast<std::int64_t>(file.trials.size()) != n_in ||
+      static_cast<std::int64_t>(file.clamped.size()) != n_in) {
+    refuse("trials and clamped must have one number for each of the " + std::to_string(n_in) +
+           " rows");
+  }
+  for (std::int64_t row = 0; row < n_in; ++row) {
+    std::int64_t sum = 0;
+    for (Counts::InnerIterator it(file.counts, row); it; ++it) {
+      if (it.value() < 0) refuse(row_name(row) + ": a count is negative");
+      if (__builtin_add_overflow(sum, it.value(), &sum)) {
+        refuse(row_name(row) + ": the sum of counts overflows");
+      }
+    }
+    const std::int64_t trials = file.trials[static_cast<std::size_t>(row)];
+    const std::int64_t clamped = file.clamped[static_cast<std::size_t>(row)];
+    if (sum != trials) {
+      refuse(row_name(row) + ": counts add up to " + std::to_string(sum) + ", trials are " +
+             std::to_string(trials));
+    }
+    if (clamped < 0 || clamped > trials) {
+      refuse(row_name(row) + ": " + std::to_string(clamped) + " clamped of " +
+             std::to_string(trials) + " trials");
+    }
+  }
+  std::set<std::string> taken = kOwnVariables;
+  for (const NamedArray& array : file.arrays) {
+    check_name(array.name, taken);
+    taken.insert(array.name);
+    check_text(array.name, array.unit);
+    check_text(array.name, array.meaning);
+  }
+  for (const auto& [key, value] : file.text) {
+    check_name(key, kOwnAttributes);
+    check_text(key, value);
+  }
+}
+
+// ---- The checksum: over every byte of the file, itself read as zeros ----
+// Checked before HDF5 sees the file: HDF5 1.10 crashes or hangs on some damaged bytes.
+
+constexpr std::string_view kChecksumMark = "crc64-xz:";
+constexpr std::string_view kNoChecksum = "0000000000000000";
+
+std::string crc64_hex(const std::vector<char>& bytes) {
+  boost::crc_optimal<64, 0x42F0E1EBA9EA3693, ~0ULL, ~0ULL, true, true> crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  std::string text;
+  for (int shift = 60; shift >= 0; shift -= 4) {
+    text += "0123456789abcdef"[(crc.checksum() >> shift) & 15];
+  }
+  return text;
+}
+
+// Puts `digits` where the checksum stands in the image and returns what stood there.
+std::string exchange_checksum(std::vector<char>& image, std::string_view digits) {
+  const std::string_view bytes(image.data(), image.size());
+  const std::size_t mark = bytes.find(kChecksumMark);
+  const std::size_t at = mark + kChecksumMark.size();
+  if (mark == bytes.npos || at + digits.size() > bytes.size()) {
+    throw std::runtime_error("holds no checksum: truncated, or not written by this program");
+  }
+  if (bytes.find(kChecksumMark, at) != bytes.npos) {
+    throw std::runtime_error("holds \"" + std::string(kChecksumMark) + "\" more than once");
+  }
+  const std::string old(bytes.substr(at, digits.size()));
+  std::copy(digits.begin(), digits.end(), image.begin() + static_cast<std::ptrdiff_t>(at));
+  return old;
+}
+
+// ---- NetCDF, always on an image in memory: HDF5 1.10 crashes at exit after a write that failed ----
+
+void check(int rc, const std::string& what) {
+  if (rc != NC_NOERR) throw std::runtime_error(what + ": " + nc_strerror(rc));
+}
+
+class NcId {
+ public:
+  NcId() = default;
+  ~NcId() {
+    if (is_open_) nc_abort(id_);
+  }
+  NcId(const NcId&) = delete;
+  NcId& operator=(const NcId&) = delete;
+
+  void create() {
+    constexpr std::size_t kFirstBytes = 1 << 16;
+    check(nc_create_mem("counts", NC_NETCDF4, kFirstBytes, &id_), "cannot create");
+    is_open_ = true;
+  }
+  void open(std::vector<char>& image) {
+    check(nc_open_mem("counts", NC_NOWRITE, image.size(), image.data(), &id_), "cannot open");
+    is_open_ = true;
+  }
+  [[nodiscard]] std::vector<char> close_image() {
+    is_open_ = false;
+    NC_memio memory{};
+    check(nc_close_memio(id_, &memory), "cannot finish");
+    const char* bytes = static_cast<const char*>(memory.memory);
+    std::vector<char> image(bytes, bytes + memory.size);
+    std::free(memory.memory);
+    return image;
+  }
+  operator int() const { return id_; }
+
+ private:
+  int id_ = -1;
+  bool is_open_ = false;
+};
+
+constexpr nc_type type_of(const std::vector<std::int32_t>&) { return NC_INT; }
+constexpr nc_type type_of(const std::vector<std::int64_t>&) { return NC_INT64; }
+constexpr nc_type type_of(const std::vector<double>&) { return NC_DOUBLE; }
+
+// The counts and exits as columns of numbers, the way they lie in the file.
+struct Columns {
+  std::vector<std::int32_t> row, column, next_input, di_x, di_y;
+  std::vector<std::int64_t> count;
+};
+
+void put_text(int nc, int variable, const std::string& name, const std::string& text) {
+  check(nc_put_att_text(nc, variable, name.c_str(), text.size(), text.data()),
+        "attribute " + name);
+}
+
+int define_dimension(int nc, const std::string& name, std::size_t length) {
+  int dimension = -1;
+  // A length of 0 is NC_UNLIMITED, which is how NetCDF holds an empty list.
+  check(nc_def_dim(nc, name.c_str(), length, &dimension), "dimension " + name);
+  return dimension;
+}
+
+template <class T>
+void put_variable(int nc, const std::string& name, int dimension, const std::vector<T>& values,
+                  const std::string& unit, const std::string& meaning) {
+  constexpr int kShuffle = 1, kDeflate = 1, kLevel = 4;
+  int variable = -1;
+  check(nc_def_var(nc, name.c_str(), type_of(values), 1, &dimension, &variable), name);
+  check(nc_def_var_deflate(nc, variable, kShuffle, kDeflate, kLevel), name);
+  check(nc_def_var_fletcher32(nc, variable, NC_FLETCHER32), name);
+  put_text(nc, variable, "units", unit);
+  put_text(nc, variable, "long_name", meaning);
+  const std::size_t first = 0;
+  const std::size_t count = values.size();
+  if (count > 0) check(nc_put_vara(nc, variable, &first, &count, values.data()), name);
+}
+
+std::vector<char> encode(const CountsFile& file) {
+  Columns c;
+  for (Eigen::Index row = 0; row < file.counts.rows(); ++row) {
+    for (Counts::InnerIterator it(file.counts, row); it; ++it) {
+      if (it.value() == 0) continue;
+      c.row.push_back(static_cast<std::int32_t>(row));
+      c.column.push_back(static_cast<std::int32_t>(it.col()));
+      c.count.push_back(it.value());
+    }
+  }
+  for (const Exit& exit : file.exits) {
+    c.next_input.push_back(exit.next_input);
+    c.di_x.push_back(exit.di_x);
+    c.di_y.push_back(exit.di_y);
+  }
+
+  NcId nc;
+  nc.create();
+  put_text(nc, NC_GLOBAL, "format", kFormat);
+  check(nc_put_att_int(nc, NC_GLOBAL, "format_version", NC_INT, 1, &kFormatVersion),
+        "format_version");
+  put_text(nc, NC_GLOBAL, "checksum", std::string(kChecksumMark) + std::string(kNoChecksum));
+  for (const auto& [key, value] : file.text) put_text(nc, NC_GLOBAL, key, value);
+
+  const int input = define_dimension(nc, "input_state", file.trials.size());
+  const int output = define_dimension(nc, "output_state", file.exits.size());
+  const int nonzero = define_dimension(nc, "nonzero", c.count.size());
+  put_variable(nc, "count_row", nonzero, c.row, "1", "input state of a count, from 0");
+  put_variable(nc, "count_column", nonzero, c.column, "1", "output state of a count, from 0");
+  put_variable(nc, "count", nonzero, c.count, "1", "trials that went from input to output");
+  put_variable(nc, "trials", input, file.trials, "1", "trials of an input state");
+  put_variable(nc, "clamped", input, file.clamped, "1",
+               "of these, trials that crossed outside every bin");
+  put_variable(nc, "exit_next_input", output, c.next_input, "1",
+               "input state of the next cell, from 0; -1: trapped");
+  put_variable(nc, "exit_di_x", output, c.di_x, "1", "columns to the next cell");
+  put_variable(nc, "exit_di_y", output, c.di_y, "1", "rows to the next cell");
+  for (const NamedArray& array : file.arrays) {
+    const int length = define_dimension(nc, array.name + "_length", array.values.size());
+    put_variable(nc, array.name, length, array.values, array.unit, array.meaning);
+  }
+  std::vector<char> image = nc.close_image();
+  exchange_checksum(image, kNoChecksum);
+  exchange_checksum(image, crc64_hex(image));
+  return image;
+}
+
+// ---- Reading: nothing is allocated before its size was held against the file's length ----
+
+class Reader {
+ public:
+  explicit Reader(std::vector<char>& image) : file_bytes_(image.size()) { nc_.open(image); }
+
+  [[nodiscard]] CountsFile read() {
+    check_format();
+    const std::size_t n_in = dimension("input_state");
+    const std::size_t n_out = dimension("output_state");
+
+    CountsFile file;
+    file.trials = values<std::int64_t>("trials", "input_state");
+    file.clamped = values<std::int64_t>("clamped", "input_state");
+    file.exits = exits();
+    file.counts = counts(n_in, n_out);
+    file.arrays = arrays();
+    file.text = text();
+    check_content(file);
+    return file;
+  }
+
+ private:
+  void check_format() {
+    if (attribute(NC_GLOBAL, "format") != kFormat) {
+      throw std::runtime_error(std::string("format is not \"") + kFormat + "\"");
+    }
+    nc_type type = NC_NAT;
+    std::size_t length = 0;
+    check(nc_inq_att(nc_, NC_GLOBAL, "format_version", &type, &length), "format_version");
+    int version = 0;
+    if (type != NC_INT || length != 1) throw std::runtime_error("format_version is not a number");
+    check(nc_get_att_int(nc_, NC_GLOBAL, "format_version", &version), "format_version");
+    if (version != kFormatVersion) {
+      throw std::runtime_error("format_version is " + std::to_string(version) +
+                               ", this program reads " + std::to_string(kFormatVersion));
+    }
+  }
+
+  [[nodiscard]] std::string attribute(int variable, const std::string& name) {
+    nc_type type = NC_NAT;
+    std::size_t length = 0;
+    check(nc_inq_att(nc_, variable, name.c_str(), &type, &length), "attribute " + name);
+    if (type != NC_CHAR) throw std::runtime_error("attribute " + name + " is not text");
+    if (length > file_bytes_) throw std::runtime_error("attribute " + name + " is absurdly long");
+    std::string text(length, '\0');
+    check(nc_get_att_text(nc_, variable, name.c_str(), text.data()), "attribute " + name);
+    return text;
+  }
+
+  [[nodiscard]] std::size_t dimension(const std::string& name) {
+    int id = -1;
+    check(nc_inq_dimid(nc_, name.c_str(), &id), "dimension " + name);
+    return dimension_length(id, name);
+  }
+
+  [[nodiscard]] std::size_t dimension_length(int id, const std::string& name) {
+    // Deflate shrinks 1032-fold at the most, and a number has at least 4 bytes.
+    constexpr std::size_t kMostPerByte = 1032 / 4;
+    std::size_t length = 0;
+    check(nc_inq_dimlen(nc_, id, &length), "dimension " + name);
+    if (length > kMostPerByte * file_bytes_ ||
+        length > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+      throw std::runtime_error("dimension " + name + " is absurdly long: " +
+                               std::to_string(length));
+    }
+    return length;
+  }
+
+  template <class T>
+  [[nodiscard]] std::vector<T> values(const std::string& name, const std::string& dimension_name) {
+    int variable = -1;
+    check(nc_inq_varid(nc_, name.c_str(), &variable), "variable " + name);
+    nc_type type = NC_NAT;
+    int dimensions = 0;
+    check(nc_inq_vartype(nc_, variable, &type), "variable " + name);
+    check(nc_inq_varndims(nc_, variable, &dimensions), "variable " + name);
+    std::vector<T> result;
+    if (type != type_of(result)) throw std::runtime_error("variable " + name + ": wrong type");
+    int wanted = -1, found = -1;
+    check(nc_inq_dimid(nc_, dimension_name.c_str(), &wanted), "dimension " + dimension_name);
+    if (dimensions == 1) check(nc_inq_vardimid(nc_, variable, &found), "variable " + name);
+    if (found != wanted) {
+      throw std::runtime_error("variable " + name + " does not have the one dimension " +
+                               dimension_name);
+    }
+    const std::size_t first = 0;
+    const std::size_t count = dimension_length(found, dimension_name);
+    result.resize(count);
+    if (count > 0) {
+      check(nc_get_vara(nc_, variable, &first, &count, result.data()), "variable " + name);
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<Exit> exits() {
+    const auto next_input = values<std::int32_t>("exit_next_input", "output_state");
+    const auto di_x = values<std::int32_t>("exit_di_x", "output_state");
+    const auto di_y = values<std::int32_t>("exit_di_y", "output_state");
+    std::vector<Exit> result;
+    for (std::size_t j = 0; j < next_input.size(); ++j) {
+      result.push_back({next_input[j], di_x[j], di_y[j]});
+    }
+    return result;
+  }
+
+  [[nodiscard]] Counts counts(std::size_t n_in, std::size_t n_out) {
+    const auto row = values<std::int32_t>("count_row", "nonzero");
+    const auto column = values<std::int32_t>("count_column", "nonzero");
+    const auto count = values<std::int64_t>("count", "nonzero");
+    Counts result(static_cast<Eigen::Index>(n_in), static_cast<Eigen::Index>(n_out));
+    result.reserve(static_cast<Eigen::Index>(count.size()));
+    std::size_t k = 0;
+    for (Eigen::Index i = 0; i < result.rows(); ++i) {
+      result.startVec(i);
+      for (; k < count.size() && row[k] == i; ++k) {
+        if (column[k] < 0 || column[k] >= result.cols()) {
+          throw std::runtime_error(row_name(i) + ": column " + std::to_string(column[k]) +
+                                   " is out of range");
+        }
+        if (k > 0 && row[k - 1] == row[k] && column[k - 1] >= column[k]) {
+          throw std::runtime_error(row_name(i) + ": column " + std::to_string(column[k]) +
+                                   " is repeated or out of order");
+        }
+        if (count[k] < 1) {
+          throw std::runtime_error(row_name(i) + ": count " + std::to_string(count[k]) +
+                                   " is not positive");
+        }
+        result.insertBack(i, column[k]) = count[k];
+      }
+    }
+    if (k < count.size()) {
+      throw std::runtime_error("count_row: entry " + std::to_string(k + 1) + ", row " +
+                               std::to_string(row[k]) + ", is out of range or out of order");
+    }
+    result.finalize();
+    return result;
+  }
+
+  [[nodiscard]] std::vector<NamedArray> arrays() {
+    int variables = 0;
+    check(nc_inq_nvars(nc_, &variables), "variables");
+    std::vector<NamedArray> result;
+    for (int variable = 0; variable < variables; ++variable) {
+      char name[NC_MAX_NAME + 1] = "";
+      check(nc_inq_varname(nc_, variable, name), "variables");
+      if (kOwnVariables.contains(name)) continue;
+      result.push_back({name, attribute(variable, "units"), attribute(variable, "long_name"),
+                        values<double>(name, std::string(name) + "_length")});
+    }
+    std::sort(result.begin(), result.end(),
+              [](const NamedArray& a, const NamedArray& b) { return a.name < b.name; });
+    return result;
+  }
+
+  [[nodiscard]] std::map<std::string, std::string> text() {
+    int attributes = 0;
+    check(nc_inq_natts(nc_, &attributes), "attributes");
+    std::map<std::string, std::string> result;
+    for (int number = 0; number < attributes; ++number) {
+      char name[NC_MAX_NAME + 1] = "";
+      check(nc_inq_attname(nc_, NC_GLOBAL, number, name), "attributes");
+      if (!kOwnAttributes.contains(name)) result[name] = attribute(NC_GLOBAL, name);
+    }
+    return result;
+  }
+
+  std::size_t file_bytes_;
+  NcId nc_;
+};
+
+// ---- Bytes on disk ----
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(what + ": " + std::strerror(errno));
+}
+
+class Descriptor {
+ public:
+  Descriptor(const std::string& path, int flags, const std::string& what) {
+    fd_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+    if (fd_ < 0) fail(what);
+  }
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  operator int() const { return fd_; }
+  void close(const std::string& what) {
+    if (::close(std::exchange(fd_, -1)) != 0) fail(what);
+  }
+
+ private:
+  int fd_ = -1;
+};
+
+// Refuses directories, pipes and devices before they are opened for reading (a pipe would block).
+std::vector<char> read_bytes(const std::string& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) fail("cannot open");
+  if (!S_ISREG(info.st_mode)) throw std::runtime_error("not a regular file");
+  const Descriptor file(path, O_RDONLY, "cannot open");
+  std::vector<char> bytes(static_cast<std::size_t>(info.st_size));
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = ::read(file, bytes.data() + done, bytes.size() - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("cannot read");
+    if (got == 0) throw std::runtime_error("became shorter while it was read");
+    done += static_cast<std::size_t>(got);
+  }
+  return bytes;
+}
+
+class RemoveOnFailure {
+ public:
+  explicit RemoveOnFailure(std::string path) : path_(std::move(path)) {}
+  ~RemoveOnFailure() {
+    if (!path_.empty()) ::unlink(path_.c_str());
+  }
+  RemoveOnFailure(const RemoveOnFailure&) = delete;
+  RemoveOnFailure& operator=(const RemoveOnFailure&) = delete;
+  void keep() { path_.clear(); }
+
+ private:
+  std::string path_;
+};
+
+void replace_file(const std::string& path, const std::vector<char>& bytes) {
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) {
+    throw std::runtime_error("exists and is not a regular file");
+  }
+  const std::string temporary = path + ".tmp-" + std::to_string(::getpid());
+  const auto slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+
+  Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, "cannot create " + temporary);
+  RemoveOnFailure leftover(temporary);
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t put = ::write(file, bytes.data() + done, bytes.size() - done);
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) fail("cannot write " + temporary);
+    done += static_cast<std::size_t>(put);
+  }
+  if (::fsync(file) != 0) fail("cannot sync " + temporary);
+  file.close("cannot close " + temporary);
+  if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot rename " + temporary);
+  leftover.keep();
+  // The new file is complete under its name; this makes the name itself survive a power cut. Some
+  // file systems cannot sync a folder and say EINVAL.
+  const Descriptor directory(folder, O_RDONLY | O_DIRECTORY, "written, but cannot open " + folder);
+  if (::fsync(directory) != 0 && errno != EINVAL) fail("written, but cannot sync " + folder);
+}
+
+}  // namespace
+
+void write_counts(const std::string& path, const CountsFile& file) {
+  try {
+    check_content(file);
+    replace_file(path, encode(file));
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(path + ": " + error.what());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+}
+
+CountsFile read_counts(const std::string& path) {
+  constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n";
+  const auto bad = [&path](const std::exception& error) {
+    return BadFile(path + ": " + error.what());
+  };
+  try {
+    std::vector<char> image = read_bytes(path);
+    if (!std::string_view(image.data(), image.size()).starts_with(kHdf5Magic)) {
+      throw std::runtime_error("not a NetCDF-4 file");
+    }
+    const std::string expected = exchange_checksum(image, kNoChecksum);
+    if (crc64_hex(image) != expected) {
+      throw std::runtime_error("checksum does not match: damaged or altered since it was written");
+    }
+    return Reader(image).read();
+  } catch (const std::invalid_argument& error) {
+    throw bad(error);
+  } catch (const std::runtime_error& error) {
+    throw bad(error);
+  }
+}
+
+}  // namespace gatewalk::markov

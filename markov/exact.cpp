@@ -1,0 +1,361 @@
+#include "markov/exact.h"
+
+#include <klu.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "markov/sum.h"
+
+namespace gatewalk::markov {
+namespace {
+
+// The chain seen from one cell: outputs that lead to the same neighbour together, so that the edge
+// of the field is looked at once per neighbour.
+struct Link {
+  int output;
+  int input;
+};
+struct Neighbour {
+  int di_x;
+  int di_y;
+  std::vector<Link> sampled;    // outputs that walk on
+  std::vector<Link> unsampled;  // outputs into a row nobody has measured
+};
+struct Stencil {
+  std::vector<Neighbour> neighbours;
+  std::vector<int> trapped;
+};
+
+Stencil stencil_of(const Chain& chain) {
+  Stencil stencil;
+  for (int output = 0; output < chain.outputs(); ++output) {
+    const Exit& exit = chain.exits()[static_cast<std::size_t>(output)];
+    if (exit.next_input == Exit::kTrapped) {
+      stencil.trapped.push_back(output);
+      continue;
+    }
+    auto& all = stencil.neighbours;
+    auto it = std::find_if(all.begin(), all.end(), [&](const Neighbour& n) {
+      return n.di_x == exit.di_x && n.di_y == exit.di_y;
+    });
+    if (it == all.end()) it = all.insert(it, {exit.di_x, exit.di_y, {}, {}});
+    (chain.is_sampled(exit.next_input) ? it->sampled : it->unsampled)
+        .push_back({output, exit.next_input});
+  }
+  return stencil;
+}
+
+// The cell (column + di_x, row + di_y), or -1 outside the field.
+std::int64_t neighbour_cell(const Field& field, std::int64_t column, std::int64_t row, int di_x,
+                            int di_y) {
+  column += di_x;
+  row += di_y;
+  const bool inside = column >= 0 && column < field.columns && row >= 0 && row < field.rows;
+  return inside ? row * field.columns + column : -1;
+}
+
+// Collects where walks end.
+class Ends {
+ public:
+  explicit Ends(const Field& field)
+      : field_(field), cells_(static_cast<std::size_t>(field.columns) * field.rows) {}
+
+  CompensatedSum trapped, left_field, cut_off, unsampled;
+
+  void add(CompensatedSum& why, std::int64_t cell, double mass) {
+    why += mass;
+    cells_[static_cast<std::size_t>(cell)] += mass;
+  }
+
+  [[nodiscard]] FinalDistribution result() const {
+    FinalDistribution d;
+    d.final_cells.resize(field_.rows, field_.columns);
+    std::transform(cells_.begin(), cells_.end(), d.final_cells.data(),
+                   [](const CompensatedSum& sum) { return sum.value(); });
+    d.trapped = trapped.value();
+    d.left_field = left_field.value();
+    d.cut_off = cut_off.value();
+    d.unsampled = unsampled.value();
+    return d;
+  }
+
+ private:
+  Field field_;
+  std::vector<CompensatedSum> cells_;
+};
+
+// Walking mass per (cell, input), and which cells hold any.
+class Mass {
+ public:
+  Mass(const Field& field, int inputs)
+      : inputs_(static_cast<std::size_t>(inputs)),
+        mass_(static_cast<std::size_t>(field.columns) * field.rows * inputs_),
+        is_active_(static_cast<std::size_t>(field.columns) * field.rows) {}
+
+  [[nodiscard]] const std::vector<std::int64_t>& active() const { return active_; }
+  [[nodiscard]] double* at(std::int64_t cell) {
+    return mass_.data() + static_cast<std::size_t>(cell) * inputs_;
+  }
+  void activate(std::int64_t cell) {
+    char& is_active = is_active_[static_cast<std::size_t>(cell)];
+    if (!is_active) active_.push_back(cell);
+    is_active = 1;
+  }
+  void clear() {
+    for (const std::int64_t cell : active_) {
+      std::fill_n(at(cell), inputs_, 0.0);
+      is_active_[static_cast<std::size_t>(cell)] = 0;
+    }
+    active_.clear();
+  }
+
+ private:
+  std::size_t inputs_;
+  std::vector<double> mass_;  // (cells x n_in)
+  std::vector<char> is_active_;
+  std::vector<std::int64_t> active_;
+};
+
+// I - Q, transposed, in compressed columns: column s holds what state s passes on.
+struct Transient {
+  std::vector<std::int64_t> states;  // cell * n_in + input, in the order they are reached
+  std::vector<std::int64_t> begin{0};
+  std::vector<std::int64_t> index;
+  std::vector<double> value;
+};
+
+Transient reachable(const Chain& chain, const Field& field, const Start& start) {
+  const std::int64_t n_in = chain.inputs();
+  const std::int64_t cells = std::int64_t{field.columns} * field.rows;
+  constexpr std::int64_t kUnknown = -1;
+  std::vector<std::int64_t> number(static_cast<std::size_t>(cells * n_in), kUnknown);
+  // Where state t stands in the column under construction, if it stands there.
+  std::vector<std::int64_t> place;
+  Transient t;
+  const auto visit = [&](std::int64_t state) {
+    std::int64_t& known = number[static_cast<std::size_t>(state)];
+    if (known == kUnknown) {
+      known = static_cast<std::int64_t>(t.states.size());
+      t.states.push_back(state);
+      place.push_back(-1);
+    }
+    return known;
+  };
+  const auto add = [&](std::int64_t row, double value) {
+    std::int64_t& at = place[static_cast<std::size_t>(row)];
+    if (at < t.begin.back()) {
+      at = static_cast<std::int64_t>(t.index.size());
+      t.index.push_back(row);
+      t.value.push_back(0.0);
+    }
+    t.value[static_cast<std::size_t>(at)] += value;
+  };
+
+  visit((std::int64_t{start.row} * field.columns + start.column) * n_in + start.input);
+  for (std::size_t s = 0; s < t.states.size(); ++s) {
+    const std::int64_t cell = t.states[s] / n_in;
+    add(static_cast<std::int64_t>(s), 1.0);
+    for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
+      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
+      if (exit.next_input == Exit::kTrapped || !chain.is_sampled(exit.next_input)) continue;
+      const std::int64_t next = neighbour_cell(field, cell % field.columns, cell / field.columns,
+                                               exit.di_x, exit.di_y);
+      if (next >= 0) add(visit(next * n_in + exit.next_input), -it.value());
+    }
+    t.begin.push_back(static_cast<std::int64_t>(t.index.size()));
+  }
+  return t;
+}
+
+static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
+
+// One factorisation by KLU, freed with the object.
+class Klu {
+ public:
+  explicit Klu(Transient& t) : t_(t), n_(static_cast<SuiteSparse_long>(t.states.size())) {
+    klu_l_defaults(&common_);
+    symbolic_ = klu_l_analyze(n_, t_.begin.data(), t_.index.data(), &common_);
+    if (symbolic_) {
+      numeric_ = klu_l_factor(t_.begin.data(), t_.index.data(), t_.value.data(), symbolic_,
+                              &common_);
+    }
+    if (numeric_) {
+      klu_l_condest(t_.begin.data(), t_.value.data(), symbolic_, numeric_, &common_);
+    }
+  }
+  ~Klu() {
+    klu_l_free_numeric(&numeric_, &common_);
+    klu_l_free_symbolic(&symbolic_, &common_);
+  }
+  Klu(const Klu&) = delete;
+  Klu& operator=(const Klu&) = delete;
+
+  [[nodiscard]] int status() const { return static_cast<int>(common_.status); }
+  [[nodiscard]] double condition() const { return common_.condest; }
+
+  // x = A \ x
+  [[nodiscard]] bool solve(std::vector<double>& x) {
+    return klu_l_solve(symbolic_, numeric_, n_, 1, x.data(), &common_) != 0;
+  }
+
+ private:
+  Transient& t_;
+  SuiteSparse_long n_;
+  klu_l_common common_{};
+  klu_l_symbolic* symbolic_ = nullptr;
+  klu_l_numeric* numeric_ = nullptr;
+};
+
+// Mean number of draws made in each transient state.
+std::vector<double> visits(Transient& t) {
+  constexpr double kWorstCondition = 1e-6 / std::numeric_limits<double>::epsilon();
+  Klu klu(t);
+  if (klu.status() == KLU_OUT_OF_MEMORY || klu.status() == KLU_TOO_LARGE) {
+    throw std::runtime_error("absorption: no memory to factor I - Q of " +
+                             std::to_string(t.states.size()) + " states; propagate instead");
+  }
+  if (klu.status() == KLU_SINGULAR) {
+    throw std::runtime_error("absorption: I - Q is singular: from the start a walk can get into a "
+                             "closed loop and never end");
+  }
+  if (klu.status() != KLU_OK) {
+    throw std::runtime_error("absorption: KLU fails with status " + std::to_string(klu.status()));
+  }
+  if (!(klu.condition() <= kWorstCondition)) {
+    std::ostringstream message;
+    message << "absorption: I - Q is singular or nearly so (condition about " << klu.condition()
+            << "): a walk can circle (almost) for ever, fewer than 6 digits hold";
+    throw std::runtime_error(message.str());
+  }
+  std::vector<double> x(t.states.size(), 0.0);
+  x.front() = 1.0;
+  if (!klu.solve(x)) throw std::runtime_error("absorption: KLU cannot solve");
+  return x;
+}
+
+}  // namespace
+
+FinalDistribution propagate(const Chain& chain, const Field& field, const Start& start,
+                            int max_cells, double tolerance, int max_steps_without_limit) {
+  validate(chain, field, start, max_cells);
+  if (!(tolerance >= 0.0) || max_steps_without_limit < 0) {
+    throw std::invalid_argument("propagate: tolerance and step limit must not be negative");
+  }
+  const Stencil stencil = stencil_of(chain);
+  const int* const row_begin = chain.matrix().outerIndexPtr();
+  const int* const output = chain.matrix().innerIndexPtr();
+  const double* const p = chain.matrix().valuePtr();
+
+  Ends ends(field);
+  Mass now(field, chain.inputs());
+  Mass next(field, chain.inputs());
+  std::vector<double> out(static_cast<std::size_t>(chain.outputs()));  // mass per output of a cell
+  CompensatedSum draws;
+
+  double walking = 1.0;
+  const std::int64_t start_cell = std::int64_t{start.row} * field.columns + start.column;
+  if (chain.is_sampled(start.input)) {
+    now.activate(start_cell);
+    now.at(start_cell)[start.input] = walking;
+  } else {
+    ends.add(ends.unsampled, start_cell, walking);
+    walking = 0.0;
+  }
+
+  int steps = 0;
+  while (max_cells > 0 ? steps < max_cells && walking > 0.0
+                       : steps < max_steps_without_limit && walking > tolerance) {
+    ++steps;
+    draws += walking;
+    const bool is_last = steps == max_cells;
+    CompensatedSum walks_on;
+    for (const std::int64_t cell : now.active()) {
+      std::fill(out.begin(), out.end(), 0.0);
+      const double* const mass = now.at(cell);
+      for (int input = 0; input < chain.inputs(); ++input) {  // out = mass P, Eq. (16)
+        if (mass[input] == 0.0) continue;
+        for (int k = row_begin[input]; k < row_begin[input + 1]; ++k) {
+          out[static_cast<std::size_t>(output[k])] += mass[input] * p[k];
+        }
+      }
+      const auto mass_of = [&out](int o) { return out[static_cast<std::size_t>(o)]; };
+
+      double trapped = 0.0;
+      for (const int o : stencil.trapped) trapped += mass_of(o);
+      ends.add(ends.trapped, cell, trapped);
+
+      for (const Neighbour& n : stencil.neighbours) {
+        double into_sampled = 0.0, into_unsampled = 0.0;
+        for (const Link& link : n.sampled) into_sampled += mass_of(link.output);
+        for (const Link& link : n.unsampled) into_unsampled += mass_of(link.output);
+        const double moves = into_sampled + into_unsampled;
+        if (moves == 0.0) continue;
+        const std::int64_t target = neighbour_cell(field, cell % field.columns,
+                                                   cell / field.columns, n.di_x, n.di_y);
+        if (target < 0) {
+          ends.add(ends.left_field, cell, moves);
+        } else if (is_last) {
+          ends.add(ends.cut_off, cell, moves);
+        } else {
+          ends.add(ends.unsampled, target, into_unsampled);
+          next.activate(target);
+          double* const there = next.at(target);
+          for (const Link& link : n.sampled) there[link.input] += mass_of(link.output);
+          walks_on += into_sampled;
+        }
+      }
+    }
+    now.clear();
+    std::swap(now, next);
+    walking = walks_on.value();
+  }
+
+  FinalDistribution result = ends.result();
+  result.remainder = walking;
+  result.mean_steps = draws.value();
+  result.steps = steps;
+  return result;
+}
+
+FinalDistribution solve_absorption(const Chain& chain, const Field& field, const Start& start) {
+  validate(chain, field, start, 0);
+  Ends ends(field);
+  const std::int64_t n_in = chain.inputs();
+  if (!chain.is_sampled(start.input)) {
+    ends.add(ends.unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
+    return ends.result();
+  }
+  Transient t = reachable(chain, field, start);
+  const std::vector<double> draws = visits(t);
+
+  CompensatedSum mean_steps;
+  for (std::size_t s = 0; s < draws.size(); ++s) {
+    mean_steps += draws[s];
+    const std::int64_t cell = t.states[s] / n_in;
+    for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
+      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
+      const double mass = draws[s] * it.value();
+      if (exit.next_input == Exit::kTrapped) {
+        ends.add(ends.trapped, cell, mass);
+        continue;
+      }
+      const std::int64_t next = neighbour_cell(field, cell % field.columns, cell / field.columns,
+                                               exit.di_x, exit.di_y);
+      if (next < 0) {
+        ends.add(ends.left_field, cell, mass);
+      } else if (!chain.is_sampled(exit.next_input)) {
+        ends.add(ends.unsampled, next, mass);
+      }
+    }
+  }
+  FinalDistribution result = ends.result();
+  result.mean_steps = mean_steps.value();
+  return result;
+}
+
+}  // namespace gatewalk::markov

@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, runs the tests. ./test.sh [ctest arguments], e.g. -R Impact
+set -euo pipefail
+cd "$(dirname "$0")"
+. ./.ci/prepare
+build_gatewalk
+ctest --test-dir build --output-on-failure -j "$(nproc)" "$@"

@@ -1,0 +1,116 @@
+#!/usr/bin/env bash
+# The command line as a contract: what scripts rely on.   program_test.sh GATEWALK ROOT
+set -u
+gatewalk=$1
+scenes=$2/scenes
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+# expect STATUS TEXT COMMAND...: exit status, and TEXT (a grep pattern) in what it prints.
+expect() {
+  local status=$1 text=$2
+  shift 2
+  "$@" >out.txt 2>&1
+  local got=$?
+  [ "$got" = "$status" ] || fail "status $got instead of $status: $* ($(head -n 3 out.txt))"
+  grep -q -e "$text" out.txt || fail "no '$text' in the output of: $* ($(head -n 3 out.txt))"
+}
+value() { jq -r "$1" "$2"; }
+holds() { [ "$(jq "$1" "$2")" = true ] || fail "$1 does not hold in $2: $(jq -c 'del(.made_by)' "$2" | head -c 400)"; }
+
+# Help and wrong use.
+expect 0 'usage: gatewalk' "$gatewalk" --help
+expect 0 '^gatewalk [0-9]' "$gatewalk" --version
+expect 2 'usage: gatewalk' "$gatewalk"
+expect 2 "no command 'fly'" "$gatewalk" fly
+for command in gate build show walk predict lattice validate; do
+  expect 0 'Example:' "$gatewalk" $command --help
+  expect 2 'unrecognised option' "$gatewalk" $command --no-such-option
+done
+expect 2 'missing SCENE' "$gatewalk" gate
+expect 2 'missing -o' "$gatewalk" build "$scenes/field.toml"
+expect 2 'unrecognised option' "$gatewalk" gate "$scenes/field.toml" --tri 5       # nothing is guessed
+expect 2 'at least 1' "$gatewalk" gate "$scenes/field.toml" --trials 0
+expect 2 'invalid' "$gatewalk" gate "$scenes/field.toml" --trials 1.5
+expect 2 'invalid' "$gatewalk" gate "$scenes/field.toml" --seed x
+expect 2 'must lie in' "$gatewalk" gate "$scenes/field.toml" --set forces.random_N=-1
+expect 2 'nosuch.toml' "$gatewalk" gate nosuch.toml
+expect 2 'three numbers' "$gatewalk" validate "$scenes/field.toml" --start 1,2
+
+# gate: counts add up; --json - is JSON and nothing else.
+expect 0 '"trials": 200' "$gatewalk" gate "$scenes/single_gate.toml" --trials 2e2 --seed 3 --json - --quiet
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json gate.json --threads 2 >/dev/null 2>&1
+holds '.traversed + .exited_left + .exited_right + .trapped == .trials' gate.json
+holds '.traversed == .traversed_left + .traversed_right + .traversed_even' gate.json
+holds '.status.clean' gate.json
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json - --threads 1 2>/dev/null | cmp -s - gate.json ||
+  fail "gate: another number of threads gave another file"
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 4 --json other.json --quiet
+[ "$(value .trapped gate.json)$(value .exited_left gate.json)" != "$(value .trapped other.json)$(value .exited_left other.json)" ] ||
+  fail "another seed gave the same outcomes"
+expect 0 'sank into a beam' "$gatewalk" gate "$scenes/single_gate.toml" --set run.method=paper --trials 200
+"$gatewalk" gate "$scenes/single_gate.toml" --set run.method=paper --trials 200 --json paper.json --quiet
+holds '.status.clean == false' paper.json
+
+# build, show, walk, predict, lattice.
+expect 0 '87 x 88 matrix' "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o m.nc
+expect 0 'rows never sampled  0' "$gatewalk" show m.nc --rows
+"$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o m1.nc --threads 1 --quiet
+cmp -s m.nc m1.nc || fail "build: one thread gave another file"
+"$gatewalk" walk m.nc "$scenes/field.toml" --walks 20000 --seed 1 --json walk.json --quiet
+holds '([.final_gates[][]] | add) == 20000 and .trapped + .left_field + .cut_off == 20000' walk.json
+holds '(.final_gates | length) == 9 and (.final_gates[0] | length) == 9' walk.json
+"$gatewalk" predict m.nc "$scenes/field.toml" --json predict.json --quiet
+holds '(([.final_gates[][]] | add) - 1 | fabs) < 1e-12' predict.json
+holds '(.trapped + .left_field + .cut_off - 1 | fabs) < 1e-12' predict.json
+"$gatewalk" predict m.nc --set field.max_gates=0 --json free.json --quiet
+"$gatewalk" predict m.nc --set field.max_gates=0 --solver klu --json klu.json --quiet
+holds '.cut_off == 0' free.json
+jq -s '[[.[0].final_gates[][]], [.[1].final_gates[][]]] | transpose | map(.[0] - .[1] | fabs) | max < 1e-10' free.json klu.json |
+  grep -q true || fail "the two solvers disagree"
+"$gatewalk" lattice "$scenes/field.toml" --trials 100 --seed 1 --json lattice.json --quiet
+holds '([.final_gates[][]] | add) == 100 and .trapped + .left_field + .cut_off + .not_finite == 100' lattice.json
+"$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=1 --trials 50 --json one.json --quiet
+holds '.final_gates[0][4] == 50' one.json
+expect 2 'forces.random_N' "$gatewalk" walk m.nc "$scenes/field.toml" --set forces.random_N=12
+expect 2 'max_gates' "$gatewalk" predict m.nc --solver klu
+expect 2 'start.y_m' "$gatewalk" predict m.nc --set start.y_m=5
+
+# A start that the paper's table has not.
+"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --start 4,5,10 --json validate.json --quiet
+holds '.starts | length == 1' validate.json
+holds '.starts[0].exact | .p_values.chi_squared > 0 and .rmse_per_100_floor > 0 and .total_variation >= 0' validate.json
+
+# Damaged and missing files; output that cannot be written leaves the old file.
+head -c 5000 m.nc >cut.nc
+expect 2 'cut.nc' "$gatewalk" show cut.nc
+expect 2 'nosuch.nc' "$gatewalk" walk nosuch.nc
+expect 1 'no/such/dir' "$gatewalk" gate "$scenes/single_gate.toml" --trials 10 --json no/such/dir/x.json
+expect 1 'm.nc' "$gatewalk" build "$scenes/field.toml" --trials 1 -o no-dir/m.nc
+ls | grep -q tmp && fail "temporary files stayed behind: $(ls)"
+
+# Ctrl-C: within 2 s, status 130, a clear word, the old file unchanged.
+for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
+               "build $scenes/field.toml --trials 1e7 -o m.nc" \
+               "lattice $scenes/field.toml --trials 1e9 --json lattice.json"; do
+  before=$(cat gate.json m.nc lattice.json | cksum)
+  # shellcheck disable=SC2086
+  "$gatewalk" $command >out.txt 2>&1 &
+  pid=$!
+  sleep 1
+  start=$(date +%s%N)
+  kill -INT $pid
+  wait $pid
+  status=$?
+  took=$((($(date +%s%N) - start) / 1000000))
+  [ $status = 130 ] || fail "ctrl-C: status $status of $command"
+  [ $took -lt 2000 ] || fail "ctrl-C took $took ms: $command"
+  grep -q 'nothing was written' out.txt || fail "ctrl-C without a word: $command"
+  [ "$before" = "$(cat gate.json m.nc lattice.json | cksum)" ] || fail "ctrl-C changed a file: $command"
+done
+
+[ $failures = 0 ] || exit 1
+echo "all fine"
