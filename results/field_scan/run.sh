@@ -66,19 +66,4 @@ jq -rs '["propulsion_N","random_N","d_m","vx_m_per_s","vy_m_per_s","paper_corrco
   echo "machine: $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores, $(. /etc/os-release && echo "$PRETTY_NAME")"
 } >"$here/manifest.txt"
 
-gnuplot <<PLOT
-set terminal svg size 760,460 font "sans,13" background "#ffffff"
-set output "$here/scan.svg"
-set datafile separator ","
-set title "How far the paper's Table IV lies from each scene (misfit; about 8 if it were the same scene)"
-set xlabel "random force Rm (N)"
-set ylabel "propulsion F_{prop} (N)"
-set palette defined (0 "#f7fbff", 1 "#9ecae1", 2 "#08519c")
-set xtics 10
-set ytics 1
-set xrange [5:65]
-set yrange [4.5:9.5]
-unset key
-plot "$here/scan.csv" every ::1 using 2:1:(log10(\$3)) with image, \
-     "" every ::1 using 2:1:(sprintf("%.0f", \$3)) with labels font ",12"
-PLOT
+gnuplot -c "$here/plot.gp" "$here/scan.csv" "$here/scan.svg"
