@@ -67,7 +67,13 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
 }
 
 MatrixFile read_matrix(const std::string& path) {
-  const markov::CountsFile in = markov::read_counts(path);
+  const markov::CountsFile in = [&] {
+    try {
+      return markov::read_counts(path);
+    } catch (const markov::BadChecksum& e) {
+      throw markov::BadFile(std::string(e.what()) + "; " + markov::diagnose_counts(path));
+    }
+  }();
   std::array<Bins, kBoundaries> bins;
   for (int b = 0; b < kBoundaries; ++b) {
     for (const Axis& axis : kAxes) {

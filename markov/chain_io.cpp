@@ -4,11 +4,13 @@
 #include <netcdf.h>
 #include <netcdf_mem.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <boost/crc.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -33,6 +35,9 @@ std::string row_name(std::int64_t row) {
   return "row " + std::to_string(row + 1) + " (counted from 1)";
 }
 
+// The dimension of an array; no variable may have its name (netCDF 4.9 stumbles over some such).
+std::string length_of(const std::string& array) { return array + "_length"; }
+
 // ---- Content: the same rules for what is written and what was read ----
 
 // Letters, digits and underscores: legal for NetCDF, and a variable name in MATLAB, R and Python.
@@ -41,7 +46,9 @@ void check_name(const std::string& name, const std::set<std::string>& taken) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   bool legal = !name.empty() && name.size() < 128 && is_letter(name.front());
   for (const char c : name) legal = legal && (is_letter(c) || is_digit(c) || c == '_');
-  if (!legal) refuse("name \"" + name + "\": must be letters, digits and _, and begin with a letter");
+  if (!legal) {
+    refuse("name \"" + name + "\": must be letters, digits and _, and begin with a letter");
+  }
   if (taken.contains(name)) refuse("name \"" + name + "\" is taken");
 }
 
@@ -83,8 +90,10 @@ void check_content(const CountsFile& file) {
   }
   std::set<std::string> taken = kOwnVariables;
   for (const NamedArray& array : file.arrays) {
-    check_name(array.name, taken);
-    taken.insert(array.name);
+    for (const std::string& name : {array.name, length_of(array.name)}) {
+      check_name(name, taken);
+      taken.insert(name);
+    }
     check_text(array.name, array.unit);
     check_text(array.name, array.meaning);
   }
@@ -126,7 +135,7 @@ std::string exchange_checksum(std::vector<char>& image, std::string_view digits)
   return old;
 }
 
-// ---- NetCDF, always on an image in memory: HDF5 1.10 crashes at exit after a write that failed ----
+// ---- NetCDF, on an image in memory: HDF5 1.10 crashes at exit after a write that failed ----
 
 void check(int rc, const std::string& what) {
   if (rc != NC_NOERR) throw std::runtime_error(what + ": " + nc_strerror(rc));
@@ -241,7 +250,7 @@ std::vector<char> encode(const CountsFile& file) {
   put_variable(nc, "exit_di_x", output, c.di_x, "1", "columns to the next cell");
   put_variable(nc, "exit_di_y", output, c.di_y, "1", "rows to the next cell");
   for (const NamedArray& array : file.arrays) {
-    const int length = define_dimension(nc, array.name + "_length", array.values.size());
+    const int length = define_dimension(nc, length_of(array.name), array.values.size());
     put_variable(nc, array.name, length, array.values, array.unit, array.meaning);
   }
   std::vector<char> image = nc.close_image();
@@ -398,7 +407,7 @@ class Reader {
       check(nc_inq_varname(nc_, variable, name), "variables");
       if (kOwnVariables.contains(name)) continue;
       result.push_back({name, attribute(variable, "units"), attribute(variable, "long_name"),
-                        values<double>(name, std::string(name) + "_length")});
+                        values<double>(name, length_of(name))});
     }
     std::sort(result.begin(), result.end(),
               [](const NamedArray& a, const NamedArray& b) { return a.name < b.name; });
@@ -489,7 +498,8 @@ void replace_file(const std::string& path, const std::vector<char>& bytes) {
   const auto slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
 
-  Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, "cannot create " + temporary);
+  Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW,
+                  "cannot create " + temporary);
   RemoveOnFailure leftover(temporary);
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t put = ::write(file, bytes.data() + done, bytes.size() - done);
@@ -520,6 +530,38 @@ void write_counts(const std::string& path, const CountsFile& file) {
   }
 }
 
+std::string diagnose_counts(const std::string& path) {
+  constexpr unsigned kPatience = 5;  // seconds
+  int ends[2];
+  if (::pipe(ends) != 0) return "";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGALRM, SIG_DFL);
+    ::alarm(kPatience);
+    std::string verdict = "yet its content adds up: another program may have rewritten it";
+    try {
+      std::vector<char> image = read_bytes(path);
+      [[maybe_unused]] const CountsFile file = Reader(image).read();
+    } catch (const std::exception& error) {
+      verdict = error.what();
+    }
+    const ssize_t put = ::write(ends[1], verdict.data(), verdict.size());
+    ::_exit(put == static_cast<ssize_t>(verdict.size()) ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string verdict;
+  if (child > 0) {
+    char bytes[4096];
+    for (ssize_t got; (got = ::read(ends[0], bytes, sizeof bytes)) > 0;)
+      verdict.append(bytes, static_cast<std::size_t>(got));
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) verdict = "its content cannot be read";
+  }
+  ::close(ends[0]);
+  return verdict;
+}
+
 CountsFile read_counts(const std::string& path) {
   constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n";
   const auto bad = [&path](const std::exception& error) {
@@ -532,9 +574,11 @@ CountsFile read_counts(const std::string& path) {
     }
     const std::string expected = exchange_checksum(image, kNoChecksum);
     if (crc64_hex(image) != expected) {
-      throw std::runtime_error("checksum does not match: damaged or altered since it was written");
+      throw BadChecksum(path + ": checksum does not match: damaged or altered since it was written");
     }
     return Reader(image).read();
+  } catch (const BadChecksum&) {
+    throw;
   } catch (const std::invalid_argument& error) {
     throw bad(error);
   } catch (const std::runtime_error& error) {

@@ -20,7 +20,7 @@ namespace gatewalk::markov {
 
 /// A named table of numbers that travels with the counts (bin edges, for example).
 struct NamedArray {
-  std::string name;  // letters, digits and _, a letter first
+  std::string name;  // letters, digits and _, a letter first; its dimension is name + "_length"
   std::string unit;
   std::string meaning;
   std::vector<double> values;
@@ -28,11 +28,11 @@ struct NamedArray {
 
 /// What a file holds. `text` are string attributes (scene, seed, version, command line, ...).
 struct CountsFile {
-  Counts counts;                       // (n_in x n_out)
-  std::vector<std::int64_t> trials;    // (n_in) runs per row; the row's counts must add up to it
-  std::vector<std::int64_t> clamped;   // (n_in) of these, crossings outside every bin
-  std::vector<Exit> exits;             // (n_out)
-  std::vector<NamedArray> arrays;      // names unique; read back sorted by name
+  Counts counts;                            // (n_in x n_out)
+  std::vector<std::int64_t> trials;         // (n_in) runs per row, the sum of its counts
+  std::vector<std::int64_t> clamped;        // (n_in) of these, crossings outside every bin
+  std::vector<Exit> exits;                  // (n_out)
+  std::vector<NamedArray> arrays;           // unique names; read back sorted by name
   std::map<std::string, std::string> text;  // named as arrays are; up to 60 000 bytes each
 };
 
@@ -43,13 +43,25 @@ class BadFile : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The bytes are not those that were written: damaged, or changed by another program.
+class BadChecksum : public BadFile {
+ public:
+  using BadFile::BadFile;
+};
+
 /// Writes to a temporary name beside `path`, syncs, renames. Content that does not add up throws
 /// std::invalid_argument, a failure std::runtime_error, both naming the file and the reason; an old
-/// file at `path` stays as it was (only if the folder cannot be synced, the last thing done, the new
-/// one has already taken its place). Devices, pipes, folders and links are not written to.
+/// file at `path` stays as it was. (Only when the last act fails, syncing the folder, the new file
+/// is in place already.) Devices, pipes, folders and links are not written to.
 void write_counts(const std::string& path, const CountsFile& file);
 
-/// Throws BadFile when anything is missing, truncated, altered (checksum) or does not add up.
+/// Throws BadFile when anything is missing, truncated or does not add up, BadChecksum when it was
+/// altered.
 [[nodiscard]] CountsFile read_counts(const std::string& path);
+
+/// What is wrong with a file of a bad checksum, for people: "row 12 (counted from 1): counts add up
+/// to ...", or that its content adds up all the same. Looks in a
+/// child process, because HDF5 may crash or hang on damaged bytes.
+[[nodiscard]] std::string diagnose_counts(const std::string& path);
 
 }  // namespace gatewalk::markov

@@ -25,8 +25,9 @@ struct FinalDistribution {
 /// steps, fewer if nobody walks any more. Without (0): steps until at most `tolerance` still walks
 /// (`remainder`), or `max_steps_without_limit` are done; the caller reads `remainder`. Memory:
 /// 2 cells x n_in numbers.
-[[nodiscard]] FinalDistribution propagate(const Chain& chain, const Field& field, const Start& start,
-                                          int max_cells, double tolerance = 1e-13,
+[[nodiscard]] FinalDistribution propagate(const Chain& chain, const Field& field,
+                                          const Start& start, int max_cells,
+                                          double tolerance = 1e-13,
                                           int max_steps_without_limit = 1'000'000);
 
 /// Without limit, by one sparse LU solve of (I - Q)^T visits = start over the reachable transient

@@ -19,15 +19,6 @@ __extension__ using Wide = unsigned __int128;
 constexpr int kCellsWithoutLimit = 1'000'000;
 constexpr std::int64_t kWalksPerTask = 4096;
 
-// What the four ends of a walk are counted under.
-struct Ends {
-  std::int64_t trapped = 0;
-  std::int64_t left_field = 0;
-  std::int64_t cut_off = 0;
-  std::int64_t unsampled = 0;
-  std::int64_t steps = 0;
-};
-
 }  // namespace
 
 WalkTally& WalkTally::operator+=(const WalkTally& other) {
@@ -49,8 +40,8 @@ WalkTally& WalkTally::operator+=(const WalkTally& other) {
   return *this;
 }
 
-// A row of n entries gets n slots of 2^64 units. Entry j owns p_j n 2^64 units, and all of them fill
-// the slots exactly: each slot takes a small entry whole and is topped up from one large entry.
+// A row of n entries gets n slots of 2^64 units. Entry j owns p_j n 2^64 units, and together they
+// fill the slots exactly: each slot takes a small entry whole and is topped up from one large one.
 Walker::Walker(const Chain& chain)
     : chain_(chain), slots_(static_cast<std::size_t>(chain.matrix().nonZeros())) {
   constexpr Wide kSlotUnits = Wide{1} << 64;
@@ -130,7 +121,7 @@ WalkTally Walker::walk(const Field& field, const Start& start, int max_cells, st
   const r123::Philox4x64::key_type key = {{seed, kWalkStream}};
 
   const auto run = [&](std::int64_t first, std::int64_t last, WalkTally& tally) {
-    Ends ends;
+    WalkTally ends;  // local, so that the counters stay in registers
     std::int64_t* const final_cells = tally.final_cells.data();
     for (std::int64_t number = first; number < last; ++number) {
       std::int64_t column = start.column;
@@ -177,12 +168,8 @@ WalkTally Walker::walk(const Field& field, const Start& start, int max_cells, st
             static_cast<std::int32_t>(cell);
       }
     }
-    tally.walks += last - first;
-    tally.trapped += ends.trapped;
-    tally.left_field += ends.left_field;
-    tally.cut_off += ends.cut_off;
-    tally.unsampled += ends.unsampled;
-    tally.steps += ends.steps;
+    ends.walks = last - first;
+    tally += ends;
   };
 
   WalkTally none;

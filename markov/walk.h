@@ -31,9 +31,9 @@ struct WalkTally {
   WalkTally& operator+=(const WalkTally& other);
 };
 
-/// The key of walk w under `seed` is {seed, kWalkStream}, its counter {block, w, 0, 0}: Philox4x64-10
-/// gives four words per block, one word a draw. Other users of the same seed take another second key
-/// word, so no two ever share a stream.
+/// Walk w under `seed` draws from Philox4x64-10 with key {seed, kWalkStream} and counter
+/// {block, w, 0, 0}: four words a block, one word a draw. Other users of the same seed take another
+/// second key word, so no two ever share a stream.
 inline constexpr std::uint64_t kWalkStream = 0x77616c6b'00000001;  // "walk", version 1
 
 /// Draws from the rows of a chain: Walker's alias method (Vose's construction), one table per row,
@@ -46,9 +46,10 @@ class Walker {
   /// An output of `row` for a uniform 64-bit word; never one of probability zero.
   [[nodiscard]] int draw(int row, std::uint64_t word) const;
 
-  /// Runs `range` (from 0 up) on all threads of the current TBB arena. At most `max_cells` cells are
-  /// visited (0: no limit; then a walk is still cut off after 10^6 cells, and counted so). Same tally
-  /// for any number of threads. `final_cell_of_walk`, if given, gets row * columns + column per walk.
+  /// Runs `range` (from 0 up) on all threads of the current TBB arena. At most `max_cells` cells
+  /// are visited (0: no limit; then a walk is still cut off after 10^6 cells, and counted so). Same
+  /// tally for any number of threads. `final_cell_of_walk`, if given, gets row * columns + column
+  /// per walk.
   [[nodiscard]] WalkTally walk(const Field& field, const Start& start, int max_cells,
                                std::uint64_t seed, WalkRange range,
                                std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;

@@ -87,6 +87,9 @@ holds '.starts[0].exact | .p_values.chi_squared > 0 and .rmse_per_100_floor > 0 
 # Damaged and missing files; output that cannot be written leaves the old file.
 head -c 5000 m.nc >cut.nc
 expect 2 'cut.nc' "$gatewalk" show cut.nc
+# A count changed by another program: refused, the row is named.
+ncdump m.nc | sed -E '/^ count = /s/= ([0-9]+)/= 77/' >altered.cdl && ncgen -4 -o altered.nc altered.cdl
+expect 2 'row 1 .*add up to' "$gatewalk" predict altered.nc
 expect 2 'nosuch.nc' "$gatewalk" walk nosuch.nc
 expect 1 'no/such/dir' "$gatewalk" gate "$scenes/single_gate.toml" --trials 10 --json no/such/dir/x.json
 expect 1 'm.nc' "$gatewalk" build "$scenes/field.toml" --trials 1 -o no-dir/m.nc

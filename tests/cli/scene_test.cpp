@@ -168,8 +168,12 @@ vy_m_per_s = 26
   EXPECT_EQ(scene.start.vy, 26);
 }
 
-TEST(Scene, ShippedFieldIsTheDefaultScene) {
-  EXPECT_EQ(to_toml(read_scene((kScenes / "field.toml").string(), {})), kDefaultScene);
+TEST(Scene, ShippedFieldIsTheDefaultSceneWithItsOwnForces) {
+  const std::string path = (kScenes / "field.toml").string();
+  EXPECT_EQ(to_toml(read_scene(path, {"forces.propulsion_N=8", "forces.random_N=40"})), kDefaultScene);
+  const Scene scene = read_scene(path, {});
+  EXPECT_EQ(scene.gate.forces.propulsion, 7.0);  // results/field_scan
+  EXPECT_EQ(scene.gate.forces.random, 50.0);
 }
 
 TEST(Scene, ShippedSingleGateIsThePapersTableI) {

@@ -1,0 +1,394 @@
+#include "markov/exact.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "chains.h"
+#include "markov/walk.h"
+
+namespace gatewalk::markov {
+namespace {
+
+using test::Entry;
+using test::kBottomCentre;
+using test::kNineByNine;
+using test::lattice_counts;
+using test::lattice_exits;
+using test::matrix;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr std::array kLimits = {1, 2, 3, 13};
+
+double ends(const FinalDistribution& d) {
+  return d.trapped + d.left_field + d.cut_off + d.unsampled;
+}
+
+void expect_whole(const FinalDistribution& d) {
+  EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0, 1e-12);
+  EXPECT_NEAR(ends(d) + d.remainder, 1.0, 1e-12);
+  EXPECT_GE(d.final_cells.minCoeff(), 0.0);
+}
+
+void expect_near(const FinalDistribution& a, const FinalDistribution& b, double bound) {
+  EXPECT_LE((a.final_cells - b.final_cells).abs().maxCoeff(), bound);
+  EXPECT_NEAR(a.trapped, b.trapped, bound);
+  EXPECT_NEAR(a.left_field, b.left_field, bound);
+  EXPECT_NEAR(a.cut_off, b.cut_off, bound);
+  EXPECT_NEAR(a.unsampled, b.unsampled, bound);
+}
+
+// The rule of a step as walk.h words it: no boxes, no sparse rows, and digits to spare.
+FinalDistribution propagate_plainly(const Chain& chain, const Field& field, const Start& start,
+                                    int max_cells) {
+  using State = std::array<int, 3>;             // column, row, input
+  const Eigen::MatrixXd p = chain.matrix();     // (n_in x n_out)
+  long double trapped = 0, left_field = 0, cut_off = 0, unsampled = 0, draws = 0;
+  std::map<std::array<int, 2>, long double> final_cells;
+  std::map<State, long double> walking = {{{start.column, start.row, start.input}, 1.0L}};
+  for (int visited = 1; !walking.empty(); ++visited) {
+    std::map<State, long double> next;
+    for (const auto& [state, mass] : walking) {
+      const auto [column, row, input] = state;
+      if (p.row(input).sum() == 0.0) {
+        unsampled += mass;
+        final_cells[{row, column}] += mass;
+        continue;
+      }
+      draws += mass;
+      for (int output = 0; output < chain.outputs(); ++output) {
+        const long double m = mass * p(input, output);
+        if (m == 0) continue;
+        const Exit& exit = chain.exits()[static_cast<std::size_t>(output)];
+        const int c = column + exit.di_x;
+        const int r = row + exit.di_y;
+        const bool is_inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
+        long double* const end = exit.next_input == Exit::kTrapped ? &trapped
+                                 : !is_inside                      ? &left_field
+                                 : visited == max_cells            ? &cut_off
+                                                                   : nullptr;
+        if (end) {
+          *end += m;
+          final_cells[{row, column}] += m;
+        } else {
+          next[{c, r, exit.next_input}] += m;
+        }
+      }
+    }
+    walking = std::move(next);
+  }
+  FinalDistribution d;
+  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
+  for (const auto& [cell, mass] : final_cells) {
+    d.final_cells(cell[0], cell[1]) = static_cast<double>(mass);
+  }
+  d.trapped = static_cast<double>(trapped);
+  d.left_field = static_cast<double>(left_field);
+  d.cut_off = static_cast<double>(cut_off);
+  d.unsampled = static_cast<double>(unsampled);
+  d.mean_steps = static_cast<double>(draws);
+  return d;
+}
+
+// Bernstein: a binomial count is further off than this with probability below 2 e^-20 = 4e-9.
+void expect_binomial(std::int64_t count, std::int64_t n, double p) {
+  const double variance = static_cast<double>(n) * p * (1 - p);
+  const double bound = std::sqrt(2 * 20 * variance) + 2 * 20 / 3.0;
+  EXPECT_LE(std::abs(static_cast<double>(count) - static_cast<double>(n) * p), bound)
+      << "of " << n << " with p " << p;
+}
+
+void expect_walks_agree(const Chain& chain, const Field& field, const Start& start, int max_cells,
+                        const FinalDistribution& d, std::int64_t n) {
+  const WalkTally tally = Walker(chain).walk(field, start, max_cells, 11, {0, n});
+  expect_binomial(tally.trapped, n, d.trapped);
+  expect_binomial(tally.left_field, n, d.left_field);
+  expect_binomial(tally.cut_off, n, d.cut_off);
+  expect_binomial(tally.unsampled, n, d.unsampled);
+  for (int row = 0; row < field.rows; ++row) {
+    for (int column = 0; column < field.columns; ++column) {
+      expect_binomial(tally.final_cells(row, column), n, d.final_cells(row, column));
+    }
+  }
+}
+
+Chain lattice_chain(std::uint64_t seed, std::initializer_list<int> emptied = {}) {
+  Counts counts = lattice_counts(seed);
+  for (const int row : emptied) test::empty_row(counts, row);
+  return Chain::from_counts(counts, lattice_exits());
+}
+
+// ---- Closed forms ----
+
+// Knuth and Yao: a fair die from fair coins. Inputs 0 ... 6 are the flips, all in cell 0; a face k
+// sits in cell k and is trapped there (input 7).
+Chain knuths_die() {
+  constexpr int kFace = 7;
+  std::vector<Exit> exits;
+  for (int state = 0; state < 7; ++state) exits.push_back({state, 0, 0});       // outputs 0 ... 6
+  for (int face = 1; face <= 6; ++face) exits.push_back({kFace, face, 0});      // 7 ... 12
+  exits.push_back({});                                                          // 13
+  const auto face = [](int k) { return 6 + k; };
+  const std::array<std::array<int, 2>, 7> flips = {{{1, 2}, {3, 4}, {5, 6}, {1, face(1)},
+                                                    {face(2), face(3)}, {face(4), face(5)},
+                                                    {2, face(6)}}};
+  std::vector<Entry> entries = {{kFace, 13, 1.0}};
+  for (int state = 0; state < 7; ++state) {
+    for (const int output : flips[static_cast<std::size_t>(state)]) {
+      entries.push_back({state, output, 0.5});
+    }
+  }
+  return Chain::from_probabilities(matrix(8, 14, entries), exits);
+}
+
+TEST(Exact, KnuthsDieIsFair) {
+  const Chain die = knuths_die();
+  const Field table{7, 1};
+  for (const FinalDistribution& d :
+       {solve_absorption(die, table, {}), propagate(die, table, {}, 0)}) {
+    expect_whole(d);
+    EXPECT_EQ(d.final_cells(0, 0), 0.0);
+    for (int face = 1; face <= 6; ++face) {
+      EXPECT_NEAR(d.final_cells(0, face), 1.0 / 6.0, d.remainder + 4 * kEps);
+    }
+    EXPECT_NEAR(d.mean_steps, 11.0 / 3.0 + 1.0, 1e-11);  // the flips, and the trap
+    EXPECT_LE(d.remainder, 1e-13);
+  }
+  constexpr std::int64_t kWalks = 1'000'000;
+  const WalkTally tally = Walker(die).walk(table, {}, 0, 5, {0, kWalks});
+  for (int face = 1; face <= 6; ++face) {
+    expect_binomial(tally.final_cells(0, face), kWalks, 1.0 / 6.0);
+  }
+  // Flips come in rounds: 3 with chance 3/4, else 2 more: the variance of the number is 20/9.
+  const double mean = static_cast<double>(tally.steps) / kWalks;
+  EXPECT_NEAR(mean, 14.0 / 3.0, 6 * std::sqrt(20.0 / 9.0 / kWalks));
+}
+
+// A line of `length` cells: right with p, else left; both ends leave the field.
+Chain ruin(double p) {
+  return Chain::from_probabilities(matrix(1, 2, {{0, 0, p}, {0, 1, 1 - p}}),
+                                   {{0, 1, 0}, {0, -1, 0}});
+}
+
+TEST(Exact, GamblersRuin) {
+  const int length = 160;
+  for (const double p : {0.5, 0.51, 0.4}) {
+    const Chain chain = ruin(p);
+    for (const int column : {0, 79, 80, 159}) {
+      const Start start{column, 0, 0};
+      const double i = column + 1, n = length + 1, q = (1 - p) / p;
+      const double wins =
+          p == 0.5 ? i / n : std::expm1(i * std::log(q)) / std::expm1(n * std::log(q));
+      const FinalDistribution solved = solve_absorption(chain, {length, 1}, start);
+      expect_whole(solved);
+      // The condition of this matrix is about n^2 = 2.6e4.
+      EXPECT_NEAR(solved.final_cells(0, length - 1), wins, 3e4 * kEps);
+      EXPECT_NEAR(solved.final_cells(0, 0), 1 - wins, 3e4 * kEps);
+      EXPECT_NEAR(solved.left_field, 1.0, 3e4 * kEps);
+      const double mean = p == 0.5 ? i * (n - i) : (i - n * wins) / (1 - 2 * p);
+      EXPECT_NEAR(solved.mean_steps / mean, 1.0, 3e4 * kEps);
+
+      // Stopped early or late, the truth lies between the sum and the sum plus the remainder.
+      if (column != 80) continue;
+      for (const double tolerance : {0.5, 1e-6, 1e-13}) {
+        const FinalDistribution d = propagate(chain, {length, 1}, start, 0, tolerance);
+        expect_whole(d);
+        EXPECT_LE(d.remainder, tolerance);
+        EXPECT_LE(d.final_cells(0, length - 1), wins + 1e-12);
+        EXPECT_GE(d.final_cells(0, length - 1) + d.remainder, wins - 1e-12);
+      }
+    }
+  }
+}
+
+// a in cell 0 <-> b in cell 1, a passes on with pa, b with pb, otherwise trapped where they are.
+TEST(Exact, TwoStateLoopIsGeometric) {
+  const double pa = 0.75, pb = 0.5;
+  const Chain chain = Chain::from_probabilities(
+      matrix(2, 3, {{0, 0, pa}, {0, 2, 1 - pa}, {1, 1, pb}, {1, 2, 1 - pb}}),
+      {{1, 1, 0}, {0, -1, 0}, {}});
+  const Field field{2, 1};
+  const auto rounds = [&](int n) { return (1 - std::pow(pa * pb, n)) / (1 - pa * pb); };
+  const FinalDistribution solved = solve_absorption(chain, field, {});
+  EXPECT_NEAR(solved.final_cells(0, 0), (1 - pa) / (1 - pa * pb), 4 * kEps);
+  EXPECT_NEAR(solved.final_cells(0, 1), pa * (1 - pb) / (1 - pa * pb), 4 * kEps);
+  EXPECT_NEAR(solved.mean_steps, (1 + pa) / (1 - pa * pb), 8 * kEps);
+  for (int n = 1; n <= 20; ++n) {
+    const FinalDistribution even = propagate(chain, field, {}, 2 * n);
+    const double on = std::pow(pa * pb, n);
+    EXPECT_NEAR(even.cut_off, on, 4 * kEps);
+    EXPECT_NEAR(even.final_cells(0, 0), (1 - pa) * rounds(n), 4 * kEps);
+    EXPECT_NEAR(even.final_cells(0, 1), pa * (1 - pb) * rounds(n) + on, 4 * kEps);
+    EXPECT_NEAR(even.mean_steps, (1 + pa) * rounds(n), 16 * kEps);
+    EXPECT_EQ(even.steps, 2 * n);
+    EXPECT_EQ(even.remainder, 0.0);
+    const FinalDistribution odd = propagate(chain, field, {}, 2 * n - 1);
+    EXPECT_NEAR(odd.cut_off, on / pb, 4 * kEps);
+  }
+}
+
+// ---- The rule of a step ----
+
+TEST(Exact, WhereAStepEnds) {
+  // Input 0 moves right for sure, input 1 was never sampled, input 2 is trapped.
+  const Probabilities p = matrix(3, 4, {{0, 0, 0.5}, {0, 1, 0.5}, {2, 3, 1.0}});
+  const Chain chain = Chain::from_probabilities(p, {{0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {}});
+  const Field field{3, 1};
+  const auto expect = [&](const Start& start, int max_cells, std::array<double, 3> cells,
+                          double trapped, double left, double cut, double unsampled) {
+    FinalDistribution wanted;
+    wanted.final_cells = Eigen::Map<CellProbabilities>(cells.data(), 1, 3);
+    wanted.trapped = trapped;
+    wanted.left_field = left;
+    wanted.cut_off = cut;
+    wanted.unsampled = unsampled;
+    expect_near(propagate(chain, field, start, max_cells), wanted, 0.0);
+    expect_near(propagate_plainly(chain, field, start, max_cells), wanted, 0.0);
+    if (max_cells == 0) expect_near(solve_absorption(chain, field, start), wanted, 2 * kEps);
+    expect_walks_agree(chain, field, start, max_cells, wanted, 1000);
+  };
+  // One cell: whoever would go on is cut off where it stands, whatever state it would enter.
+  expect({0, 0, 0}, 1, {1, 0, 0}, 0, 0, 1, 0);
+  // The last cell allowed: entered in a sampled state cut off there, in an unsampled one unsampled.
+  expect({0, 0, 0}, 2, {0, 1, 0}, 0, 0, 0.5, 0.5);
+  // Outside the field nothing is cut off or unsampled.
+  expect({2, 0, 0}, 1, {0, 0, 1}, 0, 1, 0, 0);
+  expect({0, 0, 0}, 3, {0, 0.5, 0.5}, 0, 0.25, 0, 0.75);
+  expect({0, 0, 0}, 0, {0, 0.5, 0.5}, 0, 0.25, 0, 0.75);
+  for (const int max_cells : {0, 1, 5}) {
+    expect({1, 0, 1}, max_cells, {0, 1, 0}, 0, 0, 0, 1);  // starts unsampled
+    expect({1, 0, 2}, max_cells, {0, 1, 0}, 1, 0, 0, 0);  // trapped at once
+  }
+  EXPECT_EQ(propagate(chain, field, {1, 0, 1}, 5).mean_steps, 0.0);
+  EXPECT_EQ(propagate(chain, field, {1, 0, 1}, 5).steps, 0);
+}
+
+// ---- Second routes on chains of the paper's shape ----
+
+TEST(Exact, PropagationIsThePlainReference) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Chain chain = lattice_chain(seed, {3, 30, 61});
+    for (const int max_cells : kLimits) {
+      for (const Start& start : {kBottomCentre, Start{0, 8, 40}, Start{8, 0, 86}}) {
+        const FinalDistribution d = propagate(chain, kNineByNine, start, max_cells);
+        expect_whole(d);
+        EXPECT_EQ(d.remainder, 0.0);
+        const FinalDistribution plain = propagate_plainly(chain, kNineByNine, start, max_cells);
+        // Positive numbers only: an eps or so for each of up to 13 steps.
+        expect_near(d, plain, 8 * kEps);
+        EXPECT_NEAR(d.mean_steps / plain.mean_steps, 1.0, 8 * kEps);
+      }
+    }
+  }
+}
+
+TEST(Exact, PropagationSolveAndWalksAgree) {
+  const Chain chain = lattice_chain(7, {20, 70});
+  const FinalDistribution far = propagate(chain, kNineByNine, kBottomCentre, 0);
+  const FinalDistribution solved = solve_absorption(chain, kNineByNine, kBottomCentre);
+  expect_whole(far);
+  expect_whole(solved);
+  EXPECT_LE(far.remainder, 1e-13);
+  EXPECT_GT(far.steps, 13);
+  EXPECT_GT(solved.unsampled, 0.0);
+  EXPECT_EQ(solved.cut_off, 0.0);
+  expect_near(far, solved, far.remainder + 64 * kEps);
+  EXPECT_NEAR(far.mean_steps, solved.mean_steps, 1e-11);  // the remainder would walk some 30 on
+  expect_walks_agree(chain, kNineByNine, kBottomCentre, 0, solved, 1'000'000);
+  for (const int max_cells : kLimits) {
+    expect_walks_agree(chain, kNineByNine, kBottomCentre, max_cells,
+                       propagate(chain, kNineByNine, kBottomCentre, max_cells), 300'000);
+  }
+}
+
+TEST(Exact, EachEmptiedRowIsReportedWithItsMass) {
+  const Field field{5, 5};
+  const Start start{2, 0, 12};
+  double mass_of_all = 0.0;
+  for (int row = 0; row < 87; ++row) {
+    const Chain chain = lattice_chain(1, {row});
+    EXPECT_EQ(chain.unsampled_rows(), 1);
+    const FinalDistribution d = propagate(chain, field, start, 13);
+    expect_whole(d);
+    expect_near(d, propagate_plainly(chain, field, start, 13), 8 * kEps);
+    // Some mass enters every row that some output leads to.
+    EXPECT_GT(d.unsampled, 0.0) << "row " << row;
+    mass_of_all += d.unsampled;
+    const WalkTally tally = Walker(chain).walk(field, start, 13, 9, {0, 20'000});
+    expect_binomial(tally.unsampled, 20'000, d.unsampled);
+  }
+  EXPECT_GT(mass_of_all, 1.0);  // a walk enters several rows
+}
+
+TEST(Exact, PartlyEmptyFieldsAndLongMoves) {
+  // A knight on a 4 x 3 board: moves by two, most of them lead out.
+  Counts counts(1, 5);
+  const std::vector<Exit> exits = {{0, 2, 1}, {0, -1, 2}, {0, -2, -1}, {0, 1, -2}, {}};
+  for (int j = 0; j < 5; ++j) counts.coeffRef(0, j) = j + 1;
+  const Chain chain = Chain::from_counts(counts, exits);
+  for (const int max_cells : kLimits) {
+    expect_near(propagate(chain, {4, 3}, {1, 1, 0}, max_cells),
+                propagate_plainly(chain, {4, 3}, {1, 1, 0}, max_cells), 8 * kEps);
+  }
+}
+
+// ---- Chains that (almost) never end ----
+
+TEST(Exact, AClosedLoopHasNoSolution) {
+  // Three states of 1/3 each that never leave, entered with probability 1/2.
+  std::vector<Entry> entries = {{0, 1, 0.5}, {0, 4, 0.5}};
+  for (int from = 1; from <= 3; ++from) {
+    for (int to = 1; to <= 3; ++to) entries.push_back({from, to, 1.0 / 3.0});
+  }
+  const Chain chain = Chain::from_probabilities(
+      matrix(4, 5, entries), {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {}});
+  EXPECT_THROW((void)solve_absorption(chain, {1, 1}, {}), std::runtime_error);
+  const FinalDistribution d = propagate(chain, {1, 1}, {}, 0, 1e-13, 100);
+  EXPECT_EQ(d.steps, 100);
+  EXPECT_EQ(d.trapped, 0.5);
+  EXPECT_NEAR(d.remainder, 0.5, 100 * kEps);
+  // From inside nothing else is seen: the same, and the loop of one state as well.
+  EXPECT_THROW((void)solve_absorption(chain, {1, 1}, {0, 0, 1}), std::runtime_error);
+  const Chain one = Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 0}});
+  EXPECT_THROW((void)solve_absorption(one, {1, 1}, {}), std::runtime_error);
+  EXPECT_EQ(propagate(one, {1, 1}, {}, 0, 0.0, 7).remainder, 1.0);
+}
+
+// Two states that pass to each other with 1 - escape, so I - Q has condition 2/escape.
+Chain nearly_closed(double escape) {
+  return Chain::from_probabilities(
+      matrix(2, 3, {{0, 1, 1 - escape}, {0, 2, escape}, {1, 0, 1 - escape}, {1, 2, escape}}),
+      {{0, -1, 0}, {1, 1, 0}, {}});
+}
+
+TEST(Exact, TheConditionGateKeepsSixDigits) {
+  for (const double escape : {1e-3, 1e-6, 1e-9}) {
+    const FinalDistribution d = solve_absorption(nearly_closed(escape), {2, 1}, {});
+    EXPECT_NEAR(d.final_cells(0, 0), 1 / (2 - escape), 1e-6);
+    EXPECT_NEAR(d.mean_steps * escape, 1.0, 1e-6);
+  }
+  for (const double escape : {1e-10, 1e-13, 1e-16, 1e-300}) {
+    EXPECT_THROW((void)solve_absorption(nearly_closed(escape), {2, 1}, {}), std::runtime_error);
+  }
+}
+
+TEST(Exact, AnEscapeOf1e300IsNotLost) {
+  EXPECT_NEAR(propagate(nearly_closed(1e-300), {2, 1}, {}, 13).trapped / 13e-300, 1.0, 16 * kEps);
+}
+
+TEST(Exact, RefusesWhatMakesNoSense) {
+  const Chain chain = ruin(0.5);
+  EXPECT_THROW((void)propagate(chain, {3, 1}, {3, 0, 0}, 1), std::invalid_argument);
+  EXPECT_THROW((void)propagate(chain, {3, 1}, {}, -1), std::invalid_argument);
+  EXPECT_THROW((void)propagate(chain, {3, 1}, {}, 0, -1e-9), std::invalid_argument);
+  EXPECT_THROW((void)propagate(chain, {3, 1}, {}, 0, std::nan("")), std::invalid_argument);
+  EXPECT_THROW((void)propagate(chain, {3, 1}, {}, 0, 1e-9, -1), std::invalid_argument);
+  EXPECT_THROW((void)solve_absorption(chain, {3, 1}, {0, 1, 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::markov
