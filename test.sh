@@ -3,5 +3,5 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 . ./.ci/prepare
-build_gatewalk
+build_gatewalk -DBUILD_TESTING=ON
 ctest --test-dir build --output-on-failure -j "$(nproc)" "$@"
