@@ -44,7 +44,7 @@ BeamFlow::BeamFlow(double k, double d, double dt) {
       theta += b2;
       omega += n * b2;
       accel += n * (n - 1) * b2;
-      if (n > 2 && std::abs(rest) < 1e-18) break;
+      if (std::abs(b1) + std::abs(b2) < 1e-20) break;  // two in a row: one may vanish by itself
       b0 = b1;
       b1 = b2;
     }

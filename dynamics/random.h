@@ -22,9 +22,9 @@ struct Stream {
 /// Which experiment a stream belongs to, so that no two experiments share their randomness.
 enum class Purpose : std::uint64_t { gate = 1, row = 2, field = 3, comparison = 4 };
 
-/// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53.
+/// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.
 [[nodiscard]] inline double open_uniform(std::uint64_t word) {
-  return (static_cast<double>(word >> 11) + 0.5) * 0x1p-53;
+  return std::fmin((static_cast<double>(word >> 11) + 0.5) * 0x1p-53, 1.0 - 0x1p-53);
 }
 
 /// Words, uniforms and standard normals of one stream (Philox 4x64, Salmon et al. 2011).
