@@ -1,5 +1,6 @@
 #include "cli/command.h"
 #include "cli/matrix.h"
+#include "cli/output.h"
 #include "cli/report.h"
 #include "cli/version.h"
 
@@ -16,6 +17,10 @@ int run_build(const std::vector<std::string>& arguments) {
                 "matrix file to write (NetCDF-4)");
   if (!options.parse(arguments)) return kFine;
   if (!options.has("output")) throw UsageError("missing -o MATRIX.nc: where to write the matrix");
+  if (options.text("output").empty()) throw UsageError("-o needs a file name");
+  if (options.text("output") == "-") throw UsageError("-o -: a matrix needs a file of its own");
+  require_different(options.text("output"), options.text("json"));
+  require_writable(options.text("output"));
   const Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
 
@@ -33,30 +38,25 @@ int run_build(const std::vector<std::string>& arguments) {
                {"status", to_json(t.health).dump()}};
   lattice::write_matrix(options.text("output"), file);
 
-  std::int64_t clamped = 0, runs = 0;
-  for (std::size_t row = 0; row < t.trials.size(); ++row) {
-    clamped += t.clamped[row];
-    runs += t.trials[row];
-  }
-  const auto nonzeros = t.counts().nonZeros();
+  const auto total = t.totals();
   Json json;
   json["matrix"] = options.text("output");
   json["inputs"] = t.space.size();
   json["outputs"] = t.space.size() + 1;
   json["trials_per_row"] = trials;
-  json["nonzeros"] = nonzeros;
-  json["clamped_share"] = static_cast<double>(clamped) / static_cast<double>(runs);
+  json["nonzeros"] = total.nonzeros;
+  json["clamped_share"] = total.clamped_share();
   json["status"] = to_json(t.health);
   json["made_by"] = manifest(options, scene);
   const std::string table =
       options.text("output") + ": " + std::to_string(t.space.size()) + " x " +
-      std::to_string(t.space.size() + 1) + " matrix, " + std::to_string(runs) + " gate runs, " +
-      std::to_string(nonzeros) + " nonzeros, " +
-      percent(static_cast<double>(clamped), static_cast<double>(runs)) +
+      std::to_string(t.space.size() + 1) + " matrix, " + std::to_string(total.runs) + " gate runs, " +
+      std::to_string(total.nonzeros) + " nonzeros, " +
+      percent(total.clamped_share(), 1.0) +
       " of the crossings clamped into the nearest bin\n";
   options.give_out(json, table);
   remark(options, "built in " + fixed(seconds, 2) + " s");
-  if (!t.health.clean()) remark(options, complaint(t.health));
+  if (!t.health.clean()) warn(complaint(t.health));
   return kFine;
 }
 

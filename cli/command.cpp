@@ -1,10 +1,12 @@
 #include "cli/command.h"
 
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -49,6 +51,16 @@ void validate(boost::any& v, const std::vector<std::string>& values, Count*, int
   v = Count{static_cast<std::int64_t>(number)};
 }
 
+void validate(boost::any& v, const std::vector<std::string>& values, Seed*, int) {
+  po::validators::check_first_occurrence(v);
+  const std::string& text = po::validators::get_single_string(values);
+  Seed seed;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), seed.value);
+  if (read.ec != std::errc() || read.ptr != text.data() + text.size())
+    throw po::validation_error(po::validation_error::invalid_option_value, "", text);
+  v = seed;
+}
+
 Options::Options(std::string synopsis, std::string about, std::string example)
     : synopsis_(std::move(synopsis)), about_(std::move(about)), example_(std::move(example)),
       own_("Options") {
@@ -60,7 +72,7 @@ Options::Options(std::string synopsis, std::string about, std::string example)
       ("threads", po::value<int>()->default_value(0)->value_name("N"),
        "threads to use, 0: all; never changes a result")
       ("quiet", "no progress, no remarks, no table when there is JSON")
-      ("help", "this page");
+      ("help,h", "this page");
 }
 
 void Options::positional(const std::string& name, const std::string& help, bool required) {
@@ -93,6 +105,7 @@ bool Options::parse(const std::vector<std::string>& arguments) {
                 << help << "\n";
     }
     std::cout << "\n" << own_ << "\n" << shared_ << "\nExample:\n  " << example_ << "\n";
+    if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
     return false;
   }
   for (const auto& name : required_) {
@@ -101,6 +114,8 @@ bool Options::parse(const std::vector<std::string>& arguments) {
     std::transform(shown.begin(), shown.end(), shown.begin(), ::toupper);
     throw UsageError("missing " + shown + ": gatewalk " + synopsis_);
   }
+  if (has("json") && text("json").empty()) throw UsageError("--json needs a file name, or -");
+  if (!text("json").empty()) require_writable(text("json"));
   const int threads = get<int>("threads");
   if (threads < 0 || threads > 1024) throw UsageError("--threads must lie in [0, 1024]");
   if (threads > 0) {
@@ -138,18 +153,33 @@ std::string Options::canonical() const { return canonical_; }
 void Options::give_out(const Json& json, const std::string& table) const {
   const std::string target = text("json");
   if (target != "-" && (target.empty() || talk())) write_text_atomically("-", table);
-  if (!target.empty()) write_text_atomically(target, json.dump(2) + "\n");
+  if (!target.empty()) write_text_atomically(target, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+void add_seed(Options& options) {
+  options.add()("seed", po::value<Seed>()->default_value(Seed{1}, "1")->value_name("S"),
+                "seed of all random numbers; the same seed gives the same result");
 }
 
 void add_trials_and_seed(Options& options, const char* trials_help) {
   options.add()("trials", po::value<Count>()->default_value(Count{100}, "100")->value_name("N"),
-                trials_help)
-               ("seed", po::value<std::uint64_t>()->default_value(1)->value_name("S"),
-                "seed of all random numbers; the same seed gives the same result");
+                trials_help);
+  add_seed(options);
 }
 
 void remark(const Options& options, const std::string& text) {
-  if (options.talk()) std::cerr << "gatewalk: " << text << "\n";
+  if (options.talk() && ::isatty(STDERR_FILENO) == 1) warn(text);
+}
+
+void warn(const std::string& text) { std::cerr << "gatewalk: " << text << "\n"; }
+
+void require_different(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty() || a == "-" || b == "-") return;
+  std::error_code error;
+  const auto same = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
+  };
+  if (same(a) == same(b)) throw UsageError("two files of this command are the same: " + a);
 }
 
 }  // namespace gatewalk::cli

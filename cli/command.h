@@ -32,6 +32,12 @@ struct Count {
 };
 void validate(boost::any& v, const std::vector<std::string>& values, Count*, int);
 
+/// A seed on the command line: a whole number from 0 up (-1 is a mistake, not 2^64 - 1).
+struct Seed {
+  std::uint64_t value = 1;
+};
+void validate(boost::any& v, const std::vector<std::string>& values, Seed*, int);
+
 struct Command {
   const char* name;
   const char* summary;
@@ -69,7 +75,7 @@ class Options {
   }
   /// Value of a Count option; throws UsageError unless at least `low`.
   [[nodiscard]] std::int64_t count(const std::string& name, std::int64_t low = 1) const;
-  [[nodiscard]] std::uint64_t seed() const { return get<std::uint64_t>("seed"); }
+  [[nodiscard]] std::uint64_t seed() const { return get<Seed>("seed").value; }
   [[nodiscard]] const std::vector<std::string>& overrides() const;
   /// Progress lines and remarks are wanted.
   [[nodiscard]] bool talk() const { return !has("quiet"); }
@@ -91,10 +97,16 @@ class Options {
   std::string canonical_;
 };
 
-/// Adds --trials / --seed with the paper's 100 and seed 1.
+/// Adds --seed, and --trials with the paper's 100.
+void add_seed(Options& options);
 void add_trials_and_seed(Options& options, const char* trials_help);
 
-/// A remark on standard error, if wanted.
+/// A remark on standard error, if wanted and if somebody is there to read it (a terminal).
 void remark(const Options& options, const std::string& text);
+/// A warning on standard error, always: the result cannot be taken at face value.
+void warn(const std::string& text);
+
+/// Throws UsageError when two of a command's files are the same one.
+void require_different(const std::string& a, const std::string& b);
 
 }  // namespace gatewalk::cli

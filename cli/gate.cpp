@@ -45,7 +45,7 @@ int run_gate(const std::vector<std::string>& arguments) {
            line("trapped", tally.trapped);
   if (tally.broken > 0) table += line("not finite", tally.broken);
   options.give_out(json, table);
-  if (!tally.health.clean()) remark(options, complaint(tally.health));
+  if (!tally.health.clean()) warn(complaint(tally.health));
   return kFine;
 }
 

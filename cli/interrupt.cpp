@@ -18,7 +18,7 @@ void on_signal(int) {
 
 void on_alarm(int) {
   // Only async-signal-safe calls here.
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kStoppedText, sizeof kStoppedText - 1);
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kCutShortText, sizeof kCutShortText - 1);
   ::_exit(130);
 }
 

@@ -4,9 +4,11 @@
 
 namespace gatewalk::cli {
 
-/// What a stopped program says.
+/// What a program says that was stopped between two batches, and one that was cut short.
 inline constexpr char kStoppedText[] =
     "gatewalk: stopped before the end; nothing was written, files that were there are unchanged\n";
+inline constexpr char kCutShortText[] =
+    "gatewalk: stopped before the end; every file is whole, either as it was or finished\n";
 
 /// Thrown between two batches of work once interrupted() is true.
 struct Interrupted {};

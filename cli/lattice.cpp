@@ -46,7 +46,7 @@ int run_lattice(const std::vector<std::string>& arguments) {
     table += "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
   options.give_out(json, table);
   remark(options, fixed(watch.seconds(), 2) + " s");
-  if (!tally.health.clean()) remark(options, complaint(tally.health));
+  if (!tally.health.clean()) warn(complaint(tally.health));
   return kFine;
 }
 

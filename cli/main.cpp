@@ -35,13 +35,13 @@ int run(const std::vector<std::string>& words) {
     print_help(std::cerr);
     return kWrongUse;
   }
-  if (words[0] == "--help" || words[0] == "help") {
+  if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
     print_help(std::cout);
-    return kFine;
+    return std::cout.flush() ? kFine : kFailure;
   }
   if (words[0] == "--version") {
     std::cout << "gatewalk " << kVersion << " (" << kCommit << ")\n";
-    return kFine;
+    return std::cout.flush() ? kFine : kFailure;
   }
   for (const Command& c : kCommands)
     if (words[0] == c.name) return c.run({words.begin() + 1, words.end()});

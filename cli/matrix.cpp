@@ -34,15 +34,31 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
     throw UsageError(text + "\n(here: the scene given; there: the matrix). Build a matrix for this "
                             "scene, or give the matrix alone to use its own scene.");
   }
-  return {std::move(file), std::move(scene)};
+  const auto text = file.text.find("status");
+  Json status = text == file.text.end() ? Json() : Json::parse(text->second, nullptr, false);
+  if (!status.is_object() || !status.value("clean", false))
+    warn("the runs that made " + matrix_path + " showed numerical faults, see gatewalk show " +
+         matrix_path);
+  return {std::move(file), std::move(scene), std::move(status)};
 }
 
 ReadyChain ready_chain(const Options& options, const MatrixAndScene& m) {
   ReadyChain ready{
       lattice::make_chain(m.file.transitions),
-      lattice::chain_start(m.file.transitions.space, m.scene.field, m.scene.start)};
+      lattice::chain_start(m.file.transitions.space, m.scene.field, m.scene.start),
+      {}};
+  const dynamics::Cell cell = m.file.transitions.space.cell(ready.start.start.input);
+  ready.start_text = text_of(cell);
+  const dynamics::BodyState& b = m.scene.start;
+  const auto on_edge = [](const std::array<double, 2>& edges, double v) {
+    return v == edges[0] || v == edges[1];
+  };
   if (ready.start.clamped)
-    remark(options, "the start lies outside the chain's bins and was put into the nearest one");
+    warn("the start lies outside the chain's bins; the prediction is that of the nearest one, " +
+         ready.start_text);
+  else if (on_edge(cell.d, b.x) || on_edge(cell.vx, b.vx) || on_edge(cell.vy, b.vy))
+    remark(options, "the start lies on an edge of its bin, " + ready.start_text +
+                        "; its prediction is that of the whole bin");
   return ready;
 }
 

@@ -15,16 +15,19 @@ namespace gatewalk::cli {
 struct MatrixAndScene {
   lattice::MatrixFile file;
   Scene scene;
+  Json status;  // the health of the runs that made the matrix
 };
-/// Throws UsageError when the given scene's physics are not those the matrix was built with.
+/// Warns when the matrix was made by runs that showed faults. Throws UsageError when the given scene's physics are not those the matrix was built with.
 [[nodiscard]] MatrixAndScene read_matrix_and_scene(const std::string& matrix_path,
                                                    const std::string& scene_path,
                                                    const std::vector<std::string>& overrides);
 
-/// Chain and start for that scene; remarks when the start lay outside the bins.
+/// Chain and start for that scene. Warns when the start lies outside the bins, remarks when it lies
+/// on an edge of its bin: then another bin would serve it as well.
 struct ReadyChain {
   markov::Chain chain;
   lattice::ChainStart start;
+  std::string start_text;  // "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
 };
 [[nodiscard]] ReadyChain ready_chain(const Options& options, const MatrixAndScene& m);
 

@@ -90,26 +90,43 @@ void write_to_stdout(std::string_view text) {
   }
 }
 
-}  // namespace
-
-void write_text_atomically(const std::string& path, std::string_view text) {
-  if (path == "-") return write_to_stdout(text);
+/// Permissions of the file at `path`, none if there is none. Throws unless it can be replaced.
+std::optional<mode_t> old_permissions(const std::string& path) {
   if (path.empty()) fail("\"\"", "the name is empty");
-
-  std::optional<mode_t> permissions;  // of the old file, if there is one
   struct stat old = {};
   if (::lstat(path.c_str(), &old) == 0) {
     if (S_ISDIR(old.st_mode)) fail(path, "is a directory");
     if (S_ISLNK(old.st_mode)) fail(path, "is a symbolic link; name the file itself");
     if (!S_ISREG(old.st_mode)) fail(path, "is not a regular file");
     if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) fail_with_errno(path);
-    permissions = old.st_mode & 07777;
-  } else if (errno != ENOENT) {
-    fail_with_errno(path);
+    return old.st_mode & 07777;
   }
+  if (errno != ENOENT) fail_with_errno(path);
+  return std::nullopt;
+}
 
+std::string folder_of(const std::string& path) {
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  const std::string folder = parent.empty() ? std::string(".") : parent.string();
+  return parent.empty() ? std::string(".") : parent.string();
+}
+
+}  // namespace
+
+void require_writable(const std::string& path) {
+  if (path == "-") return;
+  old_permissions(path);
+  const std::string folder = folder_of(path);
+  struct stat found = {};
+  if (::stat(folder.c_str(), &found) != 0) fail(path, "folder " + folder + ": " + std::strerror(errno));
+  if (!S_ISDIR(found.st_mode)) fail(path, folder + " is no folder");
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0)
+    fail(path, "folder " + folder + ": " + std::strerror(errno));
+}
+
+void write_text_atomically(const std::string& path, std::string_view text) {
+  if (path == "-") return write_to_stdout(text);
+  const std::optional<mode_t> permissions = old_permissions(path);
+  const std::string folder = folder_of(path);
   const FileDescriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.get() < 0) fail(path, "folder " + folder + ": " + std::strerror(errno));
 

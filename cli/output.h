@@ -12,4 +12,8 @@ namespace gatewalk::cli {
 /// Throws std::runtime_error naming the file and the reason; no temporary file stays behind.
 void write_text_atomically(const std::string& path, std::string_view text);
 
+/// Throws std::runtime_error, as write_text_atomically would, when `path` cannot be written to: to be
+/// asked before long work, not after it.
+void require_writable(const std::string& path);
+
 }  // namespace gatewalk::cli

@@ -5,7 +5,8 @@ namespace gatewalk::cli {
 
 int run_predict(const std::vector<std::string>& arguments) {
   Options options("predict MATRIX.nc [SCENE] [options]",
-                  "The exact distribution of the final gate: what infinitely many walks would give.",
+                  "The exact distribution of the final gate: what infinitely many walks with this matrix\n"
+                  "would give. How far the matrix itself can be trusted, gatewalk validate says.",
                   "gatewalk predict matrix.nc scenes/field.toml --json prediction.json");
   options.positional("matrix", "matrix file written by gatewalk build", true);
   options.positional("scene", "scene file; without it the matrix's own scene", false);
@@ -15,8 +16,9 @@ int run_predict(const std::vector<std::string>& arguments) {
   const std::string& solver = options.get<std::string>("solver");
   if (solver != "propagate" && solver != "klu")
     throw UsageError("--solver " + solver + ": must be propagate or klu");
+  require_different(options.text("matrix"), options.text("json"));
   const auto m = read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
-  const auto [chain, start] = ready_chain(options, m);
+  const auto [chain, start, start_text] = ready_chain(options, m);
   const markov::Field field{m.scene.field.columns, m.scene.field.rows};
   const int max_gates = m.scene.field.max_gates;
   if (solver == "klu" && max_gates != 0)
@@ -38,12 +40,14 @@ int run_predict(const std::vector<std::string>& arguments) {
   json["still_walking"] = f.remainder;
   json["steps"] = f.steps;
   json["solver"] = solver;
-  json["start_clamped"] = start.clamped;
+  json["start_state"] = {{"input", start.start.input + 1}, {"bin", start_text},
+                         {"clamped", start.clamped}};
+  json["matrix_status"] = m.status;
   json["made_by"] = manifest(options, m.scene);
 
-  std::string table = map_of(f.final_cells) + "trapped " + percent(f.trapped, 1.0, 4) +
-                      ", left the field " + percent(f.left_field, 1.0, 4) + ", cut off " +
-                      percent(f.cut_off, 1.0, 4) + "\n";
+  std::string table = map_of(f.final_cells) + "trapped " + percent(f.trapped, 1.0, 2) +
+                      ", left the field " + percent(f.left_field, 1.0, 2) + ", cut off " +
+                      percent(f.cut_off, 1.0, 2) + "\nstart: " + start_text + "\n";
   if (f.unsampled > 0.0)
     table += "reaches a row that was never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-12)

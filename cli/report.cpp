@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include "cli/version.h"
 
@@ -24,6 +25,7 @@ Json to_json(const dynamics::Health& h) {
   j["runs"] = h.runs;
   j["runs_penetrating_over_1_percent"] = h.penetrating;
   j["runs_creating_energy"] = h.creating_energy;
+  j["runs_too_fast_for_the_step"] = h.fast;
   j["runs_not_finite"] = h.broken;
   j["contacts_without_a_formula"] = h.undefined_contacts;
   j["steps_forced_to_hold"] = h.forced_holds;
@@ -47,6 +49,9 @@ std::string complaint(const dynamics::Health& h) {
   if (h.creating_energy > 0)
     text += " energy appeared from nothing in " + share(h.creating_energy) + " (worst " +
             fixed(h.worst_energy_created, 1) + " J);";
+  if (h.fast > 0)
+    text += " disc or beam moved over half a radius in one step in " + share(h.fast) +
+            ", hits may have been missed: take a smaller run.step_s;";
   if (h.undefined_contacts > 0)
     text += " " + std::to_string(h.undefined_contacts) +
             " steps overlapped a joint, for which it has no formula;";
@@ -121,6 +126,14 @@ std::string padded(const std::string& text, int width) {
   if (text.size() >= wanted) return text;
   const std::string space(wanted - text.size(), ' ');
   return width > 0 ? space + text : text + space;
+}
+
+std::string text_of(const dynamics::Cell& cell) {
+  std::ostringstream text;
+  text << dynamics::kBoundaryNames[static_cast<int>(cell.boundary)] << " d [" << cell.d[0] << ", "
+       << cell.d[1] << "] m, vx [" << cell.vx[0] << ", " << cell.vx[1] << "] m/s, vy [" << cell.vy[0]
+       << ", " << cell.vy[1] << "] m/s";
+  return text.str();
 }
 
 double Stopwatch::seconds() const {

@@ -31,6 +31,9 @@ namespace gatewalk::cli {
 /// Text padded on the left or (negative width) on the right.
 [[nodiscard]] std::string padded(const std::string& text, int width);
 
+/// A state's bin: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
+[[nodiscard]] std::string text_of(const dynamics::Cell& cell);
+
 /// Seconds since construction.
 class Stopwatch {
  public:

@@ -17,6 +17,8 @@
 #include <utility>
 #include <variant>
 
+#include "dynamics/methods/method.h"
+
 namespace gatewalk::cli {
 namespace {
 
@@ -355,7 +357,7 @@ double distance_to_beams(const Scene& scene) {
 /// What depends on several keys at once.
 void check_together(const Scene& scene, const Settings& settings) {
   try {
-    dynamics::validate(scene.gate);
+    (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
     if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
       throw dynamics::InvalidParameter(
           "start.y_m", "start.y_m = " + shortest(scene.start.y)

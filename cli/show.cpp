@@ -45,23 +45,17 @@ int run_show(const std::vector<std::string>& arguments) {
     throw UsageError("--row " + std::to_string(options.get<int>("row")) + ": must lie in [1, " +
                      std::to_string(n) + "]");
 
-  std::int64_t runs = 0, clamped = 0, unsampled = 0, nonzeros = 0;
-  for (int row = 0; row < n; ++row) {
-    runs += t.trials[row];
-    clamped += t.clamped[row];
-    unsampled += t.trials[row] == 0;
-    nonzeros += static_cast<std::int64_t>(t.rows[row].size());
-  }
+  const auto total = t.totals();
   const double cells = static_cast<double>(n) * (n + 1);
 
   Json json;
   json["inputs"] = n;
   json["outputs"] = n + 1;
-  json["gate_runs"] = runs;
-  json["nonzeros"] = nonzeros;
-  json["density"] = static_cast<double>(nonzeros) / cells;
-  json["clamped_share"] = runs > 0 ? static_cast<double>(clamped) / static_cast<double>(runs) : 0.0;
-  json["rows_never_sampled"] = unsampled;
+  json["gate_runs"] = total.runs;
+  json["nonzeros"] = total.nonzeros;
+  json["density"] = static_cast<double>(total.nonzeros) / cells;
+  json["clamped_share"] = total.clamped_share();
+  json["rows_never_sampled"] = total.empty_rows;
   json["rows"] = Json::array();
   for (int row = 0; row < n; ++row) {
     const Cell cell = t.space.cell(row);
@@ -83,12 +77,11 @@ int run_show(const std::vector<std::string>& arguments) {
   std::ostringstream out;
   out << options.text("matrix") << "\n"
       << "  size                " << n << " inputs x " << n + 1 << " outputs (the last: trapped)\n"
-      << "  gate runs           " << runs << "\n"
-      << "  nonzeros            " << nonzeros << " of " << n * (n + 1) << " ("
-      << percent(static_cast<double>(nonzeros), cells) << ")\n"
-      << "  clamped crossings   " << percent(static_cast<double>(clamped), static_cast<double>(runs))
-      << "\n"
-      << "  rows never sampled  " << unsampled << "\n";
+      << "  gate runs           " << total.runs << "\n"
+      << "  nonzeros            " << total.nonzeros << " of " << n * (n + 1) << " ("
+      << percent(static_cast<double>(total.nonzeros), cells) << ")\n"
+      << "  clamped crossings   " << percent(total.clamped_share(), 1.0) << "\n"
+      << "  rows never sampled  " << total.empty_rows << "\n";
   for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "status"})
     if (const auto it = file.text.find(key); it != file.text.end())
       out << "  " << padded(key, -20) << it->second << "\n";
@@ -115,9 +108,7 @@ int run_show(const std::vector<std::string>& arguments) {
         out << "trapped\n";
         continue;
       }
-      const Cell cell = t.space.cell(column);
-      out << kBoundaryNames[static_cast<int>(cell.boundary)] << " d " << range(cell.d) << " vx "
-          << range(cell.vx) << " vy " << range(cell.vy) << "\n";
+      out << text_of(t.space.cell(column)) << "\n";
     }
   }
   if (file.text.count("scene") > 0) out << "\n" << file.text.at("scene");

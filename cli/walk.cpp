@@ -12,12 +12,12 @@ int run_walk(const std::vector<std::string>& arguments) {
   options.positional("matrix", "matrix file written by gatewalk build", true);
   options.positional("scene", "scene file; without it the matrix's own scene", false);
   options.add()("walks", po::value<Count>()->default_value(Count{100}, "100")->value_name("N"),
-                "number of walks")
-               ("seed", po::value<std::uint64_t>()->default_value(1)->value_name("S"),
-                "seed of all random numbers; the same seed gives the same result");
+                "number of walks");
+  add_seed(options);
   if (!options.parse(arguments)) return kFine;
+  require_different(options.text("matrix"), options.text("json"));
   const auto m = read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
-  const auto [chain, start] = ready_chain(options, m);
+  const auto [chain, start, start_text] = ready_chain(options, m);
   const std::int64_t walks = options.count("walks");
   const markov::Field field{m.scene.field.columns, m.scene.field.rows};
 
@@ -38,7 +38,9 @@ int run_walk(const std::vector<std::string>& arguments) {
   json["cut_off"] = tally.cut_off;
   json["never_sampled"] = tally.unsampled;
   json["gates_visited"] = tally.steps;
-  json["start_clamped"] = start.clamped;
+  json["start_state"] = {{"input", start.start.input + 1}, {"bin", start_text},
+                         {"clamped", start.clamped}};
+  json["matrix_status"] = m.status;
   json["made_by"] = manifest(options, m.scene);
 
   const auto n = static_cast<double>(tally.walks);
@@ -46,7 +48,7 @@ int run_walk(const std::vector<std::string>& arguments) {
                       std::to_string(tally.walks) + ": trapped " +
                       percent(static_cast<double>(tally.trapped), n, 2) + ", left the field " +
                       percent(static_cast<double>(tally.left_field), n, 2) + ", cut off " +
-                      percent(static_cast<double>(tally.cut_off), n, 2) + "\n";
+                      percent(static_cast<double>(tally.cut_off), n, 2) + "\nstart: " + start_text + "\n";
   if (tally.unsampled > 0)
     table += "reached a row that was never sampled: " +
              percent(static_cast<double>(tally.unsampled), n, 4) + "\n";

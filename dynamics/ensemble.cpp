@@ -15,6 +15,7 @@ void Health::add(const GateParams& p, const GateRun& run) {
   ++runs;
   penetrating += w.max_penetration > 0.01 * p.body.radius;
   creating_energy += w.energy_created > 1e-4 * energy_scale;
+  fast += w.fast_steps > 0;
   broken += run.ending == Ending::broken;
   undefined_contacts += w.undefined_contacts;
   forced_holds += w.forced_holds;
@@ -29,6 +30,7 @@ Health& Health::operator+=(const Health& o) {
   runs += o.runs;
   penetrating += o.penetrating;
   creating_energy += o.creating_energy;
+  fast += o.fast;
   broken += o.broken;
   undefined_contacts += o.undefined_contacts;
   forced_holds += o.forced_holds;

@@ -45,7 +45,7 @@ struct Contact {
 struct Run {
   std::string method = "stable";  // a name of method_names()
   double step = 0.004;            // s
-  double time_limit = 12.0;       // s, 3000 steps of the paper
+  double time_limit = 12.0;       // s, 3000 steps of the paper; rounded up to whole steps
   double traverse_y = 60.0;       // m; traversed beyond it, and the length of a gate in the field
 };
 

@@ -20,7 +20,7 @@ struct Stream {
 };
 
 /// Which experiment a stream belongs to, so that no two experiments share their randomness.
-enum class Purpose : std::uint64_t { gate = 1, row = 2, field = 3, comparison = 4 };
+enum class Purpose : std::uint64_t { gate = 1, row = 2, field = 3, comparison = 4, resampling = 5 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.
 [[nodiscard]] inline double open_uniform(std::uint64_t word) {
@@ -41,6 +41,11 @@ class Random {
     return words_[used_++];
   }
   [[nodiscard]] double uniform() { return open_uniform(word()); }
+  /// A whole number in [0, n).
+  [[nodiscard]] std::int64_t below(std::int64_t n) {
+    __extension__ using Wide = unsigned __int128;
+    return static_cast<std::int64_t>((static_cast<Wide>(word()) * static_cast<Wide>(n)) >> 64);
+  }
 
   /// Box-Muller in double; two uniforms give two normals.
   [[nodiscard]] double normal() {
@@ -74,7 +79,7 @@ class RandomForce {
 
   /// Force in force now (N), for another left() seconds > 0. Draws when the last one has run out.
   [[nodiscard]] double value() {
-    if (left_ <= 1e-9 * hold_) {  // round-off of steps that add up to a hold
+    if (left_ <= kSliver * hold_) {
       value_ = scale_ * random_.normal();
       left_ = hold_;
     }
@@ -84,6 +89,8 @@ class RandomForce {
   void pass(double seconds) { left_ -= seconds; }
 
  private:
+  // Steps may add up to a hold with a relative error of 1e-6 (see validate): no draw for the rest.
+  static constexpr double kSliver = 2e-6;
   Random random_;
   double scale_;
   double hold_;

@@ -83,12 +83,17 @@ StateSpace::StateSpace(std::array<Bins, kBoundaries> bins) : bins_(std::move(bin
 
 StateSpace StateSpace::paper(const GateParams& p) {
   const double w = p.beams.joint_x, y = p.beams.joint_y, r = p.body.radius;
-  const std::vector<double> to_right{-30, -20, -10, 0}, to_left{0, 10, 20, 30};
+  if (!(p.run.traverse_y > y + r))
+    throw InvalidParameter("run.traverse_y_m",
+                           "run.traverse_y_m = " + std::to_string(p.run.traverse_y) +
+                               " is not permitted for a chain or a field: it must exceed "
+                               "beams.joint_y_m + body.radius_m = " + std::to_string(y + r));
+  const std::vector<double> leftward{-30, -20, -10, 0}, rightward{0, 10, 20, 30};
   const std::vector<double> side_vy{-20, -10, 0, 10, 20, 30};
   const std::vector<double> below{r, (r + y) / 2, y}, above{r, p.run.traverse_y - y};
   return StateSpace({Bins{{-w, -0.6 * w, -0.2 * w, 0.2 * w, 0.6 * w, w}, {-25, -15, -5, 5, 15, 25}, {10, 20}},
-                     Bins{below, to_right, side_vy},
-                     Bins{below, to_left, side_vy},
+                     Bins{below, leftward, side_vy},
+                     Bins{below, rightward, side_vy},
                      Bins{above, {-30, 0}, {-20, 30}},
                      Bins{above, {0, 30}, {-20, 30}}});
 }

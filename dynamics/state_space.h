@@ -64,6 +64,7 @@ class StateSpace {
   /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size (they are the
   /// table's for the paper's gate), velocities are the table's. RT and LT are one state each; their
   /// bin is what the README's "Departures" says: y from joint + R up, velocities of RD and LD.
+  /// Throws InvalidParameter when no disc can be ahead of the beams inside the gate.
   static StateSpace paper(const GateParams& p);
 
   [[nodiscard]] int size() const { return offset_[kBoundaries]; }

@@ -19,6 +19,19 @@ Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor> Transitions::counts() const {
   return m;
 }
 
+Transitions::Totals Transitions::totals() const {
+  Totals total;
+  for (int row = 0; row < space.size(); ++row) {
+    const auto stuck = rows[row].find(space.trapped());
+    total.runs += trials[row];
+    total.crossings += trials[row] - (stuck == rows[row].end() ? 0 : stuck->second);
+    total.clamped += clamped[row];
+    total.nonzeros += static_cast<std::int64_t>(rows[row].size());
+    total.empty_rows += trials[row] == 0;
+  }
+  return total;
+}
+
 void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range) {
   const auto method = make_method(p);
   struct Outcome {

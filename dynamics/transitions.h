@@ -22,6 +22,18 @@ struct Transitions {
   Health health;
 
   [[nodiscard]] Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor> counts() const;  // (n x n+1)
+
+  struct Totals {
+    std::int64_t runs = 0;
+    std::int64_t crossings = 0;  // runs that left their gate
+    std::int64_t clamped = 0;    // of these, outside every bin
+    std::int64_t nonzeros = 0;
+    std::int64_t empty_rows = 0;
+    [[nodiscard]] double clamped_share() const {
+      return crossings > 0 ? static_cast<double>(clamped) / static_cast<double>(crossings) : 0.0;
+    }
+  };
+  [[nodiscard]] Totals totals() const;
 };
 
 /// Adds trials `range` of every row: starts uniform in the row's bin, random force from the stream

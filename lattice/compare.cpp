@@ -33,18 +33,30 @@ Support support_of(const CellProbabilities& pooled) {
   Support s;
   for (Eigen::Index i = 0; i < pooled.size(); ++i)
     if (pooled.data()[i] > 0.0) s.gates.push_back(i);
+  return s;
+}
+
+/// Fills in the distances between the gates.
+Support with_distances(Support s, Eigen::Index columns) {
   const auto n = static_cast<Eigen::Index>(s.gates.size());
   s.distance.resize(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
-      const auto dx = static_cast<double>(s.gates[i] % pooled.cols() - s.gates[j] % pooled.cols());
-      const auto dy = static_cast<double>(s.gates[i] / pooled.cols() - s.gates[j] / pooled.cols());
+      const auto dx = static_cast<double>(s.gates[i] % columns - s.gates[j] % columns);
+      const auto dy = static_cast<double>(s.gates[i] / columns - s.gates[j] / columns);
       s.distance(i, j) = std::hypot(dx, dy);
     }
   return s;
 }
 
+Support affordable_support_of(const CellProbabilities& pooled) {
+  Support s = support_of(pooled);
+  return s.gates.size() <= kMostEnergyGates ? with_distances(std::move(s), pooled.cols()) : s;
+}
+
+/// NaN for a support without distances.
 double energy_of(const Eigen::VectorXd& difference, const Support& s) {
+  if (s.distance.size() == 0) return std::numeric_limits<double>::quiet_NaN();
   return -difference.dot(s.distance * difference);
 }
 
@@ -54,20 +66,37 @@ Eigen::VectorXd on_support(const CellProbabilities& p, const Support& s) {
   return v;
 }
 
+/// Gates of a smaller expected share than this are rare in a sample of n: under 5 trials expected.
+/// 0, none, when nearly all would be.
+double rare_share(const Eigen::VectorXd& expected, std::int64_t n) {
+  const double rare = 5.0 / static_cast<double>(n);
+  return (expected.array() < rare).select(expected, 0.0).sum() < 0.5 ? rare : 0.0;
+}
+
 /// Statistics that grow with the difference.
 struct Statistics {
   double chi_squared = 0.0, total_variation = 0.0, energy = 0.0;
 };
 
-/// a, b: shares on the support; `expected`: shares against whose sampling noise a difference counts.
+/// a, b: shares on the support; `expected`: shares against whose sampling noise a difference counts;
+/// gates of a smaller expected share than `rare` count as one.
 Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
-                      const Eigen::VectorXd& expected, const Support& support) {
+                      const Eigen::VectorXd& expected, double rare, const Support& support) {
   const Eigen::VectorXd difference = a - b;
   Statistics s;
+  // Rare gates count as one: alone, a single trial in one of them would outweigh all others.
+  double rare_difference = 0.0, rare_expected = 0.0;
   for (Eigen::Index i = 0; i < difference.size(); ++i) {
-    const double d2 = difference[i] * difference[i];
-    if (d2 > 0.0) s.chi_squared += expected[i] > 0.0 ? d2 / expected[i] : std::numeric_limits<double>::infinity();
+    if (expected[i] < rare) {
+      rare_difference += difference[i];
+      rare_expected += expected[i];
+    } else {
+      s.chi_squared += difference[i] * difference[i] / expected[i];
+    }
   }
+  if (rare_difference != 0.0)
+    s.chi_squared += rare_expected > 0.0 ? rare_difference * rare_difference / rare_expected
+                                         : std::numeric_limits<double>::infinity();
   s.total_variation = 0.5 * difference.cwiseAbs().sum();
   s.energy = energy_of(difference, support);
   return s;
@@ -81,6 +110,7 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) { null[k] = draw(k); });
   // Equal results of different rounding count as equal.
   const auto p_value = [&](double Statistics::*what) {
+    if (std::isnan(seen.*what)) return seen.*what;
     const double bar = seen.*what * (1.0 - 1e-12);
     const auto as_large = std::count_if(null.begin(), null.end(),
                                         [&](const Statistics& s) { return s.*what >= bar; });
@@ -93,12 +123,6 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   double sum = 0.0;
   for (const Statistics& s : null) sum += s.total_variation;
   c.floor_total_variation = sum / static_cast<double>(null_draws);
-}
-
-/// A whole number below n, from 64 random bits.
-std::int64_t below(std::int64_t n, Random& random) {
-  __extension__ using Wide = unsigned __int128;
-  return static_cast<std::int64_t>((static_cast<Wide>(random.word()) * static_cast<Wide>(n)) >> 64);
 }
 
 CellProbabilities shares(const CellCounts& counts) {
@@ -129,7 +153,7 @@ double total_variation(const CellProbabilities& a, const CellProbabilities& b) {
 
 double energy_distance(const CellProbabilities& a, const CellProbabilities& b) {
   require_same_shape(a.rows(), a.cols(), b.rows(), b.cols());
-  const Support s = support_of(a + b);
+  const Support s = with_distances(support_of(a + b), a.cols());
   return energy_of(on_support(a, s) - on_support(b, s), s);
 }
 
@@ -160,15 +184,16 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   c.floor = noise_floor(concentration(pooled_counts), sample.size(), n, m);
 
   const CellProbabilities pooled = shares(pooled_counts);
-  const Support support = support_of(pooled);
+  const Support support = affordable_support_of(pooled);
   const Eigen::VectorXd expected = on_support(pooled, support);
+  const double rare = rare_share(expected, std::min(n, m));
   std::vector<std::int32_t> trials;  // every pooled trial, as its place in the support
   trials.reserve(n + m);
   for (std::size_t i = 0; i < support.gates.size(); ++i)
     trials.insert(trials.end(), pooled_counts.data()[support.gates[i]], static_cast<std::int32_t>(i));
 
   const Statistics seen =
-      statistics(on_support(a, support), on_support(b, support), expected, support);
+      statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, 0, static_cast<std::uint64_t>(k)});
     // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
@@ -177,14 +202,15 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
     std::vector<std::int32_t> deck = trials;
     Eigen::VectorXd hand = Eigen::VectorXd::Zero(expected.size());
     for (std::int64_t i = 0; i < small; ++i) {
-      const std::int64_t j = i + below(n + m - i, random);
+      const std::int64_t j = i + random.below(n + m - i);
       std::swap(deck[i], deck[j]);
       hand[deck[i]] += 1.0;
     }
     const Eigen::VectorXd rest = expected * static_cast<double>(n + m) - hand;
     const Eigen::VectorXd& of_a = first_is_smaller ? hand : rest;
     const Eigen::VectorXd& of_b = first_is_smaller ? rest : hand;
-    return statistics(of_a / static_cast<double>(n), of_b / static_cast<double>(m), expected, support);
+    return statistics(of_a / static_cast<double>(n), of_b / static_cast<double>(m), expected, rare,
+                      support);
   });
   return c;
 }
@@ -197,11 +223,12 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0};
   c.floor = noise_floor(exact.square().sum(), sample.size(), n, 0);
 
-  const Support support = support_of(a + exact);
+  const Support support = affordable_support_of(a + exact);
   const Eigen::VectorXd expected = on_support(exact, support);
+  const double rare = rare_share(expected, n);
   std::vector<double> cumulative(support.gates.size());
   std::partial_sum(expected.begin(), expected.end(), cumulative.begin());
-  const Statistics seen = statistics(on_support(a, support), expected, expected, support);
+  const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, 1, static_cast<std::uint64_t>(k)});
     Eigen::VectorXd drawn = Eigen::VectorXd::Zero(expected.size());
@@ -211,7 +238,7 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
       const auto place = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
       drawn[place - cumulative.begin()] += 1.0;
     }
-    return statistics(drawn / static_cast<double>(n), expected, expected, support);
+    return statistics(drawn / static_cast<double>(n), expected, expected, rare, support);
   });
   return c;
 }

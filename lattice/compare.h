@@ -34,13 +34,17 @@ struct NoiseFloor {
 [[nodiscard]] NoiseFloor noise_floor(double concentration, std::int64_t gates, std::int64_t trials,
                                      std::int64_t second_trials);
 
+/// The energy distance costs the square of the gates reached; beyond this it is left out.
+inline constexpr int kMostEnergyGates = 1000;
+
 /// One comparison with its floors and p-values: how often chance alone would look at least this
 /// different if both came from one distribution.
 struct Comparison {
   double corrcoef = 0.0, rmse_per_100 = 0.0, total_variation = 0.0;
   NoiseFloor floor;
   double floor_total_variation = 0.0;  // mean over the null draws
-  double p_chi_squared = 0.0, p_total_variation = 0.0, p_energy = 0.0;
+  double p_chi_squared = 0.0, p_total_variation = 0.0;
+  double p_energy = 0.0;  // NaN above kMostEnergyGates reachable gates
   std::int64_t null_draws = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "lattice/gate_chain.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -18,6 +19,25 @@ std::vector<markov::Exit> exits_of(const StateSpace& space) {
 
 markov::Chain make_chain(const Transitions& t) {
   return markov::Chain::from_counts(t.counts(), exits_of(t.space));
+}
+
+Transitions resampled(const Transitions& t, std::uint64_t seed, std::uint64_t replicate) {
+  Transitions drawn(t.space);
+  for (int row = 0; row < t.space.size(); ++row) {
+    std::vector<std::int64_t> upto;  // cumulative counts
+    std::vector<int> column;
+    for (const auto& [output, n] : t.rows[row]) {
+      upto.push_back((upto.empty() ? 0 : upto.back()) + n);
+      column.push_back(output);
+    }
+    Random random(Purpose::resampling, {seed, static_cast<std::uint64_t>(row), replicate});
+    for (std::int64_t i = 0; i < t.trials[row]; ++i) {
+      const auto at = std::upper_bound(upto.begin(), upto.end(), random.below(upto.back()));
+      ++drawn.rows[row][column[at - upto.begin()]];
+    }
+    drawn.trials[row] = t.trials[row];
+  }
+  return drawn;
 }
 
 ChainStart chain_start(const StateSpace& space, const FieldParams& field, const BodyState& body) {

@@ -16,6 +16,11 @@ namespace gatewalk::lattice {
 
 [[nodiscard]] markov::Chain make_chain(const dynamics::Transitions& t);
 
+/// The matrix that another set of runs might have given: every row's trials drawn anew from its own
+/// counts. Chains of such matrices show what the sampling of the matrix alone does to a prediction.
+[[nodiscard]] dynamics::Transitions resampled(const dynamics::Transitions& t, std::uint64_t seed,
+                                              std::uint64_t replicate);
+
 /// The chain's start for a body that starts in gate (0, 0): its state, and whether it was clamped.
 /// A body inside the gate (y > 0) has no state of its own: throws std::invalid_argument.
 struct ChainStart {

@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <bit>
+
 namespace gatewalk::lattice {
 namespace {
 
@@ -49,6 +51,13 @@ Trial run_trial(const GateParams& p, const Method& method, const FieldParams& fi
 
 }  // namespace
 
+std::uint64_t stream_row(const BodyState& b) {
+  // From the bits of the state; the random generator serves as the hash.
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 is 0
+  const r123::Philox4x64::ctr_type state = {{bits(b.x), bits(b.y), bits(b.vx), bits(b.vy)}};
+  return r123::Philox4x64()(state, {{0, 0}})[0] >> 8;  // the top byte of a key is its purpose
+}
+
 FieldTally& FieldTally::operator+=(const FieldTally& o) {
   final_gates += o.final_gates;
   trials += o.trials;
@@ -69,9 +78,10 @@ FieldTally& FieldTally::operator+=(const FieldTally& o) {
 FieldTally run_field(const GateParams& p, const FieldParams& field, const BodyState& start,
                      const StateSpace& space, std::uint64_t seed, TrialRange range) {
   const auto method = make_method(p);
+  const std::uint64_t row = stream_row(start);
   std::vector<Trial> trials(range.count);
   tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
-    const Stream stream{seed, 0, static_cast<std::uint64_t>(range.first + i)};
+    const Stream stream{seed, row, static_cast<std::uint64_t>(range.first + i)};
     RandomForce force(p.forces, Random(Purpose::field, stream));
     trials[i] = run_trial(p, *method, field, start, space, force);
   });

@@ -29,8 +29,11 @@ struct FieldTally {
   FieldTally& operator+=(const FieldTally& other);  // `other` continues this one's trials
 };
 
+/// The number that names a start in its trials' streams: other starts, other noise.
+[[nodiscard]] std::uint64_t stream_row(const dynamics::BodyState& start);
+
 /// Runs trials `range` through the field, every gate fresh: beams at rest when the body enters; the
-/// random force goes on. `space` only counts what the chain would have clamped. On all threads of
+/// random force goes on. The stream is {seed, stream_row(start), trial}. `space` only counts what the chain would have clamped. On all threads of
 /// the current TBB arena, same result for any number of them.
 [[nodiscard]] FieldTally run_field(const dynamics::GateParams& p, const FieldParams& field,
                                    const dynamics::BodyState& start,

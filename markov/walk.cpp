@@ -118,6 +118,7 @@ WalkTally Walker::walk(const Field& field, const Start& start, int max_cells, st
   const int* const row_begin = chain_.matrix().outerIndexPtr();
   const Slot* const slots = slots_.data();
   const Exit* const exits = chain_.exits().data();
+  const auto state = static_cast<std::uint64_t>(start.input);
   const r123::Philox4x64::key_type key = {{seed, kWalkStream}};
 
   const auto run = [&](std::int64_t first, std::int64_t last, WalkTally& tally) {
@@ -137,7 +138,7 @@ WalkTally Walker::walk(const Field& field, const Start& start, int max_cells, st
           break;
         }
         if (drawn % 4 == 0) {
-          words = r123::Philox4x64{}({{drawn / 4, static_cast<std::uint64_t>(number), 0, 0}}, key);
+          words = r123::Philox4x64{}({{drawn / 4, static_cast<std::uint64_t>(number), state, 0}}, key);
         }
         ++ends.steps;
         const Exit& exit = exits[pick(slots + begin, static_cast<std::uint64_t>(count),

@@ -32,7 +32,7 @@ struct WalkTally {
 };
 
 /// Walk w under `seed` draws from Philox4x64-10 with key {seed, kWalkStream} and counter
-/// {block, w, 0, 0}: four words a block, one word a draw. Other users of the same seed take another
+/// {block, w, start input, 0}: four words a block, one word a draw. Other users of the same seed take another
 /// second key word, so no two ever share a stream.
 inline constexpr std::uint64_t kWalkStream = 0x77616c6b'00000001;  // "walk", version 1
 

@@ -1,3 +1,5 @@
+cmake_minimum_required(VERSION 3.25)
+
 # Who may include whom. Fails naming the file and the line.
 set(allowed_dynamics dynamics)
 set(allowed_markov markov)
@@ -14,7 +16,7 @@ foreach(module dynamics markov lattice cli)
   foreach(file ${files})
     file(STRINGS ${file} includes REGEX "^[ \t]*#[ \t]*include[ \t]*\"")
     foreach(line ${includes})
-      string(REGEX REPLACE ".*\"([^/\"]*).*" "\\1" target "${line}")
+      string(REGEX REPLACE "^[^\"]*\"([^/\"]*).*" "\\1" target "${line}")
       if(NOT target IN_LIST allowed_${module})
         string(APPEND broken "\n  ${file}: ${line}")
       endif()

@@ -111,7 +111,7 @@ for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
   took=$((($(date +%s%N) - start) / 1000000))
   [ $status = 130 ] || fail "ctrl-C: status $status of $command"
   [ $took -lt 2000 ] || fail "ctrl-C took $took ms: $command"
-  grep -q 'nothing was written' out.txt || fail "ctrl-C without a word: $command"
+  grep -q "stopped before the end" out.txt || fail "ctrl-C without a word: $command"
   [ "$before" = "$(cat gate.json m.nc lattice.json | cksum)" ] || fail "ctrl-C changed a file: $command"
 done
 

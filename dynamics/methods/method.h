@@ -20,8 +20,11 @@ struct Watch {
   std::int64_t impacts = 0;         // resolved hits
   std::int64_t forced_holds = 0;    // steps in which hits piled up and were turned into constraints
   std::int64_t undefined_contacts = 0;  // contacts for which the method has no formula
+  std::int64_t fast_steps = 0;      // steps in which disc or beam moved so far that hits can be missed
 
-  void penetration(double gap) { max_penetration = std::fmax(max_penetration, -gap); }
+  /// To be called after every step, looks at the state from outside the method; `dt` is the time
+  /// between two looks for contact.
+  void state(const GateParams& p, const GateState& s, double dt);
 };
 
 /// Energy less the work of propulsion and random force: it may only fall. Follows one run.

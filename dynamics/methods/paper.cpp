@@ -11,13 +11,10 @@ double PaperMethod::advance(GateState& s, double force_x, double duration, Energ
   for (long i = 1; i <= steps; ++i) {
     collide(s, watch);
     euler(s, force_x, dt);
-    ++watch.steps;
     ledger.step(s, force_x, watch);
-    const double speed = std::hypot(s.body.vx, s.body.vy);
-    watch.max_speed = std::fmax(watch.max_speed, speed);
-    for (const Side side : {kLeft, kRight})
-      watch.max_theta[side] = std::fmax(watch.max_theta[side], std::abs(s.beams[side].theta));
-    if (!std::isfinite(speed) || outside(p_, s.body)) return static_cast<double>(i) * dt;
+    watch.state(p_, s, dt);
+    if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body))
+      return static_cast<double>(i) * dt;
   }
   return static_cast<double>(steps) * dt;
 }
@@ -27,7 +24,6 @@ void PaperMethod::collide(GateState& s, Watch& watch) const {
     BeamState& beam = s.beams[side];
     if (!beam.held && out_of_reach(p_, side, s.body, beam.theta)) continue;
     const Touch t = nearest(p_, side, s.body, beam.theta);
-    watch.penetration(t.gap);
     if (t.kind == ContactKind::pin) {  // r of Eq. (5) would be the root of a negative number
       if (t.gap < 0.0) ++watch.undefined_contacts;
       beam.held = false;

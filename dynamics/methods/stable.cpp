@@ -1,7 +1,7 @@
 #include "dynamics/methods/stable.h"
 
 #include <algorithm>
-#include <string>
+#include <sstream>
 
 namespace gatewalk::dynamics {
 namespace {
@@ -18,11 +18,12 @@ int pieces_needed(const GateParams& p) {
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
   const double pieces = std::ceil(p.run.step * rate / kMaxPhase);
   if (!(pieces <= kMaxPieces)) {
-    throw InvalidParameter("run.step_s",
-                           "run.step_s = " + std::to_string(p.run.step) +
-                               " is too long for these beams: their fastest rate is " +
-                               std::to_string(rate) + " 1/s, method stable permits a step up to " +
-                               std::to_string(kMaxPieces * kMaxPhase / rate) + " s");
+    std::ostringstream text;
+    text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
+         << "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
+         << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate
+         << " 1/s; method stable permits at most " << kMaxPieces * kMaxPhase / rate << " s";
+    throw InvalidParameter("run.step_s", text.str());
   }
   return std::max(1, static_cast<int>(pieces));
 }
@@ -117,21 +118,13 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
                              Watch& watch) const {
   const auto steps = std::max<long>(1, std::lround(duration / p_.run.step));
   for (long i = 1; i <= steps; ++i) {
-    step(s, force_x, watch);
-    ++watch.steps;
+    for (int piece = 0; piece < pieces_; ++piece) substep(s, force_x, watch);
     ledger.step(s, force_x, watch);
-    const double speed2 = s.body.vx * s.body.vx + s.body.vy * s.body.vy;
-    if (!std::isfinite(speed2)) return static_cast<double>(i) * p_.run.step;
-    if (speed2 > watch.max_speed * watch.max_speed) watch.max_speed = std::sqrt(speed2);
-    for (const Side side : {kLeft, kRight})
-      watch.max_theta[side] = std::fmax(watch.max_theta[side], std::abs(s.beams[side].theta));
-    if (outside(p_, s.body)) return static_cast<double>(i) * p_.run.step;
+    watch.state(p_, s, flow_.dt);
+    if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body))
+      return static_cast<double>(i) * p_.run.step;
   }
   return static_cast<double>(steps) * p_.run.step;
-}
-
-void StableMethod::step(GateState& s, double force_x, Watch& watch) const {
-  for (int i = 0; i < pieces_; ++i) substep(s, force_x, watch);
 }
 
 void StableMethod::glide(GateState& s, double force_x, const GateFlow& flow) const {
@@ -175,7 +168,7 @@ void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow
 void StableMethod::restore(GateState& s, std::array<bool, 2> contacts,
                            std::array<Touch, 2> touch) const {
   if (!contacts[kLeft] && !contacts[kRight]) return;
-  for (int iteration = 0; iteration < 6; ++iteration) {
+  for (int iteration = 0; iteration < 12; ++iteration) {
     const std::array<double, 2> gap{contacts[kLeft] ? touch[kLeft].gap : 0.0,
                                     contacts[kRight] ? touch[kRight].gap : 0.0};
     if (std::fmax(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p_.body.radius) break;
@@ -202,16 +195,13 @@ void StableMethod::substep(GateState& s, double force_x, Watch& watch) const {
       glide(end, force_x, left);
 
     std::array<bool, 2> hit{false, false};
-    std::array<double, 2> gap{0.0, 0.0};
     for (const Side side : {kLeft, kRight}) {
       const BeamState& beam = end.beams[side];
       if (beam.held || out_of_reach(p_, side, end.body, beam.theta)) continue;
-      gap[side] = nearest(p_, side, end.body, beam.theta).gap;
-      hit[side] = gap[side] < -touching_;
+      hit[side] = nearest(p_, side, end.body, beam.theta).gap < -touching_;
     }
     if (!hit[kLeft] && !hit[kRight]) {
       s = end;
-      watch.penetration(std::fmin(gap[kLeft], gap[kRight]));
       return;
     }
     if (hits == kMaxHits) {
@@ -224,7 +214,7 @@ void StableMethod::substep(GateState& s, double force_x, Watch& watch) const {
       return;
     }
     const double when = first_hit(s, force_x, end, left, hit);
-    resolve(s, false, watch);
+    resolve(s, watch);
     left -= when;
     if (left <= 1e-15 * flow_.dt) return;
   }
@@ -255,7 +245,7 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
 
     // A first guess from the interpolated motion, which is cheap, and one Newton step on the motion
     // itself. If that does not land on the contact, a safe search on the motion itself does.
-    double when = crossing(dt, start, gap_of(end), from_contact, 1e1 * touching_, [&](double t) {
+    double when = crossing(dt, start, gap_of(end), from_contact, 10 * touching_, [&](double t) {
       return gap_of(between(s, end, dt, t));
     });
     GateState there = moved(when);
@@ -276,7 +266,7 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
   return earliest;
 }
 
-void StableMethod::resolve(GateState& s, bool hold_all, Watch& watch) const {
+void StableMethod::resolve(GateState& s, Watch& watch) const {
   const auto touch = touches(p_, s, {true, true});
   const Coupling w = coupling(p_, touch);
   constexpr int kRounds = 20;
@@ -291,7 +281,7 @@ void StableMethod::resolve(GateState& s, bool hold_all, Watch& watch) const {
       active[side] = held || (touch[side].gap <= touching_ && u[side] <= 0.0);
       const double e = touch[side].kind == ContactKind::tip ? p_.contact.tip_restitution
                                                             : p_.contact.restitution;
-      const bool elastic = !held && !hold_all && round < kRounds - 1;
+      const bool elastic = !held && round < kRounds - 1;
       b[side] = elastic ? (1.0 + e) * u[side] : u[side];
     }
     const auto done = [&](Side side) {

@@ -26,7 +26,6 @@ class StableMethod final : public Method {
                  Watch& watch) const override;
 
  private:
-  void step(GateState& s, double force_x, Watch& watch) const;
   void substep(GateState& s, double force_x, Watch& watch) const;
   /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
   void glide(GateState& s, double force_x, const GateFlow& flow) const;
@@ -37,7 +36,8 @@ class StableMethod final : public Method {
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
                                  double dt, std::array<bool, 2> hit) const;
-  void resolve(GateState& s, bool hold_all, Watch& watch) const;
+  /// Impact law at every contact that closes, both beams together, until none does.
+  void resolve(GateState& s, Watch& watch) const;
 
   const GateParams& p_;
   double threshold_;      // N s

@@ -1,0 +1,190 @@
+#include "dynamics/gate.h"
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/numbers.h"
+#include "tests/support/scenes.h"
+
+namespace gatewalk::dynamics {
+namespace {
+
+using test::kEps;
+
+RandomForce force_of(const GateParams& p, std::uint64_t trial = 0) {
+  return {p.forces, Random(Purpose::gate, {.seed = 1, .row = 0, .trial = trial})};
+}
+
+GateRun run(const GateParams& p, const BodyState& start, std::uint64_t trial = 0) {
+  RandomForce force = force_of(p, trial);
+  return run_gate(p, *make_method(p), start, force);
+}
+
+class Gate : public testing::TestWithParam<const char*> {
+ protected:
+  Gate() { p.run.method = GetParam(); }
+  GateParams p = test::free_rods();
+};
+INSTANTIATE_TEST_SUITE_P(Methods, Gate, testing::Values("stable", "paper"));
+
+// Straight lines without forces: the first step beyond a border ends the run.
+TEST_P(Gate, EndsWhereTheBodyLeaves) {
+  const double h = p.run.step;
+  struct Case {
+    BodyState start;
+    Ending ending;
+    double seconds;
+  };
+  for (const Case& c : {Case{{20, 5, 10, 0}, Ending::exited_right, 0.5},
+                        Case{{-20, 5, -10, 0}, Ending::exited_left, 0.5},
+                        Case{{0, 55, 0, 10}, Ending::traversed, 0.5},
+                        Case{{0, 5, 0, -10}, Ending::trapped, 12.0}}) {
+    const GateRun r = run(p, c.start);
+    EXPECT_EQ(r.ending, c.ending);
+    EXPECT_GE(r.seconds, c.seconds - 1e-9);
+    EXPECT_LE(r.seconds, c.seconds + h + 1e-9);
+    EXPECT_NEAR(r.exit.x, c.start.x + c.start.vx * r.seconds, 1e-10);
+    EXPECT_NEAR(r.exit.y, c.start.y + c.start.vy * r.seconds, 1e-10);
+    EXPECT_EQ(r.exit.vx, c.start.vx);
+    EXPECT_EQ(r.exit.vy, c.start.vy);
+    EXPECT_EQ(r.watch.impacts, 0);
+    EXPECT_EQ(outside(p, r.exit), c.ending != Ending::trapped);
+  }
+}
+
+// Over the far end and a side in one step: it has traversed.
+TEST_P(Gate, TraversalComesBeforeASide) {
+  EXPECT_EQ(run(p, {24.99, 59.99, 10, 10}).ending, Ending::traversed);
+  EXPECT_EQ(run(p, {-24.99, 59.99, -10, 10}).ending, Ending::traversed);
+}
+
+TEST_P(Gate, StartOutsideEndsAtOnce) {
+  const GateRun r = run(p, {30, 5, 1, 2});
+  EXPECT_EQ(r.ending, Ending::exited_right);
+  EXPECT_EQ(r.seconds, 0.0);
+  EXPECT_EQ(r.watch.steps, 0);
+  EXPECT_EQ(r.exit.x, 30.0);
+}
+
+TEST_P(Gate, StartOnTheBorderIsInside) {
+  const GateRun r = run(p, {25, 5, -10, 0});
+  EXPECT_EQ(r.ending, Ending::exited_left);
+  EXPECT_NEAR(r.seconds, 5.0, 2 * p.run.step);
+}
+
+TEST_P(Gate, TrappedMeansTheWholeTimeLimit) {
+  for (const double limit : {12.0, 1.0, 0.13, 0.004}) {
+    for (const double step : {0.004, 0.001, 0.02}) {
+      p.run.time_limit = limit;
+      p.run.step = step;
+      const GateRun r = run(p, {0, 5, 0, 0});
+      EXPECT_EQ(r.ending, Ending::trapped);
+      // Whole steps, the last one beyond the limit if need be.
+      EXPECT_EQ(static_cast<double>(r.watch.steps), std::ceil(limit / step - 1e-6))
+          << limit << ' ' << step;
+      EXPECT_NEAR(r.seconds, static_cast<double>(r.watch.steps) * step, 1e-12);
+    }
+  }
+}
+
+// S15: without contact v_x adds up one impulse F_i * 0.02 s per hold, whatever the step...
+TEST_P(Gate, LateralSpeedIsTheSumOfItsDrawsAtAnyStep) {
+  p.forces.random = 20.0;
+  p.beams.joint_x = 1e5;
+  p.run.time_limit = 2.0;
+  for (const double step : {0.02, 0.01, 0.004, 0.002, 0.001}) {
+    p.run.step = step;
+    for (std::uint64_t trial = 0; trial < 20; ++trial) {
+      Random draws(Purpose::gate, {.seed = 1, .row = 0, .trial = trial});
+      double sum = 0.0;
+      for (int hold = 0; hold < 100; ++hold) sum += 20.0 * draws.normal() * 0.02;
+      const GateRun r = run(p, {}, trial);
+      EXPECT_NEAR(r.seconds, 2.0, 1e-12);
+      // 2000 roundings of numbers up to 20.
+      EXPECT_NEAR(r.exit.vx, sum, 2000 * kEps * 10) << step;
+    }
+  }
+}
+
+// ... and so its standard deviation after 2 s is 0.2 Rm (s m/s/N): 0.02 s Rm sqrt(100) / M. 80 000
+// trials know it to 0.25 %, four times that is the tolerance.
+TEST_P(Gate, LateralSpeedHasTheStandardDeviationOfHeldForce) {
+  p.forces.random = 20.0;
+  p.beams.joint_x = 1e5;
+  p.run.time_limit = 2.0;
+  p.run.step = 0.02;
+  constexpr int kTrials = 80'000;
+  const auto method = make_method(p);
+  std::vector<double> vx(kTrials);
+  tbb::parallel_for(0, kTrials, [&](int i) {
+    RandomForce force = force_of(p, static_cast<std::uint64_t>(i));
+    vx[i] = run_gate(p, *method, {}, force).exit.vx;
+  });
+  double sum = 0.0, squares = 0.0;
+  for (const double v : vx) {
+    sum += v;
+    squares += v * v;
+  }
+  EXPECT_NEAR(sum / kTrials, 0.0, 4 * 4.0 / std::sqrt(kTrials));
+  EXPECT_NEAR(std::sqrt(squares / kTrials), 4.0, 0.01 * 4.0);
+}
+
+// The force goes on where the last gate left it: two runs of 1 s are one of 2 s.
+TEST_P(Gate, RandomForceGoesOnAcrossRuns) {
+  p.forces.random = 20.0;
+  p.beams.joint_x = 1e5;
+  p.run.time_limit = 2.0;
+  const BodyState whole = run(p, {}).exit;
+  for (const double first : {1.0, 0.012, 0.5}) {  // on and off the beat of the holds
+    RandomForce force = force_of(p);
+    p.run.time_limit = first;
+    const GateRun one = run_gate(p, *make_method(p), {}, force);
+    p.run.time_limit = 2.0 - first;
+    const GateRun two = run_gate(p, *make_method(p), one.exit, force);
+    EXPECT_NEAR(two.exit.x, whole.x, 1e-11);
+    EXPECT_NEAR(two.exit.vx, whole.vx, 1e-12);
+    p.run.time_limit = 2.0;
+  }
+}
+
+TEST_P(Gate, SameTrialSameBits) {
+  p = test::study(10.0);
+  p.run.method = GetParam();
+  const GateRun a = run(p, {}, 5), b = run(p, {}, 5), c = run(p, {}, 6);
+  EXPECT_TRUE(test::same_bits(a.exit.x, b.exit.x));
+  EXPECT_TRUE(test::same_bits(a.exit.vy, b.exit.vy));
+  EXPECT_EQ(a.watch.impacts, b.watch.impacts);
+  EXPECT_NE(a.exit.x, c.exit.x);
+}
+
+/// A method that loses itself in the third call.
+class Breaking final : public Method {
+ public:
+  explicit Breaking(double BodyState::*what) : what_(what) {}
+  double advance(GateState& s, double, double duration, EnergyLedger&,
+                 Watch& watch) const override {
+    if (++watch.steps == 3) s.body.*what_ = std::numeric_limits<double>::quiet_NaN();
+    return duration;
+  }
+
+ private:
+  double BodyState::*what_;
+};
+
+TEST(GateRun, BrokenWhenTheStateStopsBeingFinite) {
+  const GateParams p;
+  for (const auto what : {&BodyState::x, &BodyState::y, &BodyState::vx, &BodyState::vy}) {
+    RandomForce force = force_of(p);
+    const GateRun r = run_gate(p, Breaking(what), {}, force);
+    EXPECT_EQ(r.ending, Ending::broken);
+    EXPECT_EQ(r.watch.steps, 3);
+    EXPECT_NEAR(r.seconds, 0.06, 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace gatewalk::dynamics

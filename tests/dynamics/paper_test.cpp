@@ -1,0 +1,200 @@
+#include "dynamics/methods/paper.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dynamics/ensemble.h"
+#include "dynamics/gate.h"
+#include "tests/support/numbers.h"
+#include "tests/support/ride.h"
+#include "tests/support/scenes.h"
+
+namespace gatewalk::dynamics {
+namespace {
+
+using test::kEps;
+using test::Ride;
+
+GateParams euler(GateParams p, double step = 0.004) {
+  p.run.method = "paper";
+  p.run.step = step;
+  return p;
+}
+
+/// The disc far away at rest, a beam let go at 0.5 rad.
+GateState let_go() {
+  GateState s;
+  s.beams[kLeft].theta = 0.5;
+  return s;
+}
+
+GateParams quiet_gate() {
+  GateParams p;
+  p.forces.propulsion = 0.0;
+  return p;
+}
+
+// S1: 3.3e-3 at 0.004 s after 2 s, as hypot(theta, omega / w0); first order over five halvings.
+TEST(Paper, FreeBeamHasEulersError) {
+  const GateParams p = quiet_gate();
+  const double w0 = std::sqrt(400.0 / p.beams.inertia()), wd = std::sqrt(w0 * w0 - 1.44);
+  const double decay = 0.5 * std::exp(-2.4), c = std::cos(2 * wd), s = std::sin(2 * wd);
+  const double theta = decay * (c + 1.2 / wd * s), omega = -decay * w0 * w0 / wd * s;
+  double last = 0.0;
+  for (int halvings = 0; halvings <= 5; ++halvings) {
+    Ride ride(euler(p, 0.004 / (1 << halvings)), let_go());
+    ride.go(2.0);
+    const BeamState& beam = ride.s.beams[kLeft];
+    const double error = std::hypot(beam.theta - theta, (beam.omega - omega) / w0);
+    if (halvings == 0) {
+      EXPECT_NEAR(error, 3.3e-3, 5e-5);  // the printed digits
+    } else {
+      EXPECT_NEAR(std::log2(last / error), 1.0, 0.1) << halvings;
+    }
+    last = error;
+  }
+}
+
+// S2: without damping each step multiplies the energy by 1 + k h^2 / I; 3000 steps by 2.513.
+TEST(Paper, FreeBeamGainsEnergyWithoutDamping) {
+  GateParams p = euler(quiet_gate());
+  p.beams.damping = 0.0;
+  Ride ride(p, let_go());
+  const double before = energy(p, ride.s);
+  ride.go(12.0);
+  const double growth = energy(p, ride.s) / before;
+  EXPECT_NEAR(growth, 2.513, 1e-3);
+  EXPECT_NEAR(growth, std::pow(1 + 400.0 / p.beams.inertia() * 0.004 * 0.004, 3000), 1e-11);
+  EXPECT_NEAR(ride.watch.energy_created, (growth - 1) * before, 1e-9);  // and the ledger sees it
+}
+
+// S17: explicit Euler is stable only for h < d / k: a step multiplies the energy's envelope by
+// 1 - (d - k h) h / I, 3000 steps at 10 % off by e^-2.9 and e^2.9.
+TEST(Paper, FreeBeamIsUnstableBeyondEulersLimit) {
+  for (const double factor : {0.9, 1.1}) {
+    GateParams p = euler(quiet_gate());
+    p.beams.stiffness_left = factor * p.beams.damping / 0.004;
+    Ride ride(p, let_go());
+    const double before = energy(p, ride.s);
+    ride.go(12.0);
+    const double rate = (1 - factor) * p.beams.damping * 0.004 / p.beams.inertia();
+    const double growth = std::pow(1 - rate, 3000);
+    // Where in its swing the beam is shows in the energy by zeta = d / (2 sqrt(k I)), some 6 %.
+    EXPECT_NEAR(energy(p, ride.s) / before, growth, 0.12 * growth) << factor;
+  }
+}
+
+// Against one step of Euler written out: position by the old velocity, velocity by the old force.
+TEST(Paper, StepIsExplicitEuler) {
+  GateParams p = euler(GateParams{});
+  GateState s;
+  s.body = {1.0, 2.0, 3.0, 4.0};
+  s.beams[kLeft] = {0.1, 0.2, false};
+  s.beams[kRight] = {-0.3, 0.4, false};
+  Ride ride(p, s);
+  ride.step(5.0);
+  const double h = 0.004, inertia = p.beams.inertia();
+  EXPECT_EQ(ride.s.body.x, 1.0 + 3.0 * h);
+  EXPECT_EQ(ride.s.body.y, 2.0 + 4.0 * h);
+  EXPECT_NEAR(ride.s.body.vx, 3.0 + (5.0 - 0.06 * 3.0) * h, 4 * kEps * 3);
+  EXPECT_NEAR(ride.s.body.vy, 4.0 + (8.0 - 0.06 * 4.0) * h, 4 * kEps * 4);
+  EXPECT_EQ(ride.s.beams[kLeft].theta, 0.1 + 0.2 * h);
+  EXPECT_NEAR(ride.s.beams[kLeft].omega, 0.2 + (-400 * 0.1 - 50 * 0.2) / inertia * h, 4 * kEps);
+  EXPECT_NEAR(ride.s.beams[kRight].omega, 0.4 + (400 * 0.3 - 50 * 0.4) / inertia * h, 4 * kEps);
+}
+
+// S5 one after the other, left first: J = 135/59, then 1.8 (750/59) / 11.8; omega = 0.72 J. The
+// paper's asymmetry: 1.647 and 1.396 rad/s where both at once give 1.519.
+TEST(Paper, DoubleHitIsSequential) {
+  GateParams p = euler(test::free_rods());
+  p.beams.joint_x = 15.0;  // the disc meets both beams 15 m from their joints
+  GateState s;
+  s.body = {0.0, 20.001, 0.0, 15.0};
+  Ride ride(p, s);
+  ride.step();
+  const double second = 1.8 * (750.0 / 59) / 11.8;
+  EXPECT_EQ(ride.watch.impacts, 2);
+  EXPECT_NEAR(ride.s.beams[kLeft].omega, 97.2 / 59, 16 * kEps);
+  EXPECT_NEAR(ride.s.beams[kRight].omega, 0.72 * second, 16 * kEps);
+  EXPECT_NEAR(ride.s.body.vy, 750.0 / 59 - second, 64 * kEps);
+  EXPECT_NEAR(ride.s.beams[kLeft].omega, 1.647, 5e-4);
+  EXPECT_NEAR(ride.s.beams[kRight].omega, 1.396, 5e-4);
+}
+
+TEST(Paper, OnlyOverlappingAndClosingContactsAreHit) {
+  struct Case {
+    double y, vy;
+    int impacts;
+  };
+  for (const Case& c : {Case{19.999, 15.0, 0}, Case{20.001, 15.0, 1}, Case{20.001, -1.0, 0}}) {
+    GateState s;
+    s.body = {-10.0, c.y, 0.0, c.vy};
+    Ride ride(euler(test::free_rods()), s);
+    ride.step();
+    EXPECT_EQ(ride.watch.impacts, c.impacts) << c.y << ' ' << c.vy;
+  }
+}
+
+// Free end: elastic, whatever the restitution.
+TEST(Paper, TipHitKeepsTheEnergy) {
+  GateParams p = euler(test::free_rods());
+  p.contact.restitution = 0.0;
+  GateState s;
+  s.body = {9.0, 29.0, -12.0, 3.0};  // 9.06 m from the left tip at (0, 30)
+  s.beams[kRight].theta = 1.5;       // out of the way
+  Ride ride(p, s);
+  const double before = energy(p, ride.s);
+  ride.step();
+  EXPECT_EQ(ride.watch.impacts, 1);
+  EXPECT_NE(ride.s.beams[kLeft].omega, 0.0);
+  EXPECT_NEAR(energy(p, ride.s), before, 16 * kEps * before);
+}
+
+// A hit with |dP| below epsilon = 0.04 N s becomes a constraint, and the beam gets the velocity of
+// Eq. (10); a stronger one does not.
+TEST(Paper, WeakHitsBecomeConstraints) {
+  for (const double u : {0.9, 1.1}) {
+    const GateParams p = euler(test::free_rods());
+    const double v = u * 0.04 * 11.8 / 1.8;  // J = 1.8 v / 11.8 at r = 15
+    GateState s;
+    s.body = {-10.0, 20.0 + 1e-9, 0.0, v};
+    Ride ride(p, s);
+    ride.step();
+    EXPECT_EQ(ride.watch.impacts, 1);
+    EXPECT_EQ(ride.s.beams[kLeft].held, u < 1);
+    // Held or opening at e v, but for what the beam turns in one step: omega^2 R h.
+    const double omega = ride.s.beams[kLeft].omega;
+    const double rate = gap_rate(ride.touch(kLeft), ride.s.body, ride.s.beams[kLeft]);
+    EXPECT_NEAR(rate, u < 1 ? 0.0 : 0.8 * v, 2 * omega * omega * p.body.radius * 0.004);
+    if (u < 1) {
+      EXPECT_NEAR(omega, ride.s.body.vy / 15.0, 1e-6);
+    }
+  }
+}
+
+TEST(Paper, HasNoFormulaForTheJoint) {
+  GateState s;
+  s.body = {-25.0, 20.001, 0.0, 3.0};
+  Ride ride(euler(test::free_rods()), s);
+  ride.step();
+  EXPECT_EQ(ride.watch.undefined_contacts, 1);
+  EXPECT_EQ(ride.watch.impacts, 0);
+  EXPECT_EQ(ride.s.body.vy, 3.0);  // nothing is done
+}
+
+// S7 and the table of scenes that break methods: its faults are there, and Health shows each.
+TEST(Paper, HealthShowsItsFaults) {
+  const GateParams p = euler(test::study(10.0));
+  const Health health = run_gate_trials(p, {}, 1, {0, 1000}).health;
+  EXPECT_FALSE(health.clean());
+  EXPECT_EQ(health.broken, 0);
+  EXPECT_GT(health.creating_energy, 900);        // Euler in every contact, measured 1000
+  EXPECT_GT(health.penetrating, 200);            // constraint drift, measured 318
+  EXPECT_GT(health.undefined_contacts, 500);     // joints, measured 1738
+  EXPECT_GT(health.worst_energy_created, 1.0);   // J, where `stable` has 1e-5
+  EXPECT_GT(health.worst_penetration, 5.0);      // m of a radius of 10 m
+}
+
+}  // namespace
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,295 @@
+#include "dynamics/state_space.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tests/support/numbers.h"
+
+namespace gatewalk::dynamics {
+namespace {
+
+using test::Draw;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+using Edges = std::vector<double>;
+
+StateSpace paper() { return StateSpace::paper(GateParams{}); }
+
+// ---- Table III ----
+
+TEST(StateSpace, HasTheStatesOfTableIII) {
+  const StateSpace s = paper();
+  EXPECT_EQ(s.size(), 87);
+  EXPECT_EQ(s.trapped(), 87);  // O_88, counted from 0
+  const int states[] = {25, 30, 30, 1, 1};
+  int first = 0;
+  for (int b = 0; b < kBoundaries; ++b) {
+    EXPECT_EQ(s.first(static_cast<Boundary>(b)), first) << kBoundaryNames[b];
+    for (int i = 0; i < states[b]; ++i) EXPECT_EQ(s.boundary(first + i), static_cast<Boundary>(b));
+    first += states[b];
+  }
+}
+
+TEST(StateSpace, HasTheEdgesOfTableIII) {
+  const StateSpace space = paper();
+  const auto& bins = space.bins();
+  const auto of = [&](Boundary b) -> const Bins& { return bins[static_cast<int>(b)]; };
+  const Edges fives{-25, -15, -5, 5, 15, 25}, sideways{-20, -10, 0, 10, 20, 30};
+  EXPECT_EQ(of(Boundary::enter), (Bins{fives, fives, {10, 20}}));
+  EXPECT_EQ(of(Boundary::right_deflect), (Bins{{10, 20, 30}, {-30, -20, -10, 0}, sideways}));
+  EXPECT_EQ(of(Boundary::left_deflect), (Bins{{10, 20, 30}, {0, 10, 20, 30}, sideways}));
+  // One state each; the bin is the README's: y in [40, 60].
+  EXPECT_EQ(of(Boundary::right_traverse), (Bins{{10, 30}, {-30, 0}, {-20, 30}}));
+  EXPECT_EQ(of(Boundary::left_traverse), (Bins{{10, 30}, {0, 30}, {-20, 30}}));
+}
+
+// The text fixes an order for nobody but us: d slowest, then vx, then vy.
+TEST(StateSpace, CountsDThenVxThenVy) {
+  const StateSpace s = paper();
+  const Cell enter = s.cell(7);  // second d, third vx
+  EXPECT_EQ(enter.boundary, Boundary::enter);
+  EXPECT_EQ(enter.d, (std::array<double, 2>{-15, -5}));
+  EXPECT_EQ(enter.vx, (std::array<double, 2>{-5, 5}));
+  EXPECT_EQ(enter.vy, (std::array<double, 2>{10, 20}));
+  const Cell side = s.cell(55 + 15 + 2 * 5 + 4);  // LD: second d, third vx, fifth vy
+  EXPECT_EQ(side.boundary, Boundary::left_deflect);
+  EXPECT_EQ(side.d, (std::array<double, 2>{20, 30}));
+  EXPECT_EQ(side.vx, (std::array<double, 2>{20, 30}));
+  EXPECT_EQ(side.vy, (std::array<double, 2>{20, 30}));
+}
+
+// Bins of one boundary tile their box: volumes add up, and no two states share a bin.
+TEST(StateSpace, CellsTileTheBoundary) {
+  const StateSpace s = paper();
+  std::array<double, kBoundaries> volume{};
+  std::set<std::array<double, 4>> corners;
+  for (int state = 0; state < s.size(); ++state) {
+    const Cell c = s.cell(state);
+    for (const auto& side : {c.d, c.vx, c.vy}) EXPECT_LT(side[0], side[1]);
+    volume[static_cast<int>(c.boundary)] +=
+        (c.d[1] - c.d[0]) * (c.vx[1] - c.vx[0]) * (c.vy[1] - c.vy[0]);
+    EXPECT_TRUE(
+        corners.insert({static_cast<double>(c.boundary), c.d[0], c.vx[0], c.vy[0]}).second);
+  }
+  EXPECT_EQ(volume, (std::array<double, kBoundaries>{25000, 30000, 30000, 30000, 30000}));
+}
+
+TEST(StateSpace, ScalesDistancesWithTheGate) {
+  GateParams p;
+  p.beams.joint_x = 50;
+  p.beams.joint_y = 40;
+  p.body.radius = 20;
+  p.run.traverse_y = 100;
+  const auto bins = StateSpace::paper(p).bins();
+  EXPECT_EQ(bins[0].d, (Edges{-50, -30, -10, 10, 30, 50}));
+  EXPECT_EQ(bins[1].d, (Edges{20, 30, 40}));
+  EXPECT_EQ(bins[3].d, (Edges{20, 60}));
+  EXPECT_EQ(bins[0].vx, (Edges{-25, -15, -5, 5, 15, 25}));  // velocities are the table's
+}
+
+// ---- Indices ----
+
+TEST(StateSpace, SampleLiesInItsState) {
+  const StateSpace s = paper();
+  for (int state = 0; state < s.size(); ++state) {
+    Random random(Purpose::row, {1, static_cast<std::uint64_t>(state), 0});
+    const Cell cell = s.cell(state);
+    double d_sum = 0.0;
+    constexpr int n = 1000;
+    for (int i = 0; i < n; ++i) {
+      const Crossing c = s.sample(state, random);
+      const auto index = s.index_of(c);
+      ASSERT_EQ(index.state, state);
+      ASSERT_FALSE(index.clamped);
+      d_sum += (c.d - cell.d[0]) / (cell.d[1] - cell.d[0]);
+    }
+    // Uniform: mean 1/2 with a standard error of 1 / sqrt(12 n); 87 states, so five of them.
+    EXPECT_NEAR(d_sum / n, 0.5, 5 / std::sqrt(12.0 * n));
+  }
+}
+
+TEST(StateSpace, CentreAndLowerCornerBelongToTheCell) {
+  const StateSpace s = paper();
+  for (int state = 0; state < s.size(); ++state) {
+    const Cell c = s.cell(state);
+    const auto mid = [](const std::array<double, 2>& e) { return 0.5 * (e[0] + e[1]); };
+    EXPECT_EQ(s.index_of({c.boundary, mid(c.d), mid(c.vx), mid(c.vy)}).state, state);
+    const auto corner = s.index_of({c.boundary, c.d[0], c.vx[0], c.vy[0]});
+    EXPECT_EQ(corner.state, state);
+    EXPECT_FALSE(corner.clamped);
+  }
+}
+
+// Beyond an outer edge a crossing goes into the nearest bin and is flagged; on the edge it is not.
+TEST(StateSpace, ClampsToTheNearestBinAndSaysSo) {
+  const StateSpace s = paper();
+  const Crossing middle{Boundary::enter, 0.0, 0.0, 15.0};
+  const int centre = 2 * 5 + 2;
+  ASSERT_EQ(s.index_of(middle).state, centre);
+  struct Case {
+    double Crossing::*axis;
+    double inside, outside;
+    int state;
+  };
+  for (const Case& c :
+       {Case{&Crossing::d, -25.0, std::nextafter(-25.0, -kInf), 2},
+        Case{&Crossing::d, 25.0, std::nextafter(25.0, kInf), 4 * 5 + 2},
+        Case{&Crossing::vx, -25.0, -26.0, 2 * 5}, Case{&Crossing::vx, 25.0, 1e300, 2 * 5 + 4},
+        Case{&Crossing::vy, 10.0, -3.0, centre}, Case{&Crossing::vy, 20.0, 20.000001, centre}}) {
+    Crossing at = middle;
+    at.*c.axis = c.inside;
+    EXPECT_EQ(s.index_of(at).state, c.state);
+    EXPECT_FALSE(s.index_of(at).clamped);
+    at.*c.axis = c.outside;
+    EXPECT_EQ(s.index_of(at).state, c.state);
+    EXPECT_TRUE(s.index_of(at).clamped);
+  }
+}
+
+TEST(StateSpace, EveryBoundaryClampsEverySide) {
+  const StateSpace s = paper();
+  for (int b = 0; b < kBoundaries; ++b) {
+    const Bins& g = s.bins()[b];
+    const Boundary boundary = static_cast<Boundary>(b);
+    const Crossing low{boundary, g.d.front(), g.vx.front(), g.vy.front()};
+    const Crossing high{boundary, g.d.back(), g.vx.back(), g.vy.back()};
+    const int first = s.first(boundary);
+    const int last = first + static_cast<int>((g.d.size() - 1) * (g.vx.size() - 1) *
+                                              (g.vy.size() - 1)) - 1;
+    for (const auto& [corner, state, away] : {std::tuple{low, first, -1.0}, {high, last, 1.0}}) {
+      EXPECT_EQ(s.index_of(corner).state, state);
+      EXPECT_FALSE(s.index_of(corner).clamped);
+      for (const auto axis : {&Crossing::d, &Crossing::vx, &Crossing::vy}) {
+        Crossing beyond = corner;
+        beyond.*axis += away;
+        EXPECT_EQ(s.index_of(beyond).state, state);
+        EXPECT_TRUE(s.index_of(beyond).clamped);
+      }
+    }
+  }
+}
+
+TEST(StateSpace, RefusesEdgesThatMakeNoBins) {
+  const auto good = paper().bins();
+  EXPECT_EQ(StateSpace(good), paper());
+  for (const Edges& bad :
+       {Edges{}, Edges{1}, Edges{1, 1}, Edges{2, 1}, Edges{0, 1, 1, 2},
+        Edges{0, std::numeric_limits<double>::quiet_NaN(), 2}, Edges{0, kInf}, Edges{-kInf, 0}}) {
+    for (int b = 0; b < kBoundaries; ++b) {
+      for (const auto axis : {&Bins::d, &Bins::vx, &Bins::vy}) {
+        auto bins = good;
+        bins[b].*axis = bad;
+        try {
+          (void)StateSpace(bins);
+          ADD_FAILURE() << "accepted for " << kBoundaryNames[b];
+        } catch (const std::invalid_argument& e) {
+          EXPECT_NE(std::string(e.what()).find(kBoundaryNames[b]), std::string::npos) << e.what();
+        }
+      }
+    }
+  }
+}
+
+// ---- Crossings ----
+
+// Top -> EN of the gate above; left below y = 30 -> RD of the left neighbour, above -> RT; right
+// likewise -> LD, LT.
+TEST(Crossing, OfEachExit) {
+  const GateParams p;
+  struct Case {
+    Ending ending;
+    BodyState exit;
+    Boundary boundary;
+    double d;
+    int di_x, di_y;
+  };
+  using enum Ending;
+  using enum Boundary;
+  const Case cases[] = {{traversed, {7, 60.05, 1, 15}, enter, 7, 0, 1},
+                        {exited_left, {-25.1, 12, -5, 3}, right_deflect, 18, -1, 0},
+                        {exited_left, {-25.1, 47, -5, 3}, right_traverse, 17, -1, 0},
+                        {exited_right, {25.1, 12, 5, 3}, left_deflect, 18, 1, 0},
+                        {exited_right, {25.1, 47, 5, 3}, left_traverse, 17, 1, 0},
+                        {exited_left, {-25.1, -4, -5, 3}, right_deflect, 34, -1, 0}};
+  for (const Case& c : cases) {
+    const Crossing crossing = crossing_of(p, c.ending, c.exit);
+    EXPECT_EQ(crossing.boundary, c.boundary);
+    EXPECT_EQ(crossing.d, c.d);
+    EXPECT_EQ(crossing.vx, c.exit.vx);
+    EXPECT_EQ(crossing.vy, c.exit.vy);
+    const Move move = move_into(crossing.boundary);
+    EXPECT_EQ(move.di_x, c.di_x);
+    EXPECT_EQ(move.di_y, c.di_y);
+  }
+}
+
+// Exactly at the joint's height the body is not below it.
+TEST(Crossing, AtTheJointCountsAsAbove) {
+  const GateParams p;
+  const Crossing at = crossing_of(p, Ending::exited_left, {-25.1, 30, -5, 0});
+  EXPECT_EQ(at.boundary, Boundary::right_traverse);
+  EXPECT_EQ(at.d, 0.0);
+  const double just_below = std::nextafter(30.0, 0.0);
+  const Crossing below = crossing_of(p, Ending::exited_left, {-25.1, just_below, -5, 0});
+  EXPECT_EQ(below.boundary, Boundary::right_deflect);
+  EXPECT_GT(below.d, 0.0);
+}
+
+TEST(Crossing, RunsThatStayedInsideHaveNone) {
+  const GateParams p;
+  EXPECT_THROW((void)crossing_of(p, Ending::trapped, {}), std::logic_error);
+  EXPECT_THROW((void)crossing_of(p, Ending::broken, {}), std::logic_error);
+}
+
+// Round trip: the body that enters at a crossing is, on its boundary, the body that has left the
+// neighbour; shifted there and back nothing but the way beyond the border is different.
+TEST(Crossing, RoundTrips) {
+  const GateParams p;
+  Draw draw(1);
+  for (int i = 0; i < 10'000; ++i) {
+    const double beyond = draw.uniform(0, 0.1);
+    Ending ending = Ending::traversed;
+    BodyState exit{draw.uniform(-25, 25), 60 + beyond, draw.uniform(-20, 20), draw.uniform(0, 20)};
+    BodyState on_border = exit;
+    on_border.y = 60;
+    if (i % 3 != 0) {
+      const double side = i % 3 == 1 ? -1.0 : 1.0;
+      ending = side < 0 ? Ending::exited_left : Ending::exited_right;
+      exit = {side * (25 + beyond), draw.uniform(-5, 60), side * draw.uniform(0, 20),
+              draw.uniform(-20, 20)};
+      on_border = exit;
+      on_border.x = side * 25;
+    }
+    const Crossing crossing = crossing_of(p, ending, exit);
+    const Move move = move_into(crossing.boundary);
+    const BodyState entry = entry_state(p, crossing);
+    EXPECT_NEAR(entry.x + 50 * move.di_x, on_border.x, 1e-13);
+    EXPECT_NEAR(entry.y + 60 * move.di_y, on_border.y, 1e-13);
+    EXPECT_EQ(entry.vx, exit.vx);
+    EXPECT_EQ(entry.vy, exit.vy);
+    EXPECT_FALSE(outside(p, entry));
+
+    const BodyState next = shifted_into_next(p, ending, exit);
+    EXPECT_NEAR(next.x + 50 * move.di_x, exit.x, 1e-13);
+    EXPECT_NEAR(next.y + 60 * move.di_y, exit.y, 1e-13);
+    EXPECT_EQ(next.vx, exit.vx);
+    EXPECT_EQ(next.vy, exit.vy);
+    EXPECT_NEAR(std::hypot(next.x - entry.x, next.y - entry.y), beyond, 1e-12);
+  }
+}
+
+TEST(Crossing, RunsThatStayedInsideAreNotShifted) {
+  const BodyState b = shifted_into_next(GateParams{}, Ending::trapped, {1, 2, 3, 4});
+  EXPECT_EQ(b.x, 1);
+  EXPECT_EQ(b.y, 2);
+}
+
+}  // namespace
+}  // namespace gatewalk::dynamics

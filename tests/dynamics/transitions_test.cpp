@@ -1,0 +1,162 @@
+#include "dynamics/transitions.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "tests/support/numbers.h"
+#include "tests/support/threads.h"
+
+namespace gatewalk::dynamics {
+namespace {
+
+GateParams field_scene() { return {}; }  // Sec. III-C, F = 8, Rm = 40
+
+Transitions built(std::uint64_t seed, TrialRange range) {
+  const GateParams p = field_scene();
+  Transitions t(StateSpace::paper(p));
+  add_trials(t, p, seed, range);
+  return t;
+}
+
+void expect_same(const Transitions& a, const Transitions& b) {
+  EXPECT_EQ(a.rows, b.rows);
+  EXPECT_EQ(a.trials, b.trials);
+  EXPECT_EQ(a.clamped, b.clamped);
+  EXPECT_EQ(a.health.runs, b.health.runs);
+  EXPECT_EQ(a.health.impacts, b.health.impacts);
+  EXPECT_TRUE(test::same_bits(a.health.worst_speed, b.health.worst_speed));
+  EXPECT_TRUE(test::same_bits(a.health.worst_energy_created, b.health.worst_energy_created));
+}
+
+TEST(Transitions, StartEmpty) {
+  const Transitions t(StateSpace::paper(field_scene()));
+  EXPECT_EQ(t.counts().nonZeros(), 0);
+  EXPECT_EQ(t.counts().rows(), 87);
+  EXPECT_EQ(t.counts().cols(), 88);
+  EXPECT_EQ(t.trials, std::vector<std::int64_t>(87, 0));
+  EXPECT_EQ(t.clamped, std::vector<std::int64_t>(87, 0));
+}
+
+TEST(Transitions, EveryTrialIsCountedOnce) {
+  const Transitions t = built(1, {0, 20});
+  EXPECT_EQ(t.health.runs, 87 * 20);
+  EXPECT_TRUE(t.health.clean());
+  const auto counts = t.counts();
+  ASSERT_EQ(counts.rows(), 87);
+  ASSERT_EQ(counts.cols(), 88);
+  EXPECT_EQ(counts.sum(), 87 * 20);
+  for (int row = 0; row < 87; ++row) {
+    EXPECT_EQ(t.trials[row], 20);
+    EXPECT_GE(t.clamped[row], 0);
+    EXPECT_LE(t.clamped[row], 20);
+    std::int64_t sum = 0;
+    for (int column = 0; column < 88; ++column) {
+      const std::int64_t n = counts.coeff(row, column);
+      EXPECT_GE(n, 0);
+      const auto it = t.rows[row].find(column);
+      EXPECT_EQ(n, it == t.rows[row].end() ? 0 : it->second);
+      sum += n;
+    }
+    EXPECT_EQ(sum, 20);
+  }
+}
+
+// A trial of a row, replayed by hand from its stream {seed, row, trial}: start, force, index.
+TEST(Transitions, TrialsCanBeReplayedAlone) {
+  const GateParams p = field_scene();
+  const auto method = make_method(p);
+  Transitions expected(StateSpace::paper(p));
+  std::set<int> columns;
+  for (int row = 0; row < 87; ++row) {
+    for (std::uint64_t trial = 3; trial < 5; ++trial) {
+      Random random(Purpose::row, {9, static_cast<std::uint64_t>(row), trial});
+      const Crossing start = expected.space.sample(row, random);
+      EXPECT_EQ(expected.space.index_of(start).state, row);
+      RandomForce force(p.forces, random);
+      const GateRun run = run_gate(p, *method, entry_state(p, start), force);
+      int column = expected.space.trapped();
+      if (run.ending != Ending::trapped) {
+        const auto index = expected.space.index_of(crossing_of(p, run.ending, run.exit));
+        column = index.state;
+        expected.clamped[row] += index.clamped;
+      }
+      columns.insert(column);
+      ++expected.rows[row][column];
+      ++expected.trials[row];
+      expected.health.add(p, run);
+    }
+  }
+  expect_same(built(9, {3, 2}), expected);
+  EXPECT_GT(columns.size(), 20u);
+}
+
+TEST(Transitions, SameCountsOnAnyNumberOfThreadsAndForAnySplit) {
+  const auto on = [&](int threads) {
+    return test::on_threads(threads, [] { return built(5, {0, 6}); });
+  };
+  const Transitions whole = on(1);
+  expect_same(on(2), whole);
+  expect_same(on(8), whole);
+  const GateParams p = field_scene();
+  Transitions split(StateSpace::paper(p));
+  for (const TrialRange part : {TrialRange{0, 1}, {1, 0}, {1, 4}, {5, 1}})
+    add_trials(split, p, 5, part);
+  expect_same(split, whole);
+}
+
+TEST(Transitions, OtherSeedOtherCounts) {
+  EXPECT_NE(built(1, {0, 5}).rows, built(2, {0, 5}).rows);
+}
+
+// Nothing in the way and no forces: straight lines, whose exit is a division.
+TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
+  GateParams p = field_scene();
+  p.forces = {.propulsion = 0.0, .random = 0.0, .random_rate = 50.0, .drag = 0.0};
+  p.beams = {.length = 1e-3, .mass = 0.1, .stiffness_left = 0.0, .stiffness_right = 0.0,
+             .damping = 0.0};
+  p.body.radius = 1e-3;
+  int predicted = 0;
+  for (std::int64_t trial = 0; trial < 10; ++trial) {
+    Transitions t(StateSpace::paper(p));
+    add_trials(t, p, 1, {trial, 1});
+    for (int row = 0; row < t.space.size(); ++row) {
+      Random random(Purpose::row, {1, static_cast<std::uint64_t>(row),
+                                   static_cast<std::uint64_t>(trial)});
+      const BodyState b = entry_state(p, t.space.sample(row, random));
+      const double border = b.vx > 0 ? 25.0 : -25.0;
+      const double to_side = (border - b.x) / b.vx, to_top = b.vy > 0 ? (60 - b.y) / b.vy : 1e9;
+      const double y = b.y + b.vy * to_side;
+      // Not too close to a corner, the joint or the time limit: a step is up to 0.12 m long.
+      if (std::abs(to_side - to_top) < 0.02 || std::abs(to_side - 12) < 0.02) continue;
+      if (std::abs(y - 30) < 0.2) continue;
+      ++predicted;
+      ASSERT_EQ(t.rows[row].size(), 1u);
+      const int column = t.rows[row].begin()->first;
+      if (std::min(to_side, to_top) > 12) {
+        EXPECT_EQ(column, t.space.trapped());
+        continue;
+      }
+      Boundary expected = Boundary::enter;
+      if (to_side < to_top && b.vx > 0)
+        expected = y < 30 ? Boundary::left_deflect : Boundary::left_traverse;
+      else if (to_side < to_top)
+        expected = y < 30 ? Boundary::right_deflect : Boundary::right_traverse;
+      EXPECT_EQ(t.space.boundary(column), expected) << row << ' ' << trial;
+      const Cell cell = t.space.cell(column);
+      const auto outside_bin = [](double v, const std::array<double, 2>& bin) {
+        return v < bin[0] || v > bin[1];
+      };
+      if (outside_bin(b.vx, cell.vx) || outside_bin(b.vy, cell.vy)) {
+        EXPECT_EQ(t.clamped[row], 1);
+      }
+    }
+  }
+  EXPECT_GT(predicted, 800);
+}
+
+}  // namespace
+}  // namespace gatewalk::dynamics

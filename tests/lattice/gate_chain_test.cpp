@@ -1,0 +1,218 @@
+#include "lattice/gate_chain.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "markov/chain.h"
+#include "tests/support/numbers.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace dynamics;
+
+StateSpace paper() { return StateSpace::paper(GateParams{}); }
+
+/// Counts without physics: every third row, a few columns each.
+Transitions made_up() {
+  Transitions t(paper());
+  test::Draw draw(1);
+  for (int row = 0; row < t.space.size(); row += 3) {
+    for (int i = 0; i < 4; ++i) {
+      const std::int64_t n = 1 + draw.below(50);
+      t.rows[row][draw.below(88)] += n;
+      t.trials[row] += n;
+    }
+    t.clamped[row] = draw.below(static_cast<int>(t.trials[row]));
+  }
+  return t;
+}
+
+// ---- Exits ----
+
+TEST(Exits, LeadToTheirStateInTheNeighbour) {
+  const auto exits = exits_of(paper());
+  ASSERT_EQ(exits.size(), 88u);
+  for (int state = 0; state < 87; ++state) {
+    EXPECT_EQ(exits[state].next_input, state);  // O_j is I_j of the next gate
+    const int di_x = state < 25 ? 0 : state < 55 || state == 85 ? -1 : 1;  // EN | RD, RT | LD, LT
+    EXPECT_EQ(exits[state].di_x, di_x) << state;
+    EXPECT_EQ(exits[state].di_y, state < 25 ? 1 : 0) << state;
+  }
+  EXPECT_EQ(exits[87], markov::Exit{});
+  EXPECT_EQ(exits[87].next_input, markov::Exit::kTrapped);
+  EXPECT_NO_THROW(markov::validate(exits, 87, 88));
+}
+
+// ---- Chain ----
+
+TEST(GateChain, HasTheSharesOfTheCounts) {
+  const Transitions t = made_up();
+  const markov::Chain chain = make_chain(t);
+  EXPECT_EQ(chain.inputs(), 87);
+  EXPECT_EQ(chain.outputs(), 88);
+  EXPECT_EQ(chain.exits(), exits_of(t.space));
+  EXPECT_EQ(chain.unsampled_rows(), 58);
+  for (int row = 0; row < 87; ++row) {
+    EXPECT_EQ(chain.is_sampled(row), row % 3 == 0);
+    for (int column = 0; column < 88; ++column) {
+      const auto it = t.rows[row].find(column);
+      const double expected = it == t.rows[row].end() ? 0.0
+                                                      : static_cast<double>(it->second) /
+                                                            static_cast<double>(t.trials[row]);
+      EXPECT_NEAR(chain.matrix().coeff(row, column), expected, test::kEps);
+    }
+  }
+}
+
+TEST(ChainStart, IsTheStateOfTheBody) {
+  const StateSpace space = paper();
+  const FieldParams field;
+  // Sec. III-C: the origin, 15 m/s forward: the middle of EN, in gate (0, 0).
+  const ChainStart s = chain_start(space, field, {0, 0, 0, 15});
+  EXPECT_EQ(s.start.column, 4);
+  EXPECT_EQ(s.start.row, 0);
+  EXPECT_EQ(s.start.input, 2 * 5 + 2);
+  EXPECT_FALSE(s.clamped);
+  EXPECT_EQ(chain_start(space, field, {-20, 0, 10, 12}).start.input, 0 * 5 + 3);
+  const FieldParams narrow{.columns = 5, .rows = 1, .max_gates = 0};
+  EXPECT_EQ(chain_start(space, narrow, {0, 0, 0, 15}).start.column, 2);
+}
+
+TEST(ChainStart, SaysWhenItWasClamped) {
+  const ChainStart s = chain_start(paper(), {}, {0, 0, 0, 5});  // slower than every bin
+  EXPECT_EQ(s.start.input, 2 * 5 + 2);
+  EXPECT_TRUE(s.clamped);
+}
+
+TEST(ChainStart, InsideTheGateIsRefused) {
+  for (const double y : {1e-9, 5.0, -1.0}) {
+    try {
+      (void)chain_start(paper(), {}, {0, y, 0, 15});
+      ADD_FAILURE() << y;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("start.y_m"), std::string::npos);
+    }
+  }
+}
+
+// ---- The file ----
+
+class MatrixOnDisk : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "gatewalk-matrix-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  [[nodiscard]] std::string path() const { return (folder_ / "matrix.nc").string(); }
+
+  /// Writes a good matrix, lets `spoil` change it under a good checksum, and tries to read it.
+  [[nodiscard]] std::string refusal(const std::function<void(markov::CountsFile&)>& spoil) const {
+    write_matrix(path(), {made_up(), {}});
+    markov::CountsFile file = markov::read_counts(path());
+    spoil(file);
+    markov::write_counts(path(), file);
+    try {
+      (void)read_matrix(path());
+    } catch (const markov::BadFile& e) {
+      EXPECT_NE(std::string(e.what()).find(path()), std::string::npos) << e.what();
+      return e.what();
+    }
+    return "accepted";
+  }
+
+  fs::path folder_;
+};
+
+std::vector<double>& edges(markov::CountsFile& file, const std::string& name) {
+  for (auto& array : file.arrays)
+    if (array.name == name) return array.values;
+  throw std::logic_error("no array " + name);
+}
+
+TEST_F(MatrixOnDisk, ComesBackAsItWas) {
+  const Transitions t = made_up();
+  const std::map<std::string, std::string> text{{"scene", "F = 8\nRm = 40"}, {"seed", "1"}};
+  write_matrix(path(), {t, text});
+  const MatrixFile back = read_matrix(path());
+  EXPECT_EQ(back.transitions.space, t.space);
+  EXPECT_EQ(back.transitions.rows, t.rows);
+  EXPECT_EQ(back.transitions.trials, t.trials);
+  EXPECT_EQ(back.transitions.clamped, t.clamped);
+  EXPECT_EQ(back.text, text);
+}
+
+TEST_F(MatrixOnDisk, KeepsBinsThatAreNotThePapers) {
+  GateParams p;
+  p.beams.joint_x = 31.0;
+  p.body.radius = 7.1;
+  auto bins = StateSpace::paper(p).bins();
+  bins[0].vy = {0.1, 10.0, 20.0};  // 50 EN states
+  const Transitions t{StateSpace(bins)};
+  write_matrix(path(), {t, {}});
+  const StateSpace back = read_matrix(path()).transitions.space;
+  EXPECT_EQ(back, t.space);
+  EXPECT_EQ(back.size(), 112);
+}
+
+TEST_F(MatrixOnDisk, HasTheEdgesByName) {
+  write_matrix(path(), {made_up(), {}});
+  markov::CountsFile file = markov::read_counts(path());
+  EXPECT_EQ(file.arrays.size(), 15u);
+  EXPECT_EQ(edges(file, "EN_d_edges"), (std::vector<double>{-25, -15, -5, 5, 15, 25}));
+  EXPECT_EQ(edges(file, "RD_vx_edges"), (std::vector<double>{-30, -20, -10, 0}));
+  EXPECT_EQ(edges(file, "LT_vy_edges"), (std::vector<double>{-20, 30}));
+  for (const auto& array : file.arrays)
+    EXPECT_EQ(array.unit, array.name.find("_d_") != array.name.npos ? "m" : "m s-1") << array.name;
+}
+
+TEST_F(MatrixOnDisk, UntouchedIsAccepted) {
+  EXPECT_EQ(refusal([](markov::CountsFile&) {}), "accepted");
+}
+
+TEST_F(MatrixOnDisk, WrongBinsAreRefused) {
+  const auto expect_refused = [&](const char* array, const char* reason, auto change) {
+    const std::string why = refusal([&](markov::CountsFile& f) { change(edges(f, array)); });
+    EXPECT_NE(why.find(reason), why.npos) << array << ": " << why;
+  };
+  expect_refused("EN_d_edges", "82 states", [](auto& e) { e.pop_back(); });
+  expect_refused("LD_vy_edges", "93 states", [](auto& e) { e.push_back(40); });
+  expect_refused("RD_vx_edges", "RD", [](auto& e) { std::swap(e[0], e[1]); });
+  expect_refused("RT_d_edges", "RT", [](auto& e) { e.resize(1); });
+  expect_refused("LT_d_edges", "LT", [](auto& e) { e[1] = std::nan(""); });
+}
+
+TEST_F(MatrixOnDisk, MissingBinsAreRefused) {
+  for (const char* name : {"EN_d_edges", "RT_vx_edges", "LD_vy_edges"}) {
+    const std::string why = refusal([&](markov::CountsFile& f) {
+      std::erase_if(f.arrays, [&](const auto& a) { return a.name == name; });
+    });
+    EXPECT_NE(why.find(name), std::string::npos) << why;
+  }
+}
+
+TEST_F(MatrixOnDisk, ForeignExitsAreRefused) {
+  EXPECT_NE(refusal([](markov::CountsFile& f) { f.exits[30].di_x = 1; }).find("exits"),
+            std::string::npos);
+  EXPECT_NE(refusal([](markov::CountsFile& f) { f.exits[0].next_input = 1; }).find("exits"),
+            std::string::npos);
+  EXPECT_NE(refusal([](markov::CountsFile& f) { f.exits[87] = {0, 0, 1}; }).find("exits"),
+            std::string::npos);
+}
+
+TEST_F(MatrixOnDisk, MissingFileIsRefused) {
+  EXPECT_THROW((void)read_matrix((folder_ / "none.nc").string()), markov::BadFile);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice

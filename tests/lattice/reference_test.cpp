@@ -1,0 +1,249 @@
+#include "lattice/reference.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numeric>
+
+#include "lattice/gate_chain.h"
+#include "markov/exact.h"
+#include "tests/support/numbers.h"
+#include "tests/support/threads.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+const BodyState kStart{0, 0, 0, 15};  // Sec. III-C
+
+FieldTally run(const GateParams& p, const FieldParams& field, TrialRange range,
+               std::uint64_t seed = 1, const BodyState& start = kStart) {
+  return run_field(p, field, start, StateSpace::paper(p), seed, range);
+}
+
+void expect_same(const FieldTally& a, const FieldTally& b) {
+  EXPECT_TRUE((a.final_gates == b.final_gates).all());
+  EXPECT_EQ(a.trials, b.trials);
+  EXPECT_EQ(a.trapped, b.trapped);
+  EXPECT_EQ(a.left_field, b.left_field);
+  EXPECT_EQ(a.cut_off, b.cut_off);
+  EXPECT_EQ(a.broken, b.broken);
+  EXPECT_EQ(a.entries, b.entries);
+  EXPECT_EQ(a.clamped, b.clamped);
+  EXPECT_EQ(a.final_gate_of_trial, b.final_gate_of_trial);
+  EXPECT_EQ(a.health.runs, b.health.runs);
+  EXPECT_EQ(a.health.impacts, b.health.impacts);
+  EXPECT_TRUE(test::same_bits(a.health.worst_speed, b.health.worst_speed));
+  EXPECT_TRUE(test::same_bits(a.health.worst_energy_created, b.health.worst_energy_created));
+}
+
+void expect_adds_up(const FieldTally& t, const FieldParams& field) {
+  EXPECT_EQ(t.final_gates.rows(), field.rows);
+  EXPECT_EQ(t.final_gates.cols(), field.columns);
+  EXPECT_EQ(t.final_gates.sum(), t.trials);
+  EXPECT_EQ(t.trapped + t.left_field + t.cut_off + t.broken, t.trials);
+  EXPECT_EQ(static_cast<std::int64_t>(t.final_gate_of_trial.size()), t.trials);
+  markov::CellCounts again = markov::CellCounts::Zero(field.rows, field.columns);
+  for (const std::int32_t gate : t.final_gate_of_trial)
+    ++again(gate / field.columns, gate % field.columns);
+  EXPECT_TRUE((again == t.final_gates).all());
+  // One run per trial and one more per crossing between gates.
+  EXPECT_EQ(t.health.runs,
+            t.trials + std::accumulate(t.entries.begin(), t.entries.end(), std::int64_t{0}));
+  for (int b = 0; b < kBoundaries; ++b) {
+    EXPECT_GE(t.clamped[b], 0);
+    EXPECT_LE(t.clamped[b], t.entries[b]);
+  }
+  if (field.max_gates > 0) {
+    EXPECT_LE(t.health.runs, t.trials * field.max_gates);
+  }
+}
+
+TEST(Field, StartsInTheMiddleOfTheFirstRow) {
+  EXPECT_EQ((FieldParams{.columns = 9}.start_column()), 4);
+  EXPECT_EQ((FieldParams{.columns = 1}.start_column()), 0);
+  EXPECT_EQ((FieldParams{.columns = 4}.start_column()), 2);
+  const FieldParams f;
+  EXPECT_TRUE(f.contains(0, 0) && f.contains(8, 8));
+  EXPECT_FALSE(f.contains(-1, 0) || f.contains(9, 0) || f.contains(0, -1) || f.contains(0, 9));
+}
+
+TEST(RunField, TalliesAddUp) {
+  const GateParams p;
+  for (const FieldParams& field :
+       {FieldParams{}, FieldParams{3, 2, 13}, FieldParams{9, 9, 4}, FieldParams{9, 9, 0},
+        FieldParams{1, 5, 0}, FieldParams{4, 1, 2}}) {
+    SCOPED_TRACE(testing::Message() << field.columns << " x " << field.rows << ", at most "
+                                    << field.max_gates);
+    const FieldTally t = run(p, field, {0, 200});
+    expect_adds_up(t, field);
+    EXPECT_TRUE(t.health.clean());
+    if (field.max_gates == 0) {
+      EXPECT_EQ(t.cut_off, 0);
+    }
+  }
+}
+
+TEST(RunField, OneGateIsTheStartGate) {
+  const FieldParams field{9, 9, 1};
+  const FieldTally t = run({}, field, {0, 200});
+  expect_adds_up(t, field);
+  EXPECT_EQ(t.final_gates(0, 4), 200);
+  EXPECT_EQ(t.left_field, 0);
+  EXPECT_EQ(t.cut_off + t.trapped, 200);
+  EXPECT_GT(t.cut_off, 100);
+  EXPECT_EQ(t.health.runs, 200);
+}
+
+TEST(RunField, FieldOfOneGateIsLeftOrKept) {
+  const FieldParams field{1, 1, 13};
+  const FieldTally t = run({}, field, {0, 200});
+  expect_adds_up(t, field);
+  EXPECT_EQ(t.final_gates(0, 0), 200);
+  EXPECT_EQ(t.cut_off, 0);
+  EXPECT_EQ(t.left_field + t.trapped, 200);
+  EXPECT_GT(t.left_field, 100);
+  EXPECT_EQ(t.health.runs, 200);
+  // The same trials as those cut off after one gate: who would go on there leaves here.
+  EXPECT_EQ(t.left_field, run({}, {9, 9, 1}, {0, 200}).cut_off);
+}
+
+// Second route: the trial gate by gate with the indices and shifts of MODEL.md written out.
+TEST(RunField, TrialsCanBeReplayedAlone) {
+  const GateParams p;
+  const FieldParams field;
+  const auto method = make_method(p);
+  const FieldTally t = run(p, field, {100, 60}, 8);
+  std::array<std::int64_t, kBoundaries> entries{};
+  for (int i = 0; i < 60; ++i) {
+    RandomForce force(p.forces,
+                      Random(Purpose::field,
+                             {8, stream_row(kStart), static_cast<std::uint64_t>(100 + i)}));
+    BodyState body = kStart;
+    int ix = 0, iy = 0;
+    for (int gates = 1;; ++gates) {
+      const GateRun r = run_gate(p, *method, body, force);
+      if (r.ending == Ending::trapped) break;
+      const int to_x = ix + (r.ending == Ending::exited_right) - (r.ending == Ending::exited_left);
+      const int to_y = iy + (r.ending == Ending::traversed);
+      if (std::abs(to_x) > 4 || to_y > 8 || gates == 13) break;
+      const bool below = r.exit.y < 30.0;
+      ++entries[r.ending == Ending::traversed     ? 0
+                : r.ending == Ending::exited_left ? (below ? 1 : 3)
+                                                  : (below ? 2 : 4)];
+      body = r.exit;
+      body.x -= 50.0 * (to_x - ix);
+      body.y -= 60.0 * (to_y - iy);
+      ix = to_x;
+      iy = to_y;
+    }
+    EXPECT_EQ(t.final_gate_of_trial[i], iy * 9 + ix + 4) << i;
+  }
+  EXPECT_EQ(t.entries, entries);
+}
+
+TEST(RunField, SameTallyOnAnyNumberOfThreadsAndForAnySplit) {
+  const GateParams p;
+  const FieldParams field;
+  const auto on = [&](int threads) {
+    return test::on_threads(threads, [&] { return run(p, field, {0, 100}); });
+  };
+  const FieldTally whole = on(1);
+  expect_same(on(2), whole);
+  expect_same(on(8), whole);
+  FieldTally split(field);
+  for (const TrialRange part : {TrialRange{0, 1}, {1, 0}, {1, 66}, {67, 33}})
+    split += run(p, field, part);
+  expect_same(split, whole);
+}
+
+TEST(RunField, OtherSeedOtherTrials) {
+  EXPECT_NE(run({}, {}, {0, 100}, 1).final_gate_of_trial,
+            run({}, {}, {0, 100}, 2).final_gate_of_trial);
+}
+
+// A mirrored start with mirrored beams: the field is symmetric, so without noise is the path.
+TEST(RunField, QuietFieldsAreMirrorSymmetric) {
+  GateParams p;
+  p.forces.random = 0.0;
+  p.beams.stiffness_left = 60.0;
+  p.beams.stiffness_right = 90.0;
+  GateParams m = p;
+  std::swap(m.beams.stiffness_left, m.beams.stiffness_right);
+  const FieldParams field{9, 9, 0};
+  int moved_sideways = 0;
+  for (const double x : {-12.0, -4.0, 3.0, 9.0, 16.0}) {
+    const FieldTally a = run(p, field, {0, 1}, 1, {x, 0, 12, 15});
+    const FieldTally b = run(m, field, {0, 1}, 1, {-x, 0, -12, 15});
+    const int gate = a.final_gate_of_trial[0];
+    EXPECT_EQ(b.final_gate_of_trial[0], gate / 9 * 9 + 8 - gate % 9);
+    EXPECT_EQ(a.entries[1], b.entries[2]);
+    EXPECT_EQ(a.entries[3], b.entries[4]);
+    moved_sideways += gate % 9 != 4;
+  }
+  EXPECT_GT(moved_sideways, 0);
+}
+
+// Without noise all trials are one, and a chain made of that one path walks to the same gate.
+TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
+  GateParams p;
+  p.forces.random = 0.0;
+  p.beams.stiffness_left = p.beams.stiffness_right = 60.0;
+  const FieldParams field;
+  // Bins so fine that no gate of a path has the state of another one.
+  auto bins = StateSpace::paper(p).bins();
+  bins[0].vx = {-30, 30};
+  bins[0].vy.clear();
+  for (int i = 0; i <= 160; ++i) bins[0].vy.push_back(0.25 * i);
+  const StateSpace space(bins);
+  int moves = 0, followed = 0;
+  for (const double x : {-17.0, -9.0, -2.0, 0.0, 6.0, 13.0, 21.0}) {
+    SCOPED_TRACE(x);
+    const BodyState start{x, 0, 2, 15};
+    const FieldTally t = run(p, field, {0, 5}, 1, start);
+    const int gate = t.final_gate_of_trial[0];
+    EXPECT_EQ(t.final_gates(gate / 9, gate % 9), 5);
+
+    // The path's states, one transition each.
+    Transitions path(space);
+    const auto method = make_method(p);
+    RandomForce quiet(p.forces, Random(Purpose::field, {}));
+    const ChainStart first = chain_start(space, field, start);
+    int state = first.start.input;
+    BodyState body = start;
+    bool revisited = false;
+    for (int gates = 0; gates < 13; ++gates) {
+      const GateRun r = run_gate(p, *method, body, quiet);
+      int next = space.trapped();
+      if (r.ending != Ending::trapped)
+        next = space.index_of(crossing_of(p, r.ending, r.exit)).state;
+      if (path.trials[state] > 0 && !path.rows[state].contains(next)) revisited = true;
+      ++path.rows[state][next];
+      ++path.trials[state];
+      if (next == space.trapped()) break;
+      body = shifted_into_next(p, r.ending, r.exit);
+      state = next;
+      ++moves;
+    }
+    if (revisited) continue;  // one state, two ways on: no chain can follow that
+    ++followed;
+    const auto walked = markov::propagate(make_chain(path), {field.columns, field.rows},
+                                          first.start, field.max_gates);
+    EXPECT_NEAR(walked.final_cells(gate / 9, gate % 9), 1.0, 1e-12);
+    EXPECT_NEAR(walked.trapped, t.trapped == 5, 1e-12);
+    EXPECT_NEAR(walked.left_field, t.left_field == 5, 1e-12);
+    EXPECT_NEAR(walked.cut_off, t.cut_off == 5, 1e-12);
+  }
+  EXPECT_GE(followed, 4);
+  EXPECT_GE(moves, 4 * 7);
+}
+
+TEST(RunField, ScenesThatCannotBeRunAreRefused) {
+  GateParams p;
+  p.run.step = 0.003;
+  EXPECT_THROW((void)run_field(p, {}, kStart, StateSpace::paper(p), 1, {0, 1}), InvalidParameter);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
