@@ -47,7 +47,7 @@ void validate(boost::any& v, const std::vector<std::string>& values, Count*, int
   const auto real = std::from_chars(text.data(), end, number);
   if (real.ec != std::errc() || real.ptr != end || number != std::floor(number) ||
       !(std::abs(number) <= 1e15))
-    throw po::validation_error(po::validation_error::invalid_option_value, "", text);
+    throw UsageError("'" + text + "' is not a whole number, such as 20000 or 2e4");
   v = Count{static_cast<std::int64_t>(number)};
 }
 
@@ -57,7 +57,7 @@ void validate(boost::any& v, const std::vector<std::string>& values, Seed*, int)
   Seed seed;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), seed.value);
   if (read.ec != std::errc() || read.ptr != text.data() + text.size())
-    throw po::validation_error(po::validation_error::invalid_option_value, "", text);
+    throw UsageError("'" + text + "' is not a seed: a whole number from 0 to 2^64 - 1");
   v = seed;
 }
 

@@ -394,7 +394,9 @@ std::string read_file(const std::string& path) {
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse_scene(read_file(path), path, overrides);
+  const std::string text = read_file(path);
+  if (text.starts_with("\x89HDF")) throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
+  return parse_scene(text, path, overrides);
 }
 
 Scene parse_scene(std::string_view text, std::string name,

@@ -138,7 +138,9 @@ StartReport run_start(const Options& options, const Scene& scene, const dynamics
   const std::int64_t gates =
       std::min<std::int64_t>(r.exact.final_cells.size(), lattice::kMostEnergyGates);
   const std::int64_t null_draws =
-      std::clamp<std::int64_t>(100'000'000 / (trials + walks + gates * gates / 8), 999, 9999);
+      options.has("null-draws")
+          ? options.count("null-draws")
+          : std::clamp<std::int64_t>(100'000'000 / (trials + walks + gates * gates / 8), 999, 9999);
   r.walks_against = lattice::compare(r.dynamics.final_gates, r.walks.final_cells, null_draws, options.seed());
   r.exact_against = lattice::compare(r.dynamics.final_gates, r.exact.final_cells, null_draws, options.seed());
   r.paper_sized = in_blocks_of_100(r.dynamics.final_gate_of_trial, walk_cells, r.exact.final_cells);
@@ -266,6 +268,8 @@ int run_validate(const std::vector<std::string>& arguments) {
       ("matrix-trials", po::value<Count>()->value_name("N"),
        "runs per input state of the matrix that is built (default: 100)")
       ("walks", po::value<Count>()->value_name("N"), "walks per start (default: as many as trials)")
+      ("null-draws", po::value<Count>()->value_name("N"),
+       "draws behind each p-value (default: 999 to 9999, by the size of the work)")
       ("start", po::value<std::vector<std::string>>()->composing()->value_name("D,VX,VY"),
        "start at x = D m, y = 0 with this velocity in m/s (may be repeated)");
   if (!options.parse(arguments)) return kFine;

@@ -34,8 +34,9 @@ expect 2 'missing SCENE' "$gatewalk" gate
 expect 2 'missing -o' "$gatewalk" build "$scenes/field.toml"
 expect 2 'unrecognised option' "$gatewalk" gate "$scenes/field.toml" --tri 5       # nothing is guessed
 expect 2 'at least 1' "$gatewalk" gate "$scenes/field.toml" --trials 0
-expect 2 'invalid' "$gatewalk" gate "$scenes/field.toml" --trials 1.5
-expect 2 'invalid' "$gatewalk" gate "$scenes/field.toml" --seed x
+expect 2 "'1.5' is not a whole number" "$gatewalk" gate "$scenes/field.toml" --trials 1.5
+expect 2 "'-1' is not a seed" "$gatewalk" gate "$scenes/field.toml" --seed -1
+expect 2 'json needs' "$gatewalk" gate "$scenes/field.toml" --json ''
 expect 2 'must lie in' "$gatewalk" gate "$scenes/field.toml" --set forces.random_N=-1
 expect 2 'nosuch.toml' "$gatewalk" gate nosuch.toml
 expect 2 'three numbers' "$gatewalk" validate "$scenes/field.toml" --start 1,2
@@ -77,6 +78,24 @@ holds '([.final_gates[][]] | add) == 100 and .trapped + .left_field + .cut_off +
 holds '.final_gates[0][4] == 50' one.json
 expect 2 'forces.random_N' "$gatewalk" walk m.nc "$scenes/field.toml" --set forces.random_N=12
 expect 2 'max_gates' "$gatewalk" predict m.nc --solver klu
+expect 2 'is a matrix' "$gatewalk" gate m.nc
+expect 2 'the same' "$gatewalk" build "$scenes/field.toml" -o x.nc --json ./x.nc
+expect 2 'the same' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --json m.nc
+expect 2 'no meaning' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --matrix-trials 5
+expect 2 'a file of its own' "$gatewalk" build "$scenes/field.toml" -o -
+expect 2 'run.traverse_y_m' "$gatewalk" lattice "$scenes/field.toml" --set run.traverse_y_m=35
+expect 2 'field.toml.*run.step_s' "$gatewalk" gate "$scenes/field.toml" --set beams.damping_Nms_per_rad=1e12
+# What cannot be taken at face value is said, even under --quiet.
+expect 0 'outside the chain' "$gatewalk" predict m.nc --set start.vy_m_per_s=-5 --quiet
+"$gatewalk" build "$scenes/field.toml" --set run.method=paper --trials 5 -o paper.nc --quiet >/dev/null 2>&1
+expect 0 'showed numerical faults' "$gatewalk" walk paper.nc --quiet --json paper-walk.json
+holds '.matrix_status.clean == false' paper-walk.json
+expect 0 'hits may have been missed' "$gatewalk" gate "$scenes/field.toml" --set body.radius_m=0.01 --set start.x_m=-12 --trials 1 --quiet
+# A start and a seed have their own noise, the same in every command.
+"$gatewalk" lattice "$scenes/field.toml" --trials 200 --seed 5 --json start.json --quiet
+"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --seed 5 --start 4,5,10 --start 0,0,15 --json starts.json --quiet
+jq -s '.[0].final_gates == .[1].starts[1].final_gates.dynamics' start.json starts.json | grep -q true ||
+  fail "validate and lattice ran other trials for the same start"
 expect 2 'start.y_m' "$gatewalk" predict m.nc --set start.y_m=5
 
 # A start that the paper's table has not.

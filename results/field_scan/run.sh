@@ -19,7 +19,7 @@ trap 'rm -rf "$work"' EXIT
 for f in 5 6 7 8 9; do
   for rm in 10 20 30 40 50 60; do
     for seed in $seeds; do
-      "$gatewalk" validate "$root/scenes/field.toml" --trials $trials --seed "$seed" --quiet \
+      "$gatewalk" validate "$root/scenes/field.toml" --trials $trials --seed "$seed" --null-draws 1 --quiet \
         --set forces.propulsion_N=$f --set forces.random_N=$rm --json "$work/$f-$rm-$seed.json"
     done
     jq -s --argjson f $f --argjson rm $rm '

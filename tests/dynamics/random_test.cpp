@@ -173,6 +173,23 @@ TEST(RandomForce, DoesNotCareHowTimeIsCut) {
   }
 }
 
+// A step that fits its hold up to the permitted 1e-6: one draw per hold all the same, either way.
+TEST(RandomForce, ForgivesStepsThatNearlyAddUpToAHold) {
+  Forces f;
+  f.random_rate = 60.0;
+  for (const double step : {0.00333333333, 0.00333333666, 1.0 / 300.0}) {
+    RandomForce force(f, Random(Purpose::gate, {1, 0, 0}));
+    for (int hold = 0; hold < 2000; ++hold) {
+      const double value = force.value();
+      for (int i = 0; i < 5; ++i) {
+        ASSERT_EQ(force.value(), value) << step << " s, hold " << hold << ", step " << i;
+        force.pass(step);
+      }
+      ASSERT_NE(force.value(), value) << step << " s, hold " << hold;
+    }
+  }
+}
+
 TEST(RandomForce, AskingDoesNotDraw) {
   RandomForce a = force_of(5), b = force_of(5);
   for (int i = 0; i < 10; ++i) (void)a.value();

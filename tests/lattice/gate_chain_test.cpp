@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -71,6 +72,47 @@ TEST(GateChain, HasTheSharesOfTheCounts) {
       EXPECT_NEAR(chain.matrix().coeff(row, column), expected, test::kEps);
     }
   }
+}
+
+// ---- Resampling ----
+
+TEST(Resampled, KeepsTrialsAndVariesAsAMultinomial) {
+  const Transitions t = made_up();
+  constexpr int kReplicates = 2000;
+  std::vector<std::map<int, double>> sum(t.space.size()), squares(t.space.size());
+  for (int k = 0; k < kReplicates; ++k) {
+    const Transitions drawn = resampled(t, 1, static_cast<std::uint64_t>(k));
+    ASSERT_EQ(drawn.trials, t.trials);
+    for (int row = 0; row < t.space.size(); ++row) {
+      std::int64_t total = 0;
+      for (const auto& [column, n] : drawn.rows[row]) {
+        ASSERT_TRUE(t.rows[row].contains(column));  // nothing out of nothing
+        total += n;
+        sum[row][column] += static_cast<double>(n);
+        squares[row][column] += static_cast<double>(n) * static_cast<double>(n);
+      }
+      ASSERT_EQ(total, t.trials[row]);
+    }
+  }
+  for (int row = 0; row < t.space.size(); ++row) {
+    for (const auto& [column, n] : t.rows[row]) {
+      const auto mean = static_cast<double>(n), trials = static_cast<double>(t.trials[row]);
+      const double variance = mean * (1 - mean / trials);
+      // Five standard errors, for some 100 entries.
+      EXPECT_NEAR(sum[row][column] / kReplicates, mean, 5 * std::sqrt(variance / kReplicates) + 1e-12);
+      if (variance < 1.0) continue;  // a few counts are far from normal
+      const double m = sum[row][column] / kReplicates;
+      const double seen = squares[row][column] / kReplicates - m * m;
+      EXPECT_NEAR(seen / variance, 1.0, 5 * std::sqrt(2.5 / kReplicates));
+    }
+  }
+}
+
+TEST(Resampled, IsNamedBySeedAndReplicate) {
+  const Transitions t = made_up();
+  EXPECT_EQ(resampled(t, 1, 2).rows, resampled(t, 1, 2).rows);
+  EXPECT_NE(resampled(t, 1, 2).rows, resampled(t, 1, 3).rows);
+  EXPECT_NE(resampled(t, 1, 2).rows, resampled(t, 2, 2).rows);
 }
 
 TEST(ChainStart, IsTheStateOfTheBody) {

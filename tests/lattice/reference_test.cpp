@@ -109,6 +109,14 @@ TEST(RunField, FieldOfOneGateIsLeftOrKept) {
   EXPECT_EQ(t.left_field, run({}, {9, 9, 1}, {0, 200}).cut_off);
 }
 
+TEST(StreamRow, NamesAStart) {
+  const BodyState a{0, 0, 0, 15};
+  EXPECT_EQ(stream_row(a), stream_row({-0.0, -0.0, 0, 15}));
+  EXPECT_NE(stream_row(a), stream_row({4, 0, 5, 10}));
+  EXPECT_NE(stream_row(a), stream_row({0, 0, 15, 0}));
+  EXPECT_LT(stream_row(a), std::uint64_t{1} << 56);  // the purpose stands above
+}
+
 // Second route: the trial gate by gate with the indices and shifts of MODEL.md written out.
 TEST(RunField, TrialsCanBeReplayedAlone) {
   const GateParams p;
