@@ -3,7 +3,7 @@
 # For F_prop 5..9 N x Rm 10..60 N: the four corrcoef and RMSE of Table IV, exact chain (100 runs per
 # row) against 100 trials of the full dynamics, mean and sd over many repeats (15 blocks of 100 trials
 # for each of 3 seeds, every seed with a matrix of its own).
-#   results/field_scan/run.sh [GATEWALK]      about 10 minutes on two cores
+#   results/field_scan/run.sh [GATEWALK]      about 8 minutes on two cores
 # misfit: sum over the starts of the squared distance of the printed (corrcoef, RMSE) from ours in its
 # 2 x 2 covariance, 8 on average if the scene were the paper's; deviance: -2 log likelihood, up to a
 # constant. Writes scan.csv (a line per scene), starts.csv (a line per scene and start), scan.svg, manifest.txt.
