@@ -94,6 +94,25 @@ TEST(Random, UniformsFillTheirInterval) {
   EXPECT_NEAR(chi2, bins - 1, 4 * std::sqrt(2.0 * (bins - 1)));  // 4 standard deviations
 }
 
+TEST(Random, BelowIsUniformOnWholeNumbers) {
+  Random random(Purpose::gate, {.seed = 4, .row = 0, .trial = 0});
+  constexpr int n = 7, draws = 700'000;
+  std::vector<int> count(n);
+  for (int i = 0; i < draws; ++i) {
+    const std::int64_t k = random.below(n);
+    ASSERT_TRUE(k >= 0 && k < n) << k;
+    ++count[static_cast<std::size_t>(k)];
+  }
+  double chi2 = 0.0;
+  for (const int c : count) chi2 += std::pow(c - draws / n, 2) / (draws / n);
+  EXPECT_NEAR(chi2, n - 1, 4 * std::sqrt(2.0 * (n - 1)));
+  EXPECT_EQ(random.below(1), 0);
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  std::int64_t largest = 0;
+  for (int i = 0; i < 100; ++i) largest = std::max(largest, random.below(most));
+  EXPECT_GT(largest, most / 2);  // all 63 bits are in play
+}
+
 // Moments of N(0,1) within 4 standard errors; sine and cosine draws do not correlate.
 TEST(Random, NormalsAreStandardNormal) {
   Random random(Purpose::gate, {.seed = 2, .row = 0, .trial = 0});

@@ -94,6 +94,20 @@ TEST(StateSpace, ScalesDistancesWithTheGate) {
   EXPECT_EQ(bins[0].vx, (Edges{-25, -15, -5, 5, 15, 25}));  // velocities are the table's
 }
 
+// RT and LT begin at joint + R = 40 m: a gate that ends there has no room for them.
+TEST(StateSpace, RefusesAGateThatEndsInTheBeams) {
+  GateParams p;
+  p.run.traverse_y = 40.0;
+  try {
+    (void)StateSpace::paper(p);
+    ADD_FAILURE() << "accepted";
+  } catch (const InvalidParameter& e) {
+    EXPECT_EQ(e.key(), "run.traverse_y_m");
+  }
+  p.run.traverse_y = 40.001;
+  EXPECT_EQ(StateSpace::paper(p).size(), 87);
+}
+
 // ---- Indices ----
 
 TEST(StateSpace, SampleLiesInItsState) {

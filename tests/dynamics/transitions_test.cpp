@@ -112,6 +112,26 @@ TEST(Transitions, OtherSeedOtherCounts) {
   EXPECT_NE(built(1, {0, 5}).rows, built(2, {0, 5}).rows);
 }
 
+// Row 0: 3 to a neighbour, 2 trapped, 1 of the 3 clamped; row 86: all 5 trapped; others empty.
+TEST(Transitions, TotalsAddUpTheRows) {
+  Transitions t(StateSpace::paper(field_scene()));
+  EXPECT_EQ(t.totals().runs, 0);
+  EXPECT_EQ(t.totals().empty_rows, 87);
+  EXPECT_EQ(t.totals().clamped_share(), 0.0);
+  t.rows[0] = {{4, 1}, {30, 2}, {87, 2}};
+  t.trials[0] = 5;
+  t.clamped[0] = 1;
+  t.rows[86] = {{87, 5}};
+  t.trials[86] = 5;
+  const auto total = t.totals();
+  EXPECT_EQ(total.runs, 10);
+  EXPECT_EQ(total.crossings, 3);
+  EXPECT_EQ(total.clamped, 1);
+  EXPECT_EQ(total.nonzeros, 4);
+  EXPECT_EQ(total.empty_rows, 85);
+  EXPECT_EQ(total.clamped_share(), 1.0 / 3);
+}
+
 // Nothing in the way and no forces: straight lines, whose exit is a division.
 TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
   GateParams p = field_scene();

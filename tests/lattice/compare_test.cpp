@@ -327,6 +327,34 @@ TEST(Compare, SampleWhereTheExactHasNothingIsImpossible) {
   EXPECT_EQ(c.p_chi_squared, 0.01);
 }
 
+// 10 of 10 000 trials are expected in 100 gates of 1e-5 each. Gate by gate, ten in one of them
+// would be beyond all chance; taken together nothing differs.
+TEST(Compare, RareGatesCountAsOneInChiSquared) {
+  CellProbabilities exact = CellProbabilities::Constant(1, 102, 1e-5);
+  exact(0, 0) = 0.5;
+  exact(0, 1) = 0.499;
+  CellCounts seen = CellCounts::Zero(1, 102);
+  seen(0, 0) = 5000;
+  seen(0, 1) = 4990;
+  seen(0, 50) = 10;
+  EXPECT_GT(compare(seen, exact, 199, 1).p_chi_squared, 0.9);
+  // But 60 instead of 10 are too many wherever they are.
+  seen(0, 0) = 4950;
+  for (int i = 52; i < 102; ++i) seen(0, i) = 1;
+  EXPECT_EQ(seen.sum(), 10'000);
+  EXPECT_EQ(compare(seen, exact, 199, 1).p_chi_squared, 1.0 / 200);
+}
+
+// Its cost is the square of the gates reached: left out above 1000, never silently zero.
+TEST(Compare, EnergyIsLeftOutOfLargeFields) {
+  for (const int gates : {kMostEnergyGates, kMostEnergyGates + 1}) {
+    const CellCounts one = CellCounts::Ones(1, gates);
+    const Comparison c = compare(one, one, 2, 1);
+    EXPECT_EQ(std::isnan(c.p_energy), gates > kMostEnergyGates);
+    EXPECT_EQ(c.p_total_variation, 1.0);
+  }
+}
+
 TEST(Compare, SameSeedSameBitsOnAnyNumberOfThreads) {
   Draw draw(7);
   const CellProbabilities p = hill(1.5);
