@@ -50,6 +50,10 @@ constexpr ParamInfo kTable[] = {
      0.0, 1e6, true, "a body that is still inside after this is trapped"},
     {"run.traverse_y_m", [](P& p) -> double& { return p.run.traverse_y; },
      0.0, 1e6, true, "a body beyond this has traversed"},
+    {"run.event_tolerance_m", [](P& p) -> double& { return p.run.event_tolerance; },
+     1e-13, 1.0, false, "method event: local error, and lowest rebound that is flown"},
+    {"run.tolerance", [](P& p) -> double& { return p.run.tolerance; },
+     1e-4, 1.0, false, "method auto: total variation of the outcomes that it may cost"},
 };
 
 /// The shortest digits that read back as `v`, or `digits` significant ones.

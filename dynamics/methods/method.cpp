@@ -3,19 +3,26 @@
 #include <array>
 #include <string_view>
 
+#include "dynamics/methods/event.h"
+#include "dynamics/methods/moreau.h"
 #include "dynamics/methods/paper.h"
+#include "dynamics/methods/penalty.h"
 #include "dynamics/methods/stable.h"
 
 namespace gatewalk::dynamics {
 
 std::span<const std::string_view> method_names() {
-  static constexpr std::array<std::string_view, 2> names{"paper", "stable"};
+  static constexpr std::array<std::string_view, 5> names{"paper", "stable", "moreau", "event",
+                                                              "penalty"};
   return names;
 }
 
 std::unique_ptr<Method> make_method(const GateParams& params) {
   validate(params);
   if (params.run.method == "paper") return std::make_unique<PaperMethod>(params);
+  if (params.run.method == "moreau") return std::make_unique<MoreauMethod>(params);
+  if (params.run.method == "event") return std::make_unique<EventMethod>(params);
+  if (params.run.method == "penalty") return std::make_unique<PenaltyMethod>(params);
   return std::make_unique<StableMethod>(params);
 }
 
