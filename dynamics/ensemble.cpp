@@ -16,11 +16,13 @@ void Health::add(const GateParams& p, const GateRun& run) {
   penetrating += w.max_penetration > 0.01 * p.body.radius;
   creating_energy += w.energy_created > 1e-4 * energy_scale;
   fast += w.fast_steps > 0;
+  unstable += w.unstable_steps > 0;
   broken += run.ending == Ending::broken;
   undefined_contacts += w.undefined_contacts;
   forced_holds += w.forced_holds;
   impacts += w.impacts;
   steps += w.steps;
+  evaluations += w.evaluations;
   worst_penetration = std::max(worst_penetration, w.max_penetration);
   worst_energy_created = std::max(worst_energy_created, w.energy_created);
   worst_speed = std::max(worst_speed, w.max_speed);
@@ -31,11 +33,13 @@ Health& Health::operator+=(const Health& o) {
   penetrating += o.penetrating;
   creating_energy += o.creating_energy;
   fast += o.fast;
+  unstable += o.unstable;
   broken += o.broken;
   undefined_contacts += o.undefined_contacts;
   forced_holds += o.forced_holds;
   impacts += o.impacts;
   steps += o.steps;
+  evaluations += o.evaluations;
   worst_penetration = std::max(worst_penetration, o.worst_penetration);
   worst_energy_created = std::max(worst_energy_created, o.worst_energy_created);
   worst_speed = std::max(worst_speed, o.worst_speed);

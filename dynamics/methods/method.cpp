@@ -42,6 +42,40 @@ void Watch::state(const GateParams& p, const GateState& s, double dt) {
   fast_steps += (speed + fastest_beam * p.beams.length) * dt > 0.5 * p.body.radius;
 }
 
+GateState interpolated(const GateState& a, const GateState& b, double dt, double t) {
+  const double z = t / dt, z2 = z * z, z3 = z2 * z;
+  const double wb = 3 * z2 - 2 * z3, da = dt * (z - 2 * z2 + z3), db = dt * (z3 - z2);
+  const double rate = 6 * (z - z2) / dt, ra = 1 - 4 * z + 3 * z2, rb = 3 * z2 - 2 * z;
+  const auto mix = [&](double xa, double va, double xb, double vb, double& x, double& v) {
+    x = xa + wb * (xb - xa) + da * va + db * vb;
+    v = rate * (xb - xa) + ra * va + rb * vb;
+  };
+  GateState s = b;
+  mix(a.body.x, a.body.vx, b.body.x, b.body.vx, s.body.x, s.body.vx);
+  mix(a.body.y, a.body.vy, b.body.y, b.body.vy, s.body.y, s.body.vy);
+  for (const Side side : {kLeft, kRight})
+    mix(a.beams[side].theta, a.beams[side].omega, b.beams[side].theta, b.beams[side].omega,
+        s.beams[side].theta, s.beams[side].omega);
+  return s;
+}
+
+double back_to_exit(const GateParams& p, const GateState& before, GateState& s, double dt) {
+  // Bisection: 50 halvings of a step leave nothing, and the last bracket's end is outside.
+  const GateState after = s;
+  double inside = 0.0, beyond = dt;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (inside + beyond);
+    const GateState there = interpolated(before, after, dt, middle);
+    if (outside(p, there.body)) {
+      beyond = middle;
+      s = there;
+    } else {
+      inside = middle;
+    }
+  }
+  return beyond;
+}
+
 double energy(const GateParams& p, const GateState& s) {
   const BeamState &l = s.beams[kLeft], &r = s.beams[kRight];
   const double body = p.body.mass * (s.body.vx * s.body.vx + s.body.vy * s.body.vy);

@@ -17,10 +17,12 @@ struct Watch {
   double energy_created = 0.0;      // J, largest rise of (energy - work done by the forces) ever seen
   double max_speed = 0.0;           // m/s
   std::int64_t steps = 0;           // time steps
+  std::int64_t evaluations = 0;     // evaluations of a gap or of the forces: the work done
   std::int64_t impacts = 0;         // resolved hits
   std::int64_t forced_holds = 0;    // steps in which hits piled up and were turned into constraints
   std::int64_t undefined_contacts = 0;  // contacts for which the method has no formula
   std::int64_t fast_steps = 0;      // steps in which disc or beam moved so far that hits can be missed
+  std::int64_t unstable_steps = 0;  // steps longer than the method's stability bound for free beams
 
   /// To be called after every step, looks at the state from outside the method; `dt` is the time
   /// between two looks for contact.
@@ -57,6 +59,14 @@ class EnergyLedger {
 [[nodiscard]] inline bool outside(const GateParams& p, const BodyState& b) {
   return b.y > p.run.traverse_y || b.x < -p.beams.joint_x || b.x > p.beams.joint_x;
 }
+
+/// Cubic Hermite interpolation between two states dt apart, at t; flags as in `b`.
+[[nodiscard]] GateState interpolated(const GateState& a, const GateState& b, double dt, double t);
+
+/// Takes `s`, in which the body is outside though it was not in `before`, dt earlier, back to the
+/// moment of leaving, by cubic interpolation; returns how long after `before` that is, in (0, dt].
+[[nodiscard]] double back_to_exit(const GateParams& p, const GateState& before, GateState& s,
+                                  double dt);
 
 class Method {
  public:

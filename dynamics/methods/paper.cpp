@@ -1,8 +1,18 @@
 #include "dynamics/methods/paper.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace gatewalk::dynamics {
+
+double euler_bound(const GateParams& p) {
+  const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
+  const double d = p.beams.damping, inertia = p.beams.inertia();
+  const double spread = d * d - 4.0 * k * inertia;
+  if (spread >= 0.0)
+    return d > 0.0 ? 4.0 * inertia / (d + std::sqrt(spread)) : std::numeric_limits<double>::infinity();
+  return d / k;
+}
 
 double PaperMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                             Watch& watch) const {
@@ -11,6 +21,7 @@ double PaperMethod::advance(GateState& s, double force_x, double duration, Energ
   for (long i = 1; i <= steps; ++i) {
     collide(s, watch);
     euler(s, force_x, dt);
+    watch.unstable_steps += beyond_bound_;
     ledger.step(s, force_x, watch);
     watch.state(p_, s, dt);
     if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body))

@@ -36,22 +36,6 @@ std::array<Touch, 2> touches(const GateParams& p, const GateState& s, std::array
   return t;
 }
 
-/// Cubic Hermite interpolation of positions between two states dt apart, at t.
-GateState between(const GateState& a, const GateState& b, double dt, double t) {
-  const double z = t / dt, z2 = z * z, z3 = z2 * z;
-  const double wb = 3 * z2 - 2 * z3, da = dt * (z - 2 * z2 + z3), db = dt * (z3 - z2);
-  const auto mix = [&](double xa, double va, double xb, double vb) {
-    return xa + wb * (xb - xa) + da * va + db * vb;
-  };
-  GateState s;
-  s.body.x = mix(a.body.x, a.body.vx, b.body.x, b.body.vx);
-  s.body.y = mix(a.body.y, a.body.vy, b.body.y, b.body.vy);
-  for (const Side side : {kLeft, kRight})
-    s.beams[side].theta = mix(a.beams[side].theta, a.beams[side].omega, b.beams[side].theta,
-                              b.beams[side].omega);
-  return s;
-}
-
 /// Contact forces as accelerations of body and beams.
 struct Push {
   double ax = 0.0, ay = 0.0;
@@ -116,38 +100,48 @@ StableMethod::StableMethod(const GateParams& p)
 
 double StableMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                              Watch& watch) const {
-  const auto steps = std::max<long>(1, std::lround(duration / p_.run.step));
-  for (long i = 1; i <= steps; ++i) {
-    for (int piece = 0; piece < pieces_; ++piece) substep(s, force_x, watch);
+  // A spell that is no whole number of steps (the rest of a hold) is cut into equal, shorter ones.
+  const double wanted = duration / p_.run.step;
+  const auto steps = std::max<long>(1, std::lround(std::ceil(wanted - 1e-6)));
+  const double step = std::abs(wanted - static_cast<double>(steps)) < 1e-6
+                          ? p_.run.step
+                          : duration / static_cast<double>(steps);
+  const bool usual = step == p_.run.step;
+  const GateFlow flow = usual ? flow_ : GateFlow(p_, step / pieces_);
+  const GateFlow half_flow = usual ? half_flow_ : GateFlow(p_, 0.5 * step / pieces_);
+  for (long i = 0; i < steps; ++i) {
+    const GateState before = s;
+    for (int piece = 0; piece < pieces_; ++piece) substep(s, force_x, flow, half_flow, watch);
+    const double done = static_cast<double>(i) * step;
+    const bool left = outside(p_, s.body) && std::isfinite(s.body.vx + s.body.vy);
+    const double rest = left ? back_to_exit(p_, before, s, step) : step;
     ledger.step(s, force_x, watch);
-    watch.state(p_, s, flow_.dt);
-    if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body))
-      return static_cast<double>(i) * p_.run.step;
+    watch.state(p_, s, flow.dt);
+    if (left || !std::isfinite(s.body.vx + s.body.vy)) return done + rest;
   }
-  return static_cast<double>(steps) * p_.run.step;
+  return duration;
 }
 
-void StableMethod::glide(GateState& s, double force_x, const GateFlow& flow) const {
+void StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
+                         const GateFlow& half_flow) const {
   if (s.beams[kLeft].held || s.beams[kRight].held)
-    glide_held(s, force_x, flow);
+    glide_held(s, force_x, flow, half_flow);
   else
     fly(p_, flow, force_x, nullptr, s);
 }
 
 void StableMethod::glide(GateState& s, double force_x, double dt) const {
-  glide(s, force_x, GateFlow(p_, dt));
+  glide(s, force_x, GateFlow(p_, dt), GateFlow(p_, 0.5 * dt));
 }
 
-void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow) const {
+void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
+                              const GateFlow& half_flow) const {
   const std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
   // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
   const auto start = touches(p_, s, held);
   const Push first(p_, start, contact_forces(p_, s, start, force_x, held, push_only));
   GateState mid = s;
-  if (flow.dt == flow_.dt)
-    fly(p_, half_flow_, force_x, &first, mid);
-  else
-    fly(p_, GateFlow(p_, 0.5 * flow.dt), force_x, &first, mid);
+  fly(p_, half_flow, force_x, &first, mid);
   const auto middle = touches(p_, mid, held);
   const auto force = contact_forces(p_, mid, middle, force_x, held, push_only);
   const Push second(p_, middle, force);
@@ -185,12 +179,13 @@ void StableMethod::restore(GateState& s, std::array<bool, 2> contacts,
   apply_impulses(p_, touch, push_or_pull(coupling(p_, touch), rate, contacts), s);
 }
 
-void StableMethod::substep(GateState& s, double force_x, Watch& watch) const {
-  double left = flow_.dt;
+void StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
+                           const GateFlow& half_flow, Watch& watch) const {
+  double left = flow.dt;
   for (int hits = 0;; ++hits) {
     GateState end = s;
     if (hits == 0)
-      glide(end, force_x, flow_);
+      glide(end, force_x, flow, half_flow);
     else
       glide(end, force_x, left);
 
@@ -216,7 +211,7 @@ void StableMethod::substep(GateState& s, double force_x, Watch& watch) const {
     const double when = first_hit(s, force_x, end, left, hit);
     resolve(s, watch);
     left -= when;
-    if (left <= 1e-15 * flow_.dt) return;
+    if (left <= 1e-15 * flow.dt) return;
   }
 }
 
@@ -246,7 +241,7 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
     // A first guess from the interpolated motion, which is cheap, and one Newton step on the motion
     // itself. If that does not land on the contact, a safe search on the motion itself does.
     double when = crossing(dt, start, gap_of(end), from_contact, 10 * touching_, [&](double t) {
-      return gap_of(between(s, end, dt, t));
+      return gap_of(interpolated(s, end, dt, t));
     });
     GateState there = moved(when);
     const Touch t = nearest(p_, side, there.body, there.beams[side].theta);

@@ -26,11 +26,13 @@ class StableMethod final : public Method {
                  Watch& watch) const override;
 
  private:
-  void substep(GateState& s, double force_x, Watch& watch) const;
+  void substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
+               Watch& watch) const;
   /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
-  void glide(GateState& s, double force_x, const GateFlow& flow) const;
+  void glide(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow) const;
   void glide(GateState& s, double force_x, double dt) const;
-  void glide_held(GateState& s, double force_x, const GateFlow& flow) const;
+  void glide_held(GateState& s, double force_x, const GateFlow& flow,
+                  const GateFlow& half_flow) const;
   /// Puts these contacts back to gap = 0 and u = 0; `touch` is where they are in `s`.
   void restore(GateState& s, std::array<bool, 2> contacts, std::array<Touch, 2> touch) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
@@ -43,7 +45,7 @@ class StableMethod final : public Method {
   double threshold_;      // N s
   double touching_;       // m, gaps up to this count as contact at a moment of impact
   int pieces_;            // substeps per step, 1 unless the beams are very stiff
-  GateFlow flow_;         // one substep
+  GateFlow flow_;         // one substep of a whole step
   GateFlow half_flow_;
 };
 
