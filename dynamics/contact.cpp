@@ -62,6 +62,16 @@ double gap_rate_bias(const GateParams& p, Side side, const Touch& t, const BodyS
   return across * across / dist + centripetal;
 }
 
+double free_gap_acceleration(const GateParams& p, Side side, const Touch& t, const GateState& s,
+                             double force_x) {
+  const double ax = (force_x - p.forces.drag * s.body.vx) / p.body.mass;
+  const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy) / p.body.mass;
+  const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
+  const BeamState& beam = s.beams[side];
+  const double beta = (-k * beam.theta - p.beams.damping * beam.omega) / p.beams.inertia();
+  return (t.nx * ax + t.ny * ay) - t.lever * beta + gap_rate_bias(p, side, t, s.body, beam);
+}
+
 void apply_impulses(const GateParams& p, const std::array<Touch, 2>& touch,
                     const std::array<double, 2>& impulse, GateState& s) {
   s.body.vx += (impulse[kLeft] * touch[kLeft].nx + impulse[kRight] * touch[kRight].nx) / p.body.mass;

@@ -106,6 +106,10 @@ struct Coupling {
 [[nodiscard]] std::array<double, 2> push_or_pull(const Coupling& w, const std::array<double, 2>& b,
                                                  const std::array<bool, 2>& active);
 
+/// d^2 gap / dt^2 (m/s^2) without contact forces: Newton's law Eqs. (2), (3) in Eq. (11) or (13).
+[[nodiscard]] double free_gap_acceleration(const GateParams& p, Side side, const Touch& t,
+                                           const GateState& s, double force_x);
+
 /// Contact forces (N, along n) that keep the `active` contacts from closing: Newton's law Eqs. (2),
 /// (3) with the constraint Eq. (11) or (13). `push` is push_only or push_or_pull.
 template <class Solve>
@@ -113,17 +117,9 @@ template <class Solve>
                                                    const std::array<Touch, 2>& touch,
                                                    double force_x,
                                                    const std::array<bool, 2>& active, Solve solve) {
-  const double ax = (force_x - p.forces.drag * s.body.vx) / p.body.mass;
-  const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy) / p.body.mass;
   std::array<double, 2> b{};
-  for (const Side side : {kLeft, kRight}) {
-    if (!active[side]) continue;
-    const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
-    const BeamState& beam = s.beams[side];
-    const double beta = (-k * beam.theta - p.beams.damping * beam.omega) / p.beams.inertia();
-    const Touch& t = touch[side];
-    b[side] = (t.nx * ax + t.ny * ay) - t.lever * beta + gap_rate_bias(p, side, t, s.body, beam);
-  }
+  for (const Side side : {kLeft, kRight})
+    if (active[side]) b[side] = free_gap_acceleration(p, side, touch[side], s, force_x);
   return solve(coupling(p, touch), b, active);
 }
 

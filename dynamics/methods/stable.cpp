@@ -6,7 +6,6 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kRest = 1e-12;           // m/s, a held contact this slow does not close
 constexpr double kPaperStep = 0.004;      // s, the step that the threshold of Sec. II-B belongs to
 constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
 constexpr int kMaxPieces = 1000;
@@ -27,25 +26,6 @@ int pieces_needed(const GateParams& p) {
   }
   return std::max(1, static_cast<int>(pieces));
 }
-
-/// Contact points of the wanted beams; an unwanted one has no direction and no lever.
-std::array<Touch, 2> touches(const GateParams& p, const GateState& s, std::array<bool, 2> wanted) {
-  std::array<Touch, 2> t{};
-  for (const Side side : {kLeft, kRight})
-    if (wanted[side]) t[side] = nearest(p, side, s.body, s.beams[side].theta);
-  return t;
-}
-
-/// Contact forces as accelerations of body and beams.
-struct Push {
-  double ax = 0.0, ay = 0.0;
-  std::array<double, 2> beta{0.0, 0.0};
-  Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force)
-      : ax((force[kLeft] * t[kLeft].nx + force[kRight] * t[kRight].nx) / p.body.mass),
-        ay((force[kLeft] * t[kLeft].ny + force[kRight] * t[kRight].ny) / p.body.mass),
-        beta{-t[kLeft].lever * force[kLeft] / p.beams.inertia(),
-             -t[kRight].lever * force[kRight] / p.beams.inertia()} {}
-};
 
 /// When `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which keeps a
 /// bracket and is superlinear on smooth functions. Stops at |gap| <= tolerance.
@@ -77,17 +57,6 @@ double crossing(double dt, double start, double end, bool from_zero, double tole
   return b;
 }
 
-void fly(const GateParams& p, const GateFlow& flow, double force_x, const Push* push, GateState& s) {
-  double ax = force_x / p.body.mass, ay = p.forces.propulsion / p.body.mass;
-  if (push != nullptr) {
-    ax += push->ax;
-    ay += push->ay;
-  }
-  flow.body.apply(s.body, ax, ay);
-  flow.left.apply(s.beams[kLeft], push != nullptr ? push->beta[kLeft] : 0.0);
-  flow.right.apply(s.beams[kRight], push != nullptr ? push->beta[kRight] : 0.0);
-}
-
 }  // namespace
 
 StableMethod::StableMethod(const GateParams& p)
@@ -110,14 +79,13 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
   const GateFlow flow = usual ? flow_ : GateFlow(p_, step / pieces_);
   const GateFlow half_flow = usual ? half_flow_ : GateFlow(p_, 0.5 * step / pieces_);
   for (long i = 0; i < steps; ++i) {
-    const GateState before = s;
-    for (int piece = 0; piece < pieces_; ++piece) substep(s, force_x, flow, half_flow, watch);
-    const double done = static_cast<double>(i) * step;
-    const bool left = outside(p_, s.body) && std::isfinite(s.body.vx + s.body.vy);
-    const double rest = left ? back_to_exit(p_, before, s, step) : step;
+    double passed = 0.0;
+    for (int piece = 0; piece < pieces_ && !outside(p_, s.body); ++piece)
+      passed += substep(s, force_x, flow, half_flow, watch);
     ledger.step(s, force_x, watch);
     watch.state(p_, s, flow.dt);
-    if (left || !std::isfinite(s.body.vx + s.body.vy)) return done + rest;
+    if (outside(p_, s.body) || !std::isfinite(s.body.vx + s.body.vy))
+      return static_cast<double>(i) * step + passed;
   }
   return duration;
 }
@@ -127,25 +95,28 @@ void StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
   if (s.beams[kLeft].held || s.beams[kRight].held)
     glide_held(s, force_x, flow, half_flow);
   else
-    fly(p_, flow, force_x, nullptr, s);
+    fly(p_, flow, force_x, {}, s);
 }
 
 void StableMethod::glide(GateState& s, double force_x, double dt) const {
-  glide(s, force_x, GateFlow(p_, dt), GateFlow(p_, 0.5 * dt));
+  if (s.beams[kLeft].held || s.beams[kRight].held)
+    glide_held(s, force_x, GateFlow(p_, dt), GateFlow(p_, 0.5 * dt));
+  else
+    fly(p_, GateFlow(p_, dt), force_x, {}, s);
 }
 
 void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
                               const GateFlow& half_flow) const {
-  const std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
+  const auto held = held_of(s);
   // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
   const auto start = touches(p_, s, held);
   const Push first(p_, start, contact_forces(p_, s, start, force_x, held, push_only));
   GateState mid = s;
-  fly(p_, half_flow, force_x, &first, mid);
+  fly(p_, half_flow, force_x, first, mid);
   const auto middle = touches(p_, mid, held);
   const auto force = contact_forces(p_, mid, middle, force_x, held, push_only);
   const Push second(p_, middle, force);
-  fly(p_, flow, force_x, &second, s);
+  fly(p_, flow, force_x, second, s);
 
   // Only push: without force at mid-step the contact is over, unless the bodies still overlap.
   std::array<bool, 2> keep = held;
@@ -156,31 +127,11 @@ void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow
       s.beams[side].held = false;
     }
   }
-  restore(s, keep, end);
+  put_back(p_, s, keep, end);
 }
 
-void StableMethod::restore(GateState& s, std::array<bool, 2> contacts,
-                           std::array<Touch, 2> touch) const {
-  if (!contacts[kLeft] && !contacts[kRight]) return;
-  for (int iteration = 0; iteration < 12; ++iteration) {
-    const std::array<double, 2> gap{contacts[kLeft] ? touch[kLeft].gap : 0.0,
-                                    contacts[kRight] ? touch[kRight].gap : 0.0};
-    if (std::fmax(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p_.body.radius) break;
-    // Shift along the mass metric: the same 2 x 2 system as for impulses, with gaps for rates.
-    const auto shift = push_or_pull(coupling(p_, touch), gap, contacts);
-    s.body.x += (shift[kLeft] * touch[kLeft].nx + shift[kRight] * touch[kRight].nx) / p_.body.mass;
-    s.body.y += (shift[kLeft] * touch[kLeft].ny + shift[kRight] * touch[kRight].ny) / p_.body.mass;
-    for (const Side side : {kLeft, kRight})
-      s.beams[side].theta -= shift[side] * touch[side].lever / p_.beams.inertia();
-    touch = touches(p_, s, contacts);
-  }
-  const std::array<double, 2> rate{gap_rate(touch[kLeft], s.body, s.beams[kLeft]),
-                                   gap_rate(touch[kRight], s.body, s.beams[kRight])};
-  apply_impulses(p_, touch, push_or_pull(coupling(p_, touch), rate, contacts), s);
-}
-
-void StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
-                           const GateFlow& half_flow, Watch& watch) const {
+double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
+                             const GateFlow& half_flow, Watch& watch) const {
   double left = flow.dt;
   for (int hits = 0;; ++hits) {
     GateState end = s;
@@ -195,23 +146,28 @@ void StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       if (beam.held || out_of_reach(p_, side, end.body, beam.theta)) continue;
       hit[side] = nearest(p_, side, end.body, beam.theta).gap < -touching_;
     }
+    watch.evaluations += 2 + 3 * s.beams[kLeft].held + 3 * s.beams[kRight].held;
+    const double start = flow.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {
+      const GateState before = s;
       s = end;
-      return;
+      return outside(p_, s.body) ? start + back_to_exit(p_, before, s, left) : flow.dt;
     }
     if (hits == kMaxHits) {
       // Hits pile up faster than the step resolves them: finish the substep held together.
       ++watch.forced_holds;
       s = end;
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
-      const std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
-      restore(s, held, touches(p_, s, held));
-      return;
+      put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
+      return flow.dt;
     }
+    const GateState before = s;
     const double when = first_hit(s, force_x, end, left, hit);
-    resolve(s, watch);
+    if (outside(p_, s.body)) return start + back_to_exit(p_, before, s, when);
+    resolve_hits(p_, s, touching_, watch,
+                 [&](Side, double impulse, double) { return impulse < threshold_; });
     left -= when;
-    if (left <= 1e-15 * flow.dt) return;
+    if (left <= 1e-15 * flow.dt) return flow.dt;
   }
 }
 
@@ -259,50 +215,6 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
   }
   s = at_hit;
   return earliest;
-}
-
-void StableMethod::resolve(GateState& s, Watch& watch) const {
-  const auto touch = touches(p_, s, {true, true});
-  const Coupling w = coupling(p_, touch);
-  constexpr int kRounds = 20;
-  for (int round = 0; round < kRounds; ++round) {
-    std::array<double, 2> u{}, b{};
-    std::array<bool, 2> active{};
-    for (const Side side : {kLeft, kRight}) {
-      const bool held = s.beams[side].held;
-      u[side] = gap_rate(touch[side], s.body, s.beams[side]);
-      // Only contacts that close take part. A contact that opens must not be pushed by the other's
-      // restitution, that could create energy; if it closes after this round, it takes the next.
-      active[side] = held || (touch[side].gap <= touching_ && u[side] <= 0.0);
-      const double e = touch[side].kind == ContactKind::tip ? p_.contact.tip_restitution
-                                                            : p_.contact.restitution;
-      const bool elastic = !held && round < kRounds - 1;
-      b[side] = elastic ? (1.0 + e) * u[side] : u[side];
-    }
-    const auto done = [&](Side side) {
-      return !active[side] || (s.beams[side].held && u[side] >= -kRest);
-    };
-    if (done(kLeft) && done(kRight)) return;
-
-    auto impulse = push_only(w, b, active);
-    // A hit below the threshold ends the bouncing: perfectly inelastic, then a constraint.
-    for (const Side side : {kLeft, kRight}) {
-      if (active[side] && !s.beams[side].held && impulse[side] < threshold_) {
-        s.beams[side].held = true;
-        b[side] = u[side];
-      }
-    }
-    impulse = push_only(w, b, active);
-    apply_impulses(p_, touch, impulse, s);
-    for (const Side side : {kLeft, kRight}) {
-      if (!active[side]) continue;
-      ++watch.impacts;
-      // A held beam that the other side's hit has thrown off is free again.
-      if (s.beams[side].held && impulse[side] == 0.0 &&
-          gap_rate(touch[side], s.body, s.beams[side]) > 0.0)
-        s.beams[side].held = false;
-    }
-  }
 }
 
 }  // namespace gatewalk::dynamics

@@ -11,8 +11,7 @@
 /// The impulse threshold shrinks with the step, epsilon * step / 0.004 s: with a fixed one the
 /// error of a trajectory stops falling.
 
-#include "dynamics/flow.h"
-#include "dynamics/methods/method.h"
+#include "dynamics/methods/hybrid.h"
 
 namespace gatewalk::dynamics {
 
@@ -26,20 +25,17 @@ class StableMethod final : public Method {
                  Watch& watch) const override;
 
  private:
-  void substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
-               Watch& watch) const;
+  /// Returns the time passed: flow.dt, or less when the body has left the gate.
+  double substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
+                 Watch& watch) const;
   /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
   void glide(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow) const;
   void glide(GateState& s, double force_x, double dt) const;
   void glide_held(GateState& s, double force_x, const GateFlow& flow,
                   const GateFlow& half_flow) const;
-  /// Puts these contacts back to gap = 0 and u = 0; `touch` is where they are in `s`.
-  void restore(GateState& s, std::array<bool, 2> contacts, std::array<Touch, 2> touch) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
                                  double dt, std::array<bool, 2> hit) const;
-  /// Impact law at every contact that closes, both beams together, until none does.
-  void resolve(GateState& s, Watch& watch) const;
 
   const GateParams& p_;
   double threshold_;      // N s
