@@ -11,6 +11,9 @@ constexpr double kMaxPhase = 1000.0;  // rad or e-folds of a beam in one hold of
 constexpr int kMostPieces = 2000;     // events in one hold before contact is forced
 constexpr int kMostAttempts = 100;    // Runge-Kutta steps tried for one accepted
 
+constexpr std::array<double, 2> kNotSeen{std::numeric_limits<double>::quiet_NaN(),
+                                        std::numeric_limits<double>::quiet_NaN()};
+
 /// Positions and velocities of body and beams, for the integrator.
 using Vector = std::array<double, 8>;
 
@@ -135,8 +138,8 @@ double first_zero(double gap, double rate, double fall) {
 
 EventMethod::EventMethod(const GateParams& p)
     : p_(p),
-      touching_(1e-12 * p.body.radius),
-      rise_(p.run.event_tolerance),
+      touching_(1e-14 * p.body.radius),
+      rise_(std::fmax(p.run.event_tolerance, 1e3 * touching_)),
       tolerance_(p.run.event_tolerance),
       hold_(1.0 / p.forces.random_rate),
       flow_(p, hold_) {
@@ -158,43 +161,55 @@ double EventMethod::advance(GateState& s, double force_x, double duration, Energ
   double passed = 0.0;
   for (int pieces = 0; duration - passed > 1e-12 * duration; ++pieces) {
     const double left = duration - passed;
-    if (pieces == kMostPieces) {
-      // Events pile up: hold whatever touches, and fly or slide on from there once.
-      ++watch.forced_holds;
-      const auto t = touches(p_, s, {true, true});
-      for (const Side side : {kLeft, kRight}) s.beams[side].held |= t[side].gap <= 1e3 * touching_;
-      put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
-    } else if (pieces == 2 * kMostPieces) {
+    if (pieces == 10 * kMostPieces) {
       s.body.vx = std::numeric_limits<double>::quiet_NaN();  // stuck: the run says it is broken
       return duration;
+    }
+    if (pieces > 0 && pieces % kMostPieces == 0) {
+      // Events pile up, as between an elastic tip and a disc pressed onto it: hold what touches.
+      ++watch.forced_holds;
+      const auto t = touches(p_, s, {true, true});
+      for (const Side side : {kLeft, kRight}) s.beams[side].held |= t[side].gap <= rise_;
+      put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
     }
     const bool held = s.beams[kLeft].held || s.beams[kRight].held;
     passed += held ? slide_on(s, force_x, left, watch) : fly_on(s, force_x, left, watch);
     ledger.step(s, force_x, watch);
-    watch.state(p_, s, 0.0);
-    if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body))
-      return std::fmin(passed, duration);
+    watch.motion(p_, s, 0.0);
+    if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body)) break;
   }
-  return duration;
+  watch.penetration(p_, s);
+  return outside(p_, s.body) ? std::fmin(passed, duration) : duration;
 }
 
 GateState EventMethod::flown(const GateState& s, double force_x, double dt) const {
   GateState g = s;
-  if (dt == hold_)
+  if (dt == hold_) {
     fly(p_, flow_, force_x, {}, g);
-  else
-    fly(p_, GateFlow(p_, dt), force_x, {}, g);
+    return g;
+  }
+  BodyFlow(p_.forces.drag / p_.body.mass, dt)
+      .apply(g.body, force_x / p_.body.mass, p_.forces.propulsion / p_.body.mass);
+  for (const Side side : {kLeft, kRight}) {
+    BeamState& beam = g.beams[side];
+    if (beam.theta == 0.0 && beam.omega == 0.0) continue;  // at rest
+    const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
+    BeamFlow(k / p_.beams.inertia(), p_.beams.damping / p_.beams.inertia(), dt).apply(beam, 0.0);
+  }
   return g;
 }
 
-EventMethod::Outlook EventMethod::look_ahead(const GateState& s, double force_x, const Push& push,
-                                             double horizon, Watch& watch) const {
+EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
+                                             std::array<double, 2>& surface, double force_x,
+                                             const Push& push, double horizon,
+                                             Watch& watch) const {
   Outlook out{std::numeric_limits<double>::infinity(), false};
   const BodyState& b = s.body;
   const double drag = p_.forces.drag / p_.body.mass;
-  const double force = std::hypot(force_x / p_.body.mass + push.ax,
-                                  p_.forces.propulsion / p_.body.mass + push.ay);
-  const double v = std::hypot(b.vx, b.vy) + force * horizon;  // m/s, drag only slows
+  const double fx = force_x / p_.body.mass + push.ax;
+  const double fy = p_.forces.propulsion / p_.body.mass + push.ay;
+  const double force = std::sqrt(fx * fx + fy * fy);
+  const double v = std::sqrt(b.vx * b.vx + b.vy * b.vy) + force * horizon;  // m/s, drag only slows
   const double a = force + drag * v;                          // m/s^2
   for (const Side side : {kLeft, kRight}) {
     const BeamState& beam = s.beams[side];
@@ -202,27 +217,35 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s, double force_x,
     const double L = p_.beams.length, inertia = p_.beams.inertia();
     const double k = (side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right) / inertia;
     const double d = p_.beams.damping / inertia;
-    // A free beam's energy falls, and so do the same forms in its derivatives, which obey the same
-    // equation: bounds on angular velocity, acceleration and jerk for all time to come.
-    const double beta = -k * beam.theta - d * beam.omega, jerk = -k * beam.omega - d * beta;
+    // A free beam's energy falls: a bound on its angular velocity for all time to come.
     const double w = std::sqrt(beam.omega * beam.omega + k * beam.theta * beam.theta);
-    const double w1 = std::sqrt(beta * beta + k * beam.omega * beam.omega);
-    const double w2 = std::sqrt(jerk * jerk + k * beta * beta);
     const double px = side == kLeft ? b.x + p_.beams.joint_x : p_.beams.joint_x - b.x;
     const double py = b.y - p_.beams.joint_y;
     const double reach = L + p_.body.radius + v * horizon;
     if (px * px + py * py > reach * reach) continue;
 
+    const double closing = v + L * w;  // m/s, no gap changes faster
+    const double span = p_.body.radius + closing * horizon;
+    if (std::abs(beam.theta) < 3.0 &&
+        (px - span > L || py + span < std::fmin(0.0, L * beam.theta) ||
+         py - span > std::fmax(0.0, L * beam.theta)))
+      continue;
+
     const Touch t = nearest(p_, side, b, beam.theta);
     ++watch.evaluations;
     const double u = gap_rate(t, b, beam);
-    if (t.gap <= touching_ && u < -kRest) {
+    if (std::isnan(surface[side])) surface[side] = std::fmin(0.0, t.gap);
+    const double gap = t.gap - surface[side];
+    if (gap <= touching_ && u < -kRest) {
       out.hit = true;
       return out;
     }
-    const double closing = v + L * w;  // m/s, no gap changes faster
-    if (t.gap > closing * horizon) continue;
+    if (gap > closing * horizon) continue;
 
+    // The form of the energy falls in the beam's derivatives too, which obey the same equation.
+    const double beta = -k * beam.theta - d * beam.omega, jerk = -k * beam.omega - d * beta;
+    const double w1 = std::sqrt(beta * beta + k * beam.omega * beam.omega);
+    const double w2 = std::sqrt(jerk * jerk + k * beta * beta);
     // gap'' >= now - steepest * time: `now` without the tip's and pin's own curvature, which is
     // positive and vanishes where the contact moves onto the interior; `steepest` bounds every term
     // of d/dt (n.a - l beta + bias) on interior, tip and pin.
@@ -242,10 +265,20 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s, double force_x,
     const double steepest = a * turn + drag * a + v * w1 + L * (w2 + turn * w1) +
                             2.0 * (w1 * v + w * (a + w * v)) + 2.0 * w * w1 * far +
                             w * w * closing + L * w * (2.0 * w1 + w * turn);
-    // The margin lets a body leave from rest, where nothing can be proved.
-    const double margin = 2.0 * touching_;
-    out.safe = std::fmin(out.safe, first_zero(std::fmax(t.gap, 0.0) + margin, u,
-                                              steepest * horizon - now));
+    // From rest nothing can be proved: a margin lets a body leave.
+    const double room = std::fmax(gap, 0.0) + (u < -kRest ? 0.0 : 2.0 * touching_);
+    double safe = 0.0;
+    for (double ahead = horizon; ahead > 0.0;) {  // a shorter look ahead has tighter bounds
+      const double zero = first_zero(room, u, steepest * ahead - now);
+      if (zero >= ahead) {
+        safe = ahead == horizon ? std::numeric_limits<double>::infinity() : ahead;
+        break;
+      }
+      safe = std::fmax(safe, zero);
+      if (4.0 * zero >= ahead) break;
+      ahead = 4.0 * zero;
+    }
+    out.safe = std::fmin(out.safe, safe);
   }
   return out;
 }
@@ -265,9 +298,10 @@ void EventMethod::resolve(GateState& s, double force_x, Watch& watch) const {
 
 double EventMethod::fly_on(GateState& s, double force_x, double duration, Watch& watch) const {
   const GateState start = s;
+  std::array<double, 2> surface = kNotSeen;
   double t = 0.0;
   for (;;) {
-    const Outlook ahead = look_ahead(s, force_x, {}, duration - t, watch);
+    const Outlook ahead = look_ahead(s, surface, force_x, {}, duration - t, watch);
     if (ahead.hit) {
       resolve(s, force_x, watch);
       return t;
@@ -308,8 +342,9 @@ double EventMethod::slide_on(GateState& s, double force_x, double duration, Watc
   }
   const auto held = held_of(s);
   double h = duration;
+  std::array<double, 2> surface = kNotSeen;
   if (!held[kLeft] || !held[kRight]) {
-    const Outlook ahead = look_ahead(s, force_x, start.push, h, watch);
+    const Outlook ahead = look_ahead(s, surface, force_x, start.push, h, watch);
     if (ahead.hit) {
       resolve(s, force_x, watch);
       return 0.0;
@@ -326,6 +361,19 @@ double EventMethod::slide_on(GateState& s, double force_x, double duration, Watc
       const double order = loose ? BogackiShampine::kOrder : DormandPrince::kOrder;
       const double shrink = 0.9 * std::pow(tolerance_ / step.error, 1.0 / order);
       h *= std::clamp(shrink, 0.1, 0.9);
+      continue;
+    }
+    // The look ahead took the contact forces for constant. Where they were not, go less far.
+    bool overlap = false;
+    for (const Side side : {kLeft, kRight}) {
+      if (held[side] || std::isnan(surface[side])) continue;
+      const BeamState& beam = step.end.beams[side];
+      if (out_of_reach(p_, side, step.end.body, beam.theta)) continue;
+      ++watch.evaluations;
+      overlap |= nearest(p_, side, step.end.body, beam.theta).gap < surface[side] - 2.0 * touching_;
+    }
+    if (overlap) {
+      h *= 0.5;
       continue;
     }
     // A force that has become a pull: back to where it was zero, to within what the tolerance sees.

@@ -38,8 +38,11 @@ class EventMethod final : public Method {
     double safe = 0.0;  // s, no contact before this
     bool hit = false;   // one closes now
   };
-  [[nodiscard]] Outlook look_ahead(const GateState& s, double force_x, const Push& push,
-                                   double horizon, Watch& watch) const;
+  /// `surface`: the gap (m) at which each contact counts as shut: 0, or less where the bodies
+  /// overlapped when first looked at; NaN before that.
+  [[nodiscard]] Outlook look_ahead(const GateState& s, std::array<double, 2>& surface,
+                                   double force_x, const Push& push, double horizon,
+                                   Watch& watch) const;
   void resolve(GateState& s, double force_x, Watch& watch) const;
   [[nodiscard]] GateState flown(const GateState& s, double force_x, double dt) const;
 

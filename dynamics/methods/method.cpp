@@ -26,20 +26,25 @@ std::unique_ptr<Method> make_method(const GateParams& params) {
   return std::make_unique<StableMethod>(params);
 }
 
-void Watch::state(const GateParams& p, const GateState& s, double dt) {
+void Watch::motion(const GateParams& p, const GateState& s, double dt) {
   ++steps;
   const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
   max_speed = std::fmax(max_speed, speed);
   double fastest_beam = 0.0;
   for (const Side side : {kLeft, kRight}) {
-    const BeamState& beam = s.beams[side];
-    max_theta[side] = std::fmax(max_theta[side], std::abs(beam.theta));
-    fastest_beam = std::fmax(fastest_beam, std::abs(beam.omega));
-    if (!out_of_reach(p, side, s.body, beam.theta))
-      max_penetration = std::fmax(max_penetration, -nearest(p, side, s.body, beam.theta).gap);
+    max_theta[side] = std::fmax(max_theta[side], std::abs(s.beams[side].theta));
+    fastest_beam = std::fmax(fastest_beam, std::abs(s.beams[side].omega));
   }
   // Half a radius is far from passing through a beam, and far beyond what the paper's scenes do.
   fast_steps += (speed + fastest_beam * p.beams.length) * dt > 0.5 * p.body.radius;
+}
+
+void Watch::penetration(const GateParams& p, const GateState& s) {
+  for (const Side side : {kLeft, kRight}) {
+    const double theta = s.beams[side].theta;
+    if (!out_of_reach(p, side, s.body, theta))
+      max_penetration = std::fmax(max_penetration, -nearest(p, side, s.body, theta).gap);
+  }
 }
 
 GateState interpolated(const GateState& a, const GateState& b, double dt, double t) {

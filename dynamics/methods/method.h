@@ -26,7 +26,13 @@ struct Watch {
 
   /// To be called after every step, looks at the state from outside the method; `dt` is the time
   /// between two looks for contact.
-  void state(const GateParams& p, const GateState& s, double dt);
+  void state(const GateParams& p, const GateState& s, double dt) {
+    motion(p, s, dt);
+    penetration(p, s);
+  }
+  /// Its two halves, for methods that know between steps that nothing overlaps.
+  void motion(const GateParams& p, const GateState& s, double dt);
+  void penetration(const GateParams& p, const GateState& s);
 };
 
 /// Energy less the work of propulsion and random force: it may only fall. Follows one run.
