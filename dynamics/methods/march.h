@@ -7,8 +7,8 @@
 
 namespace gatewalk::dynamics {
 
-/// Equal steps that fill a duration: the usual one, run.step, or shorter ones where the duration (the
-/// rest of a hold) is no whole number of those.
+/// Equal steps that fill a duration: the usual one, run.step, or shorter ones where the duration
+/// (the rest of a hold) is no whole number of those.
 struct Spell {
   long steps;
   double step;  // s
@@ -22,9 +22,9 @@ struct Spell {
   }
 };
 
-/// Takes the steps of `spell`, each by `one_step(s)`, and stops at the moment of leaving the gate or
-/// when the state is no longer finite. `stored(s)` is called after each step: energy (J) that the
-/// method keeps outside the state. Returns the seconds advanced.
+/// Takes the steps of `spell`, each by `one_step(s)`, and stops at the moment of leaving the gate
+/// or when the state is no longer finite. `stored(s)` is called after each step: energy (J) that
+/// the method keeps outside the state. Returns the seconds advanced.
 template <class OneStep, class Stored>
 double march(const GateParams& p, const Spell& spell, GateState& s, double force_x,
              EnergyLedger& ledger, Watch& watch, OneStep one_step, Stored stored) {

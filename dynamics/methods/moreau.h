@@ -14,10 +14,10 @@
 /// What it does not. Hits act up to h late, so the gap is off by up to h |u|, and it stays off:
 /// nothing but the next flight brings an overlap back (Health counts deep ones). Sustained contact
 /// is an impulse in every step; its u dies out as e^n, with alternating sign. Against a force F a
-/// contact of effective mass m that opens slowly by itself, 0 < u- < h F / ((1 + e) m), is held back
-/// to -e u-, which can create (1 - e)/(8 (1 + e)) (h F)^2 / m of energy. With different restitutions
-/// at the two contacts the law itself, applied to both at once, can create energy: sum J (u+ + u-)/2
-/// need not be negative when one of them opens already.
+/// contact of effective mass m that opens slowly by itself, 0 < u- < h F / ((1 + e) m), is held
+/// back to -e u-, which can create (1 - e)/(8 (1 + e)) (h F)^2 / m of energy. With different
+/// restitutions at the two contacts the law itself, applied to both at once, can create energy: sum
+/// J (u+ + u-)/2 need not be negative when one of them opens already.
 ///
 /// There is no constraint mode: contact.impulse_threshold has no effect, `held` stays false.
 /// Watch::impacts counts an overlap that, at its present speed, was not there a step ago.

@@ -57,9 +57,9 @@ PenaltyMethod::Springs::Springs(const GateParams& p, double h) {
 double penalty_bound(const GateParams& p) {
   constexpr double kW = 2.0 * std::numbers::pi / PenaltyMethod::kContactSteps;
   const auto share = [](const PenaltyMethod::Spring& c) { return c.stiffness + 2.0 * c.damping; };
-  const double contact = std::fmax(share(PenaltyMethod::spring(p.contact.restitution, kW, 1.0)),
-                                   share(PenaltyMethod::spring(p.contact.tip_restitution, kW, 1.0)));
-  const double room = 4.0 - 2.0 * contact;
+  const auto contact = [&](double e) { return share(PenaltyMethod::spring(e, kW, 1.0)); };
+  const double room =
+      4.0 - 2.0 * std::fmax(contact(p.contact.restitution), contact(p.contact.tip_restitution));
   // h^2 K + 2 h C = room, solved for h without cancellation.
   const auto longest = [room](double k, double c) {
     return k > 0.0 || c > 0.0 ? room / (c + std::sqrt(c * c + k * room))
@@ -112,10 +112,10 @@ double PenaltyMethod::advance(GateState& s, double force_x, double duration, Ene
     }
     const Touch &l = touch[kLeft], &r = touch[kRight];
     BodyState& body = now.body;
-    body.vx += h * (force_x - p_.forces.drag * body.vx + (force[kLeft] * l.nx + force[kRight] * r.nx)) /
-               p_.body.mass;
-    body.vy += h * (p_.forces.propulsion - p_.forces.drag * body.vy +
-                    (force[kLeft] * l.ny + force[kRight] * r.ny)) / p_.body.mass;
+    const double contact_x = force[kLeft] * l.nx + force[kRight] * r.nx;
+    const double contact_y = force[kLeft] * l.ny + force[kRight] * r.ny;
+    body.vx += h * (force_x - p_.forces.drag * body.vx + contact_x) / p_.body.mass;
+    body.vy += h * (p_.forces.propulsion - p_.forces.drag * body.vy + contact_y) / p_.body.mass;
     body.x += h * body.vx;
     body.y += h * body.vy;
     for (const Side side : {kLeft, kRight}) {
@@ -126,8 +126,8 @@ double PenaltyMethod::advance(GateState& s, double force_x, double duration, Ene
       beam.theta += h * beam.omega;
     }
   };
-  // Semi-implicit Euler keeps v^2 + K q (q - h v) of a spring K, not v^2 + K q^2: q - h v is where q
-  // was a step ago. It is the former that says whether energy appears.
+  // Semi-implicit Euler keeps v^2 + K q (q - h v) of a spring K, not v^2 + K q^2: q - h v is where
+  // q was a step ago. It is the former that says whether energy appears.
   const auto stored = [&](const GateState& now) {
     look(now);
     std::array<double, 2> elastic{};

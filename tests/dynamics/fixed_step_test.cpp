@@ -56,7 +56,8 @@ TEST_P(FixedStep, CutsWhatIsNoWholeNumberOfStepsIntoEqualOnes) {
   Ride ride(by(p), {});
   EXPECT_EQ(ride.go(0.0175), 0.0175);
   EXPECT_EQ(ride.watch.steps, 5);
-  // 5 steps of 3.5 ms at 8 m/s^2: the midpoint rule is exact, semi-implicit Euler half a step early.
+  // 5 steps of 3.5 ms at 8 m/s^2: the midpoint rule is exact, semi-implicit Euler half a step
+  // early.
   const double early = ride.p.run.method == "penalty" ? 0.0035 : 0.0;
   EXPECT_NEAR(ride.s.body.vy, 8.0 * 0.0175, 8 * kEps);
   EXPECT_NEAR(ride.s.body.y, 4.0 * 0.0175 * (0.0175 + early), 8 * kEps);

@@ -143,8 +143,8 @@ GateState overlapping(const GateParams& p, Draw& draw, bool both) {
 }
 
 // S4 and the rest of the law: 500 and more single hits each of side, tip and pin, without forces.
-// Before and after, the disc moves straight through the midpoint, where the impulse acts: restitution
-// holds there, angular momentum about the joint throughout.
+// Before and after, the disc moves straight through the midpoint, where the impulse acts:
+// restitution holds there, angular momentum about the joint throughout.
 TEST(Moreau, SingleHitsObeyTheLawAtMidStep) {
   GateParams p = moreau(test::free_rods());
   p.contact.tip_restitution = 0.9;
@@ -211,7 +211,8 @@ TEST(Moreau, ImpulseKnowsTheImplicitSpring) {
 // ---- S6: Zeno ----
 
 // Drawn upwards by 6 N onto the left joint, first hit at 2 m/s: it comes to rest after hit n where
-// 2 e^n < h F / M, in overlap by what it moves in one step at most. Sustained contact is no new hit.
+// 2 e^n < h F / M, in overlap by what it moves in one step at most. Sustained contact is no new
+// hit.
 TEST(Moreau, BouncingEndsAtRest) {
   for (const double e : {0.0, 0.1, 0.5, 0.8, 0.95}) {
     SCOPED_TRACE(e);
@@ -322,7 +323,8 @@ std::array<double, 2> energy_created(const GateParams& p) {
 }
 
 // With one restitution for all contacts only the gain above is left, (h F)^2 in steps that are rare
-// in proportion to h: first order at least. Measured means 8.2e-6, 1.2e-6, 1.1e-7 J, worst 7.9e-4 J.
+// in proportion to h: first order at least. Measured means 8.2e-6, 1.2e-6, 1.1e-7 J, worst 7.9e-4
+// J.
 TEST(Moreau, EnergyCreatedWithOneRestitutionFallsWithTheStep) {
   double last = 0.0;
   for (const double step : {0.004, 0.002, 0.001}) {
@@ -337,8 +339,8 @@ TEST(Moreau, EnergyCreatedWithOneRestitutionFallsWithTheStep) {
   }
 }
 
-// As in the paper's scenes, 0.8 on sides and 1 on tips. Measured 7.6e-4 and 2.2e-3 J, of a disc that
-// has up to 430 and 920 J; what different restitutions create need not fall with the step.
+// As in the paper's scenes, 0.8 on sides and 1 on tips. Measured 7.6e-4 and 2.2e-3 J, of a disc
+// that has up to 430 and 920 J; what different restitutions create need not fall with the step.
 TEST(Moreau, EnergyCreatedInTrialsIsSmall) {
   for (const double random : {10.0, 40.0}) {
     GateParams p = moreau(test::study(10.0));
