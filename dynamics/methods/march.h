@@ -10,15 +10,19 @@ namespace gatewalk::dynamics {
 /// Equal steps that fill a duration: the usual one, run.step, or shorter ones where the duration
 /// (the rest of a hold) is no whole number of those.
 struct Spell {
+  double duration;  // s
   long steps;
-  double step;  // s
-  bool usual;   // step == run.step
+  double step;      // s
+  double look;      // s, time between two looks for contact
+  bool usual;       // step == run.step
 
-  Spell(const GateParams& p, double duration) {
+  /// A method that cuts each step into `pieces` looks for contact in each.
+  Spell(const GateParams& p, double seconds, int pieces = 1) : duration(seconds) {
     const double wanted = duration / p.run.step;
     steps = std::max<long>(1, std::lround(std::ceil(wanted - 1e-6)));
     usual = std::abs(wanted - static_cast<double>(steps)) < 1e-6;
     step = usual ? p.run.step : duration / static_cast<double>(steps);
+    look = step / pieces;
   }
 };
 
@@ -35,10 +39,10 @@ double march(const GateParams& p, const Spell& spell, GateState& s, double force
     const bool left = finite && outside(p, s.body);
     const double passed = left ? back_to_exit(p, before, s, spell.step) : spell.step;
     ledger.step(s, force_x, watch, stored(s));
-    watch.state(p, s, spell.step);
+    watch.state(p, s, spell.look);
     if (left || !finite) return static_cast<double>(i) * spell.step + passed;
   }
-  return static_cast<double>(spell.steps) * spell.step;
+  return spell.duration;
 }
 
 }  // namespace gatewalk::dynamics
