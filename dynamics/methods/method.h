@@ -41,11 +41,12 @@ class EnergyLedger {
   EnergyLedger(const GateParams& p, const GateState& s) : p_(p), x_(s.body.x), y0_(s.body.y) {
     lowest_ = balance(s);
   }
-  /// To be called after every step with the random force that acted during it.
-  void step(const GateState& s, double force_x, Watch& w) {
+  /// To be called after every step with the random force that acted during it, and the energy that
+  /// the method keeps outside the state (J, in contact springs).
+  void step(const GateState& s, double force_x, Watch& w, double stored = 0.0) {
     random_work_ += force_x * (s.body.x - x_);
     x_ = s.body.x;
-    const double now = balance(s);
+    const double now = balance(s) + stored;
     w.energy_created = std::fmax(w.energy_created, now - lowest_);
     lowest_ = std::fmin(lowest_, now);
   }

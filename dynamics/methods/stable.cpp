@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "dynamics/methods/march.h"
+
 namespace gatewalk::dynamics {
 namespace {
 
@@ -69,23 +71,17 @@ StableMethod::StableMethod(const GateParams& p)
 
 double StableMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                              Watch& watch) const {
-  // A spell that is no whole number of steps (the rest of a hold) is cut into equal, shorter ones.
-  const double wanted = duration / p_.run.step;
-  const auto steps = std::max<long>(1, std::lround(std::ceil(wanted - 1e-6)));
-  const double step = std::abs(wanted - static_cast<double>(steps)) < 1e-6
-                          ? p_.run.step
-                          : duration / static_cast<double>(steps);
-  const bool usual = step == p_.run.step;
-  const GateFlow flow = usual ? flow_ : GateFlow(p_, step / pieces_);
-  const GateFlow half_flow = usual ? half_flow_ : GateFlow(p_, 0.5 * step / pieces_);
-  for (long i = 0; i < steps; ++i) {
+  const Spell spell(p_, duration, pieces_);
+  const GateFlow flow = spell.usual ? flow_ : GateFlow(p_, spell.look);
+  const GateFlow half_flow = spell.usual ? half_flow_ : GateFlow(p_, 0.5 * spell.look);
+  for (long i = 0; i < spell.steps; ++i) {
     double passed = 0.0;
     for (int piece = 0; piece < pieces_ && !outside(p_, s.body); ++piece)
       passed += substep(s, force_x, flow, half_flow, watch);
     ledger.step(s, force_x, watch);
     watch.state(p_, s, flow.dt);
     if (outside(p_, s.body) || !std::isfinite(s.body.vx + s.body.vy))
-      return static_cast<double>(i) * step + passed;
+      return static_cast<double>(i) * spell.step + passed;
   }
   return duration;
 }

@@ -10,6 +10,7 @@
 
 #include "dynamics/ensemble.h"
 #include "dynamics/gate.h"
+#include "tests/support/mirror.h"
 #include "tests/support/numbers.h"
 #include "tests/support/ride.h"
 #include "tests/support/scenes.h"
@@ -399,40 +400,17 @@ TEST(EnergyLedger, StablesErrorFallsWithTheStep) {
 
 // ---- S8: mirror images ----
 
-struct Outcome {
-  GateRun run;
-  void expect_mirror_of(const Outcome& o) const {
-    const auto flipped = o.run.ending == Ending::exited_left    ? Ending::exited_right
-                         : o.run.ending == Ending::exited_right ? Ending::exited_left
-                                                                : o.run.ending;
-    ASSERT_EQ(run.ending, flipped);
-    ASSERT_EQ(run.exit.x, -o.run.exit.x);
-    ASSERT_EQ(run.exit.vx, -o.run.exit.vx);
-    ASSERT_TRUE(same_bits(run.exit.y, o.run.exit.y));
-    ASSERT_TRUE(same_bits(run.exit.vy, o.run.exit.vy));
-    ASSERT_TRUE(same_bits(run.seconds, o.run.seconds));
-    for (const Side side : {kLeft, kRight})
-      ASSERT_TRUE(same_bits(run.watch.max_theta[side], o.run.watch.max_theta[1 - side]));
-    ASSERT_TRUE(same_bits(run.watch.max_penetration, o.run.watch.max_penetration));
-    ASSERT_TRUE(same_bits(run.watch.energy_created, o.run.watch.energy_created));
-    ASSERT_TRUE(same_bits(run.watch.max_speed, o.run.watch.max_speed));
-    ASSERT_EQ(run.watch.impacts, o.run.watch.impacts);
-    ASSERT_EQ(run.watch.forced_holds, o.run.watch.forced_holds);
-    ASSERT_EQ(run.watch.steps, o.run.watch.steps);
-  }
-};
-
-Outcome outcome(const GateParams& p, const Method& method, const BodyState& start, int trial,
+GateRun outcome(const GateParams& p, const Method& method, const BodyState& start, int trial,
                 double sign) {
   const Stream stream{3, 0, static_cast<std::uint64_t>(trial)};
   RandomForce force(p.forces, Random(Purpose::gate, stream), sign);
-  return {run_gate(p, method, start, force)};
+  return run_gate(p, method, start, force);
 }
 
 // 10^4 trials: equal and unequal beams, weak and strong noise, from the middle and from anywhere.
 TEST(Mirror, StableGivesTheSameBits) {
   constexpr int kTrials = 10'000;
-  std::vector<Outcome> seen(kTrials), mirror(kTrials);
+  std::vector<GateRun> seen(kTrials), mirror(kTrials);
   std::vector<GateParams> scenes;
   for (const double right : {300.0, 500.0}) {
     for (const double noise : {10.0, 40.0}) {
@@ -457,7 +435,7 @@ TEST(Mirror, StableGivesTheSameBits) {
   }
   for (int trial = 0; trial < kTrials; ++trial) {
     SCOPED_TRACE(trial);
-    mirror[trial].expect_mirror_of(seen[trial]);
+    test::expect_mirror_images(mirror[trial], seen[trial]);
     if (HasFatalFailure()) return;
   }
 }
