@@ -177,8 +177,6 @@ Json to_json(const StartReport& r) {
 
 std::string with_sd(const MeanAndSd& m) { return fixed(m.mean(), 3) + " (" + fixed(m.sd(), 3) + ")"; }
 
-std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
-
 std::string table_of(const std::vector<StartReport>& reports, std::int64_t trials, std::int64_t walks,
                      std::size_t threads) {
   std::ostringstream out;

@@ -241,7 +241,31 @@ void Crowd::step(const Step& k, double force_x, Watch& watch) {
 }
 
 void Crowd::resolve(const Step& k, double& vx, double& vy) {
-  const auto n = static_cast<Eigen::Index>(contacts_.size());
+  // W and b of push_only: u+ + e u- = W J + b.
+  const auto own = [&](const Contact& c) {
+    return compliance(k.mass, k.inertia[c.side], c.touch.lever);
+  };
+  const auto cross = [&](const Contact& a, const Contact& b) {
+    return (a.touch.nx * b.touch.nx + a.touch.ny * b.touch.ny) / k.mass;
+  };
+  const auto rate = [&](const Contact& c) {
+    return c.free + (c.touch.kind == ContactKind::tip ? p_.contact.tip_restitution
+                                                      : p_.contact.restitution) * c.before;
+  };
+  const std::size_t n = contacts_.size();
+  if (n <= 2) {  // one or two by cases; two terms commute to the last bit
+    Contact& a = contacts_.front();
+    Contact& b = contacts_.back();
+    const bool two = n == 2;
+    const auto impulse = dynamics::push_only({own(a), own(b), two ? cross(a, b) : 0.0},
+                                             {rate(a), two ? rate(b) : 0.0}, {true, two});
+    b.impulse = impulse[1];
+    a.impulse = impulse[0];  // last: without a second contact both are the same
+    vx += (impulse[0] * a.touch.nx + impulse[1] * b.touch.nx) / k.mass;
+    vy += (impulse[0] * a.touch.ny + impulse[1] * b.touch.ny) / k.mass;
+    return;
+  }
+
   // From left to right, rows upwards in either direction: the mirror image is the other direction.
   const auto in_order = [&](bool from_left) {
     std::sort(contacts_.begin(), contacts_.end(), [&](const Contact& a, const Contact& b) {
@@ -253,47 +277,42 @@ void Crowd::resolve(const Step& k, double& vx, double& vy) {
     });
   };
   const auto impulses = [&] {
-    Eigen::MatrixXd w(n, n);
-    Eigen::VectorXd b(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Contact& c = contacts_[i];
-      const Touch& t = c.touch;
-      const double e = t.kind == ContactKind::tip ? p_.contact.tip_restitution : p_.contact.restitution;
-      b[i] = c.free + e * c.before;
-      w(i, i) = compliance(k.mass, k.inertia[c.side], t.lever);
-      for (Eigen::Index j = 0; j < i; ++j) {
-        const Touch& other = contacts_[j].touch;
-        w(i, j) = w(j, i) = (t.nx * other.nx + t.ny * other.ny) / k.mass;
-      }
+    const auto size = static_cast<Eigen::Index>(n);
+    Eigen::MatrixXd w(size, size);
+    Eigen::VectorXd b(size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      b[i] = rate(contacts_[i]);
+      w(i, i) = own(contacts_[i]);
+      for (Eigen::Index j = 0; j < i; ++j) w(i, j) = w(j, i) = cross(contacts_[i], contacts_[j]);
     }
     return push_only(w, b);
   };
-  const auto sum = [&](auto part) {
-    double total = 0.0;
-    for (const Contact& c : contacts_) total += c.impulse * part(c.touch);
-    return total;
+  struct Sum {
+    double x = 0.0, y = 0.0;
   };
-  const auto nx = [](const Touch& t) { return t.nx; };
-  const auto ny = [](const Touch& t) { return t.ny; };
-  if (n <= 2) {  // two terms commute to the last bit
-    const auto j = impulses();
-    for (Eigen::Index i = 0; i < n; ++i) contacts_[i].impulse = j[i];
-    vx += sum(nx) / k.mass;
-    vy += sum(ny) / k.mass;
-    return;
-  }
-  // Both ways round, and the mean of the two: what round-off does then has no direction.
-  in_order(false);
-  const Eigen::VectorXd backwards = impulses();
-  for (Eigen::Index i = 0; i < n; ++i) contacts_[i].impulse = backwards[i];
+  const auto sum = [&] {
+    Sum s;
+    for (const Contact& c : contacts_) {
+      s.x += c.impulse * c.touch.nx;
+      s.y += c.impulse * c.touch.ny;
+    }
+    return s;
+  };
+  // Both ways round, and the mean of the two: what round-off does then has no direction. Contacts
+  // stand where they stood before when they are put in the same order again.
   in_order(true);
   const Eigen::VectorXd forwards = impulses();
-  for (Eigen::Index i = 0; i < n; ++i)
-    contacts_[i].impulse = 0.5 * (contacts_[i].impulse + forwards[i]);
-  const double x = sum(nx), y = sum(ny);
   in_order(false);
-  vx += 0.5 * (x + sum(nx)) / k.mass;
-  vy += 0.5 * (y + sum(ny)) / k.mass;
+  const Eigen::VectorXd backwards = impulses();
+  for (std::size_t i = 0; i < n; ++i) contacts_[i].impulse = backwards[i];
+  in_order(true);
+  for (std::size_t i = 0; i < n; ++i)
+    contacts_[i].impulse = 0.5 * (contacts_[i].impulse + forwards[i]);
+  const Sum one_way = sum();
+  in_order(false);
+  const Sum other_way = sum();
+  vx += 0.5 * (one_way.x + other_way.x) / k.mass;
+  vy += 0.5 * (one_way.y + other_way.y) / k.mass;
 }
 
 double Crowd::back_to_exit(const BodyState& before, double h) {
