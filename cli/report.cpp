@@ -126,6 +126,8 @@ std::string percent(double part, double whole, int digits) {
   return fixed(whole > 0.0 ? 100.0 * part / whole : std::nan(""), digits) + " %";
 }
 
+std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
+
 std::string padded(const std::string& text, int width) {
   const auto wanted = static_cast<std::size_t>(std::abs(width));
   if (text.size() >= wanted) return text;

@@ -11,6 +11,8 @@ bool finite(const GateState& s) {
   return std::isfinite(sum);
 }
 
+}  // namespace
+
 Ending ending(const GateParams& p, const GateState& s) {
   if (!finite(s)) return Ending::broken;
   if (s.body.y > p.run.traverse_y) return Ending::traversed;
@@ -18,8 +20,6 @@ Ending ending(const GateParams& p, const GateState& s) {
   if (s.body.x > p.beams.joint_x) return Ending::exited_right;
   return Ending::trapped;
 }
-
-}  // namespace
 
 GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,
                  RandomForce& force) {

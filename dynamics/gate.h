@@ -19,6 +19,9 @@ struct GateRun {
   Watch watch;             // largest deflections, faults, work done
 };
 
+/// Where a run that stopped in this state has ended; still inside is trapped.
+[[nodiscard]] Ending ending(const GateParams& p, const GateState& s);
+
 /// Runs one gate from `start` with both beams at rest, until the body is beyond traverse_y, beyond a
 /// side, or time_limit is over. There is no exit at the bottom: propulsion brings the body back.
 [[nodiscard]] GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "dynamics/random.h"
@@ -211,6 +212,55 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
     const Eigen::VectorXd& of_b = first_is_smaller ? rest : hand;
     return statistics(of_a / static_cast<double>(n), of_b / static_cast<double>(m), expected, rare,
                       support);
+  });
+  return c;
+}
+
+Comparison compare_pairs(const std::vector<std::int32_t>& first,
+                         const std::vector<std::int32_t>& second, int rows, int columns,
+                         std::int64_t null_draws, std::uint64_t seed) {
+  if (first.size() != second.size())
+    throw std::invalid_argument("compare_pairs: the two samples differ in length");
+  const auto counted = [&](const std::vector<std::int32_t>& cells) {
+    CellCounts counts = CellCounts::Zero(rows, columns);
+    for (const std::int32_t cell : cells) {
+      if (cell < 0 || cell >= counts.size())
+        throw std::invalid_argument("compare_pairs: no such gate");
+      ++counts.data()[cell];
+    }
+    return counts;
+  };
+  const CellProbabilities a = shares(counted(first)), b = shares(counted(second));
+  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  c.floor = {kNone, kNone};
+
+  const CellProbabilities pooled = 0.5 * (a + b);
+  const Support support = affordable_support_of(pooled);
+  const Eigen::VectorXd expected = on_support(pooled, support);
+  const auto n = static_cast<std::int64_t>(first.size());
+  const double rare = rare_share(expected, n);
+  // Pairs that differ, as places in the support; the others are the same either way round.
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> unlike;
+  const auto place = [&](std::int32_t cell) {
+    return std::lower_bound(support.gates.begin(), support.gates.end(), cell) - support.gates.begin();
+  };
+  for (std::size_t t = 0; t < first.size(); ++t)
+    if (first[t] != second[t]) unlike.emplace_back(place(first[t]), place(second[t]));
+  const Statistics seen =
+      statistics(on_support(a, support), on_support(b, support), expected, rare, support);
+  fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
+    Random random(Purpose::comparison, {seed, 2, static_cast<std::uint64_t>(k)});
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(expected.size());  // trials of the first, less second
+    std::uint64_t coins = 0;
+    for (std::size_t i = 0; i < unlike.size(); ++i) {
+      if (i % 64 == 0) coins = random.word();
+      const double sign = (coins >> (i % 64)) % 2 == 0 ? 1.0 : -1.0;
+      moved[unlike[i].first] += sign;
+      moved[unlike[i].second] -= sign;
+    }
+    const Eigen::VectorXd half = moved / (2.0 * static_cast<double>(n));
+    return statistics(expected + half, expected - half, expected, rare, support);
   });
   return c;
 }

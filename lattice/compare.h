@@ -3,6 +3,7 @@
 /// corrcoef and RMSE as in Sec. III-C, over all gates of the field, RMSE in trials per 100.
 
 #include <cstdint>
+#include <vector>
 
 #include "markov/exact.h"
 #include "markov/walk.h"
@@ -51,6 +52,14 @@ struct Comparison {
 /// Two samples: permutation test, the pooled trials dealt out anew `null_draws` times.
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellCounts& other,
                                  std::int64_t null_draws, std::uint64_t seed);
+
+/// Two samples whose trials belong together, first[t] with second[t], as two models of one trial under
+/// the same noise do; gates as row * columns + column. The null swaps each pair with probability 1/2,
+/// so only pairs that differ count, and far smaller differences are seen than between independent
+/// samples. `floor` has no formula here: NaN.
+[[nodiscard]] Comparison compare_pairs(const std::vector<std::int32_t>& first,
+                                       const std::vector<std::int32_t>& second, int rows,
+                                       int columns, std::int64_t null_draws, std::uint64_t seed);
 
 /// A sample against an exact distribution: `null_draws` samples drawn from the latter.
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellProbabilities& exact,

@@ -4,6 +4,8 @@
 
 #include <bit>
 
+#include "lattice/crowd.h"
+
 namespace gatewalk::lattice {
 namespace {
 
@@ -19,13 +21,14 @@ struct Trial {
   Health health;
 };
 
-Trial run_trial(const GateParams& p, const Method& method, const FieldParams& field,
-                const BodyState& start, const StateSpace& space, RandomForce& force) {
+/// One trial, gate by gate. `run` runs the body's gate until it leaves, `go_on` puts it into the next.
+template <class Run, class GoOn>
+Trial run_trial(const GateParams& p, const FieldParams& field, const StateSpace& space, Run run_one,
+                GoOn go_on) {
   Trial t;
   t.column = field.start_column();
-  BodyState body = start;
   for (int gates = 1;; ++gates) {
-    const GateRun run = run_gate(p, method, body, force);
+    const GateRun run = run_one();
     t.health.add(p, run);
     if (run.ending == Ending::broken || run.ending == Ending::trapped) {
       t.fate = run.ending == Ending::broken ? Fate::broken : Fate::trapped;
@@ -45,8 +48,22 @@ Trial run_trial(const GateParams& p, const Method& method, const FieldParams& fi
     t.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
     t.column += move.di_x;
     t.row += move.di_y;
-    body = shifted_into_next(p, run.ending, run.exit);
+    go_on(run);
   }
+}
+
+Trial run_trial(const GateParams& p, const Method& method, const FieldParams& field,
+                const BodyState& start, const StateSpace& space, RandomForce& force) {
+  if (field.fidelity == Fidelity::active) {
+    BodyState body = start;
+    return run_trial(
+        p, field, space, [&] { return run_gate(p, method, body, force); },
+        [&](const GateRun& run) { body = shifted_into_next(p, run.ending, run.exit); });
+  }
+  Crowd crowd(p, field, start);
+  return run_trial(
+      p, field, space, [&] { return crowd.run_gate(force); },
+      [&](const GateRun& run) { crowd.go_on(run.ending); });
 }
 
 }  // namespace
@@ -78,6 +95,7 @@ FieldTally& FieldTally::operator+=(const FieldTally& o) {
 FieldTally run_field(const GateParams& p, const FieldParams& field, const BodyState& start,
                      const StateSpace& space, std::uint64_t seed, TrialRange range) {
   const auto method = make_method(p);
+  validate(p, field);
   const std::uint64_t row = stream_row(start);
   std::vector<Trial> trials(range.count);
   tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {

@@ -87,6 +87,7 @@ traverse_y_m = 60.0
 columns = 9
 rows = 9
 max_gates = 13
+fidelity = "active"
 
 [start]
 x_m = 0.0
@@ -132,6 +133,7 @@ traverse_y_m = 18
 columns = 21
 rows = 22
 max_gates = 23
+fidelity = "active"
 [start]
 x_m = 1.5
 y_m = -24
@@ -166,6 +168,19 @@ vy_m_per_s = 26
   EXPECT_EQ(scene.start.y, -24);
   EXPECT_EQ(scene.start.vx, -25);
   EXPECT_EQ(scene.start.vy, 26);
+}
+
+TEST(Scene, FidelityIsOneOfThree) {
+  for (std::size_t i = 0; i < lattice::kFidelityNames.size(); ++i) {
+    const std::string name(lattice::kFidelityNames[i]);
+    const std::string text = "[run]\nmethod = \"moreau\"\n[field]\nfidelity = \"" + name + "\"\n";
+    const Scene scene = parse_scene(text, "a.toml");
+    EXPECT_EQ(static_cast<std::size_t>(scene.field.fidelity), i);
+    EXPECT_TRUE(contains(to_toml(scene), "fidelity = \"" + name + "\"\n"));
+    EXPECT_EQ(parse_scene(to_toml(scene), "b.toml").field.fidelity, scene.field.fidelity);
+    EXPECT_EQ(parse_scene("", "c.toml", {"run.method=moreau", "field.fidelity=" + name}).field.fidelity,
+              scene.field.fidelity);
+  }
 }
 
 TEST(Scene, ShippedFieldIsTheDefaultSceneWithItsOwnForces) {
@@ -293,6 +308,13 @@ const Malformed kMalformed[] = {
      "a whole number in [1, 2001]"},
     {"StringForInteger", "[field]\nrows = \"9\"\n", 2, "field.rows = \"9\"", "a whole number in"},
     {"NumberForText", "[run]\nmethod = 3\n", 2, "run.method = 3", "must be text"},
+    {"NumberForFidelity", "[field]\nfidelity = 2\n", 2, "field.fidelity = 2",
+     "must be one of \"active\", \"remember\", \"all\""},
+    {"UnknownFidelity", "[field]\nfidelity = \"most\"\n", 2, "field.fidelity = \"most\"",
+     "must be one of \"active\", \"remember\", \"all\""},
+    {"FidelityWithoutItsMethod", "[run]\nmethod = \"stable\"\n[field]\nfidelity = \"all\"\n", 4,
+     "field.fidelity = \"all\" is not permitted with run.method = \"stable\"",
+     "run.method must be \"moreau\""},
     {"NumberForTable", "\nforces = 3\n", 2, "forces = 3", "must be a table, written [forces]"},
     {"ListOfTables", "[[forces]]\nrandom_N = 3\n", 1, "forces (an array)", "must be a table"},
 

@@ -390,6 +390,75 @@ TEST(Compare, IsSymmetric) {
   EXPECT_EQ(c.p_energy, d.p_energy);
 }
 
+// Four pairs differ, all in one direction: of the 16 ways to swap them, 2 are as extreme. TV is
+// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials.
+TEST(ComparePairs, SwapsOfAHandfulAreExact) {
+  std::vector<std::int32_t> first(20, 0), second(20, 0);
+  for (int i = 3; i < 7; ++i) second[i] = 1;
+  const Comparison c = compare_pairs(first, second, 1, 2, 9999, 1);
+  const double p = 2.0 / 16, tolerance = 4 * std::sqrt(p * (1 - p) / 9999);
+  EXPECT_NEAR(c.p_chi_squared, p, tolerance);
+  EXPECT_NEAR(c.p_total_variation, p, tolerance);
+  EXPECT_NEAR(c.p_energy, p, tolerance);
+  EXPECT_DOUBLE_EQ(c.total_variation, 4.0 / 20);
+  EXPECT_NEAR(c.floor_total_variation, 1.5 / 20, 4 * (1.33 / 20) / 100);  // sd of |4 - 2k|: 1.32
+}
+
+// The same statistics as without pairs, and another null: pairs that agree add no noise.
+TEST(ComparePairs, SeesWhatIndependentSamplesCannot) {
+  Draw draw(9);
+  std::vector<std::int32_t> first, second;
+  for (int t = 0; t < 2000; ++t) {
+    first.push_back(draw.below(9));
+    second.push_back(first.back() == 4 && draw.coin() && draw.coin() ? 5 : first.back());
+  }
+  CellCounts a = CellCounts::Zero(3, 3), b = a;
+  for (const auto cell : first) ++a.data()[cell];
+  for (const auto cell : second) ++b.data()[cell];
+  const Comparison pairs = compare_pairs(first, second, 3, 3, 999, 1), apart = compare(a, b, 999, 1);
+  EXPECT_EQ(pairs.total_variation, apart.total_variation);
+  EXPECT_EQ(pairs.corrcoef, apart.corrcoef);
+  EXPECT_EQ(pairs.rmse_per_100, apart.rmse_per_100);
+  EXPECT_EQ(pairs.p_total_variation, 0.001);  // the least that 999 draws can give
+  EXPECT_LT(pairs.floor_total_variation, apart.floor_total_variation / 4);
+  EXPECT_TRUE(std::isnan(pairs.floor.rmse_per_100));
+  const Comparison same = compare_pairs(first, first, 3, 3, 99, 1);
+  EXPECT_EQ(same.p_total_variation, 1.0);
+  EXPECT_EQ(same.floor_total_variation, 0.0);
+}
+
+// Kolmogorov's 0.1 % point and the steps of 1/100, as above; ties only make p larger.
+TEST(ComparePairs, PValuesAreUniformUnderTheNull) {
+  Draw draw(10);
+  constexpr int kRuns = 300;
+  std::vector<double> p;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<std::int32_t> first, second;
+    for (int t = 0; t < 200; ++t) {
+      first.push_back(draw.below(6));
+      second.push_back(draw.coin() ? first.back() : draw.below(6));  // exchangeable
+    }
+    p.push_back(compare_pairs(first, second, 2, 3, 99, run).p_energy);
+  }
+  std::sort(p.begin(), p.end());
+  double off = 0.0;
+  for (int i = 0; i < kRuns; ++i)
+    off = std::max({off, std::abs(p[i] - i / 300.0), std::abs(p[i] - (i + 1) / 300.0)});
+  EXPECT_LT(off, 1.95 / std::sqrt(kRuns) + 0.01);
+}
+
+TEST(ComparePairs, SameBitsOnAnyNumberOfThreadsAndRefusals) {
+  const std::vector<std::int32_t> a{0, 1, 2, 3, 2, 1}, b{1, 1, 3, 0, 2, 2};
+  const auto on = [&](int threads) {
+    return test::on_threads(threads, [&] { return compare_pairs(a, b, 2, 2, 500, 3); });
+  };
+  EXPECT_TRUE(test::same_bits(on(1).floor_total_variation, on(8).floor_total_variation));
+  EXPECT_EQ(on(1).p_energy, on(8).p_energy);
+  EXPECT_THROW((void)compare_pairs(a, {1, 2}, 2, 2, 9, 1), std::invalid_argument);
+  EXPECT_THROW((void)compare_pairs({4}, {0}, 2, 2, 9, 1), std::invalid_argument);
+  EXPECT_THROW((void)compare_pairs({}, {}, 2, 2, 9, 1), std::invalid_argument);
+}
+
 TEST(Compare, RefusesWhatCannotBeCompared) {
   const CellCounts empty = counts(1, 2, {0, 0}), some = counts(1, 2, {3, 4});
   EXPECT_THROW((void)compare(empty, some, 10, 1), std::invalid_argument);
