@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
-#include <optional>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -365,21 +366,33 @@ char letter_of(Verdict v) {
   }
 }
 
-/// Settings that have no place in a panel, with the reason: "paper 0.02, 0.01 s not finite".
-std::string strip(const std::vector<std::pair<const Point*, std::string>>& without) {
-  std::string text;
-  for (std::size_t i = 0; i < without.size(); ++i) {
-    const auto& [point, reason] = without[i];
-    const bool goes_on = i > 0 && without[i - 1].first->setting.method == point->setting.method &&
-                         without[i - 1].second == reason;
-    const bool ends = i + 1 == without.size() ||
-                      without[i + 1].first->setting.method != point->setting.method ||
-                      without[i + 1].second != reason;
-    text += goes_on ? ", " : (text.empty() ? "no point: " : "; ") + point->setting.method + " ";
-    text += digits(point->setting.value);
-    if (ends) text += unit_of(point->setting) + " " + reason;
+/// Settings that have no place in a panel, with the reason: "paper 0.02 to 0.005 s: not finite".
+/// Two such to a line.
+std::vector<std::string> strip(const std::vector<std::pair<const Point*, std::string>>& without) {
+  std::vector<std::string> lines;
+  int entries = 0;
+  for (std::size_t i = 0; i < without.size();) {
+    const auto& [first, reason] = without[i];
+    std::size_t last = i;  // of a run of neighbours in the list with the same reason
+    while (last + 1 < without.size() && without[last + 1].first == without[last].first + 1 &&
+           without[last + 1].first->setting.method == first->setting.method &&
+           without[last + 1].second == reason)
+      ++last;
+    const auto value = [](const Point* p) {
+      char text[16];
+      std::snprintf(text, sizeof text, "%.3g", p->setting.value);
+      return std::string(text);
+    };
+    const std::string text = first->setting.method + " " + value(first) +
+                             (last > i ? " to " + value(without[last].first) : "") +
+                             unit_of(first->setting) + ": " + reason;
+    if (entries++ % 2 == 0)
+      lines.push_back(lines.empty() ? "no point: " + text : text);
+    else
+      lines.back() += "; " + text;
+    i = last + 1;
   }
-  return text;
+  return lines;
 }
 
 /// One panel: error over time per trial. `value` and `spread` of a point; below `limit` it is drawn at
@@ -412,8 +425,9 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
       const double time = median(p.microseconds);
       if (!p.ran() || !std::isfinite(time) || !std::isfinite(error) ||
           (error <= 0.0 && limit <= 0.0)) {
-        without.emplace_back(&p, p.verdict == Verdict::fine ? "nothing to compare"
-                                                            : std::string(dynamics::name_of(p.verdict)));
+        std::string reason(dynamics::name_of(p.verdict));
+        if (p.ran()) reason = "no pair to compare" + (p.verdict == Verdict::fine ? "" : ", " + reason);
+        without.emplace_back(&p, reason);
         continue;
       }
       quickest = std::min(quickest, time);
@@ -440,43 +454,47 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
       blocks << data_block(name, rows);
       return name;
     };
-    element(block("line", line) + " using 1:2 with lines lw 1.2 notitle" + colour);
+    element(block("line", line) + " using 1:2 with lines lw 1.2" + colour);
     if (!bars.empty())
-      element(block("bars", bars) + " using 1:2:3:4 with yerrorbars pt 0 lw 0.8 notitle" + colour);
+      element(block("bars", bars) + " using 1:2:3:4 with yerrorbars pt 0 lw 0.8" + colour);
     if (!good.empty())
-      element(block("good", good) + " using 1:2 with points ps 0.8 notitle pt " +
+      element(block("good", good) + " using 1:2 with points ps 0.8 pt " +
               std::to_string(look.marker) + colour);
     if (!below.empty())
-      element(block("below", below) + " using 1:2 with points pt 10 ps 1.1 lw 1.5 notitle" + colour);
+      element(block("below", below) + " using 1:2 with points pt 10 ps 1.1 lw 1.5" + colour);
     if (!failed.empty()) {
       const std::string name = block("failed", failed);
-      element(name + " using 1:2 with points pt 2 ps 0.8 lw 1.8 notitle" + colour);
-      element(name + " using 1:2:3 with labels font ',8' offset 0.7,0.5 notitle tc rgb '" +
+      element(name + " using 1:2 with points pt 2 ps 0.8 lw 1.8" + colour);
+      element(name + " using 1:2:3 with labels font ',8' offset 0.7,0.5 tc rgb '" +
               look.colour + "'");
     }
     if (!usual.empty())
-      element(block("usual", usual) + " using 1:2 with points pt 6 ps 1.8 lw 1.2 lc rgb 'black' notitle");
+      element(block("usual", usual) + " using 1:2 with points pt 6 ps 1.8 lw 1.2 lc rgb 'black'");
   }
   if (separator == "plot ") {
-    plot << "plot [1:10] [0.1:1] NaN notitle";
+    plot << "plot [1:10] [0.1:1] NaN";
   } else {
     if (limit > 0.0)
-      element(digits(limit) + " with lines dt 2 lw 1 lc rgb '#666666' notitle");
+      element(digits(limit) + " with lines dt 2 lw 1 lc rgb '#666666'");
     if (own > 0.0 && own >= 0.01 * lowest) {
-      element(digits(own) + " with lines dt 3 lw 1 lc rgb '#666666' notitle");
+      element(digits(own) + " with lines dt 3 lw 1 lc rgb '#666666'");
       lowest = std::min(lowest, own);
     }
   }
 
   std::ostringstream out;
   out << blocks.str() << "unset label\nset title " << literal(chart.label + ": " + title)
-      << " offset 0,0.9\nset ylabel " << literal(label) << "\n"
-      << "set label 1 " << literal(strip(without)) << " at graph 0, graph 1.035 font ',8' tc rgb '#444444'\n";
+      << " offset 0,1.2\nset ylabel " << literal(label) << "\n";
+  const std::vector<std::string> lines = strip(without);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    out << "set label " << 11 + i << " " << literal(lines[i]) << " at graph 0, graph "
+        << 1.03 + 0.045 * static_cast<double>(lines.size() - 1 - i) << " font ',8' tc rgb '#444444'\n";
   if (limit > 0.0 && slowest > 0.0)
-    out << "set label 2 '10 x error of the reference' at graph 0.99, first " << digits(limit)
+    out << "set label 10 '10 x error of the reference' at graph 0.99, first " << digits(limit)
         << " right offset 0,-0.6 font ',8' tc rgb '#666666'\n";
   if (slowest > 0.0)
-    out << "set xrange [" << digits(quickest / 1.5) << ":" << digits(slowest * 1.5) << "]\nset yrange ["
+    out << "set xrange [" << digits(quickest / 1.5) << ":" << digits(slowest * 1.5) << "]\nset xtics nomirror ("
+        << tics_1_2_5(quickest / 1.5, slowest * 1.5) << ")\nset yrange ["
         << digits(lowest / 2.5) << ":" << digits(highest * 2.0) << "]\n";
   out << plot.str() << "\n";
   return out.str();
@@ -484,15 +502,16 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
 
 void draw(const std::string& path, const std::vector<SceneChart>& charts) {
   const int rows = static_cast<int>(charts.size());
-  const int header = 66, height = 330 * rows + header;
+  constexpr int kRow = 365;
+  const int header = 60, height = kRow * rows + header;
   std::ostringstream out;
-  out << "set multiplot\nset logscale xy\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
-         "set xtics nomirror enhanced\nset ytics nomirror enhanced\nset border 3\n"
+  out << "set multiplot\nset format y '10^{%L}'\nset xtics nomirror\n"
+         "set ytics nomirror\nset border 3\n"
          "set grid lc rgb '#eeeeee' lt 1\nunset key\nset xlabel 'time per trial (µs)' offset 0,0.3\n"
          "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n";
   for (int row = 0; row < rows; ++row) {
     const SceneChart& chart = charts[static_cast<std::size_t>(row)];
-    const double top = 1.0 - static_cast<double>(header + 330 * row + 40) / height;
+    const double top = 1.0 - static_cast<double>(header + kRow * row + 58) / height;
     const double bottom = top - 240.0 / height;
     const auto place = [&](double left, double right) {
       out << "set lmargin at screen " << left << "\nset rmargin at screen " << right
@@ -524,8 +543,8 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
                     "S stuck, N contact without a formula, B beyond the stability bound, X not finite. "
                     "Bars: 2 standard errors.")
           << " at screen 0.016, screen " << 1.0 - 40.0 / height << " font ',10'\n"
-          << "plot [0:1] [0:1] NaN notitle\nunset label\nset border 3\nset xtics nomirror enhanced\n"
-             "set ytics nomirror enhanced\nset xlabel 'time per trial (µs)' offset 0,0.3\n"
+          << "plot [0:1] [0:1] NaN\nunset label\nset border 3\nset xtics nomirror\n"
+             "set ytics nomirror\nset xlabel 'time per trial (µs)' offset 0,0.3\n"
              "set logscale xy\n";
     }
     place(0.075, 0.485);
@@ -671,9 +690,9 @@ int run_chart(const std::vector<std::string>& arguments) {
          std::to_string(charts.size()) + " of " + std::to_string(paths.size()) + " scenes that were finished");
     return kStopped;
   }
-  draw(file("chart.svg"), charts);
   options.give_out(json, table + "\n* default. Times: median of " + std::to_string(rounds) +
                              " rounds on one thread, " + machine() + "\n");
+  draw(file("chart.svg"), charts);
   for (const SceneChart& chart : charts)
     if (chart.reference_verdict != Verdict::fine)
       warn(chart.label + ": the reference itself shows faults: " +

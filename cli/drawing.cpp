@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -14,7 +15,10 @@
 
 namespace gatewalk::cli {
 
-std::string literal(std::string_view text) {
+namespace {
+
+/// Single quotes: taken as it stands.
+std::string in_quotes(std::string_view text) {
   std::string out = "'";
   for (const char c : text) {
     if (c == '\'') out += c;  // doubled
@@ -22,6 +26,10 @@ std::string literal(std::string_view text) {
   }
   return out + "'";
 }
+
+}  // namespace
+
+std::string literal(std::string_view text) { return in_quotes(text) + " noenhanced"; }
 
 std::string data_block(std::string_view name, const std::string& rows) {
   return std::string(name) + " << EOD\n" + rows + "EOD\n";
@@ -31,6 +39,14 @@ std::string digits(double x) {
   std::array<char, 32> buffer;
   std::snprintf(buffer.data(), buffer.size(), "%.7g", x);
   return buffer.data();
+}
+
+std::string tics_1_2_5(double low, double high) {
+  std::string list;
+  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10)
+    for (const int digit : {1, 2, 5})
+      list += (list.empty() ? "'" : ", '") + digits(digit * decade) + "' " + digits(digit * decade);
+  return list;
 }
 
 Look look_of(std::string_view method) {
@@ -48,7 +64,7 @@ void draw_svg(const std::string& path, int width, int height, const std::string&
           .string();
   try {
     plot("set terminal svg size " + std::to_string(width) + "," + std::to_string(height) +
-         " font 'sans,12' background '#ffffff' noenhanced\nset output " + literal(temporary) + "\n" +
+         " font 'sans,12' background '#ffffff' enhanced\nset output " + in_quotes(temporary) + "\n" +
          commands + "\nset output\n");
     std::filesystem::rename(temporary, path);
   } catch (...) {

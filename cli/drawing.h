@@ -6,7 +6,7 @@
 
 namespace gatewalk::cli {
 
-/// Text as a gnuplot string: single quotes, taken literally.
+/// Text for titles and labels of gnuplot, with nothing in it that gnuplot would understand.
 [[nodiscard]] std::string literal(std::string_view text);
 
 /// "name << EOD ... EOD", the rows of a table that `plot` can read as name.
@@ -14,6 +14,9 @@ namespace gatewalk::cli {
 
 /// Seven digits: more than a figure shows.
 [[nodiscard]] std::string digits(double x);
+
+/// 1, 2 and 5 times the powers of ten, as the tics of a logarithmic axis from low to high.
+[[nodiscard]] std::string tics_1_2_5(double low, double high);
 
 /// Colour and marker of a method, the same in every figure (Okabe and Ito's colours).
 struct Look {

@@ -27,11 +27,11 @@ using dynamics::Verdict;
 constexpr std::array<const char*, dynamics::kVerdictNames.size()> kColours{
     "#d8efd3",  // ok
     "#fff3b0",  // missed hit
-    "#dfe3ee",  // no formula
-    "#fdd0a2",  // beyond bound
-    "#fd9a4e",  // too fast
-    "#d7301f",  // energy
-    "#88419d",  // penetration
+    "#c9d3ea",  // no formula
+    "#fdbe85",  // too fast
+    "#e6550d",  // energy
+    "#9e79bd",  // penetration
+    "#7f1d1d",  // beyond bound
     "#2166ac",  // stuck
     "#111111",  // not finite
     "#9a9a9a",  // refused
@@ -101,18 +101,21 @@ struct DrawnAxis {
     }
     if (by_number || zero_first) {
       std::string list;
-      const auto tic = [&](std::size_t i, const std::string& text) {
-        list += (list.empty() ? "" : ", ") + literal(text) + " " + out(at[i]);
+      const auto tic = [&](double place, const std::string& text) {
+        list += (list.empty() ? "'" : ", '") + text + "' " + out(place);
       };
       for (std::size_t i = 0; i < n; ++i) {
         const double decade = std::log10(std::abs(v[i]));
-        const bool round = std::abs(decade - std::round(decade)) < 1e-9;
+        const long whole = std::lround(decade);
         if (v[i] == 0.0)
-          tic(i, "0");
-        else if (by_number ? std::lround(-decade) % 3 == 0 : round)
-          tic(i, (v[i] < 0 ? "-1e" : "1e") + std::to_string(std::lround(decade)));
+          tic(at[i], "0");
+        else if (by_number ? whole == -3 || whole == -9 : std::abs(decade - static_cast<double>(whole)) < 1e-9)
+          tic(at[i], (v[i] < 0 ? "-1e" : "1e") + std::to_string(whole));
       }
+      if (by_number) tic(0.5 * (at.front() + at.back()), "-+1e-15");
       tics = "(" + list + ")";
+    } else if (logarithmic && high.back() < 1000.0 * low.front()) {
+      tics = "(" + tics_1_2_5(low.front(), high.back()) + ")";
     }
   }
 };
@@ -145,28 +148,28 @@ void draw(const std::string& path, const std::vector<const FinishedMap*>& maps) 
       lines += ", " + name + " using 1:2 with lines lw 2 lc rgb 'black' dt " + std::to_string(++number) + " title " +
                literal(border.label);
     }
-    const double left = 0.065 + 0.325 * static_cast<double>(i % 3), right = left + 0.245;
-    const double top = i < 3 ? 0.88 : 0.41, bottom = top - 0.32;
+    const double left = 0.08 + 0.32 * static_cast<double>(i % 3), right = left + 0.24;
+    const double top = i < 3 ? 0.87 : 0.395, bottom = top - 0.31;
     out << "set lmargin at screen " << left << "\nset rmargin at screen " << right << "\nset tmargin at screen "
-        << top << "\nset bmargin at screen " << bottom << "\nset title " << literal(map.method) << " offset 0,-0.5\n"
+        << top << "\nset bmargin at screen " << bottom << "\nset title " << literal(map.method) << " offset 0,0.6\n"
         << "set xlabel " << literal(map.x.label) << "\nset ylabel " << literal(map.y.label) << "\n"
         << (x.logarithmic ? "set logscale x\nset format x '10^{%L}'\n" : "unset logscale x\nset format x '%g'\n")
         << (y.logarithmic ? "set logscale y\nset format y '10^{%L}'\n" : "unset logscale y\nset format y '%g'\n")
-        << "set xtics nomirror out enhanced " << (x.tics.empty() ? "autofreq" : x.tics) << "\n"
-        << "set ytics nomirror out enhanced " << (y.tics.empty() ? "autofreq" : y.tics) << "\n"
+        << "set xtics nomirror out " << (x.tics.empty() ? "autofreq" : x.tics) << "\n"
+        << "set ytics nomirror out " << (y.tics.empty() ? "autofreq" : y.tics) << "\n"
         << "set xrange [" << digits(x.low.front()) << ":" << digits(x.high.back()) << "]\nset yrange ["
         << digits(y.low.front()) << ":" << digits(y.high.back()) << "]\n"
-        << (lines.empty() ? "unset key\n" : "set key bottom left font ',9' samplen 2 opaque box lc rgb '#888888'\n");
+        << (lines.empty() ? "unset key\n" : "set key at graph 0.5, graph 1.09 center horizontal font ',9' samplen 2\n");
     if (i == 0)
       out << "set label 1 " << literal(map.title) << " at screen 0.02, screen 0.965 font ',16'\n";
     if (i + 1 == maps.size()) {  // the legend, in the place of the sixth panel
       int label = 10;
       for (std::size_t v = 0; v < kColours.size(); ++v) {
-        const double row = 0.40 - 0.032 * static_cast<double>(v);
         const bool seen = std::any_of(maps.begin(), maps.end(), [v](const FinishedMap* m) {
           return m->count(static_cast<Verdict>(v)) > 0;
         });
         if (!seen) continue;
+        const double row = 0.38 - 0.035 * (label - 10);
         out << "set label " << label++ << " " << literal(dynamics::kVerdictNames[v])
             << " at screen 0.74, screen " << row << " left point pt 5 ps 2 lc rgb '" << kColours[v]
             << "' offset 1.5,0\n";

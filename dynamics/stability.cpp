@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
+#include <limits>
+#include <memory>
 
 #include "dynamics/methods/paper.h"
 
@@ -196,7 +197,10 @@ std::vector<Border> borders(const StabilityMap& map) {
   std::vector<Border> found;
   const auto add = [&](const char* label, auto y_of) {
     Border border{label, {}, {}};
-    for (const double h : map.x.values) {
+    constexpr int kPieces = 60;
+    const double first = map.x.values.front(), last = map.x.values.back();
+    for (int i = 0; i <= kPieces; ++i) {
+      const double h = first * std::pow(last / first, static_cast<double>(i) / kPieces);
       const double y = y_of(h);
       if (!(y > 0.0) || !std::isfinite(y)) continue;
       border.x.push_back(h);

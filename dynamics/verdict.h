@@ -14,17 +14,17 @@ enum class Verdict : std::uint8_t {
   fine,
   missed_hit,    // a hit that should have been was not, or the other way round
   no_formula,    // contacts for which the method has no formula
-  beyond_bound,  // steps longer than the method's stability bound for free beams
   too_fast,      // disc or beam moved so far in a step that hits may have been missed
   energy,        // energy from nothing
   penetration,   // the disc sank into a beam by more than 1 % of its radius
+  beyond_bound,  // steps longer than the method's stability bound for free beams: explains the above
   stuck,         // hits piled up or the run took more work than it was granted
   not_finite,
   refused,       // the method does not take the scene: InvalidParameter
 };
 inline constexpr std::array<std::string_view, 10> kVerdictNames{
-    "ok",     "missed hit",  "no formula", "beyond bound", "too fast",
-    "energy", "penetration", "stuck",      "not finite",   "refused"};
+    "ok",          "missed hit",   "no formula", "too fast",   "energy",
+    "penetration", "beyond bound", "stuck",      "not finite", "refused"};
 [[nodiscard]] inline std::string_view name_of(Verdict v) {
   return kVerdictNames[static_cast<std::size_t>(v)];
 }
