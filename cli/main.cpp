@@ -10,7 +10,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::array<Command, 8> kCommands{{
+constexpr std::array<Command, 10> kCommands{{
     {"gate", "run one gate many times and count the outcomes", run_gate},
     {"build", "fill the input-output matrix from single-gate runs", run_build},
     {"show", "show what a matrix file holds", run_show},
@@ -18,6 +18,8 @@ constexpr std::array<Command, 8> kCommands{{
     {"predict", "exact distribution of the final gate", run_predict},
     {"lattice", "run the full dynamics through the field", run_lattice},
     {"validate", "compare walks and exact prediction with the full dynamics", run_validate},
+    {"chart", "chart the methods' speed against their accuracy", run_chart},
+    {"stability", "map where each method breaks", run_stability},
     {"chart-field", "what memory and neighbours change, and what they cost", run_chart_field},
 }};
 

@@ -8,6 +8,13 @@
 
 namespace gatewalk::dynamics {
 
+GateRun run_gate_trial(const GateParams& p, const Method& method, const BodyState& start,
+                       std::uint64_t seed, std::int64_t trial, std::int64_t most_work) {
+  const Stream stream{seed, 0, static_cast<std::uint64_t>(trial)};
+  RandomForce force(p.forces, Random(Purpose::gate, stream));
+  return run_gate(p, method, start, force, most_work);
+}
+
 void Health::add(const GateParams& p, const GateRun& run) {
   const Watch& w = run.watch;
   const double energy_scale =
@@ -67,9 +74,7 @@ GateTally run_gate_trials(const GateParams& p, const BodyState& start, std::uint
       trials, GateTally{},
       [&](const tbb::blocked_range<std::int64_t>& part, GateTally tally) {
         for (std::int64_t trial = part.begin(); trial != part.end(); ++trial) {
-          const Stream stream{seed, 0, static_cast<std::uint64_t>(trial)};
-          RandomForce force(p.forces, Random(Purpose::gate, stream));
-          const GateRun run = run_gate(p, *method, start, force);
+          const GateRun run = run_gate_trial(p, *method, start, seed, trial);
           ++tally.trials;
           tally.health.add(p, run);
           const double left = run.watch.max_theta[kLeft], right = run.watch.max_theta[kRight];

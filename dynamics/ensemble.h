@@ -2,6 +2,7 @@
 /// Many gate runs at once, and the record of how far they can be trusted.
 
 #include <cstdint>
+#include <limits>
 
 #include "dynamics/gate.h"
 
@@ -13,6 +14,11 @@ struct TrialRange {
   std::int64_t first = 0;
   std::int64_t count = 0;
 };
+
+/// Trial number `trial` from one start: the same run whoever asks for it. `most_work` as in run_gate.
+[[nodiscard]] GateRun run_gate_trial(const GateParams& p, const Method& method,
+                                     const BodyState& start, std::uint64_t seed, std::int64_t trial,
+                                     std::int64_t most_work = std::numeric_limits<std::int64_t>::max());
 
 /// What went wrong, or nearly, over many runs. A run is counted as
 /// - penetrating: the disc sank into a beam by more than 1 % of its radius;
