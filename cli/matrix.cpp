@@ -5,16 +5,21 @@
 
 namespace gatewalk::cli {
 
-dynamics::Transitions build_matrix(const Scene& scene, std::int64_t trials, std::uint64_t seed,
-                                   bool show_progress) {
-  dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
-  run_in_batches("building matrix", trials, show_progress, [&](std::int64_t first, std::int64_t n) {
-    dynamics::add_trials(t, scene.gate, seed, {first, n});
+void fill_matrix(dynamics::Transitions& t, const Scene& scene, std::uint64_t seed,
+                 dynamics::TrialRange range, const std::string& label, bool show_progress) {
+  run_in_batches(label, range.count, show_progress, [&](std::int64_t first, std::int64_t n) {
+    dynamics::add_trials(t, scene.gate, seed, {range.first + first, n});
   });
   if (t.health.broken > 0)
     throw std::runtime_error("matrix: " + std::to_string(t.health.broken) +
                              " gate runs stopped being finite numbers; no matrix is made from such "
                              "runs, try method stable or a smaller run.step_s");
+}
+
+dynamics::Transitions build_matrix(const Scene& scene, double bins, std::int64_t trials,
+                                   std::uint64_t seed, bool show_progress) {
+  dynamics::Transitions t(dynamics::refined(dynamics::StateSpace::paper(scene.gate), bins));
+  fill_matrix(t, scene, seed, {0, trials}, "building matrix", show_progress);
   return t;
 }
 

@@ -7,9 +7,15 @@
 
 namespace gatewalk::cli {
 
-/// Fills `trials` runs per row of Table III's states. Throws std::runtime_error when a run broke.
-[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, std::int64_t trials,
-                                                 std::uint64_t seed, bool show_progress);
+/// Adds trials `range` of every row, in batches under a progress line called `label`. Throws
+/// std::runtime_error when a run broke.
+void fill_matrix(dynamics::Transitions& t, const Scene& scene, std::uint64_t seed,
+                 dynamics::TrialRange range, const std::string& label, bool show_progress);
+
+/// A matrix of `trials` runs per row of Table III's states, `bins` times as many per axis.
+[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, double bins,
+                                                 std::int64_t trials, std::uint64_t seed,
+                                                 bool show_progress);
 
 /// A matrix file and the scene to use it with: the one given, or the one stored in the file.
 struct MatrixAndScene {

@@ -264,7 +264,7 @@ int run_validate(const std::vector<std::string>& arguments) {
     if (options.has("matrix"))
       return read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
     const Scene scene = read_scene(options.text("scene"), options.overrides());
-    auto built = build_matrix(scene, options.has("matrix-trials") ? options.count("matrix-trials") : 100,
+    auto built = build_matrix(scene, 1.0, options.has("matrix-trials") ? options.count("matrix-trials") : 100,
                               options.seed(), options.talk());
     Json status = gatewalk::cli::to_json(built.health);
     return MatrixAndScene{{std::move(built), {}}, scene, std::move(status)};

@@ -72,6 +72,23 @@ holds '(.trapped + .left_field + .cut_off - 1 | fabs) < 1e-12' predict.json
 holds '.cut_off == 0' free.json
 jq -s '[[.[0].final_gates[][]], [.[1].final_gates[][]]] | transpose | map(.[0] - .[1] | fabs) | max < 1e-10' free.json klu.json |
   grep -q true || fail "the two solvers disagree"
+# Other bins than the paper's: recorded in the file, and every command takes them.
+expect 0 '696 x 697 matrix' "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 2 --seed 1 -o fine.nc
+expect 0 '23 x 24 matrix' "$gatewalk" build "$scenes/field.toml" --trials 5 --bins 0.5 --seed 1 -o coarse.nc
+expect 0 'bins  *2.0' "$gatewalk" show fine.nc --row 696
+"$gatewalk" show coarse.nc --json coarse.json --quiet
+holds '.text.bins == "0.5" and .inputs == 23 and (.rows | length) == 23' coarse.json
+for bins in fine coarse; do
+  "$gatewalk" walk $bins.nc --walks 1000 --json walk-$bins.json --quiet >/dev/null 2>&1
+  holds '([.final_gates[][]] | add) == 1000' walk-$bins.json
+  "$gatewalk" predict $bins.nc "$scenes/field.toml" --json predict-$bins.json --quiet >/dev/null 2>&1
+  holds '(([.final_gates[][]] | add) - 1 | fabs) < 1e-12' predict-$bins.json
+done
+"$gatewalk" build "$scenes/field.toml" --trials 20 --bins 1 --seed 1 -o m1.nc --quiet
+"$gatewalk" show m1.nc --json m1.json --quiet
+"$gatewalk" show m.nc --json m.json --quiet
+jq -s '.[0].rows == .[1].rows' m.json m1.json | grep -q true || fail "--bins 1 is not the paper's matrix"
+for bins in 0 -1 nan 1e9; do expect 2 'bins' "$gatewalk" build "$scenes/field.toml" --bins $bins -o x.nc; done
 "$gatewalk" lattice "$scenes/field.toml" --trials 100 --seed 1 --json lattice.json --quiet
 holds '([.final_gates[][]] | add) == 100 and .trapped + .left_field + .cut_off + .not_finite == 100' lattice.json
 "$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=1 --trials 50 --json one.json --quiet
