@@ -51,6 +51,7 @@ int run_walk(const std::vector<std::string>& arguments);
 int run_predict(const std::vector<std::string>& arguments);
 int run_lattice(const std::vector<std::string>& arguments);
 int run_validate(const std::vector<std::string>& arguments);
+int run_chart_chain(const std::vector<std::string>& arguments);
 
 /// Options of one command with the shared ones: --set, --threads, --quiet, --json, --help.
 class Options {

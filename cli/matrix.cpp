@@ -5,11 +5,7 @@
 
 namespace gatewalk::cli {
 
-void fill_matrix(dynamics::Transitions& t, const Scene& scene, std::uint64_t seed,
-                 dynamics::TrialRange range, const std::string& label, bool show_progress) {
-  run_in_batches(label, range.count, show_progress, [&](std::int64_t first, std::int64_t n) {
-    dynamics::add_trials(t, scene.gate, seed, {range.first + first, n});
-  });
+void require_unbroken(const dynamics::Transitions& t) {
   if (t.health.broken > 0)
     throw std::runtime_error("matrix: " + std::to_string(t.health.broken) +
                              " gate runs stopped being finite numbers; no matrix is made from such "
@@ -19,7 +15,10 @@ void fill_matrix(dynamics::Transitions& t, const Scene& scene, std::uint64_t see
 dynamics::Transitions build_matrix(const Scene& scene, double bins, std::int64_t trials,
                                    std::uint64_t seed, bool show_progress) {
   dynamics::Transitions t(dynamics::refined(dynamics::StateSpace::paper(scene.gate), bins));
-  fill_matrix(t, scene, seed, {0, trials}, "building matrix", show_progress);
+  run_in_batches("building matrix", trials, show_progress, [&](std::int64_t first, std::int64_t n) {
+    dynamics::add_trials(t, scene.gate, seed, {first, n});
+  });
+  require_unbroken(t);
   return t;
 }
 

@@ -7,12 +7,11 @@
 
 namespace gatewalk::cli {
 
-/// Adds trials `range` of every row, in batches under a progress line called `label`. Throws
-/// std::runtime_error when a run broke.
-void fill_matrix(dynamics::Transitions& t, const Scene& scene, std::uint64_t seed,
-                 dynamics::TrialRange range, const std::string& label, bool show_progress);
+/// Throws std::runtime_error when a run of the matrix broke.
+void require_unbroken(const dynamics::Transitions& t);
 
-/// A matrix of `trials` runs per row of Table III's states, `bins` times as many per axis.
+/// A matrix of `trials` runs per row of Table III's states, `bins` times as many per axis. Throws
+/// std::runtime_error when a run broke.
 [[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, double bins,
                                                  std::int64_t trials, std::uint64_t seed,
                                                  bool show_progress);
