@@ -8,6 +8,7 @@
 #include <limits>
 #include <sstream>
 
+#include "cli/auto.h"
 #include "cli/figure.h"
 #include "cli/output.h"
 #include "cli/progress.h"
@@ -333,7 +334,8 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   if (!options.has("output")) throw UsageError("missing -o DIR: where to write the chart");
   const std::string folder = options.text("output");
   if (folder.empty() || folder == "-") throw UsageError("-o needs the name of a folder");
-  const Scene scene = read_scene(options.text("scene"), options.overrides());
+  Scene scene = read_scene(options.text("scene"), options.overrides());
+  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
   const std::vector<PaperStart> starts = starts_of(options);
   require_inside(starts, scene);
   const std::vector<Variant> variants = variants_of(scene);
@@ -364,6 +366,7 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   json["threads"] = threads;
   json["bound"] = kBound;
   json["starts"] = json_of(reports, variants);
+  if (!settled.is_null()) json["method"] = settled;
   json["made_by"] = manifest(options, scene);
   write_text_atomically(csv_path, csv_of(reports, variants));
   write_text_atomically(json_path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -54,6 +54,7 @@ int run_validate(const std::vector<std::string>& arguments);
 int run_chart_field(const std::vector<std::string>& arguments);
 int run_chart(const std::vector<std::string>& arguments);
 int run_stability(const std::vector<std::string>& arguments);
+int run_chart_chain(const std::vector<std::string>& arguments);
 
 /// Options of one command with the shared ones: --set, --threads, --quiet, --json, --help.
 class Options {

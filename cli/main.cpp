@@ -10,7 +10,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::array<Command, 10> kCommands{{
+constexpr std::array<Command, 11> kCommands{{
     {"gate", "run one gate many times and count the outcomes", run_gate},
     {"build", "fill the input-output matrix from single-gate runs", run_build},
     {"show", "show what a matrix file holds", run_show},
@@ -21,6 +21,8 @@ constexpr std::array<Command, 10> kCommands{{
     {"chart", "chart the methods' speed against their accuracy", run_chart},
     {"stability", "map where each method breaks", run_stability},
     {"chart-field", "what memory and neighbours change, and what they cost", run_chart_field},
+    {"chart-chain", "chart the chain's error against its cost, beside direct simulation",
+     run_chart_chain},
 }};
 
 void print_help(std::ostream& out) {

@@ -5,16 +5,20 @@
 
 namespace gatewalk::cli {
 
-dynamics::Transitions build_matrix(const Scene& scene, std::int64_t trials, std::uint64_t seed,
-                                   bool show_progress) {
-  dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
-  run_in_batches("building matrix", trials, show_progress, [&](std::int64_t first, std::int64_t n) {
-    dynamics::add_trials(t, scene.gate, seed, {first, n});
-  });
+void require_unbroken(const dynamics::Transitions& t) {
   if (t.health.broken > 0)
     throw std::runtime_error("matrix: " + std::to_string(t.health.broken) +
                              " gate runs stopped being finite numbers; no matrix is made from such "
                              "runs, try method stable or a smaller run.step_s");
+}
+
+dynamics::Transitions build_matrix(const Scene& scene, double bins, std::int64_t trials,
+                                   std::uint64_t seed, bool show_progress) {
+  dynamics::Transitions t(dynamics::refined(dynamics::StateSpace::paper(scene.gate), bins));
+  run_in_batches("building matrix", trials, show_progress, [&](std::int64_t first, std::int64_t n) {
+    dynamics::add_trials(t, scene.gate, seed, {first, n});
+  });
+  require_unbroken(t);
   return t;
 }
 
@@ -34,6 +38,7 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
     throw UsageError(text + "\n(here: the scene given; there: the matrix). Build a matrix for this "
                             "scene, or give the matrix alone to use its own scene.");
   }
+  scene.gate = built_with.gate;  // the same, or the method that "auto" was settled to
   const auto text = file.text.find("status");
   Json status = text == file.text.end() ? Json() : Json::parse(text->second, nullptr, false);
   if (!status.is_object() || !status.value("clean", false))

@@ -374,7 +374,10 @@ double distance_to_beams(const Scene& scene) {
 /// What depends on several keys at once.
 void check_together(const Scene& scene, const Settings& settings) {
   try {
-    (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
+    if (scene.gate.run.method == "auto")
+      dynamics::validate(scene.gate);
+    else
+      (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
     lattice::validate(scene.gate, scene.field);
     if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
       throw dynamics::InvalidParameter(
@@ -471,9 +474,12 @@ std::vector<std::string> physics_differences(const Scene& here, const Scene& the
   };
   for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
     const double a = info.get(here.gate), b = info.get(there.gate);
+    // "auto" agrees with whatever was chosen.
+    const bool chosen = info.key == "run.step_s" || info.key == "run.event_tolerance_m";
+    if (here.gate.run.method == "auto" && chosen) continue;
     if (a != b) add(info.key, shortest(a), shortest(b));
   }
-  if (here.gate.run.method != there.gate.run.method) {
+  if (here.gate.run.method != there.gate.run.method && here.gate.run.method != "auto") {
     add(kMethodKey, here.gate.run.method, there.gate.run.method);
   }
   return lines;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "cli/auto.h"
 #include "cli/matrix.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -258,11 +259,13 @@ int run_validate(const std::vector<std::string>& arguments) {
       throw UsageError("--matrix-trials has no meaning beside --matrix: that one is built already");
   }
   const Stopwatch matrix_watch;
+  Json settled;
   MatrixAndScene m = [&] {
     if (options.has("matrix"))
       return read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
-    const Scene scene = read_scene(options.text("scene"), options.overrides());
-    auto built = build_matrix(scene, options.has("matrix-trials") ? options.count("matrix-trials") : 100,
+    Scene scene = read_scene(options.text("scene"), options.overrides());
+    settled = settle_method(options, scene, RunsFrom::everywhere);
+    auto built = build_matrix(scene, 1.0, options.has("matrix-trials") ? options.count("matrix-trials") : 100,
                               options.seed(), options.talk());
     Json status = gatewalk::cli::to_json(built.health);
     return MatrixAndScene{{std::move(built), {}}, scene, std::move(status)};
@@ -314,6 +317,7 @@ int run_validate(const std::vector<std::string>& arguments) {
                     {"seconds", matrix_seconds}};
   json["threads"] = threads;
   json["status"] = to_json(health);
+  if (!settled.is_null()) json["method"] = settled;
   json["made_by"] = manifest(options, scene);
 
   const std::string matrix_time = options.has("matrix") ? "read from " + options.text("matrix")

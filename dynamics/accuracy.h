@@ -35,11 +35,11 @@ struct Setting {
 /// Methods that have a list of settings, in the order of a chart.
 [[nodiscard]] std::span<const std::string_view> chart_methods();
 
-/// Steps hold/n, n = 1, 2, 3, 4, 5, 8, 10, 20, for the methods with a fixed step; tolerances 1e-1
-/// to 1e-10 m for `event`. From coarse to fine. Throws std::invalid_argument for another name.
+/// Steps hold/n, n = 1, 2, 3, 4, 5, 8, 10, 20, for the methods with a fixed step; tolerances 0.3
+/// to 1e-4 m for `event`. From coarse to fine. Throws std::invalid_argument for another name.
 [[nodiscard]] std::vector<Setting> chart_settings(std::string_view method, const GateParams& p);
 
-/// What everything is compared with, `event` at 1e-12 m, and the same ten times coarser, which
+/// What everything is compared with, `event` at 1e-7 m, and the same ten times coarser, which
 /// shows how far the first can be trusted.
 [[nodiscard]] Setting reference_setting();
 [[nodiscard]] Setting second_reference_setting();

@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <stdexcept>
+
 namespace gatewalk::dynamics {
 
 Transitions::Transitions(StateSpace state_space)
@@ -30,6 +32,18 @@ Transitions::Totals Transitions::totals() const {
     total.empty_rows += trials[row] == 0;
   }
   return total;
+}
+
+Transitions& Transitions::operator+=(const Transitions& o) {
+  if (!(space == o.space))
+    throw std::invalid_argument("transitions of two different state spaces cannot be added");
+  for (int row = 0; row < space.size(); ++row) {
+    for (const auto& [column, n] : o.rows[row]) rows[row][column] += n;
+    trials[row] += o.trials[row];
+    clamped[row] += o.clamped[row];
+  }
+  health += o.health;
+  return *this;
 }
 
 void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range) {

@@ -34,6 +34,9 @@ struct Transitions {
     }
   };
   [[nodiscard]] Totals totals() const;
+
+  /// Adds other trials of the same space; throws std::invalid_argument for another space.
+  Transitions& operator+=(const Transitions& other);
 };
 
 /// Adds trials `range` of every row: starts uniform in the row's bin, random force from the stream

@@ -126,6 +126,18 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   c.floor_total_variation = sum / static_cast<double>(null_draws);
 }
 
+/// `n` draws from shares whose running sums are `cumulative`, as counts.
+Eigen::VectorXd drawn_counts(const std::vector<double>& cumulative, std::int64_t n, Random& random) {
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cumulative.size()));
+  for (std::int64_t i = 0; i < n; ++i) {
+    const double u = random.uniform() * cumulative.back();
+    // First place whose cumulative share exceeds u: never one of share zero.
+    const auto place = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
+    counts[place - cumulative.begin()] += 1.0;
+  }
+  return counts;
+}
+
 CellProbabilities shares(const CellCounts& counts) {
   const std::int64_t total = counts.sum();
   if (total <= 0) throw std::invalid_argument("compare: a sample without trials");
@@ -173,6 +185,50 @@ NoiseFloor noise_floor(double s, std::int64_t gates, std::int64_t trials,
   const double signal = (s - 1.0 / n) / n;
   return {signal / std::sqrt((signal + first) * (signal + second)),
           100.0 * std::sqrt(first + second)};
+}
+
+// Beyond this the logarithms of factorials (3e13) leave less than two digits; no study goes there.
+constexpr std::int64_t kMostTrials = std::int64_t{1} << 40;
+
+double expected_total_variation(const CellProbabilities& p, std::int64_t trials) {
+  if (trials < 1) throw std::invalid_argument("expected_total_variation: needs at least one trial");
+  const auto n = static_cast<double>(trials);
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < p.size(); ++i) {
+    const double share = p.data()[i];
+    if (!(share > 0.0 && share < 1.0)) continue;  // no chance in it
+    const double m = std::floor(n * share) + 1.0;
+    // (1-p) m P(X = m) = n C(n-1, m-1) p^m (1-p)^(n-m+1), with n C(n-1, m-1) = n! / ((m-1)! (n-m)!)
+    sum += 2.0 / n *
+           std::exp(std::lgamma(n + 1.0) - std::lgamma(m) - std::lgamma(n - m + 1.0) +
+                    m * std::log(share) + (n - m + 1.0) * std::log1p(-share));
+  }
+  return 0.5 * sum;
+}
+
+std::int64_t trials_for(const CellProbabilities& p, double total_variation) {
+  if (!(total_variation > 0.0))
+    throw std::invalid_argument("trials_for: a total variation must be > 0");
+  std::int64_t enough = 1;
+  while (expected_total_variation(p, enough) > total_variation && enough < kMostTrials) enough *= 2;
+  std::int64_t low = enough / 2;  // too few, or 0
+  while (enough - low > 1) {
+    const std::int64_t middle = low + (enough - low) / 2;
+    (expected_total_variation(p, middle) > total_variation ? low : enough) = middle;
+  }
+  return enough;
+}
+
+CellCounts sampled(const CellProbabilities& p, std::int64_t trials, std::uint64_t seed,
+                   std::uint64_t replicate) {
+  std::vector<double> cumulative(p.size());
+  std::partial_sum(p.data(), p.data() + p.size(), cumulative.begin());
+  Random random(Purpose::comparison, {seed, 2, replicate});
+  const Eigen::VectorXd counts = drawn_counts(cumulative, trials, random);
+  CellCounts cells(p.rows(), p.cols());
+  for (Eigen::Index i = 0; i < cells.size(); ++i)
+    cells.data()[i] = static_cast<std::int64_t>(counts[i]);
+  return cells;
 }
 
 Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64_t null_draws,
@@ -281,14 +337,7 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, 1, static_cast<std::uint64_t>(k)});
-    Eigen::VectorXd drawn = Eigen::VectorXd::Zero(expected.size());
-    for (std::int64_t i = 0; i < n; ++i) {
-      const double u = random.uniform() * cumulative.back();
-      // First place whose cumulative share exceeds u: never one of share zero.
-      const auto place = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
-      drawn[place - cumulative.begin()] += 1.0;
-    }
-    return statistics(drawn / static_cast<double>(n), expected, expected, rare, support);
+    return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected, expected, rare, support);
   });
   return c;
 }

@@ -35,6 +35,17 @@ struct NoiseFloor {
 [[nodiscard]] NoiseFloor noise_floor(double concentration, std::int64_t gates, std::int64_t trials,
                                      std::int64_t second_trials);
 
+/// Mean total variation between `trials` draws from `p` and `p` itself. Exact: the count of a gate is
+/// binomial, and de Moivre's E|X - np| = 2 (1-p) m P(X = m), m = floor(np) + 1 there.
+[[nodiscard]] double expected_total_variation(const CellProbabilities& p, std::int64_t trials);
+/// The least number of trials whose expected_total_variation is at most `total_variation` (> 0),
+/// or 2^40 if that is fewer.
+[[nodiscard]] std::int64_t trials_for(const CellProbabilities& p, double total_variation);
+
+/// `trials` draws from `p` as counts; a replicate is named by its number.
+[[nodiscard]] CellCounts sampled(const CellProbabilities& p, std::int64_t trials,
+                                 std::uint64_t seed, std::uint64_t replicate);
+
 /// The energy distance costs the square of the gates reached; beyond this it is left out.
 inline constexpr int kMostEnergyGates = 1000;
 

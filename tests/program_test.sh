@@ -27,6 +27,7 @@ expect 0 '^gatewalk [0-9]' "$gatewalk" --version
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
 for command in gate build show walk predict lattice validate chart-field; do
+for command in gate build show walk predict lattice validate chart-chain; do
   expect 0 'Example:' "$gatewalk" $command --help
   expect 2 'unrecognised option' "$gatewalk" $command --no-such-option
 done
@@ -72,6 +73,23 @@ holds '(.trapped + .left_field + .cut_off - 1 | fabs) < 1e-12' predict.json
 holds '.cut_off == 0' free.json
 jq -s '[[.[0].final_gates[][]], [.[1].final_gates[][]]] | transpose | map(.[0] - .[1] | fabs) | max < 1e-10' free.json klu.json |
   grep -q true || fail "the two solvers disagree"
+# Other bins than the paper's: recorded in the file, and every command takes them.
+expect 0 '696 x 697 matrix' "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 2 --seed 1 -o fine.nc
+expect 0 '23 x 24 matrix' "$gatewalk" build "$scenes/field.toml" --trials 5 --bins 0.5 --seed 1 -o coarse.nc
+expect 0 'bins  *2.0' "$gatewalk" show fine.nc --row 696
+"$gatewalk" show coarse.nc --json coarse.json --quiet
+holds '.text.bins == "0.5" and .inputs == 23 and (.rows | length) == 23' coarse.json
+for bins in fine coarse; do
+  "$gatewalk" walk $bins.nc --walks 1000 --json walk-$bins.json --quiet >/dev/null 2>&1
+  holds '([.final_gates[][]] | add) == 1000' walk-$bins.json
+  "$gatewalk" predict $bins.nc "$scenes/field.toml" --json predict-$bins.json --quiet >/dev/null 2>&1
+  holds '(([.final_gates[][]] | add) - 1 | fabs) < 1e-12' predict-$bins.json
+done
+"$gatewalk" build "$scenes/field.toml" --trials 20 --bins 1 --seed 1 -o m1.nc --quiet >/dev/null
+"$gatewalk" show m1.nc --json m1.json --quiet
+"$gatewalk" show m.nc --json m.json --quiet
+jq -s '.[0].rows == .[1].rows' m.json m1.json | grep -q true || fail "--bins 1 is not the paper's matrix"
+for bins in 0 -1 nan 1e9; do expect 2 'bins' "$gatewalk" build "$scenes/field.toml" --bins $bins -o x.nc; done
 "$gatewalk" lattice "$scenes/field.toml" --trials 100 --seed 1 --json lattice.json --quiet
 holds '([.final_gates[][]] | add) == 100 and .trapped + .left_field + .cut_off + .not_finite == 100' lattice.json
 "$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=1 --trials 50 --json one.json --quiet
@@ -131,6 +149,38 @@ fi
 holds '.starts | length == 1' validate.json
 holds '.starts[0].exact | .p_values.chi_squared > 0 and .rmse_per_100_floor > 0 and .total_variation >= 0' validate.json
 
+# chart-chain: three files in a folder that it makes; errors and their parts are distributions'.
+chart() { "$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 150 --runs-limit 1e3 --bins 0.5 --bins 1 \
+            --start 0,0,15 --seed 2 "$@"; }
+expect 0 'direct simulation' chart -o charts/a --json charts.json --threads 2
+cmp -s charts.json charts/a/chain.json || fail "chart-chain: --json and chain.json differ"
+grep -q '</svg>' charts/a/chain.svg || fail "chart-chain: no figure"
+holds '[.points[] | [.bins, .trials_per_row]] == [[0.5, 10], [0.5, 20], [1, 10]]' charts/a/chain.json
+holds '[.points[].states] == [23, 23, 87] and [.points[].gate_runs] == [230, 460, 870]' charts/a/chain.json
+holds '[.points[].matrices] == [2, 1, 1]' charts/a/chain.json
+holds '[.points[].starts[] | .exact, .walks_10000, .walks_1000000 | .total_variation > 0 and .total_variation < 1] | all' charts/a/chain.json
+# A million walks: within 1/2 sqrt(2/pi 81/1e6) = 0.004 of infinitely many on average; twice that.
+holds '[.points[].starts[] | .exact.total_variation - .walks_1000000.total_variation | fabs < 0.008] | all' charts/a/chain.json
+# 2000 draws of a figure that varies by some 15 %: five standard errors.
+holds '.starts[0].direct_simulation | map(.drawn.total_variation / .formula.total_variation - 1 | fabs < 0.02) | all' charts/a/chain.json
+holds '.starts[0].truth.trials == 150 and ([.starts[0].truth.final_gates[][]] | add) == 150' charts/a/chain.json
+holds '.starts[0].summary | .cheapest_near_best.seconds <= .best.seconds' charts/a/chain.json
+[ "$(awk -F, '{ print NF }' charts/a/chain.csv | sort -u)" = 24 ] || fail "chart-chain: uneven lines in chain.csv"
+[ "$(grep -c ',exact,' charts/a/chain.csv)" = 3 ] || fail "chart-chain: not one line per matrix in chain.csv"
+# Times aside, the same on one thread.
+chart -o charts/b --threads 1 --quiet >/dev/null 2>&1
+timeless='.starts[0].truth.final_gates, (.points[] | del(.build_s) | .starts[] |= del(.exact_s, .walks_10000_s, .walks_1000000_s))'
+[ "$(jq -c "$timeless" charts/a/chain.json)" = "$(jq -c "$timeless" charts/b/chain.json)" ] ||
+  fail "chart-chain: another number of threads gave other errors"
+expect 2 'missing -o' "$gatewalk" chart-chain "$scenes/field.toml"
+expect 2 'missing SCENE' "$gatewalk" chart-chain -o charts/x
+expect 2 "runs-limit" "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --runs-limit 40
+expect 2 'must be at least 100' "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --truth-trials 99
+expect 2 'the same factor twice' chart -o charts/x --bins 1
+expect 2 'inside the gate' chart -o charts/x --start 25,0,15
+[ -e charts/x ] && fail "chart-chain: wrong use made a folder"
+expect 1 'm.nc' chart -o m.nc
+
 # Damaged and missing files; output that cannot be written leaves the old file.
 head -c 5000 m.nc >cut.nc
 expect 2 'cut.nc' "$gatewalk" show cut.nc
@@ -146,6 +196,8 @@ ls | grep -q tmp && fail "temporary files stayed behind: $(ls)"
 for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "build $scenes/field.toml --trials 1e7 -o m.nc" \
                "lattice $scenes/field.toml --trials 1e9 --json lattice.json" "$stoppable_chart"; do
+               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" \
+               "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9"; do
   before=$(cat gate.json m.nc lattice.json | cksum)
   # shellcheck disable=SC2086
   "$gatewalk" $command >out.txt 2>&1 &

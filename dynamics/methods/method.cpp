@@ -12,8 +12,8 @@
 namespace gatewalk::dynamics {
 
 std::span<const std::string_view> method_names() {
-  static constexpr std::array<std::string_view, 5> names{"paper", "stable", "moreau", "event",
-                                                              "penalty"};
+  static constexpr std::array<std::string_view, 6> names{"paper",   "stable", "moreau", "event",
+                                                             "penalty", "auto"};
   return names;
 }
 
@@ -23,6 +23,9 @@ std::unique_ptr<Method> make_method(const GateParams& params) {
   if (params.run.method == "moreau") return std::make_unique<MoreauMethod>(params);
   if (params.run.method == "event") return std::make_unique<EventMethod>(params);
   if (params.run.method == "penalty") return std::make_unique<PenaltyMethod>(params);
+  if (params.run.method == "auto")
+    throw InvalidParameter("run.method", "run.method = \"auto\" is no method yet: choose_method "
+                                         "(dynamics/choice.h) makes it one");
   return std::make_unique<StableMethod>(params);
 }
 

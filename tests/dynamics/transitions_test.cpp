@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 #include "tests/support/numbers.h"
@@ -106,6 +107,13 @@ TEST(Transitions, SameCountsOnAnyNumberOfThreadsAndForAnySplit) {
   for (const TrialRange part : {TrialRange{0, 1}, {1, 0}, {1, 4}, {5, 1}})
     add_trials(split, p, 5, part);
   expect_same(split, whole);
+}
+
+TEST(Transitions, PartsAddUpToTheWhole) {
+  Transitions sum = built(5, {4, 2});
+  sum += built(5, {0, 4});
+  expect_same(sum, built(5, {0, 6}));
+  EXPECT_THROW(sum += Transitions(refined(sum.space, 2.0)), std::invalid_argument);
 }
 
 TEST(Transitions, OtherSeedOtherCounts) {

@@ -197,6 +197,70 @@ TEST(NoiseFloor, AgreesWithSimulation) {
 }
 
 // sum c(c-1) / N(N-1): (3, 2, 0, 1) has (6 + 2) / 30.
+// By hand: one trial of (p, 1-p) is off by p(1-p) + (1-p)p in both gates, half of that summed:
+// 2p(1-p). Two trials of (1/2, 1/2): off by 1/2 half the time.
+TEST(ExpectedTotalVariation, BySmallNumbers) {
+  EXPECT_NEAR(expected_total_variation(grid(1, 2, {0.3, 0.7}), 1), 0.42, 16 * kEps);
+  EXPECT_NEAR(expected_total_variation(grid(1, 2, {0.5, 0.5}), 2), 0.25, 16 * kEps);
+  // Four equal gates, one trial: 3/4 whatever the outcome.
+  EXPECT_NEAR(expected_total_variation(grid(2, 2, {0.25, 0.25, 0.25, 0.25}), 1), 0.75, 16 * kEps);
+  EXPECT_EQ(expected_total_variation(grid(1, 2, {0.0, 1.0}), 7), 0.0);
+}
+
+// For many trials a count is normal: E|z| = sqrt(2/pi) sd.
+TEST(ExpectedTotalVariation, BecomesTheNormalOne) {
+  const auto p = grid(2, 2, {0.1, 0.2, 0.3, 0.4});
+  double normal = 0.0;
+  for (const double share : {0.1, 0.2, 0.3, 0.4})
+    normal += 0.5 * std::sqrt(2 / test::kPi * share * (1 - share));
+  for (const std::int64_t n : {100'000LL, 10'000'000LL, 1'000'000'000LL}) {
+    const auto root = std::sqrt(static_cast<double>(n));
+    // The next term is of relative size 1/n; logarithms of n! lose n log n eps.
+    EXPECT_NEAR(expected_total_variation(p, n) * root / normal, 1.0, 2.0 / static_cast<double>(n) +
+                                                                         40 * kEps * root * root);
+  }
+}
+
+TEST(ExpectedTotalVariation, IsTheMeanOverSamples) {
+  CellProbabilities p(3, 3);
+  p << 0.4, 0.2, 0.1, 0.1, 0.08, 0.06, 0.03, 0.02, 0.01;
+  for (const std::int64_t n : {1, 7, 50, 1000}) {
+    constexpr int kRepeats = 4000;
+    double sum = 0.0, squares = 0.0;
+    for (int k = 0; k < kRepeats; ++k) {
+      const CellCounts c = sampled(p, n, 1, static_cast<std::uint64_t>(k));
+      ASSERT_EQ(c.sum(), n);
+      const double tv = total_variation(c.cast<double>() / static_cast<double>(n), p);
+      sum += tv;
+      squares += tv * tv;
+    }
+    const double mean = sum / kRepeats, variance = squares / kRepeats - mean * mean;
+    EXPECT_NEAR(mean, expected_total_variation(p, n), 4.5 * std::sqrt(variance / kRepeats)) << n;
+  }
+}
+
+TEST(Sampled, IsNamedBySeedAndReplicate) {
+  const auto p = grid(2, 2, {0.1, 0.0, 0.4, 0.5});
+  const CellCounts a = sampled(p, 1000, 1, 2);
+  EXPECT_TRUE((a == sampled(p, 1000, 1, 2)).all());
+  EXPECT_FALSE((a == sampled(p, 1000, 1, 3)).all());
+  EXPECT_FALSE((a == sampled(p, 1000, 2, 2)).all());
+  EXPECT_EQ(a(0, 1), 0);
+}
+
+TEST(TrialsFor, IsTheLeastThatSuffices) {
+  CellProbabilities p(3, 3);
+  p << 0.4, 0.2, 0.1, 0.1, 0.08, 0.06, 0.03, 0.02, 0.01;
+  EXPECT_EQ(trials_for(p, 1.0), 1);
+  for (const double tv : {0.5, 0.2, 0.03, 0.004}) {
+    const std::int64_t n = trials_for(p, tv);
+    EXPECT_LE(expected_total_variation(p, n), tv);
+    EXPECT_GT(expected_total_variation(p, n - 1), tv);
+  }
+  EXPECT_THROW((void)trials_for(p, 0.0), std::invalid_argument);
+  EXPECT_THROW((void)expected_total_variation(p, 0), std::invalid_argument);
+}
+
 TEST(Concentration, IsTheShareOfEqualPairs) {
   EXPECT_NEAR(concentration(counts(2, 2, {3, 2, 0, 1})), 8.0 / 30, 2 * kEps);
   EXPECT_EQ(concentration(counts(1, 2, {5, 0})), 1.0);
