@@ -78,24 +78,26 @@ StartRuns run_start(const Options& options, const std::vector<Variant>& variants
   const lattice::FieldParams& field = variants[0].scene.field;
   StartRuns r{start, std::vector<Run>(variants.size(), Run(field))};
   for (std::size_t v = 0; v < variants.size(); ++v)
-    run_in_batches(variants[v].label, trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
-      r.runs[v].tally += run(variants[v], first, n);
-    });
+    run_in_batches(
+        variants[v].label, trials, options.talk(),
+        [&](std::int64_t first, std::int64_t n) { r.runs[v].tally += run(variants[v], first, n); });
 
   // The same trials by every variant in turn, so that a busy moment of the machine hits them alike.
   const std::int64_t timed = std::min(trials, kTimedTrials);
   const std::int64_t pieces = (timed + kTimedAtOnce - 1) / kTimedAtOnce;
   const auto kinds = static_cast<std::int64_t>(variants.size());
   std::vector<double> seconds(kRepeats * kinds, 0.0);
-  run_in_batches("timing", kRepeats * pieces * kinds, options.talk(), [&](std::int64_t first, std::int64_t n) {
-    for (std::int64_t item = first; item < first + n; ++item) {
-      const std::int64_t kind = item % kinds, piece = item / kinds % pieces, repeat = item / kinds / pieces;
-      const std::int64_t from = piece * kTimedAtOnce;
-      const Stopwatch watch;
-      (void)run(variants[kind], from, std::min(kTimedAtOnce, timed - from));
-      seconds[repeat * kinds + kind] += watch.seconds();
-    }
-  });
+  run_in_batches("timing", kRepeats * pieces * kinds, options.talk(),
+                 [&](std::int64_t first, std::int64_t n) {
+                   for (std::int64_t item = first; item < first + n; ++item) {
+                     const std::int64_t kind = item % kinds, piece = item / kinds % pieces,
+                                        repeat = item / kinds / pieces;
+                     const std::int64_t from = piece * kTimedAtOnce;
+                     const Stopwatch watch;
+                     (void)run(variants[kind], from, std::min(kTimedAtOnce, timed - from));
+                     seconds[repeat * kinds + kind] += watch.seconds();
+                   }
+                 });
   for (std::int64_t i = 0; i < kRepeats * kinds; ++i) {
     double& least = r.runs[i % kinds].seconds_per_trial;
     least = std::min(least, seconds[i] / static_cast<double>(timed));
@@ -129,23 +131,24 @@ enum class Verdict { enough, not_told_apart, not_enough };
 
 Verdict verdict(const Run& r) {
   if (r.apart.total_variation <= kBound) return Verdict::enough;
-  return r.in_pairs.p_total_variation >= kSignificant ? Verdict::not_told_apart : Verdict::not_enough;
+  return r.in_pairs.p_total_variation >= kSignificant ? Verdict::not_told_apart
+                                                      : Verdict::not_enough;
 }
 Verdict verdict(const StartRuns& r) { return std::max(verdict(r.runs[1]), verdict(r.runs[2])); }
 
 /// "Start 0, 0, 15: active is enough: ..."
 std::string sentence(const StartRuns& r) {
   const auto about = [](const char* name, const Run& run) {
-    return std::string(name) + " has TV " + fixed(run.apart.total_variation, 4) + " where chance makes " +
-           fixed(run.in_pairs.floor_total_variation, 4) + " (p " +
+    return std::string(name) + " has TV " + fixed(run.apart.total_variation, 4) +
+           " where chance makes " + fixed(run.in_pairs.floor_total_variation, 4) + " (p " +
            p_text(run.in_pairs.p_total_variation) + ")";
   };
   const std::string words[] = {
       "active is enough",
       "active is enough as far as " + std::to_string(r.runs[0].tally.trials) + " trials can tell",
       "active is not enough"};
-  return "Start " + digits(r.start.d) + ", " + digits(r.start.vx) + ", " + digits(r.start.vy) + ": " +
-         words[static_cast<int>(verdict(r))] + ": " + about("remember", r.runs[1]) + ", " +
+  return "Start " + digits(r.start.d) + ", " + digits(r.start.vx) + ", " + digits(r.start.vy) +
+         ": " + words[static_cast<int>(verdict(r))] + ": " + about("remember", r.runs[1]) + ", " +
          about("all", r.runs[2]) + ".";
 }
 
@@ -154,18 +157,20 @@ std::string table_of(const std::vector<StartRuns>& starts, const std::vector<Var
   std::ostringstream out;
   out << trials << " trials per start and line, the same noise in all of them; step "
       << variants[0].scene.gate.run.step << " s.\n"
-      << "Against the first line: share of trials that end in another gate; total variation (TV), what\n"
-         "chance gives between independent samples (floor) and between samples that share their noise\n"
-         "(pairs), with p-values; corrcoef and RMSE (trials per 100). ms: wall clock per trial, "
+      << "Against the first line: share of trials that end in another gate; total variation (TV),\n"
+         "what chance gives between independent samples (floor) and between samples that share their\n"
+         "noise (pairs), with p-values; corrcoef and RMSE (trials per 100). ms: wall clock per trial, "
       << threads << (threads == 1 ? " thread" : " threads") << ",\nleast of " << kRepeats
       << " interleaved repeats.\n\n"
-      << "   d   vx   vy  | fidelity (method)      ms  trapped    left     cut | changed      TV   floor   pairs"
+      << "   d   vx   vy  | fidelity (method)      ms  trapped    left     cut | changed      TV   "
+         "floor   pairs"
          "       p p pairs  corrcoef    RMSE\n";
   for (const StartRuns& r : starts)
     for (std::size_t v = 0; v < variants.size(); ++v) {
       const Run& run = r.runs[v];
       const auto share = [&](std::int64_t n, int width) {
-        return padded(percent(static_cast<double>(n), static_cast<double>(run.tally.trials), 2), width);
+        return padded(percent(static_cast<double>(n), static_cast<double>(run.tally.trials), 2),
+                      width);
       };
       out << start_text(r.start) << "  | " << padded(variants[v].label, -18)
           << padded(fixed(1e3 * run.seconds_per_trial, 2), 7) << share(run.tally.trapped, 9)
@@ -174,14 +179,15 @@ std::string table_of(const std::vector<StartRuns>& starts, const std::vector<Var
         const lattice::Comparison &a = run.apart, &p = run.in_pairs;
         out << padded(percent(run.changed, 1.0), 8) << padded(fixed(a.total_variation, 4), 8)
             << padded(fixed(a.floor_total_variation, 4), 8)
-            << padded(fixed(p.floor_total_variation, 4), 8) << padded(p_text(a.p_total_variation), 8)
-            << padded(p_text(p.p_total_variation), 8) << padded(fixed(a.corrcoef, 4), 10)
-            << padded(fixed(a.rmse_per_100, 3), 8);
+            << padded(fixed(p.floor_total_variation, 4), 8)
+            << padded(p_text(a.p_total_variation), 8) << padded(p_text(p.p_total_variation), 8)
+            << padded(fixed(a.corrcoef, 4), 10) << padded(fixed(a.rmse_per_100, 3), 8);
       }
       out << "\n";
     }
   out << "\nActive is called enough where TV is at most " << kBound
-      << ", and not enough where it is more and beyond chance (p pairs < " << kSignificant << ").\n";
+      << ", and not enough where it is more and beyond chance (p pairs < " << kSignificant
+      << ").\n";
   for (const StartRuns& r : starts) out << sentence(r) << "\n";
   return out.str();
 }
@@ -262,7 +268,7 @@ std::string script_of(const std::vector<StartRuns>& starts, const std::vector<Va
     << ",760 font 'sans,13' background '#ffffff' enhanced\n"
     << "$d << EOD\n";
   for (const StartRuns& r : starts) {
-    s << "\"" << fixed(r.start.d, 0) << ", " << fixed(r.start.vx, 0) << ", " << fixed(r.start.vy, 0) << "\"";
+    s << "\"" << digits(r.start.d) << ", " << digits(r.start.vx) << ", " << digits(r.start.vy) << "\"";
     for (const Run& run : r.runs) s << " " << digits(1e3 * run.seconds_per_trial);
     for (std::size_t v = 1; v < variants.size(); ++v)
       s << " " << digits(r.runs[v].apart.total_variation) << " "
@@ -284,18 +290,21 @@ std::string script_of(const std::vector<StartRuns>& starts, const std::vector<Va
        "set lmargin 10\n"
        "set rmargin 30\n"
        "set multiplot layout 2,1\n"
-    << "set title 'What memory and neighbours change (final gates, " << trials << " trials per start)'\n"
+    << "set title 'What memory and neighbours change (final gates, " << trials
+    << " trials per start)'\n"
     << "set ylabel 'total variation to active'\n"
        "plot $d using 0:(0):xtic(1) with dots lc rgb '#ffffff' notitle";
-  const auto column = [&](std::size_t v, int what) { return 2 + variants.size() + 3 * (v - 1) + what; };
+  const auto column = [&](std::size_t v, int what) {
+    return 2 + variants.size() + 3 * (v - 1) + what;
+  };
   const auto plain = [&](std::size_t v) {  // what a legend calls a variant
     return v == 3 ? "active, method " + variants[3].scene.gate.run.method
                   : std::string(name_of(variants[v].scene.field.fidelity));
   };
   const auto shift = [](std::size_t v) { return fixed(0.25 * (static_cast<double>(v) - 2.0), 2); };
   for (std::size_t v = 1; v < variants.size(); ++v)
-    s << ", \\\n $d using ($0+" << shift(v) << "):" << column(v, 0)
-      << " with boxes lc rgb colour[" << v + 1 << "] title '" << plain(v) << "'";
+    s << ", \\\n $d using ($0+" << shift(v) << "):" << column(v, 0) << " with boxes lc rgb colour["
+      << v + 1 << "] title '" << plain(v) << "'";
   for (std::size_t v = 1; v < variants.size(); ++v)
     s << ", \\\n $d using ($0+" << shift(v) << "):" << column(v, 1)
       << ":(0.11) with xerrorbars pt 0 lw 2 lc rgb '#111111' "
@@ -304,13 +313,14 @@ std::string script_of(const std::vector<StartRuns>& starts, const std::vector<Va
     << " with points pt 6 lc rgb '#111111' title 'chance, independent'"
     << ", \\\n " << kBound << " with lines dt 2 lc rgb '#444444' title 'bound " << kBound << "'\n"
     << "set title 'What a trial costs'\n"
-       "set ylabel 'ms per trial, " << threads << (threads == 1 ? " thread" : " threads") << "'\n"
+       "set ylabel 'ms per trial, "
+    << threads << (threads == 1 ? " thread" : " threads")
+    << "'\n"
        "plot $d using 0:(0):xtic(1) with dots lc rgb '#ffffff' notitle";
   const auto place = [](std::size_t v) { return fixed(0.2 * (static_cast<double>(v) - 1.5), 2); };
   for (std::size_t v = 0; v < variants.size(); ++v)
-    s << ", \\\n $d using ($0+" << place(v) << "):" << 2 + v
-      << " with boxes lc rgb colour[" << v + 1 << "] title '"
-      << (v == 0 ? "active" : plain(v)) << "'";
+    s << ", \\\n $d using ($0+" << place(v) << "):" << 2 + v << " with boxes lc rgb colour["
+      << v + 1 << "] title '" << (v == 0 ? "active" : plain(v)) << "'";
   s << "\nunset multiplot\n";
   return s.str();
 }
@@ -318,13 +328,15 @@ std::string script_of(const std::vector<StartRuns>& starts, const std::vector<Va
 }  // namespace
 
 int run_chart_field(const std::vector<std::string>& arguments) {
-  Options options("chart-field SCENE -o DIR [options]",
-                  "Runs the full dynamics at every field.fidelity, with the same noise: what do beams that\n"
-                  "remember, and beams of neighbouring gates, change in the final gates, and what do they\n"
-                  "cost? Method moreau at the scene's step; run.method and field.fidelity of the scene are\n"
-                  "not used. Also the default method, to show what another integrator changes. Writes\n"
-                  "fidelity.csv, fidelity.json and, with gnuplot, fidelity.svg into DIR.",
-                  "gatewalk chart-field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o results/fidelity");
+  Options options(
+      "chart-field SCENE -o DIR [options]",
+      "Runs the full dynamics at every field.fidelity, with the same noise: what do beams that\n"
+      "remember, and beams of neighbouring gates, change in the final gates, and what do they\n"
+      "cost? Method moreau at the scene's step; run.method and field.fidelity of the scene are\n"
+      "not used. Also the default method, to show what another integrator changes. Writes\n"
+      "fidelity.csv, fidelity.json and, with gnuplot, fidelity.svg into DIR.",
+      "gatewalk chart-field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o "
+      "results/fidelity");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "trials per start and fidelity");
   options.add()("output,o", po::value<std::string>()->value_name("DIR"),
@@ -344,7 +356,9 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw std::runtime_error(folder + ": cannot be made: " + error.message());
-  const auto path = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
+  const auto path = [&](const char* name) {
+    return (std::filesystem::path(folder) / name).string();
+  };
   const std::string csv_path = path("fidelity.csv"), json_path = path("fidelity.json"),
                     svg_path = path("fidelity.svg");
   for (const std::string& p : {csv_path, json_path, svg_path}) {
@@ -354,7 +368,8 @@ int run_chart_field(const std::vector<std::string>& arguments) {
 
   const std::int64_t trials = options.count("trials");
   std::vector<StartRuns> reports;
-  for (const PaperStart& start : starts) reports.push_back(run_start(options, variants, start, trials));
+  for (const PaperStart& start : starts)
+    reports.push_back(run_start(options, variants, start, trials));
   std::vector<dynamics::Health> health(variants.size());
   for (const StartRuns& r : reports)
     for (std::size_t v = 0; v < variants.size(); ++v) health[v] += r.runs[v].tally.health;

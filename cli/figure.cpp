@@ -45,7 +45,8 @@ std::string drawn(const std::string& script) {
   std::rewind(in.get());
 
   posix_spawn_file_actions_t files;
-  if (const int error = ::posix_spawn_file_actions_init(&files); error != 0) fail("no memory", error);
+  if (const int error = ::posix_spawn_file_actions_init(&files); error != 0)
+    fail("no memory", error);
   int error = 0;
   std::FILE* const wanted[] = {in.get(), out.get(), errors.get()};
   for (int target = 0; target < 3 && error == 0; ++target)

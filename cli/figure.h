@@ -9,8 +9,8 @@ namespace gatewalk::cli {
 /// fails or is missing.
 void plot(const std::string& script);
 
-/// As plot, and returns what gnuplot wrote to its standard output: the figure itself when the script
-/// sets a terminal and no output, to be handed to write_text_atomically.
+/// As plot, and returns what gnuplot wrote to its standard output: the figure itself when the
+/// script sets a terminal and no output, to be handed to write_text_atomically.
 [[nodiscard]] std::string drawn(const std::string& script);
 
 }  // namespace gatewalk::cli

@@ -19,7 +19,8 @@ PaperStart parse_start(const std::string& text) {
   char first = 0, second = 0;
   if (!(in >> s.d >> first >> s.vx >> second >> s.vy) || first != ',' || second != ',' ||
       in.peek() != std::char_traits<char>::eof() || !std::isfinite(s.d + s.vx + s.vy))
-    throw UsageError("--start " + text + ": must be three numbers d,vx,vy in m and m/s, e.g. 4,5,10");
+    throw UsageError("--start " + text +
+                     ": must be three numbers d,vx,vy in m and m/s, e.g. 4,5,10");
   return s;
 }
 

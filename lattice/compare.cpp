@@ -299,7 +299,8 @@ Comparison compare_pairs(const std::vector<std::int32_t>& first,
   // Pairs that differ, as places in the support; the others are the same either way round.
   std::vector<std::pair<Eigen::Index, Eigen::Index>> unlike;
   const auto place = [&](std::int32_t cell) {
-    return std::lower_bound(support.gates.begin(), support.gates.end(), cell) - support.gates.begin();
+    return std::lower_bound(support.gates.begin(), support.gates.end(), cell) -
+           support.gates.begin();
   };
   for (std::size_t t = 0; t < first.size(); ++t)
     if (first[t] != second[t]) unlike.emplace_back(place(first[t]), place(second[t]));
@@ -307,7 +308,8 @@ Comparison compare_pairs(const std::vector<std::int32_t>& first,
       statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, 2, static_cast<std::uint64_t>(k)});
-    Eigen::VectorXd moved = Eigen::VectorXd::Zero(expected.size());  // trials of the first, less second
+    // Trials of the first sample less those of the second.
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(expected.size());
     std::uint64_t coins = 0;
     for (std::size_t i = 0; i < unlike.size(); ++i) {
       if (i % 64 == 0) coins = random.word();

@@ -64,10 +64,10 @@ struct Comparison {
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellCounts& other,
                                  std::int64_t null_draws, std::uint64_t seed);
 
-/// Two samples whose trials belong together, first[t] with second[t], as two models of one trial under
-/// the same noise do; gates as row * columns + column. The null swaps each pair with probability 1/2,
-/// so only pairs that differ count, and far smaller differences are seen than between independent
-/// samples. `floor` has no formula here: NaN.
+/// Two samples whose trials belong together, first[t] with second[t], as two models of one trial
+/// under the same noise do; gates as row * columns + column. The null swaps each pair with
+/// probability 1/2, so only pairs that differ count, and far smaller differences are seen than
+/// between independent samples. `floor` has no formula here: NaN.
 [[nodiscard]] Comparison compare_pairs(const std::vector<std::int32_t>& first,
                                        const std::vector<std::int32_t>& second, int rows,
                                        int columns, std::int64_t null_draws, std::uint64_t seed);

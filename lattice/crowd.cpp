@@ -174,7 +174,8 @@ void Crowd::choose_awake(double h) {
   awake_.swap(next_);
   asleep_energy_ = 0.0;
   for (std::size_t i = 0; i < gates_.size(); ++i)
-    if (std::find(awake_.begin(), awake_.end(), i) == awake_.end()) asleep_energy_ += gates_[i].energy;
+    if (std::find(awake_.begin(), awake_.end(), i) == awake_.end())
+      asleep_energy_ += gates_[i].energy;
 }
 
 double Crowd::advance(double force_x, double duration, Watch& watch) {
@@ -250,7 +251,8 @@ void Crowd::resolve(const Step& k, double& vx, double& vy) {
   };
   const auto rate = [&](const Contact& c) {
     return c.free + (c.touch.kind == ContactKind::tip ? p_.contact.tip_restitution
-                                                      : p_.contact.restitution) * c.before;
+                                                      : p_.contact.restitution) *
+                        c.before;
   };
   const std::size_t n = contacts_.size();
   if (n <= 2) {  // one or two by cases; two terms commute to the last bit

@@ -1,17 +1,18 @@
 #pragma once
-/// One disc among the beams of many gates: the full dynamics without the paper's "active gate only".
+/// One disc among the beams of many gates: the full dynamics without the paper's "active gate
+/// only".
 ///
 /// Moreau-Jean time stepping (theta = 1/2) for any number of beams. Positions half a step ahead
 /// decide which contacts are active (gap <= 0) and where they touch; springs, dampers and drag are
-/// taken by the implicit midpoint rule, which keeps the energy of a free beam exactly; over the step
-/// every active contact obeys u+ + e u- >= 0, J >= 0, one of them zero, all contacts together
+/// taken by the implicit midpoint rule, which keeps the energy of a free beam exactly; over the
+/// step every active contact obeys u+ + e u- >= 0, J >= 0, one of them zero, all contacts together
 /// (push_only.h). There are no held contacts and no search for hits: a step is a step.
 ///
 /// Which gates take part is field.fidelity. A gate that takes no part sleeps: its beams swing on by
 /// themselves and are brought up to date in closed form when they are next asked for.
 ///
-/// A mirror image of field, beams, start and force gives the mirror image of the motion, to the last
-/// bit (odd number of columns): sums over three contacts and more are taken both ways round.
+/// A mirror image of field, beams, start and force gives the mirror image of the motion, to the
+/// last bit (odd number of columns): sums over three contacts and more are taken both ways round.
 
 #include <vector>
 
@@ -30,7 +31,8 @@ class Crowd {
   /// dynamics::run_gate, but with all the beams that this fidelity has. The crowd's clock goes on.
   [[nodiscard]] dynamics::GateRun run_gate(dynamics::RandomForce& force);
 
-  /// After a run that left its gate: the body is in the neighbour from now on. That gate must exist.
+  /// After a run that left its gate: the body is in the neighbour from now on. That gate must
+  /// exist.
   void go_on(dynamics::Ending ending);
 
   /// Advances by at most `duration` seconds under lateral force `force_x` (N), stopping exactly
@@ -88,17 +90,18 @@ class Crowd {
   void resolve(const Step& k, double& vx, double& vy);
   /// Takes everything back to the moment of leaving; returns how long after `before` that is.
   [[nodiscard]] double back_to_exit(const dynamics::BodyState& before, double h);
-  void watch_all(const dynamics::BodyState& before, double force_x, double h, dynamics::Watch& watch);
+  void watch_all(const dynamics::BodyState& before, double force_x, double h,
+                 dynamics::Watch& watch);
   [[nodiscard]] bool finite() const;
 
   const dynamics::GateParams& p_;
   FieldParams field_;
   Step usual_;
   dynamics::BodyState body_;
-  double now_ = 0.0;            // s since the start
-  std::vector<Gate> gates_;     // every gate met so far
-  std::size_t current_ = 0;     // the gate the body is in
-  std::size_t last_ = 0;        // the gate it came from; current_ in the beginning
+  double now_ = 0.0;                       // s since the start
+  std::vector<Gate> gates_;                // every gate met so far
+  std::size_t current_ = 0;                // the gate the body is in
+  std::size_t last_ = 0;                   // the gate it came from; current_ in the beginning
   std::vector<std::size_t> awake_, next_;  // awake_[0] is current_
   std::vector<std::array<dynamics::BeamState, 2>> before_;  // awake beams at the start of a step
   std::vector<Contact> contacts_;

@@ -13,10 +13,11 @@ void validate(const dynamics::GateParams& p, const FieldParams& field) {
   if (field.fidelity == Fidelity::active) return;
   std::ostringstream text;
   if (p.run.method != "moreau") {
-    text << "field.fidelity = \"" << name_of(field.fidelity)
-         << "\" is not permitted with run.method = \"" << p.run.method
-         << "\": it is stepped by Moreau's scheme; run.method must be \"moreau\", or field.fidelity "
-            "\"active\"";
+    text
+        << "field.fidelity = \"" << name_of(field.fidelity)
+        << "\" is not permitted with run.method = \"" << p.run.method
+        << "\": it is stepped by Moreau's scheme; run.method must be \"moreau\", or field.fidelity "
+           "\"active\"";
     throw dynamics::InvalidParameter("field.fidelity", text.str());
   }
   const double reach = p.beams.length + p.body.radius;

@@ -34,9 +34,9 @@ struct FieldParams {
   }
 };
 
-/// Throws dynamics::InvalidParameter when this fidelity cannot be run in these gates: `remember` and
-/// `all` have a stepper of their own (crowd.h), which is that of method moreau; `all` looks at a few
-/// neighbours only, so beams must not reach over many gates.
+/// Throws dynamics::InvalidParameter when this fidelity cannot be run in these gates: `remember`
+/// and `all` have a stepper of their own (crowd.h), which is that of method moreau; `all` looks at
+/// a few neighbours only, so beams must not reach over many gates.
 void validate(const dynamics::GateParams& p, const FieldParams& field);
 
 }  // namespace gatewalk::lattice

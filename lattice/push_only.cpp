@@ -9,11 +9,11 @@
 namespace gatewalk::lattice {
 namespace {
 
-constexpr double kOpen = 1e-12;        // of max|b|: a contact that closes no faster is at rest
-constexpr double kDependent = 1e-13;   // of its diagonal: a pivot this small is round-off
+constexpr double kOpen = 1e-12;       // of max|b|: a contact that closes no faster is at rest
+constexpr double kDependent = 1e-13;  // of its diagonal: a pivot this small is round-off
 
-/// Solves W z = -b over the contacts `in`, by Cholesky's method. False when a pivot falls to `least` of
-/// its diagonal: that contact depends on those before it.
+/// Solves W z = -b over the contacts `in`, by Cholesky's method. False when a pivot falls to
+/// `least` of its diagonal: that contact depends on those before it.
 bool solve(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const std::vector<int>& in,
            double least, std::vector<double>& z) {
   const auto n = static_cast<int>(in.size());
@@ -62,7 +62,8 @@ Eigen::VectorXd push_only(const Eigen::MatrixXd& w, const Eigen::VectorXd& b) {
   std::vector<int> in;                  // contacts that have joined, in the order of joining
   std::vector<bool> useless(n, false);  // depends on those in `in`
   std::vector<double> tried;
-  const int most_rounds = 100 * n;  // far beyond what is ever needed; only round-off could turn in circles
+  const int most_rounds =
+      100 * n;  // far beyond what is ever needed; only round-off could turn in circles
   for (int round = 0; round < most_rounds; ++round) {
     const Eigen::VectorXd rate = w * z + b;
     int next = -1;

@@ -47,7 +47,8 @@ TEST(Figure, LargeScriptsAndFigures) {
 }
 
 TEST(Figure, FailuresCarryGnuplotsWords) {
-  const std::string words = complaint_of([] { plot("set terminal svg\n\nplot nonsense nowhere\n"); });
+  const std::string words =
+      complaint_of([] { plot("set terminal svg\n\nplot nonsense nowhere\n"); });
   EXPECT_NE(words.find("gnuplot failed"), words.npos) << words;
   EXPECT_NE(words.find("nonsense"), words.npos) << words;
   EXPECT_NE(words.find("line 3"), words.npos) << words;

@@ -87,8 +87,9 @@ TEST(Crowd, DragIsOfSecondOrder) {
 /// Disc near the joint place that its gate shares with the right neighbour, beams of three gates
 /// turned towards it and in motion; most overlap the disc, so several contacts act at once.
 Crowd scramble(const GateParams& p, Fidelity f, Draw& draw) {
-  Crowd crowd(p, field(f),
-              {draw.uniform(0, 24), draw.uniform(5, 55), draw.uniform(-10, 10), draw.uniform(-10, 10)});
+  Crowd crowd(
+      p, field(f),
+      {draw.uniform(0, 24), draw.uniform(5, 55), draw.uniform(-10, 10), draw.uniform(-10, 10)});
   for (int column = kMiddle - 1; column <= kMiddle + 1; ++column) {
     std::array<BeamState, 2> beams;
     for (const Side side : {kLeft, kRight}) {
@@ -149,14 +150,18 @@ TEST(Crowd, KeepsAngularMomentumAboutASharedJoint) {
     const double up = std::atan2(crowd.body().y - 30.0, 25.0 - crowd.body().x);
     const double distance = std::hypot(crowd.body().y - 30.0, 25.0 - crowd.body().x);
     const double half = std::asin(10.0 / distance);  // half the angle under which the disc is seen
-    crowd.set_beams(kMiddle, 0, {BeamState{-1.5, 0.0}, {up - half - draw.uniform(0.01, 0.3), draw.uniform(0, 2)}});
-    crowd.set_beams(kMiddle + 1, 0,
-                    {BeamState{std::numbers::pi - up - half - draw.uniform(0.01, 0.3), draw.uniform(0, 2)}, {}});
+    crowd.set_beams(
+        kMiddle, 0,
+        {BeamState{-1.5, 0.0}, {up - half - draw.uniform(0.01, 0.3), draw.uniform(0, 2)}});
+    crowd.set_beams(
+        kMiddle + 1, 0,
+        {BeamState{std::numbers::pi - up - half - draw.uniform(0.01, 0.3), draw.uniform(0, 2)},
+         {}});
     const auto momentum = [&] {
       const BodyState& b = crowd.body();
       return p.body.mass * ((b.x - 25.0) * b.vy - (b.y - 30.0) * b.vx) +
-             p.beams.inertia() * (crowd.beams(kMiddle + 1, 0)[kLeft].omega -
-                                  crowd.beams(kMiddle, 0)[kRight].omega);
+             p.beams.inertia() *
+                 (crowd.beams(kMiddle + 1, 0)[kLeft].omega - crowd.beams(kMiddle, 0)[kRight].omega);
     };
     const double start = momentum();
     const double scale = 25.0 * 60.0 + p.beams.inertia() * 4.0;
@@ -191,7 +196,9 @@ TEST(Crowd, OneGateHasTheConvergedOutcomes) {
                 0.01 + 4 * std::sqrt(share * (1 - share) / kTrials));
   };
   expect_share(seen[static_cast<int>(Ending::traversed)], 0.055);
-  expect_share(seen[static_cast<int>(Ending::exited_left)] + seen[static_cast<int>(Ending::exited_right)], 0.534);
+  expect_share(
+      seen[static_cast<int>(Ending::exited_left)] + seen[static_cast<int>(Ending::exited_right)],
+      0.534);
   expect_share(seen[static_cast<int>(Ending::trapped)], 0.410);
 }
 
@@ -221,7 +228,8 @@ TEST(Crowd, OneGateIsMethodMoreau) {
       touched += other.impacts > 0;
       const BodyState& b = crowd.body();
       close += std::abs(b.x - s.body.x) + std::abs(b.y - s.body.y) + std::abs(b.vx - s.body.vx) +
-                   std::abs(b.vy - s.body.vy) < 1e-9;
+                   std::abs(b.vy - s.body.vy) <
+               1e-9;
       RandomForce again = noise();
       ++theirs[static_cast<int>(run_gate(p, *method, start, again).ending)];
     } catch (const std::logic_error& e) {
@@ -273,7 +281,8 @@ TEST(Crowd, RememberedBeamsSwingOnInClosedForm) {
     const auto now = crowd.beams(kMiddle, 0);
     for (const Side side : {kLeft, kRight}) {
       const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
-      const BeamState s = swung(k, p.beams.damping, p.beams.inertia(), left[side], crowd.seconds() - then);
+      const BeamState s =
+          swung(k, p.beams.damping, p.beams.inertia(), left[side], crowd.seconds() - then);
       EXPECT_NEAR(now[side].theta, s.theta, tolerance);
       EXPECT_NEAR(now[side].omega, s.omega, 50 * tolerance);  // rates are some 40 1/s
     }
@@ -297,7 +306,8 @@ TEST(Crowd, RememberedBeamsSwingOnInClosedForm) {
 // The gate just left pushes from behind until it is out of reach.
 TEST(Crowd, TheGateJustLeftStillPushes) {
   GateParams p = moreau();
-  p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping = 1.0;  // beams that keep swinging
+  p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
+      1.0;  // beams that keep swinging
   const auto pushed = [&](Fidelity f) {
     Crowd crowd(p, field(f), {-20, 59.9, 0, 8});
     crowd.set_beams(kMiddle, 0, {BeamState{0.9, 2.0}, {}});
@@ -322,7 +332,8 @@ TEST(Crowd, TheGateJustLeftStillPushes) {
 TEST(Crowd, ASideLeftBehindStillPushes) {
   GateParams p = moreau();
   p.forces.propulsion = 0.0;
-  p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping = 1.0;  // beams that keep swinging
+  p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
+      1.0;  // beams that keep swinging
   Crowd crowd(p, field(Fidelity::remember), {24.9, 45, 6, 0});
   // The right beam stands beside the disc, left of it, and swings after it.
   crowd.set_beams(kMiddle, 0, {BeamState{}, {0.7, 2.0}});
@@ -339,7 +350,8 @@ TEST(Crowd, ASideLeftBehindStillPushes) {
 TEST(Crowd, NeighboursPushInAllOnly) {
   GateParams p = moreau();
   p.forces.propulsion = 0.0;
-  p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping = 1.0;  // beams that keep swinging
+  p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
+      1.0;  // beams that keep swinging
   for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
     Crowd crowd(p, field(f), {15, 46, 0, 0});
     crowd.set_beams(kMiddle + 1, 0, {BeamState{1.2, 3.0}, {}});  // swings over from the right
@@ -372,7 +384,8 @@ TEST(Crowd, FourGatesAtMostAreWithinReach) {
   for (std::uint64_t trial = 0; trial < 10; ++trial) {
     Crowd crowd(p, field(Fidelity::all), {0, 0, 0, 15});
     RandomForce force(p.forces, Random(Purpose::field, {13, 0, trial}));
-    for (int hold = 0; hold < 600 && crowd.row() < 8 && std::abs(crowd.column() - kMiddle) < 4; ++hold) {
+    for (int hold = 0; hold < 600 && crowd.row() < 8 && std::abs(crowd.column() - kMiddle) < 4;
+         ++hold) {
       const double passed = crowd.advance(force.value(), force.left(), watch);
       force.pass(passed);
       most = std::max(most, crowd.awake());
@@ -401,7 +414,8 @@ TEST(Crowd, MirroredFieldsGiveMirroredTrials) {
         Crowd a(p, field(f), start), b(m, field(f), test::mirrored(start));
         RandomForce fa(p.forces, Random(Purpose::field, {14, 0, trial}));
         RandomForce fb(m.forces, Random(Purpose::field, {14, 0, trial}), -1.0);
-        for (int step = 0; step < 4000 && a.row() < 8 && std::abs(a.column() - kMiddle) < 4; ++step) {
+        for (int step = 0; step < 4000 && a.row() < 8 && std::abs(a.column() - kMiddle) < 4;
+             ++step) {
           Watch wa, wb;
           const double force = fa.value();
           ASSERT_TRUE(test::same_bits(force, -fb.value()));

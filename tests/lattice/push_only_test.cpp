@@ -34,7 +34,8 @@ Problem contacts(Draw& draw, int n, bool with_pins) {
     if (pin && i > 0 && draw.coin()) normals.row(i) = normals.row(draw.below(i));  // one place
     const double lever = pin ? 0.0 : draw.sign() * draw.log_uniform(1e-3, 25.0);
     own[i] = lever * lever / inertia;
-    p.b[i] = 1.8 * (normals(i, 0) * vx + normals(i, 1) * vy - lever * (pin ? 0.0 : draw.uniform(-3, 3)));
+    p.b[i] =
+        1.8 * (normals(i, 0) * vx + normals(i, 1) * vy - lever * (pin ? 0.0 : draw.uniform(-3, 3)));
   }
   p.w = normals * normals.transpose() / mass;
   p.w.diagonal() += own;
@@ -68,8 +69,8 @@ Eigen::VectorXd by_enumeration(const Problem& p) {
   return Eigen::VectorXd::Zero(n);
 }
 
-// W = I + ones/2 and b = (-1, -1, 1): with the first two, 1.5 z + 0.5 z = 1, z = 1/2; the third then
-// opens at 1 + 1/2.
+// W = I + ones/2 and b = (-1, -1, 1): with the first two, 1.5 z + 0.5 z = 1, z = 1/2; the third
+// then opens at 1 + 1/2.
 TEST(PushOnly, ThreeByHand) {
   Eigen::MatrixXd w = Eigen::MatrixXd::Identity(3, 3) + Eigen::MatrixXd::Constant(3, 3, 0.5);
   const Eigen::VectorXd z = push_only(w, Eigen::Vector3d(-1, -1, 1));
@@ -99,9 +100,8 @@ TEST(PushOnly, OneAndTwoAreThoseOfTheGate) {
   for (int run = 0; run < 2000; ++run) {
     const Problem p = contacts(draw, 1 + run % 2, false);
     const bool two = run % 2 == 1;
-    const auto gate =
-        dynamics::push_only({p.w(0, 0), two ? p.w(1, 1) : 1.0, two ? p.w(0, 1) : 0.0},
-                            {p.b[0], two ? p.b[1] : 0.0}, {true, two});
+    const auto gate = dynamics::push_only({p.w(0, 0), two ? p.w(1, 1) : 1.0, two ? p.w(0, 1) : 0.0},
+                                          {p.b[0], two ? p.b[1] : 0.0}, {true, two});
     const Eigen::VectorXd z = push_only(p.w, p.b);
     EXPECT_EQ(z[0], gate[0]);
     if (two) {

@@ -405,7 +405,8 @@ TEST(Fidelity, NeedsMethodMoreau) {
     } catch (const InvalidParameter& e) {
       EXPECT_EQ(e.key(), "field.fidelity");
       const std::string what = e.what();
-      EXPECT_NE(what.find("field.fidelity = \"" + std::string(name_of(f)) + "\""), what.npos) << what;
+      const std::string named = "field.fidelity = \"" + std::string(name_of(f)) + "\"";
+      EXPECT_NE(what.find(named), what.npos) << what;
       EXPECT_NE(what.find("run.method = \"stable\""), what.npos) << what;
     }
   }
