@@ -369,7 +369,7 @@ char letter_of(Verdict v) {
 /// Settings that have no place in a panel, with the reason: "paper 0.02 to 0.005 s: not finite".
 std::vector<std::string> strip(const std::vector<std::pair<const Point*, std::string>>& without) {
   std::vector<std::string> lines;
-  constexpr std::size_t kLongest = 80;  // letters that a panel is wide
+  constexpr std::size_t kLongest = 95;  // letters that a panel is wide
   for (std::size_t i = 0; i < without.size();) {
     const auto& [first, reason] = without[i];
     std::size_t last = i;  // of a run of neighbours in the list with the same reason
@@ -501,7 +501,7 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
 
 void draw(const std::string& path, const std::vector<SceneChart>& charts) {
   const int rows = static_cast<int>(charts.size());
-  constexpr int kRow = 365;
+  constexpr int kRow = 375;
   const int header = 60, height = kRow * rows + header;
   std::ostringstream out;
   out << "set multiplot\nset format y '10^{%L}'\nset xtics nomirror\n"
@@ -510,7 +510,7 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
          "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n";
   for (int row = 0; row < rows; ++row) {
     const SceneChart& chart = charts[static_cast<std::size_t>(row)];
-    const double top = 1.0 - static_cast<double>(header + kRow * row + 58) / height;
+    const double top = 1.0 - static_cast<double>(header + kRow * row + 66) / height;
     const double bottom = top - 240.0 / height;
     const auto place = [&](double left, double right) {
       out << "set lmargin at screen " << left << "\nset rmargin at screen " << right

@@ -150,13 +150,13 @@ void draw(const std::string& path, const std::vector<const FinishedMap*>& maps) 
                literal(border.label);
     }
     const double left = 0.08 + 0.32 * static_cast<double>(i % 3), right = left + 0.24;
-    const double top = i < 3 ? 0.86 : 0.37, bottom = top - 0.29;
+    const double top = i < 3 ? 0.86 : 0.385, bottom = top - 0.29;
     out << "set lmargin at screen " << left << "\nset rmargin at screen " << right << "\nset tmargin at screen "
         << top << "\nset bmargin at screen " << bottom << "\nset title " << literal(map.method) << " offset 0,1.5\n"
         << "set xlabel " << literal(map.x.label) << "\nset ylabel " << literal(map.y.label) << "\n"
         << (x.logarithmic ? "set logscale x\nset format x '10^{%L}'\n" : "unset logscale x\nset format x '%g'\n")
         << (y.logarithmic ? "set logscale y\nset format y '10^{%L}'\n" : "unset logscale y\nset format y '%g'\n")
-        << "set xtics nomirror out " << (x.tics.empty() ? "autofreq" : x.tics) << "\n"
+        << "set xtics nomirror out font ',10' " << (x.tics.empty() ? "autofreq" : x.tics) << "\n"
         << "set ytics nomirror out " << (y.tics.empty() ? "autofreq" : y.tics) << "\n"
         << "set xrange [" << digits(x.low.front()) << ":" << digits(x.high.back()) << "]\nset yrange ["
         << digits(y.low.front()) << ":" << digits(y.high.back()) << "]\n"

@@ -123,7 +123,7 @@ holds '[.scenes[].settings[] | select(.status != "refused") | .health.runs == 20
 holds '[.scenes[].reference.outcomes | add] == [20, 20]' charts/chart.json
 holds '[.scenes[].settings[] | select(.default)] | length == 10' charts/chart.json
 grep -q '</svg>' charts/chart.svg || fail "chart.svg is no whole figure"
-"$gatewalk" chart "$scenes/stiff.toml" -o again --trials 20 --repeats 1 --seed 2 --methods stable --threads 1 --quiet
+"$gatewalk" chart "$scenes/stiff.toml" -o again --trials 20 --repeats 1 --seed 2 --methods stable --threads 1 --quiet >/dev/null
 jq -s '[.[0].scenes[1].settings[] | select(.method == "stable") | .errors] == [.[1].scenes[0].settings[].errors]' charts/chart.json again/chart.json |
   grep -q true || fail "chart: one method on one thread gave other errors"
 expect 2 'missing SCENE' "$gatewalk" chart -o charts
