@@ -367,10 +367,9 @@ char letter_of(Verdict v) {
 }
 
 /// Settings that have no place in a panel, with the reason: "paper 0.02 to 0.005 s: not finite".
-/// Two such to a line.
 std::vector<std::string> strip(const std::vector<std::pair<const Point*, std::string>>& without) {
   std::vector<std::string> lines;
-  int entries = 0;
+  constexpr std::size_t kLongest = 95;  // letters that a panel is wide
   for (std::size_t i = 0; i < without.size();) {
     const auto& [first, reason] = without[i];
     std::size_t last = i;  // of a run of neighbours in the list with the same reason
@@ -386,7 +385,7 @@ std::vector<std::string> strip(const std::vector<std::pair<const Point*, std::st
     const std::string text = first->setting.method + " " + value(first) +
                              (last > i ? " to " + value(without[last].first) : "") +
                              unit_of(first->setting) + ": " + reason;
-    if (entries++ % 2 == 0)
+    if (lines.empty() || lines.back().size() + text.size() > kLongest)
       lines.push_back(lines.empty() ? "no point: " + text : text);
     else
       lines.back() += "; " + text;
@@ -426,7 +425,7 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
       if (!p.ran() || !std::isfinite(time) || !std::isfinite(error) ||
           (error <= 0.0 && limit <= 0.0)) {
         std::string reason(dynamics::name_of(p.verdict));
-        if (p.ran()) reason = "no pair to compare" + (p.verdict == Verdict::fine ? "" : ", " + reason);
+        if (p.ran()) reason = "all parted" + (p.verdict == Verdict::fine ? "" : ", " + reason);
         without.emplace_back(&p, reason);
         continue;
       }
@@ -483,9 +482,9 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
   }
 
   std::ostringstream out;
-  out << blocks.str() << "unset label\nset title " << literal(chart.label + ": " + title)
-      << " offset 0,1.2\nset ylabel " << literal(label) << "\n";
   const std::vector<std::string> lines = strip(without);
+  out << blocks.str() << "unset label\nset title " << literal(chart.label + ": " + title)
+      << " offset 0," << 0.3 + 0.8 * static_cast<double>(lines.size()) << "\nset ylabel " << literal(label) << "\n";
   for (std::size_t i = 0; i < lines.size(); ++i)
     out << "set label " << 11 + i << " " << literal(lines[i]) << " at graph 0, graph "
         << 1.03 + 0.045 * static_cast<double>(lines.size() - 1 - i) << " font ',8' tc rgb '#444444'\n";
@@ -502,7 +501,7 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
 
 void draw(const std::string& path, const std::vector<SceneChart>& charts) {
   const int rows = static_cast<int>(charts.size());
-  constexpr int kRow = 365;
+  constexpr int kRow = 375;
   const int header = 60, height = kRow * rows + header;
   std::ostringstream out;
   out << "set multiplot\nset format y '10^{%L}'\nset xtics nomirror\n"
@@ -511,7 +510,7 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
          "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n";
   for (int row = 0; row < rows; ++row) {
     const SceneChart& chart = charts[static_cast<std::size_t>(row)];
-    const double top = 1.0 - static_cast<double>(header + kRow * row + 58) / height;
+    const double top = 1.0 - static_cast<double>(header + kRow * row + 66) / height;
     const double bottom = top - 240.0 / height;
     const auto place = [&](double left, double right) {
       out << "set lmargin at screen " << left << "\nset rmargin at screen " << right

@@ -44,8 +44,10 @@ std::string digits(double x) {
 std::string tics_1_2_5(double low, double high) {
   std::string list;
   for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10)
-    for (const int digit : {1, 2, 5})
+    for (const int digit : {1, 2, 5}) {
+      if (digit > 1 && high > 1000.0 * low) break;  // they would touch
       list += (list.empty() ? "'" : ", '") + digits(digit * decade) + "' " + digits(digit * decade);
+    }
   return list;
 }
 

@@ -15,7 +15,7 @@ namespace gatewalk::cli {
 /// Seven digits: more than a figure shows.
 [[nodiscard]] std::string digits(double x);
 
-/// 1, 2 and 5 times the powers of ten, as the tics of a logarithmic axis from low to high.
+/// Tics of a logarithmic axis from low to high: 1, 2 and 5 times the powers of ten, or these alone.
 [[nodiscard]] std::string tics_1_2_5(double low, double high);
 
 /// Colour and marker of a method, the same in every figure (Okabe and Ito's colours).

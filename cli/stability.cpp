@@ -145,21 +145,22 @@ void draw(const std::string& path, const std::vector<const FinishedMap*>& maps) 
         rows += digits(border.x[k]) + " " + digits(border.y[k]) + "\n";
       const std::string name = tag + "B" + std::to_string(number);
       out << data_block(name, rows);
-      lines += ", " + name + " using 1:2 with lines lw 2 lc rgb 'black' dt " + std::to_string(++number) + " title " +
+      lines += ", " + name + " using 1:2 with linespoints lw 2 pt 7 ps 0.2 lc rgb 'black' dt " +
+               std::to_string(++number) + " title " +
                literal(border.label);
     }
     const double left = 0.08 + 0.32 * static_cast<double>(i % 3), right = left + 0.24;
-    const double top = i < 3 ? 0.87 : 0.395, bottom = top - 0.31;
+    const double top = i < 3 ? 0.86 : 0.385, bottom = top - 0.29;
     out << "set lmargin at screen " << left << "\nset rmargin at screen " << right << "\nset tmargin at screen "
-        << top << "\nset bmargin at screen " << bottom << "\nset title " << literal(map.method) << " offset 0,0.6\n"
+        << top << "\nset bmargin at screen " << bottom << "\nset title " << literal(map.method) << " offset 0,1.5\n"
         << "set xlabel " << literal(map.x.label) << "\nset ylabel " << literal(map.y.label) << "\n"
         << (x.logarithmic ? "set logscale x\nset format x '10^{%L}'\n" : "unset logscale x\nset format x '%g'\n")
         << (y.logarithmic ? "set logscale y\nset format y '10^{%L}'\n" : "unset logscale y\nset format y '%g'\n")
-        << "set xtics nomirror out " << (x.tics.empty() ? "autofreq" : x.tics) << "\n"
+        << "set xtics nomirror out font ',10' " << (x.tics.empty() ? "autofreq" : x.tics) << "\n"
         << "set ytics nomirror out " << (y.tics.empty() ? "autofreq" : y.tics) << "\n"
         << "set xrange [" << digits(x.low.front()) << ":" << digits(x.high.back()) << "]\nset yrange ["
         << digits(y.low.front()) << ":" << digits(y.high.back()) << "]\n"
-        << (lines.empty() ? "unset key\n" : "set key at graph 0.5, graph 1.09 center horizontal font ',9' samplen 2\n");
+        << (lines.empty() ? "unset key\n" : "set key at graph 0.5, graph 1.1 center horizontal font ',9' samplen 2\n");
     if (i == 0)
       out << "set label 1 " << literal(map.title) << " at screen 0.02, screen 0.965 font ',16'\n";
     if (i + 1 == maps.size()) {  // the legend, in the place of the sixth panel
@@ -169,7 +170,7 @@ void draw(const std::string& path, const std::vector<const FinishedMap*>& maps) 
           return m->count(static_cast<Verdict>(v)) > 0;
         });
         if (!seen) continue;
-        const double row = 0.38 - 0.035 * (label - 10);
+        const double row = 0.36 - 0.035 * (label - 10);
         out << "set label " << label++ << " " << literal(dynamics::kVerdictNames[v])
             << " at screen 0.74, screen " << row << " left point pt 5 ps 2 lc rgb '" << kColours[v]
             << "' offset 1.5,0\n";

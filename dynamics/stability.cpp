@@ -195,35 +195,41 @@ std::vector<Border> borders(const StabilityMap& map) {
   const double k = p.beams.stiffness_left, d = p.beams.damping, inertia = p.beams.inertia();
   const bool stiffness = map.kind == MapKind::step_stiffness;
   std::vector<Border> found;
-  const auto add = [&](const char* label, auto y_of) {
+  const auto add = [&](const char* label, const std::vector<double>& at, auto y_of) {
     Border border{label, {}, {}};
-    constexpr int kPieces = 60;
-    const double first = map.x.values.front(), last = map.x.values.back();
-    for (int i = 0; i <= kPieces; ++i) {
-      const double h = first * std::pow(last / first, static_cast<double>(i) / kPieces);
-      const double y = y_of(h);
+    for (const double x : at) {
+      const double y = y_of(x);
       if (!(y > 0.0) || !std::isfinite(y)) continue;
-      border.x.push_back(h);
+      border.x.push_back(x);
       border.y.push_back(y);
     }
     if (!border.x.empty()) found.push_back(std::move(border));
   };
+  std::vector<double> steps;  // many, for smooth curves
+  constexpr int kPieces = 60;
+  const double first = map.x.values.front(), last = map.x.values.back();
+  for (int i = 0; i <= kPieces; ++i)
+    steps.push_back(first * std::pow(last / first, static_cast<double>(i) / kPieces));
   if (map.method == "paper") {
     if (stiffness) {
       // Swinging beams: h < d/k. (Creeping ones, k <= d^2/4I = 30 N m/rad, take any step up to I/d.)
-      add("h = d/k", [&](double h) { return d / h; });
+      add("h = d/k", steps, [&](double h) { return d / h; });
     } else {
-      add("h = d/k", [&](double h) { return k * h; });
+      add("h = d/k", steps, [&](double h) { return k * h; });
       // Growth factor -1: 4 I/h^2 - 2 d/h + k = 0.
-      add("h = 2 I/d (creeping)", [&](double h) { return 2.0 * inertia / h + 0.5 * k * h; });
+      add("h = 2 I/d (creeping)", steps, [&](double h) { return 2.0 * inertia / h + 0.5 * k * h; });
     }
   } else if (map.method == "penalty") {
     if (stiffness)
-      add("h^2 k/I + 2 h d/I = 4", [&](double h) { return (4.0 * inertia - 2.0 * h * d) / (h * h); });
+      add("h^2 k/I + 2 h d/I = 4", steps,
+          [&](double h) { return (4.0 * inertia - 2.0 * h * d) / (h * h); });
     else
-      add("h^2 k/I + 2 h d/I = 4", [&](double h) { return (4.0 * inertia - h * h * k) / (2.0 * h); });
+      add("h^2 k/I + 2 h d/I = 4", steps,
+          [&](double h) { return (4.0 * inertia - h * h * k) / (2.0 * h); });
   }
-  add("refused above", [&](double x) { return refused_above(map.kind, map.method, x, map.y); });
+  // Only steps that fit into a hold of the random force are accepted at all.
+  add("refused above", map.x.values,
+      [&](double x) { return refused_above(map.kind, map.method, x, map.y); });
   return found;
 }
 

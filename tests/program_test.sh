@@ -26,8 +26,7 @@ expect 0 'usage: gatewalk' "$gatewalk" --help
 expect 0 '^gatewalk [0-9]' "$gatewalk" --version
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
-for command in gate build show walk predict lattice validate chart-field; do
-for command in gate build show walk predict lattice validate chart-chain; do
+for command in gate build show walk predict lattice validate chart chart-field chart-chain stability; do
   expect 0 'Example:' "$gatewalk" $command --help
   expect 2 'unrecognised option' "$gatewalk" $command --no-such-option
 done
@@ -192,13 +191,43 @@ expect 1 'no/such/dir' "$gatewalk" gate "$scenes/single_gate.toml" --trials 10 -
 expect 1 'm.nc' "$gatewalk" build "$scenes/field.toml" --trials 1 -o no-dir/m.nc
 ls | grep -q tmp && fail "temporary files stayed behind: $(ls)"
 
+# chart: a line per scene, method and setting; wrong use is said before any work.
+"$gatewalk" chart "$scenes/field.toml" "$scenes/stiff.toml" -o charts --trials 20 --repeats 1 --seed 2 --quiet >/dev/null 2>chart.err ||
+  fail "chart: $(head -n 3 chart.err)"
+[ "$(wc -l <charts/chart.csv)" = 81 ] || fail "chart.csv has $(wc -l <charts/chart.csv) lines"
+[ "$(cut -d, -f1-2 charts/chart.csv | sort | uniq -c | awk '$1 == 8' | wc -l)" = 10 ] || fail "chart.csv: not 8 settings each"
+holds '[.scenes[].settings[] | select(.status != "refused") | .health.runs == 20 and .microseconds_per_trial.min > 0] | all' charts/chart.json
+holds '[.scenes[].reference.outcomes | add] == [20, 20]' charts/chart.json
+holds '[.scenes[].settings[] | select(.default)] | length == 10' charts/chart.json
+grep -q '</svg>' charts/chart.svg || fail "chart.svg is no whole figure"
+"$gatewalk" chart "$scenes/stiff.toml" -o again --trials 20 --repeats 1 --seed 2 --methods stable --threads 1 --quiet >/dev/null
+jq -s '[.[0].scenes[1].settings[] | select(.method == "stable") | .errors] == [.[1].scenes[0].settings[].errors]' charts/chart.json again/chart.json |
+  grep -q true || fail "chart: one method on one thread gave other errors"
+expect 2 'missing SCENE' "$gatewalk" chart -o charts
+expect 2 'missing -o' "$gatewalk" chart "$scenes/field.toml"
+expect 2 "no method 'euler'" "$gatewalk" chart "$scenes/field.toml" -o charts --methods euler
+expect 2 'stands there twice' "$gatewalk" chart "$scenes/field.toml" -o charts --methods paper,paper
+expect 2 'two scenes are called field' "$gatewalk" chart "$scenes/field.toml" "$scenes/field.toml" -o charts
+expect 2 'at least 1' "$gatewalk" chart "$scenes/field.toml" -o charts --trials 0
+expect 2 'nosuch.toml' "$gatewalk" chart "$scenes/field.toml" nosuch.toml -o charts
+expect 1 'gate.json' "$gatewalk" chart "$scenes/field.toml" -o gate.json --trials 1
+
+# stability: five maps of five methods.
+"$gatewalk" stability -o maps --quick --quiet >/dev/null 2>maps.err || fail "stability: $(head -n 3 maps.err)"
+holds '.maps | length == 25' maps/stability.json
+holds '[.maps[] | (.status | length) == (.y.values | length)] | all' maps/stability.json
+holds '[.maps[] | select(.method == "stable" and .map == "restitution_threshold") | .status[][]] | unique == ["ok"]' maps/stability.json
+[ "$(ls maps/*.svg | wc -l)" = 5 ] || fail "stability: $(ls maps)"
+expect 2 'missing -o' "$gatewalk" stability
+expect 2 'no meaning' "$gatewalk" stability -o maps --set forces.random_N=1
+
 # Ctrl-C: within 2 s, status 130, a clear word, the old file unchanged.
 for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "build $scenes/field.toml --trials 1e7 -o m.nc" \
-               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" "$stoppable_chart"; do
-               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" \
-               "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9"; do
-  before=$(cat gate.json m.nc lattice.json | cksum)
+               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" "$stoppable_chart" \
+               "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9" \
+               "chart $scenes/field.toml --trials 1e9 -o charts"; do
+  before=$(cat gate.json m.nc lattice.json charts/* | cksum)
   # shellcheck disable=SC2086
   "$gatewalk" $command >out.txt 2>&1 &
   pid=$!
@@ -211,7 +240,7 @@ for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
   [ $status = 130 ] || fail "ctrl-C: status $status of $command"
   [ $took -lt 2000 ] || fail "ctrl-C took $took ms: $command"
   grep -q "stopped before the end" out.txt || fail "ctrl-C without a word: $command"
-  [ "$before" = "$(cat gate.json m.nc lattice.json | cksum)" ] || fail "ctrl-C changed a file: $command"
+  [ "$before" = "$(cat gate.json m.nc lattice.json charts/* | cksum)" ] || fail "ctrl-C changed a file: $command"
 done
 
 [ $failures = 0 ] || exit 1
