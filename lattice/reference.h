@@ -23,6 +23,7 @@ struct FieldTally {
   std::array<std::int64_t, dynamics::kBoundaries> clamped{};  // of these, outside every bin
   dynamics::Health health;                                    // over all gate runs
   std::vector<std::int32_t> final_gate_of_trial;              // row * columns + column, trial order
+  std::vector<dynamics::Crossing> crossings;                  // between gates, if kept, trial order
 
   explicit FieldTally(const FieldParams& f)
       : final_gates(markov::CellCounts::Zero(f.rows, f.columns)) {}
@@ -33,11 +34,12 @@ struct FieldTally {
 [[nodiscard]] std::uint64_t stream_row(const dynamics::BodyState& start);
 
 /// Runs trials `range` through the field, every gate fresh: beams at rest when the body enters; the
-/// random force goes on. The stream is {seed, stream_row(start), trial}. `space` only counts what the chain would have clamped. On all threads of
-/// the current TBB arena, same result for any number of them.
+/// random force goes on. The stream is {seed, stream_row(start), trial}. `space` only counts what the
+/// chain would have clamped; `keep_crossings` keeps the crossings themselves. On all threads of the
+/// current TBB arena, same result for any number of them.
 [[nodiscard]] FieldTally run_field(const dynamics::GateParams& p, const FieldParams& field,
                                    const dynamics::BodyState& start,
                                    const dynamics::StateSpace& space, std::uint64_t seed,
-                                   dynamics::TrialRange range);
+                                   dynamics::TrialRange range, bool keep_crossings = false);
 
 }  // namespace gatewalk::lattice
