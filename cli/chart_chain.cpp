@@ -29,7 +29,7 @@ constexpr std::array<std::int64_t, 10> kTrialsPerRow{10,  20,   50,   100,  200,
 constexpr std::array<std::int64_t, 2> kWalks{10'000, 1'000'000};
 constexpr std::int64_t kMostMatrices = 8;  // per point, of different trials
 constexpr std::int64_t kResampled = 8;     // per point, drawn anew from these
-constexpr double kTimingSeconds = 1.0;       // work that a cost per run is measured on
+constexpr double kTimingSeconds = 0.5;       // work that a cost per run is measured on
 constexpr std::int64_t kDirectDraws = 5'000'000;  // trials drawn per point of direct simulation
 
 double cpu_seconds() {
@@ -105,8 +105,7 @@ struct Answer {
 
 /// One way to make a matrix: bins and trials per row.
 struct Point {
-  double factor = 1.0;
-  int states = 0;
+  std::size_t curve = 0;
   std::int64_t trials = 0;     // per row
   std::int64_t runs = 0;       // of one matrix
   std::int64_t matrices = 0;   // made in this way, each from trials of its own
@@ -123,12 +122,18 @@ struct Point {
   }
 };
 
-/// One space of states.
+/// One space of states, and one way to start the trials of its rows.
 struct Curve {
   double factor = 1.0;
   dynamics::StateSpace space;
+  bool visited = false;                // rows start as bodies were seen to enter, else uniform
+  double pilot_seconds = 0.0;          // of the full trials that saw them; one thread
   double seconds_per_run = 0.0;        // one thread
   std::vector<std::int64_t> trials{};  // per row, those within the limit
+
+  [[nodiscard]] std::string name() const {
+    return "bins x " + digits(factor) + (visited ? ", visited" : "");
+  }
 };
 
 struct Chart {
@@ -186,11 +191,12 @@ void finish_truth(Truth& t, const Scene& scene, std::int64_t trials, std::uint64
                  .corrcoef};
 }
 
-double time_gate_runs(const Scene& scene, const dynamics::StateSpace& space, std::uint64_t seed) {
+double time_gate_runs(const Scene& scene, const dynamics::StateSpace& space, std::uint64_t seed,
+                      const dynamics::Entries& entries) {
   dynamics::Transitions scratch(space);
   return seconds_per_item(kTrialsPerRow.back(), 1,
                           [&](std::int64_t first, std::int64_t n) {
-                            dynamics::add_trials(scratch, scene.gate, seed, {first, n});
+                            dynamics::add_trials(scratch, scene.gate, seed, {first, n}, entries);
                           }) /
          space.size();
 }
@@ -230,9 +236,11 @@ class Trials {
 double square(double x) { return x * x; }
 
 /// All that matrices of `trials` a row say about each start.
-Point point_of(const Scene& scene, const Curve& curve,
+Point point_of(const Scene& scene, const Chart& chart, std::size_t place,
                const std::vector<dynamics::Transitions>& matrices, std::int64_t trials,
-               const std::vector<Truth>& truths, std::uint64_t seed) {
+               std::uint64_t seed) {
+  const Curve& curve = chart.curves[place];
+  const std::vector<Truth>& truths = chart.truths;
   const auto count = static_cast<std::int64_t>(matrices.size());
   const auto n = static_cast<double>(count);
   const markov::Field field{scene.field.columns, scene.field.rows};
@@ -286,14 +294,15 @@ Point point_of(const Scene& scene, const Curve& curve,
   if (interrupted()) throw Interrupted{};
 
   dynamics::Transitions::Totals total;
-  Point point{curve.factor, curve.space.size(), trials, 0, count, 0.0, 0.0, 0.0, {}};
+  Point point{place, trials, 0, count, 0.0, 0.0, 0.0, {}};
   for (const auto& t : matrices) {
     total = t.totals();
     point.clamped_share += total.clamped_share() / n;
     point.rows_never_sampled += static_cast<double>(total.empty_rows) / n;
   }
   point.runs = total.runs;
-  point.build_seconds = curve.seconds_per_run * static_cast<double>(point.runs) + freezing_seconds;
+  point.build_seconds = curve.pilot_seconds +
+                        curve.seconds_per_run * static_cast<double>(point.runs) + freezing_seconds;
   for (std::size_t s = 0; s < truths.size(); ++s) {
     const CellProbabilities& truth = truths[s].p;
     Answer a;
@@ -356,28 +365,36 @@ std::vector<Direct> direct_simulation(const Truth& truth, double low, double hig
 
 // ---- What it comes to ----
 
-/// For one start; points by their place in the chart.
+/// For one start; points by their place in the chart. The chain is the one of uniform starts.
 struct Summary {
   std::size_t best = 0;      // smallest error
   std::size_t cheapest = 0;  // cheapest within kWithin of it
   double pays_from = kInf;   // s, the first cost at which no direct simulation is as good
   double pays_until = 0.0;   // s, from here on direct simulation is better than any point
   double starts_to_pay = kInf;  // predictions for which `cheapest` costs less than direct simulation
+  std::optional<std::size_t> best_visited;  // smallest error with rows started as bodies enter
 };
 constexpr double kWithin = 1.5;
 
 Summary summary_of(const Chart& chart, std::size_t start) {
   Summary s;
   const auto& points = chart.points;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i].error(start) < points[s.best].error(start)) s.best = i;
+  const auto visited = [&](std::size_t i) { return chart.curves[points[i].curve].visited; };
+  // The first point is of uniform starts: those curves come first.
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!visited(i) && points[i].error(start) < points[s.best].error(start)) s.best = i;
+    if (visited(i) &&
+        (!s.best_visited || points[i].error(start) < points[*s.best_visited].error(start)))
+      s.best_visited = i;
+  }
   s.cheapest = s.best;
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i].error(start) <= kWithin * points[s.best].error(start) &&
+    if (!visited(i) && points[i].error(start) <= kWithin * points[s.best].error(start) &&
         points[i].seconds(start) < points[s.cheapest].seconds(start))
       s.cheapest = i;
   const Truth& truth = chart.truths[start];
   for (const Point& p : points) {
+    if (chart.curves[p.curve].visited) continue;
     const double direct = truth.seconds_for(p.error(start));
     if (direct <= p.seconds(start)) continue;
     s.pays_from = std::min(s.pays_from, p.seconds(start));
@@ -391,12 +408,11 @@ Summary summary_of(const Chart& chart, std::size_t start) {
 
 // ---- Giving out ----
 
-std::string bins_text(double factor) { return "bins x " + digits(factor); }
-std::string seconds_text(double s) { return s == kInf ? "-" : digits(std::stod(fixed(s, s < 1 ? 3 : s < 100 ? 1 : 0))); }
+std::string seconds_text(double s) { return fixed(s, s < 1 ? 3 : s < 100 ? 1 : 0); }
 
 std::string csv_of(const Chart& chart) {
   std::ostringstream out;
-  out << "d_m,vx_m_per_s,vy_m_per_s,answer,bins,states,trials,gate_runs,matrices,build_s,answer_s,"
+  out << "d_m,vx_m_per_s,vy_m_per_s,answer,bins,states,row_starts,trials,gate_runs,matrices,build_s,answer_s,"
          "total_s,total_variation,total_variation_sd,corrcoef,sampling_total_variation,bins_total_variation,"
          "formula_total_variation,formula_corrcoef,truth_floor_total_variation,truth_floor_corrcoef,"
          "clamped_share,rows_never_sampled,never_sampled_share\n";
@@ -412,7 +428,9 @@ std::string csv_of(const Chart& chart) {
       const Answer& a = p.answers[s];
       const auto line = [&](const std::string& answer, double seconds, const Error& e, bool exact) {
         begin(answer);
-        out << digits(p.factor) << "," << p.states << "," << p.trials << "," << p.runs << ","
+        const Curve& curve = chart.curves[p.curve];
+        out << digits(curve.factor) << "," << curve.space.size() << ","
+            << (curve.visited ? "visited" : "uniform") << "," << p.trials << "," << p.runs << ","
             << p.matrices << "," << digits(p.build_seconds) << "," << digits(seconds) << ","
             << digits(p.build_seconds + seconds) << "," << digits(e.total_variation) << ","
             << (exact && p.matrices > 1 ? digits(a.exact_sd) : "") << "," << digits(e.corrcoef) << ","
@@ -426,7 +444,7 @@ std::string csv_of(const Chart& chart) {
     }
     for (const Direct& d : chart.direct[s]) {
       begin("direct simulation");
-      out << ",," << d.trials << ",,,," << digits(d.seconds) << "," << digits(d.seconds) << ","
+      out << ",,," << d.trials << ",,,," << digits(d.seconds) << "," << digits(d.seconds) << ","
           << digits(d.drawn.total_variation) << ",," << digits(d.drawn.corrcoef) << ",,,"
           << digits(d.formula.total_variation) << "," << digits(d.formula.corrcoef) << "," << floors
           << ",,,\n";
@@ -443,8 +461,10 @@ Json to_json(const Error& e) {
 Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 
 Json to_json(const Chart& chart, const Point& p) {
-  Json j{{"bins", p.factor},
-         {"states", p.states},
+  const Curve& curve = chart.curves[p.curve];
+  Json j{{"bins", curve.factor},
+         {"states", curve.space.size()},
+         {"row_starts", curve.visited ? "visited" : "uniform"},
          {"trials_per_row", p.trials},
          {"gate_runs", p.runs},
          {"matrices", p.matrices},
@@ -490,7 +510,7 @@ Json to_json(const Chart& chart, std::size_t s) {
                                       {"formula", to_json(d.formula)}});
   const auto place = [&](std::size_t i) {
     const Point& p = chart.points[i];
-    return Json{{"bins", p.factor}, {"trials_per_row", p.trials}, {"seconds", p.seconds(s)},
+    return Json{{"bins", chart.curves[p.curve].factor}, {"trials_per_row", p.trials}, {"seconds", p.seconds(s)},
                 {"total_variation", p.error(s)}};
   };
   j["summary"] = {{"best", place(summary.best)},
@@ -498,6 +518,7 @@ Json to_json(const Chart& chart, std::size_t s) {
                   {"chain_pays_from_s", finite(summary.pays_from)},
                   {"chain_pays_until_s", finite(summary.pays_until)},
                   {"starts_to_pay", finite(summary.starts_to_pay)}};
+  if (summary.best_visited) j["summary"]["best_visited"] = place(*summary.best_visited);
   return j;
 }
 
@@ -506,7 +527,7 @@ std::string words_of(const Chart& chart, std::size_t s) {
   const Truth& truth = chart.truths[s];
   const Summary summary = summary_of(chart, s);
   const auto place = [&](const Point& p) {
-    return bins_text(p.factor) + ", " + std::to_string(p.trials) + " trials a row, " +
+    return chart.curves[p.curve].name() + ", " + std::to_string(p.trials) + " trials a row, " +
            seconds_text(p.seconds(s)) + " s";
   };
   const Point &best = chart.points[summary.best], &cheapest = chart.points[summary.cheapest];
@@ -541,6 +562,12 @@ std::string words_of(const Chart& chart, std::size_t s) {
                                : "the sampling of its matrix (TV " + fixed(a.sampling, 3) +
                                      "; bins and what they forget make " + fixed(a.bins, 3) +
                                      "): more trials would help.\n");
+  if (summary.best_visited) {
+    const Point& visited = chart.points[*summary.best_visited];
+    text += "With rows started where bodies were seen to enter its best is TV " +
+            fixed(visited.error(s), 3) + " (" + place(visited) +
+            ", the trials that saw them included).\n";
+  }
   return text;
 }
 
@@ -550,41 +577,43 @@ std::string table_of(const Chart& chart, std::int64_t runs_limit) {
     const Truth& truth = chart.truths[s];
     out << (s == 0 ? "" : "\n") << "S" << truth.name().substr(1) << ": " << truth.tally.trials
         << " full trials, " << fixed(1e3 * truth.seconds_per_trial, 2)
-        << " ms each; seconds, TV of the exact chain, TV of direct simulation at that cost\n\n"
-        << "  trials/row ";
-    for (const Curve& c : chart.curves)
-      out << "|" << padded(bins_text(c.factor) + ", " + std::to_string(c.space.size()) + " states", -25);
-    out << "\n";
-    for (const std::int64_t trials : kTrialsPerRow) {
-      std::string line = padded(std::to_string(trials), 12) + " ";
-      bool any = false;
-      for (const Curve& c : chart.curves) {
-        const auto at = std::find_if(chart.points.begin(), chart.points.end(), [&](const Point& p) {
-          return p.factor == c.factor && p.trials == trials;
+        << " ms each; seconds, TV of the exact chain, TV of direct simulation at that cost\n";
+    for (std::size_t first = 0; first < chart.curves.size(); first += 4) {  // as many fit in a line
+      const std::size_t beyond = std::min(first + 4, chart.curves.size());
+      const auto row = [&](const std::string& name, const auto& cell) {
+        out << padded(name, 12) << " ";
+        for (std::size_t c = first; c < beyond; ++c) out << "|" << padded(cell(c), -29);
+        out << "\n";
+      };
+      const auto point = [&](std::size_t curve, std::int64_t trials) {
+        return std::find_if(chart.points.begin(), chart.points.end(), [&](const Point& p) {
+          return p.curve == curve && p.trials == trials;
         });
-        if (at == chart.points.end()) {
-          line += "|" + std::string(25, ' ');
-          continue;
-        }
-        any = true;
-        const double seconds = at->seconds(s);
-        const auto direct = std::max<std::int64_t>(1, std::llround(seconds / truth.seconds_per_trial));
-        line += "|" + padded(seconds_text(seconds), 8) + padded(fixed(at->error(s), 3), 8) +
-                padded(fixed(lattice::expected_total_variation(truth.p, direct), 3), 8) + " ";
-      }
-      if (any) out << line << "\n";
-    }
-    for (const bool sampling : {true, false}) {
-      out << (sampling ? "    sampling " : "    bins     ");
-      for (const Curve& c : chart.curves) {
-        const auto last = std::find_if(chart.points.rbegin(), chart.points.rend(),
-                                       [&](const Point& p) { return p.factor == c.factor; });
-        const bool none = last == chart.points.rend();
-        out << "|" << padded(none ? "-" : fixed(sampling ? last->answers[s].sampling
-                                                         : last->answers[s].bins, 3), 16)
-            << std::string(9, ' ');
-      }
+      };
       out << "\n";
+      row("trials/row", [&](std::size_t c) {
+        const Curve& curve = chart.curves[c];
+        return curve.name() + " (" + std::to_string(curve.space.size()) + ")";
+      });
+      for (const std::int64_t trials : kTrialsPerRow) {
+        bool any = false;
+        for (std::size_t c = first; c < beyond; ++c) any |= point(c, trials) != chart.points.end();
+        if (any) row(std::to_string(trials), [&](std::size_t c) -> std::string {
+          const auto at = point(c, trials);
+          if (at == chart.points.end()) return "";
+          const double seconds = at->seconds(s);
+          const auto direct =
+              std::max<std::int64_t>(1, std::llround(seconds / truth.seconds_per_trial));
+          return padded(seconds_text(seconds), 8) + padded(fixed(at->error(s), 3), 10) +
+                 padded(fixed(lattice::expected_total_variation(truth.p, direct), 3), 8);
+        });
+      }
+      for (const auto part : {&Answer::sampling, &Answer::bins})
+        row(part == &Answer::sampling ? "sampling" : "bins", [&](std::size_t c) -> std::string {
+          if (chart.curves[c].trials.empty()) return padded("-", 18);
+          const auto last = point(c, chart.curves[c].trials.back());
+          return padded(fixed(last->answers[s].*part, 3), 18);
+        });
     }
     out << "\n" << words_of(chart, s);
   }
@@ -593,7 +622,7 @@ std::string table_of(const Chart& chart, std::int64_t runs_limit) {
          "matrices of different trials.\n";
   for (const Curve& c : chart.curves)
     if (c.trials.empty())
-      out << bins_text(c.factor) << ": no point, " << c.space.size() << " rows of "
+      out << c.name() << ": no point, " << c.space.size() << " rows of "
           << kTrialsPerRow.front() << " trials exceed --runs-limit " << runs_limit << ".\n";
   return out.str();
 }
@@ -617,7 +646,7 @@ void draw(const std::string& path, const Chart& chart) {
     for (std::size_t c = 0; c < chart.curves.size(); ++c) {
       std::string rows;
       for (const Point& p : chart.points) {
-        if (p.factor != chart.curves[c].factor) continue;
+        if (p.curve != c) continue;
         const Answer& a = p.answers[s];
         rows += digits(p.seconds(s)) + " " + digits(p.error(s)) + " " +
                 digits(1.0 - a.exact.corrcoef) + " " + digits(a.sampling) + "\n";
@@ -641,8 +670,10 @@ void draw(const std::string& path, const Chart& chart) {
   constexpr int kLeft = 75, kPanel = 310, kGap = 14, kPanelHeight = 300, kTop = 35, kKeyRow = 20;
   const int wide = panels > 1 ? kPanel : 2 * kPanel;
   const int width = kLeft + panels * (wide + kGap);
+  const bool has_visited = chart.curves.back().visited;
+  const int uniform = static_cast<int>(chart.curves.size()) / (has_visited ? 2 : 1);
   const int key_columns = width / 400;
-  const int key_rows = (static_cast<int>(chart.curves.size()) + 2) / key_columns + 1;
+  const int key_rows = (uniform + 3 + has_visited + key_columns - 1) / key_columns;
   const int height = kTop + 2 * kPanelHeight + kGap + 80 + kKeyRow * key_rows;
   const auto margins = [&](int left, int right, int top, int bottom) {  // pixels from the left, top
     const auto at = [&](const char* side, double share) {
@@ -653,12 +684,15 @@ void draw(const std::string& path, const Chart& chart) {
     at("t", 1.0 - static_cast<double>(top) / height);
     at("b", 1.0 - static_cast<double>(bottom) / height);
   };
-  const auto colour = [](std::size_t curve) {
-    return std::string(" lc rgb '") + kColours[curve % kColours.size()] + "'";
+  const auto colour = [&](std::size_t curve) {
+    std::size_t place = 0;  // among those of uniform starts: the same bins have the same colour
+    while (chart.curves[place].factor != chart.curves[curve].factor) ++place;
+    return std::string(" lc rgb '") + kColours[place % kColours.size()] + "'";
   };
   const std::string kDirect = " with lines lc rgb '#000000' lw 2";
   const std::string kNoise = " with lines lc rgb '#888888' lw 1.5 dt 3";
   const std::string kChain = " with linespoints pt 7 ps 0.5 lw 2", kSampling = " with lines lw 1.2 dt 2";
+  const std::string kVisited = " with linespoints pt 6 ps 0.6 lw 1.2";
   const auto plot = [&](const std::vector<std::string>& items) {
     for (std::size_t i = 0; i < items.size(); ++i) out << (i == 0 ? "plot " : ", \\\n  ") << items[i];
     out << "\n";
@@ -674,8 +708,9 @@ void draw(const std::string& path, const Chart& chart) {
       for (std::size_t c = 0; c < chart.curves.size(); ++c) {
         if (chart.curves[c].trials.empty()) continue;
         const std::string data = "$chain_" + std::to_string(c) + "_" + of + " using 1:";
-        items.push_back(data + std::to_string(column) + kChain + colour(c));
-        if (column == 2) items.push_back(data + "4" + kSampling + colour(c));
+        const bool visited = chart.curves[c].visited;
+        items.push_back(data + std::to_string(column) + (visited ? kVisited : kChain) + colour(c));
+        if (column == 2 && !visited) items.push_back(data + "4" + kSampling + colour(c));
       }
       plot(items);
     };
@@ -703,11 +738,13 @@ void draw(const std::string& path, const Chart& chart) {
           literal("the truth's noise (" + std::to_string(chart.truths[0].tally.trials) + " trials)"),
       "NaN" + kDirect + " title 'direct simulation'"};
   for (std::size_t c = 0; c < chart.curves.size(); ++c)
-    if (!chart.curves[c].trials.empty())
+    if (!chart.curves[c].trials.empty() && !chart.curves[c].visited)
       key.push_back("NaN" + kChain + colour(c) + " title " +
-                    literal("chain, " + bins_text(chart.curves[c].factor) + " (" +
+                    literal("chain, " + chart.curves[c].name() + " (" +
                             std::to_string(chart.curves[c].space.size()) + " states)"));
   key.push_back("NaN" + kSampling + " lc rgb '#000000' title 'its part from sampling the matrix'");
+  if (has_visited)
+    key.push_back("NaN" + kVisited + " lc rgb '#000000' title 'rows started where bodies enter'");
   plot(key);
   out << "unset multiplot\n";
   draw_svg(path, width, height, out.str());
@@ -738,7 +775,10 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
       ("runs-limit", po::value<Count>()->default_value(Count{1'000'000}, "1e6")->value_name("N"),
        "gate runs that one matrix may take")
       ("bins", po::value<std::vector<double>>()->composing()->value_name("FACTOR"),
-       "bins per axis, as a multiple of Table III's (may be repeated; default: 0.5, 1, 2, 4)");
+       "bins per axis, as a multiple of Table III's (may be repeated; default: 0.5, 1, 2, 4)")
+      ("visited", po::value<Count>()->value_name("N"),
+       "also chart matrices whose rows start not anywhere in their bins but where N full trials per "
+       "start were seen to enter; these trials count as cost");
   add_starts(options);
   add_seed(options);
   if (!options.parse(arguments)) return kFine;
@@ -751,6 +791,8 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   const std::int64_t runs_limit = options.count("runs-limit");
   const std::uint64_t seed = options.seed();
 
+  const std::int64_t pilot_trials = options.has("visited") ? options.count("visited") : 0;
+
   Chart chart;
   const auto paper = dynamics::StateSpace::paper(scene.gate);
   for (const double factor : factors_of(options)) {
@@ -759,6 +801,11 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
       if (trials * curve.space.size() <= runs_limit) curve.trials.push_back(trials);
     chart.curves.push_back(std::move(curve));
   }
+  if (pilot_trials > 0)
+    for (std::size_t c = 0, uniform = chart.curves.size(); c < uniform; ++c) {
+      chart.curves.push_back(chart.curves[c]);
+      chart.curves.back().visited = true;
+    }
   if (std::all_of(chart.curves.begin(), chart.curves.end(),
                   [](const Curve& c) { return c.trials.empty(); }))
     throw UsageError("--runs-limit " + std::to_string(runs_limit) + ": too few for " +
@@ -772,10 +819,28 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   remark(options, "measuring the cost of a trial and of a gate run");
   for (const PaperStart& start : starts)
     chart.truths.push_back(begin_truth(scene, start, truth_trials, seed));
+  std::vector<dynamics::Crossing> seen;
+  double pilot_seconds = 0.0;
+  for (const Truth& t : chart.truths) {
+    // Trials of their own: they follow those of the truth.
+    run_in_batches("pilot", pilot_trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
+      const auto pilot = lattice::run_field(scene.gate, scene.field, t.start.body(), paper, seed,
+                                            {truth_trials + first, n}, true);
+      seen.insert(seen.end(), pilot.crossings.begin(), pilot.crossings.end());
+      chart.health += pilot.health;
+    });
+    seen.insert(seen.end(), pilot_trials,
+                {dynamics::Boundary::enter, t.start.d, t.start.vx, t.start.vy});
+    pilot_seconds += t.seconds_per_trial * static_cast<double>(pilot_trials);
+  }
+  const auto entries_for = [&](const Curve& c) {
+    return c.visited ? dynamics::entries_of(c.space, seen) : dynamics::Entries{};
+  };
   double work = 0.0;  // ms on one thread
   for (Curve& curve : chart.curves) {
     if (curve.trials.empty()) continue;
-    curve.seconds_per_run = time_gate_runs(scene, curve.space, seed);
+    if (curve.visited) curve.pilot_seconds = pilot_seconds;
+    curve.seconds_per_run = time_gate_runs(scene, curve.space, seed, entries_for(curve));
     work += 1e3 * curve.seconds_per_run * curve.space.size() * static_cast<double>(curve.trials.back());
   }
   for (const Truth& t : chart.truths)
@@ -789,15 +854,17 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
     done += 1e3 * t.seconds_per_trial * rest;
     chart.health += t.tally.health;
   }
-  for (const Curve& curve : chart.curves) {
+  for (std::size_t c = 0; c < chart.curves.size(); ++c) {
+    const Curve& curve = chart.curves[c];
     if (curve.trials.empty()) continue;
     Trials all(curve.trials);
+    const dynamics::Entries entries = entries_for(curve);
     const double each = 1e3 * curve.seconds_per_run * curve.space.size();
     for (auto from = all.borders().begin(); std::next(from) != all.borders().end(); ++from) {
       dynamics::Transitions t(curve.space);
       const std::int64_t trials = *std::next(from) - *from;
       run_in_batches(progress, done, each, trials, [&](std::int64_t first, std::int64_t n) {
-        dynamics::add_trials(t, scene.gate, seed, {*from + first, n});
+        dynamics::add_trials(t, scene.gate, seed, {*from + first, n}, entries);
       });
       require_unbroken(t);
       done += each * static_cast<double>(trials);
@@ -806,7 +873,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
     }
     for (const std::int64_t trials : curve.trials)
       chart.points.push_back(
-          point_of(scene, curve, all.matrices(trials), trials, chart.truths, seed));
+          point_of(scene, chart, c, all.matrices(trials), trials, seed));
   }
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     double low = kInf, high = 0.0;
@@ -823,6 +890,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   json["seconds_are"] = "CPU time of one thread";
   json["truth_trials"] = truth_trials;
   json["runs_limit"] = runs_limit;
+  json["pilot_trials"] = pilot_trials;
   json["matrices_drawn_anew"] = kResampled;
   json["starts"] = Json::array();
   for (std::size_t s = 0; s < chart.truths.size(); ++s) json["starts"].push_back(to_json(chart, s));
@@ -830,6 +898,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   for (const Curve& c : chart.curves)
     json["curves"].push_back({{"bins", c.factor},
                               {"states", c.space.size()},
+                              {"row_starts", c.visited ? "visited" : "uniform"},
                               {"one_thread_s_per_gate_run", c.seconds_per_run},
                               {"points", c.trials.size()}});
   json["points"] = Json::array();

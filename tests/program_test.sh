@@ -150,22 +150,25 @@ holds '.starts[0].exact | .p_values.chi_squared > 0 and .rmse_per_100_floor > 0 
 
 # chart-chain: three files in a folder that it makes; errors and their parts are distributions'.
 chart() { "$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 150 --runs-limit 1e3 --bins 0.5 --bins 1 \
-            --start 0,0,15 --seed 2 "$@"; }
+            --start 0,0,15 --seed 2 --visited 50 "$@"; }
 expect 0 'direct simulation' chart -o charts/a --json charts.json --threads 2
 cmp -s charts.json charts/a/chain.json || fail "chart-chain: --json and chain.json differ"
 grep -q '</svg>' charts/a/chain.svg || fail "chart-chain: no figure"
-holds '[.points[] | [.bins, .trials_per_row]] == [[0.5, 10], [0.5, 20], [1, 10]]' charts/a/chain.json
-holds '[.points[].states] == [23, 23, 87] and [.points[].gate_runs] == [230, 460, 870]' charts/a/chain.json
-holds '[.points[].matrices] == [2, 1, 1]' charts/a/chain.json
+holds '[.points[] | [.bins, .trials_per_row]] == [[0.5, 10], [0.5, 20], [1, 10], [0.5, 10], [0.5, 20], [1, 10]]' charts/a/chain.json
+holds '[.points[].states] == [23, 23, 87, 23, 23, 87] and [.points[0:3][].gate_runs] == [230, 460, 870]' charts/a/chain.json
+holds '[.points[].matrices] == [2, 1, 1, 2, 1, 1]' charts/a/chain.json
 holds '[.points[].starts[] | .exact, .walks_10000, .walks_1000000 | .total_variation > 0 and .total_variation < 1] | all' charts/a/chain.json
 # A million walks: within 1/2 sqrt(2/pi 81/1e6) = 0.004 of infinitely many on average; twice that.
 holds '[.points[].starts[] | .exact.total_variation - .walks_1000000.total_variation | fabs < 0.008] | all' charts/a/chain.json
 # 2000 draws of a figure that varies by some 15 %: five standard errors.
 holds '.starts[0].direct_simulation | map(.drawn.total_variation / .formula.total_variation - 1 | fabs < 0.02) | all' charts/a/chain.json
 holds '.starts[0].truth.trials == 150 and ([.starts[0].truth.final_gates[][]] | add) == 150' charts/a/chain.json
+holds '[.points[].row_starts] == ["uniform", "uniform", "uniform", "visited", "visited", "visited"]' charts/a/chain.json
+holds '.points[0].build_s < .points[3].build_s' charts/a/chain.json  # the trials that saw the entries cost
+holds '.points[0].starts[0].exact != .points[3].starts[0].exact' charts/a/chain.json
 holds '.starts[0].summary | .cheapest_near_best.seconds <= .best.seconds' charts/a/chain.json
-[ "$(awk -F, '{ print NF }' charts/a/chain.csv | sort -u)" = 24 ] || fail "chart-chain: uneven lines in chain.csv"
-[ "$(grep -c ',exact,' charts/a/chain.csv)" = 3 ] || fail "chart-chain: not one line per matrix in chain.csv"
+[ "$(awk -F, '{ print NF }' charts/a/chain.csv | sort -u)" = 25 ] || fail "chart-chain: uneven lines in chain.csv"
+[ "$(grep -c ',exact,' charts/a/chain.csv)" = 6 ] || fail "chart-chain: not one line per matrix in chain.csv"
 # Times aside, the same on one thread.
 chart -o charts/b --threads 1 --quiet >/dev/null 2>&1
 timeless='.starts[0].truth.final_gates, (.points[] | del(.build_s) | .starts[] |= del(.exact_s, .walks_10000_s, .walks_1000000_s))'

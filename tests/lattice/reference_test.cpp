@@ -166,6 +166,30 @@ TEST(RunField, SameTallyOnAnyNumberOfThreadsAndForAnySplit) {
   expect_same(split, whole);
 }
 
+TEST(RunField, KeepsCrossingsWhenAsked) {
+  const GateParams p;
+  const FieldParams field;
+  const BodyState start{0, 0, 0, 15};
+  const StateSpace space = StateSpace::paper(p);
+  EXPECT_TRUE(run_field(p, field, start, space, 1, {0, 20}).crossings.empty());
+  FieldTally tally = run_field(p, field, start, space, 1, {0, 15}, true);
+  tally += run_field(p, field, start, space, 1, {15, 5}, true);
+  const FieldTally whole = test::on_threads(3, [&] {
+    return run_field(p, field, start, space, 1, {0, 20}, true);
+  });
+  std::array<std::int64_t, kBoundaries> entries{}, clamped{};
+  for (const Crossing& c : whole.crossings) {
+    ++entries[static_cast<int>(c.boundary)];
+    clamped[static_cast<int>(c.boundary)] += space.index_of(c).clamped;
+  }
+  EXPECT_GT(whole.crossings.size(), 20u);
+  EXPECT_EQ(entries, whole.entries);
+  EXPECT_EQ(clamped, whole.clamped);
+  ASSERT_EQ(tally.crossings.size(), whole.crossings.size());
+  for (std::size_t i = 0; i < whole.crossings.size(); ++i)
+    EXPECT_TRUE(test::same_bits(tally.crossings[i].vx, whole.crossings[i].vx)) << i;
+}
+
 TEST(RunField, OtherSeedOtherTrials) {
   EXPECT_NE(run({}, {}, {0, 100}, 1).final_gate_of_trial,
             run({}, {}, {0, 100}, 2).final_gate_of_trial);
