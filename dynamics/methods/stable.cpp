@@ -114,11 +114,9 @@ int StableMethod::halvings(const GateState& s, double step) const {
   for (const Side side : {kLeft, kRight}) {
     const BeamState& beam = s.beams[side];
     const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
-    double inertia = p_.beams.inertia();
+    const double inertia = p_.beams.inertia();
     if (beam.held) {
-      // The disc moves with the beam, and the explicit contact force must follow both rates.
-      const double lever = nearest(p_, side, s.body, beam.theta).lever;
-      inertia += p_.body.mass * lever * lever;
+      // The explicit contact force must follow both of its rates.
       rate = std::max({rate, std::sqrt(k / inertia), p_.beams.damping / inertia});
     } else {
       // Alone it moves in closed form; but while it swings it could hit and be gone again unseen.
