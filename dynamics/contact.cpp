@@ -4,13 +4,14 @@
 
 namespace gatewalk::dynamics {
 
-Touch nearest(const GateParams& p, Side side, const BodyState& body, double theta) {
+Touch nearest(const GateParams& p, Side side, const BodyState& body, const Direction& beam) {
   // Centre from the joint, in the beam's own frame.
   const double px = side == kLeft ? body.x + p.beams.joint_x : p.beams.joint_x - body.x;
   const double py = body.y - p.beams.joint_y;
-  const double c = std::cos(theta), s = std::sin(theta);  // unit vector along the beam: (c, s)
+  const double c = beam.c, s = beam.s;
   const double along = px * c + py * s;
   Touch t;
+  t.beam = beam;
   double nx, ny;
   if (along > 0.0 && along < p.beams.length) {
     const double across = c * py - s * px;  // > 0: the centre is ahead of the beam
@@ -53,10 +54,9 @@ double gap_rate_bias(const GateParams& p, Side side, const Touch& t, const BodyS
   double rx = vx, ry = vy;
   double centripetal = 0.0;
   if (t.kind == ContactKind::tip) {
-    const double c = std::cos(beam.theta), s = std::sin(beam.theta), L = p.beams.length;
-    rx += L * w * s;
-    ry -= L * w * c;
-    centripetal = L * w * w * t.bend;
+    rx += p.beams.length * w * t.beam.s;
+    ry -= p.beams.length * w * t.beam.c;
+    centripetal = p.beams.length * w * w * t.bend;
   }
   const double across = rx * ny - ry * nx;
   return across * across / dist + centripetal;

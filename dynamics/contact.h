@@ -36,6 +36,24 @@ struct GateState {
 
 enum class ContactKind : std::uint8_t { interior, tip, pin };
 
+/// Where a beam points, in its own frame: the unit vector (c, s) = (cos theta, sin theta).
+struct Direction {
+  double theta = 0.0;  // rad
+  double c = 1.0, s = 0.0;
+  [[nodiscard]] static Direction of(double theta) {
+    return {theta, std::cos(theta), std::sin(theta)};
+  }
+  /// The same for an angle nearby, to the last digits without trigonometry.
+  [[nodiscard]] Direction turned_to(double angle) const {
+    const double d = angle - theta, d2 = d * d;
+    if (!(std::abs(d) < 0.0625)) return of(angle);
+    // Taylor series; the first terms left out are d^10 / 10! < 3e-19 and d^11 / 11!.
+    const double cd = 1 - d2 / 2 * (1 - d2 / 12 * (1 - d2 / 30 * (1 - d2 / 56)));
+    const double sd = d * (1 - d2 / 6 * (1 - d2 / 20 * (1 - d2 / 42 * (1 - d2 / 72))));
+    return {angle, c * cd - s * sd, s * cd + c * sd};
+  }
+};
+
 /// The point of one beam nearest to the disc's centre.
 struct Touch {
   ContactKind kind = ContactKind::interior;
@@ -44,11 +62,17 @@ struct Touch {
   double ny = 0.0;
   double lever = 0.0;   // m, r_c x n in the beam's own frame
   double bend = 0.0;    // n.(unit vector along the beam), 0 on the interior
+  Direction beam;
 };
 
 /// Nearest point of the segment joint-tip. `dist` below the smallest normal number (centre on the
 /// beam) has no direction: n is then the beam's own normal.
-[[nodiscard]] Touch nearest(const GateParams& p, Side side, const BodyState& body, double theta);
+[[nodiscard]] Touch nearest(const GateParams& p, Side side, const BodyState& body,
+                            const Direction& beam);
+[[nodiscard]] inline Touch nearest(const GateParams& p, Side side, const BodyState& body,
+                                   double theta) {
+  return nearest(p, side, body, Direction::of(theta));
+}
 
 /// True when the disc cannot touch this beam whatever the exact angle, not even if it were larger
 /// by `margin` (m); no trigonometry.

@@ -248,8 +248,8 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
       const double vx = side == kLeft ? b.vx : -b.vx, nx = side == kLeft ? t.nx : -t.nx;
       double rx = vx, ry = b.vy;
       if (t.kind == ContactKind::tip) {
-        rx += L * beam.omega * std::sin(beam.theta);
-        ry -= L * beam.omega * std::cos(beam.theta);
+        rx += L * beam.omega * t.beam.s;
+        ry -= L * beam.omega * t.beam.c;
       }
       const double across = rx * t.ny - ry * nx;
       now -= across * across / dist;

@@ -9,6 +9,15 @@ std::array<Touch, 2> touches(const GateParams& p, const GateState& s, std::array
   return t;
 }
 
+std::array<Touch, 2> touches(const GateParams& p, const GateState& s, std::array<bool, 2> wanted,
+                             const std::array<Touch, 2>& nearby) {
+  std::array<Touch, 2> t{};
+  for (const Side side : {kLeft, kRight})
+    if (wanted[side])
+      t[side] = nearest(p, side, s.body, nearby[side].beam.turned_to(s.beams[side].theta));
+  return t;
+}
+
 Push::Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force)
     : ax((force[kLeft] * t[kLeft].nx + force[kRight] * t[kRight].nx) / p.body.mass),
       ay((force[kLeft] * t[kLeft].ny + force[kRight] * t[kRight].ny) / p.body.mass),
@@ -42,7 +51,7 @@ std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool
     s.body.y += (shift[kLeft] * touch[kLeft].ny + shift[kRight] * touch[kRight].ny) / p.body.mass;
     for (const Side side : {kLeft, kRight})
       s.beams[side].theta -= shift[side] * touch[side].lever / p.beams.inertia();
-    touch = touches(p, s, contacts);
+    touch = touches(p, s, contacts, touch);
   }
   const std::array<double, 2> rate{gap_rate(touch[kLeft], s.body, s.beams[kLeft]),
                                    gap_rate(touch[kRight], s.body, s.beams[kRight])};

@@ -13,6 +13,12 @@ inline constexpr double kRest = 1e-12;  // m/s, a contact this slow does not clo
 [[nodiscard]] std::array<Touch, 2> touches(const GateParams& p, const GateState& s,
                                            std::array<bool, 2> wanted);
 
+/// The same for a state soon before or after one whose contact points are known; those not wanted
+/// need not be.
+[[nodiscard]] std::array<Touch, 2> touches(const GateParams& p, const GateState& s,
+                                           std::array<bool, 2> wanted,
+                                           const std::array<Touch, 2>& nearby);
+
 [[nodiscard]] inline std::array<bool, 2> held_of(const GateState& s) {
   return {s.beams[kLeft].held, s.beams[kRight].held};
 }

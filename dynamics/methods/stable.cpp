@@ -154,14 +154,14 @@ std::array<Touch, 2> StableMethod::glide_held(GateState& s, double force_x, cons
   const Push first(p_, start, contact_forces(p_, s, start, force_x, held, push_only));
   GateState mid = s;
   fly(p_, half_flow, force_x, first, mid);
-  const auto middle = touches(p_, mid, held);
+  const auto middle = touches(p_, mid, held, start);
   const auto force = contact_forces(p_, mid, middle, force_x, held, push_only);
   const Push second(p_, middle, force);
   fly(p_, flow, force_x, second, s);
 
   // Only push: without force at mid-step the contact is over, unless the bodies still overlap.
   std::array<bool, 2> keep = held;
-  const auto end = touches(p_, s, held);
+  const auto end = touches(p_, s, held, middle);
   for (const Side side : {kLeft, kRight}) {
     if (held[side] && force[side] == 0.0 && end[side].gap >= 0.0) {
       keep[side] = false;
@@ -206,7 +206,7 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       return flow.dt;
     }
     const GateState before = s;
-    const double when = first_hit(s, force_x, end, left, hit);
+    const double when = first_hit(s, force_x, end, left, hit, watch);
     if (outside(p_, s.body)) return start + back_to_exit(p_, before, s, when);
     resolve_hits(p_, s, touching_, watch,
                  [&](Side, double impulse, double) { return impulse < threshold_; });
@@ -216,7 +216,7 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
 }
 
 double StableMethod::first_hit(GateState& s, double force_x, const GateState& end, double dt,
-                               std::array<bool, 2> hit) const {
+                               std::array<bool, 2> hit, Watch& watch) const {
   double earliest = dt;
   GateState at_hit = end;
   for (const Side side : {kLeft, kRight}) {
@@ -228,9 +228,12 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
     const bool from_contact = now.gap <= touching_;
     if (from_contact && rate <= 0.0) return 0.0;
     const double level = from_contact ? now.gap : 0.0;
-    const auto gap_of = [&](const GateState& g) {
-      return nearest(p_, side, g.body, g.beams[side].theta).gap - level;
+    ++watch.evaluations;
+    const auto touch_of = [&](const GateState& g) {
+      ++watch.evaluations;
+      return nearest(p_, side, g.body, now.beam.turned_to(g.beams[side].theta));
     };
+    const auto gap_of = [&](const GateState& g) { return touch_of(g).gap - level; };
     const auto moved = [&](double t) {
       GateState g = s;
       glide(g, force_x, t);
@@ -244,7 +247,7 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
       return gap_of(interpolated(s, end, dt, t));
     });
     GateState there = moved(when);
-    const Touch t = nearest(p_, side, there.body, there.beams[side].theta);
+    const Touch t = touch_of(there);
     when -= (t.gap - level) / gap_rate(t, there.body, there.beams[side]);
     if (when > 0.0 && when <= dt) there = moved(when);
     if (!(when > 0.0 && when <= dt) || std::abs(gap_of(there)) > 0.1 * touching_) {

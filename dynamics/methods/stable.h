@@ -41,7 +41,7 @@ class StableMethod final : public Method {
                                   const GateFlow& half_flow) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
-                                 double dt, std::array<bool, 2> hit) const;
+                                 double dt, std::array<bool, 2> hit, Watch& watch) const;
 
   const GateParams& p_;
   double threshold_;      // N s
