@@ -24,36 +24,19 @@ TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts) {
   return {trials * k / n, trials * (k + 1) / n - trials * k / n};
 }
 
+/// Those of every start.
+std::vector<TrialRange> shares_of(std::int64_t trials, std::size_t starts) {
+  std::vector<TrialRange> parts;
+  for (std::size_t i = 0; i < starts; ++i) parts.push_back(share_of(trials, i, starts));
+  return parts;
+}
+
 TrialEnds pilot(const GateParams& p, std::span<const BodyState> starts, std::uint64_t seed,
                 std::int64_t trials) {
   TrialEnds ends;
   for (std::size_t i = 0; i < starts.size(); ++i)
     add_trial_ends(ends, p, starts[i], seed, share_of(trials, i, starts.size()));
   return ends;
-}
-
-/// Mean over the starts of their total variations. Of all trials together, the errors of two starts
-/// could cancel: moreau at 0.005 s on scenes/field.toml, 0.004 together, 0.013 from one of 9 starts.
-WeakError error_by_start(const TrialEnds& run, const TrialEnds& reference, std::size_t starts) {
-  const auto trials = static_cast<std::int64_t>(run.trials.size());
-  WeakError mean{.total_variation = 0.0, .standard_error = 0.0};
-  double variance = 0.0;
-  for (std::size_t i = 0; i < starts; ++i) {
-    const TrialRange part = share_of(trials, i, starts);
-    if (part.count == 0) continue;
-    const auto of = [&](const TrialEnds& ends) {
-      return std::span(ends.trials).subspan(static_cast<std::size_t>(part.first),
-                                            static_cast<std::size_t>(part.count));
-    };
-    const WeakError e = outcome_error(of(run), of(reference));
-    const double weight = static_cast<double>(part.count) / static_cast<double>(trials);
-    mean.total_variation += weight * e.total_variation;
-    mean.chance += weight * e.chance;
-    mean.changed += e.changed;
-    variance += weight * weight * e.standard_error * e.standard_error;
-  }
-  mean.standard_error = std::sqrt(variance);
-  return mean;
 }
 
 /// One standard error, from above: a trial that changed moves the total variation by 1/n at most, so
@@ -124,11 +107,12 @@ Choice choose_method(const GateParams& p, std::span<const BodyState> starts, std
                    [](const auto& a, const auto& b) { return a.work < b.work; });
 
   const TrialEnds reference = reference_pilot(p, starts, seed, choice);
+  const std::vector<TrialRange> parts = shares_of(choice.trials, starts.size());
   for (Choice::Tried& tried : candidates) {
     if (choice.reference_verdict != Verdict::fine) break;
     if (tried.verdict == Verdict::fine) {
       const TrialEnds ends = pilot(tried.setting.applied_to(p), starts, seed, choice.trials);
-      tried.error = error_by_start(ends, reference, starts.size());
+      tried.error = outcome_error(ends.trials, reference.trials, parts);
       tried.uncertainty = uncertainty_of(tried.error, choice.trials);
       tried.verdict = ends.verdict();
       tried.fits = tried.verdict == Verdict::fine &&

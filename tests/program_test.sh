@@ -84,7 +84,7 @@ for tolerance in 0.99e-4 1.01 nan -1; do
   expect 2 "run.tolerance = .* must lie in \[1e-04, 1\]" "$gatewalk" gate $auto --set run.tolerance=$tolerance
 done
 # No exact method takes such beams; and one that does shows faults at such a speed: refused, and said.
-expect 2 'run.method = "auto" is not permitted for this scene: no method is exact|no method is exact' "$gatewalk" gate $auto --set beams.mass_kg=1e-6 --set beams.stiffness_left_Nm_per_rad=1e12
+expect 2 'run.method = "auto" is not permitted for this scene: no method is exact' "$gatewalk" gate $auto --set beams.mass_kg=1e-6 --set beams.stiffness_left_Nm_per_rad=1e12
 too_fast="--set beams.stiffness_right_Nm_per_rad=1e12 --set run.time_limit_s=0.02 --set forces.propulsion_N=1e6 --set body.mass_kg=0.001"
 expect 0 'the reference itself shows faults' "$gatewalk" gate $auto $too_fast --trials 5 --quiet --json auto-faulty.json
 holds '.method | .met == false and .method == .reference.method and .step_s == .reference.value' auto-faulty.json
