@@ -65,7 +65,8 @@ Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
          "), nothing can be compared with it; took it all the same: " + setting_text(settled));
   else if (!choice.met)
     warn("run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance = " +
-         Json(tolerance).dump() + "; took the one they were compared with: " + setting_text(settled));
+         Json(tolerance).dump() + "; took the one they were compared with: " +
+         setting_text(settled));
   return settled;
 }
 

@@ -40,9 +40,9 @@ TrialEnds pilot(const GateParams& p, std::span<const BodyState> starts, std::uin
 }
 
 /// One standard error, from above: a trial that changed moves the total variation by 1/n at most, so
-/// the changed ones spread it by sqrt(changed)/n at most. (The paired standard error is smaller, and
-/// zero where changes happen to cancel.) Where no trial changed, the share that does may still be
-/// 1.84/n: then none of n shows it one time in six, as often as one standard error is exceeded.
+/// all of them spread it by sqrt(changed)/n at most. (The paired standard error is smaller, and zero
+/// where changes happen to cancel.) Where no trial changed, the share that does may still be 1.84/n:
+/// then none of n is seen one time in six, as often as one standard error is exceeded.
 double uncertainty_of(const WeakError& e, std::int64_t trials) {
   return std::sqrt(static_cast<double>(e.changed) + 1.84 * 1.84) / static_cast<double>(trials);
 }
@@ -67,9 +67,9 @@ TrialEnds reference_pilot(const GateParams& p, std::span<const BodyState> starts
     }
   }
   if (!ends)
-    throw InvalidParameter("run.method", "run.method = \"auto\" is not permitted for this scene: no "
-                                         "method is exact enough to compare the others with" +
-                                             refusals);
+    throw InvalidParameter("run.method",
+                           "run.method = \"auto\" is not permitted for this scene: no method is "
+                           "exact enough to compare the others with" + refusals);
   return std::move(*ends);
 }
 
@@ -83,8 +83,8 @@ Choice choose_method(const GateParams& p, std::span<const BodyState> starts, std
       throw std::invalid_argument("a start from which a method is chosen must lie inside the gate");
 
   Choice choice;
-  choice.trials = std::max(kLeastPilot,
-                           static_cast<std::int64_t>(std::ceil(kPilotTolerances / p.run.tolerance)));
+  const double wanted = std::ceil(kPilotTolerances / p.run.tolerance);
+  choice.trials = std::max(kLeastPilot, static_cast<std::int64_t>(wanted));
   std::vector<Choice::Tried> candidates;
   std::optional<InvalidParameter> refusal;
   for (const Candidate& c : kCandidates) {

@@ -847,11 +847,12 @@ TEST(Stable, StopsWhereTheBodyLeavesTheGate) {
   EXPECT_TRUE(outside(ride.p, ride.s.body));
   EXPECT_NEAR(ride.s.body.x, 25.0, 4 * 25 * kEps);
   EXPECT_NEAR(passed, 0.5, 125 * 25 * kEps);
-  EXPECT_EQ(ride.watch.steps, 126);  // the step in which it leaves, which begins at 0.5 s or ends there
+  EXPECT_EQ(ride.watch.steps, 126);  // 0.5 s are 125 steps; rounding leaves the way out to the next
 }
 
-// Under drag and force the way is no cubic, but over one step all but. y'''' <= D^2 (F + D v) = 2.3 m/s^4
-// for speeds up to 2 m/s downwards; a cubic misses y'''' h^4 / 384 = 1.5e-12 m, y'''' h^3 / 125 = 1.2e-9 m/s.
+// Under drag and force the way is no cubic, but over one step all but. y'''' <= D^2 (F + D v), which
+// is 2.3 m/s^4 at 2 m/s downwards; a cubic misses y'''' h^4 / 384 = 1.5e-12 m and
+// y'''' h^3 / 125 = 1.2e-9 m/s.
 TEST(Stable, LeavesACurvedFlightOnTheBorder) {
   GateParams p = test::free_rods();
   p.forces.propulsion = 8.0;
