@@ -39,9 +39,9 @@ TrialEnds pilot(const GateParams& p, std::span<const BodyState> starts, std::uin
   return ends;
 }
 
-/// One standard error, from above: a trial that changed moves the total variation by 1/n at most, so
-/// all of them spread it by sqrt(changed)/n at most. (The paired standard error is smaller, and zero
-/// where changes happen to cancel.) Where no trial changed, the share that does may still be 1.84/n:
+/// One standard error, from above: a trial that changed moves the total variation by 1/n at most,
+/// so all spread it by sqrt(changed)/n at most. (The paired standard error is smaller, and zero
+/// where changes happen to cancel.) Where no trial changed, the share that does may be 1.84/n yet:
 /// then none of n is seen one time in six, as often as one standard error is exceeded.
 double uncertainty_of(const WeakError& e, std::int64_t trials) {
   return std::sqrt(static_cast<double>(e.changed) + 1.84 * 1.84) / static_cast<double>(trials);

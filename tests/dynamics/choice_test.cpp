@@ -87,11 +87,10 @@ TEST(Choice, MeetsItsToleranceAndATightOneIsDearer) {
   const Choice::Tried &loose = made[0].tried.back(), &tight = made[1].tried.back();
   EXPECT_GT(tight.work, loose.work);
   EXPECT_GT(loose.error.total_variation, 0.001);
-  bool rejected |= t.setting.method == loose.setting.method &&
-                t.setting.value == loose.setting.value && !t.fits= false;
+  bool rejected = false;
   for (const Choice::Tried& t : made[1].tried)
-    rejected |= t.setting.method == loose.setting.method && t.setting.value == loose.setting.value &&
-                !t.fits && t.verdict == Verdict::fine;
+    rejected |= t.setting.method == loose.setting.method &&
+                t.setting.value == loose.setting.value && !t.fits && t.verdict == Verdict::fine;
   EXPECT_TRUE(rejected);
 }
 

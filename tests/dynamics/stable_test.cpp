@@ -892,7 +892,8 @@ TEST(Stable, LeavesBeforeOrAfterAHitInTheSameStep) {
     EXPECT_NEAR(passed, when, after ? 1e-5 : 4 * 25 * kEps);
     EXPECT_EQ(ride.watch.impacts, after ? 1 : 0);
     EXPECT_NEAR(ride.s.body.vy, after ? -4.0 : 5.0, 1e-3);
-    EXPECT_NEAR(ride.s.body.y, after ? 20.0 - 4.0 * (when - 0.002) : 19.995, after ? 1e-4 : 5 * 4 * 25 * kEps);
+    EXPECT_NEAR(ride.s.body.y, after ? 20.0 - 4.0 * (when - 0.002) : 19.995,
+                after ? 1e-4 : 5 * 4 * 25 * kEps);
   }
 }
 
