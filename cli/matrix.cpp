@@ -31,7 +31,11 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
   Scene scene = scene_path.empty()
                     ? parse_scene(stored->second, matrix_path + " (its scene)", overrides)
                     : read_scene(scene_path, overrides);
-  const auto differences = physics_differences(scene, built_with);
+  auto differences = physics_differences(scene, built_with);
+  // A matrix that was built with a method by name is not the one that "auto" stands for.
+  if (scene.gate.run.method == "auto" && file.text.count("method") == 0)
+    differences.push_back("run.method: auto here, " + built_with.gate.run.method +
+                          " by name there");
   if (!differences.empty()) {
     std::string text = "the scene is not the one that " + matrix_path + " was built with:";
     for (const auto& line : differences) text += "\n  " + line;

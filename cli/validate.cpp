@@ -271,6 +271,11 @@ int run_validate(const std::vector<std::string>& arguments) {
     return MatrixAndScene{{std::move(built), {}}, scene, std::move(status)};
   }();
   const double matrix_seconds = matrix_watch.seconds();
+  if (const auto chosen = m.file.text.find("method"); chosen != m.file.text.end()) {
+    settled = Json::parse(chosen->second, nullptr, false);
+    if (settled.is_discarded())
+      throw markov::BadFile(options.text("matrix") + ": its record of the chosen method is damaged");
+  }
   const Scene& scene = m.scene;
   require_inside(starts, scene);
   const dynamics::Transitions& t = m.file.transitions;

@@ -175,6 +175,26 @@ WeakError outcome_error(std::span<const TrialEnd> run, std::span<const TrialEnd>
                     [](const TrialEnd& e) { return static_cast<int>(e.outcome); });
 }
 
+WeakError outcome_error(std::span<const TrialEnd> run, std::span<const TrialEnd> reference,
+                        std::span<const TrialRange> parts) {
+  require_pairs(run, reference);
+  WeakError mean{.total_variation = 0.0, .standard_error = 0.0};
+  double variance = 0.0;
+  for (const TrialRange& part : parts) {
+    if (part.count == 0) continue;
+    const auto first = static_cast<std::size_t>(part.first);
+    const auto count = static_cast<std::size_t>(part.count);
+    const WeakError e = outcome_error(run.subspan(first, count), reference.subspan(first, count));
+    const double weight = static_cast<double>(count) / static_cast<double>(run.size());
+    mean.total_variation += weight * e.total_variation;
+    mean.chance += weight * e.chance;
+    mean.changed += e.changed;
+    variance += weight * weight * e.standard_error * e.standard_error;
+  }
+  mean.standard_error = std::sqrt(variance);
+  return mean;
+}
+
 WeakError column_error(std::span<const TrialEnd> run, std::span<const TrialEnd> reference,
                        const StateSpace& space) {
   return weak_error(run, reference, space.size() + 2, [](const TrialEnd& e) { return e.column; });

@@ -56,6 +56,58 @@ expect 0 'sank into a beam' "$gatewalk" gate "$scenes/single_gate.toml" --set ru
 "$gatewalk" gate "$scenes/single_gate.toml" --set run.method=paper --trials 200 --json paper.json --quiet
 holds '.status.clean == false' paper.json
 
+# run.method = "auto": the result names what was chosen, on what evidence; any number of threads.
+auto="$scenes/field.toml --set run.method=auto --set run.time_limit_s=2"
+# shellcheck disable=SC2086
+{
+expect 0 '^method [a-z]*, run\..*: chosen on 4000 pilot trials, outcomes off by' "$gatewalk" gate $auto --trials 50 --json auto.json
+"$gatewalk" gate $auto --trials 50 --json - --threads 1 --quiet | cmp -s - auto.json || fail "auto: another number of threads gave another file"
+holds '.method | .asked == "auto" and .met and .tolerance == 0.005 and .pilot_starts == 1 and .reference.verdict == "ok"' auto.json
+holds '.method.tried[-1] as $last | $last.verdict == "ok" and $last.outcome_total_variation + $last.uncertainty <= 0.005' auto.json
+holds '.method.tried[-1] as $last | .method | $last.method == .method and ([.step_s, .event_tolerance_m] | index($last.value)) != null' auto.json
+value .made_by.scene auto.json | grep -q "^method = \"$(value .method.method auto.json)\"$" || fail "auto: the scene of the result names another method"
+expect 0 '^method [a-z]*, run\.' "$gatewalk" build $auto --trials 5 -o auto.nc --json auto-build.json
+holds '.method.met and .method.pilot_starts == 9' auto-build.json
+"$gatewalk" show auto.nc --json auto-show.json --quiet
+jq -s '(.[0].text.method | fromjson) == .[1].method' auto-show.json auto-build.json | grep -q true || fail "auto: the matrix does not record the choice"
+expect 0 '^trapped' "$gatewalk" predict auto.nc $auto
+expect 0 '^trapped' "$gatewalk" predict auto.nc
+"$gatewalk" validate $auto --matrix auto.nc --trials 20 --start 0,0,15 --json auto-validate.json --quiet
+jq -s '.[0].method == .[1].method' auto-validate.json auto-build.json | grep -q true || fail "auto: validate took another method than the matrix"
+"$gatewalk" lattice $auto --trials 20 --json auto-lattice.json --quiet
+jq -s '.[0].method == .[1].method' auto-lattice.json auto-build.json | grep -q true || fail "auto: lattice and build chose differently"
+# A matrix of a method by name is not what "auto" stands for; nor is one of another tolerance.
+"$gatewalk" build "$scenes/field.toml" --set run.time_limit_s=2 --trials 1 -o named.nc --quiet >/dev/null
+expect 2 'run.method: auto here, stable by name there' "$gatewalk" predict named.nc $auto
+expect 2 'run.tolerance: 0.01 here, 0.005 there' "$gatewalk" predict auto.nc $auto --set run.tolerance=0.01
+for tolerance in 0.99e-4 1.01 nan -1; do
+  expect 2 "run.tolerance = .* must lie in \[1e-04, 1\]" "$gatewalk" gate $auto --set run.tolerance=$tolerance
+done
+# No exact method takes such beams; and one that does shows faults at such a speed: refused, and said.
+expect 2 'run.method = "auto" is not permitted for this scene: no method is exact' "$gatewalk" gate $auto --set beams.mass_kg=1e-6 --set beams.stiffness_left_Nm_per_rad=1e12
+too_fast="--set beams.stiffness_right_Nm_per_rad=1e12 --set run.time_limit_s=0.02 --set forces.propulsion_N=1e6 --set body.mass_kg=0.001"
+expect 0 'the reference itself shows faults' "$gatewalk" gate $auto $too_fast --trials 5 --quiet --json auto-faulty.json
+holds '.method | .met == false and .method == .reference.method and .step_s == .reference.value' auto-faulty.json
+}
+
+# A step outside a method's region is refused or said, in text and JSON.
+expect 0 'longer than the method.s stability bound' "$gatewalk" gate "$scenes/undamped.toml" --set run.method=paper --trials 20 --json beyond.json --quiet
+holds '.status | .clean == false and .runs_beyond_the_stability_bound == 20' beyond.json
+# Euler's bound is d/k = 10/500 s: at it and below nothing is said of it.
+loose="$scenes/single_gate.toml --set run.method=paper --set beams.damping_Nms_per_rad=10 --trials 20 --quiet"
+for step in 0.02 0.01; do
+  # shellcheck disable=SC2086
+  "$gatewalk" gate $loose --set run.step_s=$step --set beams.stiffness_left_Nm_per_rad=500 --json within.json 2>/dev/null
+  holds '.status.runs_beyond_the_stability_bound == 0' within.json
+done
+# shellcheck disable=SC2086
+"$gatewalk" gate $loose --set run.step_s=0.02 --set beams.stiffness_left_Nm_per_rad=501 --json beyond.json 2>/dev/null
+holds '.status.runs_beyond_the_stability_bound == 20' beyond.json
+expect 2 'run.step_s = 0.004 is not permitted.*method penalty permits at most' "$gatewalk" gate "$scenes/field.toml" --set run.method=penalty --set beams.stiffness_left_Nm_per_rad=1e9
+# moreau has no bound on the step; what long steps do to it is seen.
+expect 0 'sank into a beam' "$gatewalk" gate "$scenes/stiff.toml" --set run.method=moreau --set run.step_s=0.02 --trials 50 --json sunk.json --quiet
+holds '.status | .clean == false and .runs_penetrating_over_1_percent > 0 and .runs_beyond_the_stability_bound == 0' sunk.json
+
 # build, show, walk, predict, lattice.
 expect 0 '87 x 88 matrix' "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o m.nc
 expect 0 'rows never sampled  0' "$gatewalk" show m.nc --rows

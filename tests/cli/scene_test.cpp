@@ -82,6 +82,8 @@ method = "stable"
 step_s = 0.004
 time_limit_s = 12.0
 traverse_y_m = 60.0
+event_tolerance_m = 0.01
+tolerance = 0.005
 
 [field]
 columns = 9
@@ -129,6 +131,8 @@ method = "paper"
 step_s = 0.01
 time_limit_s = 19
 traverse_y_m = 18
+event_tolerance_m = 0.027
+tolerance = 0.028
 [field]
 columns = 21
 rows = 22
@@ -161,6 +165,8 @@ vy_m_per_s = 26
   EXPECT_EQ(scene.gate.run.step, 0.01);
   EXPECT_EQ(scene.gate.run.time_limit, 19);
   EXPECT_EQ(scene.gate.run.traverse_y, 18);
+  EXPECT_EQ(scene.gate.run.event_tolerance, 0.027);
+  EXPECT_EQ(scene.gate.run.tolerance, 0.028);
   EXPECT_EQ(scene.field.columns, 21);
   EXPECT_EQ(scene.field.rows, 22);
   EXPECT_EQ(scene.field.max_gates, 23);

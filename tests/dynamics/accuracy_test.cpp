@@ -126,6 +126,23 @@ TEST(WeakError, StandardErrorIsTheSpreadOfRepeats) {
   EXPECT_NEAR(claimed / kRepeats / spread, 1.0, 0.065);
 }
 
+// Two starts: of the first's 4 trials one goes from trapped to left, of the second's 6 two go the other
+// way. 4/10 * 1/4 + 6/10 * 2/6 = 0.3; all together a surplus of one trapped, 0.1. Standard errors:
+// variances of the means 1/4 * 3/4 / 3 and 2/6 * 4/6 / 5, weighted with 0.4^2 and 0.6^2.
+TEST(WeakError, OfTwoStartsDoesNotCancel) {
+  std::vector<TrialEnd> reference(10, left()), run;
+  reference[0] = trapped();
+  run = reference;
+  run[0] = left();
+  run[4] = run[5] = trapped();
+  const TrialRange parts[] = {{0, 4}, {4, 6}};
+  const WeakError e = outcome_error(run, reference, parts);
+  EXPECT_NEAR(e.total_variation, 0.3, 4 * kEps);
+  EXPECT_NEAR(outcome_error(run, reference).total_variation, 0.1, 4 * kEps);
+  EXPECT_NEAR(e.standard_error, std::sqrt(0.16 / 16.0 + 0.36 * 2.0 / 45.0), 4 * kEps);
+  EXPECT_EQ(e.changed, 3);
+}
+
 TEST(WeakError, OfColumns) {
   const StateSpace space = StateSpace::paper(GateParams{});
   std::vector<TrialEnd> reference(5, left()), run = reference;

@@ -36,10 +36,10 @@ TEST(ParamTable, NamesEachFieldOnce) {
     EXPECT_TRUE(places.insert(&info.ref(params)).second) << info.key;
     EXPECT_FALSE(info.meaning.empty()) << info.key;
   }
-  // Every double of GateParams has a key: 2 + 7 + 4 + 3 + 3.
+  // Every double of GateParams has a key: 2 + 7 + 4 + 3 + 5.
   constexpr std::size_t kDoubles = (sizeof(GateParams) - sizeof(std::string)) / sizeof(double);
   EXPECT_EQ(keys.size(), kDoubles);
-  EXPECT_EQ(kDoubles, 19u);
+  EXPECT_EQ(kDoubles, 21u);
 }
 
 struct ExpectedRange {
@@ -69,6 +69,8 @@ constexpr ExpectedRange kContract[] = {
     {"run.step_s", 0.004, "(0, 1]"},
     {"run.time_limit_s", 12.0, "(0, 1e+06]"},
     {"run.traverse_y_m", 60.0, "(0, 1e+06]"},
+    {"run.event_tolerance_m", 1e-2, "[1e-13, 1]"},
+    {"run.tolerance", 0.005, "[1e-04, 1]"},
 };
 
 TEST(ParamTable, HasTheContractsDefaultsAndRanges) {
