@@ -119,7 +119,7 @@ std::array<double, 2> push_only(const Coupling& w, const std::array<double, 2>& 
     if (!active[kLeft] || b[kLeft] + w.cross * z >= 0.0) return {0.0, z};
   }
   const auto z = push_or_pull(w, b, {true, true});
-  return {std::fmax(z[kLeft], 0.0), std::fmax(z[kRight], 0.0)};
+  return {std::max(0.0, z[kLeft]), std::max(0.0, z[kRight])};
 }
 
 }  // namespace gatewalk::dynamics

@@ -12,6 +12,7 @@
 /// and an impulse J along n changes it by J (1/M + l^2/I). Eqs. (4)-(5) are this with l = -+r,
 /// Eqs. (6)-(9) are it with e = 1, a joint pin is it with l = 0.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -49,16 +50,18 @@ struct Touch {
 /// beam) has no direction: n is then the beam's own normal.
 [[nodiscard]] Touch nearest(const GateParams& p, Side side, const BodyState& body, double theta);
 
-/// True when the disc cannot touch this beam whatever the exact angle; no trigonometry.
+/// True when the disc cannot touch this beam whatever the exact angle, not even if it were larger
+/// by `margin` (m); no trigonometry.
 [[nodiscard]] inline bool out_of_reach(const GateParams& p, Side side, const BodyState& body,
-                                       double theta) {
+                                       double theta, double margin = 0.0) {
   const double px = side == kLeft ? body.x + p.beams.joint_x : p.beams.joint_x - body.x;
   const double py = body.y - p.beams.joint_y;
-  const double reach = p.beams.length + p.body.radius;
+  const double radius = p.body.radius + margin;
+  const double reach = p.beams.length + radius;
   if (px * px + py * py > reach * reach) return true;
   if (std::abs(theta) > 3.0) return false;  // the bounds below need sin(theta) to keep its sign
-  return py + p.body.radius < std::fmin(0.0, p.beams.length * theta) ||
-         py - p.body.radius > std::fmax(0.0, p.beams.length * theta);
+  return py + radius < std::min(0.0, p.beams.length * theta) ||
+         py - radius > std::max(0.0, p.beams.length * theta);
 }
 
 /// u = n.v - l omega: rate of the gap.

@@ -142,7 +142,8 @@ EventMethod::EventMethod(const GateParams& p)
       rise_(std::fmax(p.run.event_tolerance, 1e3 * touching_)),
       tolerance_(p.run.event_tolerance),
       hold_(1.0 / p.forces.random_rate),
-      flow_(p, hold_) {
+      law_(p),
+      flow_(law_.over(hold_)) {
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
   const double inertia = p.beams.inertia();
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
@@ -184,18 +185,10 @@ double EventMethod::advance(GateState& s, double force_x, double duration, Energ
 
 GateState EventMethod::flown(const GateState& s, double force_x, double dt) const {
   GateState g = s;
-  if (dt == hold_) {
+  if (dt == hold_)
     fly(p_, flow_, force_x, {}, g);
-    return g;
-  }
-  BodyFlow(p_.forces.drag / p_.body.mass, dt)
-      .apply(g.body, force_x / p_.body.mass, p_.forces.propulsion / p_.body.mass);
-  for (const Side side : {kLeft, kRight}) {
-    BeamState& beam = g.beams[side];
-    if (beam.theta == 0.0 && beam.omega == 0.0) continue;  // at rest
-    const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
-    BeamFlow(k / p_.beams.inertia(), p_.beams.damping / p_.beams.inertia(), dt).apply(beam, 0.0);
-  }
+  else
+    fly(p_, law_, dt, force_x, g);
   return g;
 }
 

@@ -51,6 +51,7 @@ class EventMethod final : public Method {
   double rise_;       // m, rebounds lower than this are not flown
   double tolerance_;  // m, error per Runge-Kutta step
   double hold_;       // s, between two changes of the random force
+  GateLaw law_;
   GateFlow flow_;     // over a whole hold
 };
 

@@ -23,13 +23,19 @@ void fly(const GateParams& p, const GateFlow& flow, double force_x, const Push& 
   flow.right.apply(s.beams[kRight], push.beta[kRight]);
 }
 
-void put_back(const GateParams& p, GateState& s, std::array<bool, 2> contacts,
-              std::array<Touch, 2> touch) {
-  if (!contacts[kLeft] && !contacts[kRight]) return;
+void fly(const GateParams& p, const GateLaw& law, double dt, double force_x, GateState& s) {
+  BodyFlow(law.drag, dt).apply(s.body, force_x / p.body.mass, p.forces.propulsion / p.body.mass);
+  for (const Side side : {kLeft, kRight})
+    if (!at_rest(s.beams[side])) law.beams[side].over(dt).apply(s.beams[side], 0.0);
+}
+
+std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool, 2> contacts,
+                              std::array<Touch, 2> touch) {
+  if (!contacts[kLeft] && !contacts[kRight]) return touch;
   for (int iteration = 0; iteration < 12; ++iteration) {
     const std::array<double, 2> gap{contacts[kLeft] ? touch[kLeft].gap : 0.0,
                                     contacts[kRight] ? touch[kRight].gap : 0.0};
-    if (std::fmax(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p.body.radius) break;
+    if (std::max(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p.body.radius) break;
     // Shift along the mass metric: the same 2 x 2 system as for impulses, with gaps for rates.
     const auto shift = push_or_pull(coupling(p, touch), gap, contacts);
     s.body.x += (shift[kLeft] * touch[kLeft].nx + shift[kRight] * touch[kRight].nx) / p.body.mass;
@@ -41,6 +47,7 @@ void put_back(const GateParams& p, GateState& s, std::array<bool, 2> contacts,
   const std::array<double, 2> rate{gap_rate(touch[kLeft], s.body, s.beams[kLeft]),
                                    gap_rate(touch[kRight], s.body, s.beams[kRight])};
   apply_impulses(p, touch, push_or_pull(coupling(p, touch), rate, contacts), s);
+  return touch;
 }
 
 }  // namespace gatewalk::dynamics

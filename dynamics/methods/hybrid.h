@@ -25,12 +25,20 @@ struct Push {
   Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force);
 };
 
+[[nodiscard]] inline bool at_rest(const BeamState& beam) {
+  return beam.theta == 0.0 && beam.omega == 0.0;
+}
+
 /// Free motion over flow.dt under the random force (N) and constant pushes.
 void fly(const GateParams& p, const GateFlow& flow, double force_x, const Push& push, GateState& s);
 
+/// Free motion over any dt; beams at rest cost nothing.
+void fly(const GateParams& p, const GateLaw& law, double dt, double force_x, GateState& s);
+
 /// Puts `contacts` back to gap = 0 and u = 0, positions and velocities shifted along the mass
-/// metric; `touch` is where they are in `s`. Removes energy or leaves it, to second order.
-void put_back(const GateParams& p, GateState& s, std::array<bool, 2> contacts,
+/// metric; `touch` is where they are in `s`, the result where they are then. Removes energy or leaves
+/// it, to second order.
+std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool, 2> contacts,
               std::array<Touch, 2> touch);
 
 /// Impact law at every contact that closes (gap up to `touching`, m), both beams together, until

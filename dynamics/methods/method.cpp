@@ -1,5 +1,6 @@
 #include "dynamics/methods/method.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -32,11 +33,11 @@ std::unique_ptr<Method> make_method(const GateParams& params) {
 void Watch::motion(const GateParams& p, const GateState& s, double dt) {
   ++steps;
   const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
-  max_speed = std::fmax(max_speed, speed);
+  max_speed = std::max(max_speed, speed);
   double fastest_beam = 0.0;
   for (const Side side : {kLeft, kRight}) {
-    max_theta[side] = std::fmax(max_theta[side], std::abs(s.beams[side].theta));
-    fastest_beam = std::fmax(fastest_beam, std::abs(s.beams[side].omega));
+    max_theta[side] = std::max(max_theta[side], std::abs(s.beams[side].theta));
+    fastest_beam = std::max(fastest_beam, std::abs(s.beams[side].omega));
   }
   // Half a radius is far from passing through a beam, and far beyond what the paper's scenes do.
   fast_steps += (speed + fastest_beam * p.beams.length) * dt > 0.5 * p.body.radius;
@@ -46,7 +47,7 @@ void Watch::penetration(const GateParams& p, const GateState& s) {
   for (const Side side : {kLeft, kRight}) {
     const double theta = s.beams[side].theta;
     if (!out_of_reach(p, side, s.body, theta))
-      max_penetration = std::fmax(max_penetration, -nearest(p, side, s.body, theta).gap);
+      max_penetration = std::max(max_penetration, -nearest(p, side, s.body, theta).gap);
   }
 }
 

@@ -2,6 +2,7 @@
 /// What every time-stepping method is: something that carries a gate's state through a spell of
 /// constant force. One file per method; `make_method` is the only list of them.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -47,8 +48,8 @@ class EnergyLedger {
     random_work_ += force_x * (s.body.x - x_);
     x_ = s.body.x;
     const double now = balance(s) + stored;
-    w.energy_created = std::fmax(w.energy_created, now - lowest_);
-    lowest_ = std::fmin(lowest_, now);
+    w.energy_created = std::max(w.energy_created, now - lowest_);
+    lowest_ = std::min(lowest_, now);
   }
 
  private:

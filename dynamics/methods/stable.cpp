@@ -10,23 +10,36 @@ namespace {
 
 constexpr double kPaperStep = 0.004;      // s, the step that the threshold of Sec. II-B belongs to
 constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
-constexpr int kMaxPieces = 1000;
-constexpr int kMaxHits = 12;              // in one substep, then contacts are held
+constexpr int kMaxHalvings = 10;
+constexpr int kMaxHits = 50;              // in one substep, then contacts are held
 
-int pieces_needed(const GateParams& p) {
+/// How often `step` is halved until a motion of `rate` (1/s) is followed well.
+int halvings_for(double step, double rate) {
+  int n = 0;
+  for (double phase = step * rate; phase > kMaxPhase; phase *= 0.5) ++n;
+  return n;
+}
+
+std::vector<GateFlow> halved_flows(const GateLaw& law, double step, int halvings) {
+  std::vector<GateFlow> flows;
+  for (int n = 0; n <= halvings + 1; ++n) flows.push_back(law.over(std::ldexp(step, -n)));
+  return flows;
+}
+
+int most_halvings(const GateParams& p) {
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
   const double inertia = p.beams.inertia();
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
-  const double pieces = std::ceil(p.run.step * rate / kMaxPhase);
-  if (!(pieces <= kMaxPieces)) {
+  const double longest = std::ldexp(kMaxPhase, kMaxHalvings) / rate;  // s
+  if (!(p.run.step <= longest)) {
     std::ostringstream text;
     text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
          << "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
          << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate
-         << " 1/s; method stable permits at most " << kMaxPieces * kMaxPhase / rate << " s";
+         << " 1/s; method stable permits at most " << longest << " s";
     throw InvalidParameter("run.step_s", text.str());
   }
-  return std::max(1, static_cast<int>(pieces));
+  return halvings_for(p.run.step, rate);
 }
 
 /// When `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which keeps a
@@ -65,44 +78,76 @@ StableMethod::StableMethod(const GateParams& p)
     : p_(p),
       threshold_(p.contact.impulse_threshold * p.run.step / kPaperStep),
       touching_(1e-10 * p.body.radius),
-      pieces_(pieces_needed(p)),
-      flow_(p, p.run.step / pieces_),
-      half_flow_(p, 0.5 * p.run.step / pieces_) {}
+      deepest_(most_halvings(p)),
+      law_(p),
+      flows_(halved_flows(law_, p.run.step, deepest_)) {}
 
 double StableMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                              Watch& watch) const {
-  const Spell spell(p_, duration, pieces_);
-  const GateFlow flow = spell.usual ? flow_ : GateFlow(p_, spell.look);
-  const GateFlow half_flow = spell.usual ? half_flow_ : GateFlow(p_, 0.5 * spell.look);
+  const Spell spell(p_, duration);
+  std::vector<GateFlow> own;
+  if (!spell.usual) own = halved_flows(law_, spell.step, deepest_);
+  const std::vector<GateFlow>& flows = spell.usual ? flows_ : own;
   for (long i = 0; i < spell.steps; ++i) {
-    double passed = 0.0;
-    for (int piece = 0; piece < pieces_ && !outside(p_, s.body); ++piece)
-      passed += substep(s, force_x, flow, half_flow, watch);
+    // Substeps are halves, quarters ... of the step, each begun at a multiple of its own length.
+    double passed = 0.0, longest = 0.0;
+    const int units = 1 << deepest_;
+    for (int unit = 0; unit < units && !outside(p_, s.body);) {
+      int n = halvings(s, spell.step);
+      while (unit % (units >> n) != 0) ++n;
+      passed += substep(s, force_x, flows[n], flows[n + 1], watch);
+      longest = std::max(longest, flows[n].dt);
+      unit += units >> n;
+    }
     ledger.step(s, force_x, watch);
-    watch.state(p_, s, flow.dt);
+    watch.motion(p_, s, longest);
     if (outside(p_, s.body) || !std::isfinite(s.body.vx + s.body.vy))
       return static_cast<double>(i) * spell.step + passed;
   }
   return duration;
 }
 
-void StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
-                         const GateFlow& half_flow) const {
-  if (s.beams[kLeft].held || s.beams[kRight].held)
-    glide_held(s, force_x, flow, half_flow);
-  else
-    fly(p_, flow, force_x, {}, s);
+int StableMethod::halvings(const GateState& s, double step) const {
+  if (deepest_ == 0) return 0;
+  const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
+  double rate = 0.0;  // 1/s
+  for (const Side side : {kLeft, kRight}) {
+    const BeamState& beam = s.beams[side];
+    const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
+    const double inertia = p_.beams.inertia();
+    if (beam.held) {
+      // The explicit contact force must follow both of its rates.
+      rate = std::max({rate, std::sqrt(k / inertia), p_.beams.damping / inertia});
+    } else {
+      // Alone it moves in closed form; but while it swings it could hit and be gone again unseen.
+      const double decay = 0.5 * p_.beams.damping / inertia, swing = k / inertia;
+      if (swing <= decay * decay) continue;
+      const double turn = std::sqrt(beam.omega * beam.omega + swing * beam.theta * beam.theta);
+      const double approach = (speed + p_.beams.length * turn) * step;
+      if (!out_of_reach(p_, side, s.body, beam.theta, approach))
+        rate = std::max(rate, std::sqrt(swing));
+    }
+  }
+  return halvings_for(step, rate);
 }
 
-void StableMethod::glide(GateState& s, double force_x, double dt) const {
+std::array<Touch, 2> StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
+                                         const GateFlow& half_flow) const {
   if (s.beams[kLeft].held || s.beams[kRight].held)
-    glide_held(s, force_x, GateFlow(p_, dt), GateFlow(p_, 0.5 * dt));
-  else
-    fly(p_, GateFlow(p_, dt), force_x, {}, s);
+    return glide_held(s, force_x, flow, half_flow);
+  fly(p_, flow, force_x, {}, s);
+  return {};
 }
 
-void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
-                              const GateFlow& half_flow) const {
+std::array<Touch, 2> StableMethod::glide(GateState& s, double force_x, double dt) const {
+  if (s.beams[kLeft].held || s.beams[kRight].held)
+    return glide_held(s, force_x, law_.over(dt), law_.over(0.5 * dt));
+  fly(p_, law_, dt, force_x, s);
+  return {};
+}
+
+std::array<Touch, 2> StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
+                                              const GateFlow& half_flow) const {
   const auto held = held_of(s);
   // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
   const auto start = touches(p_, s, held);
@@ -123,7 +168,7 @@ void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow
       s.beams[side].held = false;
     }
   }
-  put_back(p_, s, keep, end);
+  return put_back(p_, s, keep, end);
 }
 
 double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
@@ -131,22 +176,24 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
   double left = flow.dt;
   for (int hits = 0;; ++hits) {
     GateState end = s;
-    if (hits == 0)
-      glide(end, force_x, flow, half_flow);
-    else
-      glide(end, force_x, left);
+    const auto shut = hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
 
     std::array<bool, 2> hit{false, false};
+    double overlap = 0.0;  // m
     for (const Side side : {kLeft, kRight}) {
       const BeamState& beam = end.beams[side];
-      if (beam.held || out_of_reach(p_, side, end.body, beam.theta)) continue;
-      hit[side] = nearest(p_, side, end.body, beam.theta).gap < -touching_;
+      if (!beam.held && out_of_reach(p_, side, end.body, beam.theta)) continue;
+      const double gap =
+          beam.held ? shut[side].gap : nearest(p_, side, end.body, beam.theta).gap;
+      hit[side] = !beam.held && gap < -touching_;
+      overlap = std::max(overlap, -gap);
     }
     watch.evaluations += 2 + 3 * s.beams[kLeft].held + 3 * s.beams[kRight].held;
     const double start = flow.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {
       const GateState before = s;
       s = end;
+      watch.max_penetration = std::max(watch.max_penetration, overlap);
       return outside(p_, s.body) ? start + back_to_exit(p_, before, s, left) : flow.dt;
     }
     if (hits == kMaxHits) {
@@ -155,6 +202,7 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       s = end;
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
       put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
+      watch.penetration(p_, s);
       return flow.dt;
     }
     const GateState before = s;

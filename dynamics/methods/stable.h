@@ -11,28 +11,34 @@
 /// The impulse threshold shrinks with the step, epsilon * step / 0.004 s: with a fixed one the
 /// error of a trajectory stops falling.
 
+#include <vector>
+
 #include "dynamics/methods/hybrid.h"
 
 namespace gatewalk::dynamics {
 
 class StableMethod final : public Method {
  public:
-  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be cut
-  /// into more than 1000 pieces.
+  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be halved
+  /// more than 10 times.
   explicit StableMethod(const GateParams& p);
 
   double advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                  Watch& watch) const override;
 
  private:
+  /// How often a step of `step` seconds must be halved for the beams that matter in `s`.
+  [[nodiscard]] int halvings(const GateState& s, double step) const;
   /// Returns the time passed: flow.dt, or less when the body has left the gate.
   double substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
                  Watch& watch) const;
-  /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
-  void glide(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow) const;
-  void glide(GateState& s, double force_x, double dt) const;
-  void glide_held(GateState& s, double force_x, const GateFlow& flow,
-                  const GateFlow& half_flow) const;
+  /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams. Returns
+  /// where the held contacts are at the end.
+  std::array<Touch, 2> glide(GateState& s, double force_x, const GateFlow& flow,
+                             const GateFlow& half_flow) const;
+  std::array<Touch, 2> glide(GateState& s, double force_x, double dt) const;
+  std::array<Touch, 2> glide_held(GateState& s, double force_x, const GateFlow& flow,
+                                  const GateFlow& half_flow) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
                                  double dt, std::array<bool, 2> hit) const;
@@ -40,9 +46,9 @@ class StableMethod final : public Method {
   const GateParams& p_;
   double threshold_;      // N s
   double touching_;       // m, gaps up to this count as contact at a moment of impact
-  int pieces_;            // substeps per step, 1 unless the beams are very stiff
-  GateFlow flow_;         // one substep of a whole step
-  GateFlow half_flow_;
+  int deepest_;           // halvings of a step that the fastest beam may need, 0 unless very stiff
+  GateLaw law_;
+  std::vector<GateFlow> flows_;  // over the step, halved 0 .. deepest + 1 times
 };
 
 }  // namespace gatewalk::dynamics

@@ -248,7 +248,7 @@ TEST(GateFlow, GivesEachBeamItsOwnSpring) {
   p.beams.stiffness_left = 300;
   p.beams.stiffness_right = 500;
   p.body.mass = 2.0;
-  const GateFlow flow(p, 0.1);
+  const GateFlow flow = GateLaw(p).over(0.1);
   const double inertia = p.beams.inertia();
   EXPECT_EQ(flow.dt, 0.1);
   EXPECT_EQ(flow.left.wt, BeamFlow(300 / inertia, 50 / inertia, 0.1).wt);
