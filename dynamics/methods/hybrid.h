@@ -76,12 +76,16 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, Watch& wat
     if (done(kLeft) && done(kRight)) return;
 
     auto impulse = push_only(w, b, active);
-    // A weak hit ends the bouncing: perfectly inelastic, then a constraint.
+    // A weak hit ends the bouncing: perfectly inelastic, then a constraint. Asked of both before
+    // either is held: the answer may look at the other beam, and a mirror image must not change it.
+    std::array<bool, 2> ends{};
+    for (const Side side : {kLeft, kRight})
+      ends[side] = active[side] && !s.beams[side].held &&
+                   ends_bouncing(side, impulse[side], rebound[side]);
     for (const Side side : {kLeft, kRight}) {
-      if (active[side] && !s.beams[side].held && ends_bouncing(side, impulse[side], rebound[side])) {
-        s.beams[side].held = true;
-        b[side] = u[side];
-      }
+      if (!ends[side]) continue;
+      s.beams[side].held = true;
+      b[side] = u[side];
     }
     impulse = push_only(w, b, active);
     // A held beam that the other side's hit throws off is free again; but not if it would be back at

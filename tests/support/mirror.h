@@ -8,7 +8,9 @@
 
 namespace gatewalk::test {
 
-inline void expect_mirror_images(const dynamics::GateRun& a, const dynamics::GateRun& b) {
+/// `same_work`: gaps are evaluated in an order that the mirror image does not change.
+inline void expect_mirror_images(const dynamics::GateRun& a, const dynamics::GateRun& b,
+                                 bool same_work = true) {
   using dynamics::Ending;
   const auto flipped = b.ending == Ending::exited_left    ? Ending::exited_right
                        : b.ending == Ending::exited_right ? Ending::exited_left
@@ -27,7 +29,9 @@ inline void expect_mirror_images(const dynamics::GateRun& a, const dynamics::Gat
   ASSERT_EQ(a.watch.impacts, b.watch.impacts);
   ASSERT_EQ(a.watch.forced_holds, b.watch.forced_holds);
   ASSERT_EQ(a.watch.steps, b.watch.steps);
-  ASSERT_EQ(a.watch.evaluations, b.watch.evaluations);
+  if (same_work) {
+    ASSERT_EQ(a.watch.evaluations, b.watch.evaluations);
+  }
 }
 
 }  // namespace gatewalk::test
