@@ -38,28 +38,34 @@ Touch nearest(const GateParams& p, Side side, const BodyState& body, const Direc
   return t;
 }
 
+double curvature_term(const GateParams& p, Side side, const Touch& t, const BodyState& body,
+                      const BeamState& beam) {
+  if (t.kind == ContactKind::interior) return 0.0;
+  const double nx = side == kLeft ? t.nx : -t.nx;  // into the beam's own frame
+  double rx = side == kLeft ? body.vx : -body.vx, ry = body.vy;
+  if (t.kind == ContactKind::tip) {
+    rx += p.beams.length * beam.omega * t.beam.s;
+    ry -= p.beams.length * beam.omega * t.beam.c;
+  }
+  const double across = rx * t.ny - ry * nx;
+  const double dist = t.gap + p.body.radius;
+  return dist < std::numeric_limits<double>::min() ? 0.0 : across * across / dist;
+}
+
 double gap_rate_bias(const GateParams& p, Side side, const Touch& t, const BodyState& body,
                      const BeamState& beam) {
-  const double vx = side == kLeft ? body.vx : -body.vx;  // into the beam's own frame
-  const double nx = side == kLeft ? t.nx : -t.nx;
-  const double vy = body.vy, ny = t.ny, w = beam.omega;
-  const double dist = t.gap + p.body.radius;
+  const double w = beam.omega;
   if (t.kind == ContactKind::interior) {
+    const double vx = side == kLeft ? body.vx : -body.vx;  // into the beam's own frame
+    const double nx = side == kLeft ? t.nx : -t.nx;
+    const double vy = body.vy, ny = t.ny;
     // n = sign * (-sin, cos), l = sign * r: differentiate u = n.v - l w along the motion.
     const double sign = t.lever < 0.0 ? -1.0 : 1.0;
     const double v_along = (sign * ny) * vx - (sign * nx) * vy;  // beam = (cos, sin) = sign*(ny, -nx)
-    return -2.0 * sign * w * v_along - w * w * dist;
+    return -2.0 * sign * w * v_along - w * w * (t.gap + p.body.radius);
   }
-  // Relative velocity of centre and contact point; only its part across n turns n.
-  double rx = vx, ry = vy;
-  double centripetal = 0.0;
-  if (t.kind == ContactKind::tip) {
-    rx += p.beams.length * w * t.beam.s;
-    ry -= p.beams.length * w * t.beam.c;
-    centripetal = p.beams.length * w * w * t.bend;
-  }
-  const double across = rx * ny - ry * nx;
-  return across * across / dist + centripetal;
+  const double centripetal = p.beams.length * w * w * t.bend;
+  return curvature_term(p, side, t, body, beam) + (t.kind == ContactKind::tip ? centripetal : 0.0);
 }
 
 double free_gap_acceleration(const GateParams& p, Side side, const Touch& t, const GateState& s,

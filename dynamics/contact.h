@@ -94,6 +94,11 @@ struct Touch {
   return nv - t.lever * beam.omega;
 }
 
+/// The part of du/dt that comes from going round a tip or pin (m/s^2): the square of the velocity
+/// across n, relative to the contact point, over the distance; 0 on the interior.
+[[nodiscard]] double curvature_term(const GateParams& p, Side side, const Touch& t,
+                                    const BodyState& body, const BeamState& beam);
+
 /// The part of du/dt that comes from motion, not from accelerations: Eq. (11) (interior) and
 /// Eq. (13) (tip) without their a_x, a_y and beta terms; a circle of radius R about a pin.
 [[nodiscard]] double gap_rate_bias(const GateParams& p, Side side, const Touch& t,

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kMaxPhase = 1000.0;  // rad or e-folds of a beam in one hold of the random force
 constexpr int kMostPieces = 2000;     // events in one hold before contact is forced
+constexpr int kMostLooks = 100000;     // for contact in one flight
 constexpr int kMostAttempts = 100;    // Runge-Kutta steps tried for one accepted
 
 constexpr std::array<double, 2> kNotSeen{std::numeric_limits<double>::quiet_NaN(),
@@ -93,7 +94,7 @@ struct DormandPrince {
 struct Step {
   GateState end;
   Motion motion;  // at the end: the last stage is the new state's derivative
-  double error;   // largest error estimate, m and m/s
+  double error;   // largest error estimate, m and m/s, angles weighted
 };
 
 template <class Pair>
@@ -115,12 +116,22 @@ Step integrated(const GateParams& p, const GateState& s, const Motion& start, do
     motion = Motion(p, state, force_x);
     k[i] = motion.rate;
   }
+  // An angle counts as its tip's way (m), or as the disc's speed of the same energy (m/s).
+  const double length = p.beams.length, mass = p.body.mass;
+  const double spin = std::max(length, std::sqrt(p.beams.inertia() / mass));
+  const Vector weight{1.0,
+                      1.0,
+                      std::max(length, std::sqrt(p.beams.stiffness_left / mass)),
+                      std::max(length, std::sqrt(p.beams.stiffness_right / mass)),
+                      1.0,
+                      1.0,
+                      spin,
+                      spin};
   double worst = 0.0;
   for (int c = 0; c < 8; ++c) {
     double sum = 0.0;
     for (int j = 0; j < Pair::kStages; ++j) sum += Pair::e[j] * k[j][c];
-    const bool angle = c == 2 || c == 3 || c == 6 || c == 7;
-    worst = std::fmax(worst, std::abs(h * sum) * (angle ? p.beams.length : 1.0));
+    worst = std::max(worst, std::abs(h * sum) * weight[c]);
     if (std::isnan(sum)) worst = std::numeric_limits<double>::infinity();
   }
   return {state, motion, worst};
@@ -240,21 +251,17 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
     const double w1 = std::sqrt(beta * beta + k * beam.omega * beam.omega);
     const double w2 = std::sqrt(jerk * jerk + k * beta * beta);
     // gap'' >= now - steepest * time: `now` without the tip's and pin's own curvature, which is
-    // positive and vanishes where the contact moves onto the interior; `steepest` bounds every term
-    // of d/dt (n.a - l beta + bias) on interior, tip and pin.
+    // positive; where the contact may move onto the interior, with the terms that act there;
+    // `steepest` bounds every term of d/dt (n.a - l beta + bias) on interior, tip and pin.
     const double dist = t.gap + p_.body.radius, far = dist + closing * horizon;
+    const double turn = w + closing / p_.body.radius;  // rad/s, of n against the beam
     double now = free_gap_acceleration(p_, side, t, s, force_x) + t.nx * push.ax + t.ny * push.ay;
     if (t.kind != ContactKind::interior) {
-      const double vx = side == kLeft ? b.vx : -b.vx, nx = side == kLeft ? t.nx : -t.nx;
-      double rx = vx, ry = b.vy;
-      if (t.kind == ContactKind::tip) {
-        rx += L * beam.omega * t.beam.s;
-        ry -= L * beam.omega * t.beam.c;
-      }
-      const double across = rx * t.ny - ry * nx;
-      now -= across * across / dist;
+      const double curvature = curvature_term(p_, side, t, b, beam);
+      now -= curvature;
+      if (std::abs(t.bend) <= turn * horizon)
+        now -= 2.0 * w * std::sqrt(curvature * dist) + w * w * dist;
     }
-    const double turn = w + closing / p_.body.radius;  // rad/s, of n against the beam
     const double steepest = a * turn + drag * a + v * w1 + L * (w2 + turn * w1) +
                             2.0 * (w1 * v + w * (a + w * v)) + 2.0 * w * w1 * far +
                             w * w * closing + L * w * (2.0 * w1 + w * turn);
@@ -293,7 +300,7 @@ double EventMethod::fly_on(GateState& s, double force_x, double duration, Watch&
   const GateState start = s;
   std::array<double, 2> surface = kNotSeen;
   double t = 0.0;
-  for (;;) {
+  for (int looks = 0; looks < kMostLooks; ++looks) {
     const Outlook ahead = look_ahead(s, surface, force_x, {}, duration - t, watch);
     if (ahead.hit) {
       resolve(s, force_x, watch);
@@ -322,6 +329,8 @@ double EventMethod::fly_on(GateState& s, double force_x, double duration, Watch&
     }
     if (over || !std::isfinite(s.body.vx + s.body.vy)) return t;
   }
+  s.body.vx = std::numeric_limits<double>::quiet_NaN();  // no way ahead is safe: say broken
+  return duration;
 }
 
 double EventMethod::slide_on(GateState& s, double force_x, double duration, Watch& watch) const {
