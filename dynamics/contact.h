@@ -48,8 +48,10 @@ struct Direction {
     const double d = angle - theta, d2 = d * d;
     if (!(std::abs(d) < 0.0625)) return of(angle);
     // Taylor series; the first terms left out are d^10 / 10! < 3e-19 and d^11 / 11!.
-    const double cd = 1 - d2 / 2 * (1 - d2 / 12 * (1 - d2 / 30 * (1 - d2 / 56)));
-    const double sd = d * (1 - d2 / 6 * (1 - d2 / 20 * (1 - d2 / 42 * (1 - d2 / 72))));
+    const double cd =
+        1 - d2 * (1.0 / 2 - d2 * (1.0 / 24 - d2 * (1.0 / 720 - d2 * (1.0 / 40320))));
+    const double sd =
+        d * (1 - d2 * (1.0 / 6 - d2 * (1.0 / 120 - d2 * (1.0 / 5040 - d2 * (1.0 / 362880)))));
     return {angle, c * cd - s * sd, s * cd + c * sd};
   }
 };

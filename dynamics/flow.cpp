@@ -4,6 +4,11 @@ namespace gatewalk::dynamics {
 
 BodyFlow::BodyFlow(double g, double dt) {
   const double z = g * dt;
+  if (z == 0.0) {
+    rise = dt;
+    fall = 0.5 * dt * dt;
+    return;
+  }
   if (z < 1e-2) {
     // Taylor series of (1 - e^-z)/z and (z - 1 + e^-z)/z^2; the next term is below 1e-16.
     rise = dt * (1 - z / 2 * (1 - z / 3 * (1 - z / 4 * (1 - z / 5 * (1 - z / 6 * (1 - z / 7))))));

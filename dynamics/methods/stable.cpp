@@ -26,20 +26,18 @@ std::vector<GateFlow> halved_flows(const GateLaw& law, double step, int halvings
   return flows;
 }
 
-int most_halvings(const GateParams& p) {
+void refuse_too_fast(const GateParams& p) {
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
   const double inertia = p.beams.inertia();
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
   const double longest = std::ldexp(kMaxPhase, kMaxHalvings) / rate;  // s
-  if (!(p.run.step <= longest)) {
-    std::ostringstream text;
-    text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
-         << "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
-         << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate
-         << " 1/s; method stable permits at most " << longest << " s";
-    throw InvalidParameter("run.step_s", text.str());
-  }
-  return halvings_for(p.run.step, rate);
+  if (p.run.step <= longest) return;
+  std::ostringstream text;
+  text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
+       << "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
+       << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate
+       << " 1/s; method stable permits at most " << longest << " s";
+  throw InvalidParameter("run.step_s", text.str());
 }
 
 /// When `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which keeps a
@@ -78,9 +76,21 @@ StableMethod::StableMethod(const GateParams& p)
     : p_(p),
       threshold_(p.contact.impulse_threshold * p.run.step / kPaperStep),
       touching_(1e-10 * p.body.radius),
-      deepest_(most_halvings(p)),
-      law_(p),
-      flows_(halved_flows(law_, p.run.step, deepest_)) {}
+      law_(p) {
+  refuse_too_fast(p);
+  const double inertia = p.beams.inertia(), damping = p.beams.damping / inertia;
+  for (const Side side : {kLeft, kRight}) {
+    const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
+    Halvings& h = halvings_[side];
+    // The explicit contact force must follow both rates of a held beam. A free one moves in closed
+    // form; but while it swings it could hit and be gone again unseen.
+    h.held = halvings_for(p.run.step, std::max(std::sqrt(k / inertia), damping));
+    h.swing = k / inertia > 0.25 * damping * damping ? k / inertia : 0.0;
+    h.swinging = halvings_for(p.run.step, std::sqrt(h.swing));
+    deepest_ = std::max(deepest_, h.held);
+  }
+  flows_ = halved_flows(law_, p.run.step, deepest_);
+}
 
 double StableMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                              Watch& watch) const {
@@ -93,7 +103,7 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
     double passed = 0.0, longest = 0.0;
     const int units = 1 << deepest_;
     for (int unit = 0; unit < units && !outside(p_, s.body);) {
-      int n = halvings(s, spell.step);
+      int n = halvings(s);
       while (unit % (units >> n) != 0) ++n;
       passed += substep(s, force_x, flows[n], flows[n + 1], watch);
       longest = std::max(longest, flows[n].dt);
@@ -107,28 +117,22 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
   return duration;
 }
 
-int StableMethod::halvings(const GateState& s, double step) const {
+int StableMethod::halvings(const GateState& s) const {
   if (deepest_ == 0) return 0;
   const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
-  double rate = 0.0;  // 1/s
+  int most = 0;
   for (const Side side : {kLeft, kRight}) {
     const BeamState& beam = s.beams[side];
-    const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
-    const double inertia = p_.beams.inertia();
+    const Halvings& h = halvings_[side];
     if (beam.held) {
-      // The explicit contact force must follow both of its rates.
-      rate = std::max({rate, std::sqrt(k / inertia), p_.beams.damping / inertia});
-    } else {
-      // Alone it moves in closed form; but while it swings it could hit and be gone again unseen.
-      const double decay = 0.5 * p_.beams.damping / inertia, swing = k / inertia;
-      if (swing <= decay * decay) continue;
-      const double turn = std::sqrt(beam.omega * beam.omega + swing * beam.theta * beam.theta);
-      const double approach = (speed + p_.beams.length * turn) * step;
-      if (!out_of_reach(p_, side, s.body, beam.theta, approach))
-        rate = std::max(rate, std::sqrt(swing));
+      most = std::max(most, h.held);
+    } else if (h.swinging > most) {
+      const double turn = std::sqrt(beam.omega * beam.omega + h.swing * beam.theta * beam.theta);
+      const double approach = (speed + p_.beams.length * turn) * p_.run.step;
+      if (!out_of_reach(p_, side, s.body, beam.theta, approach)) most = h.swinging;
     }
   }
-  return halvings_for(step, rate);
+  return most;
 }
 
 std::array<Touch, 2> StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,

@@ -27,8 +27,8 @@ class StableMethod final : public Method {
                  Watch& watch) const override;
 
  private:
-  /// How often a step of `step` seconds must be halved for the beams that matter in `s`.
-  [[nodiscard]] int halvings(const GateState& s, double step) const;
+  /// How often a step must be halved for the beams that matter in `s`.
+  [[nodiscard]] int halvings(const GateState& s) const;
   /// Returns the time passed: flow.dt, or less when the body has left the gate.
   double substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
                  Watch& watch) const;
@@ -46,7 +46,13 @@ class StableMethod final : public Method {
   const GateParams& p_;
   double threshold_;      // N s
   double touching_;       // m, gaps up to this count as contact at a moment of impact
-  int deepest_;           // halvings of a step that the fastest beam may need, 0 unless very stiff
+  struct Halvings {       // of a step that a beam needs, 0 unless it is very stiff
+    int held = 0;
+    int swinging = 0;
+    double swing = 0.0;   // 1/s^2, square of its frequency; 0: it creeps
+  };
+  std::array<Halvings, 2> halvings_;
+  int deepest_ = 0;       // the most that occur
   GateLaw law_;
   std::vector<GateFlow> flows_;  // over the step, halved 0 .. deepest + 1 times
 };
