@@ -535,7 +535,7 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
         entry(p.setting.method, "pt " + std::to_string(look.marker) + " ps 0.8 lc rgb '" + look.colour + "'",
               0.085);
       }
-      entry("default (0.004 s, 1e-3 m)", "pt 6 ps 1.8 lc rgb 'black'", 0.21);
+      entry("usual (paper: its 0.004 s)", "pt 6 ps 1.8 lc rgb 'black'", 0.21);
       entry("below what the reference can show", "pt 10 ps 1.1 lc rgb '#444444'", 0.25);
       out << "set label " << label++ << " "
           << literal("x fails: E energy from nothing, P disc sinks into a beam, F too fast for its steps, "
@@ -689,7 +689,7 @@ int run_chart(const std::vector<std::string>& arguments) {
          std::to_string(charts.size()) + " of " + std::to_string(paths.size()) + " scenes that were finished");
     return kStopped;
   }
-  options.give_out(json, table + "\n* default. Times: median of " + std::to_string(rounds) +
+  options.give_out(json, table + "\n* usual: the defaults, 0.004 s for paper. Times: median of " + std::to_string(rounds) +
                              " rounds on one thread, " + machine() + "\n");
   draw(file("chart.svg"), charts);
   for (const SceneChart& chart : charts)

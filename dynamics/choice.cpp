@@ -16,7 +16,7 @@ struct Candidate {
   std::string_view method;
   double microseconds;  // per evaluation, measured on scenes/field.toml: only ratios matter
 };
-constexpr Candidate kCandidates[] = {{"stable", 0.05}, {"moreau", 0.05}, {"event", 0.13}};
+constexpr Candidate kCandidates[] = {{"stable", 0.06}, {"moreau", 0.06}, {"event", 0.13}};
 
 /// The trials of start i among `trials`.
 TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts) {

@@ -42,9 +42,11 @@ struct Contact {
   double impulse_threshold = 0.04;  // N s, epsilon of Sec. II-B: below it contact is a constraint
 };
 
+inline constexpr double kPaperStep = 0.004;  // s, Sec. II-B
+
 struct Run {
   std::string method = "stable";  // a name of method_names()
-  double step = 0.02;             // s, one per draw of the random force; the paper: 0.004
+  double step = 0.02;             // s, one per draw of the random force; the paper's own is kPaperStep
   double time_limit = 12.0;       // s, 3000 steps of the paper; method paper ends a step later if need be
   double traverse_y = 60.0;       // m; traversed beyond it, and the length of a gate in the field
   double event_tolerance = 1e-2;  // m; method event: local error and lowest rebound that is flown

@@ -8,7 +8,6 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kPaperStep = 0.004;      // s, the step that the threshold of Sec. II-B belongs to
 constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
 constexpr int kMaxHalvings = 10;
 constexpr int kMaxHits = 50;              // in one substep, then contacts are held
