@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kPaperStep = 0.004;      // s, the step that the threshold of Sec. II-B belongs to
 constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
-constexpr int kMaxHalvings = 10;
+constexpr int kMaxHalvings = 10;          // for the fastest beam
+constexpr int kHandoverHalvings = 4;      // where a held contact moves from side to joint or tip
 constexpr int kMaxHits = 50;              // in one substep, then contacts are held
 
 /// How often `step` is halved until a motion of `rate` (1/s) is followed well.
@@ -79,23 +80,26 @@ StableMethod::StableMethod(const GateParams& p)
       threshold_(p.contact.impulse_threshold * p.run.step / kPaperStep),
       touching_(1e-10 * p.body.radius),
       deepest_(most_halvings(p)),
+      finest_(std::max(deepest_, kHandoverHalvings)),
       law_(p),
-      flows_(halved_flows(law_, p.run.step, deepest_)) {}
+      flows_(halved_flows(law_, p.run.step, finest_)) {}
 
 double StableMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                              Watch& watch) const {
   const Spell spell(p_, duration);
   std::vector<GateFlow> own;
-  if (!spell.usual) own = halved_flows(law_, spell.step, deepest_);
+  if (!spell.usual) own = halved_flows(law_, spell.step, finest_);
   const std::vector<GateFlow>& flows = spell.usual ? flows_ : own;
   for (long i = 0; i < spell.steps; ++i) {
     // Substeps are halves, quarters ... of the step, each begun at a multiple of its own length.
     double passed = 0.0, longest = 0.0;
-    const int units = 1 << deepest_;
+    const int units = 1 << finest_;
     for (int unit = 0; unit < units && !outside(p_, s.body);) {
       int n = halvings(s, spell.step);
       while (unit % (units >> n) != 0) ++n;
-      passed += substep(s, force_x, flows[n], flows[n + 1], watch);
+      double time = 0.0;
+      while ((time = substep(s, force_x, flows[n], flows[n + 1], n == finest_, watch)) == 0.0) ++n;
+      passed += time;
       longest = std::max(longest, flows[n].dt);
       unit += units >> n;
     }
@@ -131,7 +135,7 @@ int StableMethod::halvings(const GateState& s, double step) const {
   return halvings_for(step, rate);
 }
 
-std::array<Touch, 2> StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
+StableMethod::Glide StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
                                          const GateFlow& half_flow) const {
   if (s.beams[kLeft].held || s.beams[kRight].held)
     return glide_held(s, force_x, flow, half_flow);
@@ -139,14 +143,14 @@ std::array<Touch, 2> StableMethod::glide(GateState& s, double force_x, const Gat
   return {};
 }
 
-std::array<Touch, 2> StableMethod::glide(GateState& s, double force_x, double dt) const {
+StableMethod::Glide StableMethod::glide(GateState& s, double force_x, double dt) const {
   if (s.beams[kLeft].held || s.beams[kRight].held)
     return glide_held(s, force_x, law_.over(dt), law_.over(0.5 * dt));
   fly(p_, law_, dt, force_x, s);
   return {};
 }
 
-std::array<Touch, 2> StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
+StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
                                               const GateFlow& half_flow) const {
   const auto held = held_of(s);
   // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
@@ -162,21 +166,23 @@ std::array<Touch, 2> StableMethod::glide_held(GateState& s, double force_x, cons
   // Only push: without force at mid-step the contact is over, unless the bodies still overlap.
   std::array<bool, 2> keep = held;
   const auto end = touches(p_, s, held, middle);
+  bool handover = false;
   for (const Side side : {kLeft, kRight}) {
     if (held[side] && force[side] == 0.0 && end[side].gap >= 0.0) {
       keep[side] = false;
       s.beams[side].held = false;
     }
+    handover |= held[side] && (middle[side].kind != start[side].kind || end[side].kind != start[side].kind);
   }
-  return put_back(p_, s, keep, end);
+  return {put_back(p_, s, keep, end), handover};
 }
 
 double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
-                             const GateFlow& half_flow, Watch& watch) const {
+                             const GateFlow& half_flow, bool finest, Watch& watch) const {
   double left = flow.dt;
   for (int hits = 0;; ++hits) {
     GateState end = s;
-    const auto shut = hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
+    const Glide glided = hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
 
     std::array<bool, 2> hit{false, false};
     double overlap = 0.0;  // m
@@ -184,11 +190,13 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       const BeamState& beam = end.beams[side];
       if (!beam.held && out_of_reach(p_, side, end.body, beam.theta)) continue;
       const double gap =
-          beam.held ? shut[side].gap : nearest(p_, side, end.body, beam.theta).gap;
+          beam.held ? glided.shut[side].gap : nearest(p_, side, end.body, beam.theta).gap;
       hit[side] = !beam.held && gap < -touching_;
       overlap = std::max(overlap, -gap);
     }
     watch.evaluations += 2 + 3 * s.beams[kLeft].held + 3 * s.beams[kRight].held;
+    // The contact force jumps where a contact changes its kind: only a short piece may step over it.
+    if (hits == 0 && glided.handover && !finest) return 0.0;
     const double start = flow.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {
       const GateState before = s;

@@ -29,15 +29,19 @@ class StableMethod final : public Method {
  private:
   /// How often a step of `step` seconds must be halved for the beams that matter in `s`.
   [[nodiscard]] int halvings(const GateState& s, double step) const;
-  /// Returns the time passed: flow.dt, or less when the body has left the gate.
+  /// Returns the time passed: flow.dt, or less when the body has left the gate; 0, and `s` as it was,
+  /// when a piece that is not the `finest` is to be halved.
   double substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
-                 Watch& watch) const;
-  /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams. Returns
-  /// where the held contacts are at the end.
-  std::array<Touch, 2> glide(GateState& s, double force_x, const GateFlow& flow,
+                 bool finest, Watch& watch) const;
+  struct Glide {
+    std::array<Touch, 2> shut;  // where the held contacts are at the end
+    bool handover = false;      // one of them changed its kind on the way
+  };
+  /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
+  Glide glide(GateState& s, double force_x, const GateFlow& flow,
                              const GateFlow& half_flow) const;
-  std::array<Touch, 2> glide(GateState& s, double force_x, double dt) const;
-  std::array<Touch, 2> glide_held(GateState& s, double force_x, const GateFlow& flow,
+  Glide glide(GateState& s, double force_x, double dt) const;
+  Glide glide_held(GateState& s, double force_x, const GateFlow& flow,
                                   const GateFlow& half_flow) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
@@ -47,8 +51,9 @@ class StableMethod final : public Method {
   double threshold_;      // N s
   double touching_;       // m, gaps up to this count as contact at a moment of impact
   int deepest_;           // halvings of a step that the fastest beam may need, 0 unless very stiff
+  int finest_;            // halvings that any piece may need
   GateLaw law_;
-  std::vector<GateFlow> flows_;  // over the step, halved 0 .. deepest + 1 times
+  std::vector<GateFlow> flows_;  // over the step, halved 0 .. finest + 1 times
 };
 
 }  // namespace gatewalk::dynamics
