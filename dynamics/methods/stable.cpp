@@ -10,14 +10,15 @@ namespace {
 
 constexpr double kPaperStep = 0.004;      // s, the step that the threshold of Sec. II-B belongs to
 constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
+constexpr double kMaxTurn = 0.05;         // rad that a held beam may turn in a substep
 constexpr int kMaxHalvings = 10;          // for the fastest beam
-constexpr int kHandoverHalvings = 4;      // where a held contact moves from side to joint or tip
+constexpr int kContactHalvings = 4;       // for a held contact that turns fast or changes its kind
 constexpr int kMaxHits = 50;              // in one substep, then contacts are held
 
-/// How often `step` is halved until a motion of `rate` (1/s) is followed well.
-int halvings_for(double step, double rate) {
+/// How often `phase` must be halved, up to `limit` times, not to exceed `most`.
+int halvings_for(double phase, double most, int limit) {
   int n = 0;
-  for (double phase = step * rate; phase > kMaxPhase; phase *= 0.5) ++n;
+  for (; phase > most && n < limit; phase *= 0.5) ++n;
   return n;
 }
 
@@ -34,13 +35,13 @@ int most_halvings(const GateParams& p) {
   const double longest = std::ldexp(kMaxPhase, kMaxHalvings) / rate;  // s
   if (!(p.run.step <= longest)) {
     std::ostringstream text;
-    text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
-         << "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
+    text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest "
+         << "rate, from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
          << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate
          << " 1/s; method stable permits at most " << longest << " s";
     throw InvalidParameter("run.step_s", text.str());
   }
-  return halvings_for(p.run.step, rate);
+  return halvings_for(p.run.step * rate, kMaxPhase, kMaxHalvings);
 }
 
 /// When `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which keeps a
@@ -80,7 +81,7 @@ StableMethod::StableMethod(const GateParams& p)
       threshold_(p.contact.impulse_threshold * p.run.step / kPaperStep),
       touching_(1e-10 * p.body.radius),
       deepest_(most_halvings(p)),
-      finest_(std::max(deepest_, kHandoverHalvings)),
+      finest_(std::max(deepest_, kContactHalvings)),
       law_(p),
       flows_(halved_flows(law_, p.run.step, finest_)) {}
 
@@ -112,9 +113,7 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
 }
 
 int StableMethod::halvings(const GateState& s, double step) const {
-  if (deepest_ == 0) return 0;
-  const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
-  double rate = 0.0;  // 1/s
+  double rate = 0.0, turning = 0.0;  // 1/s
   for (const Side side : {kLeft, kRight}) {
     const BeamState& beam = s.beams[side];
     const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
@@ -122,21 +121,25 @@ int StableMethod::halvings(const GateState& s, double step) const {
     if (beam.held) {
       // The explicit contact force must follow both of its rates.
       rate = std::max({rate, std::sqrt(k / inertia), p_.beams.damping / inertia});
-    } else {
+      turning = std::max(turning, std::abs(beam.omega));
+    } else if (deepest_ > 0) {
       // Alone it moves in closed form; but while it swings it could hit and be gone again unseen.
       const double decay = 0.5 * p_.beams.damping / inertia, swing = k / inertia;
       if (swing <= decay * decay) continue;
+      const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
       const double turn = std::sqrt(beam.omega * beam.omega + swing * beam.theta * beam.theta);
       const double approach = (speed + p_.beams.length * turn) * step;
       if (!out_of_reach(p_, side, s.body, beam.theta, approach))
         rate = std::max(rate, std::sqrt(swing));
     }
   }
-  return halvings_for(step, rate);
+  // A light beam that a heavy disc holds near the joint may turn faster than any piece follows.
+  return std::max(halvings_for(step * rate, kMaxPhase, deepest_),
+                  halvings_for(step * turning, kMaxTurn, finest_));
 }
 
 StableMethod::Glide StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
-                                         const GateFlow& half_flow) const {
+                                        const GateFlow& half_flow) const {
   if (s.beams[kLeft].held || s.beams[kRight].held)
     return glide_held(s, force_x, flow, half_flow);
   fly(p_, flow, force_x, {}, s);
@@ -151,7 +154,7 @@ StableMethod::Glide StableMethod::glide(GateState& s, double force_x, double dt)
 }
 
 StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
-                                              const GateFlow& half_flow) const {
+                                             const GateFlow& half_flow) const {
   const auto held = held_of(s);
   // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
   const auto start = touches(p_, s, held);
@@ -172,7 +175,8 @@ StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const
       keep[side] = false;
       s.beams[side].held = false;
     }
-    handover |= held[side] && (middle[side].kind != start[side].kind || end[side].kind != start[side].kind);
+    const ContactKind kind = start[side].kind;
+    handover |= held[side] && (middle[side].kind != kind || end[side].kind != kind);
   }
   return {put_back(p_, s, keep, end), handover};
 }
@@ -182,7 +186,8 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
   double left = flow.dt;
   for (int hits = 0;; ++hits) {
     GateState end = s;
-    const Glide glided = hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
+    const Glide glided =
+        hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
 
     std::array<bool, 2> hit{false, false};
     double overlap = 0.0;  // m
@@ -195,7 +200,7 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       overlap = std::max(overlap, -gap);
     }
     watch.evaluations += 2 + 3 * s.beams[kLeft].held + 3 * s.beams[kRight].held;
-    // The contact force jumps where a contact changes its kind: only a short piece may step over it.
+    // The contact force jumps where a contact changes its kind: only a short piece may cross that.
     if (hits == 0 && glided.handover && !finest) return 0.0;
     const double start = flow.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {

@@ -19,8 +19,8 @@ namespace gatewalk::dynamics {
 
 class StableMethod final : public Method {
  public:
-  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be halved
-  /// more than 10 times.
+  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be
+  /// halved more than 10 times.
   explicit StableMethod(const GateParams& p);
 
   double advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
@@ -29,8 +29,8 @@ class StableMethod final : public Method {
  private:
   /// How often a step of `step` seconds must be halved for the beams that matter in `s`.
   [[nodiscard]] int halvings(const GateState& s, double step) const;
-  /// Returns the time passed: flow.dt, or less when the body has left the gate; 0, and `s` as it was,
-  /// when a piece that is not the `finest` is to be halved.
+  /// Returns the time passed: flow.dt, or less when the body has left the gate; 0, and `s` as it
+  /// was, when a piece that is not the `finest` is to be halved.
   double substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
                  bool finest, Watch& watch) const;
   struct Glide {
@@ -38,11 +38,10 @@ class StableMethod final : public Method {
     bool handover = false;      // one of them changed its kind on the way
   };
   /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
-  Glide glide(GateState& s, double force_x, const GateFlow& flow,
-                             const GateFlow& half_flow) const;
+  Glide glide(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow) const;
   Glide glide(GateState& s, double force_x, double dt) const;
   Glide glide_held(GateState& s, double force_x, const GateFlow& flow,
-                                  const GateFlow& half_flow) const;
+                   const GateFlow& half_flow) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
                                  double dt, std::array<bool, 2> hit, Watch& watch) const;
