@@ -13,7 +13,7 @@ constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per subste
 constexpr double kMaxTurn = 0.05;         // rad that a held beam may turn in a substep
 constexpr int kMaxHalvings = 10;          // for the fastest beam
 constexpr int kContactHalvings = 4;       // for a held contact that turns fast or changes its kind
-constexpr int kMaxHits = 50;              // in one substep, then contacts are held
+constexpr int kMaxHits = 50;              // in one substep, then hits end in constraints
 
 /// How often `phase` must be halved, up to `limit` times, not to exceed `most`.
 int halvings_for(double phase, double most, int limit) {
@@ -118,20 +118,18 @@ int StableMethod::halvings(const GateState& s, double step) const {
     const BeamState& beam = s.beams[side];
     const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
     const double inertia = p_.beams.inertia();
-    if (beam.held) {
-      // The explicit contact force must follow both of its rates.
-      rate = std::max({rate, std::sqrt(k / inertia), p_.beams.damping / inertia});
-      turning = std::max(turning, std::abs(beam.omega));
-    } else if (deepest_ > 0) {
-      // Alone it moves in closed form; but while it swings it could hit and be gone again unseen.
-      const double decay = 0.5 * p_.beams.damping / inertia, swing = k / inertia;
-      if (swing <= decay * decay) continue;
+    if (beam.held) turning = std::max(turning, std::abs(beam.omega));
+    if (deepest_ == 0) continue;
+    if (!beam.held) {
+      // Alone it moves in closed form; but it could hit and be gone again unseen, or be held.
       const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
-      const double turn = std::sqrt(beam.omega * beam.omega + swing * beam.theta * beam.theta);
+      const double swing = std::sqrt(k / inertia) * beam.theta;
+      const double turn = std::sqrt(beam.omega * beam.omega + swing * swing);
       const double approach = (speed + p_.beams.length * turn) * step;
-      if (!out_of_reach(p_, side, s.body, beam.theta, approach))
-        rate = std::max(rate, std::sqrt(swing));
+      if (out_of_reach(p_, side, s.body, beam.theta, approach)) continue;
     }
+    // The explicit contact force must follow both of its rates.
+    rate = std::max({rate, std::sqrt(k / inertia), p_.beams.damping / inertia});
   }
   // A light beam that a heavy disc holds near the joint may turn faster than any piece follows.
   return std::max(halvings_for(step * rate, kMaxPhase, deepest_),
@@ -207,11 +205,11 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       const GateState before = s;
       s = end;
       watch.max_penetration = std::max(watch.max_penetration, overlap);
-      return outside(p_, s.body) ? start + back_to_exit(p_, before, s, left) : flow.dt;
+      return outside(p_, s.body) ? start + leave(before, s, left) : flow.dt;
     }
-    if (hits == kMaxHits) {
-      // Hits pile up faster than the step resolves them: finish the substep held together.
-      ++watch.forced_holds;
+    // Hits pile up faster than the step resolves them: from here on each one ends in a constraint.
+    watch.forced_holds += hits == kMaxHits;
+    if (hits == 2 * kMaxHits) {  // not even that helps: finish the substep held together
       s = end;
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
       put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
@@ -220,12 +218,25 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
     }
     const GateState before = s;
     const double when = first_hit(s, force_x, end, left, hit, watch);
-    if (outside(p_, s.body)) return start + back_to_exit(p_, before, s, when);
+    if (outside(p_, s.body)) return start + leave(before, s, when);
     resolve_hits(p_, s, touching_, watch,
-                 [&](Side, double impulse, double) { return impulse < threshold_; });
+                 [&](Side, double impulse, double) {
+                   return impulse < threshold_ || hits >= kMaxHits;
+                 });
     left -= when;
     if (left <= 1e-15 * flow.dt) return flow.dt;
   }
+}
+
+double StableMethod::leave(const GateState& before, GateState& s, double dt) const {
+  const double when = back_to_exit(p_, before, s, dt);
+  // A free beam may swing many times in a step: no cubic follows that, its closed form does.
+  for (const Side side : {kLeft, kRight}) {
+    if (before.beams[side].held) continue;
+    s.beams[side] = before.beams[side];
+    law_.beams[side].over(when).apply(s.beams[side], 0.0);
+  }
+  return when;
 }
 
 double StableMethod::first_hit(GateState& s, double force_x, const GateState& end, double dt,

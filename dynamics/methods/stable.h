@@ -42,6 +42,9 @@ class StableMethod final : public Method {
   Glide glide(GateState& s, double force_x, double dt) const;
   Glide glide_held(GateState& s, double force_x, const GateFlow& flow,
                    const GateFlow& half_flow) const;
+  /// Takes `s`, outside though `before`, dt earlier and without hits since, was not, back to the
+  /// moment of leaving; returns how long after `before` that is.
+  double leave(const GateState& before, GateState& s, double dt) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
                                  double dt, std::array<bool, 2> hit, Watch& watch) const;
