@@ -9,13 +9,15 @@ namespace gatewalk::dynamics {
 namespace {
 
 constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
-constexpr int kMaxHalvings = 10;
-constexpr int kMaxHits = 50;              // in one substep, then contacts are held
+constexpr double kMaxTurn = 0.05;         // rad that a held beam may turn in a substep
+constexpr int kMaxHalvings = 10;          // for the fastest beam
+constexpr int kContactHalvings = 4;       // for a held contact that turns fast or changes its kind
+constexpr int kMaxHits = 50;              // in one substep, then hits end in constraints
 
-/// How often `step` is halved until a motion of `rate` (1/s) is followed well.
-int halvings_for(double step, double rate) {
+/// How often `phase` must be halved, up to `limit` times, not to exceed `most`.
+int halvings_for(double phase, double most, int limit) {
   int n = 0;
-  for (double phase = step * rate; phase > kMaxPhase; phase *= 0.5) ++n;
+  for (; phase > most && n < limit; phase *= 0.5) ++n;
   return n;
 }
 
@@ -75,36 +77,36 @@ StableMethod::StableMethod(const GateParams& p)
     : p_(p),
       threshold_(p.contact.impulse_threshold * p.run.step / kPaperStep),
       touching_(1e-10 * p.body.radius),
+      finest_(kContactHalvings),
       law_(p) {
   refuse_too_fast(p);
-  const double inertia = p.beams.inertia(), damping = p.beams.damping / inertia;
+  const double inertia = p.beams.inertia();
   for (const Side side : {kLeft, kRight}) {
-    const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
-    Halvings& h = halvings_[side];
-    // The explicit contact force must follow both rates of a held beam. A free one moves in closed
-    // form; but while it swings it could hit and be gone again unseen.
-    h.held = halvings_for(p.run.step, std::max(std::sqrt(k / inertia), damping));
-    h.swing = k / inertia > 0.25 * damping * damping ? k / inertia : 0.0;
-    h.swinging = halvings_for(p.run.step, std::sqrt(h.swing));
-    deepest_ = std::max(deepest_, h.held);
+    // The explicit contact force must follow both of a held beam's rates.
+    swing_[side] = (side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right) / inertia;
+    const double rate = std::max(std::sqrt(swing_[side]), p.beams.damping / inertia);
+    halvings_[side] = halvings_for(p.run.step * rate, kMaxPhase, kMaxHalvings);
+    finest_ = std::max(finest_, halvings_[side]);
   }
-  flows_ = halved_flows(law_, p.run.step, deepest_);
+  flows_ = halved_flows(law_, p.run.step, finest_);
 }
 
 double StableMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                              Watch& watch) const {
   const Spell spell(p_, duration);
   std::vector<GateFlow> own;
-  if (!spell.usual) own = halved_flows(law_, spell.step, deepest_);
+  if (!spell.usual) own = halved_flows(law_, spell.step, finest_);
   const std::vector<GateFlow>& flows = spell.usual ? flows_ : own;
   for (long i = 0; i < spell.steps; ++i) {
     // Substeps are halves, quarters ... of the step, each begun at a multiple of its own length.
     double passed = 0.0, longest = 0.0;
-    const int units = 1 << deepest_;
+    const int units = 1 << finest_;
     for (int unit = 0; unit < units && !outside(p_, s.body);) {
       int n = halvings(s);
       while (unit % (units >> n) != 0) ++n;
-      passed += substep(s, force_x, flows[n], flows[n + 1], watch);
+      double time = 0.0;
+      while ((time = substep(s, force_x, flows[n], flows[n + 1], n == finest_, watch)) == 0.0) ++n;
+      passed += time;
       longest = std::max(longest, flows[n].dt);
       unit += units >> n;
     }
@@ -117,40 +119,43 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
 }
 
 int StableMethod::halvings(const GateState& s) const {
-  if (deepest_ == 0) return 0;
-  const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
   int most = 0;
+  double turning = 0.0;  // rad/s
   for (const Side side : {kLeft, kRight}) {
     const BeamState& beam = s.beams[side];
-    const Halvings& h = halvings_[side];
-    if (beam.held) {
-      most = std::max(most, h.held);
-    } else if (h.swinging > most) {
-      const double turn = std::sqrt(beam.omega * beam.omega + h.swing * beam.theta * beam.theta);
+    if (beam.held) turning = std::max(turning, std::abs(beam.omega));
+    if (halvings_[side] <= most) continue;
+    if (!beam.held) {
+      // Alone it moves in closed form; but it could hit and be gone again unseen, or be held.
+      const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
+      const double turn =
+          std::sqrt(beam.omega * beam.omega + swing_[side] * beam.theta * beam.theta);
       const double approach = (speed + p_.beams.length * turn) * p_.run.step;
-      if (!out_of_reach(p_, side, s.body, beam.theta, approach)) most = h.swinging;
+      if (out_of_reach(p_, side, s.body, beam.theta, approach)) continue;
     }
+    most = halvings_[side];
   }
-  return most;
+  // A light beam that a heavy disc holds near the joint may turn faster than any piece follows.
+  return std::max(most, halvings_for(p_.run.step * turning, kMaxTurn, finest_));
 }
 
-std::array<Touch, 2> StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
-                                         const GateFlow& half_flow) const {
+StableMethod::Glide StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
+                                        const GateFlow& half_flow) const {
   if (s.beams[kLeft].held || s.beams[kRight].held)
     return glide_held(s, force_x, flow, half_flow);
   fly(p_, flow, force_x, {}, s);
   return {};
 }
 
-std::array<Touch, 2> StableMethod::glide(GateState& s, double force_x, double dt) const {
+StableMethod::Glide StableMethod::glide(GateState& s, double force_x, double dt) const {
   if (s.beams[kLeft].held || s.beams[kRight].held)
     return glide_held(s, force_x, law_.over(dt), law_.over(0.5 * dt));
   fly(p_, law_, dt, force_x, s);
   return {};
 }
 
-std::array<Touch, 2> StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
-                                              const GateFlow& half_flow) const {
+StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
+                                             const GateFlow& half_flow) const {
   const auto held = held_of(s);
   // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
   const auto start = touches(p_, s, held);
@@ -165,21 +170,25 @@ std::array<Touch, 2> StableMethod::glide_held(GateState& s, double force_x, cons
   // Only push: without force at mid-step the contact is over, unless the bodies still overlap.
   std::array<bool, 2> keep = held;
   const auto end = touches(p_, s, held, middle);
+  bool handover = false;
   for (const Side side : {kLeft, kRight}) {
     if (held[side] && force[side] == 0.0 && end[side].gap >= 0.0) {
       keep[side] = false;
       s.beams[side].held = false;
     }
+    const ContactKind kind = start[side].kind;
+    handover |= held[side] && (middle[side].kind != kind || end[side].kind != kind);
   }
-  return put_back(p_, s, keep, end);
+  return {put_back(p_, s, keep, end), handover};
 }
 
 double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
-                             const GateFlow& half_flow, Watch& watch) const {
+                             const GateFlow& half_flow, bool finest, Watch& watch) const {
   double left = flow.dt;
   for (int hits = 0;; ++hits) {
     GateState end = s;
-    const auto shut = hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
+    const Glide glided =
+        hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
 
     std::array<bool, 2> hit{false, false};
     double overlap = 0.0;  // m
@@ -187,21 +196,23 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       const BeamState& beam = end.beams[side];
       if (!beam.held && out_of_reach(p_, side, end.body, beam.theta)) continue;
       const double gap =
-          beam.held ? shut[side].gap : nearest(p_, side, end.body, beam.theta).gap;
+          beam.held ? glided.shut[side].gap : nearest(p_, side, end.body, beam.theta).gap;
       hit[side] = !beam.held && gap < -touching_;
       overlap = std::max(overlap, -gap);
     }
     watch.evaluations += 2 + 3 * s.beams[kLeft].held + 3 * s.beams[kRight].held;
+    // The contact force jumps where a contact changes its kind: only a short piece may cross that.
+    if (hits == 0 && glided.handover && !finest) return 0.0;
     const double start = flow.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {
       const GateState before = s;
       s = end;
       watch.max_penetration = std::max(watch.max_penetration, overlap);
-      return outside(p_, s.body) ? start + back_to_exit(p_, before, s, left) : flow.dt;
+      return outside(p_, s.body) ? start + leave(before, s, left) : flow.dt;
     }
-    if (hits == kMaxHits) {
-      // Hits pile up faster than the step resolves them: finish the substep held together.
-      ++watch.forced_holds;
+    // Hits pile up faster than the step resolves them: from here on each one ends in a constraint.
+    watch.forced_holds += hits == kMaxHits;
+    if (hits == 2 * kMaxHits) {  // not even that helps: finish the substep held together
       s = end;
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
       put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
@@ -210,12 +221,25 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
     }
     const GateState before = s;
     const double when = first_hit(s, force_x, end, left, hit, watch);
-    if (outside(p_, s.body)) return start + back_to_exit(p_, before, s, when);
+    if (outside(p_, s.body)) return start + leave(before, s, when);
     resolve_hits(p_, s, touching_, watch,
-                 [&](Side, double impulse, double) { return impulse < threshold_; });
+                 [&](Side, double impulse, double) {
+                   return impulse < threshold_ || hits >= kMaxHits;
+                 });
     left -= when;
     if (left <= 1e-15 * flow.dt) return flow.dt;
   }
+}
+
+double StableMethod::leave(const GateState& before, GateState& s, double dt) const {
+  const double when = back_to_exit(p_, before, s, dt);
+  // A free beam may swing many times in a step: no cubic follows that, its closed form does.
+  for (const Side side : {kLeft, kRight}) {
+    if (before.beams[side].held) continue;
+    s.beams[side] = before.beams[side];
+    law_.beams[side].over(when).apply(s.beams[side], 0.0);
+  }
+  return when;
 }
 
 double StableMethod::first_hit(GateState& s, double force_x, const GateState& end, double dt,

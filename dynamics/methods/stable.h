@@ -8,6 +8,10 @@
 /// constraint, along the mass metric, so that it can neither drift nor add energy. Contact forces
 /// only push: a contact whose force would pull is released.
 ///
+/// A step is taken in pieces, halves of halves, where it is too long: for contact forces on stiff or
+/// damped beams, for a held beam that turns fast, for a held contact that moves from a beam's side
+/// to its joint or tip.
+///
 /// The impulse threshold shrinks with the step, epsilon * step / 0.004 s: with a fixed one the
 /// error of a trajectory stops falling.
 
@@ -19,8 +23,8 @@ namespace gatewalk::dynamics {
 
 class StableMethod final : public Method {
  public:
-  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be halved
-  /// more than 10 times.
+  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be
+  /// halved more than 10 times.
   explicit StableMethod(const GateParams& p);
 
   double advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
@@ -29,16 +33,22 @@ class StableMethod final : public Method {
  private:
   /// How often a step must be halved for the beams that matter in `s`.
   [[nodiscard]] int halvings(const GateState& s) const;
-  /// Returns the time passed: flow.dt, or less when the body has left the gate.
+  /// Returns the time passed: flow.dt, or less when the body has left the gate; 0, and `s` as it
+  /// was, when a piece that is not the `finest` is to be halved.
   double substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
-                 Watch& watch) const;
-  /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams. Returns
-  /// where the held contacts are at the end.
-  std::array<Touch, 2> glide(GateState& s, double force_x, const GateFlow& flow,
-                             const GateFlow& half_flow) const;
-  std::array<Touch, 2> glide(GateState& s, double force_x, double dt) const;
-  std::array<Touch, 2> glide_held(GateState& s, double force_x, const GateFlow& flow,
-                                  const GateFlow& half_flow) const;
+                 bool finest, Watch& watch) const;
+  struct Glide {
+    std::array<Touch, 2> shut;  // where the held contacts are at the end
+    bool handover = false;      // one of them changed its kind on the way
+  };
+  /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
+  Glide glide(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow) const;
+  Glide glide(GateState& s, double force_x, double dt) const;
+  Glide glide_held(GateState& s, double force_x, const GateFlow& flow,
+                   const GateFlow& half_flow) const;
+  /// Takes `s`, outside though `before`, dt earlier and without hits since, was not, back to the
+  /// moment of leaving; returns how long after `before` that is.
+  double leave(const GateState& before, GateState& s, double dt) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
                                  double dt, std::array<bool, 2> hit, Watch& watch) const;
@@ -46,15 +56,11 @@ class StableMethod final : public Method {
   const GateParams& p_;
   double threshold_;      // N s
   double touching_;       // m, gaps up to this count as contact at a moment of impact
-  struct Halvings {       // of a step that a beam needs, 0 unless it is very stiff
-    int held = 0;
-    int swinging = 0;
-    double swing = 0.0;   // 1/s^2, square of its frequency; 0: it creeps
-  };
-  std::array<Halvings, 2> halvings_;
-  int deepest_ = 0;       // the most that occur
+  std::array<double, 2> swing_{};  // 1/s^2, k/I
+  std::array<int, 2> halvings_{};  // of a step that each beam needs, 0 unless it is very stiff
+  int finest_;                     // halvings that any piece may need
   GateLaw law_;
-  std::vector<GateFlow> flows_;  // over the step, halved 0 .. deepest + 1 times
+  std::vector<GateFlow> flows_;  // over the step, halved 0 .. finest + 1 times
 };
 
 }  // namespace gatewalk::dynamics

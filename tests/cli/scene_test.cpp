@@ -79,7 +79,7 @@ impulse_threshold_Ns = 0.04
 
 [run]
 method = "stable"
-step_s = 0.004
+step_s = 0.02
 time_limit_s = 12.0
 traverse_y_m = 60.0
 event_tolerance_m = 0.01
@@ -367,7 +367,7 @@ const Malformed kMalformed[] = {
     {"Method", "[run]\nmethod = \"euler\"\n", 2, "run.method = \"euler\"", "\"paper\", \"stable\""},
     {"StepDoesNotFit", "[run]\n\nstep_s = 0.003\n", 3, "run.step_s = 0.003 ",
      "0.00333333333 and 0.00285714286"},
-    {"RateDoesNotFit", "[forces]\nrandom_rate_Hz = 30\n", 2, "run.step_s = 0.004 ",
+    {"RateDoesNotFit", "[forces]\nrandom_rate_Hz = 30\n", 2, "run.step_s = 0.02 ",
      "forces.random_rate_Hz = 30"},
     {"TooManySteps", "[run]\nstep_s = 1e-10\n", 2, "run.time_limit_s = 12 ", "run.step_s = 1e-10"},
     {"BigBody", "[body]\nradius_m = 30\n", 2, "body.radius_m = 30 ", "beams.joint_y_m = 30"},

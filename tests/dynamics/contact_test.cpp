@@ -716,5 +716,55 @@ TEST(ContactForces, PushOnlyNeverPulls) {
   EXPECT_EQ(contact_forces(p, s, t, 0.0, {true, false}, push_only)[kLeft], 0.0);
 }
 
+// ---- Direction ----
+
+// Series below 1/16 rad, cos and sin beyond. Each rounds a handful of times, numbers up to 1.
+TEST(Direction, TurnedToIsTheDirectionItself) {
+  const auto expect = [](double from, double to) {
+    const Direction d = Direction::of(from).turned_to(to);
+    EXPECT_EQ(d.theta, to);
+    // The angle between the two is itself rounded, by half an eps of it.
+    EXPECT_NEAR(d.c, std::cos(to), 3 * kEps) << from << ' ' << to;
+    EXPECT_NEAR(d.s, std::sin(to), 3 * kEps) << from << ' ' << to;
+    EXPECT_NEAR(d.c * d.c + d.s * d.s, 1.0, 6 * kEps) << from << ' ' << to;
+  };
+  Draw draw(1);
+  for (int i = 0; i < 100'000; ++i) {
+    const double from = draw.uniform(-kPi, kPi);
+    expect(from, from + draw.sign() * draw.log_uniform(1e-17, 1.0));
+    expect(from, from + draw.uniform(-0.0625, 0.0625));
+    for (const double edge : {0.0625 * (1 - 1e-12), 0.0625, 0.0625 * (1 + 1e-12)})
+      expect(from, from + draw.sign() * edge);
+  }
+}
+
+TEST(Direction, TurnedByNothingIsTheSame) {
+  const Direction d = Direction::of(0.7), same = d.turned_to(0.7);
+  EXPECT_EQ(same.c, d.c);
+  EXPECT_EQ(same.s, d.s);
+}
+
+// A mirror image turns the other way with the same bits.
+TEST(Direction, TurnedToKeepsMirrorImages) {
+  Draw draw(2);
+  for (int i = 0; i < 1000; ++i) {
+    const double from = draw.uniform(-2, 2), to = from + draw.uniform(-0.1, 0.1);
+    const Direction a = Direction::of(from).turned_to(to), b = Direction::of(-from).turned_to(-to);
+    ASSERT_EQ(a.c, b.c);
+    ASSERT_EQ(a.s, -b.s);
+  }
+}
+
+TEST(Direction, TurnedToNowhereIsNowhere) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double to : {nan, infinity, -infinity}) {
+    EXPECT_TRUE(std::isnan(Direction::of(0.3).turned_to(to).c));
+    EXPECT_TRUE(std::isnan(Direction::of(0.3).turned_to(to).s));
+  }
+  // From nowhere it finds its way back: the angle itself is asked.
+  EXPECT_EQ(Direction::of(nan).turned_to(0.3).c, std::cos(0.3));
+}
+
 }  // namespace
 }  // namespace gatewalk::dynamics

@@ -230,6 +230,7 @@ void expect_convergence(const std::string& method, double damping, double total_
                         int changed) {
   constexpr int kTrials = 4000;
   GateParams p = test::study(damping);
+  p.run.step = 0.004;
   const auto reference = endings(p, kTrials);
   p.run.method = method;
   const Difference coarse = difference(reference, endings(p, kTrials));

@@ -152,6 +152,7 @@ TEST_P(Gate, LateralSpeedHasTheStandardDeviationOfHeldForce) {
 
 // The force goes on where the last gate left it: two runs of 1 s are one of 2 s.
 TEST_P(Gate, RandomForceGoesOnAcrossRuns) {
+  p.run.step = 0.004;
   p.forces.random = 20.0;
   p.beams.joint_x = 1e5;
   p.run.time_limit = 2.0;

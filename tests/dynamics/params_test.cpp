@@ -66,7 +66,7 @@ constexpr ExpectedRange kContract[] = {
     {"contact.restitution", 0.8, "[0, 1]"},
     {"contact.tip_restitution", 1.0, "[0, 1]"},
     {"contact.impulse_threshold_Ns", 0.04, "[0, 1e+06]"},
-    {"run.step_s", 0.004, "(0, 1]"},
+    {"run.step_s", 0.02, "(0, 1]"},
     {"run.time_limit_s", 12.0, "(0, 1e+06]"},
     {"run.traverse_y_m", 60.0, "(0, 1e+06]"},
     {"run.event_tolerance_m", 1e-2, "[1e-13, 1]"},
@@ -148,6 +148,8 @@ TEST(Validate, EntranceAndExitLieClearOfTheBeams) {
 
 TEST(StepsPerHold, CountsStepsOfOneDraw) {
   GateParams params;
+  EXPECT_EQ(steps_per_hold(params), 1);
+  params.run.step = 0.004;  // the paper's
   EXPECT_EQ(steps_per_hold(params), 5);
   for (const int n : {1, 2, 3, 7, 20, 80, 1000, 12345678}) {
     params.run.step = 0.02 / n;

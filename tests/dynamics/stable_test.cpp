@@ -32,7 +32,7 @@ GateState at_rest(double x, double y, double vx = 0.0, double vy = 0.0) {
 
 // ---- Free motion ----
 
-// S1: the flow is exact, 500 steps round 500 times.
+// S1: the flow is exact, 100 steps round 100 times.
 TEST(Stable, FreeBeamFollowsItsClosedForm) {
   GateParams p;
   p.forces.propulsion = 0.0;
@@ -46,8 +46,8 @@ TEST(Stable, FreeBeamFollowsItsClosedForm) {
     return std::exp(-2.4) *
            (theta0 * std::cos(2 * wd) + (omega0 + 1.2 * theta0) / wd * std::sin(2 * wd));
   };
-  EXPECT_NEAR(ride.s.beams[kLeft].theta, theta(0.5, 0.3), 500 * kEps);
-  EXPECT_NEAR(ride.s.beams[kRight].theta, theta(-0.4, 0.0), 500 * kEps);
+  EXPECT_NEAR(ride.s.beams[kLeft].theta, theta(0.5, 0.3), 100 * kEps);
+  EXPECT_NEAR(ride.s.beams[kRight].theta, theta(-0.4, 0.0), 100 * kEps);
   EXPECT_EQ(ride.watch.impacts, 0);
 }
 
@@ -61,8 +61,8 @@ TEST(Stable, FreeBeamKeepsItsEnergyWithoutDamping) {
   Ride ride(p, s);
   const double before = energy(p, ride.s);
   ride.go(12.0);
-  // 3000 steps, each of which rounds angle and speed by an eps or so.
-  EXPECT_NEAR(energy(p, ride.s) / before, 1.0, 3000 * 4 * kEps);
+  // 600 steps, each of which rounds angle and speed by an eps or so.
+  EXPECT_NEAR(energy(p, ride.s) / before, 1.0, 600 * 4 * kEps);
 }
 
 TEST(Stable, FreeBodyFollowsItsClosedForm) {
@@ -76,7 +76,7 @@ TEST(Stable, FreeBodyFollowsItsClosedForm) {
   Ride ride(p, at_rest(1.0, -2.0, 3.0, 4.0));
   ride.go(2.0, -6.0);
   const double g = 0.25, rise = (1 - std::exp(-2 * g)) / g, fall = (2 - rise) / g;
-  const double tolerance = 500 * 16 * kEps;  // 500 steps, numbers up to 10
+  const double tolerance = 100 * 16 * kEps;  // 100 steps, numbers up to 10
   EXPECT_NEAR(ride.s.body.x, 1.0 + 3.0 * rise - 3.0 * fall, tolerance);
   EXPECT_NEAR(ride.s.body.y, -2.0 + 4.0 * rise + 1.0 * fall, tolerance);
   EXPECT_NEAR(ride.s.body.vx, 3.0 * std::exp(-2 * g) - 3.0 * rise, tolerance);
@@ -87,7 +87,9 @@ TEST(Stable, FreeBodyFollowsItsClosedForm) {
 
 // S3 in a gate: 135/59, 750/59, 97.2/59.
 TEST(Stable, TangentialHitOfTheKnownAnswers) {
-  Ride ride(test::free_rods(), at_rest(-10.0, 19.97, 0.0, 15.0));
+  GateParams p = test::free_rods();
+  p.run.step = 0.004;
+  Ride ride(p, at_rest(-10.0, 19.97, 0.0, 15.0));
   ride.step();
   EXPECT_EQ(ride.watch.impacts, 1);
   EXPECT_NEAR(ride.s.body.vy, 750.0 / 59, 32 * kEps);
@@ -128,6 +130,7 @@ TEST(Stable, RestitutionIsTheRatioOfNormalSpeeds) {
 
 TEST(Stable, PlasticHitLeavesNoNormalSpeed) {
   GateParams p = test::free_rods();
+  p.run.step = 0.004;
   p.contact.restitution = 0.0;
   Ride ride(p, at_rest(-10.0, 19.97, 2.0, 15.0));
   ride.step();
@@ -188,7 +191,7 @@ double time_until_held(Ride& ride, double limit) {
 const GateState kBelowThePin = at_rest(-25.0, 20.0 - 1.0 / 3);
 
 TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
-  for (const double step : {0.004, 0.001}) {
+  for (const double step : {0.02, 0.004, 0.001}) {
     for (const double e : {0.1, 0.3, 0.5, 0.8, 0.9, 0.95, 0.99}) {
       SCOPED_TRACE(testing::Message() << "e = " << e << ", step = " << step);
       const Bouncing b{e, step, 0.04};
@@ -225,14 +228,15 @@ TEST(Zeno, NumbersOfTheKnownAnswers) {
 }
 
 // Without a threshold every flight is flown until a step holds more hits than a method can bear;
-// then contact is forced. 12 hits in one step leave less than (step / 12) / (1 - e) to bounce.
+// then contact is forced. With 50 hits in one step, its 49 flights are over 49 times as long as the
+// next; less than (step / 49) / (1 - e) is left to bounce.
 TEST(Zeno, EndsWithoutAThreshold) {
   for (const double e : {0.1, 0.5, 0.8, 0.95, 0.99}) {
     SCOPED_TRACE(e);
     const Bouncing b{e, 0.004, 0.0};
     Ride ride(b.scene(), kBelowThePin);
     const double t = time_until_held(ride, 2 * b.zeno_time());
-    EXPECT_NEAR(t, b.zeno_time(), b.step * (1 + 1 / (6 * (1 - e))));
+    EXPECT_NEAR(t, b.zeno_time(), b.step * (1 + 1 / (49 * (1 - e))));
     EXPECT_EQ(ride.watch.forced_holds, 1);
     ride.go(1.0);
     EXPECT_EQ(ride.watch.forced_holds, 1);
@@ -273,14 +277,14 @@ struct Contacts {
   int held_steps = 0;
   double gap = 0.0, rate = 0.0, overlap = 0.0;                 // held contacts; any contact
   double exit_gap = 0.0, exit_rate = 0.0, exit_overlap = 0.0;  // the same in the exit state
-  double exit_speed = 0.0;                                     // m/s, of disc and held beams' points
+  double exit_speed = 0.0;  // m/s, of the disc and of the points of beams that it touches there
 };
 
 Contacts contacts_of_trial(const GateParams& p, int trial) {
   Contacts c;
   RandomForce force(p.forces, Random(Purpose::gate, {1, 0, static_cast<std::uint64_t>(trial)}));
   Ride ride(p, {});
-  while (!outside(p, ride.s.body) && ride.watch.steps < 3000) {
+  while (!outside(p, ride.s.body) && static_cast<double>(ride.watch.steps) * p.run.step < 12.0) {
     const double f = force.value();
     force.pass(ride.step(f));
     const bool left = outside(p, ride.s.body);
@@ -293,11 +297,12 @@ Contacts contacts_of_trial(const GateParams& p, int trial) {
       const Touch t = ride.touch(side);
       const BeamState& beam = ride.s.beams[side];
       most(c.overlap, c.exit_overlap, -t.gap);
+      if (left && (beam.held || t.gap < 0.0))
+        c.exit_speed += std::abs(beam.omega) * p.beams.length;
       if (!beam.held) continue;
       ++c.held_steps;
       most(c.gap, c.exit_gap, std::abs(t.gap));
       most(c.rate, c.exit_rate, std::abs(gap_rate(t, ride.s.body, beam)));
-      if (left) c.exit_speed += std::abs(beam.omega) * p.beams.length;
     }
   }
   return c;
@@ -307,10 +312,10 @@ Contacts contacts_of_trial(const GateParams& p, int trial) {
 /// straight above or below a joint, where it may just roll from the beam's side onto the joint: its
 /// acceleration along n jumps by as much as v^2 / R. Of a jump a, at the worst place in the step h,
 /// a cubic misses a h^2 / 61 in position and a h / 12 in velocity.
-void expect_interpolated(const Contacts& c) {
-  const double jump = c.exit_speed * c.exit_speed / 10.0, h = 0.004;
-  EXPECT_LE(c.exit_gap, 1e-9 * 10.0 + jump * h * h / 61);
-  EXPECT_LE(c.exit_overlap, 1e-9 * 10.0 + jump * h * h / 61);
+void expect_interpolated(const GateParams& p, const Contacts& c) {
+  const double jump = c.exit_speed * c.exit_speed / p.body.radius, h = p.run.step;
+  EXPECT_LE(c.exit_gap, 1e-9 * p.body.radius + jump * h * h / 61);
+  EXPECT_LE(c.exit_overlap, 1e-9 * p.body.radius + jump * h * h / 61);
   EXPECT_LE(c.exit_rate, 1e-9 + jump * h / 12);
 }
 
@@ -328,7 +333,7 @@ TEST(Stable, HeldContactsNeitherDriftNorClose) {
     EXPECT_LE(c.gap, 1e-9 * 10.0);
     EXPECT_LE(c.rate, 1e-9);
     EXPECT_LE(c.overlap, 1e-9 * 10.0);
-    expect_interpolated(c);
+    expect_interpolated(GateParams{}, c);
   }
   EXPECT_GT(held_steps, 10'000);
 }
@@ -390,18 +395,130 @@ TEST(Stable, ConstraintIsSecondOrder) {
   }
 }
 
+// ---- Pieces of a step ----
+
+/// Pieces of a step, half a radian or e-fold each, that a beam of this stiffness needs.
+double pieces_of(const GateParams& p, double stiffness) {
+  const double inertia = p.beams.inertia();
+  const double rate = std::max(std::sqrt(stiffness / inertia), p.beams.damping / inertia);
+  return std::exp2(std::max(0.0, std::ceil(std::log2(p.run.step * rate / 0.5))));
+}
+
+// Alone everything is in closed form: both beams are looked at once at the end, and a stiff beam
+// swings in one piece, to the last bit.
+TEST(Pieces, FreeBeamOutOfReachNeedsOne) {
+  GateParams p;
+  p.beams.stiffness_left = 1e8;
+  ASSERT_GT(pieces_of(p, 1e8), 32.0);
+  GateState s = at_rest(0.0, -200.0);
+  s.beams[kLeft] = {0.1, 0.2, false};
+  Ride ride(p, s);
+  ride.step();
+  EXPECT_EQ(ride.watch.evaluations, 2);
+  BeamState beam = s.beams[kLeft];
+  GateLaw(p).over(p.run.step).left.apply(beam, 0.0);
+  EXPECT_TRUE(same_bits(ride.s.beams[kLeft].theta, beam.theta));
+  EXPECT_TRUE(same_bits(ride.s.beams[kLeft].omega, beam.omega));
+  for (int i = 0; i < 50; ++i) ride.step(30.0);
+  EXPECT_EQ(ride.watch.evaluations, 51 * 2);
+}
+
+// Beside a tip, 0.26 m away: both beams in each piece, whether they would swing or creep.
+TEST(Pieces, FreeBeamWithinReachNeedsItsOwn) {
+  for (const double stiffness : {400.0, 1e6, 1e8}) {
+    for (const double damping : {50.0, 1e4}) {
+      SCOPED_TRACE(testing::Message() << "k = " << stiffness << ", d = " << damping);
+      GateParams p;
+      p.beams.length = 10.0;
+      p.beams.stiffness_left = stiffness;
+      p.beams.damping = damping;
+      Ride ride(p, at_rest(-8.0, 22.5));
+      ride.step();
+      EXPECT_EQ(static_cast<double>(ride.watch.evaluations), 2 * pieces_of(p, stiffness));
+    }
+  }
+}
+
+// Pressed against the beam: the contact at start, middle and end of each piece, then both beams.
+TEST(Pieces, HeldBeamNeedsItsOwn) {
+  for (const double stiffness : {400.0, 1e6, 1e8}) {
+    for (const double damping : {50.0, 1e4}) {
+      SCOPED_TRACE(testing::Message() << "k = " << stiffness << ", d = " << damping);
+      GateParams p;
+      p.beams.stiffness_left = stiffness;
+      p.beams.damping = damping;
+      GateState s = at_rest(-10.0, 20.0);
+      s.beams[kLeft].held = true;
+      Ride ride(p, s);
+      ride.step();
+      EXPECT_TRUE(ride.s.beams[kLeft].held);
+      EXPECT_EQ(static_cast<double>(ride.watch.evaluations), 5 * pieces_of(p, stiffness));
+    }
+  }
+}
+
+// A held beam turns by at most 0.05 rad in a piece: 0.12 rad take 4.
+TEST(Pieces, HeldBeamThatTurnsFastNeedsMore) {
+  GateParams p = test::free_rods();
+  GateState s = at_rest(-10.0, 20.0, 0.0, 90.0);
+  s.beams[kLeft] = {0.0, 6.0, true};
+  p.forces.propulsion = 2000.0;  // so that it stays in contact
+  Ride ride(p, s);
+  ride.step();
+  EXPECT_TRUE(ride.s.beams[kLeft].held);
+  EXPECT_GT(ride.s.beams[kLeft].omega, 5.0);
+  EXPECT_EQ(ride.watch.evaluations, 4 * 5);
+}
+
+// A disc that slides along a held beam onto its joint: there the contact force jumps from what the
+// beam's spring asks to none of it. Over the pieces of the step, 16 at the joint, energy stays.
+TEST(Pieces, ContactThatChangesItsKindNeedsTheShortest) {
+  GateParams p = test::study(10.0);
+  p.contact.restitution = 0.0;
+  double worst = 0.0;
+  int over = 0;
+  for (const double r : {0.02, 0.07, 0.12, 0.19, 0.26, 0.33}) {
+    const double theta = 1.1, slide = 20.0;
+    GateState s;
+    s.body = {-25.0 + r * std::cos(theta) + 10.0 * std::sin(theta),
+              30.0 + r * std::sin(theta) - 10.0 * std::cos(theta), 0.0, 0.0};
+    // v = -slide along the beam plus what turns with it, Eq. (10).
+    const double omega = 0.8;
+    s.body.vx = -slide * std::cos(theta) - omega * (s.body.y - 30.0);
+    s.body.vy = -slide * std::sin(theta) + omega * (s.body.x + 25.0);
+    s.beams[kLeft] = {theta, omega, true};
+    s.beams[kRight] = {-1.5, 0.0, false};
+    Ride ride(p, s);
+    ASSERT_EQ(ride.touch(kLeft).kind, ContactKind::interior);
+    ride.step();
+    over += ride.touch(kLeft).kind == ContactKind::pin;
+    EXPECT_GE(ride.watch.evaluations, 5 * 5) << r;  // tried in 1, 1/2 ... 1/16
+    worst = std::max(worst, ride.watch.energy_created);
+  }
+  EXPECT_EQ(over, 6);
+  // Measured 0.003 of 200 J; in one piece 0.1 J.
+  EXPECT_LE(worst, 0.01);
+}
+
 // ---- Energy ----
 
 // S7: over 10^4 trials each. What is left is the midpoint rule's error in constrained motion; it
-// grows with the speed at which the disc slides along the beams, and so with Rm. Measured 1.1e-5,
-// 1.0e-4 and 1.4e-3 J, of a disc that has up to 430, 920 and 1370 J.
+// grows with the speed at which the disc slides along the beams, and so with Rm. Of a disc that has
+// up to 430, 920 and 1370 J, limits about four times what was measured:
+//     0.004 s: 9e-6, 3e-5, 6e-5 J    0.02 s: 1.3e-3, 4.7e-3, 8e-3 J
 TEST(EnergyLedger, StableCreatesNoEnergy) {
-  const double random[] = {10.0, 40.0, 60.0}, tolerance[] = {5e-5, 5e-4, 5e-3};
-  for (int i = 0; i < 3; ++i) {
+  struct Limit {
+    double step, random, created;
+  };
+  for (const Limit& limit : {Limit{0.004, 10.0, 4e-5}, Limit{0.004, 40.0, 1.2e-4},
+                             Limit{0.004, 60.0, 2.5e-4}, Limit{0.02, 10.0, 5e-3},
+                             Limit{0.02, 40.0, 2e-2}, Limit{0.02, 60.0, 3e-2}}) {
+    SCOPED_TRACE(testing::Message() << "Rm = " << limit.random << ", step " << limit.step);
     GateParams p = test::study(10.0);
-    p.forces.random = random[i];
+    p.forces.random = limit.random;
+    p.run.step = limit.step;
     const GateTally tally = run_gate_trials(p, {}, 1, {0, 10'000});
-    EXPECT_LE(tally.health.worst_energy_created, tolerance[i]) << "Rm = " << random[i];
+    EXPECT_LE(tally.health.worst_energy_created, limit.created);
     EXPECT_TRUE(tally.health.clean());
     EXPECT_LE(tally.health.worst_penetration, 1e-9 * p.body.radius);
   }
@@ -495,7 +612,7 @@ TEST(Limits, FreeRodsKeepTheEnergy) {
   EXPECT_GT(impacts, 500);
 }
 
-// k = 10^9 N m/rad, 55 pieces a step. Law: a spring never holds more than the work of propulsion.
+// k = 10^9 N m/rad, 512 pieces a step. Law: a spring never holds more than the work of propulsion.
 TEST(Limits, StiffBeamsAreARigidWall) {
   GateParams p = test::study(50.0);
   p.forces.random = 0.0;
@@ -509,8 +626,11 @@ TEST(Limits, StiffBeamsAreARigidWall) {
     EXPECT_LE(fall.watch.max_theta[kLeft], most);
     EXPECT_LE(fall.watch.max_theta[kRight], most);
     EXPECT_LE(fall.s.body.y, 20.0 + 25.0 * most);
-    // Let go near by it settles: k theta = F r, half of F for each of two tips.
-    Ride settle(p, at_rest(x, 19.99));
+    // Let go near by it settles: k theta = F r, half of F for each of two tips. d = 1000 N m s/rad
+    // damps disc and beams together at d / 2 (I + M r^2), 1.5 / s or more: e^-18 in 12 s.
+    GateParams damped = p;
+    damped.beams.damping = 1000.0;
+    Ride settle(damped, at_rest(x, 19.99));
     settle.go(12.0);
     const double r = x + 25.0, share = x == 0.0 ? 3.5 : 7.0;
     EXPECT_NEAR(settle.s.body.y, 20.0 + share * r * r / 1e9, 1e-6);
@@ -519,8 +639,8 @@ TEST(Limits, StiffBeamsAreARigidWall) {
 }
 
 TEST(Limits, BeamsTooStiffForTheStepAreRefused) {
-  // 1000 pieces of a step of 0.004 s may turn a beam's phase by 0.5 each: rates up to 125 000 / s.
-  const double inertia = GateParams{}.beams.inertia(), rate = 1000 * 0.5 / 0.004;
+  // 1024 pieces of a step of 0.02 s may turn a beam's phase by 0.5 each: rates up to 25 600 / s.
+  const double inertia = GateParams{}.beams.inertia(), rate = 1024 * 0.5 / 0.02;
   const auto refused = [](const GateParams& p) {
     try {
       (void)StableMethod(p);
@@ -539,7 +659,7 @@ TEST(Limits, BeamsTooStiffForTheStepAreRefused) {
   EXPECT_EQ(refused(p), "");
   p.beams.damping = 1.001 * rate * inertia;
   EXPECT_EQ(refused(p), "run.step_s");
-  p.run.step = 0.002;
+  p.run.step = 0.01;
   EXPECT_EQ(refused(p), "");
 }
 
@@ -574,7 +694,7 @@ TEST(Limits, PlasticAndElasticTrialsAreHealthy) {
     tbb::parallel_for(0, 500, [&](int trial) { seen[trial] = contacts_of_trial(p, trial); });
     for (const Contacts& c : seen) {
       EXPECT_LE(c.overlap, 1e-9 * p.body.radius) << e;
-      expect_interpolated(c);
+      expect_interpolated(p, c);
     }
   }
 }
@@ -585,6 +705,7 @@ TEST(Limits, PlasticAndElasticTrialsAreHealthy) {
 // Each is found to 1e-12 R or so and stretches the errors before it. Measured 2.4e-12.
 TEST(Reversal, ReturnsToTheStart) {
   GateParams p = test::study(0.0);
+  p.run.step = 0.004;
   p.forces.random = 0.0;
   p.contact.restitution = 1.0;
   p.contact.impulse_threshold = 0.0;
@@ -687,7 +808,7 @@ TEST(NearSingular, CentreOnTheJoint) {
 
 // Scenes from corner to corner: soft and stiff, light and heavy, plastic and elastic.
 TEST(Stable, RunsAnySceneItAccepts) {
-  constexpr int kScenes = 2000;
+  constexpr int kScenes = 6000;
   struct Seen {
     bool refused = false, broken = false, light = false;
     double overlap = 0.0, created = 0.0;
@@ -715,7 +836,8 @@ TEST(Stable, RunsAnySceneItAccepts) {
       const auto method = make_method(p);
       RandomForce force(p.forces, Random(Purpose::gate, {1, 0, static_cast<std::uint64_t>(i)}));
       const GateRun run = run_gate(p, *method, {draw.uniform(-20, 20), 0, 0, 15}, force);
-      const double energy = p.body.mass * run.watch.max_speed * run.watch.max_speed;
+      const double speed = std::max(15.0, run.watch.max_speed);
+      const double energy = p.body.mass * speed * speed;
       seen[i] = {false, run.ending == Ending::broken, p.beams.mass < p.body.mass,
                  run.watch.max_penetration, run.watch.energy_created / energy};
     } catch (const InvalidParameter& e) {
@@ -741,6 +863,7 @@ TEST(Stable, RunsAnySceneItAccepts) {
 
 TEST(Stable, WatchKeepsTheLargest) {
   GateParams p;
+  const double h = p.run.step;
   p.forces.propulsion = 0.0;
   GateState s;
   s.beams[kLeft].theta = -0.3;
@@ -755,8 +878,9 @@ TEST(Stable, WatchKeepsTheLargest) {
   }
   EXPECT_EQ(ride.watch.max_theta[kRight], right);
   EXPECT_GT(right, 0.2);
-  EXPECT_NEAR(ride.watch.max_theta[kLeft], 0.3, 0.3 * 4.4 * 4.4 / 2 * 0.004 * 0.004 + 1e-12);
-  EXPECT_NEAR(ride.watch.max_speed, 5.0 * std::exp(-0.06 * 0.004), 1e-12);
+  // Seen first after a step.
+  EXPECT_NEAR(ride.watch.max_theta[kLeft], 0.3, 0.3 * 4.4 * 4.4 / 2 * h * h);
+  EXPECT_NEAR(ride.watch.max_speed, 5.0 * std::exp(-0.06 * h), 1e-12);
   EXPECT_EQ(ride.watch.steps, 250);
 }
 
@@ -764,7 +888,9 @@ TEST(Stable, WatchKeepsTheLargest) {
 
 // A straight line: only rounding, of 25 m in each of 125 steps.
 TEST(Stable, StopsWhereTheBodyLeavesTheGate) {
-  Ride ride(test::free_rods(), at_rest(20.0, 0.0, 10.0, 0.0));
+  GateParams p = test::free_rods();
+  p.run.step = 0.004;
+  Ride ride(p, at_rest(20.0, 0.0, 10.0, 0.0));
   const double passed = ride.go(1.0);
   EXPECT_TRUE(outside(ride.p, ride.s.body));
   EXPECT_NEAR(ride.s.body.x, 25.0, 4 * 25 * kEps);
@@ -773,8 +899,8 @@ TEST(Stable, StopsWhereTheBodyLeavesTheGate) {
 }
 
 // Under drag and force the way is no cubic, but over one step all but. y'''' <= D^2 (F + D v), which
-// is 2.3 m/s^4 at 2 m/s downwards; a cubic misses y'''' h^4 / 384 = 1.5e-12 m and
-// y'''' h^3 / 125 = 1.2e-9 m/s.
+// is 2.3 m/s^4 at 2 m/s downwards; a cubic misses y'''' h^4 / 384 in position and
+// y'''' h^3 / 125 in velocity: 1.5e-12 m and 1.2e-9 m/s at 0.004 s.
 TEST(Stable, LeavesACurvedFlightOnTheBorder) {
   GateParams p = test::free_rods();
   p.forces.propulsion = 8.0;
@@ -790,19 +916,23 @@ TEST(Stable, LeavesACurvedFlightOnTheBorder) {
     const double t = 0.5 * (inside + beyond);
     (start.y + moved(start.vy, a, t) > p.run.traverse_y ? beyond : inside) = t;
   }
-  Ride ride(p, {start, {}});
-  ride.s.beams[kLeft].theta = ride.s.beams[kRight].theta = -1.5;  // out of the way
-  const double passed = ride.go(10.0);
-  EXPECT_NEAR(passed, beyond, 1.5e-12 / 11.0);  // at 11 m/s
-  EXPECT_NEAR(ride.s.body.y, p.run.traverse_y, 4 * 60 * kEps);
-  EXPECT_GT(ride.s.body.y, p.run.traverse_y);
-  EXPECT_NEAR(ride.s.body.x, start.x + moved(start.vx, 0.0, beyond), 3e-12);
-  const double decay = std::exp(-g * beyond);
-  EXPECT_NEAR(ride.s.body.vy, start.vy * decay + a * (1 - decay) / g, 1.2e-9);
+  for (const double h : {0.004, 0.02}) {
+    SCOPED_TRACE(h);
+    p.run.step = h;
+    Ride ride(p, {start, {}});
+    ride.s.beams[kLeft].theta = ride.s.beams[kRight].theta = -1.5;  // out of the way
+    const double passed = ride.go(10.0), miss = 2.3 * std::pow(h, 4) / 384;
+    EXPECT_NEAR(passed, beyond, miss / 11.0);  // at 11 m/s
+    EXPECT_NEAR(ride.s.body.y, p.run.traverse_y, 4 * 60 * kEps);
+    EXPECT_GT(ride.s.body.y, p.run.traverse_y);
+    EXPECT_NEAR(ride.s.body.x, start.x + moved(start.vx, 0.0, beyond), 2 * miss);
+    const double decay = std::exp(-g * beyond);
+    EXPECT_NEAR(ride.s.body.vy, start.vy * decay + a * (1 - decay) / g, 2.3 * std::pow(h, 3) / 125);
+  }
 }
 
 // Below the left joint, 5 m/s upwards: the pin is hit after 2 ms, e = 0.8. The disc leaves by the
-// side before or after that, within the same step of 4 ms; what was not yet must not be seen.
+// side before or after that, within the same step; what was not yet must not be seen.
 TEST(Stable, LeavesBeforeOrAfterAHitInTheSameStep) {
   for (const double vx : {-1.0, -0.3}) {
     SCOPED_TRACE(vx);
@@ -817,6 +947,25 @@ TEST(Stable, LeavesBeforeOrAfterAHitInTheSameStep) {
     EXPECT_NEAR(ride.s.body.y, after ? 20.0 - 4.0 * (when - 0.002) : 19.995,
                 after ? 1e-4 : 5 * 4 * 25 * kEps);
   }
+}
+
+// A free beam may swing many times in the step in which the disc leaves: 4.4 rad here. Its state
+// then is its closed form at that moment; 4.4 rad are known to as many eps.
+TEST(Stable, LeavesWithFreeBeamsInClosedForm) {
+  GateParams p = test::free_rods();
+  p.beams.stiffness_left = 1e6;
+  p.beams.damping = 50.0;
+  GateState s = at_rest(24.9, -50.0, 10.0, 0.0);  // at the side after 10 ms
+  s.beams[kLeft] = {0.1, 3.0, false};
+  Ride ride(p, s);
+  const double passed = ride.step();
+  EXPECT_TRUE(outside(ride.p, ride.s.body));
+  EXPECT_NEAR(passed, 0.01, 4 * 25 * kEps);
+  BeamState beam = s.beams[kLeft];
+  GateLaw(p).beams[kLeft].over(passed).apply(beam, 0.0);
+  EXPECT_NEAR(ride.s.beams[kLeft].theta, beam.theta, 16 * kEps * 0.1);
+  EXPECT_NEAR(ride.s.beams[kLeft].omega, beam.omega, 16 * kEps * 22.0);
+  EXPECT_EQ(ride.watch.energy_created, 0.0);
 }
 
 }  // namespace
