@@ -8,6 +8,10 @@
 /// constraint, along the mass metric, so that it can neither drift nor add energy. Contact forces
 /// only push: a contact whose force would pull is released.
 ///
+/// A step is taken in pieces, halves of halves, where it is too long: for contact forces on stiff or
+/// damped beams, for a held beam that turns fast, for a held contact that moves from a beam's side
+/// to its joint or tip.
+///
 /// The impulse threshold shrinks with the step, epsilon * step / 0.004 s: with a fixed one the
 /// error of a trajectory stops falling.
 
