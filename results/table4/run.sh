@@ -7,6 +7,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 gatewalk=${1:-$root/build/gatewalk}
+. "$root/results/manifest.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -14,10 +15,11 @@ trap 'rm -rf "$work"' EXIT
   >"$here/validation.txt" 2>/dev/null
 
 echo "method,damping,trials,traversed_left_percent,exited_percent,trapped_percent" >"$here/single_gate.csv"
-for method in stable paper; do
+for setting in "stable 0.02" "paper 0.004"; do
+  read -r method step <<<"$setting"
   for d in 10 50; do
     "$gatewalk" gate "$root/scenes/single_gate.toml" --trials 20000 --seed 1 --quiet --json "$work/g.json" \
-      --set run.method=$method --set forces.propulsion_N=7 --set forces.random_N=10 \
+      --set run.method=$method --set run.step_s=$step --set forces.propulsion_N=7 --set forces.random_N=10 \
       --set beams.stiffness_left_Nm_per_rad=300 --set beams.stiffness_right_Nm_per_rad=500 \
       --set beams.damping_Nms_per_rad=$d
     jq -r --arg m $method --arg d $d '[$m, $d, .trials, .traversed_left * 100 / .trials,
@@ -37,8 +39,4 @@ for scene in single_gate field; do
   done
 done
 
-{
-  echo "command: results/table4/run.sh"
-  echo "program: $("$gatewalk" --version)"
-  echo "machine: $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores, $(. /etc/os-release && echo "$PRETTY_NAME")"
-} >"$here/manifest.txt"
+manifest "results/table4/run.sh" >"$here/manifest.txt"
