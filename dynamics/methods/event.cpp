@@ -320,11 +320,14 @@ double EventMethod::fly_on(GateState& s, double force_x, double duration, Watch&
         if (outside(p_, there.body)) {
           t = back_to_exit(p_, start, there, when);
           s = there;
+          s.beams = flown(start, force_x, t).beams;
           return t;
         }
       }
     } else {
       t = back_to_exit(p_, start, s, t);
+      // A beam may swing many times in a flight: no cubic follows that, its closed form does.
+      s.beams = flown(start, force_x, t).beams;
       return t;
     }
     if (over || !std::isfinite(s.body.vx + s.body.vy)) return t;

@@ -10,6 +10,7 @@
 
 #include "dynamics/ensemble.h"
 #include "dynamics/gate.h"
+#include "tests/support/measured.h"
 #include "tests/support/numbers.h"
 #include "tests/support/ride.h"
 #include "tests/support/scenes.h"
@@ -20,6 +21,7 @@ namespace {
 using test::Draw;
 using test::kEps;
 using test::kPi;
+using test::measured;
 using test::Ride;
 using test::same_bits;
 
@@ -55,7 +57,7 @@ TEST(Penalty, FreeBeamIsFirstOrder) {
   const double w0 = std::sqrt(400.0 / p.beams.inertia()), wd = std::sqrt(w0 * w0 - 1.44);
   const double decay = 0.5 * std::exp(-2.4), c = std::cos(2 * wd), s = std::sin(2 * wd);
   const double theta = decay * (c + 1.2 / wd * s), omega = -decay * w0 * w0 / wd * s;
-  double last = 0.0;
+  double last = 0.0, off = 0.0;
   for (int halvings = 0; halvings <= 5; ++halvings) {
     Ride ride(penalty(p, 0.004 / (1 << halvings)), let_go(0.5));
     ride.go(2.0);
@@ -63,11 +65,16 @@ TEST(Penalty, FreeBeamIsFirstOrder) {
     const double error = std::hypot(beam.theta - theta, (beam.omega - omega) / w0);
     if (halvings == 0) {
       EXPECT_NEAR(error, 1.3e-3, 5e-5);  // the printed digits
+      measured({.requirement = 1, .method = "penalty", .what = "free beam after 2 s, error",
+                .figure = error, .unit = "rad", .limit = 1e-8});
     } else {
       EXPECT_NEAR(std::log2(last / error), 1.0, 0.1) << halvings;
+      off = std::max(off, std::abs(std::log2(last / error) - 1.0));
     }
     last = error;
   }
+  measured({.requirement = 1, .method = "penalty", .what = "order over 5 halvings, off the nominal",
+            .figure = off, .limit = 0.1});
 }
 
 // S2: without damping a step keeps I omega^2 + k theta (theta - h omega); the energy swings about
@@ -88,6 +95,8 @@ TEST(Penalty, FreeBeamKeepsItsInvariantWithoutDamping) {
   const double swing = 0.5 * std::sqrt(400.0 / inertia) * 0.004;
   EXPECT_NEAR(most, 1.0 / (1.0 - swing), 1e-4);
   EXPECT_NEAR(most, 1.009, 5e-4);  // the printed digits
+  measured({.requirement = 2, .method = "penalty", .what = "energy of an undamped beam after 12 s",
+            .figure = most - 1.0, .limit = 1e-6});
 }
 
 // Drag: v after n steps is (1 - g)^n of the start's, less what the forces add.
@@ -213,6 +222,9 @@ TEST(Penalty, SymmetricDoubleHitIsSymmetricAndNearlyTheLaws) {
         ride.step();
       EXPECT_EQ(ride.watch.impacts, 2);
       EXPECT_TRUE(same_bits(ride.s.beams[kLeft].omega, ride.s.beams[kRight].omega));
+      if (step == 0.004)
+        test::measured_double_hit("penalty", ride.s.body.vy, ride.s.beams[kLeft].omega,
+                                  ride.s.beams[kRight].omega);
       EXPECT_EQ(ride.s.body.vx, 0.0);
       EXPECT_NEAR(ride.s.body.vy, 10.78125, 0.11);
       // Momentum: 2 J = M dv, J r = I omega.
@@ -279,7 +291,7 @@ std::array<double, 2> energy_created(const GateParams& p) {
 // With the contacts' springs counted, what appears falls with the step at first order. Measured
 // means 0.364, 0.163 and 0.079 J, worst 1.8, 1.4 and 0.5 J of a disc that has up to 430 J.
 TEST(Penalty, EnergyCreatedFallsWithTheStep) {
-  double last = 0.0;
+  double last = 0.0, order = 10.0;
   for (const double step : {0.004, 0.002, 0.001}) {
     GateParams p = penalty(test::study(10.0), step);
     p.contact.tip_restitution = p.contact.restitution;
@@ -287,9 +299,12 @@ TEST(Penalty, EnergyCreatedFallsWithTheStep) {
     EXPECT_LE(worst, 3.0);
     if (last > 0.0) {
       EXPECT_NEAR(std::log2(last / mean), 1.0, 0.25) << step;
+      order = std::min(order, std::log2(last / mean));
     }
     last = mean;
   }
+  measured({.requirement = 5, .method = "penalty", .what = "order of the energy's error in the step",
+            .figure = order, .limit = 0.9, .at_least = true, .cases = 300});
 }
 
 // Elastic tips create more, and that falls slower. Measured worst 20 J at Rm = 40.
@@ -387,13 +402,19 @@ TEST(PenaltyBound, IsKeptByTheConstructor) {
   EXPECT_LE(ride.watch.energy_created, before / (1 - std::sqrt(room) / 2));
   p.beams.stiffness_left = 1.0001 * stiffest;
   ASSERT_LT(penalty_bound(p), 0.004);
+  std::int64_t taken = 0;
   try {
-    (void)make_method(p);
-    FAIL();
+    Ride beyond(p, let_go(0.01));
+    beyond.step();
+    taken = beyond.watch.steps;
   } catch (const InvalidParameter& e) {
     EXPECT_EQ(e.key(), "run.step_s");
     EXPECT_NE(std::string(e.what()).find("at most 0.00399"), std::string::npos) << e.what();
   }
+  EXPECT_EQ(taken, 0);
+  measured({.requirement = 12, .method = "penalty",
+            .what = "steps beyond the stability bound that are taken",
+            .figure = static_cast<double>(taken), .unit = "steps", .limit = 0.0});
   p.beams.stiffness_left = 1e12;
   EXPECT_THROW((void)make_method(p), InvalidParameter);
 }

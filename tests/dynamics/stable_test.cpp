@@ -9,6 +9,8 @@
 
 #include "dynamics/ensemble.h"
 #include "dynamics/gate.h"
+#include "tests/support/long.h"
+#include "tests/support/measured.h"
 #include "tests/support/mirror.h"
 #include "tests/support/near_singular.h"
 #include "tests/support/numbers.h"
@@ -21,8 +23,10 @@ namespace {
 using test::Draw;
 using test::kEps;
 using test::kPi;
+using test::measured;
 using test::Ride;
 using test::same_bits;
+using test::usual_or_full;
 
 GateState at_rest(double x, double y, double vx = 0.0, double vy = 0.0) {
   GateState s;
@@ -46,8 +50,11 @@ TEST(Stable, FreeBeamFollowsItsClosedForm) {
     return std::exp(-2.4) *
            (theta0 * std::cos(2 * wd) + (omega0 + 1.2 * theta0) / wd * std::sin(2 * wd));
   };
-  EXPECT_NEAR(ride.s.beams[kLeft].theta, theta(0.5, 0.3), 100 * kEps);
-  EXPECT_NEAR(ride.s.beams[kRight].theta, theta(-0.4, 0.0), 100 * kEps);
+  const double error = std::max(std::abs(ride.s.beams[kLeft].theta - theta(0.5, 0.3)),
+                                std::abs(ride.s.beams[kRight].theta - theta(-0.4, 0.0)));
+  EXPECT_LE(error, 100 * kEps);
+  measured({.requirement = 1, .method = "stable", .what = "free beam after 2 s, error",
+            .figure = error, .unit = "rad", .limit = 1e-8});
   EXPECT_EQ(ride.watch.impacts, 0);
 }
 
@@ -62,7 +69,10 @@ TEST(Stable, FreeBeamKeepsItsEnergyWithoutDamping) {
   const double before = energy(p, ride.s);
   ride.go(12.0);
   // 600 steps, each of which rounds angle and speed by an eps or so.
-  EXPECT_NEAR(energy(p, ride.s) / before, 1.0, 600 * 4 * kEps);
+  const double error = std::abs(energy(p, ride.s) / before - 1.0);
+  EXPECT_LE(error, 600 * 4 * kEps);
+  measured({.requirement = 2, .method = "stable", .what = "energy of an undamped beam after 12 s",
+            .figure = error, .limit = 1e-6});
 }
 
 TEST(Stable, FreeBodyFollowsItsClosedForm) {
@@ -109,6 +119,8 @@ TEST(Stable, SymmetricDoubleHitOfTheKnownAnswers) {
   ride.step();
   EXPECT_NEAR(ride.s.body.vy, 10.78125, 64 * kEps);
   EXPECT_NEAR(ride.s.beams[kLeft].omega, 1.51875, 16 * kEps);
+  test::measured_double_hit("stable", ride.s.body.vy, ride.s.beams[kLeft].omega,
+                            ride.s.beams[kRight].omega);
   EXPECT_TRUE(same_bits(ride.s.beams[kLeft].omega, ride.s.beams[kRight].omega));
   EXPECT_TRUE(same_bits(ride.s.beams[kLeft].theta, ride.s.beams[kRight].theta));
   EXPECT_EQ(ride.s.body.vx, 0.0);
@@ -191,9 +203,12 @@ double time_until_held(Ride& ride, double limit) {
 const GateState kBelowThePin = at_rest(-25.0, 20.0 - 1.0 / 3);
 
 TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
+  double error = 0.0, slowest = 0.0;  // of Zeno's time at the default step, relative; s of CPU
+  std::int64_t unforeseen = 0, scenes = 0;
   for (const double step : {0.02, 0.004, 0.001}) {
     for (const double e : {0.1, 0.3, 0.5, 0.8, 0.9, 0.95, 0.99}) {
       SCOPED_TRACE(testing::Message() << "e = " << e << ", step = " << step);
+      const double began = test::thread_seconds();
       const Bouncing b{e, step, 0.04};
       Ride ride(b.scene(), kBelowThePin);
       const int last = b.last_hit();
@@ -206,6 +221,9 @@ TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
       EXPECT_LE(t, hold + step + 1e-6);
       EXPECT_EQ(ride.watch.impacts, last + 1);
       EXPECT_EQ(ride.watch.forced_holds, 0);
+      if (step == GateParams{}.run.step)
+        error = std::max(error, std::abs(t / b.zeno_time() - 1.0));
+      unforeseen = std::max(unforeseen, std::abs(ride.watch.impacts - (last + 1)));
       // Zeno's remainder: what the hold cuts off.
       EXPECT_NEAR(b.zeno_time() - hold, 2 * b.t0 * std::pow(e, last + 1) / (1 - e), 1e-9);
 
@@ -216,8 +234,19 @@ TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
       EXPECT_NEAR(ride.s.body.vy, 0.0, 1e-9);
       EXPECT_EQ(ride.s.body.x, -25.0);
       EXPECT_LE(ride.watch.max_penetration, 1e-9 * ride.p.body.radius);
+      slowest = std::max(slowest, test::thread_seconds() - began);
+      ++scenes;
     }
   }
+  EXPECT_LE(slowest, 10.0);
+  measured({.requirement = 4, .method = "stable",
+            .what = "Zeno time, relative error, default, from 0.33 m", .figure = error,
+            .limit = 1e-6, .cases = scenes / 3});
+  measured({.requirement = 4, .method = "stable", .what = "hits off the predicted number",
+            .figure = static_cast<double>(unforeseen), .unit = "hits", .limit = 0.0,
+            .cases = scenes});
+  measured({.requirement = 4, .method = "stable", .what = "slowest scene, CPU time",
+            .figure = slowest, .unit = "s", .limit = 10.0, .cases = scenes});
 }
 
 // The printed numbers of S6: 9 t0 at e = 0.8, the threshold is reached at impact 21.
@@ -276,6 +305,7 @@ TEST(Zeno, HeavyBeamsBehaveAsTheWall) {
 struct Contacts {
   int held_steps = 0;
   double gap = 0.0, rate = 0.0, overlap = 0.0;                 // held contacts; any contact
+  double pull = 0.0;                                           // N, held contacts
   double exit_gap = 0.0, exit_rate = 0.0, exit_overlap = 0.0;  // the same in the exit state
   double exit_speed = 0.0;  // m/s, of the disc and of the points of beams that it touches there
 };
@@ -293,6 +323,13 @@ Contacts contacts_of_trial(const GateParams& p, int trial) {
       worst = std::max(worst, value);
     };
     if (left) c.exit_speed = std::hypot(ride.s.body.vx, ride.s.body.vy);
+    const auto held = held_of(ride.s);
+    if (!left && (held[kLeft] || held[kRight])) {
+      const auto push = contact_forces(p, ride.s, {ride.touch(kLeft), ride.touch(kRight)}, f, held,
+                                       push_or_pull);
+      for (const Side side : {kLeft, kRight})
+        if (held[side]) c.pull = std::max(c.pull, -push[side]);
+    }
     for (const Side side : {kLeft, kRight}) {
       const Touch t = ride.touch(side);
       const BeamState& beam = ride.s.beams[side];
@@ -328,14 +365,21 @@ TEST(Stable, HeldContactsNeitherDriftNorClose) {
     seen[trial] = contacts_of_trial(p, trial);
   });
   int held_steps = 0;
+  double gap = 0.0, pull = 0.0;
   for (const Contacts& c : seen) {
     held_steps += c.held_steps;
+    gap = std::max(gap, c.gap);
+    pull = std::max(pull, c.pull);
     EXPECT_LE(c.gap, 1e-9 * 10.0);
     EXPECT_LE(c.rate, 1e-9);
     EXPECT_LE(c.overlap, 1e-9 * 10.0);
     expect_interpolated(GateParams{}, c);
   }
   EXPECT_GT(held_steps, 10'000);
+  // Forces only push, but whether there is one is asked at mid-step: at the end a contact may be
+  // held half a step too long, by what its force falls in that time. Measured 24 N at Rm = 60 N.
+  EXPECT_LE(pull, 40.0);
+  test::measured_held("stable", gap / 10.0, pull, held_steps);
 }
 
 /// The disc leans with 30 N on a heavy beam that stands upright.
@@ -356,6 +400,8 @@ TEST(Stable, ContactIsReleasedWhenItsForceWouldPull) {
   EXPECT_NEAR(ride.touch(kLeft).gap, 0.0, 1e-12);
   ride.go(0.4, 30.0);
   EXPECT_FALSE(ride.s.beams[kLeft].held);
+  measured({.requirement = 6, .method = "stable", .what = "contacts still held when drawn apart",
+            .figure = ride.s.beams[kLeft].held ? 1.0 : 0.0, .unit = "contacts", .limit = 0.0});
   EXPECT_EQ(ride.watch.impacts, 0);
   // From then on it is free: 30 N for 0.4 s, less what the push gave the beam, 3.6e-6 of that.
   EXPECT_NEAR(ride.s.body.vx, 12.0, 1e-4);
@@ -518,6 +564,9 @@ TEST(EnergyLedger, StableCreatesNoEnergy) {
     p.run.step = limit.step;
     const GateTally tally = run_gate_trials(p, {}, 1, {0, 10'000});
     EXPECT_LE(tally.health.worst_energy_created, limit.created);
+    if (limit.step == GateParams{}.run.step)
+      measured({.requirement = 5, .method = "stable", .what = "energy created in a trial, default",
+                .figure = tally.health.worst_energy_created, .unit = "J", .cases = tally.trials});
     EXPECT_TRUE(tally.health.clean());
     EXPECT_LE(tally.health.worst_penetration, 1e-9 * p.body.radius);
   }
@@ -541,8 +590,10 @@ TEST(EnergyLedger, StablesErrorFallsWithTheStep) {
     mean.push_back(sum / 2000);
   }
   // Measured 3.4 and 3.0; the midpoint rule's second order is the least.
-  EXPECT_GT(std::log2(mean[0] / mean[1]), 2.0);
-  EXPECT_GT(std::log2(mean[1] / mean[2]), 2.0);
+  const double order = std::min(std::log2(mean[0] / mean[1]), std::log2(mean[1] / mean[2]));
+  EXPECT_GT(order, 2.0);
+  measured({.requirement = 5, .method = "stable", .what = "order of the energy's error in the step",
+            .figure = order, .limit = 0.9, .at_least = true, .cases = 2000});
 }
 
 // ---- S8: mirror images ----
@@ -554,9 +605,9 @@ GateRun outcome(const GateParams& p, const Method& method, const BodyState& star
   return run_gate(p, method, start, force);
 }
 
-// 10^4 trials: equal and unequal beams, weak and strong noise, from the middle and from anywhere.
+// Equal and unequal beams, weak and strong noise, from the middle and from anywhere.
 TEST(Mirror, StableGivesTheSameBits) {
-  constexpr int kTrials = 10'000;
+  const int kTrials = usual_or_full(10'000, 100'000);
   std::vector<GateRun> seen(kTrials), mirror(kTrials);
   std::vector<GateParams> scenes;
   for (const double right : {300.0, 500.0}) {
@@ -580,11 +631,11 @@ TEST(Mirror, StableGivesTheSameBits) {
       mirror[trial] = outcome(m, *mirrored_method, test::mirrored(start), trial, -1.0);
     });
   }
-  for (int trial = 0; trial < kTrials; ++trial) {
+  for (int trial = 0; trial < kTrials && !HasFatalFailure(); ++trial) {
     SCOPED_TRACE(trial);
     test::expect_mirror_images(mirror[trial], seen[trial]);
-    if (HasFatalFailure()) return;
   }
+  test::measured_mirror("stable", kTrials, 100'000);
 }
 
 // ---- S9: limits ----
@@ -634,6 +685,15 @@ TEST(Limits, StiffBeamsAreARigidWall) {
     const double r = x + 25.0, share = x == 0.0 ? 3.5 : 7.0;
     EXPECT_NEAR(settle.s.body.y, 20.0 + share * r * r / 1e9, 1e-6);
     EXPECT_NEAR(settle.s.body.vy, 0.0, 1e-6);
+    // k = 10^12 N m/rad would be too fast for a light beam, but not for one of 10^4 kg.
+    damped.beams.mass = 1e4;
+    damped.beams.stiffness_left = damped.beams.stiffness_right = 1e12;
+    Ride wall(damped, at_rest(x, 19.99));
+    wall.go(12.0);
+    const double error = std::abs(wall.s.body.y - (20.0 + share * r * r / 1e12));
+    EXPECT_LE(error, 1e-6);
+    measured({.requirement = 9, .method = "stable", .what = "place of rest at a wall, k = 1e12",
+              .figure = error, .unit = "m", .limit = 1e-6});
   }
 }
 
@@ -738,12 +798,14 @@ TEST(Reversal, ReturnsToTheStart) {
   }
   EXPECT_EQ(rides, 6);
   EXPECT_LE(worst, 1e-10);
+  measured({.requirement = 10, .method = "stable", .what = "distance from the start on return",
+            .figure = worst, .unit = "m, m/s, rad", .limit = 1e-6, .cases = rides});
 }
 
 // ---- S11, S12, S14: near-singular starts ----
 
 void expect_no_trouble(test::Near near) {
-  constexpr int kStarts = 25'000;
+  const int kStarts = usual_or_full(25'000, 200'000);
   const GateParams p;
   const StableMethod method(p);
   std::vector<test::Trouble> seen(kStarts);
@@ -752,6 +814,7 @@ void expect_no_trouble(test::Near near) {
     const GateState start = test::near_singular(near, p, draw);
     seen[i] = test::trouble(p, method, start, draw);
   });
+  test::measured_trouble("stable", p, seen);
   for (int i = 0; i < kStarts; ++i) {
     ASSERT_EQ(seen[i].not_finite, 0) << "start " << i;
     // Up to 1e-10 R the method calls contact.
@@ -807,10 +870,10 @@ TEST(NearSingular, CentreOnTheJoint) {
 
 // Scenes from corner to corner: soft and stiff, light and heavy, plastic and elastic.
 TEST(Stable, RunsAnySceneItAccepts) {
-  constexpr int kScenes = 6000;
+  const int kScenes = usual_or_full(6000, 100'000);
   struct Seen {
-    bool refused = false, broken = false, light = false;
-    double overlap = 0.0, created = 0.0;
+    bool refused = false, broken = false, finite = true, light = false;
+    double overlap = 0.0, created = 0.0, seconds = 0.0;
   };
   std::vector<Seen> seen(kScenes);
   tbb::parallel_for(0, kScenes, [&](int i) {
@@ -834,20 +897,34 @@ TEST(Stable, RunsAnySceneItAccepts) {
     try {
       const auto method = make_method(p);
       RandomForce force(p.forces, Random(Purpose::gate, {1, 0, static_cast<std::uint64_t>(i)}));
+      const double began = test::thread_seconds();
       const GateRun run = run_gate(p, *method, {draw.uniform(-20, 20), 0, 0, 15}, force);
+      const double seconds = test::thread_seconds() - began;
       const double speed = std::max(15.0, run.watch.max_speed);
       const double energy = p.body.mass * speed * speed;
-      seen[i] = {false, run.ending == Ending::broken, p.beams.mass < p.body.mass,
-                 run.watch.max_penetration, run.watch.energy_created / energy};
+      const BodyState& b = run.exit;
+      seen[i] = {false, run.ending == Ending::broken, std::isfinite(b.x + b.y + b.vx + b.vy),
+                 p.beams.mass < p.body.mass, run.watch.max_penetration,
+                 run.watch.energy_created / energy, seconds};
     } catch (const InvalidParameter& e) {
       EXPECT_EQ(e.key(), "run.step_s");
       seen[i].refused = true;
     }
   });
-  int refused = 0;
+  int refused = 0, broken = 0, escaped = 0, hung = 0;
+  double slowest = 0.0;
+  for (const Seen& s : seen) {
+    refused += s.refused;
+    broken += s.broken;
+    escaped += !s.finite && !s.broken;
+    hung += s.seconds > 10.0;
+    slowest = std::max(slowest, s.seconds);
+  }
+  test::measured_scenes("stable", {kScenes, refused, broken, escaped, hung, slowest});
+  EXPECT_EQ(broken, 0);
+  EXPECT_EQ(escaped, 0);
+  EXPECT_LE(slowest, 10.0);
   for (int i = 0; i < kScenes; ++i) {
-    refused += seen[i].refused;
-    ASSERT_FALSE(seen[i].broken) << i;
     ASSERT_LE(seen[i].overlap, 1e-9 * 10.0) << i;
     // A light beam that a heavy disc holds may whip round its joint faster than any step follows;
     // then energy appears (and Health says so). A beam as heavy as the disc does not.
