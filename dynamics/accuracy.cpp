@@ -97,7 +97,8 @@ std::vector<Setting> chart_settings(std::string_view method, const GateParams& p
     throw std::invalid_argument("no settings for method '" + std::string(method) + "'");
   std::vector<Setting> settings;
   const auto add = [&](std::string_view key, double value) {
-    const double usual = method == "paper" ? kPaperStep : info(key).get(GateParams{});
+    const double usual = key == kStep ? default_step(method, p.forces.random_rate)
+                                      : info(key).get(GateParams{});
     settings.push_back({std::string(method), key, value, std::abs(value - usual) <= 1e-9 * usual});
   };
   if (method == "event")

@@ -87,6 +87,11 @@ std::string ParamInfo::range() const {
 
 std::span<const ParamInfo> gate_param_table() { return kTable; }
 
+double default_step(std::string_view method, double random_rate) {
+  const double wanted = method == "stable" || method == "auto" ? Run{}.step : kPaperStep;
+  return 1.0 / (random_rate * std::ceil(1.0 / (random_rate * wanted) - 1e-9));
+}
+
 int steps_per_hold(const GateParams& params) {
   constexpr int kMost = std::numeric_limits<int>::max();
   const double rate = params.forces.random_rate;

@@ -105,6 +105,10 @@ class InvalidParameter : public std::invalid_argument {
 /// method, and a step that fits a whole number of times into one hold of the random force.
 void validate(const GateParams& params);
 
+/// The step (s) of a scene that names none: what suits the method, 0.02 for `stable` and the paper's
+/// for the others, shortened to fit a whole number of times into one hold of the random force.
+[[nodiscard]] double default_step(std::string_view method, double random_rate);
+
 /// Steps in one hold of the random force: 1 / (random_rate * step), a whole number.
 [[nodiscard]] int steps_per_hold(const GateParams& params);
 

@@ -48,8 +48,7 @@ PointScene scene_of(MapKind kind, std::string_view method, double x, double y) {
   PointScene scene;
   GateParams& p = scene.p;
   p.run.method = method;
-  // Where the step is not what the map varies: `stable` at its default, the others at the paper's.
-  if (method != "stable") p.run.step = kPaperStep;
+  p.run.step = default_step(method, p.forces.random_rate);
   p.run.time_limit = kSeconds;
   p.forces.propulsion = 8.0;
   p.forces.random = 20.0;

@@ -319,12 +319,10 @@ void Crowd::resolve(const Step& k, double& vx, double& vy) {
 
 double Crowd::back_to_exit(const BodyState& before, double h) {
   GateState here{body_, gates_[current_].beams};
-  const GateState after = here;
   const double passed = dynamics::back_to_exit(p_, {before, before_[0]}, here, h);
   for (std::size_t i = 0; i < awake_.size(); ++i) {
     auto& beams = gates_[awake_[i]].beams;
-    beams = i == 0 ? here.beams
-                   : interpolated({before, before_[i]}, {after.body, beams}, h, passed).beams;
+    beams = mixed(before_[i], beams, passed / h);
   }
   body_ = here.body;
   return passed;

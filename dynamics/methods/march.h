@@ -37,7 +37,12 @@ double march(const GateParams& p, const Spell& spell, GateState& s, double force
     one_step(s);
     const bool finite = std::isfinite(s.body.vx + s.body.vy);
     const bool left = finite && outside(p, s.body);
-    const double passed = left ? back_to_exit(p, before, s, spell.step) : spell.step;
+    double passed = spell.step;
+    if (left) {
+      const auto beams = s.beams;
+      passed = back_to_exit(p, before, s, spell.step);
+      s.beams = mixed(before.beams, beams, passed / spell.step);
+    }
     ledger.step(s, force_x, watch, stored(s));
     watch.state(p, s, spell.look);
     if (left || !finite) return static_cast<double>(i) * spell.step + passed;

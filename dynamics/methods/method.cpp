@@ -68,6 +68,16 @@ GateState interpolated(const GateState& a, const GateState& b, double dt, double
   return s;
 }
 
+std::array<BeamState, 2> mixed(const std::array<BeamState, 2>& a,
+                               const std::array<BeamState, 2>& b, double fraction) {
+  std::array<BeamState, 2> m = b;
+  for (const Side side : {kLeft, kRight}) {
+    m[side].theta = a[side].theta + fraction * (b[side].theta - a[side].theta);
+    m[side].omega = a[side].omega + fraction * (b[side].omega - a[side].omega);
+  }
+  return m;
+}
+
 double back_to_exit(const GateParams& p, const GateState& before, GateState& s, double dt) {
   // Bisection: 50 halvings of a step leave nothing, and the last bracket's end is outside.
   const GateState after = s;

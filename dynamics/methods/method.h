@@ -71,6 +71,11 @@ class EnergyLedger {
 /// Cubic Hermite interpolation between two states dt apart, at t; flags as in `b`.
 [[nodiscard]] GateState interpolated(const GateState& a, const GateState& b, double dt, double t);
 
+/// Beams a fraction of the way from `a` to `b`, mixed linearly: first order, but their energy is
+/// never more than the larger of the two, however often they swing between. Flags as in `b`.
+[[nodiscard]] std::array<BeamState, 2> mixed(const std::array<BeamState, 2>& a,
+                                             const std::array<BeamState, 2>& b, double fraction);
+
 /// Takes `s`, in which the body is outside though it was not in `before`, dt earlier, back to the
 /// moment of leaving, by cubic interpolation; returns how long after `before` that is, in (0, dt].
 [[nodiscard]] double back_to_exit(const GateParams& p, const GateState& before, GateState& s,
