@@ -98,6 +98,22 @@ vx_m_per_s = 0.0
 vy_m_per_s = 15.0
 )";
 
+TEST(Scene, TheStepSuitsTheMethodUnlessItIsNamed) {
+  const auto step = [](const char* text, std::vector<std::string> overrides = {}) {
+    return parse_scene(text, "x.toml", overrides).gate.run.step;
+  };
+  EXPECT_EQ(step(""), 0.02);
+  EXPECT_EQ(step("run.method = 'paper'"), 0.004);
+  EXPECT_EQ(step("", {"run.method=moreau"}), 0.004);
+  EXPECT_EQ(step("run.step_s = 0.01", {"run.method=paper"}), 0.01);
+  EXPECT_EQ(step("", {"run.method=paper", "run.step_s=0.02"}), 0.02);
+  // Fitted into the hold.
+  EXPECT_EQ(step("forces.random_rate_Hz = 30"), 1.0 / 60);
+  EXPECT_EQ(step("forces.random_rate_Hz = 5"), 0.02);
+  EXPECT_EQ(step("forces.random_rate_Hz = 1000"), 0.001);
+  EXPECT_EQ(step("forces.random_rate_Hz = 30", {"run.method=paper"}), 1.0 / 270);
+}
+
 TEST(Scene, EmptyFileIsTheDefaultScene) {
   EXPECT_EQ(to_toml(parse_scene("", "empty.toml")), kDefaultScene);
   EXPECT_EQ(to_toml(Scene{}), kDefaultScene);
@@ -367,8 +383,8 @@ const Malformed kMalformed[] = {
     {"Method", "[run]\nmethod = \"euler\"\n", 2, "run.method = \"euler\"", "\"paper\", \"stable\""},
     {"StepDoesNotFit", "[run]\n\nstep_s = 0.003\n", 3, "run.step_s = 0.003 ",
      "0.00333333333 and 0.00285714286"},
-    {"RateDoesNotFit", "[forces]\nrandom_rate_Hz = 30\n", 2, "run.step_s = 0.02 ",
-     "forces.random_rate_Hz = 30"},
+    {"RateDoesNotFit", "[run]\nstep_s = 0.02\n[forces]\nrandom_rate_Hz = 30\n", 2,
+     "run.step_s = 0.02 ", "forces.random_rate_Hz = 30"},
     {"TooManySteps", "[run]\nstep_s = 1e-10\n", 2, "run.time_limit_s = 12 ", "run.step_s = 1e-10"},
     {"BigBody", "[body]\nradius_m = 30\n", 2, "body.radius_m = 30 ", "beams.joint_y_m = 30"},
     {"LowJoint", "[beams]\njoint_y_m = 9\n", 2, "body.radius_m = 10 ", "beams.joint_y_m = 9"},
