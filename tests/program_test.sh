@@ -175,25 +175,19 @@ expect 2 'three numbers' "$gatewalk" chart-field "$scenes/field.toml" -o chart -
 expect 1 'cannot be made' "$gatewalk" chart-field "$scenes/field.toml" -o m.nc/chart
 "$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=all --trials 50 --json all.json --quiet 2>/dev/null
 holds '([.final_gates[][]] | add) == 50 and .trapped + .left_field + .cut_off + .not_finite == 50' all.json
-if "$gatewalk" gate "$scenes/field.toml" --set run.method=moreau --trials 1 2>&1 | grep -q 'not written yet'; then
-  echo "method moreau is not written yet: chart-field is not tested"
-  stoppable_chart="lattice $scenes/field.toml --set run.method=moreau --set field.fidelity=all --trials 1e9"
-else
-  expect 0 '^Start 4, 5, 10: active is' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 20 --start 4,5,10
-  [ "$(wc -l <new/chart/fidelity.csv)" = 5 ] || fail "chart-field: a line per fidelity and method was expected"
-  holds '.starts[0].runs | map(.fidelity) == ["active", "remember", "all", "active"]' new/chart/fidelity.json
-  holds '.starts[0].runs | all(([.final_gates[][]] | add) == 20 and (.fates | add | . - 1 | fabs) < 1e-12 and .seconds_per_trial > 0)' new/chart/fidelity.json
-  holds '.made_by.seed == 1 and (.made_by.scene | length) > 0' new/chart/fidelity.json
-  grep -q '</svg>' new/chart/fidelity.svg || fail "chart-field: no figure"
-  "$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=remember --set start.x_m=4 \
-    --set start.vx_m_per_s=5 --set start.vy_m_per_s=10 --trials 20 --json remember.json --quiet 2>/dev/null
-  jq -s '.[0].starts[0].runs[1].final_gates == .[1].final_gates' new/chart/fidelity.json remember.json | grep -q true ||
-    fail "chart-field and lattice ran other trials"
-  rm new/chart/*
-  expect 1 'gnuplot was not found.*are written' env PATH=/nonexistent "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 5 --start 0,0,15
-  [ "$(ls new/chart | xargs)" = "fidelity.csv fidelity.json" ] || fail "chart-field without gnuplot left $(ls new/chart)"
-  stoppable_chart="chart-field $scenes/field.toml --trials 1e9 -o new/chart"
-fi
+expect 0 '^Start 4, 5, 10: active is' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 20 --start 4,5,10
+[ "$(wc -l <new/chart/fidelity.csv)" = 5 ] || fail "chart-field: a line per fidelity and method was expected"
+holds '.starts[0].runs | map(.fidelity) == ["active", "remember", "all", "active"]' new/chart/fidelity.json
+holds '.starts[0].runs | all(([.final_gates[][]] | add) == 20 and (.fates | add | . - 1 | fabs) < 1e-12 and .seconds_per_trial > 0)' new/chart/fidelity.json
+holds '.made_by.seed == 1 and (.made_by.scene | length) > 0' new/chart/fidelity.json
+grep -q '</svg>' new/chart/fidelity.svg || fail "chart-field: no figure"
+"$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=remember --set start.x_m=4 \
+  --set start.vx_m_per_s=5 --set start.vy_m_per_s=10 --trials 20 --json remember.json --quiet 2>/dev/null
+jq -s '.[0].starts[0].runs[1].final_gates == .[1].final_gates' new/chart/fidelity.json remember.json | grep -q true ||
+  fail "chart-field and lattice ran other trials"
+rm new/chart/*
+expect 1 'gnuplot was not found.*are written' env PATH=/nonexistent "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 5 --start 0,0,15
+[ "$(ls new/chart | xargs)" = "fidelity.csv fidelity.json" ] || fail "chart-field without gnuplot left $(ls new/chart)"
 
 # A start that the paper's table has not.
 "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --start 4,5,10 --json validate.json --quiet
@@ -279,7 +273,8 @@ expect 2 'no meaning' "$gatewalk" stability -o maps --set forces.random_N=1
 # Ctrl-C: within 2 s, status 130, a clear word, the old file unchanged.
 for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "build $scenes/field.toml --trials 1e7 -o m.nc" \
-               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" "$stoppable_chart" \
+               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" \
+               "chart-field $scenes/field.toml --trials 1e9 -o new/chart" \
                "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9" \
                "chart $scenes/field.toml --trials 1e9 -o charts"; do
   before=$(cat gate.json m.nc lattice.json charts/* | cksum)
