@@ -18,6 +18,9 @@ namespace {
 using dynamics::Purpose;
 using dynamics::Random;
 
+/// Rows of the streams of Purpose::comparison: one for each use, so that no two share their draws.
+enum Use : std::uint64_t { kDeals = 0, kExactDraws = 1, kSamples = 2, kSwaps = 3 };
+
 void require_same_shape(Eigen::Index rows_a, Eigen::Index cols_a, Eigen::Index rows_b,
                         Eigen::Index cols_b) {
   if (rows_a != rows_b || cols_a != cols_b)
@@ -223,7 +226,7 @@ CellCounts sampled(const CellProbabilities& p, std::int64_t trials, std::uint64_
                    std::uint64_t replicate) {
   std::vector<double> cumulative(p.size());
   std::partial_sum(p.data(), p.data() + p.size(), cumulative.begin());
-  Random random(Purpose::comparison, {seed, 2, replicate});
+  Random random(Purpose::comparison, {seed, kSamples, replicate});
   const Eigen::VectorXd counts = drawn_counts(cumulative, trials, random);
   CellCounts cells(p.rows(), p.cols());
   for (Eigen::Index i = 0; i < cells.size(); ++i)
@@ -252,7 +255,7 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   const Statistics seen =
       statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, 0, static_cast<std::uint64_t>(k)});
+    Random random(Purpose::comparison, {seed, kDeals, static_cast<std::uint64_t>(k)});
     // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
     const bool first_is_smaller = n <= m;
     const std::int64_t small = std::min(n, m);
@@ -307,7 +310,7 @@ Comparison compare_pairs(const std::vector<std::int32_t>& first,
   const Statistics seen =
       statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, 2, static_cast<std::uint64_t>(k)});
+    Random random(Purpose::comparison, {seed, kSwaps, static_cast<std::uint64_t>(k)});
     // Trials of the first sample less those of the second.
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(expected.size());
     std::uint64_t coins = 0;
@@ -338,7 +341,7 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   std::partial_sum(expected.begin(), expected.end(), cumulative.begin());
   const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, 1, static_cast<std::uint64_t>(k)});
+    Random random(Purpose::comparison, {seed, kExactDraws, static_cast<std::uint64_t>(k)});
     return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected, expected, rare, support);
   });
   return c;
