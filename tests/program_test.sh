@@ -208,6 +208,8 @@ holds '[.points[].starts[] | .exact, .walks_10000, .walks_1000000 | .total_varia
 holds '[.points[].starts[] | .exact.total_variation - .walks_1000000.total_variation | fabs < 0.008] | all' charts/a/chain.json
 # 2000 draws of a figure that varies by some 15 %: five standard errors.
 holds '.starts[0].direct_simulation | map(.drawn.total_variation / .formula.total_variation - 1 | fabs < 0.02) | all' charts/a/chain.json
+# However many its trials, the truth's noise stays: both are told from the same 150 trials.
+holds '.starts[0] | .truth.floor.total_variation as $noise | .direct_simulation | .[-1].trials > 150 and (map(.formula.total_variation >= $noise) | all)' charts/a/chain.json
 holds '.starts[0].truth.trials == 150 and ([.starts[0].truth.final_gates[][]] | add) == 150' charts/a/chain.json
 holds '[.points[].row_starts] == ["uniform", "uniform", "uniform", "visited", "visited", "visited"]' charts/a/chain.json
 holds '.points[0].build_s < .points[3].build_s' charts/a/chain.json  # the trials that saw the entries cost
@@ -226,6 +228,7 @@ expect 2 "runs-limit" "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x -
 expect 2 'must be at least 100' "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --truth-trials 99
 expect 2 'the same factor twice' chart -o charts/x --bins 1
 expect 2 'inside the gate' chart -o charts/x --start 25,0,15
+expect 2 'the same: charts/a/chain.csv' chart -o charts/a --json charts/../charts/a/chain.csv
 [ -e charts/x ] && fail "chart-chain: wrong use made a folder"
 expect 1 'm.nc' chart -o m.nc
 
