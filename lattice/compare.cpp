@@ -106,7 +106,7 @@ Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
   return s;
 }
 
-/// p-values and the mean null total variation over `null_draws` calls of draw(k), in any order.
+/// p-values and the null's total variation over `null_draws` calls of draw(k), in any order.
 template <class Draw>
 void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draws, Draw draw) {
   if (null_draws < 1) throw std::invalid_argument("compare: null_draws must be at least 1");
@@ -124,9 +124,12 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   c.p_total_variation = p_value(&Statistics::total_variation);
   c.p_energy = p_value(&Statistics::energy);
   c.null_draws = null_draws;
-  double sum = 0.0;
-  for (const Statistics& s : null) sum += s.total_variation;
-  c.floor_total_variation = sum / static_cast<double>(null_draws);
+  std::vector<double> tv;
+  for (const Statistics& s : null) tv.push_back(s.total_variation);
+  c.floor_total_variation = std::accumulate(tv.begin(), tv.end(), 0.0) / static_cast<double>(null_draws);
+  const auto at_95 = tv.begin() + (95 * null_draws + 99) / 100 - 1;
+  std::nth_element(tv.begin(), at_95, tv.end());
+  c.floor_total_variation_95 = *at_95;
 }
 
 /// `n` draws from shares whose running sums are `cumulative`, as counts.
@@ -239,7 +242,7 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   require_same_shape(sample.rows(), sample.cols(), other.rows(), other.cols());
   const CellProbabilities a = shares(sample), b = shares(other);
   const std::int64_t n = sample.sum(), m = other.sum();
-  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0};
+  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0, 0};
   const CellCounts pooled_counts = sample + other;
   c.floor = noise_floor(concentration(pooled_counts), sample.size(), n, m);
 
@@ -290,7 +293,7 @@ Comparison compare_pairs(const std::vector<std::int32_t>& first,
     return counts;
   };
   const CellProbabilities a = shares(counted(first)), b = shares(counted(second));
-  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0};
+  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0, 0};
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   c.floor = {kNone, kNone};
 
@@ -331,7 +334,7 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   require_same_shape(sample.rows(), sample.cols(), exact.rows(), exact.cols());
   const CellProbabilities a = shares(sample);
   const std::int64_t n = sample.sum();
-  Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0};
+  Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0, 0};
   c.floor = noise_floor(exact.square().sum(), sample.size(), n, 0);
 
   const Support support = affordable_support_of(a + exact);

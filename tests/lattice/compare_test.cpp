@@ -456,7 +456,8 @@ TEST(Compare, IsSymmetric) {
 }
 
 // Four pairs differ, all in one direction: of the 16 ways to swap them, 2 are as extreme. TV is
-// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials.
+// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials. 4 comes in 1 of 8, so it is
+// the 95 % quantile; of six pairs 6 comes in 1 of 32 and 4 in 6 of 32: 4 is.
 TEST(ComparePairs, SwapsOfAHandfulAreExact) {
   std::vector<std::int32_t> first(20, 0), second(20, 0);
   for (int i = 3; i < 7; ++i) second[i] = 1;
@@ -467,6 +468,9 @@ TEST(ComparePairs, SwapsOfAHandfulAreExact) {
   EXPECT_NEAR(c.p_energy, p, tolerance);
   EXPECT_DOUBLE_EQ(c.total_variation, 4.0 / 20);
   EXPECT_NEAR(c.floor_total_variation, 1.5 / 20, 4 * (1.33 / 20) / 100);  // sd of |4 - 2k|: 1.32
+  EXPECT_DOUBLE_EQ(c.floor_total_variation_95, 4.0 / 20);
+  second[7] = second[8] = 1;
+  EXPECT_DOUBLE_EQ(compare_pairs(first, second, 1, 2, 9999, 1).floor_total_variation_95, 4.0 / 20);
 }
 
 // Two pairs that differ alike: a null draw is as far apart as seen when its two coins, the lowest
