@@ -73,8 +73,14 @@ struct Truth {
     return "start d = " + fixed(start.d, 0) + " m, v = (" + fixed(start.vx, 0) + ", " +
            fixed(start.vy, 0) + ") m/s";
   }
-  /// One-thread seconds of direct simulation for as small an error, told from this truth as the
-  /// chain's is: n trials against N differ as 1/n + 1/N. Infinite if this truth cannot tell.
+  /// Direct simulation's n trials differ from these N as nN/(n + N) trials do from an exact truth,
+  /// by 1/n + 1/N: told from the same noisy truth as the chain's errors are.
+  [[nodiscard]] std::int64_t as_against_exact(std::int64_t trials) const {
+    const auto n = static_cast<double>(trials), all = static_cast<double>(tally.trials);
+    return std::max<std::int64_t>(1, std::llround(n * all / (n + all)));
+  }
+  /// One-thread seconds of direct simulation for as small an error; infinite if this truth cannot
+  /// tell.
   [[nodiscard]] double seconds_for(double total_variation) const {
     const std::int64_t alone = lattice::trials_for(p, total_variation);
     if (alone >= tally.trials) return kInf;
@@ -83,7 +89,7 @@ struct Truth {
   }
 };
 
-/// Direct simulation with n trials, drawn from the truth.
+/// Direct simulation with n trials, drawn from the truth; errors as_against_exact(n).
 struct Direct {
   std::int64_t trials = 0;
   double seconds = 0.0;
@@ -342,18 +348,19 @@ std::vector<Direct> direct_simulation(const Truth& truth, double low, double hig
   for (std::size_t i = 0;; ++i) {
     constexpr std::array<double, 3> kSteps{1, 2, 5};
     if (i > 0 && i % 3 == 0) decade *= 10.0;
-    const auto n = static_cast<std::int64_t>(kSteps[i % 3] * decade);
-    const double seconds = truth.seconds_per_trial * static_cast<double>(n);
+    const auto trials = static_cast<std::int64_t>(kSteps[i % 3] * decade);
+    const double seconds = truth.seconds_per_trial * static_cast<double>(trials);
     if (2.5 * seconds < low) continue;  // the next one is below as well
     if (interrupted()) throw Interrupted{};
+    const std::int64_t n = truth.as_against_exact(trials);
     const std::int64_t draws = std::clamp<std::int64_t>(kDirectDraws / n, 10, 2000);
     std::vector<Error> errors(draws);
     tbb::parallel_for(std::int64_t{0}, draws, [&](std::int64_t k) {
       errors[k] = error_of(
           shares(lattice::sampled(truth.p, n, seed, static_cast<std::uint64_t>(k))), truth.p);
     });
-    Direct d{n, seconds, {}, {lattice::expected_total_variation(truth.p, n),
-                              lattice::noise_floor(concentration, truth.p.size(), n, 0).corrcoef}};
+    Direct d{trials, seconds, {}, {lattice::expected_total_variation(truth.p, n),
+                                   lattice::noise_floor(concentration, truth.p.size(), n, 0).corrcoef}};
     for (const Error& e : errors) {
       d.drawn.total_variation += e.total_variation / static_cast<double>(draws);
       d.drawn.corrcoef += e.corrcoef / static_cast<double>(draws);
@@ -605,7 +612,8 @@ std::string table_of(const Chart& chart, std::int64_t runs_limit) {
           const auto direct =
               std::max<std::int64_t>(1, std::llround(seconds / truth.seconds_per_trial));
           return padded(seconds_text(seconds), 8) + padded(fixed(at->error(s), 3), 10) +
-                 padded(fixed(lattice::expected_total_variation(truth.p, direct), 3), 8);
+                 padded(fixed(lattice::expected_total_variation(
+                                  truth.p, truth.as_against_exact(direct)), 3), 8);
         });
       }
       for (const auto part : {&Answer::sampling, &Answer::bins})
@@ -618,8 +626,8 @@ std::string table_of(const Chart& chart, std::int64_t runs_limit) {
     out << "\n" << words_of(chart, s);
   }
   out << "\nSampling, bins: the parts of the last line's TV that come from the matrix's trials and from its\n"
-         "states. Seconds: CPU time of one thread, one matrix and one prediction. TV: mean over up to 8\n"
-         "matrices of different trials.\n";
+         "states. Seconds: CPU time of one thread, one matrix and one prediction. TV: against the full trials,\n"
+         "whose noise both share; the chain's a mean over up to 8 matrices of different trials.\n";
   for (const Curve& c : chart.curves)
     if (c.trials.empty())
       out << c.name() << ": no point, " << c.space.size() << " rows of "
@@ -811,9 +819,11 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
     throw UsageError("--runs-limit " + std::to_string(runs_limit) + ": too few for " +
                      std::to_string(kTrialsPerRow.front()) + " trials a row of any of these bins");
   const std::string folder = options.text("output");
-  require_folder(folder);
   const auto file = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
-  for (const char* name : {"chain.csv", "chain.json", "chain.svg"}) require_writable(file(name));
+  constexpr std::array<const char*, 3> kFiles{"chain.csv", "chain.json", "chain.svg"};
+  for (const char* name : kFiles) require_different(file(name), options.text("json"));
+  require_folder(folder);
+  for (const char* name : kFiles) require_writable(file(name));
 
   // Costs first, on one thread: they say how long the rest will take.
   remark(options, "measuring the cost of a trial and of a gate run");

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <sstream>
 
-#include "cli/auto.h"
+#include "cli/drawing.h"
 #include "cli/figure.h"
 #include "cli/output.h"
 #include "cli/progress.h"
@@ -21,10 +20,9 @@ namespace {
 using gatewalk::cli::to_json;
 using lattice::Fidelity;
 
-/// `active` is called enough while the total variation that it costs is no more than this: what is
-/// asked of a good chain.
+/// `active` is enough while the total variation that it costs is no more than this: what is asked of
+/// a good chain.
 constexpr double kBound = 0.03;
-constexpr double kSignificant = 0.05;  // p-values from here on are chance
 constexpr std::int64_t kRepeats = 5;   // of each timing, the least counts
 constexpr std::int64_t kTimedTrials = 64;
 constexpr std::int64_t kTimedAtOnce = 16;
@@ -119,44 +117,48 @@ StartRuns run_start(const Options& options, const std::vector<Variant>& variants
   return r;
 }
 
-/// The shortest digits that read back the same; nothing for what is not a number.
-std::string digits(double x) {
-  if (!std::isfinite(x)) return "";
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
-
 /// What these trials say about doing without memory or neighbours.
-enum class Verdict { enough, not_told_apart, not_enough };
+enum class Finding { enough, cannot_tell, not_enough };
 
-Verdict verdict(const Run& r) {
-  if (r.apart.total_variation <= kBound) return Verdict::enough;
-  return r.in_pairs.p_total_variation >= kSignificant ? Verdict::not_told_apart
-                                                      : Verdict::not_enough;
+/// How far the total variation seen may be from that of infinitely many trials, at 95 %: as much as
+/// chance makes of the pairs that differ (triangle inequality), and what 3 of N trials change when
+/// none of N shows it.
+double uncertainty(const Run& r) {
+  return r.in_pairs.floor_total_variation_95 + 3.0 / static_cast<double>(r.tally.trials);
 }
-Verdict verdict(const StartRuns& r) { return std::max(verdict(r.runs[1]), verdict(r.runs[2])); }
+Finding finding(const Run& r) {
+  const double tv = r.apart.total_variation;
+  if (tv + uncertainty(r) <= kBound) return Finding::enough;
+  return tv - uncertainty(r) > kBound ? Finding::not_enough : Finding::cannot_tell;
+}
+Finding finding(const StartRuns& r) { return std::max(finding(r.runs[1]), finding(r.runs[2])); }
 
 /// "Start 0, 0, 15: active is enough: ..."
 std::string sentence(const StartRuns& r) {
   const auto about = [](const char* name, const Run& run) {
-    return std::string(name) + " has TV " + fixed(run.apart.total_variation, 4) +
-           " where chance makes " + fixed(run.in_pairs.floor_total_variation, 4) + " (p " +
+    return std::string(name) + " has TV " + fixed(run.apart.total_variation, 4) + " +- " +
+           fixed(uncertainty(run), 4) + " where chance makes " + fixed(run.in_pairs.floor_total_variation, 4) + " (p " +
            p_text(run.in_pairs.p_total_variation) + ")";
   };
   const std::string words[] = {
       "active is enough",
-      "active is enough as far as " + std::to_string(r.runs[0].tally.trials) + " trials can tell",
+      std::to_string(r.runs[0].tally.trials) + " trials cannot tell whether active is enough",
       "active is not enough"};
   return "Start " + digits(r.start.d) + ", " + digits(r.start.vx) + ", " + digits(r.start.vy) +
-         ": " + words[static_cast<int>(verdict(r))] + ": " + about("remember", r.runs[1]) + ", " +
+         ": " + words[static_cast<int>(finding(r))] + ": " + about("remember", r.runs[1]) + ", " +
          about("all", r.runs[2]) + ".";
+}
+
+/// "0.02 s (moreau)"
+std::string step_text(const Variant& v) {
+  return digits(v.scene.gate.run.step) + " s (" + v.scene.gate.run.method + ")";
 }
 
 std::string table_of(const std::vector<StartRuns>& starts, const std::vector<Variant>& variants,
                      std::int64_t trials, std::size_t threads) {
   std::ostringstream out;
   out << trials << " trials per start and line, the same noise in all of them; step "
-      << variants[0].scene.gate.run.step << " s.\n"
+      << step_text(variants.front()) << ", " << step_text(variants.back()) << ".\n"
       << "Against the first line: share of trials that end in another gate; total variation (TV),\n"
          "what chance gives between independent samples (floor) and between samples that share their\n"
          "noise (pairs), with p-values; corrcoef and RMSE (trials per 100). ms: wall clock per trial, "
@@ -185,9 +187,9 @@ std::string table_of(const std::vector<StartRuns>& starts, const std::vector<Var
       }
       out << "\n";
     }
-  out << "\nActive is called enough where TV is at most " << kBound
-      << ", and not enough where it is more and beyond chance (p pairs < " << kSignificant
-      << ").\n";
+  out << "\nActive is enough where TV is at most " << kBound << " with its uncertainty (+-) added, and\n"
+      << "not enough where it is more with that taken off: what chance makes of pairs 95 times in\n"
+      << "100, and 3 trials of " << trials << " that may yet show what none did.\n";
   for (const StartRuns& r : starts) out << sentence(r) << "\n";
   return out.str();
 }
@@ -196,7 +198,7 @@ std::string csv_of(const std::vector<StartRuns>& starts, const std::vector<Varia
   std::string csv =
       "d_m,vx_m_per_s,vy_m_per_s,fidelity,method,step_s,trials,seconds_per_trial,trapped_share,"
       "left_field_share,cut_off_share,broken_share,changed_share,total_variation,"
-      "total_variation_floor,total_variation_floor_pairs,p_total_variation,p_total_variation_pairs,"
+      "total_variation_uncertainty,total_variation_floor,total_variation_floor_pairs,p_total_variation,p_total_variation_pairs,"
       "p_energy,p_energy_pairs,corrcoef,corrcoef_floor,rmse_per_100,rmse_per_100_floor,clean\n";
   for (const StartRuns& r : starts)
     for (std::size_t v = 0; v < variants.size(); ++v) {
@@ -204,7 +206,7 @@ std::string csv_of(const std::vector<StartRuns>& starts, const std::vector<Varia
       const Run& run = r.runs[v];
       const lattice::FieldTally& t = run.tally;
       const auto n = static_cast<double>(t.trials);
-      const auto number = [&](double x) { csv += digits(x) + ","; };
+      const auto number = [&](double x) { csv += (std::isfinite(x) ? digits(x) : "") + ","; };
       for (const double x : {r.start.d, r.start.vx, r.start.vy}) number(x);
       csv += std::string(name_of(scene.field.fidelity)) + "," + scene.gate.run.method + ",";
       for (const double x : {scene.gate.run.step, n, run.seconds_per_trial}) number(x);
@@ -212,7 +214,7 @@ std::string csv_of(const std::vector<StartRuns>& starts, const std::vector<Varia
         number(static_cast<double>(k) / n);
       const lattice::Comparison &a = run.apart, &p = run.in_pairs;
       for (const double x :
-           {run.changed, a.total_variation, a.floor_total_variation, p.floor_total_variation,
+           {run.changed, a.total_variation, uncertainty(run), a.floor_total_variation, p.floor_total_variation,
             a.p_total_variation, p.p_total_variation, a.p_energy, p.p_energy, a.corrcoef,
             a.floor.corrcoef, a.rmse_per_100, a.floor.rmse_per_100})
         number(v == 0 ? std::nan("") : x);
@@ -226,8 +228,8 @@ Json json_of(const std::vector<StartRuns>& starts, const std::vector<Variant>& v
   for (const StartRuns& r : starts) {
     Json one;
     one["start"] = {{"d_m", r.start.d}, {"vx_m_per_s", r.start.vx}, {"vy_m_per_s", r.start.vy}};
-    one["active_is_enough"] = verdict(r) == Verdict::enough       ? Json(true)
-                              : verdict(r) == Verdict::not_enough ? Json(false)
+    one["active_is_enough"] = finding(r) == Finding::enough       ? Json(true)
+                              : finding(r) == Finding::not_enough ? Json(false)
                                                                   : Json(nullptr);
     one["sentence"] = sentence(r);
     one["runs"] = Json::array();
@@ -240,6 +242,7 @@ Json json_of(const std::vector<StartRuns>& starts, const std::vector<Variant>& v
       Json j;
       j["fidelity"] = name_of(variants[v].scene.field.fidelity);
       j["method"] = variants[v].scene.gate.run.method;
+      j["step_s"] = variants[v].scene.gate.run.step;
       j["seconds_per_trial"] = run.seconds_per_trial;
       j["fates"] = {{"trapped", share(t.trapped)},
                     {"left_field", share(t.left_field)},
@@ -247,6 +250,7 @@ Json json_of(const std::vector<StartRuns>& starts, const std::vector<Variant>& v
                     {"not_finite", share(t.broken)}};
       if (v > 0) {
         j["changed_share"] = run.changed;
+        j["total_variation_uncertainty"] = uncertainty(run);
         j["as_independent_samples"] = to_json(run.apart);
         j["in_pairs"] = to_json(run.in_pairs);
       }
@@ -332,9 +336,10 @@ int run_chart_field(const std::vector<std::string>& arguments) {
       "chart-field SCENE -o DIR [options]",
       "Runs the full dynamics at every field.fidelity, with the same noise: what do beams that\n"
       "remember, and beams of neighbouring gates, change in the final gates, and what do they\n"
-      "cost? Method moreau at the scene's step; run.method and field.fidelity of the scene are\n"
-      "not used. Also the default method, to show what another integrator changes. Writes\n"
-      "fidelity.csv, fidelity.json and, with gnuplot, fidelity.svg into DIR.",
+      "cost? Method moreau at the scene's run.step_s, which the text names; run.method and\n"
+      "field.fidelity of the scene are not used. Also the default method, to show what another\n"
+      "integrator changes. Long steps let moreau sink into beams: a warning says so, and a smaller\n"
+      "run.step_s helps. Writes fidelity.csv, fidelity.json and, with gnuplot, fidelity.svg into DIR.",
       "gatewalk chart-field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o "
       "results/fidelity");
   options.positional("scene", "scene file (TOML)", true);
@@ -347,24 +352,23 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   const std::string folder = options.text("output");
   if (folder.empty() || folder == "-") throw UsageError("-o needs the name of a folder");
   Scene scene = read_scene(options.text("scene"), options.overrides());
-  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
+  if (scene.gate.run.method == "auto")
+    throw UsageError("run.method = \"auto\" is not permitted for chart-field, which runs method moreau: "
+                     "name a method, and give moreau's step as run.step_s");
   const std::vector<PaperStart> starts = starts_of(options);
   require_inside(starts, scene);
   const std::vector<Variant> variants = variants_of(scene);
   (void)dynamics::StateSpace::paper(scene.gate);  // refuses gates too short for their beams
 
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw std::runtime_error(folder + ": cannot be made: " + error.message());
   const auto path = [&](const char* name) {
     return (std::filesystem::path(folder) / name).string();
   };
   const std::string csv_path = path("fidelity.csv"), json_path = path("fidelity.json"),
                     svg_path = path("fidelity.svg");
-  for (const std::string& p : {csv_path, json_path, svg_path}) {
+  for (const std::string& p : {csv_path, json_path, svg_path})
     require_different(p, options.text("json"));
-    require_writable(p);
-  }
+  require_folder(folder);
+  for (const std::string& p : {csv_path, json_path, svg_path}) require_writable(p);
 
   const std::int64_t trials = options.count("trials");
   std::vector<StartRuns> reports;
@@ -377,17 +381,19 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   const std::size_t threads =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   Json json;
+  json["machine"] = machine();
   json["trials"] = trials;
   json["threads"] = threads;
   json["bound"] = kBound;
   json["starts"] = json_of(reports, variants);
-  if (!settled.is_null()) json["method"] = settled;
   json["made_by"] = manifest(options, scene);
   write_text_atomically(csv_path, csv_of(reports, variants));
   write_text_atomically(json_path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   options.give_out(json, table_of(reports, variants, trials, threads));
   for (std::size_t v = 0; v < variants.size(); ++v)
-    if (!health[v].clean()) warn(variants[v].label + ": " + complaint(health[v]));
+    if (!health[v].clean())
+      warn(variants[v].label + ", step " + digits(variants[v].scene.gate.run.step) +
+           " s: " + complaint(health[v]));
   try {
     write_text_atomically(svg_path, drawn(script_of(reports, variants, trials, threads)));
   } catch (const std::runtime_error& e) {

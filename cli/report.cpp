@@ -73,6 +73,7 @@ Json to_json(const lattice::Comparison& c) {
   j["rmse_per_100_floor"] = c.floor.rmse_per_100;
   j["total_variation"] = c.total_variation;
   j["total_variation_floor"] = c.floor_total_variation;
+  j["total_variation_floor_95"] = c.floor_total_variation_95;
   j["p_values"] = {{"chi_squared", c.p_chi_squared},
                    {"total_variation", c.p_total_variation},
                    {"energy_distance", c.p_energy},

@@ -18,6 +18,9 @@ namespace {
 using dynamics::Purpose;
 using dynamics::Random;
 
+/// Rows of the streams of Purpose::comparison: one for each use, so that no two share their draws.
+enum Use : std::uint64_t { kDeals = 0, kExactDraws = 1, kSamples = 2, kSwaps = 3 };
+
 void require_same_shape(Eigen::Index rows_a, Eigen::Index cols_a, Eigen::Index rows_b,
                         Eigen::Index cols_b) {
   if (rows_a != rows_b || cols_a != cols_b)
@@ -103,7 +106,7 @@ Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
   return s;
 }
 
-/// p-values and the mean null total variation over `null_draws` calls of draw(k), in any order.
+/// p-values and the null's total variation over `null_draws` calls of draw(k), in any order.
 template <class Draw>
 void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draws, Draw draw) {
   if (null_draws < 1) throw std::invalid_argument("compare: null_draws must be at least 1");
@@ -121,9 +124,12 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   c.p_total_variation = p_value(&Statistics::total_variation);
   c.p_energy = p_value(&Statistics::energy);
   c.null_draws = null_draws;
-  double sum = 0.0;
-  for (const Statistics& s : null) sum += s.total_variation;
-  c.floor_total_variation = sum / static_cast<double>(null_draws);
+  std::vector<double> tv;
+  for (const Statistics& s : null) tv.push_back(s.total_variation);
+  c.floor_total_variation = std::accumulate(tv.begin(), tv.end(), 0.0) / static_cast<double>(null_draws);
+  const auto at_95 = tv.begin() + (95 * null_draws + 99) / 100 - 1;
+  std::nth_element(tv.begin(), at_95, tv.end());
+  c.floor_total_variation_95 = *at_95;
 }
 
 /// `n` draws from shares whose running sums are `cumulative`, as counts.
@@ -223,7 +229,7 @@ CellCounts sampled(const CellProbabilities& p, std::int64_t trials, std::uint64_
                    std::uint64_t replicate) {
   std::vector<double> cumulative(p.size());
   std::partial_sum(p.data(), p.data() + p.size(), cumulative.begin());
-  Random random(Purpose::comparison, {seed, 2, replicate});
+  Random random(Purpose::comparison, {seed, kSamples, replicate});
   const Eigen::VectorXd counts = drawn_counts(cumulative, trials, random);
   CellCounts cells(p.rows(), p.cols());
   for (Eigen::Index i = 0; i < cells.size(); ++i)
@@ -236,7 +242,7 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   require_same_shape(sample.rows(), sample.cols(), other.rows(), other.cols());
   const CellProbabilities a = shares(sample), b = shares(other);
   const std::int64_t n = sample.sum(), m = other.sum();
-  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0};
+  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0, 0};
   const CellCounts pooled_counts = sample + other;
   c.floor = noise_floor(concentration(pooled_counts), sample.size(), n, m);
 
@@ -252,7 +258,7 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   const Statistics seen =
       statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, 0, static_cast<std::uint64_t>(k)});
+    Random random(Purpose::comparison, {seed, kDeals, static_cast<std::uint64_t>(k)});
     // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
     const bool first_is_smaller = n <= m;
     const std::int64_t small = std::min(n, m);
@@ -287,7 +293,7 @@ Comparison compare_pairs(const std::vector<std::int32_t>& first,
     return counts;
   };
   const CellProbabilities a = shares(counted(first)), b = shares(counted(second));
-  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0};
+  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0, 0};
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   c.floor = {kNone, kNone};
 
@@ -307,7 +313,7 @@ Comparison compare_pairs(const std::vector<std::int32_t>& first,
   const Statistics seen =
       statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, 2, static_cast<std::uint64_t>(k)});
+    Random random(Purpose::comparison, {seed, kSwaps, static_cast<std::uint64_t>(k)});
     // Trials of the first sample less those of the second.
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(expected.size());
     std::uint64_t coins = 0;
@@ -328,7 +334,7 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   require_same_shape(sample.rows(), sample.cols(), exact.rows(), exact.cols());
   const CellProbabilities a = shares(sample);
   const std::int64_t n = sample.sum();
-  Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0};
+  Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0, 0};
   c.floor = noise_floor(exact.square().sum(), sample.size(), n, 0);
 
   const Support support = affordable_support_of(a + exact);
@@ -338,7 +344,7 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   std::partial_sum(expected.begin(), expected.end(), cumulative.begin());
   const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, 1, static_cast<std::uint64_t>(k)});
+    Random random(Purpose::comparison, {seed, kExactDraws, static_cast<std::uint64_t>(k)});
     return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected, expected, rare, support);
   });
   return c;

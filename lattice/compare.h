@@ -54,7 +54,8 @@ inline constexpr int kMostEnergyGates = 1000;
 struct Comparison {
   double corrcoef = 0.0, rmse_per_100 = 0.0, total_variation = 0.0;
   NoiseFloor floor;
-  double floor_total_variation = 0.0;  // mean over the null draws
+  double floor_total_variation = 0.0;     // mean over the null draws
+  double floor_total_variation_95 = 0.0;  // 95 % of the null draws have no more
   double p_chi_squared = 0.0, p_total_variation = 0.0;
   double p_energy = 0.0;  // NaN above kMostEnergyGates reachable gates
   std::int64_t null_draws = 0;

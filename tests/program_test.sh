@@ -175,25 +175,35 @@ expect 2 'three numbers' "$gatewalk" chart-field "$scenes/field.toml" -o chart -
 expect 1 'cannot be made' "$gatewalk" chart-field "$scenes/field.toml" -o m.nc/chart
 "$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=all --trials 50 --json all.json --quiet 2>/dev/null
 holds '([.final_gates[][]] | add) == 50 and .trapped + .left_field + .cut_off + .not_finite == 50' all.json
-if "$gatewalk" gate "$scenes/field.toml" --set run.method=moreau --trials 1 2>&1 | grep -q 'not written yet'; then
-  echo "method moreau is not written yet: chart-field is not tested"
-  stoppable_chart="lattice $scenes/field.toml --set run.method=moreau --set field.fidelity=all --trials 1e9"
-else
-  expect 0 '^Start 4, 5, 10: active is' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 20 --start 4,5,10
-  [ "$(wc -l <new/chart/fidelity.csv)" = 5 ] || fail "chart-field: a line per fidelity and method was expected"
-  holds '.starts[0].runs | map(.fidelity) == ["active", "remember", "all", "active"]' new/chart/fidelity.json
-  holds '.starts[0].runs | all(([.final_gates[][]] | add) == 20 and (.fates | add | . - 1 | fabs) < 1e-12 and .seconds_per_trial > 0)' new/chart/fidelity.json
-  holds '.made_by.seed == 1 and (.made_by.scene | length) > 0' new/chart/fidelity.json
-  grep -q '</svg>' new/chart/fidelity.svg || fail "chart-field: no figure"
-  "$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=remember --set start.x_m=4 \
-    --set start.vx_m_per_s=5 --set start.vy_m_per_s=10 --trials 20 --json remember.json --quiet 2>/dev/null
-  jq -s '.[0].starts[0].runs[1].final_gates == .[1].final_gates' new/chart/fidelity.json remember.json | grep -q true ||
-    fail "chart-field and lattice ran other trials"
-  rm new/chart/*
-  expect 1 'gnuplot was not found.*are written' env PATH=/nonexistent "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 5 --start 0,0,15
-  [ "$(ls new/chart | xargs)" = "fidelity.csv fidelity.json" ] || fail "chart-field without gnuplot left $(ls new/chart)"
-  stoppable_chart="chart-field $scenes/field.toml --trials 1e9 -o new/chart"
-fi
+expect 2 'run.method = "auto" is not permitted.*run.step_s' "$gatewalk" chart-field "$scenes/field.toml" --set run.method=auto -o no-chart
+[ -e no-chart ] && fail "chart-field: wrong use made a folder"
+expect 0 '^Start 4, 5, 10: 20 trials cannot tell' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 20 --start 4,5,10
+[ "$(wc -l <new/chart/fidelity.csv)" = 5 ] || fail "chart-field: a line per fidelity and method was expected"
+holds '.starts[0].runs | map(.fidelity) == ["active", "remember", "all", "active"]' new/chart/fidelity.json
+holds '.starts[0].runs | all(([.final_gates[][]] | add) == 20 and (.fates | add | . - 1 | fabs) < 1e-12 and .seconds_per_trial > 0)' new/chart/fidelity.json
+holds '.made_by.seed == 1 and (.made_by.scene | length) > 0 and (.machine | test("cores"))' new/chart/fidelity.json
+expect 2 'the same: new/chart/fidelity.csv' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --json ./new/chart/fidelity.csv
+grep -q '</svg>' new/chart/fidelity.svg || fail "chart-field: no figure"
+"$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=remember --set start.x_m=4 \
+  --set start.vx_m_per_s=5 --set start.vy_m_per_s=10 --trials 20 --json remember.json --quiet 2>/dev/null
+jq -s '.[0].starts[0].runs[1].final_gates == .[1].final_gates' new/chart/fidelity.json remember.json | grep -q true ||
+  fail "chart-field and lattice ran other trials"
+rm new/chart/*
+expect 1 'gnuplot was not found.*are written' env PATH=/nonexistent "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 5 --start 0,0,15
+[ "$(ls new/chart | xargs)" = "fidelity.csv fidelity.json" ] || fail "chart-field without gnuplot left $(ls new/chart)"
+
+# One gate has no neighbours: no trial changes, and it takes 3/0.03 trials to know that few would.
+one_gate="$scenes/field.toml --set field.columns=1 --set field.rows=1 --set run.step_s=0.02 --start 0,0,15"
+# shellcheck disable=SC2086
+{
+expect 0 '^Start 0, 0, 15: 99 trials cannot tell .* 0.0000 +- 0.0303 ' "$gatewalk" chart-field $one_gate --trials 99 -o new/chart
+holds '.starts[0].active_is_enough == null' new/chart/fidelity.json
+expect 0 '^Start 0, 0, 15: active is enough: .* 0.0000 +- 0.0300 ' "$gatewalk" chart-field $one_gate --trials 100 -o new/chart
+holds '.starts[0].active_is_enough == true and (.starts[0].runs | map(.step_s == 0.02) | all)' new/chart/fidelity.json
+# The step is said, and what it does to moreau.
+expect 0 '^gatewalk: .*(moreau), step 0.02 s: .* sank into a beam' "$gatewalk" chart-field $one_gate --trials 100 -o new/chart --quiet
+expect 0 'step 0.02 s (moreau), 0.02 s (stable)' "$gatewalk" chart-field $one_gate --trials 5 -o new/chart
+}
 
 # A start that the paper's table has not.
 "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --start 4,5,10 --json validate.json --quiet
@@ -214,6 +224,8 @@ holds '[.points[].starts[] | .exact, .walks_10000, .walks_1000000 | .total_varia
 holds '[.points[].starts[] | .exact.total_variation - .walks_1000000.total_variation | fabs < 0.008] | all' charts/a/chain.json
 # 2000 draws of a figure that varies by some 15 %: five standard errors.
 holds '.starts[0].direct_simulation | map(.drawn.total_variation / .formula.total_variation - 1 | fabs < 0.02) | all' charts/a/chain.json
+# However many its trials, the truth's noise stays: both are told from the same 150 trials.
+holds '.starts[0] | .truth.floor.total_variation as $noise | .direct_simulation | .[-1].trials > 150 and (map(.formula.total_variation >= $noise) | all)' charts/a/chain.json
 holds '.starts[0].truth.trials == 150 and ([.starts[0].truth.final_gates[][]] | add) == 150' charts/a/chain.json
 holds '[.points[].row_starts] == ["uniform", "uniform", "uniform", "visited", "visited", "visited"]' charts/a/chain.json
 holds '.points[0].build_s < .points[3].build_s' charts/a/chain.json  # the trials that saw the entries cost
@@ -232,6 +244,7 @@ expect 2 "runs-limit" "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x -
 expect 2 'must be at least 100' "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --truth-trials 99
 expect 2 'the same factor twice' chart -o charts/x --bins 1
 expect 2 'inside the gate' chart -o charts/x --start 25,0,15
+expect 2 'the same: charts/a/chain.csv' chart -o charts/a --json charts/../charts/a/chain.csv
 [ -e charts/x ] && fail "chart-chain: wrong use made a folder"
 expect 1 'm.nc' chart -o m.nc
 
@@ -279,7 +292,8 @@ expect 2 'no meaning' "$gatewalk" stability -o maps --set forces.random_N=1
 # Ctrl-C: within 2 s, status 130, a clear word, the old file unchanged.
 for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "build $scenes/field.toml --trials 1e7 -o m.nc" \
-               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" "$stoppable_chart" \
+               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" \
+               "chart-field $scenes/field.toml --trials 1e9 -o new/chart" \
                "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9" \
                "chart $scenes/field.toml --trials 1e9 -o charts"; do
   before=$(cat gate.json m.nc lattice.json charts/* | cksum)

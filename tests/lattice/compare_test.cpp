@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dynamics/random.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 
@@ -455,7 +456,8 @@ TEST(Compare, IsSymmetric) {
 }
 
 // Four pairs differ, all in one direction: of the 16 ways to swap them, 2 are as extreme. TV is
-// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials.
+// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials. 4 comes in 1 of 8, so it is
+// the 95 % quantile; of six pairs 6 comes in 1 of 32 and 4 in 6 of 32: 4 is.
 TEST(ComparePairs, SwapsOfAHandfulAreExact) {
   std::vector<std::int32_t> first(20, 0), second(20, 0);
   for (int i = 3; i < 7; ++i) second[i] = 1;
@@ -466,6 +468,30 @@ TEST(ComparePairs, SwapsOfAHandfulAreExact) {
   EXPECT_NEAR(c.p_energy, p, tolerance);
   EXPECT_DOUBLE_EQ(c.total_variation, 4.0 / 20);
   EXPECT_NEAR(c.floor_total_variation, 1.5 / 20, 4 * (1.33 / 20) / 100);  // sd of |4 - 2k|: 1.32
+  EXPECT_DOUBLE_EQ(c.floor_total_variation_95, 4.0 / 20);
+  second[7] = second[8] = 1;
+  EXPECT_DOUBLE_EQ(compare_pairs(first, second, 1, 2, 9999, 1).floor_total_variation_95, 4.0 / 20);
+}
+
+// Two pairs that differ alike: a null draw is as far apart as seen when its two coins, the lowest
+// bits of its first word, fall alike, and p counts these draws. No other use of Purpose::comparison
+// (rows 0, 1, 2: deals, draws from an exact distribution, samples) may throw the same coins.
+TEST(ComparePairs, ThrowsCoinsOfItsOwn) {
+  constexpr std::int64_t kDraws = 64;
+  const auto alike_up_to = [](std::int64_t draws) {
+    const auto n = static_cast<double>(draws + 1);
+    return std::llround(n * compare_pairs({0, 0}, {1, 1}, 1, 2, draws, 1).p_total_variation) - 1;
+  };
+  std::vector<bool> seen, of_row[3];
+  for (std::int64_t k = 0; k < kDraws; ++k) {
+    seen.push_back(alike_up_to(k + 1) > (k == 0 ? 0 : alike_up_to(k)));
+    for (std::uint64_t row = 0; row < 3; ++row) {
+      dynamics::Random random(dynamics::Purpose::comparison, {1, row, static_cast<std::uint64_t>(k)});
+      const std::uint64_t coins = random.word();
+      of_row[row].push_back((coins & 1) == (coins >> 1 & 1));
+    }
+  }
+  for (const auto& other : of_row) EXPECT_NE(seen, other);
 }
 
 // The same statistics as without pairs, and another null: pairs that agree add no noise.
