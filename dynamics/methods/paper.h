@@ -22,7 +22,7 @@ class PaperMethod final : public Method {
 
  private:
   void collide(GateState& s, Watch& watch) const;
-  void euler(GateState& s, double force_x, double dt) const;
+  void euler(GateState& s, double force_x, double dt, Watch& watch) const;
   const GateParams& p_;
   bool beyond_bound_;
 };
