@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -22,6 +23,7 @@ using dynamics::StrongError;
 using dynamics::Verdict;
 using dynamics::WeakError;
 
+constexpr double kSamePlace = 1e-9;    // of R: what is nearer is rounding, or the same bits
 constexpr double kTimedSeconds = 0.1;  // of the usual setting: the trials that are timed
 
 struct Errors {
@@ -55,17 +57,18 @@ struct SceneChart {
 
   // What cannot be told from the reference's own error. One trial is the least that can be seen.
   [[nodiscard]] double limit(const WeakError& e) const {
-    return dynamics::kReferenceMargin * std::max(e.total_variation, 1.0 / static_cast<double>(trials));
+    return dynamics::kReferenceMargin *
+           std::max({e.total_variation, e.chance, 1.0 / static_cast<double>(trials)});
   }
   [[nodiscard]] double outcome_limit() const { return limit(own.outcomes); }
   [[nodiscard]] double column_limit() const { return limit(own.columns); }
-  [[nodiscard]] double strong_limit(dynamics::MedianAndRms StrongError::*what,
-                                    double dynamics::MedianAndRms::*which) const {
-    const double e = own.strong.*what.*which;
-    return std::isfinite(e) ? dynamics::kReferenceMargin * e : 0.0;
+  /// Infinite when the reference has parted from itself.
+  [[nodiscard]] double strong_limit(double StrongError::*what) const {
+    if (std::isfinite(own.strong.*what)) return dynamics::kReferenceMargin * own.strong.*what;
+    return own.strong.parted > 0 ? std::numeric_limits<double>::infinity() : 0.0;
   }
   [[nodiscard]] double position_limit() const {
-    return strong_limit(&StrongError::position, &dynamics::MedianAndRms::median);
+    return std::max(strong_limit(&StrongError::position), kSamePlace * scene.gate.body.radius);
   }
 };
 
@@ -219,9 +222,9 @@ std::string csv_of(const std::vector<SceneChart>& charts) {
   out << "scene,method,key,value,default,status,trials,microseconds_min,microseconds_median,"
          "steps_per_trial,evaluations_per_trial,outcome_tv,outcome_tv_se,outcome_tv_chance,"
          "outcome_tv_below,outcomes_changed,column_tv,column_tv_se,column_tv_chance,column_tv_below,"
-         "trials_compared,parted_share,position_median_m,position_median_below_m,position_rms_m,"
-         "velocity_median_m_per_s,velocity_rms_m_per_s,time_median_s,time_rms_s,energy_median_J,"
-         "energy_rms_J,runs_not_finite,runs_cut_short,runs_penetrating,runs_creating_energy,"
+         "trials_compared,parted_share,position_median_m,position_median_below_m,"
+         "velocity_median_m_per_s,time_median_s,energy_median_J,runs_not_finite,runs_cut_short,"
+         "runs_penetrating,runs_creating_energy,"
          "runs_too_fast,runs_beyond_bound,contacts_without_formula,forced_holds,worst_penetration_m,"
          "worst_energy_created_J,reason\n";
   const auto number = [](double x) { return std::isfinite(x) ? digits(x) : std::string(); };
@@ -235,7 +238,7 @@ std::string csv_of(const std::vector<SceneChart>& charts) {
       if (!p.ran()) {  // nothing but the reason
         std::string reason;
         for (const char c : p.refusal) reason += c == '"' ? '\'' : c;
-        out << std::string(34, ',') << '"' << reason << "\"\n";
+        out << std::string(30, ',') << '"' << reason << "\"\n";
         continue;
       }
       const auto weak = [&](const WeakError& e, double limit) {
@@ -243,24 +246,16 @@ std::string csv_of(const std::vector<SceneChart>& charts) {
         out << number(tv.value) << ',' << (tv.below ? "" : number(e.standard_error)) << ','
             << number(e.chance) << ',' << (tv.below ? number(limit) : "") << ',';
       };
-      const auto strongly = [&](dynamics::MedianAndRms StrongError::*what,
-                                double dynamics::MedianAndRms::*which) {
-        const double limit = chart.strong_limit(what, which);
-        return shown(strong.*what.*which, limit);
-      };
       out << number(least(p.microseconds)) << ',' << number(median(p.microseconds)) << ','
           << number(per_run(h.steps, h)) << ',' << number(per_run(h.evaluations, h)) << ',';
       weak(outcomes, chart.outcome_limit());
       out << outcomes.changed << ',';
       weak(columns, chart.column_limit());
       out << strong.compared << ',' << number(strong.parted_share()) << ',';
-      using M = dynamics::MedianAndRms;
-      const Shown position = strongly(&StrongError::position, &M::median);
-      out << number(position.value) << ',' << (position.below ? number(chart.position_limit()) : "")
-          << ',' << number(strongly(&StrongError::position, &M::rms).value);
+      const Shown position = shown(strong.position, chart.position_limit());
+      out << number(position.value) << ',' << (position.below ? number(chart.position_limit()) : "");
       for (const auto what : {&StrongError::velocity, &StrongError::time, &StrongError::energy})
-        out << ',' << number(strongly(what, &M::median).value) << ','
-            << number(strongly(what, &M::rms).value);
+        out << ',' << number(shown(strong.*what, chart.strong_limit(what)).value);
       out << ',' << h.broken << ',' << p.cut_short << ',' << h.penetrating << ','
           << h.creating_energy << ',' << h.fast << ',' << h.unstable << ','
           << h.undefined_contacts << ',' << h.forced_holds << ',' << number(h.worst_penetration)
@@ -287,19 +282,14 @@ Json to_json(const StrongError& e, const SceneChart& chart, bool of_reference) {
   j["parted"] = e.parted;
   j["parted_share"] = e.parted_share();
   j["trapped_in_both"] = e.trapped;
-  const auto add = [&](const char* name, dynamics::MedianAndRms StrongError::*what) {
-    const auto one = [&](double dynamics::MedianAndRms::*which) {
-      const double limit = of_reference ? 0.0 : chart.strong_limit(what, which);
-      const Shown value = shown(e.*what.*which, limit);
-      return value.below ? Json{{"below", limit}} : Json(value.value);
-    };
-    j[name] = {{"median", one(&dynamics::MedianAndRms::median)},
-               {"rms", one(&dynamics::MedianAndRms::rms)}};
+  const auto add = [&](const char* name, double value, double limit) {
+    const Shown median = shown(value, of_reference ? 0.0 : limit);
+    j[name]["median"] = median.below ? Json{{"below", limit}} : Json(median.value);
   };
-  add("position_m", &StrongError::position);
-  add("velocity_m_per_s", &StrongError::velocity);
-  add("time_s", &StrongError::time);
-  add("energy_J", &StrongError::energy);
+  add("position_m", e.position, chart.position_limit());
+  add("velocity_m_per_s", e.velocity, chart.strong_limit(&StrongError::velocity));
+  add("time_s", e.time, chart.strong_limit(&StrongError::time));
+  add("energy_J", e.energy, chart.strong_limit(&StrongError::energy));
   return j;
 }
 
@@ -394,8 +384,20 @@ std::vector<std::string> strip(const std::vector<std::pair<const Point*, std::st
   return lines;
 }
 
-/// One panel: error over time per trial. `value` and `spread` of a point; below `limit` it is drawn at
-/// the limit. `tag` makes names of data blocks.
+/// Why a setting that ran has no strong error.
+std::string lacks(const StrongError& e, double limit) {
+  if (std::isinf(limit)) return "the reference itself parted";
+  if (e.compared > 0) return "half or more parted";
+  return e.parted > 0 ? "all parted" : "no exits";
+}
+
+/// A point's error, its standard error, and what it must reach to stand out from chance.
+struct Drawn {
+  double error, spread, chance;
+};
+
+/// One panel: least time per trial against error. What is below `limit` or does not stand out from
+/// chance is drawn there, as less than that. `tag` makes names of data blocks.
 template <class Value>
 std::string panel(const SceneChart& chart, const std::string& tag, const std::string& title,
                   const std::string& label, double limit, double own, Value value) {
@@ -406,11 +408,8 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
     plot << separator << text;
     separator = ", ";
   };
-  double lowest = limit > 0.0 ? limit : std::numeric_limits<double>::infinity();
-  double highest = limit, quickest = std::numeric_limits<double>::infinity(), slowest = 0.0;
-  struct Mark {
-    std::string x_y, letter;
-  };
+  double lowest = limit, highest = limit;
+  double quickest = std::numeric_limits<double>::infinity(), slowest = 0.0;
   std::vector<std::string> methods;
   for (const Point& p : chart.points)
     if (std::find(methods.begin(), methods.end(), p.setting.method) == methods.end())
@@ -420,25 +419,26 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
     std::string line, good, bars, failed, below, usual;
     for (const Point& p : chart.points) {
       if (p.setting.method != method) continue;
-      const auto [error, spread] = value(p);
-      const double time = median(p.microseconds);
-      if (!p.ran() || !std::isfinite(time) || !std::isfinite(error) ||
-          (error <= 0.0 && limit <= 0.0)) {
+      const auto [error, spread, chance] = value(p);
+      const double time = least(p.microseconds);
+      const double bound = std::max(limit, chance);
+      if (!p.ran() || !std::isfinite(error) || !std::isfinite(bound)) {
         std::string reason(dynamics::name_of(p.verdict));
-        if (p.ran()) reason = "all parted" + (p.verdict == Verdict::fine ? "" : ", " + reason);
+        if (p.ran())
+          reason = lacks(p.errors.strong, limit) + (p.verdict == Verdict::fine ? "" : ", " + reason);
         without.emplace_back(&p, reason);
         continue;
       }
       quickest = std::min(quickest, time);
       slowest = std::max(slowest, time);
-      const double y = std::max(error, limit);
+      const double y = std::max(error, bound);
       const std::string x_y = digits(time) + " " + digits(y);
       line += x_y + "\n";
       if (p.verdict != Verdict::fine)
         failed += x_y + " " + letter_of(p.verdict) + "\n";
       else
-        (error < limit ? below : good) += x_y + "\n";
-      if (error >= limit && std::isfinite(spread))
+        (error < bound ? below : good) += x_y + "\n";
+      if (error >= bound && std::isfinite(spread))
         bars += x_y + " " + digits(std::max(error - 2 * spread, 0.1 * error)) + " " +
                 digits(error + 2 * spread) + "\n";
       if (p.setting.usual) usual += x_y + "\n";
@@ -473,7 +473,7 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
   if (separator == "plot ") {
     plot << "plot [1:10] [0.1:1] NaN";
   } else {
-    if (limit > 0.0)
+    if (limit > 0.0 && std::isfinite(limit))
       element(digits(limit) + " with lines dt 2 lw 1 lc rgb '#666666'");
     if (own > 0.0 && own >= 0.01 * lowest) {
       element(digits(own) + " with lines dt 3 lw 1 lc rgb '#666666'");
@@ -506,7 +506,7 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
   std::ostringstream out;
   out << "set multiplot\nset format y '10^{%L}'\nset xtics nomirror\n"
          "set ytics nomirror\nset border 3\n"
-         "set grid lc rgb '#eeeeee' lt 1\nunset key\nset xlabel 'time per trial (µs)' offset 0,0.3\n"
+         "set grid lc rgb '#eeeeee' lt 1\nunset key\nset xlabel 'least time per trial (µs)' offset 0,0.3\n"
          "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n";
   for (int row = 0; row < rows; ++row) {
     const SceneChart& chart = charts[static_cast<std::size_t>(row)];
@@ -536,26 +536,27 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
               0.085);
       }
       entry("usual (paper: its 0.004 s)", "pt 6 ps 1.8 lc rgb 'black'", 0.21);
-      entry("below what the reference can show", "pt 10 ps 1.1 lc rgb '#444444'", 0.25);
+      entry("less: below what the reference or chance can show", "pt 10 ps 1.1 lc rgb '#444444'", 0.3);
       out << "set label " << label++ << " "
           << literal("x fails: E energy from nothing, P disc sinks into a beam, F too fast for its steps, "
                     "S stuck, N contact without a formula, B beyond the stability bound, X not finite. "
                     "Bars: 2 standard errors.")
           << " at screen 0.016, screen " << 1.0 - 40.0 / height << " font ',10'\n"
           << "plot [0:1] [0:1] NaN\nunset label\nset border 3\nset xtics nomirror\n"
-             "set ytics nomirror\nset xlabel 'time per trial (µs)' offset 0,0.3\n"
+             "set ytics nomirror\nset xlabel 'least time per trial (µs)' offset 0,0.3\n"
              "set logscale xy\n";
     }
     place(0.075, 0.485);
     const std::string tag = "S" + std::to_string(row);
     out << panel(chart, tag + "weak", "distribution of outcomes", "total variation",
                  chart.outcome_limit(), chart.own.outcomes.total_variation, [](const Point& p) {
-                   return std::pair(p.errors.outcomes.total_variation, p.errors.outcomes.standard_error);
+                   const WeakError& e = p.errors.outcomes;
+                   return Drawn{e.total_variation, e.standard_error, 2.0 * e.chance};
                  });
     place(0.575, 0.985);
     out << panel(chart, tag + "strong", "where a trial ends, median", "distance (m)",
-                 chart.position_limit(), chart.own.strong.position.median, [](const Point& p) {
-                   return std::pair(p.errors.strong.position.median, std::nan(""));
+                 chart.position_limit(), chart.own.strong.position, [](const Point& p) {
+                   return Drawn{p.errors.strong.position, std::nan(""), 0.0};
                  });
   }
   out << "unset multiplot\n";
@@ -572,7 +573,7 @@ std::string table_of(const SceneChart& chart) {
   };
   const auto of_reference = [&](const Errors& e, const Setting& against) {
     out << "  against " << padded(name_of(against), -20) << " outcomes " << digits(e.outcomes.total_variation)
-        << ", columns " << digits(e.columns.total_variation) << ", exit " << digits(e.strong.position.median)
+        << ", columns " << digits(e.columns.total_variation) << ", exit " << digits(e.strong.position)
         << " m, parted " << percent(e.strong.parted_share(), 1.0, 3) << "\n";
   };
   out << chart.label << ": " << chart.trials << " trials per setting, " << chart.timed_trials << " timed\n"
@@ -581,7 +582,7 @@ std::string table_of(const SceneChart& chart) {
       << ", exited left " << share(2) << ", right " << share(3) << ", trapped " << share(4) << "\n";
   of_reference(chart.own, dynamics::second_reference_setting());
   of_reference(chart.independent, chart.independent_setting);
-  out << "  setting                us/trial   steps  outcomes  +-        columns   exit (m)   rms (m)    "
+  out << "  setting                us/trial   steps  outcomes  +-        chance    columns   exit (m)   "
          "parted   status\n";
   for (const Point& p : chart.points) {
     out << (p.setting.usual ? "* " : "  ") << padded(name_of(p.setting), -20);
@@ -600,13 +601,12 @@ std::string table_of(const SceneChart& chart) {
     };
     const auto& e = p.errors;
     const bool below = e.outcomes.total_variation < chart.outcome_limit();
-    out << padded(fixed(median(p.microseconds), 1), 11) << padded(fixed(per_run(p.health.steps, p.health), 0), 8)
+    out << padded(fixed(least(p.microseconds), 1), 11) << padded(fixed(per_run(p.health.steps, p.health), 0), 8)
         << "  " << padded(text(e.outcomes.total_variation, chart.outcome_limit()), -10)
         << padded(below ? "" : text(e.outcomes.standard_error, 0.0), -10)
+        << padded(text(e.outcomes.chance, 0.0), -10)
         << padded(text(e.columns.total_variation, chart.column_limit()), -10)
-        << padded(text(e.strong.position.median, chart.position_limit()), -11)
-        << padded(text(e.strong.position.rms,
-                       chart.strong_limit(&StrongError::position, &dynamics::MedianAndRms::rms)), -11)
+        << padded(text(e.strong.position, chart.position_limit()), -11)
         << padded(percent(e.strong.parted_share(), 1.0, 2), 8) << "  " << dynamics::name_of(p.verdict) << "\n";
   }
   return out.str();
@@ -636,6 +636,17 @@ std::vector<std::string> chosen_methods(const Options& options) {
   return methods;
 }
 
+/// A mistake is said before long work, not after it.
+void require_chartable(const std::string& path, const Scene& scene) {
+  try {
+    (void)dynamics::StateSpace::paper(scene.gate);  // refuses gates too short for their beams
+    for (const Setting& s : {dynamics::reference_setting(), dynamics::second_reference_setting()})
+      (void)dynamics::make_method(s.applied_to(scene.gate));
+  } catch (const dynamics::InvalidParameter& e) {
+    throw SceneError(path + ": no reference for a chart: " + e.what());
+  }
+}
+
 }  // namespace
 
 int run_chart(const std::vector<std::string>& arguments) {
@@ -661,14 +672,16 @@ int run_chart(const std::vector<std::string>& arguments) {
   const auto& paths = options.get<std::vector<std::string>>("scene");
   std::set<std::string> labels;
   for (const std::string& path : paths) {
-    (void)read_scene(path, options.overrides());  // a mistake is said before long work, not after it
+    require_chartable(path, read_scene(path, options.overrides()));
     if (!labels.insert(std::filesystem::path(path).stem().string()).second)
       throw UsageError("two scenes are called " + std::filesystem::path(path).stem().string());
   }
   const std::string folder = options.text("output");
-  require_folder(folder);
   const auto file = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
-  for (const char* name : {"chart.csv", "chart.json", "chart.svg"}) require_writable(file(name));
+  constexpr std::array kFiles{"chart.csv", "chart.json", "chart.svg"};
+  for (const char* name : kFiles) require_different(file(name), options.text("json"));
+  require_folder(folder);
+  for (const char* name : kFiles) require_writable(file(name));
 
   std::vector<SceneChart> charts;
   Json json;
@@ -680,16 +693,18 @@ int run_chart(const std::vector<std::string>& arguments) {
       charts.push_back(chart_scene(options, path, methods, rounds));
       json["scenes"].push_back(to_json(options, charts.back()));
       table += (table.empty() ? "" : "\n") + table_of(charts.back());
+      std::filesystem::remove(file("chart.svg"));  // an old figure shall not stand beside new numbers
       write_text_atomically(file("chart.csv"), csv_of(charts));
       write_text_atomically(file("chart.json"), json.dump(2) + "\n");
     }
   } catch (const Interrupted&) {
     if (charts.empty()) throw;
-    warn("stopped before the end; " + file("chart.csv") + " and chart.json hold the " +
+    draw(file("chart.svg"), charts);
+    warn("stopped before the end; " + file("chart.csv") + ", chart.json and chart.svg hold the " +
          std::to_string(charts.size()) + " of " + std::to_string(paths.size()) + " scenes that were finished");
     return kStopped;
   }
-  options.give_out(json, table + "\n* usual: the defaults, 0.004 s for paper. Times: median of " + std::to_string(rounds) +
+  options.give_out(json, table + "\n* usual: the defaults, 0.004 s for paper. Times: least of " + std::to_string(rounds) +
                              " rounds on one thread, " + machine() + "\n");
   draw(file("chart.svg"), charts);
   for (const SceneChart& chart : charts)

@@ -15,21 +15,14 @@
 
 namespace gatewalk::cli {
 
-namespace {
-
-/// Single quotes: taken as it stands.
-std::string in_quotes(std::string_view text) {
-  std::string out = "'";
+std::string literal(std::string_view text) {
+  std::string out = "'";  // single quotes: taken as it stands
   for (const char c : text) {
     if (c == '\'') out += c;  // doubled
     out += c == '\n' ? ' ' : c;
   }
-  return out + "'";
+  return out + "' noenhanced";
 }
-
-}  // namespace
-
-std::string literal(std::string_view text) { return in_quotes(text) + " noenhanced"; }
 
 std::string data_block(std::string_view name, const std::string& rows) {
   return std::string(name) + " << EOD\n" + rows + "EOD\n";
@@ -60,20 +53,9 @@ Look look_of(std::string_view method) {
 }
 
 void draw_svg(const std::string& path, int width, int height, const std::string& commands) {
-  require_writable(path);
-  const std::string temporary =
-      (std::filesystem::path(path).parent_path() / (".gatewalk-" + std::to_string(::getpid()) + ".svg"))
-          .string();
-  try {
-    plot("set terminal svg size " + std::to_string(width) + "," + std::to_string(height) +
-         " font 'sans,12' background '#ffffff' enhanced\nset output " + in_quotes(temporary) + "\n" +
-         commands + "\nset output\n");
-    std::filesystem::rename(temporary, path);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  write_text_atomically(path, drawn("set terminal svg size " + std::to_string(width) + "," +
+                                    std::to_string(height) +
+                                    " font 'sans,12' background '#ffffff' enhanced\n" + commands + "\n"));
 }
 
 void require_folder(const std::string& name) {

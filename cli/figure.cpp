@@ -73,6 +73,4 @@ std::string drawn(const std::string& script) {
   return text_of(out.get());
 }
 
-void plot(const std::string& script) { (void)drawn(script); }
-
 }  // namespace gatewalk::cli

@@ -261,15 +261,23 @@ int run_stability(const std::vector<std::string>& arguments) {
   if (options.has("set")) throw UsageError("--set has no meaning here: the maps have scenes of their own");
   if (options.text("output").empty()) throw UsageError("missing -o DIR: where to write the maps");
   const std::string folder = options.text("output");
-  require_folder(folder);
   const auto file = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
-  for (const char* name : {"stability.csv", "stability.json"}) require_writable(file(name));
+  std::vector<StabilityMap> planned;
+  std::vector<std::string> figures;  // one for each kind
+  for (int kind = 0; kind < dynamics::kMapKinds; ++kind) {
+    for (const auto method : dynamics::chart_methods())
+      planned.push_back(dynamics::stability_map(static_cast<dynamics::MapKind>(kind), method,
+                                                options.has("quick")));
+    figures.push_back(file(std::string(planned.back().name) + ".svg"));
+  }
+  std::vector<std::string> files = figures;
+  for (const char* name : {"stability.csv", "stability.json"}) files.push_back(file(name));
+  for (const std::string& name : files) require_different(name, options.text("json"));
+  require_folder(folder);
+  for (const std::string& name : files) require_writable(name);
 
   std::vector<FinishedMap> maps;
-  for (int kind = 0; kind < dynamics::kMapKinds; ++kind)
-    for (const auto method : dynamics::chart_methods())
-      maps.push_back(run_map(options, dynamics::stability_map(static_cast<dynamics::MapKind>(kind), method,
-                                                              options.has("quick"))));
+  for (const StabilityMap& map : planned) maps.push_back(run_map(options, map));
 
   Json json;
   json["trials_per_point"] = dynamics::kTrialsPerPoint;
@@ -279,12 +287,15 @@ int run_stability(const std::vector<std::string>& arguments) {
   for (const FinishedMap& m : maps) json["maps"].push_back(to_json(m));
   json["made_by"] = {{"program", "gatewalk"}, {"version", kVersion}, {"commit", kCommit},
                      {"command", options.canonical()}, {"seed", options.seed()}};
+  // Old figures shall not stand beside new numbers.
+  for (const std::string& figure : figures) std::filesystem::remove(figure);
   write_text_atomically(file("stability.csv"), csv_of(maps));
   write_text_atomically(file("stability.json"), json.dump(2) + "\n");
-  for (std::size_t first = 0; first < maps.size(); first += dynamics::chart_methods().size()) {
+  const std::size_t methods = dynamics::chart_methods().size();
+  for (std::size_t kind = 0; kind < figures.size(); ++kind) {
     std::vector<const FinishedMap*> panels;
-    for (std::size_t i = 0; i < dynamics::chart_methods().size(); ++i) panels.push_back(&maps[first + i]);
-    draw(file(std::string(maps[first].map.name) + ".svg"), panels);
+    for (std::size_t i = 0; i < methods; ++i) panels.push_back(&maps[kind * methods + i]);
+    draw(figures[kind], panels);
   }
   double slowest = 0.0;
   for (const FinishedMap& m : maps)

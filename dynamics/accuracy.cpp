@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -21,14 +22,14 @@ const ParamInfo& info(std::string_view key) {
                        [key](const ParamInfo& i) { return i.key == key; });
 }
 
-MedianAndRms summary(std::vector<double> values) {
-  if (values.empty()) return {};
-  double squares = 0.0;
-  for (const double v : values) squares += v * v;
-  // The lower of the two in the middle: a distance that a trial really has.
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+/// Of the values and `infinite` more; NaN where that is infinity.
+double median(std::vector<double> values, std::int64_t infinite) {
+  // The upper of the two in the middle: a distance that a trial really has.
+  const std::size_t rank = (values.size() + static_cast<std::size_t>(infinite)) / 2;
+  if (rank >= values.size()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), middle, values.end());
-  return {*middle, std::sqrt(squares / static_cast<double>(values.size()))};
+  return *middle;
 }
 
 void require_pairs(std::span<const TrialEnd> a, std::span<const TrialEnd> b) {
@@ -231,10 +232,10 @@ StrongError strong_error(const GateParams& p, std::span<const TrialEnd> run,
     };
     energy.push_back(std::abs(kinetic(a.exit) - kinetic(b.exit)));
   }
-  e.position = summary(std::move(position));
-  e.velocity = summary(std::move(velocity));
-  e.time = summary(std::move(time));
-  e.energy = summary(std::move(energy));
+  e.position = median(std::move(position), e.parted);
+  e.velocity = median(std::move(velocity), e.parted);
+  e.time = median(std::move(time), e.parted);
+  e.energy = median(std::move(energy), e.parted);
   return e;
 }
 

@@ -4,9 +4,8 @@
 /// Trial number i draws the same random force whatever the method (common random numbers), so runs
 /// are compared one by one. Two kinds of error:
 /// - weak: how far the distribution of outcomes is off, as total variation;
-/// - strong: how far single trials are off, over those that are still the same trial. Two hits may
-///   be microseconds apart and which comes first decides the branch: a trial that took another one
-///   has parted and is counted, it has no distance.
+/// - strong: how far single trials are off. Two hits may be microseconds apart and which comes first
+///   decides the branch: a trial that took another one has parted, which counts as infinitely far.
 
 #include <cstdint>
 #include <limits>
@@ -108,24 +107,20 @@ struct WeakError {
 [[nodiscard]] WeakError column_error(std::span<const TrialEnd> run,
                                      std::span<const TrialEnd> reference, const StateSpace& space);
 
-struct MedianAndRms {
-  double median = std::numeric_limits<double>::quiet_NaN();
-  double rms = std::numeric_limits<double>::quiet_NaN();
-};
-
 /// A pair of trials has parted when it ends in different ways, more than this apart, or broken.
 inline constexpr double kPartedSeconds = 0.05;
 inline constexpr double kPartedMetres = 1.0;
 
-/// Distances at the exit, over trials that left the gate in both and have not parted.
+/// Distances at the exit: medians over the trials that left the gate in one run or both, parted ones
+/// infinitely far, so that a median grows as more of them part. NaN when half or more have parted.
 struct StrongError {
-  std::int64_t compared = 0;
+  std::int64_t compared = 0;  // have not parted
   std::int64_t parted = 0;
-  std::int64_t trapped = 0;  // in both: no exit, nothing to compare
-  MedianAndRms position;     // m
-  MedianAndRms velocity;     // m/s
-  MedianAndRms time;         // s
-  MedianAndRms energy;       // J, kinetic
+  std::int64_t trapped = 0;   // in both: no exit, nothing to compare
+  double position = std::numeric_limits<double>::quiet_NaN();  // m
+  double velocity = std::numeric_limits<double>::quiet_NaN();  // m/s
+  double time = std::numeric_limits<double>::quiet_NaN();      // s
+  double energy = std::numeric_limits<double>::quiet_NaN();    // J, kinetic
 
   [[nodiscard]] double parted_share() const {
     const std::int64_t left = compared + parted;

@@ -91,6 +91,11 @@ PointScene scene_of(MapKind kind, std::string_view method, double x, double y) {
   return scene;
 }
 
+/// A first value 0 has no logarithm.
+double lowest_positive(const MapAxis& axis) {
+  return axis.values.front() > 0.0 ? axis.values.front() : axis.values[1];
+}
+
 /// Where make_method begins to refuse, going up from y.front(): bisection in log y; y.back() and
 /// more: nowhere. No method refuses a beam for being too soft or too little damped.
 double refused_above(MapKind kind, std::string_view method, double x, const MapAxis& y) {
@@ -103,8 +108,7 @@ double refused_above(MapKind kind, std::string_view method, double x, const MapA
       return true;
     }
   };
-  const double lowest = y.values.front() > 0.0 ? y.values.front() : y.values[1];
-  double taken = std::log(lowest), not_taken = std::log(y.values.back());
+  double taken = std::log(lowest_positive(y)), not_taken = std::log(y.values.back());
   if (refused(taken) || !refused(not_taken)) return std::numeric_limits<double>::infinity();
   while (not_taken - taken > 1e-3) {  // a thousandth: far below what a figure shows
     const double middle = 0.5 * (taken + not_taken);
@@ -221,12 +225,20 @@ std::vector<Border> borders(const StabilityMap& map) {
       add("h = 2 I/d (creeping)", steps, [&](double h) { return 2.0 * inertia / h + 0.5 * k * h; });
     }
   } else if (map.method == "penalty") {
-    if (stiffness)
-      add("h^2 k/I + 2 h d/I = 4", steps,
-          [&](double h) { return (4.0 * inertia - 2.0 * h * d) / (h * h); });
-    else
-      add("h^2 k/I + 2 h d/I = 4", steps,
-          [&](double h) { return (4.0 * inertia - h * h * k) / (2.0 * h); });
+    Border border{"h^2 k/I + 2 h d/I = 4", {}, {}};
+    constexpr int kSteps = 500;  // from bottom to top
+    const double lowest = lowest_positive(map.y), highest = map.y.values.back();
+    for (int i = 0; i <= kSteps; ++i) {
+      const double y = lowest * std::pow(highest / lowest, static_cast<double>(i) / kSteps);
+      GateParams q;
+      (stiffness ? q.beams.stiffness_left : q.beams.damping) = y;
+      q.beams.stiffness_right = q.beams.stiffness_left;
+      const double h = semi_implicit_bound(q);
+      if (h < first || h > last) continue;
+      border.x.push_back(h);
+      border.y.push_back(y);
+    }
+    if (!border.x.empty()) found.push_back(std::move(border));
   }
   // Only steps that fit into a hold of the random force are accepted at all.
   add("refused above", map.x.values,

@@ -13,11 +13,13 @@
 namespace gatewalk::dynamics {
 
 /// The default gate (k = 400 N m/rad, d = 50 N m s/rad), F = 8 N, Rm = 20 N; the disc comes from
-/// 10 m below the beams at 15 m/s, unless the map says otherwise. 3 s a trial.
+/// 10 m below the beams at 15 m/s, unless the map says otherwise. 3 s a trial. Where the map does not
+/// vary it, the step is the default for `stable` and kPaperStep for the others; the tolerance of
+/// `event` is the default.
 enum class MapKind : std::uint8_t {
   step_stiffness,         // both beams equally stiff
   step_damping,
-  restitution_threshold,  // at the default step or tolerance; the threshold is an impulse in N s
+  restitution_threshold,  // the threshold is an impulse in N s
   lever_speed,            // first contact at this distance from the joint, at this speed, at once
   grazing_speed,          // past a tip, closest approach R (1 + delta), at this speed; no forces
 };

@@ -271,6 +271,25 @@ grep -q '</svg>' charts/chart.svg || fail "chart.svg is no whole figure"
 "$gatewalk" chart "$scenes/stiff.toml" -o again --trials 20 --repeats 1 --seed 2 --methods stable --threads 1 --quiet >/dev/null
 jq -s '[.[0].scenes[1].settings[] | select(.method == "stable") | .errors] == [.[1].scenes[0].settings[].errors]' charts/chart.json again/chart.json |
   grep -q true || fail "chart: one method on one thread gave other errors"
+holds '[.scenes[].settings[].errors | select(.) | .strong | (.parted_share >= 0.5 or .compared == 0) == (.position_m.median == null)] | unique == [true]' charts/chart.json
+holds '[.scenes[].settings[].errors | select(.) | .strong | select(.parted_share >= 0.5 and .compared > 0)] | length > 0' charts/chart.json
+grep -q 'half or more parted' charts/chart.svg || fail "chart.svg is silent about settings of which half the trials parted"
+# Every line as long as the first, reasons in quotes aside.
+[ "$(sed -E 's/"[^"]*"//' charts/chart.csv | awk -F, '{ print NF }' | sort -u | wc -l)" = 1 ] || fail "chart.csv: uneven lines"
+# What chance alone gives between the reference and itself ten times coarser is no error of a method.
+jq '[.scenes[] | .reference.own_error.errors.outcomes as $own | .settings[] | select(.errors.outcomes.below) | .errors.outcomes.below / ([$own.total_variation, $own.chance, 1 / 20] | max) | . > 9.99 and . < 10.01] | length > 0 and all' charts/chart.json |
+  grep -q true || fail "chart: a limit is not ten times the reference's own error and chance"
+# Settings with the reference's bits have a place in the figure: the disc misses every beam.
+"$gatewalk" chart "$scenes/undamped.toml" -o exact --trials 20 --repeats 1 --methods stable,event --quiet --json - >exact.json
+[ -n "$(value '.scenes[0].settings[] | select(.errors.strong.position_m.median.below? == 1e-8) | .value' exact.json)" ] ||
+  fail "chart: no setting is below a billionth of R: $(jq -c '[.scenes[0].settings[] | [.method, .value, .errors.strong.position_m.median]]' exact.json)"
+grep -q 'all parted' exact/chart.svg && fail "chart: exact settings are called parted"
+# The table shows the least of the times, and chance beside the error.
+"$gatewalk" chart "$scenes/stiff.toml" -o times --trials 50 --repeats 3 --methods event --json times.json >times.txt 2>/dev/null
+for i in 0 1 2 3 4 5 6 7; do
+  least=$(printf '%.1f' "$(value ".scenes[0].settings[$i].microseconds_per_trial.rounds | min" times.json)")
+  grep -E -A8 'us/trial .* chance' times.txt | tail -n +$((i + 2)) | head -n 1 | grep -q " $least " || fail "chart: setting $i: not $least us in the table"
+done
 expect 2 'missing SCENE' "$gatewalk" chart -o charts
 expect 2 'missing -o' "$gatewalk" chart "$scenes/field.toml"
 expect 2 "no method 'euler'" "$gatewalk" chart "$scenes/field.toml" -o charts --methods euler
@@ -279,6 +298,13 @@ expect 2 'two scenes are called field' "$gatewalk" chart "$scenes/field.toml" "$
 expect 2 'at least 1' "$gatewalk" chart "$scenes/field.toml" -o charts --trials 0
 expect 2 'nosuch.toml' "$gatewalk" chart "$scenes/field.toml" nosuch.toml -o charts
 expect 1 'gate.json' "$gatewalk" chart "$scenes/field.toml" -o gate.json --trials 1
+for name in csv json svg; do
+  expect 2 'the same' "$gatewalk" chart "$scenes/field.toml" -o charts --trials 1 --json charts/../charts/chart.$name
+done
+# A scene that the reference method refuses is named before the first trial of the others.
+sed -E 's/^stiffness_left_Nm_per_rad.*/stiffness_left_Nm_per_rad = 1e12/; s/^method = .*/method = "paper"/' \
+  "$scenes/field.toml" >rigid.toml
+expect 2 'rigid.toml: no reference' timeout 20 "$gatewalk" chart "$scenes/field.toml" rigid.toml -o charts --trials 1e7
 
 # stability: five maps of five methods.
 "$gatewalk" stability -o maps --quick --quiet >/dev/null 2>maps.err || fail "stability: $(head -n 3 maps.err)"
@@ -287,6 +313,12 @@ holds '[.maps[] | (.status | length) == (.y.values | length)] | all' maps/stabil
 holds '[.maps[] | select(.method == "stable" and .map == "restitution_threshold") | .status[][]] | unique == ["ok"]' maps/stability.json
 [ "$(ls maps/*.svg | wc -l)" = 5 ] || fail "stability: $(ls maps)"
 expect 2 'missing -o' "$gatewalk" stability
+for name in stability.csv stability.json lever_speed.svg; do
+  expect 2 'the same' timeout 20 "$gatewalk" stability -o maps --quick --json maps/$name
+done
+mkdir -p blocked/grazing_speed.svg
+expect 1 'grazing_speed.svg' "$gatewalk" stability -o blocked --quick  # before any work
+[ "$(ls blocked)" = grazing_speed.svg ] || fail "stability: wrote $(ls blocked) though a figure has no place"
 expect 2 'no meaning' "$gatewalk" stability -o maps --set forces.random_N=1
 
 # Ctrl-C: within 2 s, status 130, a clear word, the old file unchanged.

@@ -1,11 +1,8 @@
 #include "cli/figure.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 namespace gatewalk::cli {
 namespace {
@@ -27,16 +24,6 @@ TEST(Figure, DrawnGivesTheFigure) {
   EXPECT_NE(svg.find("</svg>"), svg.npos);
 }
 
-TEST(Figure, PlotWritesWhereTheScriptSays) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("gatewalk-figure-" + std::to_string(::getpid()) + ".svg");
-  plot("set terminal svg\nset output '" + path.string() + "'\nplot sin(x)\n");
-  std::ifstream in(path);
-  const std::string svg{std::istreambuf_iterator<char>(in), {}};
-  std::filesystem::remove(path);
-  EXPECT_NE(svg.find("</svg>"), svg.npos);
-}
-
 // More than a pipe holds, in both directions.
 TEST(Figure, LargeScriptsAndFigures) {
   std::string script = "set terminal svg\n$d << EOD\n";
@@ -48,7 +35,7 @@ TEST(Figure, LargeScriptsAndFigures) {
 
 TEST(Figure, FailuresCarryGnuplotsWords) {
   const std::string words =
-      complaint_of([] { plot("set terminal svg\n\nplot nonsense nowhere\n"); });
+      complaint_of([] { (void)drawn("set terminal svg\n\nplot nonsense nowhere\n"); });
   EXPECT_NE(words.find("gnuplot failed"), words.npos) << words;
   EXPECT_NE(words.find("nonsense"), words.npos) << words;
   EXPECT_NE(words.find("line 3"), words.npos) << words;
@@ -57,7 +44,7 @@ TEST(Figure, FailuresCarryGnuplotsWords) {
 TEST(Figure, MissingGnuplotIsSaid) {
   const std::string before = std::getenv("PATH");
   ::setenv("PATH", "/nonexistent", 1);
-  const std::string words = complaint_of([] { plot("plot sin(x)\n"); });
+  const std::string words = complaint_of([] { (void)drawn("plot sin(x)\n"); });
   ::setenv("PATH", before.c_str(), 1);
   EXPECT_NE(words.find("gnuplot was not found"), words.npos) << words;
 }
