@@ -55,13 +55,9 @@ struct SceneChart {
   Errors independent;                      // the reference against it
   std::vector<Point> points;
 
-  // What cannot be told from the reference's own error. One trial is the least that can be seen.
-  [[nodiscard]] double limit(const WeakError& e) const {
-    return dynamics::kReferenceMargin *
-           std::max({e.total_variation, e.chance, 1.0 / static_cast<double>(trials)});
-  }
-  [[nodiscard]] double outcome_limit() const { return limit(own.outcomes); }
-  [[nodiscard]] double column_limit() const { return limit(own.columns); }
+  // What cannot be told from the reference's own error.
+  [[nodiscard]] double outcome_limit() const { return weak_limit(own.outcomes, trials); }
+  [[nodiscard]] double column_limit() const { return weak_limit(own.columns, trials); }
   /// Infinite when the reference has parted from itself.
   [[nodiscard]] double strong_limit(double StrongError::*what) const {
     if (std::isfinite(own.strong.*what)) return dynamics::kReferenceMargin * own.strong.*what;
@@ -423,10 +419,8 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
       const double time = least(p.microseconds);
       const double bound = std::max(limit, chance);
       if (!p.ran() || !std::isfinite(error) || !std::isfinite(bound)) {
-        std::string reason(dynamics::name_of(p.verdict));
-        if (p.ran())
-          reason = lacks(p.errors.strong, limit) + (p.verdict == Verdict::fine ? "" : ", " + reason);
-        without.emplace_back(&p, reason);
+        without.emplace_back(&p, p.ran() ? lacks(p.errors.strong, limit)
+                                         : std::string(dynamics::name_of(p.verdict)));
         continue;
       }
       quickest = std::min(quickest, time);

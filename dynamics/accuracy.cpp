@@ -202,6 +202,11 @@ WeakError column_error(std::span<const TrialEnd> run, std::span<const TrialEnd> 
   return weak_error(run, reference, space.size() + 2, [](const TrialEnd& e) { return e.column; });
 }
 
+double weak_limit(const WeakError& own, std::int64_t trials) {
+  return kReferenceMargin *
+         std::max({own.total_variation, own.chance, 1.0 / static_cast<double>(trials)});
+}
+
 StrongError strong_error(const GateParams& p, std::span<const TrialEnd> run,
                          std::span<const TrialEnd> reference) {
   require_pairs(run, reference);

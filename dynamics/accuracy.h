@@ -133,4 +133,8 @@ struct StrongError {
 /// An error below this many times the reference's own cannot be shown.
 inline constexpr double kReferenceMargin = 10.0;
 
+/// What a total variation must reach to be shown: that margin over the reference's own, over what
+/// chance makes of its own changes, and over one trial, the least that can be seen.
+[[nodiscard]] double weak_limit(const WeakError& own, std::int64_t trials);
+
 }  // namespace gatewalk::dynamics

@@ -80,6 +80,13 @@ TEST(WeakError, ExchangedTrialsCancel) {
   EXPECT_NEAR(e.chance, std::sqrt(2.0 / std::numbers::pi) / 8.0 * 2.0 * std::sqrt(2.0), 4 * kEps);
 }
 
+// Changes of the reference that happen to cancel do not make it better than chance.
+TEST(WeakError, LimitIsTheLargestOfErrorChanceAndOneTrial) {
+  EXPECT_EQ(weak_limit({.total_variation = 0.02, .chance = 0.01}, 1000), kReferenceMargin * 0.02);
+  EXPECT_EQ(weak_limit({.total_variation = 0.0, .chance = 0.01}, 1000), kReferenceMargin * 0.01);
+  EXPECT_EQ(weak_limit({.total_variation = 0.0, .chance = 0.0}, 1000), kReferenceMargin * 0.001);
+}
+
 // The mean of |TV| over fair coin flips of the changed trials is `chance`: 2000 repeats of 100 trials
 // whose standard deviation is sqrt(1 - 2/pi) of it, 1.7 % after 2000; the normal law for a sum of 100
 // flips is off by 1/(4 * 100); 4 standard errors and that are 4 * 1.7 % + 0.25 %.
