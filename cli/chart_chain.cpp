@@ -675,7 +675,7 @@ void draw(const std::string& path, const Chart& chart) {
   least_seconds = std::min(0.7 * least_seconds, std::pow(10.0, std::floor(std::log10(1.4 * most_seconds))));
 
   const int panels = static_cast<int>(chart.truths.size());
-  constexpr int kLeft = 75, kPanel = 310, kGap = 14, kPanelHeight = 300, kTop = 35, kKeyRow = 20;
+  constexpr int kLeft = 95, kPanel = 310, kGap = 14, kPanelHeight = 300, kTop = 35, kKeyRow = 20;
   const int wide = panels > 1 ? kPanel : 2 * kPanel;
   const int width = kLeft + panels * (wide + kGap);
   const bool has_visited = chart.curves.back().visited;

@@ -39,10 +39,7 @@ std::vector<Variant> variants_of(const Scene& scene) {
   const auto add = [&](Fidelity fidelity, const std::string& method) {
     Scene s = scene;
     s.field.fidelity = fidelity;
-    // A step that is only the scene's method's default gives way to this method's.
-    const double rate = s.gate.forces.random_rate;
-    if (s.gate.run.step == dynamics::default_step(s.gate.run.method, rate))
-      s.gate.run.step = dynamics::default_step(method, rate);
+    if (!s.names_step) s.gate.run.step = dynamics::default_step(method, s.gate.forces.random_rate);
     s.gate.run.method = method;
     lattice::validate(s.gate, s.field);
     (void)dynamics::make_method(s.gate);

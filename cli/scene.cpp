@@ -438,7 +438,8 @@ Scene parse_scene(std::string_view text, std::string name,
     const auto it = settings.find(key.key);
     if (it != settings.end()) assign(key, it->second, scene);
   }
-  if (!settings.contains("run.step_s"))
+  scene.names_step = settings.contains("run.step_s");
+  if (!scene.names_step)
     scene.gate.run.step = dynamics::default_step(scene.gate.run.method, scene.gate.forces.random_rate);
   check_together(scene, settings);
   return scene;

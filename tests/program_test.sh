@@ -103,7 +103,7 @@ done
 # shellcheck disable=SC2086
 "$gatewalk" gate $loose --set run.step_s=0.02 --set beams.stiffness_left_Nm_per_rad=501 --json beyond.json 2>/dev/null
 holds '.status.runs_beyond_the_stability_bound == 20' beyond.json
-expect 2 'run.step_s = 0.02 is not permitted.*method penalty permits at most' "$gatewalk" gate "$scenes/field.toml" --set run.method=penalty --set beams.stiffness_left_Nm_per_rad=1e9
+expect 2 'run.step_s = 0.004 is not permitted.*method penalty permits at most' "$gatewalk" gate "$scenes/field.toml" --set run.method=penalty --set beams.stiffness_left_Nm_per_rad=1e9
 # moreau has no bound on the step; what long steps do to it is seen.
 expect 0 'sank into a beam' "$gatewalk" gate "$scenes/stiff.toml" --set run.method=moreau --set run.step_s=0.02 --trials 50 --json sunk.json --quiet
 holds '.status | .clean == false and .runs_penetrating_over_1_percent > 0 and .runs_beyond_the_stability_bound == 0' sunk.json
