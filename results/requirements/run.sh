@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Which method meets which of requirements 1 to 17, with the figures that the tests measured.
-#   results/requirements/run.sh [GATEWALK [FOLDER]]      about TIME on two cores
+#   results/requirements/run.sh [GATEWALK [FOLDER]]      about 10 minutes on two cores
 # GATEWALK_LONG=0: with the counts of ordinary tests, about 2 minutes.
 # Writes requirements.csv, requirements.md, manifest.txt. Runs the tests built beside GATEWALK;
 # figures 16 and 17 are those of results/accuracy/chart.json.

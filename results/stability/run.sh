@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Where each method breaks: five maps.
-#   results/stability/run.sh [GATEWALK]      about TIME on two cores
+#   results/stability/run.sh [GATEWALK]      15 seconds on two cores
 # Writes stability.csv, stability.json, a figure per map, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
