@@ -1,3 +1,4 @@
+#include "cli/auto.h"
 #include "cli/command.h"
 #include "cli/matrix.h"
 #include "cli/output.h"
@@ -8,34 +9,40 @@ namespace gatewalk::cli {
 
 int run_build(const std::vector<std::string>& arguments) {
   Options options("build SCENE -o MATRIX.nc [options]",
-                  "Fills the input-output matrix of one gate: for every input state of Table III\n"
-                  "(87 of them) N short runs, counted by where they come out.",
+                  "Fills the input-output matrix of one gate: for every input state (the 87 of\n"
+                  "Table III, or more with --bins) N short runs, counted by where they come out.",
                   "gatewalk build scenes/field.toml --trials 100 --seed 1 -o matrix.nc");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "runs per input state");
   options.add()("output,o", po::value<std::string>()->value_name("FILE"),
-                "matrix file to write (NetCDF-4)");
+                "matrix file to write (NetCDF-4)")
+               ("bins", po::value<double>()->default_value(1.0, "1")->value_name("FACTOR"),
+                "bins per axis, as a multiple of Table III's: 2 makes 696 states, 0.5 makes 23");
   if (!options.parse(arguments)) return kFine;
   if (!options.has("output")) throw UsageError("missing -o MATRIX.nc: where to write the matrix");
   if (options.text("output").empty()) throw UsageError("-o needs a file name");
   if (options.text("output") == "-") throw UsageError("-o -: a matrix needs a file of its own");
   require_different(options.text("output"), options.text("json"));
   require_writable(options.text("output"));
-  const Scene scene = read_scene(options.text("scene"), options.overrides());
+  Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
+  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
 
+  const double bins = options.get<double>("bins");
   const Stopwatch watch;
-  lattice::MatrixFile file{build_matrix(scene, trials, options.seed(), options.talk()), {}};
+  lattice::MatrixFile file{build_matrix(scene, bins, trials, options.seed(), options.talk()), {}};
   const double seconds = watch.seconds();
   const dynamics::Transitions& t = file.transitions;
   file.text = {{"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},
                {"scene", to_toml(scene)},
                {"seed", std::to_string(options.seed())},
                {"trials_per_row", std::to_string(trials)},
+               {"bins", Json(bins).dump()},  // the shortest digits that read back the same
                {"program", std::string("gatewalk ") + kVersion},
                {"commit", kCommit},
                {"command", options.canonical()},
                {"status", to_json(t.health).dump()}};
+  if (!settled.is_null()) file.text["method"] = settled.dump();
   lattice::write_matrix(options.text("output"), file);
 
   const auto total = t.totals();
@@ -44,8 +51,10 @@ int run_build(const std::vector<std::string>& arguments) {
   json["inputs"] = t.space.size();
   json["outputs"] = t.space.size() + 1;
   json["trials_per_row"] = trials;
+  json["bins"] = bins;
   json["nonzeros"] = total.nonzeros;
   json["clamped_share"] = total.clamped_share();
+  if (!settled.is_null()) json["method"] = settled;
   json["status"] = to_json(t.health);
   json["made_by"] = manifest(options, scene);
   const std::string table =
@@ -54,7 +63,7 @@ int run_build(const std::vector<std::string>& arguments) {
       std::to_string(total.nonzeros) + " nonzeros, " +
       percent(total.clamped_share(), 1.0) +
       " of the crossings clamped into the nearest bin\n";
-  options.give_out(json, table);
+  options.give_out(json, table + method_line(settled));
   remark(options, "built in " + fixed(seconds, 2) + " s");
   if (!t.health.clean()) warn(complaint(t.health));
   return kFine;

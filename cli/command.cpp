@@ -82,6 +82,13 @@ void Options::positional(const std::string& name, const std::string& help, bool 
   if (required) required_.push_back(name);
 }
 
+void Options::positional_list(const std::string& name, const std::string& help) {
+  hidden_.add_options()(name.c_str(), po::value<std::vector<std::string>>());
+  positions_.add(name.c_str(), -1);
+  positional_help_.emplace_back(name, help);
+  required_.push_back(name);
+}
+
 bool Options::parse(const std::vector<std::string>& arguments) {
   po::options_description all;
   all.add(own_).add(shared_).add(hidden_);

@@ -51,6 +51,10 @@ int run_walk(const std::vector<std::string>& arguments);
 int run_predict(const std::vector<std::string>& arguments);
 int run_lattice(const std::vector<std::string>& arguments);
 int run_validate(const std::vector<std::string>& arguments);
+int run_chart_field(const std::vector<std::string>& arguments);
+int run_chart(const std::vector<std::string>& arguments);
+int run_stability(const std::vector<std::string>& arguments);
+int run_chart_chain(const std::vector<std::string>& arguments);
 
 /// Options of one command with the shared ones: --set, --threads, --quiet, --json, --help.
 class Options {
@@ -60,6 +64,9 @@ class Options {
 
   /// Declares a positional argument (in order); `required` ones must be given.
   void positional(const std::string& name, const std::string& help, bool required);
+  /// Declares the last positional argument, which may be given several times and must be once; its
+  /// value is a std::vector<std::string>.
+  void positional_list(const std::string& name, const std::string& help);
   po::options_description_easy_init add() { return own_.add_options(); }
 
   /// Reads the arguments. False when --help was asked for and printed. Throws UsageError.

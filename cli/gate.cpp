@@ -1,3 +1,4 @@
+#include "cli/auto.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -12,8 +13,9 @@ int run_gate(const std::vector<std::string>& arguments) {
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "runs of the gate");
   if (!options.parse(arguments)) return kFine;
-  const Scene scene = read_scene(options.text("scene"), options.overrides());
+  Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
+  const Json settled = settle_method(options, scene, RunsFrom::start);
 
   dynamics::GateTally tally;
   run_in_batches("gate runs", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
@@ -30,6 +32,7 @@ int run_gate(const std::vector<std::string>& arguments) {
   json["exited_right"] = tally.exited_right;
   json["trapped"] = tally.trapped;
   json["not_finite"] = tally.broken;
+  if (!settled.is_null()) json["method"] = settled;
   json["status"] = to_json(tally.health);
   json["made_by"] = manifest(options, scene);
 
@@ -44,7 +47,7 @@ int run_gate(const std::vector<std::string>& arguments) {
   table += line("exited left", tally.exited_left) + line("exited right", tally.exited_right) +
            line("trapped", tally.trapped);
   if (tally.broken > 0) table += line("not finite", tally.broken);
-  options.give_out(json, table);
+  options.give_out(json, table + method_line(settled));
   if (!tally.health.clean()) warn(complaint(tally.health));
   return kFine;
 }

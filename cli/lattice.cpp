@@ -1,3 +1,4 @@
+#include "cli/auto.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -11,8 +12,9 @@ int run_lattice(const std::vector<std::string>& arguments) {
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "trials through the field");
   if (!options.parse(arguments)) return kFine;
-  const Scene scene = read_scene(options.text("scene"), options.overrides());
+  Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
+  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
   const auto space = dynamics::StateSpace::paper(scene.gate);
 
   const Stopwatch watch;
@@ -33,6 +35,7 @@ int run_lattice(const std::vector<std::string>& arguments) {
     entries[std::string(dynamics::kBoundaryNames[b])] = {{"count", tally.entries[b]},
                                                          {"outside_bins", tally.clamped[b]}};
   json["entries_between_gates"] = std::move(entries);
+  if (!settled.is_null()) json["method"] = settled;
   json["status"] = to_json(tally.health);
   json["made_by"] = manifest(options, scene);
 
@@ -44,7 +47,7 @@ int run_lattice(const std::vector<std::string>& arguments) {
                       percent(static_cast<double>(tally.cut_off), n, 2) + "\n";
   if (tally.broken > 0)
     table += "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
-  options.give_out(json, table);
+  options.give_out(json, table + method_line(settled));
   remark(options, fixed(watch.seconds(), 2) + " s");
   if (!tally.health.clean()) warn(complaint(tally.health));
   return kFine;

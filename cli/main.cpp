@@ -10,7 +10,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::array<Command, 7> kCommands{{
+constexpr std::array<Command, 11> kCommands{{
     {"gate", "run one gate many times and count the outcomes", run_gate},
     {"build", "fill the input-output matrix from single-gate runs", run_build},
     {"show", "show what a matrix file holds", run_show},
@@ -18,6 +18,11 @@ constexpr std::array<Command, 7> kCommands{{
     {"predict", "exact distribution of the final gate", run_predict},
     {"lattice", "run the full dynamics through the field", run_lattice},
     {"validate", "compare walks and exact prediction with the full dynamics", run_validate},
+    {"chart", "chart the methods' speed against their accuracy", run_chart},
+    {"stability", "map where each method breaks", run_stability},
+    {"chart-field", "what memory and neighbours change, and what they cost", run_chart_field},
+    {"chart-chain", "chart the chain's error against its cost, beside direct simulation",
+     run_chart_chain},
 }};
 
 void print_help(std::ostream& out) {
@@ -25,7 +30,7 @@ void print_help(std::ostream& out) {
       << ": multi-scale Markov chain analysis of locomotion through cluttered obstacles\n\n"
          "usage: gatewalk COMMAND [arguments] [options]\n\n";
   for (const Command& c : kCommands)
-    out << "  " << c.name << std::string(11 - std::string(c.name).size(), ' ') << c.summary << "\n";
+    out << "  " << c.name << std::string(13 - std::string(c.name).size(), ' ') << c.summary << "\n";
   out << "\ngatewalk COMMAND --help explains a command and gives an example.\n"
          "exit status: 0 fine, 1 failure, 2 wrong use or input, 130 stopped by ctrl-C\n";
 }

@@ -5,16 +5,20 @@
 
 namespace gatewalk::cli {
 
-dynamics::Transitions build_matrix(const Scene& scene, std::int64_t trials, std::uint64_t seed,
-                                   bool show_progress) {
-  dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
-  run_in_batches("building matrix", trials, show_progress, [&](std::int64_t first, std::int64_t n) {
-    dynamics::add_trials(t, scene.gate, seed, {first, n});
-  });
+void require_unbroken(const dynamics::Transitions& t) {
   if (t.health.broken > 0)
     throw std::runtime_error("matrix: " + std::to_string(t.health.broken) +
                              " gate runs stopped being finite numbers; no matrix is made from such "
                              "runs, try method stable or a smaller run.step_s");
+}
+
+dynamics::Transitions build_matrix(const Scene& scene, double bins, std::int64_t trials,
+                                   std::uint64_t seed, bool show_progress) {
+  dynamics::Transitions t(dynamics::refined(dynamics::StateSpace::paper(scene.gate), bins));
+  run_in_batches("building matrix", trials, show_progress, [&](std::int64_t first, std::int64_t n) {
+    dynamics::add_trials(t, scene.gate, seed, {first, n});
+  });
+  require_unbroken(t);
   return t;
 }
 
@@ -27,13 +31,18 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
   Scene scene = scene_path.empty()
                     ? parse_scene(stored->second, matrix_path + " (its scene)", overrides)
                     : read_scene(scene_path, overrides);
-  const auto differences = physics_differences(scene, built_with);
+  auto differences = physics_differences(scene, built_with);
+  // A matrix that was built with a method by name is not the one that "auto" stands for.
+  if (scene.gate.run.method == "auto" && file.text.count("method") == 0)
+    differences.push_back("run.method: auto here, " + built_with.gate.run.method +
+                          " by name there");
   if (!differences.empty()) {
     std::string text = "the scene is not the one that " + matrix_path + " was built with:";
     for (const auto& line : differences) text += "\n  " + line;
     throw UsageError(text + "\n(here: the scene given; there: the matrix). Build a matrix for this "
                             "scene, or give the matrix alone to use its own scene.");
   }
+  scene.gate = built_with.gate;  // the same, or the method that "auto" was settled to
   const auto text = file.text.find("status");
   Json status = text == file.text.end() ? Json() : Json::parse(text->second, nullptr, false);
   if (!status.is_object() || !status.value("clean", false))

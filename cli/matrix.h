@@ -7,9 +7,14 @@
 
 namespace gatewalk::cli {
 
-/// Fills `trials` runs per row of Table III's states. Throws std::runtime_error when a run broke.
-[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, std::int64_t trials,
-                                                 std::uint64_t seed, bool show_progress);
+/// Throws std::runtime_error when a run of the matrix broke.
+void require_unbroken(const dynamics::Transitions& t);
+
+/// A matrix of `trials` runs per row of Table III's states, `bins` times as many per axis. Throws
+/// std::runtime_error when a run broke.
+[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, double bins,
+                                                 std::int64_t trials, std::uint64_t seed,
+                                                 bool show_progress);
 
 /// A matrix file and the scene to use it with: the one given, or the one stored in the file.
 struct MatrixAndScene {

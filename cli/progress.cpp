@@ -89,6 +89,11 @@ void BatchSize::measured(std::int64_t count, double seconds) {
 void run_in_batches(const std::string& label, std::int64_t total, bool show_progress,
                     const std::function<void(std::int64_t, std::int64_t)>& run) {
   Progress progress(label, total, show_progress);
+  run_in_batches(progress, 0.0, 1.0, total, run);
+}
+
+void run_in_batches(Progress& progress, double before, double each, std::int64_t total,
+                    const std::function<void(std::int64_t, std::int64_t)>& run) {
   BatchSize batch;
   for (std::int64_t done = 0; done < total;) {
     if (interrupted()) throw Interrupted{};
@@ -97,7 +102,7 @@ void run_in_batches(const std::string& label, std::int64_t total, bool show_prog
     run(done, count);
     batch.measured(count, seconds_between(start, std::chrono::steady_clock::now()));
     done += count;
-    progress.update(done);
+    progress.update(std::llround(before + each * static_cast<double>(done)));
   }
 }
 

@@ -48,4 +48,8 @@ class BatchSize {
 void run_in_batches(const std::string& label, std::int64_t total, bool show_progress,
                     const std::function<void(std::int64_t first, std::int64_t count)>& run);
 
+/// The same as one part of longer work: when i items are done, `progress` is at before + i * each.
+void run_in_batches(Progress& progress, double before, double each, std::int64_t total,
+                    const std::function<void(std::int64_t first, std::int64_t count)>& run);
+
 }  // namespace gatewalk::cli

@@ -26,6 +26,7 @@ Json to_json(const dynamics::Health& h) {
   j["runs_penetrating_over_1_percent"] = h.penetrating;
   j["runs_creating_energy"] = h.creating_energy;
   j["runs_too_fast_for_the_step"] = h.fast;
+  j["runs_beyond_the_stability_bound"] = h.unstable;
   j["runs_not_finite"] = h.broken;
   j["contacts_without_a_formula"] = h.undefined_contacts;
   j["steps_forced_to_hold"] = h.forced_holds;
@@ -33,6 +34,7 @@ Json to_json(const dynamics::Health& h) {
   j["worst_energy_created_J"] = h.worst_energy_created;
   j["worst_speed_m_per_s"] = h.worst_speed;
   j["steps"] = h.steps;
+  j["evaluations"] = h.evaluations;
   j["impacts"] = h.impacts;
   return j;
 }
@@ -52,6 +54,9 @@ std::string complaint(const dynamics::Health& h) {
   if (h.fast > 0)
     text += " disc or beam moved over half a radius in one step in " + share(h.fast) +
             ", hits may have been missed: take a smaller run.step_s;";
+  if (h.unstable > 0)
+    text += " the step is longer than the method's stability bound for these beams in " +
+            share(h.unstable) + ": take a smaller run.step_s or another run.method;";
   if (h.undefined_contacts > 0)
     text += " " + std::to_string(h.undefined_contacts) +
             " steps overlapped a joint, for which it has no formula;";
@@ -68,6 +73,7 @@ Json to_json(const lattice::Comparison& c) {
   j["rmse_per_100_floor"] = c.floor.rmse_per_100;
   j["total_variation"] = c.total_variation;
   j["total_variation_floor"] = c.floor_total_variation;
+  j["total_variation_floor_95"] = c.floor_total_variation_95;
   j["p_values"] = {{"chi_squared", c.p_chi_squared},
                    {"total_variation", c.p_total_variation},
                    {"energy_distance", c.p_energy},
@@ -120,6 +126,8 @@ std::string fixed(double x, int digits) {
 std::string percent(double part, double whole, int digits) {
   return fixed(whole > 0.0 ? 100.0 * part / whole : std::nan(""), digits) + " %";
 }
+
+std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
 
 std::string padded(const std::string& text, int width) {
   const auto wanted = static_cast<std::size_t>(std::abs(width));

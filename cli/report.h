@@ -28,6 +28,8 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string fixed(double x, int digits);
 /// "12.3 %"
 [[nodiscard]] std::string percent(double part, double whole, int digits = 1);
+/// A p-value with 3 decimals, or "<0.001".
+[[nodiscard]] std::string p_text(double p);
 /// Text padded on the left or (negative width) on the right.
 [[nodiscard]] std::string padded(const std::string& text, int width);
 

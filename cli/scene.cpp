@@ -31,8 +31,9 @@ constexpr std::size_t kLongestCompared = 100;  // bytes of an unknown key
 // ---- The table of keys
 
 constexpr std::string_view kMethodKey = "run.method";
+constexpr std::string_view kFidelityKey = "field.fidelity";
 
-using Slot = std::variant<double*, int*, std::string*>;
+using Slot = std::variant<double*, int*, std::string*, lattice::Fidelity*>;
 
 /// What a number may be. An open end is not itself permitted.
 struct Interval {
@@ -76,6 +77,7 @@ const std::vector<SceneKey>& scene_keys() {
     all.push_back({"field.rows", [](Scene& s) { return Slot(&s.field.rows); }, fixed(1, 2001)});
     all.push_back(
         {"field.max_gates", [](Scene& s) { return Slot(&s.field.max_gates); }, fixed(0, 1e9)});
+    all.push_back({kFidelityKey, [](Scene& s) { return Slot(&s.field.fidelity); }, {}});
     all.push_back({"start.x_m", [](Scene& s) { return Slot(&s.start.x); },
                    [](const Scene& s) {
                      return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x, true, true};
@@ -300,8 +302,10 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
   const std::string name(trimmed(std::string_view(given).substr(0, equals)));
   std::string value(trimmed(std::string_view(given).substr(equals + 1)));
 
-  // A bare word for the one text key: quotes seldom survive a shell.
-  if (name == kMethodKey && value.find_first_of("\"'") == value.npos) value = "\"" + value + "\"";
+  // A bare word for a text key: quotes seldom survive a shell.
+  if ((name == kMethodKey || name == kFidelityKey) &&
+      value.find_first_of("\"'") == value.npos)
+    value = "\"" + value + "\"";
 
   documents.push_back(parse_toml(name + " = " + value, origin));
   const Settings added = settings_of(documents.back(), origin);
@@ -323,6 +327,19 @@ void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
     const auto* string = setting.value->as_string();
     if (!string) throw refusal("be text, such as \"" + **text + "\"");
     **text = string->get();
+    return;
+  }
+  if (auto* const* fidelity = std::get_if<lattice::Fidelity*>(&slot)) {
+    const auto* string = setting.value->as_string();
+    const auto& names = lattice::kFidelityNames;
+    const auto name = string ? std::find(names.begin(), names.end(), string->get()) : names.end();
+    if (name == names.end()) {
+      std::string known;
+      for (const std::string_view n : names)
+        known += (known.empty() ? "\"" : ", \"") + std::string(n) + "\"";
+      throw refusal("be one of " + known);
+    }
+    **fidelity = static_cast<lattice::Fidelity>(name - names.begin());
     return;
   }
 
@@ -357,7 +374,11 @@ double distance_to_beams(const Scene& scene) {
 /// What depends on several keys at once.
 void check_together(const Scene& scene, const Settings& settings) {
   try {
-    (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
+    if (scene.gate.run.method == "auto")
+      dynamics::validate(scene.gate);
+    else
+      (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
+    lattice::validate(scene.gate, scene.field);
     if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
       throw dynamics::InvalidParameter(
           "start.y_m", "start.y_m = " + shortest(scene.start.y)
@@ -417,6 +438,9 @@ Scene parse_scene(std::string_view text, std::string name,
     const auto it = settings.find(key.key);
     if (it != settings.end()) assign(key, it->second, scene);
   }
+  scene.names_step = settings.contains("run.step_s");
+  if (!scene.names_step)
+    scene.gate.run.step = dynamics::default_step(scene.gate.run.method, scene.gate.forces.random_rate);
   check_together(scene, settings);
   return scene;
 }
@@ -436,6 +460,8 @@ std::string to_toml(const Scene& scene) {
       text += "\"" + **string + "\"";
     } else if (auto* const* integer = std::get_if<int*>(&slot)) {
       text += std::to_string(**integer);
+    } else if (auto* const* fidelity = std::get_if<lattice::Fidelity*>(&slot)) {
+      text += "\"" + std::string(name_of(**fidelity)) + "\"";
     } else {
       text += float_text(*std::get<double*>(slot));
     }
@@ -451,9 +477,12 @@ std::vector<std::string> physics_differences(const Scene& here, const Scene& the
   };
   for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
     const double a = info.get(here.gate), b = info.get(there.gate);
+    // "auto" agrees with whatever was chosen.
+    const bool chosen = info.key == "run.step_s" || info.key == "run.event_tolerance_m";
+    if (here.gate.run.method == "auto" && chosen) continue;
     if (a != b) add(info.key, shortest(a), shortest(b));
   }
-  if (here.gate.run.method != there.gate.run.method) {
+  if (here.gate.run.method != there.gate.run.method && here.gate.run.method != "auto") {
     add(kMethodKey, here.gate.run.method, there.gate.run.method);
   }
   return lines;

@@ -16,6 +16,7 @@ struct Scene {
   lattice::FieldParams field;
   dynamics::BodyState start{0.0, 0.0, 0.0, 15.0};  // m, m, m/s, m/s; in the first gate's frame
   std::string source;                              // the file it came from
+  bool names_step = false;                         // run.step_s is the user's, not the method's
 };
 
 /// A scene that cannot be used. what() reads

@@ -78,11 +78,11 @@ int run_show(const std::vector<std::string>& arguments) {
   out << options.text("matrix") << "\n"
       << "  size                " << n << " inputs x " << n + 1 << " outputs (the last: trapped)\n"
       << "  gate runs           " << total.runs << "\n"
-      << "  nonzeros            " << total.nonzeros << " of " << n * (n + 1) << " ("
+      << "  nonzeros            " << total.nonzeros << " of " << std::int64_t{n} * (n + 1) << " ("
       << percent(static_cast<double>(total.nonzeros), cells) << ")\n"
       << "  clamped crossings   " << percent(total.clamped_share(), 1.0) << "\n"
       << "  rows never sampled  " << total.empty_rows << "\n";
-  for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "status"})
+  for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins", "status"})
     if (const auto it = file.text.find(key); it != file.text.end())
       out << "  " << padded(key, -20) << it->second << "\n";
   if (options.has("rows")) {

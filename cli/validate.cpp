@@ -4,34 +4,16 @@
 #include <cmath>
 #include <sstream>
 
+#include "cli/auto.h"
 #include "cli/matrix.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "cli/starts.h"
 
 namespace gatewalk::cli {
 namespace {
 
 using gatewalk::cli::to_json;
-
-/// Table IV: d, vx, vy of the start, and the printed corrcoef and RMSE.
-struct PaperStart {
-  double d, vx, vy;
-  std::optional<double> corrcoef, rmse;
-};
-const std::vector<PaperStart> kTableIV{{0, 0, 15, 0.914, 1.018},
-                                       {23, -11, 16, 0.9097, 1.133},
-                                       {4, 5, 10, 0.8929, 1.252},
-                                       {-17, 13, 12, 0.9026, 0.9813}};
-
-PaperStart parse_start(const std::string& text) {
-  std::istringstream in(text);
-  PaperStart s{};
-  char first = 0, second = 0;
-  if (!(in >> s.d >> first >> s.vx >> second >> s.vy) || first != ',' || second != ',' ||
-      in.peek() != std::char_traits<char>::eof() || !std::isfinite(s.d + s.vx + s.vy))
-    throw UsageError("--start " + text + ": must be three numbers d,vx,vy in m and m/s, e.g. 4,5,10");
-  return s;
-}
 
 struct MeanAndSd {
   double sum = 0.0, squares = 0.0;
@@ -196,14 +178,9 @@ Json to_json(const StartReport& r) {
 
 std::string with_sd(const MeanAndSd& m) { return fixed(m.mean(), 3) + " (" + fixed(m.sd(), 3) + ")"; }
 
-std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
-
 std::string table_of(const std::vector<StartReport>& reports, std::int64_t trials, std::int64_t walks,
                      std::size_t threads) {
   std::ostringstream out;
-  const auto start_text = [](const PaperStart& s) {
-    return padded(fixed(s.d, 0), 4) + padded(fixed(s.vx, 0), 5) + padded(fixed(s.vy, 0), 5);
-  };
   out << "As in the paper's Table IV: 100 trials of the full dynamics against the chain, mean (sd) over\n"
          "repeats. Floor: what chance alone gives if the chain were perfect.\n\n"
          "                |            corrcoef                      |        RMSE, trials per 100\n"
@@ -269,18 +246,12 @@ int run_validate(const std::vector<std::string>& arguments) {
        "runs per input state of the matrix that is built (default: 100)")
       ("walks", po::value<Count>()->value_name("N"), "walks per start (default: as many as trials)")
       ("null-draws", po::value<Count>()->value_name("N"),
-       "draws behind each p-value (default: 999 to 9999, by the size of the work)")
-      ("start", po::value<std::vector<std::string>>()->composing()->value_name("D,VX,VY"),
-       "start at x = D m, y = 0 with this velocity in m/s (may be repeated)");
+       "draws behind each p-value (default: 999 to 9999, by the size of the work)");
+  add_starts(options);
   if (!options.parse(arguments)) return kFine;
   const std::int64_t trials = options.count("trials");
   const std::int64_t walks = options.has("walks") ? options.count("walks") : trials;
-  std::vector<PaperStart> starts;
-  if (options.has("start"))
-    for (const auto& text : options.get<std::vector<std::string>>("start"))
-      starts.push_back(parse_start(text));
-  else
-    starts = kTableIV;
+  const std::vector<PaperStart> starts = starts_of(options);
 
   if (options.has("matrix")) {
     require_different(options.text("matrix"), options.text("json"));
@@ -288,21 +259,25 @@ int run_validate(const std::vector<std::string>& arguments) {
       throw UsageError("--matrix-trials has no meaning beside --matrix: that one is built already");
   }
   const Stopwatch matrix_watch;
+  Json settled;
   MatrixAndScene m = [&] {
     if (options.has("matrix"))
       return read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
-    const Scene scene = read_scene(options.text("scene"), options.overrides());
-    auto built = build_matrix(scene, options.has("matrix-trials") ? options.count("matrix-trials") : 100,
+    Scene scene = read_scene(options.text("scene"), options.overrides());
+    settled = settle_method(options, scene, RunsFrom::everywhere);
+    auto built = build_matrix(scene, 1.0, options.has("matrix-trials") ? options.count("matrix-trials") : 100,
                               options.seed(), options.talk());
     Json status = gatewalk::cli::to_json(built.health);
     return MatrixAndScene{{std::move(built), {}}, scene, std::move(status)};
   }();
   const double matrix_seconds = matrix_watch.seconds();
+  if (const auto chosen = m.file.text.find("method"); chosen != m.file.text.end()) {
+    settled = Json::parse(chosen->second, nullptr, false);
+    if (settled.is_discarded())
+      throw markov::BadFile(options.text("matrix") + ": its record of the chosen method is damaged");
+  }
   const Scene& scene = m.scene;
-  for (const PaperStart& s : starts)
-    if (!(std::abs(s.d) < scene.gate.beams.joint_x))
-      throw UsageError("--start: d = " + fixed(s.d, 3) + " m must lie inside the gate, (-" +
-                       fixed(scene.gate.beams.joint_x, 3) + ", " + fixed(scene.gate.beams.joint_x, 3) + ")");
+  require_inside(starts, scene);
   const dynamics::Transitions& t = m.file.transitions;
   const markov::Chain chain = lattice::make_chain(t);
   const markov::Walker walker(chain);
@@ -347,6 +322,7 @@ int run_validate(const std::vector<std::string>& arguments) {
                     {"seconds", matrix_seconds}};
   json["threads"] = threads;
   json["status"] = to_json(health);
+  if (!settled.is_null()) json["method"] = settled;
   json["made_by"] = manifest(options, scene);
 
   const std::string matrix_time = options.has("matrix") ? "read from " + options.text("matrix")

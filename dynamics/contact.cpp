@@ -4,13 +4,14 @@
 
 namespace gatewalk::dynamics {
 
-Touch nearest(const GateParams& p, Side side, const BodyState& body, double theta) {
+Touch nearest(const GateParams& p, Side side, const BodyState& body, const Direction& beam) {
   // Centre from the joint, in the beam's own frame.
   const double px = side == kLeft ? body.x + p.beams.joint_x : p.beams.joint_x - body.x;
   const double py = body.y - p.beams.joint_y;
-  const double c = std::cos(theta), s = std::sin(theta);  // unit vector along the beam: (c, s)
+  const double c = beam.c, s = beam.s;
   const double along = px * c + py * s;
   Touch t;
+  t.beam = beam;
   double nx, ny;
   if (along > 0.0 && along < p.beams.length) {
     const double across = c * py - s * px;  // > 0: the centre is ahead of the beam
@@ -37,29 +38,44 @@ Touch nearest(const GateParams& p, Side side, const BodyState& body, double thet
   return t;
 }
 
+double curvature_term(const GateParams& p, Side side, const Touch& t, const BodyState& body,
+                      const BeamState& beam) {
+  if (t.kind == ContactKind::interior) return 0.0;
+  const double nx = side == kLeft ? t.nx : -t.nx;  // into the beam's own frame
+  double rx = side == kLeft ? body.vx : -body.vx, ry = body.vy;
+  if (t.kind == ContactKind::tip) {
+    rx += p.beams.length * beam.omega * t.beam.s;
+    ry -= p.beams.length * beam.omega * t.beam.c;
+  }
+  const double across = rx * t.ny - ry * nx;
+  const double dist = t.gap + p.body.radius;
+  return dist < std::numeric_limits<double>::min() ? 0.0 : across * across / dist;
+}
+
 double gap_rate_bias(const GateParams& p, Side side, const Touch& t, const BodyState& body,
                      const BeamState& beam) {
-  const double vx = side == kLeft ? body.vx : -body.vx;  // into the beam's own frame
-  const double nx = side == kLeft ? t.nx : -t.nx;
-  const double vy = body.vy, ny = t.ny, w = beam.omega;
-  const double dist = t.gap + p.body.radius;
+  const double w = beam.omega;
   if (t.kind == ContactKind::interior) {
+    const double vx = side == kLeft ? body.vx : -body.vx;  // into the beam's own frame
+    const double nx = side == kLeft ? t.nx : -t.nx;
+    const double vy = body.vy, ny = t.ny;
     // n = sign * (-sin, cos), l = sign * r: differentiate u = n.v - l w along the motion.
     const double sign = t.lever < 0.0 ? -1.0 : 1.0;
     const double v_along = (sign * ny) * vx - (sign * nx) * vy;  // beam = (cos, sin) = sign*(ny, -nx)
-    return -2.0 * sign * w * v_along - w * w * dist;
+    return -2.0 * sign * w * v_along - w * w * (t.gap + p.body.radius);
   }
-  // Relative velocity of centre and contact point; only its part across n turns n.
-  double rx = vx, ry = vy;
-  double centripetal = 0.0;
-  if (t.kind == ContactKind::tip) {
-    const double c = std::cos(beam.theta), s = std::sin(beam.theta), L = p.beams.length;
-    rx += L * w * s;
-    ry -= L * w * c;
-    centripetal = L * w * w * t.bend;
-  }
-  const double across = rx * ny - ry * nx;
-  return across * across / dist + centripetal;
+  const double centripetal = p.beams.length * w * w * t.bend;
+  return curvature_term(p, side, t, body, beam) + (t.kind == ContactKind::tip ? centripetal : 0.0);
+}
+
+double free_gap_acceleration(const GateParams& p, Side side, const Touch& t, const GateState& s,
+                             double force_x) {
+  const double ax = (force_x - p.forces.drag * s.body.vx) / p.body.mass;
+  const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy) / p.body.mass;
+  const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
+  const BeamState& beam = s.beams[side];
+  const double beta = (-k * beam.theta - p.beams.damping * beam.omega) / p.beams.inertia();
+  return (t.nx * ax + t.ny * ay) - t.lever * beta + gap_rate_bias(p, side, t, s.body, beam);
 }
 
 void apply_impulses(const GateParams& p, const std::array<Touch, 2>& touch,
@@ -109,7 +125,7 @@ std::array<double, 2> push_only(const Coupling& w, const std::array<double, 2>& 
     if (!active[kLeft] || b[kLeft] + w.cross * z >= 0.0) return {0.0, z};
   }
   const auto z = push_or_pull(w, b, {true, true});
-  return {std::fmax(z[kLeft], 0.0), std::fmax(z[kRight], 0.0)};
+  return {std::max(0.0, z[kLeft]), std::max(0.0, z[kRight])};
 }
 
 }  // namespace gatewalk::dynamics

@@ -12,6 +12,7 @@
 /// and an impulse J along n changes it by J (1/M + l^2/I). Eqs. (4)-(5) are this with l = -+r,
 /// Eqs. (6)-(9) are it with e = 1, a joint pin is it with l = 0.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -35,6 +36,26 @@ struct GateState {
 
 enum class ContactKind : std::uint8_t { interior, tip, pin };
 
+/// Where a beam points, in its own frame: the unit vector (c, s) = (cos theta, sin theta).
+struct Direction {
+  double theta = 0.0;  // rad
+  double c = 1.0, s = 0.0;
+  [[nodiscard]] static Direction of(double theta) {
+    return {theta, std::cos(theta), std::sin(theta)};
+  }
+  /// The same for an angle nearby, to the last digits without trigonometry.
+  [[nodiscard]] Direction turned_to(double angle) const {
+    const double d = angle - theta, d2 = d * d;
+    if (!(std::abs(d) < 0.0625)) return of(angle);
+    // Taylor series; the first terms left out are d^10 / 10! < 3e-19 and d^11 / 11!.
+    const double cd =
+        1 - d2 * (1.0 / 2 - d2 * (1.0 / 24 - d2 * (1.0 / 720 - d2 * (1.0 / 40320))));
+    const double sd =
+        d * (1 - d2 * (1.0 / 6 - d2 * (1.0 / 120 - d2 * (1.0 / 5040 - d2 * (1.0 / 362880)))));
+    return {angle, c * cd - s * sd, s * cd + c * sd};
+  }
+};
+
 /// The point of one beam nearest to the disc's centre.
 struct Touch {
   ContactKind kind = ContactKind::interior;
@@ -43,22 +64,30 @@ struct Touch {
   double ny = 0.0;
   double lever = 0.0;   // m, r_c x n in the beam's own frame
   double bend = 0.0;    // n.(unit vector along the beam), 0 on the interior
+  Direction beam;
 };
 
 /// Nearest point of the segment joint-tip. `dist` below the smallest normal number (centre on the
 /// beam) has no direction: n is then the beam's own normal.
-[[nodiscard]] Touch nearest(const GateParams& p, Side side, const BodyState& body, double theta);
+[[nodiscard]] Touch nearest(const GateParams& p, Side side, const BodyState& body,
+                            const Direction& beam);
+[[nodiscard]] inline Touch nearest(const GateParams& p, Side side, const BodyState& body,
+                                   double theta) {
+  return nearest(p, side, body, Direction::of(theta));
+}
 
-/// True when the disc cannot touch this beam whatever the exact angle; no trigonometry.
+/// True when the disc cannot touch this beam whatever the exact angle, not even if it were larger
+/// by `margin` (m); no trigonometry.
 [[nodiscard]] inline bool out_of_reach(const GateParams& p, Side side, const BodyState& body,
-                                       double theta) {
+                                       double theta, double margin = 0.0) {
   const double px = side == kLeft ? body.x + p.beams.joint_x : p.beams.joint_x - body.x;
   const double py = body.y - p.beams.joint_y;
-  const double reach = p.beams.length + p.body.radius;
+  const double radius = p.body.radius + margin;
+  const double reach = p.beams.length + radius;
   if (px * px + py * py > reach * reach) return true;
   if (std::abs(theta) > 3.0) return false;  // the bounds below need sin(theta) to keep its sign
-  return py + p.body.radius < std::fmin(0.0, p.beams.length * theta) ||
-         py - p.body.radius > std::fmax(0.0, p.beams.length * theta);
+  return py + radius < std::min(0.0, p.beams.length * theta) ||
+         py - radius > std::max(0.0, p.beams.length * theta);
 }
 
 /// u = n.v - l omega: rate of the gap.
@@ -66,6 +95,11 @@ struct Touch {
   const double nv = t.nx * b.vx + t.ny * b.vy;
   return nv - t.lever * beam.omega;
 }
+
+/// The part of du/dt that comes from going round a tip or pin (m/s^2): the square of the velocity
+/// across n, relative to the contact point, over the distance; 0 on the interior.
+[[nodiscard]] double curvature_term(const GateParams& p, Side side, const Touch& t,
+                                    const BodyState& body, const BeamState& beam);
 
 /// The part of du/dt that comes from motion, not from accelerations: Eq. (11) (interior) and
 /// Eq. (13) (tip) without their a_x, a_y and beta terms; a circle of radius R about a pin.
@@ -106,6 +140,10 @@ struct Coupling {
 [[nodiscard]] std::array<double, 2> push_or_pull(const Coupling& w, const std::array<double, 2>& b,
                                                  const std::array<bool, 2>& active);
 
+/// d^2 gap / dt^2 (m/s^2) without contact forces: Newton's law Eqs. (2), (3) in Eq. (11) or (13).
+[[nodiscard]] double free_gap_acceleration(const GateParams& p, Side side, const Touch& t,
+                                           const GateState& s, double force_x);
+
 /// Contact forces (N, along n) that keep the `active` contacts from closing: Newton's law Eqs. (2),
 /// (3) with the constraint Eq. (11) or (13). `push` is push_only or push_or_pull.
 template <class Solve>
@@ -113,17 +151,9 @@ template <class Solve>
                                                    const std::array<Touch, 2>& touch,
                                                    double force_x,
                                                    const std::array<bool, 2>& active, Solve solve) {
-  const double ax = (force_x - p.forces.drag * s.body.vx) / p.body.mass;
-  const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy) / p.body.mass;
   std::array<double, 2> b{};
-  for (const Side side : {kLeft, kRight}) {
-    if (!active[side]) continue;
-    const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
-    const BeamState& beam = s.beams[side];
-    const double beta = (-k * beam.theta - p.beams.damping * beam.omega) / p.beams.inertia();
-    const Touch& t = touch[side];
-    b[side] = (t.nx * ax + t.ny * ay) - t.lever * beta + gap_rate_bias(p, side, t, s.body, beam);
-  }
+  for (const Side side : {kLeft, kRight})
+    if (active[side]) b[side] = free_gap_acceleration(p, side, touch[side], s, force_x);
   return solve(coupling(p, touch), b, active);
 }
 

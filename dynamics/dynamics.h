@@ -10,11 +10,17 @@
 ///   ensemble.h     many runs, their outcomes and their health
 ///   state_space.h  Table III: how a body enters a gate, as a number
 ///   transitions.h  runs -> counts, the matrix of Eq. (16)
+///   verdict.h      one word for how far a method can be trusted
+///   accuracy.h     a method's errors against a reference under the same noise
+///   stability.h    maps of where each method breaks
 
+#include "dynamics/accuracy.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/flow.h"
 #include "dynamics/gate.h"
 #include "dynamics/params.h"
 #include "dynamics/random.h"
+#include "dynamics/stability.h"
 #include "dynamics/state_space.h"
 #include "dynamics/transitions.h"
+#include "dynamics/verdict.h"

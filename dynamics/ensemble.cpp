@@ -8,6 +8,13 @@
 
 namespace gatewalk::dynamics {
 
+GateRun run_gate_trial(const GateParams& p, const Method& method, const BodyState& start,
+                       std::uint64_t seed, std::int64_t trial, std::int64_t most_work) {
+  const Stream stream{seed, 0, static_cast<std::uint64_t>(trial)};
+  RandomForce force(p.forces, Random(Purpose::gate, stream));
+  return run_gate(p, method, start, force, most_work);
+}
+
 void Health::add(const GateParams& p, const GateRun& run) {
   const Watch& w = run.watch;
   const double energy_scale =
@@ -16,11 +23,13 @@ void Health::add(const GateParams& p, const GateRun& run) {
   penetrating += w.max_penetration > 0.01 * p.body.radius;
   creating_energy += w.energy_created > 1e-4 * energy_scale;
   fast += w.fast_steps > 0;
+  unstable += w.unstable_steps > 0;
   broken += run.ending == Ending::broken;
   undefined_contacts += w.undefined_contacts;
   forced_holds += w.forced_holds;
   impacts += w.impacts;
   steps += w.steps;
+  evaluations += w.evaluations;
   worst_penetration = std::max(worst_penetration, w.max_penetration);
   worst_energy_created = std::max(worst_energy_created, w.energy_created);
   worst_speed = std::max(worst_speed, w.max_speed);
@@ -31,11 +40,13 @@ Health& Health::operator+=(const Health& o) {
   penetrating += o.penetrating;
   creating_energy += o.creating_energy;
   fast += o.fast;
+  unstable += o.unstable;
   broken += o.broken;
   undefined_contacts += o.undefined_contacts;
   forced_holds += o.forced_holds;
   impacts += o.impacts;
   steps += o.steps;
+  evaluations += o.evaluations;
   worst_penetration = std::max(worst_penetration, o.worst_penetration);
   worst_energy_created = std::max(worst_energy_created, o.worst_energy_created);
   worst_speed = std::max(worst_speed, o.worst_speed);
@@ -63,9 +74,7 @@ GateTally run_gate_trials(const GateParams& p, const BodyState& start, std::uint
       trials, GateTally{},
       [&](const tbb::blocked_range<std::int64_t>& part, GateTally tally) {
         for (std::int64_t trial = part.begin(); trial != part.end(); ++trial) {
-          const Stream stream{seed, 0, static_cast<std::uint64_t>(trial)};
-          RandomForce force(p.forces, Random(Purpose::gate, stream));
-          const GateRun run = run_gate(p, *method, start, force);
+          const GateRun run = run_gate_trial(p, *method, start, seed, trial);
           ++tally.trials;
           tally.health.add(p, run);
           const double left = run.watch.max_theta[kLeft], right = run.watch.max_theta[kRight];

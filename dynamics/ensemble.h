@@ -2,6 +2,7 @@
 /// Many gate runs at once, and the record of how far they can be trusted.
 
 #include <cstdint>
+#include <limits>
 
 #include "dynamics/gate.h"
 
@@ -14,32 +15,40 @@ struct TrialRange {
   std::int64_t count = 0;
 };
 
+/// Trial number `trial` from one start: the same run whoever asks for it. `most_work` as in run_gate.
+[[nodiscard]] GateRun run_gate_trial(const GateParams& p, const Method& method,
+                                     const BodyState& start, std::uint64_t seed, std::int64_t trial,
+                                     std::int64_t most_work = std::numeric_limits<std::int64_t>::max());
+
 /// What went wrong, or nearly, over many runs. A run is counted as
 /// - penetrating: the disc sank into a beam by more than 1 % of its radius;
 /// - creating energy: energy less work done rose by more than 1e-4 of propulsion * traverse_y plus
 ///   the largest kinetic energy of the body;
 /// - fast: disc or beam tip moved over half a radius in one step, so hits may have been missed;
+/// - unstable: steps longer than the method's stability bound for free beams were taken;
 /// - broken: the state stopped being finite.
 struct Health {
   std::int64_t runs = 0;
   std::int64_t penetrating = 0;
   std::int64_t creating_energy = 0;
   std::int64_t fast = 0;
+  std::int64_t unstable = 0;
   std::int64_t broken = 0;
   std::int64_t undefined_contacts = 0;
   std::int64_t forced_holds = 0;
   std::int64_t impacts = 0;
   std::int64_t steps = 0;
+  std::int64_t evaluations = 0;
   double worst_penetration = 0.0;     // m
   double worst_energy_created = 0.0;  // J
   double worst_speed = 0.0;           // m/s
 
   void add(const GateParams& p, const GateRun& run);
   Health& operator+=(const Health& other);
-  /// No run penetrated, created energy, was too fast for its step, broke or met a contact that its
-  /// method has no formula for.
+  /// No run penetrated, created energy, was too fast for its step, took unstable steps, broke or met
+  /// a contact that its method has no formula for.
   [[nodiscard]] bool clean() const {
-    return penetrating == 0 && creating_energy == 0 && fast == 0 && broken == 0 &&
+    return penetrating == 0 && creating_energy == 0 && fast == 0 && unstable == 0 && broken == 0 &&
            undefined_contacts == 0;
   }
 };

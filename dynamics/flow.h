@@ -2,6 +2,8 @@
 /// Free motion in closed form: a disc under constant force and linear drag, a damped torsional
 /// spring under constant torque. Exact for any step, so free flight costs one evaluation.
 
+#include <array>
+
 #include "dynamics/contact.h"
 
 namespace gatewalk::dynamics {
@@ -23,6 +25,7 @@ struct BodyFlow {
 /// (theta, omega)' = [tt tw; wt ww] (theta, omega) + a (ta, wa). Any damping, k = 0 and d = 0 too.
 struct BeamFlow {
   double tt = 1.0, tw = 0.0, wt = 0.0, ww = 1.0, ta = 0.0, wa = 0.0;
+  BeamFlow() = default;
   BeamFlow(double stiffness_over_inertia, double damping_over_inertia, double dt);
 
   void apply(BeamState& beam, double a) const {
@@ -32,12 +35,36 @@ struct BeamFlow {
   }
 };
 
+/// One beam's flows over any dt, with what they share computed once.
+class BeamLaw {
+ public:
+  BeamLaw(double stiffness_over_inertia, double damping_over_inertia);
+  [[nodiscard]] BeamFlow over(double dt) const;
+
+ private:
+  static constexpr int kTerms = 16;  // 0.5^16 / 16! < 1e-18
+  double k_, d_;                     // 1/s^2, 1/s
+  double rate_;                      // 1/s, bound on both characteristic roots
+  // Response to a unit push from rest: theta = dt^2 sum theta_[i] z^i, omega = dt sum omega_[i] z^i
+  // with z = rate dt.
+  std::array<double, kTerms> theta_{}, omega_{};
+};
+
 /// Body and both beams over one dt.
 struct GateFlow {
   double dt;
   BodyFlow body;
   BeamFlow left, right;
-  GateFlow(const GateParams& p, double dt);
+};
+
+/// The gate's flows over any dt.
+struct GateLaw {
+  double drag;  // 1/s, over the body's mass
+  std::array<BeamLaw, 2> beams;
+  explicit GateLaw(const GateParams& p);
+  [[nodiscard]] GateFlow over(double dt) const {
+    return {dt, BodyFlow(drag, dt), beams[kLeft].over(dt), beams[kRight].over(dt)};
+  }
 };
 
 }  // namespace gatewalk::dynamics

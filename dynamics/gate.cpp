@@ -11,6 +11,8 @@ bool finite(const GateState& s) {
   return std::isfinite(sum);
 }
 
+}  // namespace
+
 Ending ending(const GateParams& p, const GateState& s) {
   if (!finite(s)) return Ending::broken;
   if (s.body.y > p.run.traverse_y) return Ending::traversed;
@@ -19,15 +21,15 @@ Ending ending(const GateParams& p, const GateState& s) {
   return Ending::trapped;
 }
 
-}  // namespace
-
 GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,
-                 RandomForce& force) {
+                 RandomForce& force, std::int64_t most_work) {
   GateState s{start, {}};
   GateRun run;
   EnergyLedger ledger(p, s);
   const double nearly_over = p.run.time_limit - 1e-6 * p.run.step;
   while (!outside(p, s.body) && run.seconds < nearly_over) {
+    run.cut_short = std::max(run.watch.steps, run.watch.evaluations) > most_work;
+    if (run.cut_short) break;
     const double f = force.value();
     const double spell = std::min(force.left(), p.run.time_limit - run.seconds);
     const double passed = method.advance(s, f, spell, ledger, run.watch);

@@ -2,6 +2,7 @@
 /// One run of one gate: flow until an exit, and what was seen on the way.
 
 #include <cstdint>
+#include <limits>
 
 #include "dynamics/contact.h"
 #include "dynamics/methods/method.h"
@@ -16,12 +17,19 @@ struct GateRun {
   Ending ending = Ending::broken;
   BodyState exit;          // state at the end, in this gate's frame
   double seconds = 0.0;    // simulated time
+  bool cut_short = false;  // stopped because it took more work than was granted; `ending` means nothing
   Watch watch;             // largest deflections, faults, work done
 };
 
+/// Where a run that stopped in this state has ended; still inside is trapped.
+[[nodiscard]] Ending ending(const GateParams& p, const GateState& s);
+
 /// Runs one gate from `start` with both beams at rest, until the body is beyond traverse_y, beyond a
 /// side, or time_limit is over. There is no exit at the bottom: propulsion brings the body back.
+/// A run that takes more than `most_work` steps or evaluations is cut short: for studies of methods
+/// that may crawl. It is looked at once per draw of the random force.
 [[nodiscard]] GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,
-                               RandomForce& force);
+                               RandomForce& force,
+                               std::int64_t most_work = std::numeric_limits<std::int64_t>::max());
 
 }  // namespace gatewalk::dynamics

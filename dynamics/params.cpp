@@ -50,6 +50,10 @@ constexpr ParamInfo kTable[] = {
      0.0, 1e6, true, "a body that is still inside after this is trapped"},
     {"run.traverse_y_m", [](P& p) -> double& { return p.run.traverse_y; },
      0.0, 1e6, true, "a body beyond this has traversed"},
+    {"run.event_tolerance_m", [](P& p) -> double& { return p.run.event_tolerance; },
+     1e-13, 1.0, false, "method event: local error, and lowest rebound that is flown"},
+    {"run.tolerance", [](P& p) -> double& { return p.run.tolerance; },
+     1e-4, 1.0, false, "method auto: total variation of the outcomes that it may cost"},
 };
 
 /// The shortest digits that read back as `v`, or `digits` significant ones.
@@ -82,6 +86,11 @@ std::string ParamInfo::range() const {
 }
 
 std::span<const ParamInfo> gate_param_table() { return kTable; }
+
+double default_step(std::string_view method, double random_rate) {
+  const double wanted = method == "stable" || method == "auto" ? Run{}.step : kPaperStep;
+  return 1.0 / (random_rate * std::ceil(1.0 / (random_rate * wanted) - 1e-9));
+}
 
 int steps_per_hold(const GateParams& params) {
   constexpr int kMost = std::numeric_limits<int>::max();

@@ -42,11 +42,15 @@ struct Contact {
   double impulse_threshold = 0.04;  // N s, epsilon of Sec. II-B: below it contact is a constraint
 };
 
+inline constexpr double kPaperStep = 0.004;  // s, Sec. II-B
+
 struct Run {
   std::string method = "stable";  // a name of method_names()
-  double step = 0.004;            // s
-  double time_limit = 12.0;       // s, 3000 steps of the paper; rounded up to whole steps
+  double step = 0.02;             // s, one per draw of the random force; the paper's own is kPaperStep
+  double time_limit = 12.0;       // s, 3000 steps of the paper; method paper ends a step later if need be
   double traverse_y = 60.0;       // m; traversed beyond it, and the length of a gate in the field
+  double event_tolerance = 1e-2;  // m; method event: local error and lowest rebound that is flown
+  double tolerance = 0.005;       // -; method auto: total variation of the outcomes it may cost
 };
 
 struct GateParams {
@@ -100,6 +104,10 @@ class InvalidParameter : public std::invalid_argument {
 /// Throws InvalidParameter naming key, value and what is allowed: ranges of the table, a known
 /// method, and a step that fits a whole number of times into one hold of the random force.
 void validate(const GateParams& params);
+
+/// The step (s) of a scene that names none: what suits the method, 0.02 for `stable` and the paper's
+/// for the others, shortened to fit a whole number of times into one hold of the random force.
+[[nodiscard]] double default_step(std::string_view method, double random_rate);
 
 /// Steps in one hold of the random force: 1 / (random_rate * step), a whole number.
 [[nodiscard]] int steps_per_hold(const GateParams& params);

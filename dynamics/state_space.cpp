@@ -16,6 +16,24 @@ int bin_of(const std::vector<double>& edges, double v, bool& clamped) {
   return static_cast<int>(above - edges.begin()) - 1;
 }
 
+std::invalid_argument too_many_states(double factor) {
+  return std::invalid_argument("bins: factor " + std::to_string(factor) + " makes more than " +
+                               std::to_string(kMostStates) + " states");
+}
+
+/// `edges` in max(1, round(n * factor)) equal bins; as they are if that is as many as now.
+std::vector<double> rebinned(const std::vector<double>& edges, double factor) {
+  const double wanted = std::max(1.0, std::round(count(edges) * factor));
+  if (!(wanted <= kMostStates)) throw too_many_states(factor);
+  const int n = static_cast<int>(wanted);
+  if (n == count(edges)) return edges;
+  std::vector<double> equal(n + 1);
+  const double low = edges.front(), high = edges.back();
+  for (int i = 0; i < n; ++i) equal[i] = low + (high - low) * i / n;
+  equal[n] = high;
+  return equal;
+}
+
 }  // namespace
 
 Move move_into(Boundary b) {
@@ -134,6 +152,20 @@ Crossing StateSpace::sample(int state, Random& random) const {
   crossing.vx = inside(c.vx);
   crossing.vy = inside(c.vy);
   return crossing;
+}
+
+StateSpace refined(const StateSpace& space, double factor) {
+  if (!(factor > 0.0) || !std::isfinite(factor))
+    throw std::invalid_argument("bins: factor " + std::to_string(factor) +
+                                " is not permitted: must be finite and > 0");
+  std::array<Bins, kBoundaries> bins = space.bins();
+  double states = 0.0;
+  for (Bins& b : bins) {
+    for (auto* edges : {&b.d, &b.vx, &b.vy}) *edges = rebinned(*edges, factor);
+    states += static_cast<double>(count(b.d)) * count(b.vx) * count(b.vy);
+  }
+  if (states > kMostStates) throw too_many_states(factor);
+  return StateSpace(std::move(bins));
 }
 
 }  // namespace gatewalk::dynamics

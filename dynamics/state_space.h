@@ -91,4 +91,11 @@ class StateSpace {
   std::array<int, kBoundaries + 1> offset_{};
 };
 
+/// The same ranges in finer (factor > 1) or coarser bins: an axis of n bins gets
+/// max(1, round(n * factor)) equal ones; where that is n again, its edges stay as they are, so
+/// factor 1 is the same space bit for bit. Throws std::invalid_argument unless the factor is finite
+/// and > 0 and the result has at most kMostStates states.
+inline constexpr int kMostStates = 1'000'000;
+[[nodiscard]] StateSpace refined(const StateSpace& space, double factor);
+
 }  // namespace gatewalk::dynamics

@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <stdexcept>
+
 namespace gatewalk::dynamics {
 
 Transitions::Transitions(StateSpace state_space)
@@ -32,7 +34,32 @@ Transitions::Totals Transitions::totals() const {
   return total;
 }
 
-void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range) {
+Transitions& Transitions::operator+=(const Transitions& o) {
+  if (!(space == o.space))
+    throw std::invalid_argument("transitions of two different state spaces cannot be added");
+  for (int row = 0; row < space.size(); ++row) {
+    for (const auto& [column, n] : o.rows[row]) rows[row][column] += n;
+    trials[row] += o.trials[row];
+    clamped[row] += o.clamped[row];
+  }
+  health += o.health;
+  return *this;
+}
+
+Entries entries_of(const StateSpace& space, const std::vector<Crossing>& seen) {
+  Entries entries(space.size());
+  for (const Crossing& c : seen) entries[space.index_of(c).state].push_back(c);
+  return entries;
+}
+
+void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,
+                const Entries& entries) {
+  if (!entries.empty() && entries.size() != t.rows.size())
+    throw std::invalid_argument("add_trials: entries are not those of the state space");
+  const auto start_of = [&](int row, Random& random) {
+    if (entries.empty() || entries[row].empty()) return t.space.sample(row, random);
+    return entries[row][random.below(static_cast<std::int64_t>(entries[row].size()))];
+  };
   const auto method = make_method(p);
   struct Outcome {
     int column = -1;
@@ -46,7 +73,7 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
       const Stream stream{seed, static_cast<std::uint64_t>(row),
                           static_cast<std::uint64_t>(range.first + i)};
       Random random(Purpose::row, stream);
-      const BodyState start = entry_state(p, t.space.sample(row, random));
+      const BodyState start = entry_state(p, start_of(row, random));
       RandomForce force(p.forces, random);
       const GateRun run = run_gate(p, *method, start, force);
       health[row].add(p, run);

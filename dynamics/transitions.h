@@ -34,11 +34,20 @@ struct Transitions {
     }
   };
   [[nodiscard]] Totals totals() const;
+
+  /// Adds other trials of the same space; throws std::invalid_argument for another space.
+  Transitions& operator+=(const Transitions& other);
 };
 
-/// Adds trials `range` of every row: starts uniform in the row's bin, random force from the stream
-/// {seed, row, trial}. On all threads of the current TBB arena; same counts for any number of them.
-/// A broken run is counted in `health` and in no column; the caller decides.
-void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range);
+/// Where the trials of a row may start: crossings that fell into it.
+using Entries = std::vector<std::vector<Crossing>>;  // (n)
+[[nodiscard]] Entries entries_of(const StateSpace& space, const std::vector<Crossing>& seen);
+
+/// Adds trials `range` of every row: starts uniform in the row's bin, or drawn from `entries` in a
+/// row that has any; random force from the stream {seed, row, trial}. On all threads of the current
+/// TBB arena; same counts for any number of them. A broken run is counted in `health` and in no
+/// column; the caller decides.
+void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,
+                const Entries& entries = {});
 
 }  // namespace gatewalk::dynamics

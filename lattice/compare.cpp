@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "dynamics/random.h"
@@ -16,6 +17,9 @@ namespace {
 
 using dynamics::Purpose;
 using dynamics::Random;
+
+/// Rows of the streams of Purpose::comparison: one for each use, so that no two share their draws.
+enum Use : std::uint64_t { kDeals = 0, kExactDraws = 1, kSamples = 2, kSwaps = 3 };
 
 void require_same_shape(Eigen::Index rows_a, Eigen::Index cols_a, Eigen::Index rows_b,
                         Eigen::Index cols_b) {
@@ -102,7 +106,7 @@ Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
   return s;
 }
 
-/// p-values and the mean null total variation over `null_draws` calls of draw(k), in any order.
+/// p-values and the null's total variation over `null_draws` calls of draw(k), in any order.
 template <class Draw>
 void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draws, Draw draw) {
   if (null_draws < 1) throw std::invalid_argument("compare: null_draws must be at least 1");
@@ -120,9 +124,24 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   c.p_total_variation = p_value(&Statistics::total_variation);
   c.p_energy = p_value(&Statistics::energy);
   c.null_draws = null_draws;
-  double sum = 0.0;
-  for (const Statistics& s : null) sum += s.total_variation;
-  c.floor_total_variation = sum / static_cast<double>(null_draws);
+  std::vector<double> tv;
+  for (const Statistics& s : null) tv.push_back(s.total_variation);
+  c.floor_total_variation = std::accumulate(tv.begin(), tv.end(), 0.0) / static_cast<double>(null_draws);
+  const auto at_95 = tv.begin() + (95 * null_draws + 99) / 100 - 1;
+  std::nth_element(tv.begin(), at_95, tv.end());
+  c.floor_total_variation_95 = *at_95;
+}
+
+/// `n` draws from shares whose running sums are `cumulative`, as counts.
+Eigen::VectorXd drawn_counts(const std::vector<double>& cumulative, std::int64_t n, Random& random) {
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cumulative.size()));
+  for (std::int64_t i = 0; i < n; ++i) {
+    const double u = random.uniform() * cumulative.back();
+    // First place whose cumulative share exceeds u: never one of share zero.
+    const auto place = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
+    counts[place - cumulative.begin()] += 1.0;
+  }
+  return counts;
 }
 
 CellProbabilities shares(const CellCounts& counts) {
@@ -174,12 +193,56 @@ NoiseFloor noise_floor(double s, std::int64_t gates, std::int64_t trials,
           100.0 * std::sqrt(first + second)};
 }
 
+// Beyond this the logarithms of factorials (3e13) leave less than two digits; no study goes there.
+constexpr std::int64_t kMostTrials = std::int64_t{1} << 40;
+
+double expected_total_variation(const CellProbabilities& p, std::int64_t trials) {
+  if (trials < 1) throw std::invalid_argument("expected_total_variation: needs at least one trial");
+  const auto n = static_cast<double>(trials);
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < p.size(); ++i) {
+    const double share = p.data()[i];
+    if (!(share > 0.0 && share < 1.0)) continue;  // no chance in it
+    const double m = std::floor(n * share) + 1.0;
+    // (1-p) m P(X = m) = n C(n-1, m-1) p^m (1-p)^(n-m+1), with n C(n-1, m-1) = n! / ((m-1)! (n-m)!)
+    sum += 2.0 / n *
+           std::exp(std::lgamma(n + 1.0) - std::lgamma(m) - std::lgamma(n - m + 1.0) +
+                    m * std::log(share) + (n - m + 1.0) * std::log1p(-share));
+  }
+  return 0.5 * sum;
+}
+
+std::int64_t trials_for(const CellProbabilities& p, double total_variation) {
+  if (!(total_variation > 0.0))
+    throw std::invalid_argument("trials_for: a total variation must be > 0");
+  std::int64_t enough = 1;
+  while (expected_total_variation(p, enough) > total_variation && enough < kMostTrials) enough *= 2;
+  std::int64_t low = enough / 2;  // too few, or 0
+  while (enough - low > 1) {
+    const std::int64_t middle = low + (enough - low) / 2;
+    (expected_total_variation(p, middle) > total_variation ? low : enough) = middle;
+  }
+  return enough;
+}
+
+CellCounts sampled(const CellProbabilities& p, std::int64_t trials, std::uint64_t seed,
+                   std::uint64_t replicate) {
+  std::vector<double> cumulative(p.size());
+  std::partial_sum(p.data(), p.data() + p.size(), cumulative.begin());
+  Random random(Purpose::comparison, {seed, kSamples, replicate});
+  const Eigen::VectorXd counts = drawn_counts(cumulative, trials, random);
+  CellCounts cells(p.rows(), p.cols());
+  for (Eigen::Index i = 0; i < cells.size(); ++i)
+    cells.data()[i] = static_cast<std::int64_t>(counts[i]);
+  return cells;
+}
+
 Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64_t null_draws,
                    std::uint64_t seed) {
   require_same_shape(sample.rows(), sample.cols(), other.rows(), other.cols());
   const CellProbabilities a = shares(sample), b = shares(other);
   const std::int64_t n = sample.sum(), m = other.sum();
-  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0};
+  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0, 0};
   const CellCounts pooled_counts = sample + other;
   c.floor = noise_floor(concentration(pooled_counts), sample.size(), n, m);
 
@@ -195,7 +258,7 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   const Statistics seen =
       statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, 0, static_cast<std::uint64_t>(k)});
+    Random random(Purpose::comparison, {seed, kDeals, static_cast<std::uint64_t>(k)});
     // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
     const bool first_is_smaller = n <= m;
     const std::int64_t small = std::min(n, m);
@@ -215,12 +278,63 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   return c;
 }
 
+Comparison compare_pairs(const std::vector<std::int32_t>& first,
+                         const std::vector<std::int32_t>& second, int rows, int columns,
+                         std::int64_t null_draws, std::uint64_t seed) {
+  if (first.size() != second.size())
+    throw std::invalid_argument("compare_pairs: the two samples differ in length");
+  const auto counted = [&](const std::vector<std::int32_t>& cells) {
+    CellCounts counts = CellCounts::Zero(rows, columns);
+    for (const std::int32_t cell : cells) {
+      if (cell < 0 || cell >= counts.size())
+        throw std::invalid_argument("compare_pairs: no such gate");
+      ++counts.data()[cell];
+    }
+    return counts;
+  };
+  const CellProbabilities a = shares(counted(first)), b = shares(counted(second));
+  Comparison c{corrcoef(a, b), rmse_per_100(a, b), total_variation(a, b), {}, 0, 0, 0, 0, 0, 0};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  c.floor = {kNone, kNone};
+
+  const CellProbabilities pooled = 0.5 * (a + b);
+  const Support support = affordable_support_of(pooled);
+  const Eigen::VectorXd expected = on_support(pooled, support);
+  const auto n = static_cast<std::int64_t>(first.size());
+  const double rare = rare_share(expected, n);
+  // Pairs that differ, as places in the support; the others are the same either way round.
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> unlike;
+  const auto place = [&](std::int32_t cell) {
+    return std::lower_bound(support.gates.begin(), support.gates.end(), cell) -
+           support.gates.begin();
+  };
+  for (std::size_t t = 0; t < first.size(); ++t)
+    if (first[t] != second[t]) unlike.emplace_back(place(first[t]), place(second[t]));
+  const Statistics seen =
+      statistics(on_support(a, support), on_support(b, support), expected, rare, support);
+  fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
+    Random random(Purpose::comparison, {seed, kSwaps, static_cast<std::uint64_t>(k)});
+    // Trials of the first sample less those of the second.
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(expected.size());
+    std::uint64_t coins = 0;
+    for (std::size_t i = 0; i < unlike.size(); ++i) {
+      if (i % 64 == 0) coins = random.word();
+      const double sign = (coins >> (i % 64)) % 2 == 0 ? 1.0 : -1.0;
+      moved[unlike[i].first] += sign;
+      moved[unlike[i].second] -= sign;
+    }
+    const Eigen::VectorXd half = moved / (2.0 * static_cast<double>(n));
+    return statistics(expected + half, expected - half, expected, rare, support);
+  });
+  return c;
+}
+
 Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
                    std::int64_t null_draws, std::uint64_t seed) {
   require_same_shape(sample.rows(), sample.cols(), exact.rows(), exact.cols());
   const CellProbabilities a = shares(sample);
   const std::int64_t n = sample.sum();
-  Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0};
+  Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0, 0};
   c.floor = noise_floor(exact.square().sum(), sample.size(), n, 0);
 
   const Support support = affordable_support_of(a + exact);
@@ -230,15 +344,8 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   std::partial_sum(expected.begin(), expected.end(), cumulative.begin());
   const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, 1, static_cast<std::uint64_t>(k)});
-    Eigen::VectorXd drawn = Eigen::VectorXd::Zero(expected.size());
-    for (std::int64_t i = 0; i < n; ++i) {
-      const double u = random.uniform() * cumulative.back();
-      // First place whose cumulative share exceeds u: never one of share zero.
-      const auto place = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
-      drawn[place - cumulative.begin()] += 1.0;
-    }
-    return statistics(drawn / static_cast<double>(n), expected, expected, rare, support);
+    Random random(Purpose::comparison, {seed, kExactDraws, static_cast<std::uint64_t>(k)});
+    return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected, expected, rare, support);
   });
   return c;
 }

@@ -3,6 +3,7 @@
 /// corrcoef and RMSE as in Sec. III-C, over all gates of the field, RMSE in trials per 100.
 
 #include <cstdint>
+#include <vector>
 
 #include "markov/exact.h"
 #include "markov/walk.h"
@@ -34,6 +35,17 @@ struct NoiseFloor {
 [[nodiscard]] NoiseFloor noise_floor(double concentration, std::int64_t gates, std::int64_t trials,
                                      std::int64_t second_trials);
 
+/// Mean total variation between `trials` draws from `p` and `p` itself. Exact: the count of a gate is
+/// binomial, and de Moivre's E|X - np| = 2 (1-p) m P(X = m), m = floor(np) + 1 there.
+[[nodiscard]] double expected_total_variation(const CellProbabilities& p, std::int64_t trials);
+/// The least number of trials whose expected_total_variation is at most `total_variation` (> 0),
+/// or 2^40 if that is fewer.
+[[nodiscard]] std::int64_t trials_for(const CellProbabilities& p, double total_variation);
+
+/// `trials` draws from `p` as counts; a replicate is named by its number.
+[[nodiscard]] CellCounts sampled(const CellProbabilities& p, std::int64_t trials,
+                                 std::uint64_t seed, std::uint64_t replicate);
+
 /// The energy distance costs the square of the gates reached; beyond this it is left out.
 inline constexpr int kMostEnergyGates = 1000;
 
@@ -42,7 +54,8 @@ inline constexpr int kMostEnergyGates = 1000;
 struct Comparison {
   double corrcoef = 0.0, rmse_per_100 = 0.0, total_variation = 0.0;
   NoiseFloor floor;
-  double floor_total_variation = 0.0;  // mean over the null draws
+  double floor_total_variation = 0.0;     // mean over the null draws
+  double floor_total_variation_95 = 0.0;  // 95 % of the null draws have no more
   double p_chi_squared = 0.0, p_total_variation = 0.0;
   double p_energy = 0.0;  // NaN above kMostEnergyGates reachable gates
   std::int64_t null_draws = 0;
@@ -51,6 +64,14 @@ struct Comparison {
 /// Two samples: permutation test, the pooled trials dealt out anew `null_draws` times.
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellCounts& other,
                                  std::int64_t null_draws, std::uint64_t seed);
+
+/// Two samples whose trials belong together, first[t] with second[t], as two models of one trial
+/// under the same noise do; gates as row * columns + column. The null swaps each pair with
+/// probability 1/2, so only pairs that differ count, and far smaller differences are seen than
+/// between independent samples. `floor` has no formula here: NaN.
+[[nodiscard]] Comparison compare_pairs(const std::vector<std::int32_t>& first,
+                                       const std::vector<std::int32_t>& second, int rows,
+                                       int columns, std::int64_t null_draws, std::uint64_t seed);
 
 /// A sample against an exact distribution: `null_draws` samples drawn from the latter.
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellProbabilities& exact,

@@ -1,12 +1,14 @@
 #pragma once
 /// gatewalk::lattice: a field of gates, walked both ways and compared.
 ///
-///   field.h       the field's size and where a trial starts
+///   field.h       the field's size, where a trial starts, which beams act (fidelity)
+///   crowd.h       one disc among the beams of many gates; push_only.h, its contact problem
 ///   reference.h   the full dynamics through the field, gate by gate
 ///   gate_chain.h  counts + state space -> markov::Chain, and the matrix file
 ///   compare.h     corrcoef, RMSE, total variation, noise floors, p-values
 
 #include "lattice/compare.h"
+#include "lattice/crowd.h"
 #include "lattice/field.h"
 #include "lattice/gate_chain.h"
 #include "lattice/reference.h"

@@ -4,6 +4,8 @@
 
 #include <bit>
 
+#include "lattice/crowd.h"
+
 namespace gatewalk::lattice {
 namespace {
 
@@ -17,15 +19,17 @@ struct Trial {
   std::int32_t column = 0, row = 0;
   std::array<std::int32_t, kBoundaries> entries{}, clamped{};
   Health health;
+  std::vector<Crossing> crossings;
 };
 
-Trial run_trial(const GateParams& p, const Method& method, const FieldParams& field,
-                const BodyState& start, const StateSpace& space, RandomForce& force) {
+/// One trial, gate by gate. `run` runs the body's gate until it leaves, `go_on` puts it into the next.
+template <class Run, class GoOn>
+Trial run_trial(const GateParams& p, const FieldParams& field, const StateSpace& space,
+                bool keep_crossings, Run run_one, GoOn go_on) {
   Trial t;
   t.column = field.start_column();
-  BodyState body = start;
   for (int gates = 1;; ++gates) {
-    const GateRun run = run_gate(p, method, body, force);
+    const GateRun run = run_one();
     t.health.add(p, run);
     if (run.ending == Ending::broken || run.ending == Ending::trapped) {
       t.fate = run.ending == Ending::broken ? Fate::broken : Fate::trapped;
@@ -41,12 +45,28 @@ Trial run_trial(const GateParams& p, const Method& method, const FieldParams& fi
       t.fate = Fate::cut_off;
       return t;
     }
+    if (keep_crossings) t.crossings.push_back(crossing);
     ++t.entries[static_cast<int>(crossing.boundary)];
     t.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
     t.column += move.di_x;
     t.row += move.di_y;
-    body = shifted_into_next(p, run.ending, run.exit);
+    go_on(run);
   }
+}
+
+Trial run_trial(const GateParams& p, const Method& method, const FieldParams& field,
+                const BodyState& start, const StateSpace& space, RandomForce& force,
+                bool keep_crossings) {
+  if (field.fidelity == Fidelity::active) {
+    BodyState body = start;
+    return run_trial(
+        p, field, space, keep_crossings, [&] { return run_gate(p, method, body, force); },
+        [&](const GateRun& run) { body = shifted_into_next(p, run.ending, run.exit); });
+  }
+  Crowd crowd(p, field, start);
+  return run_trial(
+      p, field, space, keep_crossings, [&] { return crowd.run_gate(force); },
+      [&](const GateRun& run) { crowd.go_on(run.ending); });
 }
 
 }  // namespace
@@ -72,18 +92,21 @@ FieldTally& FieldTally::operator+=(const FieldTally& o) {
   health += o.health;
   final_gate_of_trial.insert(final_gate_of_trial.end(), o.final_gate_of_trial.begin(),
                              o.final_gate_of_trial.end());
+  crossings.insert(crossings.end(), o.crossings.begin(), o.crossings.end());
   return *this;
 }
 
 FieldTally run_field(const GateParams& p, const FieldParams& field, const BodyState& start,
-                     const StateSpace& space, std::uint64_t seed, TrialRange range) {
+                     const StateSpace& space, std::uint64_t seed, TrialRange range,
+                     bool keep_crossings) {
   const auto method = make_method(p);
+  validate(p, field);
   const std::uint64_t row = stream_row(start);
   std::vector<Trial> trials(range.count);
   tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
     const Stream stream{seed, row, static_cast<std::uint64_t>(range.first + i)};
     RandomForce force(p.forces, Random(Purpose::field, stream));
-    trials[i] = run_trial(p, *method, field, start, space, force);
+    trials[i] = run_trial(p, *method, field, start, space, force, keep_crossings);
   });
 
   FieldTally tally(field);
@@ -101,6 +124,7 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
       tally.clamped[b] += t.clamped[b];
     }
     tally.health += t.health;
+    tally.crossings.insert(tally.crossings.end(), t.crossings.begin(), t.crossings.end());
   }
   return tally;
 }

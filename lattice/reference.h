@@ -1,5 +1,6 @@
 #pragma once
-/// The reference: the full dynamics of a body through the field, gate by gate, written plainly.
+/// The reference: the full dynamics of a body through the field, gate by gate, written plainly; with
+/// or without memory and neighbours (field.fidelity).
 
 #include <array>
 #include <cstdint>
@@ -23,6 +24,7 @@ struct FieldTally {
   std::array<std::int64_t, dynamics::kBoundaries> clamped{};  // of these, outside every bin
   dynamics::Health health;                                    // over all gate runs
   std::vector<std::int32_t> final_gate_of_trial;              // row * columns + column, trial order
+  std::vector<dynamics::Crossing> crossings;                  // between gates, if kept, trial order
 
   explicit FieldTally(const FieldParams& f)
       : final_gates(markov::CellCounts::Zero(f.rows, f.columns)) {}
@@ -32,12 +34,16 @@ struct FieldTally {
 /// The number that names a start in its trials' streams: other starts, other noise.
 [[nodiscard]] std::uint64_t stream_row(const dynamics::BodyState& start);
 
-/// Runs trials `range` through the field, every gate fresh: beams at rest when the body enters; the
-/// random force goes on. The stream is {seed, stream_row(start), trial}. `space` only counts what the chain would have clamped. On all threads of
-/// the current TBB arena, same result for any number of them.
+/// Runs trials `range` through the field. field.fidelity says what a gate is: fresh, with beams at
+/// rest, whenever the body enters (active), or one of many that go on and act beyond their bounds
+/// (remember, all; crowd.h). The random force goes on from gate to gate; its stream is
+/// {seed, stream_row(start), trial} whatever the fidelity. run.time_limit_s counts from the entry
+/// into a gate. `space` only counts what the chain would have clamped; `keep_crossings` keeps
+/// the crossings themselves. On all threads of the current TBB arena, same result for any number of
+/// them. Throws InvalidParameter.
 [[nodiscard]] FieldTally run_field(const dynamics::GateParams& p, const FieldParams& field,
                                    const dynamics::BodyState& start,
                                    const dynamics::StateSpace& space, std::uint64_t seed,
-                                   dynamics::TrialRange range);
+                                   dynamics::TrialRange range, bool keep_crossings = false);
 
 }  // namespace gatewalk::lattice

@@ -26,7 +26,7 @@ expect 0 'usage: gatewalk' "$gatewalk" --help
 expect 0 '^gatewalk [0-9]' "$gatewalk" --version
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
-for command in gate build show walk predict lattice validate; do
+for command in gate build show walk predict lattice validate chart chart-field chart-chain stability; do
   expect 0 'Example:' "$gatewalk" $command --help
   expect 2 'unrecognised option' "$gatewalk" $command --no-such-option
 done
@@ -56,6 +56,58 @@ expect 0 'sank into a beam' "$gatewalk" gate "$scenes/single_gate.toml" --set ru
 "$gatewalk" gate "$scenes/single_gate.toml" --set run.method=paper --trials 200 --json paper.json --quiet
 holds '.status.clean == false' paper.json
 
+# run.method = "auto": the result names what was chosen, on what evidence; any number of threads.
+auto="$scenes/field.toml --set run.method=auto --set run.time_limit_s=2"
+# shellcheck disable=SC2086
+{
+expect 0 '^method [a-z]*, run\..*: chosen on 4000 pilot trials, outcomes off by' "$gatewalk" gate $auto --trials 50 --json auto.json
+"$gatewalk" gate $auto --trials 50 --json - --threads 1 --quiet | cmp -s - auto.json || fail "auto: another number of threads gave another file"
+holds '.method | .asked == "auto" and .met and .tolerance == 0.005 and .pilot_starts == 1 and .reference.verdict == "ok"' auto.json
+holds '.method.tried[-1] as $last | $last.verdict == "ok" and $last.outcome_total_variation + $last.uncertainty <= 0.005' auto.json
+holds '.method.tried[-1] as $last | .method | $last.method == .method and ([.step_s, .event_tolerance_m] | index($last.value)) != null' auto.json
+value .made_by.scene auto.json | grep -q "^method = \"$(value .method.method auto.json)\"$" || fail "auto: the scene of the result names another method"
+expect 0 '^method [a-z]*, run\.' "$gatewalk" build $auto --trials 5 -o auto.nc --json auto-build.json
+holds '.method.met and .method.pilot_starts == 9' auto-build.json
+"$gatewalk" show auto.nc --json auto-show.json --quiet
+jq -s '(.[0].text.method | fromjson) == .[1].method' auto-show.json auto-build.json | grep -q true || fail "auto: the matrix does not record the choice"
+expect 0 '^trapped' "$gatewalk" predict auto.nc $auto
+expect 0 '^trapped' "$gatewalk" predict auto.nc
+"$gatewalk" validate $auto --matrix auto.nc --trials 20 --start 0,0,15 --json auto-validate.json --quiet
+jq -s '.[0].method == .[1].method' auto-validate.json auto-build.json | grep -q true || fail "auto: validate took another method than the matrix"
+"$gatewalk" lattice $auto --trials 20 --json auto-lattice.json --quiet
+jq -s '.[0].method == .[1].method' auto-lattice.json auto-build.json | grep -q true || fail "auto: lattice and build chose differently"
+# A matrix of a method by name is not what "auto" stands for; nor is one of another tolerance.
+"$gatewalk" build "$scenes/field.toml" --set run.time_limit_s=2 --trials 1 -o named.nc --quiet >/dev/null
+expect 2 'run.method: auto here, stable by name there' "$gatewalk" predict named.nc $auto
+expect 2 'run.tolerance: 0.01 here, 0.005 there' "$gatewalk" predict auto.nc $auto --set run.tolerance=0.01
+for tolerance in 0.99e-4 1.01 nan -1; do
+  expect 2 "run.tolerance = .* must lie in \[1e-04, 1\]" "$gatewalk" gate $auto --set run.tolerance=$tolerance
+done
+# No exact method takes such beams; and one that does shows faults at such a speed: refused, and said.
+expect 2 'run.method = "auto" is not permitted for this scene: no method is exact' "$gatewalk" gate $auto --set beams.mass_kg=1e-6 --set beams.stiffness_left_Nm_per_rad=1e12
+too_fast="--set beams.stiffness_right_Nm_per_rad=1e12 --set run.time_limit_s=0.02 --set forces.propulsion_N=1e6 --set body.mass_kg=0.001"
+expect 0 'the reference itself shows faults' "$gatewalk" gate $auto $too_fast --trials 5 --quiet --json auto-faulty.json
+holds '.method | .met == false and .method == .reference.method and .step_s == .reference.value' auto-faulty.json
+}
+
+# A step outside a method's region is refused or said, in text and JSON.
+expect 0 'longer than the method.s stability bound' "$gatewalk" gate "$scenes/undamped.toml" --set run.method=paper --trials 20 --json beyond.json --quiet
+holds '.status | .clean == false and .runs_beyond_the_stability_bound == 20' beyond.json
+# Euler's bound is d/k = 10/500 s: at it and below nothing is said of it.
+loose="$scenes/single_gate.toml --set run.method=paper --set beams.damping_Nms_per_rad=10 --trials 20 --quiet"
+for step in 0.02 0.01; do
+  # shellcheck disable=SC2086
+  "$gatewalk" gate $loose --set run.step_s=$step --set beams.stiffness_left_Nm_per_rad=500 --json within.json 2>/dev/null
+  holds '.status.runs_beyond_the_stability_bound == 0' within.json
+done
+# shellcheck disable=SC2086
+"$gatewalk" gate $loose --set run.step_s=0.02 --set beams.stiffness_left_Nm_per_rad=501 --json beyond.json 2>/dev/null
+holds '.status.runs_beyond_the_stability_bound == 20' beyond.json
+expect 2 'run.step_s = 0.004 is not permitted.*method penalty permits at most' "$gatewalk" gate "$scenes/field.toml" --set run.method=penalty --set beams.stiffness_left_Nm_per_rad=1e9
+# moreau has no bound on the step; what long steps do to it is seen.
+expect 0 'sank into a beam' "$gatewalk" gate "$scenes/stiff.toml" --set run.method=moreau --set run.step_s=0.02 --trials 50 --json sunk.json --quiet
+holds '.status | .clean == false and .runs_penetrating_over_1_percent > 0 and .runs_beyond_the_stability_bound == 0' sunk.json
+
 # build, show, walk, predict, lattice.
 expect 0 '87 x 88 matrix' "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o m.nc
 expect 0 'rows never sampled  0' "$gatewalk" show m.nc --rows
@@ -72,6 +124,23 @@ holds '(.trapped + .left_field + .cut_off - 1 | fabs) < 1e-12' predict.json
 holds '.cut_off == 0' free.json
 jq -s '[[.[0].final_gates[][]], [.[1].final_gates[][]]] | transpose | map(.[0] - .[1] | fabs) | max < 1e-10' free.json klu.json |
   grep -q true || fail "the two solvers disagree"
+# Other bins than the paper's: recorded in the file, and every command takes them.
+expect 0 '696 x 697 matrix' "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 2 --seed 1 -o fine.nc
+expect 0 '23 x 24 matrix' "$gatewalk" build "$scenes/field.toml" --trials 5 --bins 0.5 --seed 1 -o coarse.nc
+expect 0 'bins  *2.0' "$gatewalk" show fine.nc --row 696
+"$gatewalk" show coarse.nc --json coarse.json --quiet
+holds '.text.bins == "0.5" and .inputs == 23 and (.rows | length) == 23' coarse.json
+for bins in fine coarse; do
+  "$gatewalk" walk $bins.nc --walks 1000 --json walk-$bins.json --quiet >/dev/null 2>&1
+  holds '([.final_gates[][]] | add) == 1000' walk-$bins.json
+  "$gatewalk" predict $bins.nc "$scenes/field.toml" --json predict-$bins.json --quiet >/dev/null 2>&1
+  holds '(([.final_gates[][]] | add) - 1 | fabs) < 1e-12' predict-$bins.json
+done
+"$gatewalk" build "$scenes/field.toml" --trials 20 --bins 1 --seed 1 -o m1.nc --quiet >/dev/null
+"$gatewalk" show m1.nc --json m1.json --quiet
+"$gatewalk" show m.nc --json m.json --quiet
+jq -s '.[0].rows == .[1].rows' m.json m1.json | grep -q true || fail "--bins 1 is not the paper's matrix"
+for bins in 0 -1 nan 1e9; do expect 2 'bins' "$gatewalk" build "$scenes/field.toml" --bins $bins -o x.nc; done
 "$gatewalk" lattice "$scenes/field.toml" --trials 100 --seed 1 --json lattice.json --quiet
 holds '([.final_gates[][]] | add) == 100 and .trapped + .left_field + .cut_off + .not_finite == 100' lattice.json
 "$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=1 --trials 50 --json one.json --quiet
@@ -98,10 +167,86 @@ jq -s '.[0].final_gates == .[1].starts[1].final_gates.dynamics' start.json start
   fail "validate and lattice ran other trials for the same start"
 expect 2 'start.y_m' "$gatewalk" predict m.nc --set start.y_m=5
 
+# Fidelities need their method; the chart leaves CSV and JSON behind also when there is no gnuplot.
+expect 2 'field.fidelity = "all" is not permitted with run.method = "stable"' "$gatewalk" lattice "$scenes/field.toml" --set field.fidelity=all
+expect 2 'one of "active", "remember", "all"' "$gatewalk" lattice "$scenes/field.toml" --set field.fidelity=most
+expect 2 'missing -o' "$gatewalk" chart-field "$scenes/field.toml"
+expect 2 'three numbers' "$gatewalk" chart-field "$scenes/field.toml" -o chart --start 1,2
+expect 1 'cannot be made' "$gatewalk" chart-field "$scenes/field.toml" -o m.nc/chart
+"$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=all --trials 50 --json all.json --quiet 2>/dev/null
+holds '([.final_gates[][]] | add) == 50 and .trapped + .left_field + .cut_off + .not_finite == 50' all.json
+expect 2 'run.method = "auto" is not permitted.*run.step_s' "$gatewalk" chart-field "$scenes/field.toml" --set run.method=auto -o no-chart
+[ -e no-chart ] && fail "chart-field: wrong use made a folder"
+expect 0 '^Start 4, 5, 10: 20 trials cannot tell' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 20 --start 4,5,10
+[ "$(wc -l <new/chart/fidelity.csv)" = 5 ] || fail "chart-field: a line per fidelity and method was expected"
+holds '.starts[0].runs | map(.fidelity) == ["active", "remember", "all", "active"]' new/chart/fidelity.json
+holds '.starts[0].runs | all(([.final_gates[][]] | add) == 20 and (.fates | add | . - 1 | fabs) < 1e-12 and .seconds_per_trial > 0)' new/chart/fidelity.json
+holds '.made_by.seed == 1 and (.made_by.scene | length) > 0 and (.machine | test("cores"))' new/chart/fidelity.json
+expect 2 'the same: new/chart/fidelity.csv' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --json ./new/chart/fidelity.csv
+grep -q '</svg>' new/chart/fidelity.svg || fail "chart-field: no figure"
+"$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=remember --set start.x_m=4 \
+  --set start.vx_m_per_s=5 --set start.vy_m_per_s=10 --trials 20 --json remember.json --quiet 2>/dev/null
+jq -s '.[0].starts[0].runs[1].final_gates == .[1].final_gates' new/chart/fidelity.json remember.json | grep -q true ||
+  fail "chart-field and lattice ran other trials"
+rm new/chart/*
+expect 1 'gnuplot was not found.*are written' env PATH=/nonexistent "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 5 --start 0,0,15
+[ "$(ls new/chart | xargs)" = "fidelity.csv fidelity.json" ] || fail "chart-field without gnuplot left $(ls new/chart)"
+
+# One gate has no neighbours: no trial changes, and it takes 3/0.03 trials to know that few would.
+one_gate="$scenes/field.toml --set field.columns=1 --set field.rows=1 --set run.step_s=0.02 --start 0,0,15"
+# shellcheck disable=SC2086
+{
+expect 0 '^Start 0, 0, 15: 99 trials cannot tell .* 0.0000 +- 0.0303 ' "$gatewalk" chart-field $one_gate --trials 99 -o new/chart
+holds '.starts[0].active_is_enough == null' new/chart/fidelity.json
+expect 0 '^Start 0, 0, 15: active is enough: .* 0.0000 +- 0.0300 ' "$gatewalk" chart-field $one_gate --trials 100 -o new/chart
+holds '.starts[0].active_is_enough == true and (.starts[0].runs | map(.step_s == 0.02) | all)' new/chart/fidelity.json
+# The step is said, and what it does to moreau.
+expect 0 '^gatewalk: .*(moreau), step 0.02 s: .* sank into a beam' "$gatewalk" chart-field $one_gate --trials 100 -o new/chart --quiet
+expect 0 'step 0.02 s (moreau), 0.02 s (stable)' "$gatewalk" chart-field $one_gate --trials 5 -o new/chart
+}
+
 # A start that the paper's table has not.
 "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --start 4,5,10 --json validate.json --quiet
 holds '.starts | length == 1' validate.json
 holds '.starts[0].exact | .p_values.chi_squared > 0 and .rmse_per_100_floor > 0 and .total_variation >= 0' validate.json
+
+# chart-chain: three files in a folder that it makes; errors and their parts are distributions'.
+chart() { "$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 150 --runs-limit 1e3 --bins 0.5 --bins 1 \
+            --start 0,0,15 --seed 2 --visited 50 "$@"; }
+expect 0 'direct simulation' chart -o charts/a --json charts.json --threads 2
+cmp -s charts.json charts/a/chain.json || fail "chart-chain: --json and chain.json differ"
+grep -q '</svg>' charts/a/chain.svg || fail "chart-chain: no figure"
+holds '[.points[] | [.bins, .trials_per_row]] == [[0.5, 10], [0.5, 20], [1, 10], [0.5, 10], [0.5, 20], [1, 10]]' charts/a/chain.json
+holds '[.points[].states] == [23, 23, 87, 23, 23, 87] and [.points[0:3][].gate_runs] == [230, 460, 870]' charts/a/chain.json
+holds '[.points[].matrices] == [2, 1, 1, 2, 1, 1]' charts/a/chain.json
+holds '[.points[].starts[] | .exact, .walks_10000, .walks_1000000 | .total_variation > 0 and .total_variation < 1] | all' charts/a/chain.json
+# A million walks: within 1/2 sqrt(2/pi 81/1e6) = 0.004 of infinitely many on average; twice that.
+holds '[.points[].starts[] | .exact.total_variation - .walks_1000000.total_variation | fabs < 0.008] | all' charts/a/chain.json
+# 2000 draws of a figure that varies by some 15 %: five standard errors.
+holds '.starts[0].direct_simulation | map(.drawn.total_variation / .formula.total_variation - 1 | fabs < 0.02) | all' charts/a/chain.json
+# However many its trials, the truth's noise stays: both are told from the same 150 trials.
+holds '.starts[0] | .truth.floor.total_variation as $noise | .direct_simulation | .[-1].trials > 150 and (map(.formula.total_variation >= $noise) | all)' charts/a/chain.json
+holds '.starts[0].truth.trials == 150 and ([.starts[0].truth.final_gates[][]] | add) == 150' charts/a/chain.json
+holds '[.points[].row_starts] == ["uniform", "uniform", "uniform", "visited", "visited", "visited"]' charts/a/chain.json
+holds '.points[0].build_s < .points[3].build_s' charts/a/chain.json  # the trials that saw the entries cost
+holds '.points[0].starts[0].exact != .points[3].starts[0].exact' charts/a/chain.json
+holds '.starts[0].summary | .cheapest_near_best.seconds <= .best.seconds' charts/a/chain.json
+[ "$(awk -F, '{ print NF }' charts/a/chain.csv | sort -u)" = 25 ] || fail "chart-chain: uneven lines in chain.csv"
+[ "$(grep -c ',exact,' charts/a/chain.csv)" = 6 ] || fail "chart-chain: not one line per matrix in chain.csv"
+# Times aside, the same on one thread.
+chart -o charts/b --threads 1 --quiet >/dev/null 2>&1
+timeless='.starts[0].truth.final_gates, (.points[] | del(.build_s) | .starts[] |= del(.exact_s, .walks_10000_s, .walks_1000000_s))'
+[ "$(jq -c "$timeless" charts/a/chain.json)" = "$(jq -c "$timeless" charts/b/chain.json)" ] ||
+  fail "chart-chain: another number of threads gave other errors"
+expect 2 'missing -o' "$gatewalk" chart-chain "$scenes/field.toml"
+expect 2 'missing SCENE' "$gatewalk" chart-chain -o charts/x
+expect 2 "runs-limit" "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --runs-limit 40
+expect 2 'must be at least 100' "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --truth-trials 99
+expect 2 'the same factor twice' chart -o charts/x --bins 1
+expect 2 'inside the gate' chart -o charts/x --start 25,0,15
+expect 2 'the same: charts/a/chain.csv' chart -o charts/a --json charts/../charts/a/chain.csv
+[ -e charts/x ] && fail "chart-chain: wrong use made a folder"
+expect 1 'm.nc' chart -o m.nc
 
 # Damaged and missing files; output that cannot be written leaves the old file.
 head -c 5000 m.nc >cut.nc
@@ -114,11 +259,73 @@ expect 1 'no/such/dir' "$gatewalk" gate "$scenes/single_gate.toml" --trials 10 -
 expect 1 'm.nc' "$gatewalk" build "$scenes/field.toml" --trials 1 -o no-dir/m.nc
 ls | grep -q tmp && fail "temporary files stayed behind: $(ls)"
 
+# chart: a line per scene, method and setting; wrong use is said before any work.
+"$gatewalk" chart "$scenes/field.toml" "$scenes/stiff.toml" -o charts --trials 20 --repeats 1 --seed 2 --quiet >/dev/null 2>chart.err ||
+  fail "chart: $(head -n 3 chart.err)"
+[ "$(wc -l <charts/chart.csv)" = 81 ] || fail "chart.csv has $(wc -l <charts/chart.csv) lines"
+[ "$(cut -d, -f1-2 charts/chart.csv | sort | uniq -c | awk '$1 == 8' | wc -l)" = 10 ] || fail "chart.csv: not 8 settings each"
+holds '[.scenes[].settings[] | select(.status != "refused") | .health.runs == 20 and .microseconds_per_trial.min > 0] | all' charts/chart.json
+holds '[.scenes[].reference.outcomes | add] == [20, 20]' charts/chart.json
+holds '[.scenes[].settings[] | select(.default)] | length == 10' charts/chart.json
+grep -q '</svg>' charts/chart.svg || fail "chart.svg is no whole figure"
+"$gatewalk" chart "$scenes/stiff.toml" -o again --trials 20 --repeats 1 --seed 2 --methods stable --threads 1 --quiet >/dev/null
+jq -s '[.[0].scenes[1].settings[] | select(.method == "stable") | .errors] == [.[1].scenes[0].settings[].errors]' charts/chart.json again/chart.json |
+  grep -q true || fail "chart: one method on one thread gave other errors"
+holds '[.scenes[].settings[].errors | select(.) | .strong | (.parted_share >= 0.5 or .compared == 0) == (.position_m.median == null)] | unique == [true]' charts/chart.json
+holds '[.scenes[].settings[].errors | select(.) | .strong | select(.parted_share >= 0.5 and .compared > 0)] | length > 0' charts/chart.json
+grep -q 'half or more parted' charts/chart.svg || fail "chart.svg is silent about settings of which half the trials parted"
+# Every line as long as the first, reasons in quotes aside.
+[ "$(sed -E 's/"[^"]*"//' charts/chart.csv | awk -F, '{ print NF }' | sort -u | wc -l)" = 1 ] || fail "chart.csv: uneven lines"
+# Settings with the reference's bits have a place in the figure: the disc misses every beam.
+"$gatewalk" chart "$scenes/undamped.toml" -o exact --trials 20 --repeats 1 --methods stable,event --quiet --json - >exact.json
+[ -n "$(value '.scenes[0].settings[] | select(.errors.strong.position_m.median.below? == 1e-8) | .value' exact.json)" ] ||
+  fail "chart: no setting is below a billionth of R: $(jq -c '[.scenes[0].settings[] | [.method, .value, .errors.strong.position_m.median]]' exact.json)"
+grep -q 'all parted' exact/chart.svg && fail "chart: exact settings are called parted"
+# The table shows the least of the times, and chance beside the error.
+"$gatewalk" chart "$scenes/stiff.toml" -o times --trials 50 --repeats 3 --methods event --json times.json >times.txt 2>/dev/null
+for i in 0 1 2 3 4 5 6 7; do
+  least=$(printf '%.1f' "$(value ".scenes[0].settings[$i].microseconds_per_trial.rounds | min" times.json)")
+  grep -E -A8 'us/trial .* chance' times.txt | tail -n +$((i + 2)) | head -n 1 | grep -q " $least " || fail "chart: setting $i: not $least us in the table"
+done
+expect 2 'missing SCENE' "$gatewalk" chart -o charts
+expect 2 'missing -o' "$gatewalk" chart "$scenes/field.toml"
+expect 2 "no method 'euler'" "$gatewalk" chart "$scenes/field.toml" -o charts --methods euler
+expect 2 'stands there twice' "$gatewalk" chart "$scenes/field.toml" -o charts --methods paper,paper
+expect 2 'two scenes are called field' "$gatewalk" chart "$scenes/field.toml" "$scenes/field.toml" -o charts
+expect 2 'at least 1' "$gatewalk" chart "$scenes/field.toml" -o charts --trials 0
+expect 2 'nosuch.toml' "$gatewalk" chart "$scenes/field.toml" nosuch.toml -o charts
+expect 1 'gate.json' "$gatewalk" chart "$scenes/field.toml" -o gate.json --trials 1
+for name in csv json svg; do
+  expect 2 'the same' "$gatewalk" chart "$scenes/field.toml" -o charts --trials 1 --json charts/../charts/chart.$name
+done
+# A scene that the reference method refuses is named before the first trial of the others.
+sed -E 's/^stiffness_left_Nm_per_rad.*/stiffness_left_Nm_per_rad = 1e12/; s/^method = .*/method = "paper"/' \
+  "$scenes/field.toml" >rigid.toml
+expect 2 'rigid.toml: no reference' timeout 20 "$gatewalk" chart "$scenes/field.toml" rigid.toml -o charts --trials 1e7
+
+# stability: five maps of five methods.
+"$gatewalk" stability -o maps --quick --quiet >/dev/null 2>maps.err || fail "stability: $(head -n 3 maps.err)"
+holds '.maps | length == 25' maps/stability.json
+holds '[.maps[] | (.status | length) == (.y.values | length)] | all' maps/stability.json
+holds '[.maps[] | select(.method == "stable" and .map == "restitution_threshold") | .status[][]] | unique == ["ok"]' maps/stability.json
+[ "$(ls maps/*.svg | wc -l)" = 5 ] || fail "stability: $(ls maps)"
+expect 2 'missing -o' "$gatewalk" stability
+for name in stability.csv stability.json lever_speed.svg; do
+  expect 2 'the same' timeout 20 "$gatewalk" stability -o maps --quick --json maps/$name
+done
+mkdir -p blocked/grazing_speed.svg
+expect 1 'grazing_speed.svg' "$gatewalk" stability -o blocked --quick  # before any work
+[ "$(ls blocked)" = grazing_speed.svg ] || fail "stability: wrote $(ls blocked) though a figure has no place"
+expect 2 'no meaning' "$gatewalk" stability -o maps --set forces.random_N=1
+
 # Ctrl-C: within 2 s, status 130, a clear word, the old file unchanged.
 for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "build $scenes/field.toml --trials 1e7 -o m.nc" \
-               "lattice $scenes/field.toml --trials 1e9 --json lattice.json"; do
-  before=$(cat gate.json m.nc lattice.json | cksum)
+               "lattice $scenes/field.toml --trials 1e9 --json lattice.json" \
+               "chart-field $scenes/field.toml --trials 1e9 -o new/chart" \
+               "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9" \
+               "chart $scenes/field.toml --trials 1e9 -o charts"; do
+  before=$(cat gate.json m.nc lattice.json charts/* | cksum)
   # shellcheck disable=SC2086
   "$gatewalk" $command >out.txt 2>&1 &
   pid=$!
@@ -131,7 +338,7 @@ for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
   [ $status = 130 ] || fail "ctrl-C: status $status of $command"
   [ $took -lt 2000 ] || fail "ctrl-C took $took ms: $command"
   grep -q "stopped before the end" out.txt || fail "ctrl-C without a word: $command"
-  [ "$before" = "$(cat gate.json m.nc lattice.json | cksum)" ] || fail "ctrl-C changed a file: $command"
+  [ "$before" = "$(cat gate.json m.nc lattice.json charts/* | cksum)" ] || fail "ctrl-C changed a file: $command"
 done
 
 [ $failures = 0 ] || exit 1

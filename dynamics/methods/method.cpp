@@ -1,38 +1,98 @@
 #include "dynamics/methods/method.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
+#include "dynamics/methods/event.h"
+#include "dynamics/methods/moreau.h"
 #include "dynamics/methods/paper.h"
+#include "dynamics/methods/penalty.h"
 #include "dynamics/methods/stable.h"
 
 namespace gatewalk::dynamics {
 
 std::span<const std::string_view> method_names() {
-  static constexpr std::array<std::string_view, 2> names{"paper", "stable"};
+  static constexpr std::array<std::string_view, 6> names{"paper",   "stable", "moreau", "event",
+                                                             "penalty", "auto"};
   return names;
 }
 
 std::unique_ptr<Method> make_method(const GateParams& params) {
   validate(params);
   if (params.run.method == "paper") return std::make_unique<PaperMethod>(params);
+  if (params.run.method == "moreau") return std::make_unique<MoreauMethod>(params);
+  if (params.run.method == "event") return std::make_unique<EventMethod>(params);
+  if (params.run.method == "penalty") return std::make_unique<PenaltyMethod>(params);
+  if (params.run.method == "auto")
+    throw InvalidParameter("run.method", "run.method = \"auto\" is no method yet: choose_method "
+                                         "(dynamics/choice.h) makes it one");
   return std::make_unique<StableMethod>(params);
 }
 
-void Watch::state(const GateParams& p, const GateState& s, double dt) {
+void Watch::motion(const GateParams& p, const GateState& s, double dt) {
   ++steps;
   const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
-  max_speed = std::fmax(max_speed, speed);
+  max_speed = std::max(max_speed, speed);
   double fastest_beam = 0.0;
   for (const Side side : {kLeft, kRight}) {
-    const BeamState& beam = s.beams[side];
-    max_theta[side] = std::fmax(max_theta[side], std::abs(beam.theta));
-    fastest_beam = std::fmax(fastest_beam, std::abs(beam.omega));
-    if (!out_of_reach(p, side, s.body, beam.theta))
-      max_penetration = std::fmax(max_penetration, -nearest(p, side, s.body, beam.theta).gap);
+    max_theta[side] = std::max(max_theta[side], std::abs(s.beams[side].theta));
+    fastest_beam = std::max(fastest_beam, std::abs(s.beams[side].omega));
   }
   // Half a radius is far from passing through a beam, and far beyond what the paper's scenes do.
   fast_steps += (speed + fastest_beam * p.beams.length) * dt > 0.5 * p.body.radius;
+}
+
+void Watch::penetration(const GateParams& p, const GateState& s) {
+  for (const Side side : {kLeft, kRight}) {
+    const double theta = s.beams[side].theta;
+    if (!out_of_reach(p, side, s.body, theta))
+      max_penetration = std::max(max_penetration, -nearest(p, side, s.body, theta).gap);
+  }
+}
+
+GateState interpolated(const GateState& a, const GateState& b, double dt, double t) {
+  const double z = t / dt, z2 = z * z, z3 = z2 * z;
+  const double wb = 3 * z2 - 2 * z3, da = dt * (z - 2 * z2 + z3), db = dt * (z3 - z2);
+  const double rate = 6 * (z - z2) / dt, ra = 1 - 4 * z + 3 * z2, rb = 3 * z2 - 2 * z;
+  const auto mix = [&](double xa, double va, double xb, double vb, double& x, double& v) {
+    x = xa + wb * (xb - xa) + da * va + db * vb;
+    v = rate * (xb - xa) + ra * va + rb * vb;
+  };
+  GateState s = b;
+  mix(a.body.x, a.body.vx, b.body.x, b.body.vx, s.body.x, s.body.vx);
+  mix(a.body.y, a.body.vy, b.body.y, b.body.vy, s.body.y, s.body.vy);
+  for (const Side side : {kLeft, kRight})
+    mix(a.beams[side].theta, a.beams[side].omega, b.beams[side].theta, b.beams[side].omega,
+        s.beams[side].theta, s.beams[side].omega);
+  return s;
+}
+
+std::array<BeamState, 2> mixed(const std::array<BeamState, 2>& a,
+                               const std::array<BeamState, 2>& b, double fraction) {
+  std::array<BeamState, 2> m = b;
+  for (const Side side : {kLeft, kRight}) {
+    m[side].theta = a[side].theta + fraction * (b[side].theta - a[side].theta);
+    m[side].omega = a[side].omega + fraction * (b[side].omega - a[side].omega);
+  }
+  return m;
+}
+
+double back_to_exit(const GateParams& p, const GateState& before, GateState& s, double dt) {
+  // Bisection: 50 halvings of a step leave nothing, and the last bracket's end is outside.
+  const GateState after = s;
+  double inside = 0.0, beyond = dt;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (inside + beyond);
+    const GateState there = interpolated(before, after, dt, middle);
+    if (outside(p, there.body)) {
+      beyond = middle;
+      s = there;
+    } else {
+      inside = middle;
+    }
+  }
+  return beyond;
 }
 
 double energy(const GateParams& p, const GateState& s) {

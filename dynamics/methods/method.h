@@ -2,6 +2,7 @@
 /// What every time-stepping method is: something that carries a gate's state through a spell of
 /// constant force. One file per method; `make_method` is the only list of them.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -17,14 +18,22 @@ struct Watch {
   double energy_created = 0.0;      // J, largest rise of (energy - work done by the forces) ever seen
   double max_speed = 0.0;           // m/s
   std::int64_t steps = 0;           // time steps
+  std::int64_t evaluations = 0;     // evaluations of a gap or of the forces: the work done
   std::int64_t impacts = 0;         // resolved hits
   std::int64_t forced_holds = 0;    // steps in which hits piled up and were turned into constraints
   std::int64_t undefined_contacts = 0;  // contacts for which the method has no formula
   std::int64_t fast_steps = 0;      // steps in which disc or beam moved so far that hits can be missed
+  std::int64_t unstable_steps = 0;  // steps longer than the method's stability bound for free beams
 
   /// To be called after every step, looks at the state from outside the method; `dt` is the time
   /// between two looks for contact.
-  void state(const GateParams& p, const GateState& s, double dt);
+  void state(const GateParams& p, const GateState& s, double dt) {
+    motion(p, s, dt);
+    penetration(p, s);
+  }
+  /// Its two halves, for methods that know between steps that nothing overlaps.
+  void motion(const GateParams& p, const GateState& s, double dt);
+  void penetration(const GateParams& p, const GateState& s);
 };
 
 /// Energy less the work of propulsion and random force: it may only fall. Follows one run.
@@ -33,13 +42,14 @@ class EnergyLedger {
   EnergyLedger(const GateParams& p, const GateState& s) : p_(p), x_(s.body.x), y0_(s.body.y) {
     lowest_ = balance(s);
   }
-  /// To be called after every step with the random force that acted during it.
-  void step(const GateState& s, double force_x, Watch& w) {
+  /// To be called after every step with the random force that acted during it, and the energy that
+  /// the method keeps outside the state (J, in contact springs).
+  void step(const GateState& s, double force_x, Watch& w, double stored = 0.0) {
     random_work_ += force_x * (s.body.x - x_);
     x_ = s.body.x;
-    const double now = balance(s);
-    w.energy_created = std::fmax(w.energy_created, now - lowest_);
-    lowest_ = std::fmin(lowest_, now);
+    const double now = balance(s) + stored;
+    w.energy_created = std::max(w.energy_created, now - lowest_);
+    lowest_ = std::min(lowest_, now);
   }
 
  private:
@@ -57,6 +67,19 @@ class EnergyLedger {
 [[nodiscard]] inline bool outside(const GateParams& p, const BodyState& b) {
   return b.y > p.run.traverse_y || b.x < -p.beams.joint_x || b.x > p.beams.joint_x;
 }
+
+/// Cubic Hermite interpolation between two states dt apart, at t; flags as in `b`.
+[[nodiscard]] GateState interpolated(const GateState& a, const GateState& b, double dt, double t);
+
+/// Beams a fraction of the way from `a` to `b`, mixed linearly: first order, but their energy is
+/// never more than the larger of the two, however often they swing between. Flags as in `b`.
+[[nodiscard]] std::array<BeamState, 2> mixed(const std::array<BeamState, 2>& a,
+                                             const std::array<BeamState, 2>& b, double fraction);
+
+/// Takes `s`, in which the body is outside though it was not in `before`, dt earlier, back to the
+/// moment of leaving, by cubic interpolation; returns how long after `before` that is, in (0, dt].
+[[nodiscard]] double back_to_exit(const GateParams& p, const GateState& before, GateState& s,
+                                  double dt);
 
 class Method {
  public:

@@ -1,8 +1,18 @@
 #include "dynamics/methods/paper.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace gatewalk::dynamics {
+
+double euler_bound(const GateParams& p) {
+  const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
+  const double d = p.beams.damping, inertia = p.beams.inertia();
+  const double spread = d * d - 4.0 * k * inertia;
+  if (spread >= 0.0)
+    return d > 0.0 ? 4.0 * inertia / (d + std::sqrt(spread)) : std::numeric_limits<double>::infinity();
+  return d / k;
+}
 
 double PaperMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                             Watch& watch) const {
@@ -10,7 +20,8 @@ double PaperMethod::advance(GateState& s, double force_x, double duration, Energ
   const auto steps = std::max<long>(1, std::lround(duration / dt));
   for (long i = 1; i <= steps; ++i) {
     collide(s, watch);
-    euler(s, force_x, dt);
+    euler(s, force_x, dt, watch);
+    watch.unstable_steps += beyond_bound_;
     ledger.step(s, force_x, watch);
     watch.state(p_, s, dt);
     if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body))
@@ -24,6 +35,7 @@ void PaperMethod::collide(GateState& s, Watch& watch) const {
     BeamState& beam = s.beams[side];
     if (!beam.held && out_of_reach(p_, side, s.body, beam.theta)) continue;
     const Touch t = nearest(p_, side, s.body, beam.theta);
+    ++watch.evaluations;
     if (t.kind == ContactKind::pin) {  // r of Eq. (5) would be the root of a negative number
       if (t.gap < 0.0) ++watch.undefined_contacts;
       beam.held = false;
@@ -45,12 +57,13 @@ void PaperMethod::collide(GateState& s, Watch& watch) const {
   }
 }
 
-void PaperMethod::euler(GateState& s, double force_x, double dt) const {
+void PaperMethod::euler(GateState& s, double force_x, double dt, Watch& watch) const {
   std::array<double, 2> force{0.0, 0.0};
   std::array<Touch, 2> t{};
   if (s.beams[kLeft].held || s.beams[kRight].held) {
     t = {nearest(p_, kLeft, s.body, s.beams[kLeft].theta),
          nearest(p_, kRight, s.body, s.beams[kRight].theta)};
+    watch.evaluations += 2;
     std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
     force = contact_forces(p_, s, t, force_x, held, push_or_pull);
     // A force that would pull releases its contact; then the other is solved alone.

@@ -3,65 +3,43 @@
 #include <algorithm>
 #include <sstream>
 
+#include "dynamics/methods/march.h"
+
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kRest = 1e-12;           // m/s, a held contact this slow does not close
-constexpr double kPaperStep = 0.004;      // s, the step that the threshold of Sec. II-B belongs to
 constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
-constexpr int kMaxPieces = 1000;
-constexpr int kMaxHits = 12;              // in one substep, then contacts are held
+constexpr double kMaxTurn = 0.05;         // rad that a held beam may turn in a substep
+constexpr int kMaxHalvings = 10;          // for the fastest beam
+constexpr int kContactHalvings = 4;       // for a held contact that turns fast or changes its kind
+constexpr int kMaxHits = 50;              // in one substep, then hits end in constraints
 
-int pieces_needed(const GateParams& p) {
+/// How often `phase` must be halved, up to `limit` times, not to exceed `most`.
+int halvings_for(double phase, double most, int limit) {
+  int n = 0;
+  for (; phase > most && n < limit; phase *= 0.5) ++n;
+  return n;
+}
+
+std::vector<GateFlow> halved_flows(const GateLaw& law, double step, int halvings) {
+  std::vector<GateFlow> flows;
+  for (int n = 0; n <= halvings + 1; ++n) flows.push_back(law.over(std::ldexp(step, -n)));
+  return flows;
+}
+
+void refuse_too_fast(const GateParams& p) {
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
   const double inertia = p.beams.inertia();
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
-  const double pieces = std::ceil(p.run.step * rate / kMaxPhase);
-  if (!(pieces <= kMaxPieces)) {
-    std::ostringstream text;
-    text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
-         << "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
-         << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate
-         << " 1/s; method stable permits at most " << kMaxPieces * kMaxPhase / rate << " s";
-    throw InvalidParameter("run.step_s", text.str());
-  }
-  return std::max(1, static_cast<int>(pieces));
+  const double longest = std::ldexp(kMaxPhase, kMaxHalvings) / rate;  // s
+  if (p.run.step <= longest) return;
+  std::ostringstream text;
+  text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
+       << "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
+       << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate
+       << " 1/s; method stable permits at most " << longest << " s";
+  throw InvalidParameter("run.step_s", text.str());
 }
-
-/// Contact points of the wanted beams; an unwanted one has no direction and no lever.
-std::array<Touch, 2> touches(const GateParams& p, const GateState& s, std::array<bool, 2> wanted) {
-  std::array<Touch, 2> t{};
-  for (const Side side : {kLeft, kRight})
-    if (wanted[side]) t[side] = nearest(p, side, s.body, s.beams[side].theta);
-  return t;
-}
-
-/// Cubic Hermite interpolation of positions between two states dt apart, at t.
-GateState between(const GateState& a, const GateState& b, double dt, double t) {
-  const double z = t / dt, z2 = z * z, z3 = z2 * z;
-  const double wb = 3 * z2 - 2 * z3, da = dt * (z - 2 * z2 + z3), db = dt * (z3 - z2);
-  const auto mix = [&](double xa, double va, double xb, double vb) {
-    return xa + wb * (xb - xa) + da * va + db * vb;
-  };
-  GateState s;
-  s.body.x = mix(a.body.x, a.body.vx, b.body.x, b.body.vx);
-  s.body.y = mix(a.body.y, a.body.vy, b.body.y, b.body.vy);
-  for (const Side side : {kLeft, kRight})
-    s.beams[side].theta = mix(a.beams[side].theta, a.beams[side].omega, b.beams[side].theta,
-                              b.beams[side].omega);
-  return s;
-}
-
-/// Contact forces as accelerations of body and beams.
-struct Push {
-  double ax = 0.0, ay = 0.0;
-  std::array<double, 2> beta{0.0, 0.0};
-  Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force)
-      : ax((force[kLeft] * t[kLeft].nx + force[kRight] * t[kRight].nx) / p.body.mass),
-        ay((force[kLeft] * t[kLeft].ny + force[kRight] * t[kRight].ny) / p.body.mass),
-        beta{-t[kLeft].lever * force[kLeft] / p.beams.inertia(),
-             -t[kRight].lever * force[kRight] / p.beams.inertia()} {}
-};
 
 /// When `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which keeps a
 /// bracket and is superlinear on smooth functions. Stops at |gap| <= tolerance.
@@ -93,135 +71,179 @@ double crossing(double dt, double start, double end, bool from_zero, double tole
   return b;
 }
 
-void fly(const GateParams& p, const GateFlow& flow, double force_x, const Push* push, GateState& s) {
-  double ax = force_x / p.body.mass, ay = p.forces.propulsion / p.body.mass;
-  if (push != nullptr) {
-    ax += push->ax;
-    ay += push->ay;
-  }
-  flow.body.apply(s.body, ax, ay);
-  flow.left.apply(s.beams[kLeft], push != nullptr ? push->beta[kLeft] : 0.0);
-  flow.right.apply(s.beams[kRight], push != nullptr ? push->beta[kRight] : 0.0);
-}
-
 }  // namespace
 
 StableMethod::StableMethod(const GateParams& p)
     : p_(p),
       threshold_(p.contact.impulse_threshold * p.run.step / kPaperStep),
       touching_(1e-10 * p.body.radius),
-      pieces_(pieces_needed(p)),
-      flow_(p, p.run.step / pieces_),
-      half_flow_(p, 0.5 * p.run.step / pieces_) {}
+      finest_(kContactHalvings),
+      law_(p) {
+  refuse_too_fast(p);
+  const double inertia = p.beams.inertia();
+  for (const Side side : {kLeft, kRight}) {
+    // The explicit contact force must follow both of a held beam's rates.
+    swing_[side] = (side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right) / inertia;
+    const double rate = std::max(std::sqrt(swing_[side]), p.beams.damping / inertia);
+    halvings_[side] = halvings_for(p.run.step * rate, kMaxPhase, kMaxHalvings);
+    finest_ = std::max(finest_, halvings_[side]);
+  }
+  flows_ = halved_flows(law_, p.run.step, finest_);
+}
 
 double StableMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                              Watch& watch) const {
-  const auto steps = std::max<long>(1, std::lround(duration / p_.run.step));
-  for (long i = 1; i <= steps; ++i) {
-    for (int piece = 0; piece < pieces_; ++piece) substep(s, force_x, watch);
+  const Spell spell(p_, duration);
+  std::vector<GateFlow> own;
+  if (!spell.usual) own = halved_flows(law_, spell.step, finest_);
+  const std::vector<GateFlow>& flows = spell.usual ? flows_ : own;
+  for (long i = 0; i < spell.steps; ++i) {
+    // Substeps are halves, quarters ... of the step, each begun at a multiple of its own length.
+    double passed = 0.0, longest = 0.0;
+    const int units = 1 << finest_;
+    for (int unit = 0; unit < units && !outside(p_, s.body);) {
+      int n = halvings(s);
+      while (unit % (units >> n) != 0) ++n;
+      double time = 0.0;
+      while ((time = substep(s, force_x, flows[n], flows[n + 1], n == finest_, watch)) == 0.0) ++n;
+      passed += time;
+      longest = std::max(longest, flows[n].dt);
+      unit += units >> n;
+    }
     ledger.step(s, force_x, watch);
-    watch.state(p_, s, flow_.dt);
-    if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body))
-      return static_cast<double>(i) * p_.run.step;
+    watch.motion(p_, s, longest);
+    if (outside(p_, s.body) || !std::isfinite(s.body.vx + s.body.vy))
+      return static_cast<double>(i) * spell.step + passed;
   }
-  return static_cast<double>(steps) * p_.run.step;
+  return duration;
 }
 
-void StableMethod::glide(GateState& s, double force_x, const GateFlow& flow) const {
+int StableMethod::halvings(const GateState& s) const {
+  int most = 0;
+  double turning = 0.0;  // rad/s
+  for (const Side side : {kLeft, kRight}) {
+    const BeamState& beam = s.beams[side];
+    if (beam.held) turning = std::max(turning, std::abs(beam.omega));
+    if (halvings_[side] <= most) continue;
+    if (!beam.held) {
+      // Alone it moves in closed form; but it could hit and be gone again unseen, or be held.
+      const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
+      const double turn =
+          std::sqrt(beam.omega * beam.omega + swing_[side] * beam.theta * beam.theta);
+      const double approach = (speed + p_.beams.length * turn) * p_.run.step;
+      if (out_of_reach(p_, side, s.body, beam.theta, approach)) continue;
+    }
+    most = halvings_[side];
+  }
+  // A light beam that a heavy disc holds near the joint may turn faster than any piece follows.
+  return std::max(most, halvings_for(p_.run.step * turning, kMaxTurn, finest_));
+}
+
+StableMethod::Glide StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
+                                        const GateFlow& half_flow) const {
   if (s.beams[kLeft].held || s.beams[kRight].held)
-    glide_held(s, force_x, flow);
-  else
-    fly(p_, flow, force_x, nullptr, s);
+    return glide_held(s, force_x, flow, half_flow);
+  fly(p_, flow, force_x, {}, s);
+  return {};
 }
 
-void StableMethod::glide(GateState& s, double force_x, double dt) const {
-  glide(s, force_x, GateFlow(p_, dt));
+StableMethod::Glide StableMethod::glide(GateState& s, double force_x, double dt) const {
+  if (s.beams[kLeft].held || s.beams[kRight].held)
+    return glide_held(s, force_x, law_.over(dt), law_.over(0.5 * dt));
+  fly(p_, law_, dt, force_x, s);
+  return {};
 }
 
-void StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow) const {
-  const std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
+StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
+                                             const GateFlow& half_flow) const {
+  const auto held = held_of(s);
   // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
   const auto start = touches(p_, s, held);
   const Push first(p_, start, contact_forces(p_, s, start, force_x, held, push_only));
   GateState mid = s;
-  if (flow.dt == flow_.dt)
-    fly(p_, half_flow_, force_x, &first, mid);
-  else
-    fly(p_, GateFlow(p_, 0.5 * flow.dt), force_x, &first, mid);
-  const auto middle = touches(p_, mid, held);
+  fly(p_, half_flow, force_x, first, mid);
+  const auto middle = touches(p_, mid, held, start);
   const auto force = contact_forces(p_, mid, middle, force_x, held, push_only);
   const Push second(p_, middle, force);
-  fly(p_, flow, force_x, &second, s);
+  fly(p_, flow, force_x, second, s);
 
   // Only push: without force at mid-step the contact is over, unless the bodies still overlap.
   std::array<bool, 2> keep = held;
-  const auto end = touches(p_, s, held);
+  const auto end = touches(p_, s, held, middle);
+  bool handover = false;
   for (const Side side : {kLeft, kRight}) {
     if (held[side] && force[side] == 0.0 && end[side].gap >= 0.0) {
       keep[side] = false;
       s.beams[side].held = false;
     }
+    const ContactKind kind = start[side].kind;
+    handover |= held[side] && (middle[side].kind != kind || end[side].kind != kind);
   }
-  restore(s, keep, end);
+  return {put_back(p_, s, keep, end), handover};
 }
 
-void StableMethod::restore(GateState& s, std::array<bool, 2> contacts,
-                           std::array<Touch, 2> touch) const {
-  if (!contacts[kLeft] && !contacts[kRight]) return;
-  for (int iteration = 0; iteration < 12; ++iteration) {
-    const std::array<double, 2> gap{contacts[kLeft] ? touch[kLeft].gap : 0.0,
-                                    contacts[kRight] ? touch[kRight].gap : 0.0};
-    if (std::fmax(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p_.body.radius) break;
-    // Shift along the mass metric: the same 2 x 2 system as for impulses, with gaps for rates.
-    const auto shift = push_or_pull(coupling(p_, touch), gap, contacts);
-    s.body.x += (shift[kLeft] * touch[kLeft].nx + shift[kRight] * touch[kRight].nx) / p_.body.mass;
-    s.body.y += (shift[kLeft] * touch[kLeft].ny + shift[kRight] * touch[kRight].ny) / p_.body.mass;
-    for (const Side side : {kLeft, kRight})
-      s.beams[side].theta -= shift[side] * touch[side].lever / p_.beams.inertia();
-    touch = touches(p_, s, contacts);
-  }
-  const std::array<double, 2> rate{gap_rate(touch[kLeft], s.body, s.beams[kLeft]),
-                                   gap_rate(touch[kRight], s.body, s.beams[kRight])};
-  apply_impulses(p_, touch, push_or_pull(coupling(p_, touch), rate, contacts), s);
-}
-
-void StableMethod::substep(GateState& s, double force_x, Watch& watch) const {
-  double left = flow_.dt;
+double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
+                             const GateFlow& half_flow, bool finest, Watch& watch) const {
+  double left = flow.dt;
   for (int hits = 0;; ++hits) {
     GateState end = s;
-    if (hits == 0)
-      glide(end, force_x, flow_);
-    else
-      glide(end, force_x, left);
+    const Glide glided =
+        hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
 
     std::array<bool, 2> hit{false, false};
+    double overlap = 0.0;  // m
     for (const Side side : {kLeft, kRight}) {
       const BeamState& beam = end.beams[side];
-      if (beam.held || out_of_reach(p_, side, end.body, beam.theta)) continue;
-      hit[side] = nearest(p_, side, end.body, beam.theta).gap < -touching_;
+      if (!beam.held && out_of_reach(p_, side, end.body, beam.theta)) continue;
+      const double gap =
+          beam.held ? glided.shut[side].gap : nearest(p_, side, end.body, beam.theta).gap;
+      hit[side] = !beam.held && gap < -touching_;
+      overlap = std::max(overlap, -gap);
     }
+    watch.evaluations += 2 + 3 * s.beams[kLeft].held + 3 * s.beams[kRight].held;
+    // The contact force jumps where a contact changes its kind: only a short piece may cross that.
+    if (hits == 0 && glided.handover && !finest) return 0.0;
+    const double start = flow.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {
+      const GateState before = s;
       s = end;
-      return;
+      watch.max_penetration = std::max(watch.max_penetration, overlap);
+      return outside(p_, s.body) ? start + leave(before, s, left) : flow.dt;
     }
-    if (hits == kMaxHits) {
-      // Hits pile up faster than the step resolves them: finish the substep held together.
-      ++watch.forced_holds;
+    // Hits pile up faster than the step resolves them: from here on each one ends in a constraint.
+    watch.forced_holds += hits == kMaxHits;
+    if (hits == 2 * kMaxHits) {  // not even that helps: finish the substep held together
       s = end;
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
-      const std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
-      restore(s, held, touches(p_, s, held));
-      return;
+      put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
+      watch.penetration(p_, s);
+      return flow.dt;
     }
-    const double when = first_hit(s, force_x, end, left, hit);
-    resolve(s, watch);
+    const GateState before = s;
+    const double when = first_hit(s, force_x, end, left, hit, watch);
+    if (outside(p_, s.body)) return start + leave(before, s, when);
+    resolve_hits(p_, s, touching_, watch,
+                 [&](Side, double impulse, double) {
+                   return impulse < threshold_ || hits >= kMaxHits;
+                 });
     left -= when;
-    if (left <= 1e-15 * flow_.dt) return;
+    if (left <= 1e-15 * flow.dt) return flow.dt;
   }
+}
+
+double StableMethod::leave(const GateState& before, GateState& s, double dt) const {
+  const double when = back_to_exit(p_, before, s, dt);
+  // A free beam may swing many times in a step: no cubic follows that, its closed form does.
+  for (const Side side : {kLeft, kRight}) {
+    if (before.beams[side].held) continue;
+    s.beams[side] = before.beams[side];
+    law_.beams[side].over(when).apply(s.beams[side], 0.0);
+  }
+  return when;
 }
 
 double StableMethod::first_hit(GateState& s, double force_x, const GateState& end, double dt,
-                               std::array<bool, 2> hit) const {
+                               std::array<bool, 2> hit, Watch& watch) const {
   double earliest = dt;
   GateState at_hit = end;
   for (const Side side : {kLeft, kRight}) {
@@ -233,9 +255,12 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
     const bool from_contact = now.gap <= touching_;
     if (from_contact && rate <= 0.0) return 0.0;
     const double level = from_contact ? now.gap : 0.0;
-    const auto gap_of = [&](const GateState& g) {
-      return nearest(p_, side, g.body, g.beams[side].theta).gap - level;
+    ++watch.evaluations;
+    const auto touch_of = [&](const GateState& g) {
+      ++watch.evaluations;
+      return nearest(p_, side, g.body, now.beam.turned_to(g.beams[side].theta));
     };
+    const auto gap_of = [&](const GateState& g) { return touch_of(g).gap - level; };
     const auto moved = [&](double t) {
       GateState g = s;
       glide(g, force_x, t);
@@ -246,10 +271,10 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
     // A first guess from the interpolated motion, which is cheap, and one Newton step on the motion
     // itself. If that does not land on the contact, a safe search on the motion itself does.
     double when = crossing(dt, start, gap_of(end), from_contact, 10 * touching_, [&](double t) {
-      return gap_of(between(s, end, dt, t));
+      return gap_of(interpolated(s, end, dt, t));
     });
     GateState there = moved(when);
-    const Touch t = nearest(p_, side, there.body, there.beams[side].theta);
+    const Touch t = touch_of(there);
     when -= (t.gap - level) / gap_rate(t, there.body, there.beams[side]);
     if (when > 0.0 && when <= dt) there = moved(when);
     if (!(when > 0.0 && when <= dt) || std::abs(gap_of(there)) > 0.1 * touching_) {
@@ -264,50 +289,6 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
   }
   s = at_hit;
   return earliest;
-}
-
-void StableMethod::resolve(GateState& s, Watch& watch) const {
-  const auto touch = touches(p_, s, {true, true});
-  const Coupling w = coupling(p_, touch);
-  constexpr int kRounds = 20;
-  for (int round = 0; round < kRounds; ++round) {
-    std::array<double, 2> u{}, b{};
-    std::array<bool, 2> active{};
-    for (const Side side : {kLeft, kRight}) {
-      const bool held = s.beams[side].held;
-      u[side] = gap_rate(touch[side], s.body, s.beams[side]);
-      // Only contacts that close take part. A contact that opens must not be pushed by the other's
-      // restitution, that could create energy; if it closes after this round, it takes the next.
-      active[side] = held || (touch[side].gap <= touching_ && u[side] <= 0.0);
-      const double e = touch[side].kind == ContactKind::tip ? p_.contact.tip_restitution
-                                                            : p_.contact.restitution;
-      const bool elastic = !held && round < kRounds - 1;
-      b[side] = elastic ? (1.0 + e) * u[side] : u[side];
-    }
-    const auto done = [&](Side side) {
-      return !active[side] || (s.beams[side].held && u[side] >= -kRest);
-    };
-    if (done(kLeft) && done(kRight)) return;
-
-    auto impulse = push_only(w, b, active);
-    // A hit below the threshold ends the bouncing: perfectly inelastic, then a constraint.
-    for (const Side side : {kLeft, kRight}) {
-      if (active[side] && !s.beams[side].held && impulse[side] < threshold_) {
-        s.beams[side].held = true;
-        b[side] = u[side];
-      }
-    }
-    impulse = push_only(w, b, active);
-    apply_impulses(p_, touch, impulse, s);
-    for (const Side side : {kLeft, kRight}) {
-      if (!active[side]) continue;
-      ++watch.impacts;
-      // A held beam that the other side's hit has thrown off is free again.
-      if (s.beams[side].held && impulse[side] == 0.0 &&
-          gap_rate(touch[side], s.body, s.beams[side]) > 0.0)
-        s.beams[side].held = false;
-    }
-  }
 }
 
 }  // namespace gatewalk::dynamics

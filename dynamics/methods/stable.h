@@ -8,43 +8,59 @@
 /// constraint, along the mass metric, so that it can neither drift nor add energy. Contact forces
 /// only push: a contact whose force would pull is released.
 ///
+/// A step is taken in pieces, halves of halves, where it is too long: for contact forces on stiff or
+/// damped beams, for a held beam that turns fast, for a held contact that moves from a beam's side
+/// to its joint or tip.
+///
 /// The impulse threshold shrinks with the step, epsilon * step / 0.004 s: with a fixed one the
 /// error of a trajectory stops falling.
 
-#include "dynamics/flow.h"
-#include "dynamics/methods/method.h"
+#include <vector>
+
+#include "dynamics/methods/hybrid.h"
 
 namespace gatewalk::dynamics {
 
 class StableMethod final : public Method {
  public:
-  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be cut
-  /// into more than 1000 pieces.
+  /// Throws InvalidParameter when the beams are so stiff or damped that a step would have to be
+  /// halved more than 10 times.
   explicit StableMethod(const GateParams& p);
 
   double advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                  Watch& watch) const override;
 
  private:
-  void substep(GateState& s, double force_x, Watch& watch) const;
+  /// How often a step must be halved for the beams that matter in `s`.
+  [[nodiscard]] int halvings(const GateState& s) const;
+  /// Returns the time passed: flow.dt, or less when the body has left the gate; 0, and `s` as it
+  /// was, when a piece that is not the `finest` is to be halved.
+  double substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
+                 bool finest, Watch& watch) const;
+  struct Glide {
+    std::array<Touch, 2> shut;  // where the held contacts are at the end
+    bool handover = false;      // one of them changed its kind on the way
+  };
   /// Motion without new hits: closed-form flight, or mid-step contact forces on held beams.
-  void glide(GateState& s, double force_x, const GateFlow& flow) const;
-  void glide(GateState& s, double force_x, double dt) const;
-  void glide_held(GateState& s, double force_x, const GateFlow& flow) const;
-  /// Puts these contacts back to gap = 0 and u = 0; `touch` is where they are in `s`.
-  void restore(GateState& s, std::array<bool, 2> contacts, std::array<Touch, 2> touch) const;
+  Glide glide(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow) const;
+  Glide glide(GateState& s, double force_x, double dt) const;
+  Glide glide_held(GateState& s, double force_x, const GateFlow& flow,
+                   const GateFlow& half_flow) const;
+  /// Takes `s`, outside though `before`, dt earlier and without hits since, was not, back to the
+  /// moment of leaving; returns how long after `before` that is.
+  double leave(const GateState& before, GateState& s, double dt) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
   [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
-                                 double dt, std::array<bool, 2> hit) const;
-  /// Impact law at every contact that closes, both beams together, until none does.
-  void resolve(GateState& s, Watch& watch) const;
+                                 double dt, std::array<bool, 2> hit, Watch& watch) const;
 
   const GateParams& p_;
   double threshold_;      // N s
   double touching_;       // m, gaps up to this count as contact at a moment of impact
-  int pieces_;            // substeps per step, 1 unless the beams are very stiff
-  GateFlow flow_;         // one substep
-  GateFlow half_flow_;
+  std::array<double, 2> swing_{};  // 1/s^2, k/I
+  std::array<int, 2> halvings_{};  // of a step that each beam needs, 0 unless it is very stiff
+  int finest_;                     // halvings that any piece may need
+  GateLaw law_;
+  std::vector<GateFlow> flows_;  // over the step, halved 0 .. finest + 1 times
 };
 
 }  // namespace gatewalk::dynamics

@@ -7,6 +7,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 gatewalk=${1:-$root/build/gatewalk}
+. "$root/results/manifest.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -37,8 +38,4 @@ for scene in single_gate field; do
   done
 done
 
-{
-  echo "command: results/table4/run.sh"
-  echo "program: $("$gatewalk" --version)"
-  echo "machine: $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores, $(. /etc/os-release && echo "$PRETTY_NAME")"
-} >"$here/manifest.txt"
+manifest "results/table4/run.sh" >"$here/manifest.txt"

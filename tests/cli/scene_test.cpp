@@ -79,14 +79,17 @@ impulse_threshold_Ns = 0.04
 
 [run]
 method = "stable"
-step_s = 0.004
+step_s = 0.02
 time_limit_s = 12.0
 traverse_y_m = 60.0
+event_tolerance_m = 0.01
+tolerance = 0.005
 
 [field]
 columns = 9
 rows = 9
 max_gates = 13
+fidelity = "active"
 
 [start]
 x_m = 0.0
@@ -94,6 +97,22 @@ y_m = 0.0
 vx_m_per_s = 0.0
 vy_m_per_s = 15.0
 )";
+
+TEST(Scene, TheStepSuitsTheMethodUnlessItIsNamed) {
+  const auto step = [](const char* text, std::vector<std::string> overrides = {}) {
+    return parse_scene(text, "x.toml", overrides).gate.run.step;
+  };
+  EXPECT_EQ(step(""), 0.02);
+  EXPECT_EQ(step("run.method = 'paper'"), 0.004);
+  EXPECT_EQ(step("", {"run.method=moreau"}), 0.004);
+  EXPECT_EQ(step("run.step_s = 0.01", {"run.method=paper"}), 0.01);
+  EXPECT_EQ(step("", {"run.method=paper", "run.step_s=0.02"}), 0.02);
+  // Fitted into the hold.
+  EXPECT_EQ(step("forces.random_rate_Hz = 30"), 1.0 / 60);
+  EXPECT_EQ(step("forces.random_rate_Hz = 5"), 0.02);
+  EXPECT_EQ(step("forces.random_rate_Hz = 1000"), 0.001);
+  EXPECT_EQ(step("forces.random_rate_Hz = 30", {"run.method=paper"}), 1.0 / 270);
+}
 
 TEST(Scene, EmptyFileIsTheDefaultScene) {
   EXPECT_EQ(to_toml(parse_scene("", "empty.toml")), kDefaultScene);
@@ -128,10 +147,13 @@ method = "paper"
 step_s = 0.01
 time_limit_s = 19
 traverse_y_m = 18
+event_tolerance_m = 0.027
+tolerance = 0.028
 [field]
 columns = 21
 rows = 22
 max_gates = 23
+fidelity = "active"
 [start]
 x_m = 1.5
 y_m = -24
@@ -159,6 +181,8 @@ vy_m_per_s = 26
   EXPECT_EQ(scene.gate.run.step, 0.01);
   EXPECT_EQ(scene.gate.run.time_limit, 19);
   EXPECT_EQ(scene.gate.run.traverse_y, 18);
+  EXPECT_EQ(scene.gate.run.event_tolerance, 0.027);
+  EXPECT_EQ(scene.gate.run.tolerance, 0.028);
   EXPECT_EQ(scene.field.columns, 21);
   EXPECT_EQ(scene.field.rows, 22);
   EXPECT_EQ(scene.field.max_gates, 23);
@@ -166,6 +190,19 @@ vy_m_per_s = 26
   EXPECT_EQ(scene.start.y, -24);
   EXPECT_EQ(scene.start.vx, -25);
   EXPECT_EQ(scene.start.vy, 26);
+}
+
+TEST(Scene, FidelityIsOneOfThree) {
+  for (std::size_t i = 0; i < lattice::kFidelityNames.size(); ++i) {
+    const std::string name(lattice::kFidelityNames[i]);
+    const std::string text = "[run]\nmethod = \"moreau\"\n[field]\nfidelity = \"" + name + "\"\n";
+    const Scene scene = parse_scene(text, "a.toml");
+    EXPECT_EQ(static_cast<std::size_t>(scene.field.fidelity), i);
+    EXPECT_TRUE(contains(to_toml(scene), "fidelity = \"" + name + "\"\n"));
+    EXPECT_EQ(parse_scene(to_toml(scene), "b.toml").field.fidelity, scene.field.fidelity);
+    EXPECT_EQ(parse_scene("", "c.toml", {"run.method=moreau", "field.fidelity=" + name}).field.fidelity,
+              scene.field.fidelity);
+  }
 }
 
 TEST(Scene, ShippedFieldIsTheDefaultSceneWithItsOwnForces) {
@@ -293,6 +330,13 @@ const Malformed kMalformed[] = {
      "a whole number in [1, 2001]"},
     {"StringForInteger", "[field]\nrows = \"9\"\n", 2, "field.rows = \"9\"", "a whole number in"},
     {"NumberForText", "[run]\nmethod = 3\n", 2, "run.method = 3", "must be text"},
+    {"NumberForFidelity", "[field]\nfidelity = 2\n", 2, "field.fidelity = 2",
+     "must be one of \"active\", \"remember\", \"all\""},
+    {"UnknownFidelity", "[field]\nfidelity = \"most\"\n", 2, "field.fidelity = \"most\"",
+     "must be one of \"active\", \"remember\", \"all\""},
+    {"FidelityWithoutItsMethod", "[run]\nmethod = \"stable\"\n[field]\nfidelity = \"all\"\n", 4,
+     "field.fidelity = \"all\" is not permitted with run.method = \"stable\"",
+     "run.method must be \"moreau\""},
     {"NumberForTable", "\nforces = 3\n", 2, "forces = 3", "must be a table, written [forces]"},
     {"ListOfTables", "[[forces]]\nrandom_N = 3\n", 1, "forces (an array)", "must be a table"},
 
@@ -339,8 +383,8 @@ const Malformed kMalformed[] = {
     {"Method", "[run]\nmethod = \"euler\"\n", 2, "run.method = \"euler\"", "\"paper\", \"stable\""},
     {"StepDoesNotFit", "[run]\n\nstep_s = 0.003\n", 3, "run.step_s = 0.003 ",
      "0.00333333333 and 0.00285714286"},
-    {"RateDoesNotFit", "[forces]\nrandom_rate_Hz = 30\n", 2, "run.step_s = 0.004 ",
-     "forces.random_rate_Hz = 30"},
+    {"RateDoesNotFit", "[run]\nstep_s = 0.02\n[forces]\nrandom_rate_Hz = 30\n", 2,
+     "run.step_s = 0.02 ", "forces.random_rate_Hz = 30"},
     {"TooManySteps", "[run]\nstep_s = 1e-10\n", 2, "run.time_limit_s = 12 ", "run.step_s = 1e-10"},
     {"BigBody", "[body]\nradius_m = 30\n", 2, "body.radius_m = 30 ", "beams.joint_y_m = 30"},
     {"LowJoint", "[beams]\njoint_y_m = 9\n", 2, "body.radius_m = 10 ", "beams.joint_y_m = 9"},

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "tests/support/long.h"
+#include "tests/support/measured.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
@@ -15,7 +17,9 @@ namespace {
 using test::Draw;
 using test::kEps;
 using test::kPi;
+using test::measured;
 using test::same_bits;
+using test::usual_or_full;
 
 struct Point {
   double x = 0.0, y = 0.0;
@@ -337,7 +341,12 @@ RandomHit random_hit(Draw& draw) {
 // for one behind (lever -r).
 TEST(Impact, SolvesEqs4And5) {
   Draw draw(6);
-  for (int i = 0; i < 300'000; ++i) {
+  double impulse = 0.0, velocity = 0.0, spin = 0.0, restitution = 0.0;  // worst, relative
+  const int hits = usual_or_full(300'000, 1'000'000);
+  const auto most = [](double& worst, double error, double scale) {
+    worst = std::max(worst, std::abs(error) / scale);
+  };
+  for (int i = 0; i < hits; ++i) {
     const RandomHit h = random_hit(draw);
     const GateParams p = with(h.mass, h.inertia);
     double j = 0.0;
@@ -360,28 +369,39 @@ TEST(Impact, SolvesEqs4And5) {
     const double mu = static_cast<double>(M * I / (I + M * r * r));
     // J from Eq. (7)'s or (8)'s difference, of the lighter of the two: it cancels least.
     const long double J = M * r * r < I ? sign * M * (v_nf - v_ni) : -sign * I * (w_f - w_i) / r;
-    ASSERT_NEAR(j, static_cast<double>(J), 16 * kEps * 2 * mu * u_scale);
+    most(impulse, j - static_cast<double>(J), 2 * mu * u_scale);
     const double vx = static_cast<double>(h.s.body.vx + (v_nf - v_ni) * nx);
     const double vy = static_cast<double>(h.s.body.vy + (v_nf - v_ni) * ny);
     const double v_scale = speed + 2 * mu * u_scale / h.mass;
-    ASSERT_NEAR(after.body.vx, vx, 16 * kEps * v_scale);
-    ASSERT_NEAR(after.body.vy, vy, 16 * kEps * v_scale);
+    most(velocity, after.body.vx - vx, v_scale);
+    most(velocity, after.body.vy - vy, v_scale);
     const double w_scale = std::abs(h.s.beams[kLeft].omega) +
                            2 * mu * u_scale * std::abs(h.t.lever) / p.beams.inertia();
-    ASSERT_NEAR(after.beams[kLeft].omega, static_cast<double>(w_f), 16 * kEps * w_scale);
+    most(spin, after.beams[kLeft].omega - static_cast<double>(w_f), w_scale);
 
     // Newton's restitution: u' = -e u.
     const double u = gap_rate(h.t, h.s.body, h.s.beams[kLeft]);
     const double u_after = gap_rate(h.t, after.body, after.beams[kLeft]);
-    ASSERT_NEAR(u_after, -h.e * u, 32 * kEps * u_scale);
+    most(restitution, u_after + h.e * u, u_scale);
   }
+  EXPECT_LE(impulse, 16 * kEps);
+  EXPECT_LE(velocity, 16 * kEps);
+  EXPECT_LE(spin, 16 * kEps);
+  EXPECT_LE(restitution, 32 * kEps);
+  for (const auto& [what, error] :
+       {std::pair("side hits, J", impulse), std::pair("side hits, v'", velocity),
+        std::pair("side hits, w'", spin), std::pair("side hits, restitution", restitution)})
+    measured({.requirement = 3, .method = "contact", .what = what, .figure = error, .limit = 1e-12,
+              .cases = hits, .asked = 1'000'000});
 }
 
 // Eqs. (6)-(9), e = 1: with dP = J n and I dw = -l J the energy of Eq. (6) is a parabola in J that
 // is zero for no impulse; two of its values, in long double, give the other zero.
 TEST(Impact, TipHitIsTheOtherZeroOfTheEnergyChange) {
   Draw draw(7);
-  for (int i = 0; i < 100'000; ++i) {
+  double worst = 0.0;
+  const int hits = usual_or_full(100'000, 1'000'000);
+  for (int i = 0; i < hits; ++i) {
     const RandomHit h = random_hit(draw);
     const GateParams p = with(h.mass, h.inertia);
     double j = 0.0;
@@ -399,15 +419,20 @@ TEST(Impact, TipHitIsTheOtherZeroOfTheEnergyChange) {
     const L up = energy_change(unit), down = energy_change(-unit);
     const L other = -(up - down) / (up + down) * unit;
     // n is a unit vector to eps only, which (up + down) sees and J's formula does not.
-    ASSERT_NEAR(j, static_cast<double>(other), 16 * kEps * 2 * static_cast<double>(unit));
+    worst = std::max(worst, std::abs(j - static_cast<double>(other)) /
+                                (2 * static_cast<double>(unit)));
   }
+  EXPECT_LE(worst, 16 * kEps);
+  measured({.requirement = 3, .method = "contact", .what = "tip hits, J", .figure = worst,
+            .limit = 1e-12, .cases = hits, .asked = 1'000'000});
 }
 
 // Law: the angular momentum about the joint, which is where the only other force acts.
 TEST(Impact, ConservesAngularMomentum) {
   Draw draw(8);
   double worst = 0.0;
-  for (int i = 0; i < 300'000; ++i) {
+  const int hits = usual_or_full(300'000, 1'000'000);
+  for (int i = 0; i < hits; ++i) {
     GateParams p = with(draw.log_uniform(1e-6, 1e6), draw.log_uniform(1e-6, 1e6));
     p.body.radius = 10.0;
     const Side side = draw.coin() ? kLeft : kRight;
@@ -438,6 +463,8 @@ TEST(Impact, ConservesAngularMomentum) {
   }
   // A few roundings of a handful of terms.
   EXPECT_LE(worst, 16 * kEps);
+  measured({.requirement = 3, .method = "contact", .what = "angular momentum about the joint",
+            .figure = worst, .limit = 1e-13, .cases = hits, .asked = 1'000'000});
 }
 
 // Law: dE = -(1 - e^2)/2 mu u^2; none for e = 1, and for e = 0 all of the relative motion.
@@ -714,6 +741,56 @@ TEST(ContactForces, PushOnlyNeverPulls) {
   const std::array<Touch, 2> t{nearest(p, kLeft, s.body, 0.0), Touch{}};
   EXPECT_LT(contact_forces(p, s, t, 0.0, {true, false}, push_or_pull)[kLeft], -1.0);
   EXPECT_EQ(contact_forces(p, s, t, 0.0, {true, false}, push_only)[kLeft], 0.0);
+}
+
+// ---- Direction ----
+
+// Series below 1/16 rad, cos and sin beyond. Each rounds a handful of times, numbers up to 1.
+TEST(Direction, TurnedToIsTheDirectionItself) {
+  const auto expect = [](double from, double to) {
+    const Direction d = Direction::of(from).turned_to(to);
+    EXPECT_EQ(d.theta, to);
+    // The angle between the two is itself rounded, by half an eps of it.
+    EXPECT_NEAR(d.c, std::cos(to), 3 * kEps) << from << ' ' << to;
+    EXPECT_NEAR(d.s, std::sin(to), 3 * kEps) << from << ' ' << to;
+    EXPECT_NEAR(d.c * d.c + d.s * d.s, 1.0, 6 * kEps) << from << ' ' << to;
+  };
+  Draw draw(1);
+  for (int i = 0; i < 100'000; ++i) {
+    const double from = draw.uniform(-kPi, kPi);
+    expect(from, from + draw.sign() * draw.log_uniform(1e-17, 1.0));
+    expect(from, from + draw.uniform(-0.0625, 0.0625));
+    for (const double edge : {0.0625 * (1 - 1e-12), 0.0625, 0.0625 * (1 + 1e-12)})
+      expect(from, from + draw.sign() * edge);
+  }
+}
+
+TEST(Direction, TurnedByNothingIsTheSame) {
+  const Direction d = Direction::of(0.7), same = d.turned_to(0.7);
+  EXPECT_EQ(same.c, d.c);
+  EXPECT_EQ(same.s, d.s);
+}
+
+// A mirror image turns the other way with the same bits.
+TEST(Direction, TurnedToKeepsMirrorImages) {
+  Draw draw(2);
+  for (int i = 0; i < 1000; ++i) {
+    const double from = draw.uniform(-2, 2), to = from + draw.uniform(-0.1, 0.1);
+    const Direction a = Direction::of(from).turned_to(to), b = Direction::of(-from).turned_to(-to);
+    ASSERT_EQ(a.c, b.c);
+    ASSERT_EQ(a.s, -b.s);
+  }
+}
+
+TEST(Direction, TurnedToNowhereIsNowhere) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double to : {nan, infinity, -infinity}) {
+    EXPECT_TRUE(std::isnan(Direction::of(0.3).turned_to(to).c));
+    EXPECT_TRUE(std::isnan(Direction::of(0.3).turned_to(to).s));
+  }
+  // From nowhere it finds its way back: the angle itself is asked.
+  EXPECT_EQ(Direction::of(nan).turned_to(0.3).c, std::cos(0.3));
 }
 
 }  // namespace

@@ -5,8 +5,11 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
+#include "tests/support/long.h"
+#include "tests/support/measured.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
@@ -27,11 +30,15 @@ GateRun run(const GateParams& p, const BodyState& start, std::uint64_t trial = 0
 class Gate : public testing::TestWithParam<const char*> {
  protected:
   Gate() { p.run.method = GetParam(); }
+  [[nodiscard]] bool whole_steps() const { return p.run.method == "paper"; }
   GateParams p = test::free_rods();
 };
-INSTANTIATE_TEST_SUITE_P(Methods, Gate, testing::Values("stable", "paper"));
+INSTANTIATE_TEST_SUITE_P(Methods, Gate,
+                         testing::Values("stable", "paper", "moreau", "event", "penalty"),
+                         [](const auto& instance) { return std::string(instance.param); });
 
-// Straight lines without forces: the first step beyond a border ends the run.
+// Straight lines without forces. The run ends on the border, which rounding alone moves: of a place
+// up to 65 m in each of 125 steps. Method paper goes on to the end of the step that crosses it.
 TEST_P(Gate, EndsWhereTheBodyLeaves) {
   const double h = p.run.step;
   struct Case {
@@ -45,21 +52,29 @@ TEST_P(Gate, EndsWhereTheBodyLeaves) {
                         Case{{0, 5, 0, -10}, Ending::trapped, 12.0}}) {
     const GateRun r = run(p, c.start);
     EXPECT_EQ(r.ending, c.ending);
-    EXPECT_GE(r.seconds, c.seconds - 1e-9);
-    EXPECT_LE(r.seconds, c.seconds + h + 1e-9);
+    const double rounding = 125 * 65 * kEps;
+    EXPECT_GE(r.seconds, c.seconds - rounding);
+    EXPECT_LE(r.seconds, c.seconds + (whole_steps() ? h : 0.0) + rounding);
     EXPECT_NEAR(r.exit.x, c.start.x + c.start.vx * r.seconds, 1e-10);
     EXPECT_NEAR(r.exit.y, c.start.y + c.start.vy * r.seconds, 1e-10);
-    EXPECT_EQ(r.exit.vx, c.start.vx);
-    EXPECT_EQ(r.exit.vy, c.start.vy);
+    // The cubic between a step's ends has the slope 1.5 (b - a) / h and less, a and b rounded.
+    const double slope = whole_steps() ? 0.0 : 1.5 / h * 2 * 65 * kEps;
+    EXPECT_NEAR(r.exit.vx, c.start.vx, slope);
+    EXPECT_NEAR(r.exit.vy, c.start.vy, slope);
     EXPECT_EQ(r.watch.impacts, 0);
     EXPECT_EQ(outside(p, r.exit), c.ending != Ending::trapped);
   }
 }
 
-// Over the far end and a side in one step: it has traversed.
-TEST_P(Gate, TraversalComesBeforeASide) {
-  EXPECT_EQ(run(p, {24.99, 59.99, 10, 10}).ending, Ending::traversed);
-  EXPECT_EQ(run(p, {-24.99, 59.99, -10, 10}).ending, Ending::traversed);
+// Over the far end and a side in one step, half a step apart: what it crosses first is the ending.
+// Method paper sees the end of the step only and calls that traversed.
+TEST_P(Gate, TheFirstBorderIsTheEnding) {
+  for (const double side : {-1.0, 1.0}) {
+    const Ending beside = side < 0 ? Ending::exited_left : Ending::exited_right;
+    EXPECT_EQ(run(p, {side * 24.97, 59.99, side * 10, 10}).ending, Ending::traversed);
+    EXPECT_EQ(run(p, {side * 24.99, 59.97, side * 10, 10}).ending,
+              whole_steps() ? Ending::traversed : beside);
+  }
 }
 
 TEST_P(Gate, StartOutsideEndsAtOnce) {
@@ -83,10 +98,14 @@ TEST_P(Gate, TrappedMeansTheWholeTimeLimit) {
       p.run.step = step;
       const GateRun r = run(p, {0, 5, 0, 0});
       EXPECT_EQ(r.ending, Ending::trapped);
-      // Whole steps, the last one beyond the limit if need be.
-      EXPECT_EQ(static_cast<double>(r.watch.steps), std::ceil(limit / step - 1e-6))
+      // Method paper takes whole steps, the last one beyond the limit if need be; the others end at
+      // the limit, with shorter steps in the hold that it cuts. 600 spells of time are added up.
+      const double steps = std::ceil(limit / step - 1e-6);
+      EXPECT_NEAR(r.seconds, whole_steps() ? steps * step : limit, 600 * 12 * kEps)
           << limit << ' ' << step;
-      EXPECT_NEAR(r.seconds, static_cast<double>(r.watch.steps) * step, 1e-12);
+      if (p.run.method != "event") {  // it has no fixed step
+        EXPECT_EQ(static_cast<double>(r.watch.steps), steps) << limit << ' ' << step;
+      }
     }
   }
 }
@@ -111,30 +130,39 @@ TEST_P(Gate, LateralSpeedIsTheSumOfItsDrawsAtAnyStep) {
 }
 
 // ... and so its standard deviation after 2 s is 0.2 Rm (s m/s/N): 0.02 s Rm sqrt(100) / M. 80 000
-// trials know it to 0.25 %, four times that is the tolerance.
+// trials know it to 0.25 %, four times that is the tolerance. The full count is all five steps.
 TEST_P(Gate, LateralSpeedHasTheStandardDeviationOfHeldForce) {
   p.forces.random = 20.0;
   p.beams.joint_x = 1e5;
   p.run.time_limit = 2.0;
-  p.run.step = 0.02;
-  constexpr int kTrials = 80'000;
-  const auto method = make_method(p);
-  std::vector<double> vx(kTrials);
-  tbb::parallel_for(0, kTrials, [&](int i) {
-    RandomForce force = force_of(p, static_cast<std::uint64_t>(i));
-    vx[i] = run_gate(p, *method, {}, force).exit.vx;
-  });
-  double sum = 0.0, squares = 0.0;
-  for (const double v : vx) {
-    sum += v;
-    squares += v * v;
+  constexpr double kSteps[] = {0.02, 0.01, 0.004, 0.002, 0.001};
+  const int steps = test::usual_or_full(1, 5);
+  double worst = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    p.run.step = kSteps[k];
+    constexpr int kTrials = 80'000;
+    const auto method = make_method(p);
+    std::vector<double> vx(kTrials);
+    tbb::parallel_for(0, kTrials, [&](int i) {
+      RandomForce force = force_of(p, static_cast<std::uint64_t>(i));
+      vx[i] = run_gate(p, *method, {}, force).exit.vx;
+    });
+    double sum = 0.0, squares = 0.0;
+    for (const double v : vx) {
+      sum += v;
+      squares += v * v;
+    }
+    EXPECT_NEAR(sum / kTrials, 0.0, 4 * 4.0 / std::sqrt(kTrials));
+    worst = std::max(worst, std::abs(std::sqrt(squares / kTrials) / 4.0 - 1.0));
   }
-  EXPECT_NEAR(sum / kTrials, 0.0, 4 * 4.0 / std::sqrt(kTrials));
-  EXPECT_NEAR(std::sqrt(squares / kTrials), 4.0, 0.01 * 4.0);
+  EXPECT_LE(worst, 0.01);
+  test::measured({.requirement = 13, .method = GetParam(), .what = "sd of v_x after 2 s, relative",
+                  .figure = worst, .limit = 0.01, .cases = steps, .asked = 5});
 }
 
 // The force goes on where the last gate left it: two runs of 1 s are one of 2 s.
 TEST_P(Gate, RandomForceGoesOnAcrossRuns) {
+  p.run.step = 0.004;
   p.forces.random = 20.0;
   p.beams.joint_x = 1e5;
   p.run.time_limit = 2.0;
@@ -158,7 +186,10 @@ TEST_P(Gate, SameTrialSameBits) {
   EXPECT_TRUE(test::same_bits(a.exit.x, b.exit.x));
   EXPECT_TRUE(test::same_bits(a.exit.vy, b.exit.vy));
   EXPECT_EQ(a.watch.impacts, b.watch.impacts);
-  EXPECT_NE(a.exit.x, c.exit.x);
+  EXPECT_TRUE(test::same_bits(a.seconds, b.seconds));
+  // Another trial: exits may lie on the same border, but not come at the same time and speed.
+  EXPECT_NE(a.seconds, c.seconds);
+  EXPECT_NE(a.exit.vx, c.exit.vx);
 }
 
 /// A method that loses itself in the third call.

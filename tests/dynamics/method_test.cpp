@@ -4,7 +4,10 @@
 
 #include <typeinfo>
 
+#include "dynamics/methods/event.h"
+#include "dynamics/methods/moreau.h"
 #include "dynamics/methods/paper.h"
+#include "dynamics/methods/penalty.h"
 #include "dynamics/methods/stable.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
@@ -20,12 +23,29 @@ TEST(Method, IsMadeByItsName) {
   EXPECT_NE(dynamic_cast<const PaperMethod*>(make_method(p).get()), nullptr);
   p.run.method = "stable";
   EXPECT_NE(dynamic_cast<const StableMethod*>(make_method(p).get()), nullptr);
-  for (const std::string_view name : method_names()) {
-    p.run.method = name;
-    EXPECT_NE(make_method(p), nullptr) << name;
-  }
+  p.run.method = "moreau";
+  EXPECT_NE(dynamic_cast<const MoreauMethod*>(make_method(p).get()), nullptr);
+  p.run.method = "event";
+  EXPECT_NE(dynamic_cast<const EventMethod*>(make_method(p).get()), nullptr);
+  p.run.method = "penalty";
+  EXPECT_NE(dynamic_cast<const PenaltyMethod*>(make_method(p).get()), nullptr);
+  EXPECT_EQ(method_names().size(), 6u);  // these five and "auto"
   p.run.method = "euler";
   EXPECT_THROW((void)make_method(p), InvalidParameter);
+}
+
+// A scene may say "auto", but somebody has to choose before anything is run.
+TEST(Method, AutoIsAValidNameAndNoMethod) {
+  GateParams p;
+  p.run.method = "auto";
+  EXPECT_NO_THROW(validate(p));
+  try {
+    (void)make_method(p);
+    FAIL() << "auto was made";
+  } catch (const InvalidParameter& e) {
+    EXPECT_EQ(e.key(), "run.method");
+    EXPECT_NE(std::string(e.what()).find("choose_method"), std::string::npos) << e.what();
+  }
 }
 
 TEST(Method, IsNotMadeForAnInvalidScene) {

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "dynamics/ensemble.h"
 #include "dynamics/gate.h"
+#include "tests/support/measured.h"
 #include "tests/support/numbers.h"
 #include "tests/support/ride.h"
 #include "tests/support/scenes.h"
@@ -14,6 +16,7 @@ namespace gatewalk::dynamics {
 namespace {
 
 using test::kEps;
+using test::measured;
 using test::Ride;
 
 GateParams euler(GateParams p, double step = 0.004) {
@@ -41,7 +44,7 @@ TEST(Paper, FreeBeamHasEulersError) {
   const double w0 = std::sqrt(400.0 / p.beams.inertia()), wd = std::sqrt(w0 * w0 - 1.44);
   const double decay = 0.5 * std::exp(-2.4), c = std::cos(2 * wd), s = std::sin(2 * wd);
   const double theta = decay * (c + 1.2 / wd * s), omega = -decay * w0 * w0 / wd * s;
-  double last = 0.0;
+  double last = 0.0, off = 0.0;
   for (int halvings = 0; halvings <= 5; ++halvings) {
     Ride ride(euler(p, 0.004 / (1 << halvings)), let_go());
     ride.go(2.0);
@@ -49,11 +52,16 @@ TEST(Paper, FreeBeamHasEulersError) {
     const double error = std::hypot(beam.theta - theta, (beam.omega - omega) / w0);
     if (halvings == 0) {
       EXPECT_NEAR(error, 3.3e-3, 5e-5);  // the printed digits
+      measured({.requirement = 1, .method = "paper", .what = "free beam after 2 s, error",
+                .figure = error, .unit = "rad", .limit = 1e-8});
     } else {
       EXPECT_NEAR(std::log2(last / error), 1.0, 0.1) << halvings;
+      off = std::max(off, std::abs(std::log2(last / error) - 1.0));
     }
     last = error;
   }
+  measured({.requirement = 1, .method = "paper", .what = "order over 5 halvings, off the nominal",
+            .figure = off, .limit = 0.1});
 }
 
 // S2: without damping each step multiplies the energy by 1 + k h^2 / I; 3000 steps by 2.513.
@@ -65,6 +73,10 @@ TEST(Paper, FreeBeamGainsEnergyWithoutDamping) {
   ride.go(12.0);
   const double growth = energy(p, ride.s) / before;
   EXPECT_NEAR(growth, 2.513, 1e-3);
+  measured({.requirement = 2, .method = "paper", .what = "growth of that energy, off 2.513",
+            .figure = std::abs(growth - 2.513), .limit = 1e-3});
+  measured({.requirement = 2, .method = "paper", .what = "energy of an undamped beam after 12 s",
+            .figure = growth - 1.0, .limit = 1e-6});
   EXPECT_NEAR(growth, std::pow(1 + 400.0 / p.beams.inertia() * 0.004 * 0.004, 3000), 1e-11);
   EXPECT_NEAR(ride.watch.energy_created, (growth - 1) * before, 1e-9);  // and the ledger sees it
 }
@@ -82,6 +94,12 @@ TEST(Paper, FreeBeamIsUnstableBeyondEulersLimit) {
     const double growth = std::pow(1 - rate, 3000);
     // Where in its swing the beam is shows in the energy by zeta = d / (2 sqrt(k I)), some 6 %.
     EXPECT_NEAR(energy(p, ride.s) / before, growth, 0.12 * growth) << factor;
+    EXPECT_EQ(ride.watch.unstable_steps, factor > 1 ? 3000 : 0);
+    if (factor > 1)
+      measured({.requirement = 12, .method = "paper",
+                .what = "steps beyond the stability bound that are taken",
+                .figure = static_cast<double>(ride.watch.unstable_steps), .unit = "steps",
+                .limit = 0.0});
   }
 }
 
@@ -118,6 +136,8 @@ TEST(Paper, DoubleHitIsSequential) {
   EXPECT_NEAR(ride.s.beams[kLeft].omega, 97.2 / 59, 16 * kEps);
   EXPECT_NEAR(ride.s.beams[kRight].omega, 0.72 * second, 16 * kEps);
   EXPECT_NEAR(ride.s.body.vy, 750.0 / 59 - second, 64 * kEps);
+  test::measured_double_hit("paper", ride.s.body.vy, ride.s.beams[kLeft].omega,
+                            ride.s.beams[kRight].omega);
   EXPECT_NEAR(ride.s.beams[kLeft].omega, 1.647, 5e-4);
   EXPECT_NEAR(ride.s.beams[kRight].omega, 1.396, 5e-4);
 }

@@ -36,10 +36,10 @@ TEST(ParamTable, NamesEachFieldOnce) {
     EXPECT_TRUE(places.insert(&info.ref(params)).second) << info.key;
     EXPECT_FALSE(info.meaning.empty()) << info.key;
   }
-  // Every double of GateParams has a key: 2 + 7 + 4 + 3 + 3.
+  // Every double of GateParams has a key: 2 + 7 + 4 + 3 + 5.
   constexpr std::size_t kDoubles = (sizeof(GateParams) - sizeof(std::string)) / sizeof(double);
   EXPECT_EQ(keys.size(), kDoubles);
-  EXPECT_EQ(kDoubles, 19u);
+  EXPECT_EQ(kDoubles, 21u);
 }
 
 struct ExpectedRange {
@@ -66,9 +66,11 @@ constexpr ExpectedRange kContract[] = {
     {"contact.restitution", 0.8, "[0, 1]"},
     {"contact.tip_restitution", 1.0, "[0, 1]"},
     {"contact.impulse_threshold_Ns", 0.04, "[0, 1e+06]"},
-    {"run.step_s", 0.004, "(0, 1]"},
+    {"run.step_s", 0.02, "(0, 1]"},
     {"run.time_limit_s", 12.0, "(0, 1e+06]"},
     {"run.traverse_y_m", 60.0, "(0, 1e+06]"},
+    {"run.event_tolerance_m", 1e-2, "[1e-13, 1]"},
+    {"run.tolerance", 0.005, "[1e-04, 1]"},
 };
 
 TEST(ParamTable, HasTheContractsDefaultsAndRanges) {
@@ -146,6 +148,8 @@ TEST(Validate, EntranceAndExitLieClearOfTheBeams) {
 
 TEST(StepsPerHold, CountsStepsOfOneDraw) {
   GateParams params;
+  EXPECT_EQ(steps_per_hold(params), 1);
+  params.run.step = 0.004;  // the paper's
   EXPECT_EQ(steps_per_hold(params), 5);
   for (const int n : {1, 2, 3, 7, 20, 80, 1000, 12345678}) {
     params.run.step = 0.02 / n;

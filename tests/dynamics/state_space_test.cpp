@@ -108,6 +108,103 @@ TEST(StateSpace, RefusesAGateThatEndsInTheBeams) {
   EXPECT_EQ(StateSpace::paper(p).size(), 87);
 }
 
+// ---- Finer and coarser ----
+
+TEST(Refined, FactorOneIsTheSameSpaceBitForBit) {
+  GateParams odd;  // edges that are no equal division in floating point
+  odd.beams.joint_x = 31.7;
+  odd.body.radius = 7.3;
+  for (const GateParams& p : {GateParams{}, odd}) {
+    const StateSpace s = StateSpace::paper(p), same = refined(s, 1.0);
+    for (int b = 0; b < kBoundaries; ++b)
+      for (const auto axis : {&Bins::d, &Bins::vx, &Bins::vy}) {
+        const Edges &before = s.bins()[b].*axis, &after = same.bins()[b].*axis;
+        ASSERT_EQ(after.size(), before.size());
+        for (std::size_t i = 0; i < after.size(); ++i)
+          EXPECT_TRUE(test::same_bits(after[i], before[i])) << kBoundaryNames[b] << " " << i;
+      }
+    EXPECT_EQ(same.size(), 87);
+  }
+}
+
+TEST(Refined, CountsBinsPerAxis) {
+  // n bins become max(1, round(n f)): EN 5 x 5 x 1, RD and LD 2 x 3 x 5, RT and LT 1 x 1 x 1.
+  struct Case {
+    double factor;
+    int enter, deflect, traverse;
+  };
+  for (const Case& c : {Case{0.25, 1, 1, 1}, Case{0.5, 3 * 3 * 1, 1 * 2 * 3, 1}, Case{1, 25, 30, 1},
+                        Case{1.5, 8 * 8 * 2, 3 * 5 * 8, 2 * 2 * 2}, Case{2, 10 * 10 * 2, 4 * 6 * 10, 8},
+                        Case{4, 20 * 20 * 4, 8 * 12 * 20, 64}}) {
+    const StateSpace s = refined(paper(), c.factor);
+    EXPECT_EQ(s.first(Boundary::right_deflect), c.enter) << c.factor;
+    EXPECT_EQ(s.first(Boundary::left_deflect), c.enter + c.deflect) << c.factor;
+    EXPECT_EQ(s.first(Boundary::right_traverse), c.enter + 2 * c.deflect) << c.factor;
+    EXPECT_EQ(s.size(), c.enter + 2 * c.deflect + 2 * c.traverse) << c.factor;
+    EXPECT_EQ(s.trapped(), s.size());
+  }
+}
+
+TEST(Refined, HasEqualBinsOverTheSameRange) {
+  const StateSpace finer = refined(paper(), 2.0), coarser = refined(paper(), 0.5);
+  const auto& fine = finer.bins()[static_cast<int>(Boundary::enter)];
+  EXPECT_EQ(fine.d, (Edges{-25, -20, -15, -10, -5, 0, 5, 10, 15, 20, 25}));
+  EXPECT_EQ(fine.vy, (Edges{10, 15, 20}));
+  const auto& side = finer.bins()[static_cast<int>(Boundary::right_traverse)];
+  EXPECT_EQ(side, (Bins{{10, 20, 30}, {-30, -15, 0}, {-20, 5, 30}}));
+  const auto& coarse = coarser.bins()[static_cast<int>(Boundary::left_deflect)];
+  EXPECT_EQ(coarse.d, (Edges{10, 30}));
+  EXPECT_EQ(coarse.vx, (Edges{0, 15, 30}));
+  for (const double factor : {0.1, 0.3, 0.7, 1.9, 3.0, 7.7}) {
+    const StateSpace before = paper(), s = refined(before, factor);
+    for (int b = 0; b < kBoundaries; ++b)
+      for (const auto axis : {&Bins::d, &Bins::vx, &Bins::vy}) {
+        const Edges &now = s.bins()[b].*axis, &was = before.bins()[b].*axis;
+        EXPECT_EQ(now.front(), was.front());  // what was clamped stays clamped, and nothing else
+        EXPECT_EQ(now.back(), was.back());
+        const double width = (was.back() - was.front()) / static_cast<double>(now.size() - 1);
+        for (std::size_t i = 1; i < now.size(); ++i)  // edges of at most 60, differences of two
+          EXPECT_NEAR(now[i] - now[i - 1], width, 4 * 60 * test::kEps);
+      }
+  }
+}
+
+TEST(Refined, SamplesComeBackToTheirState) {
+  for (const double factor : {0.5, 1.3, 2.0, 4.0}) {
+    const StateSpace s = refined(paper(), factor);
+    for (int state = 0; state < s.size(); ++state) {
+      Random random(Purpose::row, {1, static_cast<std::uint64_t>(state), 0});
+      for (int i = 0; i < 20; ++i) {
+        const auto index = s.index_of(s.sample(state, random));
+        ASSERT_EQ(index.state, state) << factor;
+        ASSERT_FALSE(index.clamped);
+      }
+    }
+  }
+}
+
+// Every bin of twice as many lies within one bin of the paper's.
+TEST(Refined, FinerBinsAreNested) {
+  const StateSpace coarse = paper(), fine = refined(coarse, 2.0);
+  const auto inside = [](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    return b[0] <= a[0] && a[1] <= b[1];
+  };
+  for (int state = 0; state < fine.size(); ++state) {
+    const Cell cell = fine.cell(state);
+    const Crossing corner{cell.boundary, cell.d[0], cell.vx[0], cell.vy[0]};
+    const Cell around = coarse.cell(coarse.index_of(corner).state);
+    EXPECT_TRUE(inside(cell.d, around.d) && inside(cell.vx, around.vx) &&
+                inside(cell.vy, around.vy)) << state;
+  }
+}
+
+TEST(Refined, RefusesFactorsThatMakeNoSpace) {
+  for (const double bad : {0.0, -1.0, std::nan(""), kInf, -kInf, 23.0, 1e9, 1e300})
+    EXPECT_THROW((void)refined(paper(), bad), std::invalid_argument) << bad;
+  EXPECT_EQ(refined(paper(), 1e-300).size(), 5);  // one state per boundary
+  EXPECT_EQ(refined(paper(), 22.0).size(), 87 * 22 * 22 * 22);
+}
+
 // ---- Indices ----
 
 TEST(StateSpace, SampleLiesInItsState) {

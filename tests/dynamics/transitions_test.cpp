@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 #include "tests/support/numbers.h"
@@ -106,6 +108,49 @@ TEST(Transitions, SameCountsOnAnyNumberOfThreadsAndForAnySplit) {
   for (const TrialRange part : {TrialRange{0, 1}, {1, 0}, {1, 4}, {5, 1}})
     add_trials(split, p, 5, part);
   expect_same(split, whole);
+}
+
+// Rows that have entries start from them and only from them; the others uniform, as without.
+TEST(Transitions, StartFromTheEntriesOfTheirRow) {
+  const GateParams p = field_scene();
+  const auto method = make_method(p);
+  const StateSpace space = StateSpace::paper(p);
+  const Crossing middle{Boundary::enter, 1.0, 2.0, 15.0}, fast{Boundary::enter, -3.0, -1.0, 40.0};
+  const Entries entries = entries_of(space, {middle, fast, middle});
+  const int row = space.index_of(middle).state;
+  ASSERT_EQ(space.index_of(fast).state, row);  // clamped, and yet what really enters there
+  ASSERT_EQ(entries.size(), 87u);
+  ASSERT_EQ(entries[row].size(), 3u);
+  Transitions t(space);
+  add_trials(t, p, 3, {0, 4}, entries);
+  const Transitions uniform = built(3, {0, 4});
+  for (int other = 0; other < 87; ++other)
+    if (other != row) {
+      EXPECT_EQ(t.rows[other], uniform.rows[other]);
+    }
+
+  std::map<int, std::int64_t> replayed;
+  std::set<double> speeds;
+  for (std::uint64_t trial = 0; trial < 4; ++trial) {
+    Random random(Purpose::row, {3, static_cast<std::uint64_t>(row), trial});
+    const Crossing start = entries[row][random.below(3)];
+    speeds.insert(start.vy);
+    RandomForce force(p.forces, random);
+    const GateRun run = run_gate(p, *method, entry_state(p, start), force);
+    ++replayed[run.ending == Ending::trapped
+                   ? space.trapped()
+                   : space.index_of(crossing_of(p, run.ending, run.exit)).state];
+  }
+  EXPECT_EQ(t.rows[row], replayed);
+  EXPECT_EQ(speeds.size(), 2u);  // this seed draws both
+  EXPECT_THROW(add_trials(t, p, 3, {0, 1}, Entries(86)), std::invalid_argument);
+}
+
+TEST(Transitions, PartsAddUpToTheWhole) {
+  Transitions sum = built(5, {4, 2});
+  sum += built(5, {0, 4});
+  expect_same(sum, built(5, {0, 6}));
+  EXPECT_THROW(sum += Transitions(refined(sum.space, 2.0)), std::invalid_argument);
 }
 
 TEST(Transitions, OtherSeedOtherCounts) {

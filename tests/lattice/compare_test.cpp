@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dynamics/random.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 
@@ -197,6 +198,70 @@ TEST(NoiseFloor, AgreesWithSimulation) {
 }
 
 // sum c(c-1) / N(N-1): (3, 2, 0, 1) has (6 + 2) / 30.
+// By hand: one trial of (p, 1-p) is off by p(1-p) + (1-p)p in both gates, half of that summed:
+// 2p(1-p). Two trials of (1/2, 1/2): off by 1/2 half the time.
+TEST(ExpectedTotalVariation, BySmallNumbers) {
+  EXPECT_NEAR(expected_total_variation(grid(1, 2, {0.3, 0.7}), 1), 0.42, 16 * kEps);
+  EXPECT_NEAR(expected_total_variation(grid(1, 2, {0.5, 0.5}), 2), 0.25, 16 * kEps);
+  // Four equal gates, one trial: 3/4 whatever the outcome.
+  EXPECT_NEAR(expected_total_variation(grid(2, 2, {0.25, 0.25, 0.25, 0.25}), 1), 0.75, 16 * kEps);
+  EXPECT_EQ(expected_total_variation(grid(1, 2, {0.0, 1.0}), 7), 0.0);
+}
+
+// For many trials a count is normal: E|z| = sqrt(2/pi) sd.
+TEST(ExpectedTotalVariation, BecomesTheNormalOne) {
+  const auto p = grid(2, 2, {0.1, 0.2, 0.3, 0.4});
+  double normal = 0.0;
+  for (const double share : {0.1, 0.2, 0.3, 0.4})
+    normal += 0.5 * std::sqrt(2 / test::kPi * share * (1 - share));
+  for (const std::int64_t n : {100'000LL, 10'000'000LL, 1'000'000'000LL}) {
+    const auto root = std::sqrt(static_cast<double>(n));
+    // The next term is of relative size 1/n; logarithms of n! lose n log n eps.
+    EXPECT_NEAR(expected_total_variation(p, n) * root / normal, 1.0, 2.0 / static_cast<double>(n) +
+                                                                         40 * kEps * root * root);
+  }
+}
+
+TEST(ExpectedTotalVariation, IsTheMeanOverSamples) {
+  CellProbabilities p(3, 3);
+  p << 0.4, 0.2, 0.1, 0.1, 0.08, 0.06, 0.03, 0.02, 0.01;
+  for (const std::int64_t n : {1, 7, 50, 1000}) {
+    constexpr int kRepeats = 4000;
+    double sum = 0.0, squares = 0.0;
+    for (int k = 0; k < kRepeats; ++k) {
+      const CellCounts c = sampled(p, n, 1, static_cast<std::uint64_t>(k));
+      ASSERT_EQ(c.sum(), n);
+      const double tv = total_variation(c.cast<double>() / static_cast<double>(n), p);
+      sum += tv;
+      squares += tv * tv;
+    }
+    const double mean = sum / kRepeats, variance = squares / kRepeats - mean * mean;
+    EXPECT_NEAR(mean, expected_total_variation(p, n), 4.5 * std::sqrt(variance / kRepeats)) << n;
+  }
+}
+
+TEST(Sampled, IsNamedBySeedAndReplicate) {
+  const auto p = grid(2, 2, {0.1, 0.0, 0.4, 0.5});
+  const CellCounts a = sampled(p, 1000, 1, 2);
+  EXPECT_TRUE((a == sampled(p, 1000, 1, 2)).all());
+  EXPECT_FALSE((a == sampled(p, 1000, 1, 3)).all());
+  EXPECT_FALSE((a == sampled(p, 1000, 2, 2)).all());
+  EXPECT_EQ(a(0, 1), 0);
+}
+
+TEST(TrialsFor, IsTheLeastThatSuffices) {
+  CellProbabilities p(3, 3);
+  p << 0.4, 0.2, 0.1, 0.1, 0.08, 0.06, 0.03, 0.02, 0.01;
+  EXPECT_EQ(trials_for(p, 1.0), 1);
+  for (const double tv : {0.5, 0.2, 0.03, 0.004}) {
+    const std::int64_t n = trials_for(p, tv);
+    EXPECT_LE(expected_total_variation(p, n), tv);
+    EXPECT_GT(expected_total_variation(p, n - 1), tv);
+  }
+  EXPECT_THROW((void)trials_for(p, 0.0), std::invalid_argument);
+  EXPECT_THROW((void)expected_total_variation(p, 0), std::invalid_argument);
+}
+
 TEST(Concentration, IsTheShareOfEqualPairs) {
   EXPECT_NEAR(concentration(counts(2, 2, {3, 2, 0, 1})), 8.0 / 30, 2 * kEps);
   EXPECT_EQ(concentration(counts(1, 2, {5, 0})), 1.0);
@@ -388,6 +453,100 @@ TEST(Compare, IsSymmetric) {
   // The smaller hand is dealt from the same pool by the same words: the same null.
   EXPECT_EQ(c.p_chi_squared, d.p_chi_squared);
   EXPECT_EQ(c.p_energy, d.p_energy);
+}
+
+// Four pairs differ, all in one direction: of the 16 ways to swap them, 2 are as extreme. TV is
+// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials. 4 comes in 1 of 8, so it is
+// the 95 % quantile; of six pairs 6 comes in 1 of 32 and 4 in 6 of 32: 4 is.
+TEST(ComparePairs, SwapsOfAHandfulAreExact) {
+  std::vector<std::int32_t> first(20, 0), second(20, 0);
+  for (int i = 3; i < 7; ++i) second[i] = 1;
+  const Comparison c = compare_pairs(first, second, 1, 2, 9999, 1);
+  const double p = 2.0 / 16, tolerance = 4 * std::sqrt(p * (1 - p) / 9999);
+  EXPECT_NEAR(c.p_chi_squared, p, tolerance);
+  EXPECT_NEAR(c.p_total_variation, p, tolerance);
+  EXPECT_NEAR(c.p_energy, p, tolerance);
+  EXPECT_DOUBLE_EQ(c.total_variation, 4.0 / 20);
+  EXPECT_NEAR(c.floor_total_variation, 1.5 / 20, 4 * (1.33 / 20) / 100);  // sd of |4 - 2k|: 1.32
+  EXPECT_DOUBLE_EQ(c.floor_total_variation_95, 4.0 / 20);
+  second[7] = second[8] = 1;
+  EXPECT_DOUBLE_EQ(compare_pairs(first, second, 1, 2, 9999, 1).floor_total_variation_95, 4.0 / 20);
+}
+
+// Two pairs that differ alike: a null draw is as far apart as seen when its two coins, the lowest
+// bits of its first word, fall alike, and p counts these draws. No other use of Purpose::comparison
+// (rows 0, 1, 2: deals, draws from an exact distribution, samples) may throw the same coins.
+TEST(ComparePairs, ThrowsCoinsOfItsOwn) {
+  constexpr std::int64_t kDraws = 64;
+  const auto alike_up_to = [](std::int64_t draws) {
+    const auto n = static_cast<double>(draws + 1);
+    return std::llround(n * compare_pairs({0, 0}, {1, 1}, 1, 2, draws, 1).p_total_variation) - 1;
+  };
+  std::vector<bool> seen, of_row[3];
+  for (std::int64_t k = 0; k < kDraws; ++k) {
+    seen.push_back(alike_up_to(k + 1) > (k == 0 ? 0 : alike_up_to(k)));
+    for (std::uint64_t row = 0; row < 3; ++row) {
+      dynamics::Random random(dynamics::Purpose::comparison, {1, row, static_cast<std::uint64_t>(k)});
+      const std::uint64_t coins = random.word();
+      of_row[row].push_back((coins & 1) == (coins >> 1 & 1));
+    }
+  }
+  for (const auto& other : of_row) EXPECT_NE(seen, other);
+}
+
+// The same statistics as without pairs, and another null: pairs that agree add no noise.
+TEST(ComparePairs, SeesWhatIndependentSamplesCannot) {
+  Draw draw(9);
+  std::vector<std::int32_t> first, second;
+  for (int t = 0; t < 2000; ++t) {
+    first.push_back(draw.below(9));
+    second.push_back(first.back() == 4 && draw.coin() && draw.coin() ? 5 : first.back());
+  }
+  CellCounts a = CellCounts::Zero(3, 3), b = a;
+  for (const auto cell : first) ++a.data()[cell];
+  for (const auto cell : second) ++b.data()[cell];
+  const Comparison pairs = compare_pairs(first, second, 3, 3, 999, 1), apart = compare(a, b, 999, 1);
+  EXPECT_EQ(pairs.total_variation, apart.total_variation);
+  EXPECT_EQ(pairs.corrcoef, apart.corrcoef);
+  EXPECT_EQ(pairs.rmse_per_100, apart.rmse_per_100);
+  EXPECT_EQ(pairs.p_total_variation, 0.001);  // the least that 999 draws can give
+  EXPECT_LT(pairs.floor_total_variation, apart.floor_total_variation / 4);
+  EXPECT_TRUE(std::isnan(pairs.floor.rmse_per_100));
+  const Comparison same = compare_pairs(first, first, 3, 3, 99, 1);
+  EXPECT_EQ(same.p_total_variation, 1.0);
+  EXPECT_EQ(same.floor_total_variation, 0.0);
+}
+
+// Kolmogorov's 0.1 % point and the steps of 1/100, as above; ties only make p larger.
+TEST(ComparePairs, PValuesAreUniformUnderTheNull) {
+  Draw draw(10);
+  constexpr int kRuns = 300;
+  std::vector<double> p;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<std::int32_t> first, second;
+    for (int t = 0; t < 200; ++t) {
+      first.push_back(draw.below(6));
+      second.push_back(draw.coin() ? first.back() : draw.below(6));  // exchangeable
+    }
+    p.push_back(compare_pairs(first, second, 2, 3, 99, run).p_energy);
+  }
+  std::sort(p.begin(), p.end());
+  double off = 0.0;
+  for (int i = 0; i < kRuns; ++i)
+    off = std::max({off, std::abs(p[i] - i / 300.0), std::abs(p[i] - (i + 1) / 300.0)});
+  EXPECT_LT(off, 1.95 / std::sqrt(kRuns) + 0.01);
+}
+
+TEST(ComparePairs, SameBitsOnAnyNumberOfThreadsAndRefusals) {
+  const std::vector<std::int32_t> a{0, 1, 2, 3, 2, 1}, b{1, 1, 3, 0, 2, 2};
+  const auto on = [&](int threads) {
+    return test::on_threads(threads, [&] { return compare_pairs(a, b, 2, 2, 500, 3); });
+  };
+  EXPECT_TRUE(test::same_bits(on(1).floor_total_variation, on(8).floor_total_variation));
+  EXPECT_EQ(on(1).p_energy, on(8).p_energy);
+  EXPECT_THROW((void)compare_pairs(a, {1, 2}, 2, 2, 9, 1), std::invalid_argument);
+  EXPECT_THROW((void)compare_pairs({4}, {0}, 2, 2, 9, 1), std::invalid_argument);
+  EXPECT_THROW((void)compare_pairs({}, {}, 2, 2, 9, 1), std::invalid_argument);
 }
 
 TEST(Compare, RefusesWhatCannotBeCompared) {

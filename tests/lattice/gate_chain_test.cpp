@@ -12,6 +12,7 @@
 #include <string>
 
 #include "markov/chain.h"
+#include "markov/exact.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::lattice {
@@ -205,6 +206,41 @@ TEST_F(MatrixOnDisk, KeepsBinsThatAreNotThePapers) {
   const StateSpace back = read_matrix(path()).transitions.space;
   EXPECT_EQ(back, t.space);
   EXPECT_EQ(back.size(), 112);
+}
+
+// Build, write, read, chain, for spaces other than the paper's: the exact prediction is the same
+// before and after, and a distribution.
+TEST_F(MatrixOnDisk, CarriesRefinedSpacesToThePrediction) {
+  GateParams p;
+  p.forces.propulsion = 7.0;
+  p.forces.random = 50.0;
+  const FieldParams field;
+  const markov::Field cells{field.columns, field.rows};
+  for (const double factor : {0.5, 1.5}) {
+    Transitions t(refined(paper(), factor));
+    add_trials(t, p, 1, {0, 2});
+    ASSERT_EQ(t.health.broken, 0);
+    write_matrix(path(), {t, {{"bins", std::to_string(factor)}}});
+    const MatrixFile back = read_matrix(path());
+    EXPECT_EQ(back.transitions.space, t.space);
+    EXPECT_EQ(back.transitions.rows, t.rows);
+    EXPECT_EQ(back.transitions.trials, t.trials);
+    EXPECT_EQ(back.transitions.clamped, t.clamped);
+
+    const markov::Chain chain = make_chain(back.transitions);
+    EXPECT_EQ(chain.inputs(), t.space.size());
+    EXPECT_EQ(chain.outputs(), t.space.size() + 1);
+    EXPECT_EQ(chain.unsampled_rows(), 0);
+    const auto start = chain_start(back.transitions.space, field, {4, 0, 5, 12});
+    EXPECT_FALSE(start.clamped);
+    const auto f = markov::propagate(chain, cells, start.start, field.max_gates);
+    // markov/exact.h: nothing is normalised, and some 1e-16 a row over 13 steps is what is lost.
+    EXPECT_NEAR(f.final_cells.sum() + f.remainder, 1.0, 1e-12);
+    EXPECT_NEAR(f.trapped + f.left_field + f.cut_off + f.unsampled + f.remainder, 1.0, 1e-12);
+    EXPECT_GT((f.final_cells > 0.0).count(), 3);  // it went somewhere
+    const auto direct = markov::propagate(make_chain(t), cells, start.start, field.max_gates);
+    EXPECT_TRUE((f.final_cells == direct.final_cells).all());
+  }
 }
 
 TEST_F(MatrixOnDisk, HasTheEdgesByName) {

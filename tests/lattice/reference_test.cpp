@@ -166,6 +166,30 @@ TEST(RunField, SameTallyOnAnyNumberOfThreadsAndForAnySplit) {
   expect_same(split, whole);
 }
 
+TEST(RunField, KeepsCrossingsWhenAsked) {
+  const GateParams p;
+  const FieldParams field;
+  const BodyState start{0, 0, 0, 15};
+  const StateSpace space = StateSpace::paper(p);
+  EXPECT_TRUE(run_field(p, field, start, space, 1, {0, 20}).crossings.empty());
+  FieldTally tally = run_field(p, field, start, space, 1, {0, 15}, true);
+  tally += run_field(p, field, start, space, 1, {15, 5}, true);
+  const FieldTally whole = test::on_threads(3, [&] {
+    return run_field(p, field, start, space, 1, {0, 20}, true);
+  });
+  std::array<std::int64_t, kBoundaries> entries{}, clamped{};
+  for (const Crossing& c : whole.crossings) {
+    ++entries[static_cast<int>(c.boundary)];
+    clamped[static_cast<int>(c.boundary)] += space.index_of(c).clamped;
+  }
+  EXPECT_GT(whole.crossings.size(), 20u);
+  EXPECT_EQ(entries, whole.entries);
+  EXPECT_EQ(clamped, whole.clamped);
+  ASSERT_EQ(tally.crossings.size(), whole.crossings.size());
+  for (std::size_t i = 0; i < whole.crossings.size(); ++i)
+    EXPECT_TRUE(test::same_bits(tally.crossings[i].vx, whole.crossings[i].vx)) << i;
+}
+
 TEST(RunField, OtherSeedOtherTrials) {
   EXPECT_NE(run({}, {}, {0, 100}, 1).final_gate_of_trial,
             run({}, {}, {0, 100}, 2).final_gate_of_trial);
@@ -245,6 +269,168 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
   }
   EXPECT_GE(followed, 4);
   EXPECT_GE(moves, 4 * 7);
+}
+
+// ---- Fidelities
+
+GateParams moreau(double step = 0.004) {
+  GateParams p;
+  p.run.method = "moreau";
+  p.run.step = step;
+  return p;
+}
+
+// `active` is this loop, whatever else there is: every gate fresh, to the last bit.
+TEST(Fidelity, ActiveIsGateByGate) {
+  const FieldParams field;
+  for (const char* name : {"stable", "paper"}) {
+    SCOPED_TRACE(name);
+    GateParams p;
+    p.run.method = name;
+    const auto method = make_method(p);
+    const StateSpace space = StateSpace::paper(p);
+    FieldTally plain(field);
+    for (std::uint64_t trial = 0; trial < 60; ++trial) {
+      RandomForce force(p.forces, Random(Purpose::field, {6, stream_row(kStart), trial}));
+      BodyState body = kStart;
+      int column = 4, row = 0;
+      for (int gates = 1;; ++gates) {
+        const GateRun r = run_gate(p, *method, body, force);
+        plain.health.add(p, r);
+        plain.broken += r.ending == Ending::broken;
+        plain.trapped += r.ending == Ending::trapped;
+        if (r.ending == Ending::trapped || r.ending == Ending::broken) break;
+        const Crossing crossing = crossing_of(p, r.ending, r.exit);
+        const Move move = move_into(crossing.boundary);
+        const bool leaves = !field.contains(column + move.di_x, row + move.di_y);
+        plain.left_field += leaves;
+        plain.cut_off += !leaves && gates == 13;
+        if (leaves || gates == 13) break;
+        ++plain.entries[static_cast<int>(crossing.boundary)];
+        plain.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
+        column += move.di_x;
+        row += move.di_y;
+        body = shifted_into_next(p, r.ending, r.exit);
+      }
+      ++plain.trials;
+      ++plain.final_gates(row, column);
+      plain.final_gate_of_trial.push_back(row * 9 + column);
+    }
+    expect_same(run(p, field, {0, 60}, 6), plain);
+  }
+}
+
+TEST(Fidelity, TalliesAddUp) {
+  const GateParams p = moreau();
+  for (const Fidelity f : {Fidelity::remember, Fidelity::all})
+    for (const FieldParams& field : {FieldParams{9, 9, 13, f}, FieldParams{3, 2, 0, f},
+                                     FieldParams{1, 5, 0, f}, FieldParams{4, 1, 2, f}}) {
+      SCOPED_TRACE(testing::Message() << field.columns << " x " << field.rows);
+      const FieldTally t = run(p, field, {0, 60});
+      expect_adds_up(t, field);
+      EXPECT_EQ(t.broken, 0);
+      EXPECT_GT(t.trapped + t.left_field, 0);
+      EXPECT_GT(t.health.impacts, 0);
+    }
+}
+
+// Without neighbours there is nothing to remember and nobody else to meet.
+TEST(Fidelity, OneGateHasNoMemory) {
+  GateParams p = moreau();
+  p.forces.propulsion = 7.0;
+  p.forces.random = 20.0;
+  const auto tally = [&](Fidelity f) { return run(p, {1, 1, 0, f}, {0, 150}); };
+  const FieldTally remember = tally(Fidelity::remember);
+  expect_same(tally(Fidelity::all), remember);
+  EXPECT_GT(remember.trapped, 0);
+  EXPECT_GT(remember.left_field, 0);
+  // Two ways to write one stepper: round-off may part a few trials near grazing.
+  const FieldTally active = tally(Fidelity::active);
+  EXPECT_LE(std::abs(active.trapped - remember.trapped), 5);
+  EXPECT_LE(std::abs(active.left_field - remember.left_field), 5);
+}
+
+// The three share the noise: most trials end in the same gate, which those of another seed do not.
+TEST(Fidelity, SharesTheNoise) {
+  const GateParams p = moreau();
+  const auto gates = [&](Fidelity f, std::uint64_t seed) {
+    return run(p, {9, 9, 13, f}, {0, 100}, seed).final_gate_of_trial;
+  };
+  const auto changed = [](const auto& a, const auto& b) {
+    int n = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) n += a[i] != b[i];
+    return n;
+  };
+  const auto remember = gates(Fidelity::remember, 1), all = gates(Fidelity::all, 1);
+  EXPECT_GT(changed(remember, all), 0);
+  EXPECT_LT(changed(remember, all), 45);
+  EXPECT_GT(changed(remember, gates(Fidelity::all, 2)), 75);
+  const auto active = gates(Fidelity::active, 1);
+  EXPECT_GT(changed(active, remember), 0);
+  EXPECT_LT(changed(active, remember), 45);
+}
+
+TEST(Fidelity, SameTallyOnAnyNumberOfThreadsAndForAnySplit) {
+  const GateParams p = moreau();
+  for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
+    const FieldParams field{9, 9, 13, f};
+    const auto on = [&](int threads) {
+      return test::on_threads(threads, [&] { return run(p, field, {0, 50}); });
+    };
+    const FieldTally whole = on(1);
+    expect_same(on(2), whole);
+    expect_same(on(8), whole);
+    FieldTally split(field);
+    for (const TrialRange part : {TrialRange{0, 1}, {1, 32}, {33, 17}}) split += run(p, field, part);
+    expect_same(split, whole);
+  }
+}
+
+TEST(Fidelity, QuietFieldsAreMirrorSymmetric) {
+  GateParams p = moreau();
+  p.forces.random = 0.0;
+  p.beams.stiffness_left = 60.0;
+  p.beams.stiffness_right = 90.0;
+  GateParams m = p;
+  std::swap(m.beams.stiffness_left, m.beams.stiffness_right);
+  for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
+    int moved_sideways = 0;
+    for (const double x : {-12.0, -4.0, 3.0, 9.0, 16.0}) {
+      const FieldTally a = run(p, {9, 9, 0, f}, {0, 1}, 1, {x, 0, 12, 15});
+      const FieldTally b = run(m, {9, 9, 0, f}, {0, 1}, 1, {-x, 0, -12, 15});
+      const int gate = a.final_gate_of_trial[0];
+      EXPECT_EQ(b.final_gate_of_trial[0], gate / 9 * 9 + 8 - gate % 9);
+      EXPECT_EQ(a.entries[0], b.entries[0]);
+      EXPECT_EQ(a.entries[1], b.entries[2]);
+      EXPECT_EQ(a.entries[3], b.entries[4]);
+      EXPECT_EQ(a.health.impacts, b.health.impacts);
+      moved_sideways += gate % 9 != 4;
+    }
+    EXPECT_GT(moved_sideways, 0);
+  }
+}
+
+TEST(Fidelity, NeedsMethodMoreau) {
+  for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
+    GateParams p;
+    try {
+      (void)run(p, {9, 9, 13, f}, {0, 1});
+      ADD_FAILURE() << "not refused";
+    } catch (const InvalidParameter& e) {
+      EXPECT_EQ(e.key(), "field.fidelity");
+      const std::string what = e.what();
+      const std::string named = "field.fidelity = \"" + std::string(name_of(f)) + "\"";
+      EXPECT_NE(what.find(named), what.npos) << what;
+      EXPECT_NE(what.find("run.method = \"stable\""), what.npos) << what;
+    }
+  }
+  // Beams that reach over many gates would make every gate a neighbour.
+  GateParams p = moreau();
+  p.beams.length = 141.0;
+  EXPECT_THROW(validate(p, {9, 9, 13, Fidelity::all}), InvalidParameter);
+  p.beams.length = 140.0;  // 3 times 50 m, less the radius
+  EXPECT_NO_THROW(validate(p, {9, 9, 13, Fidelity::all}));
+  EXPECT_NO_THROW(validate({}, FieldParams{}));
 }
 
 TEST(RunField, ScenesThatCannotBeRunAreRefused) {

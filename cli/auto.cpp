@@ -1,0 +1,87 @@
+#include "cli/auto.h"
+
+#include "cli/report.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// The scene's start, and the middles of eight bins spread over the state space.
+std::vector<dynamics::BodyState> starts_of(const Scene& scene, RunsFrom from) {
+  std::vector<dynamics::BodyState> starts{scene.start};
+  if (from == RunsFrom::start) return starts;
+  const auto space = dynamics::StateSpace::paper(scene.gate);
+  for (int i = 0; i < 8; ++i) {
+    const dynamics::Cell c = space.cell(i * (space.size() - 1) / 7);
+    const auto middle = [](const std::array<double, 2>& edges) { return 0.5 * (edges[0] + edges[1]); };
+    starts.push_back(dynamics::entry_state(
+        scene.gate, {c.boundary, middle(c.d), middle(c.vx), middle(c.vy)}));
+  }
+  return starts;
+}
+
+std::string setting_text(const Json& settled) {
+  const bool event = settled["method"] == "event";
+  return "method " + settled["method"].get<std::string>() +
+         (event ? ", run.event_tolerance_m = " + settled["event_tolerance_m"].dump()
+                : ", run.step_s = " + settled["step_s"].dump());
+}
+
+}  // namespace
+
+Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
+  if (scene.gate.run.method != "auto") return nullptr;
+  const double tolerance = scene.gate.run.tolerance;
+  const auto starts = starts_of(scene, from);
+  remark(options, "run.method \"auto\": trying methods on pilot trials");
+  const dynamics::Choice choice = dynamics::choose_method(scene.gate, starts, options.seed());
+  scene.gate = choice.params;
+
+  Json settled;
+  settled["asked"] = "auto";
+  settled["tolerance"] = tolerance;
+  settled["method"] = scene.gate.run.method;
+  settled["step_s"] = scene.gate.run.step;
+  settled["event_tolerance_m"] = scene.gate.run.event_tolerance;
+  settled["met"] = choice.met;
+  settled["pilot_trials"] = choice.trials;
+  settled["pilot_starts"] = starts.size();
+  settled["reference"] = {{"method", choice.reference.method},
+                          {"key", choice.reference.key},
+                          {"value", choice.reference.value},
+                          {"verdict", dynamics::name_of(choice.reference_verdict)}};
+  settled["tried"] = Json::array();
+  for (const auto& t : choice.tried)
+    settled["tried"].push_back({{"method", t.setting.method},
+                                {"key", t.setting.key},
+                                {"value", t.setting.value},
+                                {"verdict", dynamics::name_of(t.verdict)},
+                                {"outcome_total_variation", t.error.total_variation},
+                                {"uncertainty", t.uncertainty},
+                                {"trials_changed", t.error.changed},
+                                {"work_per_trial", t.work}});
+  if (choice.reference_verdict != dynamics::Verdict::fine)
+    warn("run.method \"auto\": the reference itself shows faults (" +
+         std::string(dynamics::name_of(choice.reference_verdict)) +
+         "), nothing can be compared with it; took it all the same: " + setting_text(settled));
+  else if (!choice.met)
+    warn("run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance = " +
+         Json(tolerance).dump() + "; took the one they were compared with: " +
+         setting_text(settled));
+  return settled;
+}
+
+std::string method_line(const Json& settled) {
+  if (settled.is_null()) return "";
+  std::string text = setting_text(settled) + ": chosen on " + settled["pilot_trials"].dump() +
+                     " pilot trials";
+  if (settled["met"].get<bool>()) {
+    const Json& last = settled["tried"].back();
+    text += ", outcomes off by " + fixed(last["outcome_total_variation"].get<double>(), 4) +
+            " +- " + fixed(last["uncertainty"].get<double>(), 4) + " (total variation)";
+  } else {
+    text += ", not shown to meet run.tolerance";
+  }
+  return text + "\n";
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,19 @@
+#pragma once
+/// run.method = "auto" as the commands use it.
+
+#include "cli/command.h"
+#include "dynamics/choice.h"
+
+namespace gatewalk::cli {
+
+/// Where a command's gate runs begin: the scene's start, or states all over the state space too.
+enum class RunsFrom { start, everywhere };
+
+/// Replaces "auto" in the scene by the method and setting that a pilot chooses. Returns what was
+/// tried, for the result; null when the scene names its method. Warns when nothing met the tolerance.
+[[nodiscard]] Json settle_method(const Options& options, Scene& scene, RunsFrom from);
+
+/// "method stable, run.step_s = 0.02: chosen by ..." as a line of a table; empty for null.
+[[nodiscard]] std::string method_line(const Json& settled);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,38 @@
+#pragma once
+/// What the figures of several commands share: text for gnuplot, one look, whole files.
+
+#include <string>
+#include <string_view>
+
+namespace gatewalk::cli {
+
+/// Text for titles and labels of gnuplot, with nothing in it that gnuplot would understand.
+[[nodiscard]] std::string literal(std::string_view text);
+
+/// "name << EOD ... EOD", the rows of a table that `plot` can read as name.
+[[nodiscard]] std::string data_block(std::string_view name, const std::string& rows);
+
+/// Seven digits: more than a figure shows.
+[[nodiscard]] std::string digits(double x);
+
+/// Tics of a logarithmic axis from low to high: 1, 2 and 5 times the powers of ten, or these alone.
+[[nodiscard]] std::string tics_1_2_5(double low, double high);
+
+/// Colour and marker of a method, the same in every figure (Okabe and Ito's colours).
+struct Look {
+  const char* colour;
+  int marker;  // gnuplot's number, filled
+};
+[[nodiscard]] Look look_of(std::string_view method);
+
+/// Runs `commands` into the SVG file `path`, which is replaced as a whole or left as it was.
+void draw_svg(const std::string& path, int width, int height, const std::string& commands);
+
+/// The folder for a command's files, made if need be. Throws std::runtime_error when `name` is no
+/// folder that can be written to.
+void require_folder(const std::string& name);
+
+/// "AMD EPYC, 2 cores": what times were measured on.
+[[nodiscard]] std::string machine();
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,55 @@
+#include "cli/starts.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "cli/report.h"
+
+namespace gatewalk::cli {
+namespace {
+
+const std::vector<PaperStart> kTableIV{{0, 0, 15, 0.914, 1.018},
+                                       {23, -11, 16, 0.9097, 1.133},
+                                       {4, 5, 10, 0.8929, 1.252},
+                                       {-17, 13, 12, 0.9026, 0.9813}};
+
+PaperStart parse_start(const std::string& text) {
+  std::istringstream in(text);
+  PaperStart s{};
+  char first = 0, second = 0;
+  if (!(in >> s.d >> first >> s.vx >> second >> s.vy) || first != ',' || second != ',' ||
+      in.peek() != std::char_traits<char>::eof() || !std::isfinite(s.d + s.vx + s.vy))
+    throw UsageError("--start " + text +
+                     ": must be three numbers d,vx,vy in m and m/s, e.g. 4,5,10");
+  return s;
+}
+
+}  // namespace
+
+void add_starts(Options& options) {
+  options.add()("start", po::value<std::vector<std::string>>()->composing()->value_name("D,VX,VY"),
+                "start at x = D m, y = 0 with this velocity in m/s (may be repeated; default: the "
+                "four of Table IV)");
+}
+
+std::vector<PaperStart> starts_of(const Options& options) {
+  if (!options.has("start")) return kTableIV;
+  std::vector<PaperStart> starts;
+  for (const auto& text : options.get<std::vector<std::string>>("start"))
+    starts.push_back(parse_start(text));
+  return starts;
+}
+
+void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
+  const double side = scene.gate.beams.joint_x;
+  for (const PaperStart& s : starts)
+    if (!(std::abs(s.d) < side))
+      throw UsageError("--start: d = " + fixed(s.d, 3) + " m must lie inside the gate, (-" +
+                       fixed(side, 3) + ", " + fixed(side, 3) + ")");
+}
+
+std::string start_text(const PaperStart& s) {
+  return padded(fixed(s.d, 0), 4) + padded(fixed(s.vx, 0), 5) + padded(fixed(s.vy, 0), 5);
+}
+
+}  // namespace gatewalk::cli

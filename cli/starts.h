@@ -1,0 +1,29 @@
+#pragma once
+/// Where trials through the field start: the four of the paper's Table IV, or those given.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+
+namespace gatewalk::cli {
+
+/// d, vx, vy (m, m/s) of a start at y = 0; corrcoef and RMSE as Table IV prints them.
+struct PaperStart {
+  double d = 0.0, vx = 0.0, vy = 0.0;
+  std::optional<double> corrcoef, rmse;
+
+  [[nodiscard]] dynamics::BodyState body() const { return {d, 0.0, vx, vy}; }
+};
+
+/// Declares --start.
+void add_starts(Options& options);
+/// The starts given, else those of Table IV. Throws UsageError for a malformed one.
+[[nodiscard]] std::vector<PaperStart> starts_of(const Options& options);
+/// Throws UsageError unless all of them lie between the sides of the scene's gates.
+void require_inside(const std::vector<PaperStart>& starts, const Scene& scene);
+/// "  23  -11   16"
+[[nodiscard]] std::string start_text(const PaperStart& start);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# The chain's error against its cost, beside direct simulation at the same cost.
+#   results/chain/run.sh [GATEWALK]      about 9 minutes on two cores
+# Writes chain.csv, chain.json, chain.svg, manifest.txt.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+gatewalk=${1:-$root/build/gatewalk}
+. "$root/results/manifest.sh"
+
+"$gatewalk" chart-chain "$root/scenes/field.toml" --truth-trials 1e5 --visited 1000 --seed 1 \
+  -o "$here" >"$here/chain.txt"
+manifest "results/chain/run.sh" >"$here/manifest.txt"

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# What beams that remember, and beams of neighbouring gates, change in the final gates, and their cost.
+#   results/fidelity/run.sh [GATEWALK]      about 6 minutes on two cores
+# Writes fidelity.csv, fidelity.json, fidelity.svg, manifest.txt.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+gatewalk=${1:-$root/build/gatewalk}
+. "$root/results/manifest.sh"
+
+"$gatewalk" chart-field "$root/scenes/field.toml" --trials 10000 --seed 1 --set run.step_s=0.001 \
+  -o "$here" >"$here/fidelity.txt"
+manifest "results/fidelity/run.sh" >"$here/manifest.txt"

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Where each method breaks: five maps.
+#   results/stability/run.sh [GATEWALK]      15 seconds on two cores
+# Writes stability.csv, stability.json, a figure per map, manifest.txt.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+gatewalk=${1:-$root/build/gatewalk}
+. "$root/results/manifest.sh"
+
+"$gatewalk" stability --seed 1 -o "$here" >"$here/stability.txt"
+manifest "results/stability/run.sh" >"$here/manifest.txt"

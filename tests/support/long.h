@@ -1,0 +1,15 @@
+#pragma once
+/// The full counts of the requirements take minutes. GATEWALK_LONG=1 asks for them:
+///     GATEWALK_LONG=1 build/tests/dynamics_tests --gtest_filter='*Event*:*NearSingular*'
+
+#include <cstdlib>
+#include <string_view>
+
+namespace gatewalk::test {
+
+inline int usual_or_full(int usual, int full) {
+  const char* const wanted = std::getenv("GATEWALK_LONG");
+  return wanted != nullptr && std::string_view(wanted) == "1" ? full : usual;
+}
+
+}  // namespace gatewalk::test
