@@ -292,7 +292,7 @@ std::string script_of(const std::vector<StartRuns>& starts, const std::vector<Va
        "set xlabel 'start: d (m), v_x, v_y (m/s)'\n"
     << "set xrange [-0.6:" << static_cast<double>(n) - 0.4 << "]\n"
     << "set yrange [0:*]\n"
-       "set lmargin 10\n"
+       "set lmargin 13\n"
        "set rmargin 30\n"
        "set multiplot layout 2,1\n"
     << "set title 'What memory and neighbours change (final gates, " << trials
