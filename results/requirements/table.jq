@@ -104,7 +104,7 @@ def text: if . == null then "" else tostring end;
 def summary($rows; $r; $method):
   [$rows[] | select(.requirement == $r and .method == $method and .met != "-") | .met]
   | if length == 0 then ""
-    elif all(.[]; . == .[0]) then .[0]
+    elif (unique | length) == 1 then .[0]
     else "\(map(select(. == "yes")) | length) of \(length)" end;
 
 (of_tests + ($chart[0] | of_chart) | merged) as $measured
