@@ -8,10 +8,11 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 gatewalk=${1:-$root/build/gatewalk}
 . "$root/results/manifest.sh"
+cd "$root"  # scenes are recorded by the path given
 mkdir -p "$here/overdamped"
 
 scenes=()
-for scene in single_gate field soft_left wading undamped stiff; do scenes+=("$root/scenes/$scene.toml"); done
+for scene in single_gate field soft_left wading undamped stiff; do scenes+=("scenes/$scene.toml"); done
 "$gatewalk" chart "${scenes[@]}" --trials 1e4 --seed 1 -o "$here" >"$here/chart.txt"
-"$gatewalk" chart "$root/scenes/overdamped.toml" --trials 1000 --seed 1 -o "$here/overdamped" >"$here/overdamped/chart.txt"
+"$gatewalk" chart "scenes/overdamped.toml" --trials 1000 --seed 1 -o "$here/overdamped" >"$here/overdamped/chart.txt"
 manifest "results/accuracy/run.sh" >"$here/manifest.txt"

@@ -7,7 +7,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 gatewalk=${1:-$root/build/gatewalk}
 . "$root/results/manifest.sh"
+cd "$root"  # scenes are recorded by the path given
 
-"$gatewalk" chart-chain "$root/scenes/field.toml" --truth-trials 1e5 --visited 1000 --seed 1 \
+"$gatewalk" chart-chain "scenes/field.toml" --truth-trials 1e5 --visited 1000 --seed 1 \
   -o "$here" >"$here/chain.txt"
 manifest "results/chain/run.sh" >"$here/manifest.txt"

@@ -7,7 +7,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 gatewalk=${1:-$root/build/gatewalk}
 . "$root/results/manifest.sh"
+cd "$root"  # scenes are recorded by the path given
 
-"$gatewalk" chart-field "$root/scenes/field.toml" --trials 10000 --seed 1 --set run.step_s=0.001 \
+"$gatewalk" chart-field "scenes/field.toml" --trials 10000 --seed 1 --set run.step_s=0.001 \
   -o "$here" >"$here/fidelity.txt"
 manifest "results/fidelity/run.sh" >"$here/manifest.txt"

@@ -7,6 +7,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 gatewalk=${1:-$root/build/gatewalk}
 . "$root/results/manifest.sh"
+cd "$root"  # scenes are recorded by the path given
 
 "$gatewalk" stability --seed 1 -o "$here" >"$here/stability.txt"
 manifest "results/stability/run.sh" >"$here/manifest.txt"
