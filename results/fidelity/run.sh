@@ -5,9 +5,9 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
-gatewalk=${1:-$root/build/gatewalk}
+gatewalk=$(realpath "${1:-$root/build/gatewalk}")  # scenes are named from the root
 . "$root/results/manifest.sh"
-cd "$root"  # scenes are recorded by the path given
+cd "$root"
 
 "$gatewalk" chart-field "scenes/field.toml" --trials 10000 --seed 1 --set run.step_s=0.001 \
   -o "$here" >"$here/fidelity.txt"

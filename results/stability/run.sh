@@ -5,9 +5,9 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
-gatewalk=${1:-$root/build/gatewalk}
+gatewalk=$(realpath "${1:-$root/build/gatewalk}")  # scenes are named from the root
 . "$root/results/manifest.sh"
-cd "$root"  # scenes are recorded by the path given
+cd "$root"
 
 "$gatewalk" stability --seed 1 -o "$here" >"$here/stability.txt"
 manifest "results/stability/run.sh" >"$here/manifest.txt"
