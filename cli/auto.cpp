@@ -6,7 +6,7 @@ namespace gatewalk::cli {
 namespace {
 
 /// The scene's start, and the middles of eight bins spread over the state space.
-std::vector<dynamics::BodyState> starts_of(const Scene& scene, RunsFrom from) {
+std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from) {
   std::vector<dynamics::BodyState> starts{scene.start};
   if (from == RunsFrom::start) return starts;
   const auto space = dynamics::StateSpace::paper(scene.gate);
@@ -31,7 +31,7 @@ std::string setting_text(const Json& settled) {
 Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
   if (scene.gate.run.method != "auto") return nullptr;
   const double tolerance = scene.gate.run.tolerance;
-  const auto starts = starts_of(scene, from);
+  const auto starts = pilot_starts(scene, from);
   remark(options, "run.method \"auto\": trying methods on pilot trials");
   const dynamics::Choice choice = dynamics::choose_method(scene.gate, starts, options.seed());
   scene.gate = choice.params;

@@ -483,7 +483,7 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
     out << "set label " << 11 + i << " " << literal(lines[i]) << " at graph 0, graph "
         << 1.03 + 0.045 * static_cast<double>(lines.size() - 1 - i) << " font ',8' tc rgb '#444444'\n";
   if (limit > 0.0 && slowest > 0.0)
-    out << "set label 10 '10 x error of the reference' at graph 0.99, first " << digits(limit)
+    out << "set label 10 'below: not told from the reference' at graph 0.99, first " << digits(limit)
         << " right offset 0,-0.6 font ',8' tc rgb '#666666'\n";
   if (slowest > 0.0)
     out << "set xrange [" << digits(quickest / 1.5) << ":" << digits(slowest * 1.5) << "]\nset xtics nomirror ("

@@ -916,6 +916,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   json["status"] = to_json(chart.health);
   if (!settled.is_null()) json["method"] = settled;
   json["made_by"] = manifest(options, scene);
+  std::filesystem::remove(file("chain.svg"));  // an old figure shall not stand beside new numbers
   write_text_atomically(file("chain.csv"), csv_of(chart));
   write_text_atomically(file("chain.json"), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   draw(file("chain.svg"), chart);

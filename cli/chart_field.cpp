@@ -388,6 +388,7 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   json["bound"] = kBound;
   json["starts"] = json_of(reports, variants);
   json["made_by"] = manifest(options, scene);
+  std::filesystem::remove(svg_path);  // an old figure shall not stand beside new numbers
   write_text_atomically(csv_path, csv_of(reports, variants));
   write_text_atomically(json_path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   options.give_out(json, table_of(reports, variants, trials, threads));

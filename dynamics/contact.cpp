@@ -6,7 +6,7 @@ namespace gatewalk::dynamics {
 
 Touch nearest(const GateParams& p, Side side, const BodyState& body, const Direction& beam) {
   // Centre from the joint, in the beam's own frame.
-  const double px = side == kLeft ? body.x + p.beams.joint_x : p.beams.joint_x - body.x;
+  const double px = from_joint(p, side, body.x);
   const double py = body.y - p.beams.joint_y;
   const double c = beam.c, s = beam.s;
   const double along = px * c + py * s;
@@ -72,7 +72,7 @@ double free_gap_acceleration(const GateParams& p, Side side, const Touch& t, con
                              double force_x) {
   const double ax = (force_x - p.forces.drag * s.body.vx) / p.body.mass;
   const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy) / p.body.mass;
-  const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
+  const double k = p.beams.stiffness(side);
   const BeamState& beam = s.beams[side];
   const double beta = (-k * beam.theta - p.beams.damping * beam.omega) / p.beams.inertia();
   return (t.nx * ax + t.ny * ay) - t.lever * beta + gap_rate_bias(p, side, t, s.body, beam);

@@ -21,8 +21,6 @@
 
 namespace gatewalk::dynamics {
 
-enum Side : int { kLeft = 0, kRight = 1 };
-
 struct BeamState {
   double theta = 0.0;  // rad, > 0 deflected forward
   double omega = 0.0;  // rad/s
@@ -76,11 +74,16 @@ struct Touch {
   return nearest(p, side, body, Direction::of(theta));
 }
 
+/// Where `x` lies along a resting beam, from its joint towards its tip (m).
+[[nodiscard]] inline double from_joint(const GateParams& p, Side side, double x) {
+  return side == kLeft ? x + p.beams.joint_x : p.beams.joint_x - x;
+}
+
 /// True when the disc cannot touch this beam whatever the exact angle, not even if it were larger
 /// by `margin` (m); no trigonometry.
 [[nodiscard]] inline bool out_of_reach(const GateParams& p, Side side, const BodyState& body,
                                        double theta, double margin = 0.0) {
-  const double px = side == kLeft ? body.x + p.beams.joint_x : p.beams.joint_x - body.x;
+  const double px = from_joint(p, side, body.x);
   const double py = body.y - p.beams.joint_y;
   const double radius = p.body.radius + margin;
   const double reach = p.beams.length + radius;

@@ -13,8 +13,10 @@
 ///   verdict.h      one word for how far a method can be trusted
 ///   accuracy.h     a method's errors against a reference under the same noise
 ///   stability.h    maps of where each method breaks
+///   choice.h       the cheapest method and setting that a scene can do with
 
 #include "dynamics/accuracy.h"
+#include "dynamics/choice.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/flow.h"
 #include "dynamics/gate.h"

@@ -83,10 +83,17 @@ BeamFlow BeamLaw::over(double dt) const {
   return f;
 }
 
+namespace {
+
+BeamLaw beam_law(const GateParams& p, Side side) {
+  const double inertia = p.beams.inertia();
+  return {p.beams.stiffness(side) / inertia, p.beams.damping / inertia};
+}
+
+}  // namespace
+
 GateLaw::GateLaw(const GateParams& p)
     : drag(p.forces.drag / p.body.mass),
-      beams{BeamLaw(p.beams.stiffness_left / p.beams.inertia(), p.beams.damping / p.beams.inertia()),
-            BeamLaw(p.beams.stiffness_right / p.beams.inertia(),
-                    p.beams.damping / p.beams.inertia())} {}
+      beams{beam_law(p, kLeft), beam_law(p, kRight)} {}
 
 }  // namespace gatewalk::dynamics

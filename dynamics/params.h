@@ -11,6 +11,8 @@
 
 namespace gatewalk::dynamics {
 
+enum Side : int { kLeft = 0, kRight = 1 };
+
 struct Body {
   double mass = 1.0;     // kg
   double radius = 10.0;  // m
@@ -25,6 +27,9 @@ struct Beams {
   double joint_x = 25.0;           // m; joints at (+-joint_x, joint_y), also half the gate's width
   double joint_y = 30.0;           // m
 
+  [[nodiscard]] double stiffness(Side side) const {
+    return side == kLeft ? stiffness_left : stiffness_right;
+  }
   /// Moment of inertia of one beam about its joint (kg m^2): a uniform rod, m L^2 / 3.
   [[nodiscard]] double inertia() const { return mass * length * length / 3.0; }
 };

@@ -345,7 +345,8 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kExactDraws, static_cast<std::uint64_t>(k)});
-    return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected, expected, rare, support);
+    return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected,
+                      expected, rare, support);
   });
   return c;
 }

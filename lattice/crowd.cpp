@@ -11,10 +11,6 @@ using namespace dynamics;
 
 namespace {
 
-double stiffness(const GateParams& p, Side side) {
-  return side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
-}
-
 double length_of_gate(const GateParams& p) { return p.run.traverse_y; }
 double width_of_gate(const GateParams& p) { return 2.0 * p.beams.joint_x; }
 
@@ -26,7 +22,7 @@ Crowd::Step::Step(const GateParams& p, double step) : h(step) {
   body_keep = (p.body.mass - drag) / mass;
   body_push = h / mass;
   for (const Side side : {kLeft, kRight}) {
-    const double k = stiffness(p, side);
+    const double k = p.beams.stiffness(side);
     const double loss = 0.5 * h * p.beams.damping + 0.25 * h * h * k;
     inertia[side] = p.beams.inertia() + loss;
     beam_keep[side] = (p.beams.inertia() - loss) / inertia[side];
@@ -66,7 +62,7 @@ std::array<BeamState, 2> Crowd::beams_now(const Gate& gate) const {
   auto beams = gate.beams;
   const double inertia = p_.beams.inertia();
   for (const Side side : {kLeft, kRight})
-    BeamFlow(stiffness(p_, side) / inertia, p_.beams.damping / inertia, now_ - gate.time)
+    BeamFlow(p_.beams.stiffness(side) / inertia, p_.beams.damping / inertia, now_ - gate.time)
         .apply(beams[side], 0.0);
   return beams;
 }

@@ -325,7 +325,7 @@ for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "chart-field $scenes/field.toml --trials 1e9 -o new/chart" \
                "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9" \
                "chart $scenes/field.toml --trials 1e9 -o charts"; do
-  before=$(cat gate.json m.nc lattice.json charts/* | cksum)
+  before=$(cat gate.json m.nc lattice.json $(find charts -type f | sort) | cksum)
   # shellcheck disable=SC2086
   "$gatewalk" $command >out.txt 2>&1 &
   pid=$!
@@ -338,7 +338,7 @@ for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
   [ $status = 130 ] || fail "ctrl-C: status $status of $command"
   [ $took -lt 2000 ] || fail "ctrl-C took $took ms: $command"
   grep -q "stopped before the end" out.txt || fail "ctrl-C without a word: $command"
-  [ "$before" = "$(cat gate.json m.nc lattice.json charts/* | cksum)" ] || fail "ctrl-C changed a file: $command"
+  [ "$before" = "$(cat gate.json m.nc lattice.json $(find charts -type f | sort) | cksum)" ] || fail "ctrl-C changed a file: $command"
 done
 
 [ $failures = 0 ] || exit 1

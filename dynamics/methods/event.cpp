@@ -219,11 +219,11 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
     const BeamState& beam = s.beams[side];
     if (beam.held) continue;
     const double L = p_.beams.length, inertia = p_.beams.inertia();
-    const double k = (side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right) / inertia;
+    const double k = p_.beams.stiffness(side) / inertia;
     const double d = p_.beams.damping / inertia;
     // A free beam's energy falls: a bound on its angular velocity for all time to come.
     const double w = std::sqrt(beam.omega * beam.omega + k * beam.theta * beam.theta);
-    const double px = side == kLeft ? b.x + p_.beams.joint_x : p_.beams.joint_x - b.x;
+    const double px = from_joint(p_, side, b.x);
     const double py = b.y - p_.beams.joint_y;
     const double reach = L + p_.body.radius + v * horizon;
     if (px * px + py * py > reach * reach) continue;

@@ -14,7 +14,7 @@ MoreauMethod::Step::Step(const GateParams& p, double step)
   v_to_v = (p.body.mass - 0.5 * h * p.forces.drag) / mass;
   v_per_N = h / mass;
   for (const Side side : {kLeft, kRight}) {
-    const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
+    const double k = p.beams.stiffness(side);
     const double implicit = 0.5 * h * p.beams.damping + 0.25 * h * h * k;
     inertia[side] = p.beams.inertia() + implicit;
     w_to_w[side] = (p.beams.inertia() - implicit) / inertia[side];

@@ -87,7 +87,7 @@ void PaperMethod::euler(GateState& s, double force_x, double dt, Watch& watch) c
   s.body.vy += ay * dt;
   for (const Side side : {kLeft, kRight}) {
     BeamState& beam = s.beams[side];
-    const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
+    const double k = p_.beams.stiffness(side);
     const double beta = (-k * beam.theta - p_.beams.damping * beam.omega -  // Eq. (3)
                          t[side].lever * force[side]) /
                         p_.beams.inertia();

@@ -120,7 +120,7 @@ double PenaltyMethod::advance(GateState& s, double force_x, double duration, Ene
     body.y += h * body.vy;
     for (const Side side : {kLeft, kRight}) {
       BeamState& beam = now.beams[side];
-      const double k = side == kLeft ? p_.beams.stiffness_left : p_.beams.stiffness_right;
+      const double k = p_.beams.stiffness(side);
       beam.omega -= h * (k * beam.theta + p_.beams.damping * beam.omega +  // Eq. (3)
                          touch[side].lever * force[side]) / inertia;
       beam.theta += h * beam.omega;

@@ -83,7 +83,7 @@ StableMethod::StableMethod(const GateParams& p)
   const double inertia = p.beams.inertia();
   for (const Side side : {kLeft, kRight}) {
     // The explicit contact force must follow both of a held beam's rates.
-    swing_[side] = (side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right) / inertia;
+    swing_[side] = p.beams.stiffness(side) / inertia;
     const double rate = std::max(std::sqrt(swing_[side]), p.beams.damping / inertia);
     halvings_[side] = halvings_for(p.run.step * rate, kMaxPhase, kMaxHalvings);
     finest_ = std::max(finest_, halvings_[side]);

@@ -662,7 +662,7 @@ Accelerations accelerations(const GateParams& p, Side side, const GateState& s, 
   const double inwards = side == kLeft ? 1.0 : -1.0;
   const double ax = (force_x - p.forces.drag * s.body.vx + f * t.nx) / p.body.mass;
   const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy + f * t.ny) / p.body.mass;
-  const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
+  const double k = p.beams.stiffness(side);
   const BeamState& b = s.beams[side];
   const double torque = -t.lever * f - k * b.theta - p.beams.damping * b.omega;
   return {inwards * ax, ay, torque / p.beams.inertia()};

@@ -203,8 +203,8 @@ TEST(GateTrials, ConvergedFiguresAtDamping50) {
   EXPECT_TRUE(t.health.clean());
 }
 
-// Requirement 14: 0.004 s is converged; a quarter of it, with the same noise, moves at most 1 % of
-// the outcomes net.
+// Requirement 14: the default step is converged; a twentieth of it, with the same noise, moves at
+// most 1 % of the outcomes net.
 TEST(GateTrials, OutcomesAreConvergedInTheStep) {
   GateParams p = test::study(10.0);
   const GateTally coarse = run_gate_trials(p, {}, 1, {0, 2000});

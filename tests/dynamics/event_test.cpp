@@ -24,6 +24,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
+using test::at_rest;
 using test::Draw;
 using test::kEps;
 using test::kPi;
@@ -38,12 +39,6 @@ GateParams event(GateParams p, double tolerance = 1e-2) {
   p.run.method = "event";
   p.run.event_tolerance = tolerance;
   return p;
-}
-
-GateState at_rest(double x, double y, double vx = 0.0, double vy = 0.0) {
-  GateState s;
-  s.body = {x, y, vx, vy};
-  return s;
 }
 
 RandomForce force_of(const GateParams& p, int trial, double sign = 1.0) {

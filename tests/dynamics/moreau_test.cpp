@@ -1,7 +1,6 @@
 #include "dynamics/methods/moreau.h"
 
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,9 @@
 namespace gatewalk::dynamics {
 namespace {
 
+using test::at_rest;
 using test::Draw;
+using test::energy_created;
 using test::kEps;
 using test::kPi;
 using test::measured;
@@ -28,12 +29,6 @@ GateParams moreau(GateParams p, double step = 0.004) {
   p.run.method = "moreau";
   p.run.step = step;
   return p;
-}
-
-GateState at_rest(double x, double y, double vx = 0.0, double vy = 0.0) {
-  GateState s;
-  s.body = {x, y, vx, vy};
-  return s;
 }
 
 // ---- Free motion ----
@@ -315,23 +310,6 @@ TEST(Moreau, ClosingForceOnAnOpeningContactCreatesALittle) {
   const double gain = 0.2 / (8 * 1.8) * kick * kick;
   EXPECT_NEAR(ride.watch.energy_created, gain, 4 * kEps * 6.0 * 20.1);
   EXPECT_EQ(ride.watch.impacts, 0);
-}
-
-/// Mean and largest energy created in 300 trials.
-std::array<double, 2> energy_created(const GateParams& p) {
-  constexpr int kTrials = 300;
-  const auto method = make_method(p);
-  std::vector<double> created(kTrials);
-  tbb::parallel_for(0, kTrials, [&](int trial) {
-    RandomForce force(p.forces, Random(Purpose::gate, {1, 0, static_cast<std::uint64_t>(trial)}));
-    created[trial] = run_gate(p, *method, {}, force).watch.energy_created;
-  });
-  std::array<double, 2> result{};
-  for (const double c : created) {
-    result[0] += c / kTrials;
-    result[1] = std::max(result[1], c);
-  }
-  return result;
 }
 
 // With one restitution for all contacts only the gain above is left, (h F)^2 in steps that are rare

@@ -1,7 +1,6 @@
 #include "dynamics/methods/penalty.h"
 
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@ namespace gatewalk::dynamics {
 namespace {
 
 using test::Draw;
+using test::energy_created;
 using test::kEps;
 using test::kPi;
 using test::measured;
@@ -270,23 +270,6 @@ TEST(Penalty, BouncingEndsAtRest) {
 }
 
 // ---- S7: energy ----
-
-/// Mean and largest energy created in 300 trials.
-std::array<double, 2> energy_created(const GateParams& p) {
-  constexpr int kTrials = 300;
-  const auto method = make_method(p);
-  std::vector<double> created(kTrials);
-  tbb::parallel_for(0, kTrials, [&](int trial) {
-    RandomForce force(p.forces, Random(Purpose::gate, {1, 0, static_cast<std::uint64_t>(trial)}));
-    created[trial] = run_gate(p, *method, {}, force).watch.energy_created;
-  });
-  std::array<double, 2> result{};
-  for (const double c : created) {
-    result[0] += c / kTrials;
-    result[1] = std::max(result[1], c);
-  }
-  return result;
-}
 
 // With the contacts' springs counted, what appears falls with the step at first order. Measured
 // means 0.364, 0.163 and 0.079 J, worst 1.8, 1.4 and 0.5 J of a disc that has up to 430 J.

@@ -274,7 +274,7 @@ TEST(Crowd, RememberedBeamsSwingOnInClosedForm) {
   const auto expect_swung = [&](double tolerance) {
     const auto now = crowd.beams(kMiddle, 0);
     for (const Side side : {kLeft, kRight}) {
-      const double k = side == kLeft ? p.beams.stiffness_left : p.beams.stiffness_right;
+      const double k = p.beams.stiffness(side);
       const BeamState s =
           swung(k, p.beams.damping, p.beams.inertia(), left[side], crowd.seconds() - then);
       EXPECT_NEAR(now[side].theta, s.theta, tolerance);
