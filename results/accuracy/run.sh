@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Speed against accuracy of every method: the six scenes with 10 000 trials per setting, and, apart,
+# Speed against accuracy of every method: the six scenes with 10^5 trials per setting, and, apart,
 # overdamped beams with 1000, where most methods are slow or fail.
-#   results/accuracy/run.sh [GATEWALK]      about 15 minutes on two cores
+#   results/accuracy/run.sh [GATEWALK]      about an hour on two cores
 # Writes chart.csv, chart.json, chart.svg; overdamped/ the same; manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -13,6 +13,6 @@ mkdir -p "$here/overdamped"
 
 scenes=()
 for scene in single_gate field soft_left wading undamped stiff; do scenes+=("scenes/$scene.toml"); done
-"$gatewalk" chart "${scenes[@]}" --trials 1e4 --seed 1 -o "$here" >"$here/chart.txt"
+"$gatewalk" chart "${scenes[@]}" --trials 1e5 --seed 1 -o "$here" >"$here/chart.txt"
 "$gatewalk" chart "scenes/overdamped.toml" --trials 1000 --seed 1 -o "$here/overdamped" >"$here/overdamped/chart.txt"
 manifest "results/accuracy/run.sh" >"$here/manifest.txt"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Table IV with 10 000 trials per start, the converged single-gate figures, and the health of 10^5
 # runs of method stable at each random force.
-#   results/table4/run.sh [GATEWALK]      about 4 minutes on two cores
+#   results/table4/run.sh [GATEWALK]      about 2 minutes on two cores
 # Writes validation.txt (the table), single_gate.csv, health.csv, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
