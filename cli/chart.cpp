@@ -24,6 +24,7 @@ using dynamics::Verdict;
 using dynamics::WeakError;
 
 constexpr double kSamePlace = 1e-9;    // of R: what is nearer is rounding, or the same bits
+constexpr double kChances = 2.0;        // times what chance would show: what stands out from it
 constexpr double kTimedSeconds = 0.1;  // of the usual setting: the trials that are timed
 
 struct Errors {
@@ -58,6 +59,13 @@ struct SceneChart {
   // What cannot be told from the reference's own error.
   [[nodiscard]] double outcome_limit() const { return weak_limit(own.outcomes, trials); }
   [[nodiscard]] double column_limit() const { return weak_limit(own.columns, trials); }
+  /// What a setting's error must reach to stand out from that and from chance.
+  [[nodiscard]] double outcome_bound(const Errors& e) const {
+    return std::max(outcome_limit(), kChances * e.outcomes.chance);
+  }
+  [[nodiscard]] double column_bound(const Errors& e) const {
+    return std::max(column_limit(), kChances * e.columns.chance);
+  }
   /// Infinite when the reference has parted from itself.
   [[nodiscard]] double strong_limit(double StrongError::*what) const {
     if (std::isfinite(own.strong.*what)) return dynamics::kReferenceMargin * own.strong.*what;
@@ -244,9 +252,9 @@ std::string csv_of(const std::vector<SceneChart>& charts) {
       };
       out << number(least(p.microseconds)) << ',' << number(median(p.microseconds)) << ','
           << number(per_run(h.steps, h)) << ',' << number(per_run(h.evaluations, h)) << ',';
-      weak(outcomes, chart.outcome_limit());
+      weak(outcomes, chart.outcome_bound(p.errors));
       out << outcomes.changed << ',';
-      weak(columns, chart.column_limit());
+      weak(columns, chart.column_bound(p.errors));
       out << strong.compared << ',' << number(strong.parted_share()) << ',';
       const Shown position = shown(strong.position, chart.position_limit());
       out << number(position.value) << ',' << (position.below ? number(chart.position_limit()) : "");
@@ -290,8 +298,8 @@ Json to_json(const StrongError& e, const SceneChart& chart, bool of_reference) {
 }
 
 Json to_json(const Errors& e, const SceneChart& chart, bool of_reference) {
-  return {{"outcomes", to_json(e.outcomes, of_reference ? 0.0 : chart.outcome_limit())},
-          {"columns", to_json(e.columns, of_reference ? 0.0 : chart.column_limit())},
+  return {{"outcomes", to_json(e.outcomes, of_reference ? 0.0 : chart.outcome_bound(e))},
+          {"columns", to_json(e.columns, of_reference ? 0.0 : chart.column_bound(e))},
           {"strong", to_json(e.strong, chart, of_reference)}};
 }
 
@@ -387,13 +395,13 @@ std::string lacks(const StrongError& e, double limit) {
   return e.parted > 0 ? "all parted" : "no exits";
 }
 
-/// A point's error, its standard error, and what it must reach to stand out from chance.
+/// A point's error, its standard error, and what it must reach to be told from no error.
 struct Drawn {
-  double error, spread, chance;
+  double error, spread, bound;
 };
 
-/// One panel: least time per trial against error. What is below `limit` or does not stand out from
-/// chance is drawn there, as less than that. `tag` makes names of data blocks.
+/// One panel: least time per trial against error. What is below its bound is drawn there, as less
+/// than that; `limit` is the bound that the reference sets to all. `tag` makes names of data blocks.
 template <class Value>
 std::string panel(const SceneChart& chart, const std::string& tag, const std::string& title,
                   const std::string& label, double limit, double own, Value value) {
@@ -415,9 +423,8 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
     std::string line, good, bars, failed, below, usual;
     for (const Point& p : chart.points) {
       if (p.setting.method != method) continue;
-      const auto [error, spread, chance] = value(p);
+      const auto [error, spread, bound] = value(p);
       const double time = least(p.microseconds);
-      const double bound = std::max(limit, chance);
       if (!p.ran() || !std::isfinite(error) || !std::isfinite(bound)) {
         without.emplace_back(&p, p.ran() ? lacks(p.errors.strong, limit)
                                          : std::string(dynamics::name_of(p.verdict)));
@@ -428,10 +435,12 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
       const double y = std::max(error, bound);
       const std::string x_y = digits(time) + " " + digits(y);
       line += x_y + "\n";
-      if (p.verdict != Verdict::fine)
-        failed += x_y + " " + letter_of(p.verdict) + "\n";
-      else
-        (error < bound ? below : good) += x_y + "\n";
+      const bool fails = p.verdict != Verdict::fine;
+      if (fails) failed += x_y + " " + letter_of(p.verdict) + "\n";
+      if (error < bound)
+        below += x_y + "\n";
+      else if (!fails)
+        good += x_y + "\n";
       if (error >= bound && std::isfinite(spread))
         bars += x_y + " " + digits(std::max(error - 2 * spread, 0.1 * error)) + " " +
                 digits(error + 2 * spread) + "\n";
@@ -495,7 +504,7 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
 
 void draw(const std::string& path, const std::vector<SceneChart>& charts) {
   const int rows = static_cast<int>(charts.size());
-  constexpr int kRow = 375;
+  constexpr int kRow = 395;
   const int header = 60, height = kRow * rows + header;
   std::ostringstream out;
   out << "set multiplot\nset format y '10^{%L}'\nset xtics nomirror\n"
@@ -504,7 +513,7 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
          "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n";
   for (int row = 0; row < rows; ++row) {
     const SceneChart& chart = charts[static_cast<std::size_t>(row)];
-    const double top = 1.0 - static_cast<double>(header + kRow * row + 66) / height;
+    const double top = 1.0 - static_cast<double>(header + kRow * row + 86) / height;
     const double bottom = top - 240.0 / height;
     const auto place = [&](double left, double right) {
       out << "set lmargin at screen " << left << "\nset rmargin at screen " << right
@@ -543,14 +552,15 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
     place(0.075, 0.485);
     const std::string tag = "S" + std::to_string(row);
     out << panel(chart, tag + "weak", "distribution of outcomes", "total variation",
-                 chart.outcome_limit(), chart.own.outcomes.total_variation, [](const Point& p) {
+                 chart.outcome_limit(), chart.own.outcomes.total_variation, [&](const Point& p) {
                    const WeakError& e = p.errors.outcomes;
-                   return Drawn{e.total_variation, e.standard_error, 2.0 * e.chance};
+                   return Drawn{e.total_variation, e.standard_error,
+                                chart.outcome_bound(p.errors)};
                  });
     place(0.575, 0.985);
     out << panel(chart, tag + "strong", "where a trial ends, median", "distance (m)",
-                 chart.position_limit(), chart.own.strong.position, [](const Point& p) {
-                   return Drawn{p.errors.strong.position, std::nan(""), 0.0};
+                 chart.position_limit(), chart.own.strong.position, [&](const Point& p) {
+                   return Drawn{p.errors.strong.position, std::nan(""), chart.position_limit()};
                  });
   }
   out << "unset multiplot\n";
@@ -558,6 +568,19 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
 }
 
 // ---- Table ----
+
+/// The cheapest setting without faults whose outcomes are shown to be within run.tolerance.
+std::string advice(const SceneChart& chart) {
+  const double tolerance = chart.scene.gate.run.tolerance;
+  const Point* best = nullptr;
+  for (const Point& p : chart.points) {
+    const double most = std::max(p.errors.outcomes.total_variation, chart.outcome_bound(p.errors));
+    if (p.verdict != Verdict::fine || !(most <= tolerance)) continue;
+    if (best == nullptr || least(p.microseconds) < least(best->microseconds)) best = &p;
+  }
+  const std::string text = "  cheapest setting without faults, outcomes within " + digits(tolerance) + ": ";
+  return text + (best == nullptr ? "none shown; more --trials may show one" : name_of(best->setting)) + "\n";
+}
 
 std::string table_of(const SceneChart& chart) {
   std::ostringstream out;
@@ -594,15 +617,16 @@ std::string table_of(const SceneChart& chart) {
       return std::string(buffer);
     };
     const auto& e = p.errors;
-    const bool below = e.outcomes.total_variation < chart.outcome_limit();
+    const bool below = e.outcomes.total_variation < chart.outcome_bound(e);
     out << padded(fixed(least(p.microseconds), 1), 11) << padded(fixed(per_run(p.health.steps, p.health), 0), 8)
-        << "  " << padded(text(e.outcomes.total_variation, chart.outcome_limit()), -10)
+        << "  " << padded(text(e.outcomes.total_variation, chart.outcome_bound(e)), -10)
         << padded(below ? "" : text(e.outcomes.standard_error, 0.0), -10)
         << padded(text(e.outcomes.chance, 0.0), -10)
-        << padded(text(e.columns.total_variation, chart.column_limit()), -10)
+        << padded(text(e.columns.total_variation, chart.column_bound(e)), -10)
         << padded(text(e.strong.position, chart.position_limit()), -11)
         << padded(percent(e.strong.parted_share(), 1.0, 2), 8) << "  " << dynamics::name_of(p.verdict) << "\n";
   }
+  out << advice(chart);
   return out.str();
 }
 
@@ -647,7 +671,8 @@ int run_chart(const std::vector<std::string>& arguments) {
   Options options("chart SCENE... -o DIR [options]",
                   "Charts the methods' speed against their accuracy, each over its own settings: time per\n"
                   "trial on one thread, and error against a reference under the same noise. Writes chart.csv\n"
-                  "and chart.json, again after each scene, and chart.svg.",
+                  "and chart.json, again after each scene, and chart.svg. With 1e5 trials a scene takes some\n"
+                  "ten minutes; --trials 2000 --repeats 3 gives a first look in one.",
                   "gatewalk chart scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
   options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");
   options.add()
@@ -698,8 +723,12 @@ int run_chart(const std::vector<std::string>& arguments) {
          std::to_string(charts.size()) + " of " + std::to_string(paths.size()) + " scenes that were finished");
     return kStopped;
   }
-  options.give_out(json, table + "\n* usual: the defaults, 0.004 s for paper. Times: least of " + std::to_string(rounds) +
-                             " rounds on one thread, " + machine() + "\n");
+  options.give_out(json, table + "\n* usual: the defaults, 0.004 s for paper. us/trial: least of " + std::to_string(rounds) +
+                             " rounds on one thread, " + machine() +
+                             "\noutcomes, columns: total variation from the reference, of the outcomes and of the crossing"
+                             "\nstates; +-: its standard error; chance: what chance alone would show; <: not told from no error."
+                             "\nexit (m): median distance at the exit; parted: share of exits that took another course, these count"
+                             "\nas infinitely far. status: ok, or the worst fault seen.\n");
   draw(file("chart.svg"), charts);
   for (const SceneChart& chart : charts)
     if (chart.reference_verdict != Verdict::fine)

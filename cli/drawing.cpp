@@ -49,7 +49,7 @@ Look look_of(std::string_view method) {
   if (method == "stable") return {"#0072b2", 7};
   if (method == "moreau") return {"#009e73", 9};
   if (method == "penalty") return {"#e69f00", 13};
-  return {"#cc79a7", 11};
+  return {"#cc79a7", 15};
 }
 
 void draw_svg(const std::string& path, int width, int height, const std::string& commands) {

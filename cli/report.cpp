@@ -42,11 +42,11 @@ Json to_json(const dynamics::Health& h) {
 std::string complaint(const dynamics::Health& h) {
   if (h.clean()) return "";
   const auto share = [&](std::int64_t n) {
-    return percent(static_cast<double>(n), static_cast<double>(h.runs));
+    return std::to_string(n) + " of " + std::to_string(h.runs) + " gate runs";
   };
   std::string text = "the method showed faults:";
   if (h.penetrating > 0)
-    text += " the disc sank into a beam in " + share(h.penetrating) + " of the gate runs (worst " +
+    text += " the disc sank into a beam in " + share(h.penetrating) + " (worst " +
             fixed(h.worst_penetration, 2) + " m);";
   if (h.creating_energy > 0)
     text += " energy appeared from nothing in " + share(h.creating_energy) + " (worst " +
@@ -60,6 +60,9 @@ std::string complaint(const dynamics::Health& h) {
   if (h.undefined_contacts > 0)
     text += " " + std::to_string(h.undefined_contacts) +
             " steps overlapped a joint, for which it has no formula;";
+  if (h.piled_up())
+    text += " hits piled up and were forced to end in " + std::to_string(h.forced_holds) + " of " +
+            std::to_string(h.steps) + " steps;";
   if (h.broken > 0) text += " " + std::to_string(h.broken) + " runs stopped being finite numbers;";
   text.back() = '.';
   return text;

@@ -282,7 +282,7 @@ int run_stability(const std::vector<std::string>& arguments) {
   Json json;
   json["trials_per_point"] = dynamics::kTrialsPerPoint;
   json["work_granted_per_point"] = dynamics::kMostWorkPerPoint;
-  json["holds_share"] = dynamics::kHoldsShare;
+  json["holds_share"] = dynamics::Health::kPermittedHolds;
   json["maps"] = Json::array();
   for (const FinishedMap& m : maps) json["maps"].push_back(to_json(m));
   json["made_by"] = {{"program", "gatewalk"}, {"version", kVersion}, {"commit", kCommit},

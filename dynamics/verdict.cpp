@@ -7,7 +7,7 @@ Verdict judge(const Health& h, std::int64_t cut_short, double permitted) {
   const double steps = static_cast<double>(h.steps);
   const auto over = [](std::int64_t n, double limit) { return static_cast<double>(n) > limit; };
   if (h.broken > 0) return Verdict::not_finite;
-  if (cut_short > 0 || over(h.forced_holds, kHoldsShare * steps)) return Verdict::stuck;
+  if (cut_short > 0 || h.piled_up()) return Verdict::stuck;
   if (over(h.unstable, runs)) return Verdict::beyond_bound;
   if (over(h.penetrating, runs)) return Verdict::penetration;
   if (over(h.creating_energy, runs)) return Verdict::energy;

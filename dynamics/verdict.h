@@ -29,10 +29,6 @@ inline constexpr std::array<std::string_view, 10> kVerdictNames{
   return kVerdictNames[static_cast<std::size_t>(v)];
 }
 
-/// Share of the steps in which hits may pile up before the runs count as stuck. `stable` needs it
-/// about once in 10 000 steps where it is sound.
-inline constexpr double kHoldsShare = 0.01;
-
 /// The worst fault that more than `permitted` (a share) of the runs showed. No run may break or be
 /// cut short; contacts without a formula are compared with the number of steps.
 [[nodiscard]] Verdict judge(const Health& health, std::int64_t cut_short, double permitted);

@@ -223,8 +223,9 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
     const double when = first_hit(s, force_x, end, left, hit, watch);
     if (outside(p_, s.body)) return start + leave(before, s, when);
     resolve_hits(p_, s, touching_, watch,
-                 [&](Side, double impulse, double) {
-                   return impulse < threshold_ || hits >= kMaxHits;
+                 [&](Side, double impulse, double rebound) {
+                   // What does not bounce is in contact from now on.
+                   return impulse < threshold_ || rebound <= kRest || hits >= kMaxHits;
                  });
     left -= when;
     if (left <= 1e-15 * flow.dt) return flow.dt;

@@ -332,7 +332,9 @@ TEST(Verdict, IsTheWorstFaultOfMoreThanThePermittedRuns) {
   EXPECT_EQ(judge(h, 0, 0.01), Verdict::penetration);
   h.unstable = 11;
   EXPECT_EQ(judge(h, 0, 0.01), Verdict::beyond_bound);
-  h.forced_holds = 1001;
+  h.forced_holds = 100;
+  EXPECT_EQ(judge(h, 0, 0.01), Verdict::beyond_bound);
+  h.forced_holds = 101;
   EXPECT_EQ(judge(h, 0, 0.01), Verdict::stuck);
   h.forced_holds = 0;
   EXPECT_EQ(judge(h, 1, 0.01), Verdict::stuck);
