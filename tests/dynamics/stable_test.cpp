@@ -258,7 +258,8 @@ TEST(Zeno, NumbersOfTheKnownAnswers) {
 
 // Without a threshold every flight is flown until a step holds more hits than a method can bear;
 // then contact is forced. With 50 hits in one step, its 49 flights are over 49 times as long as the
-// next; less than (step / 49) / (1 - e) is left to bounce.
+// next; less than (step / 49) / (1 - e) is left to bounce. Small e needs no force: before 50 hits the
+// disc leaves at no more than what counts as rest.
 TEST(Zeno, EndsWithoutAThreshold) {
   for (const double e : {0.1, 0.5, 0.8, 0.95, 0.99}) {
     SCOPED_TRACE(e);
@@ -266,9 +267,10 @@ TEST(Zeno, EndsWithoutAThreshold) {
     Ride ride(b.scene(), kBelowThePin);
     const double t = time_until_held(ride, 2 * b.zeno_time());
     EXPECT_NEAR(t, b.zeno_time(), b.step * (1 + 1 / (49 * (1 - e))));
-    EXPECT_EQ(ride.watch.forced_holds, 1);
+    const int forced = std::pow(e, 50) < 1e-12 ? 0 : 1;
+    EXPECT_EQ(ride.watch.forced_holds, forced);
     ride.go(1.0);
-    EXPECT_EQ(ride.watch.forced_holds, 1);
+    EXPECT_EQ(ride.watch.forced_holds, forced);
     EXPECT_NEAR(ride.s.body.y, 20.0, 1e-9 * ride.p.body.radius);
     EXPECT_NEAR(ride.s.body.vy, 0.0, 1e-9);
   }
