@@ -1,5 +1,9 @@
 #include "cli/auto.h"
 
+#include <optional>
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
 #include "cli/report.h"
 
 namespace gatewalk::cli {
@@ -19,6 +23,18 @@ std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from)
   return starts;
 }
 
+/// Keys that the user gave and the method does not look at.
+void warn_unused(const Scene& scene) {
+  const std::string& method = scene.gate.run.method;
+  const auto unused = [&](const char* key, bool used, const std::string& why) {
+    if (!used && scene.named.contains(key)) warn(std::string(key) + " has no effect: " + why);
+  };
+  const std::string says = "run.method = \"" + method + "\" ";
+  const bool chosen = method == "auto", event = method == "event";
+  unused("run.step_s", !chosen && !event, says + (chosen ? "chooses it" : "has no step"));
+  unused("run.event_tolerance_m", event, says + (chosen ? "chooses it" : "does not use it"));
+}
+
 std::string setting_text(const Json& settled) {
   const bool event = settled["method"] == "event";
   return "method " + settled["method"].get<std::string>() +
@@ -29,11 +45,22 @@ std::string setting_text(const Json& settled) {
 }  // namespace
 
 Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
+  warn_unused(scene);
   if (scene.gate.run.method != "auto") return nullptr;
   const double tolerance = scene.gate.run.tolerance;
   const auto starts = pilot_starts(scene, from);
-  remark(options, "run.method \"auto\": trying methods on pilot trials");
-  const dynamics::Choice choice = dynamics::choose_method(scene.gate, starts, options.seed());
+  std::optional<Progress> progress;
+  std::string shown;
+  const auto report = [&](const dynamics::Setting& s, std::int64_t done, std::int64_t trials) {
+    if (interrupted()) throw Interrupted{};
+    const std::string label = "run.method \"auto\": pilot of " + std::to_string(trials) +
+                              " trials, " + s.method + " " + Json(s.value).dump();
+    if (label != shown) progress.emplace(shown = label, trials, options.talk());
+    progress->update(done);
+  };
+  const dynamics::Choice choice =
+      dynamics::choose_method(scene.gate, starts, options.seed(), report);
+  progress.reset();
   scene.gate = choice.params;
 
   Json settled;

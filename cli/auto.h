@@ -10,7 +10,8 @@ namespace gatewalk::cli {
 enum class RunsFrom { start, everywhere };
 
 /// Replaces "auto" in the scene by the method and setting that a pilot chooses. Returns what was
-/// tried, for the result; null when the scene names its method. Warns when nothing met the tolerance.
+/// tried, for the result; null when the scene names its method. Warns when nothing met the tolerance,
+/// and of keys that the user gave though the method does not use them.
 [[nodiscard]] Json settle_method(const Options& options, Scene& scene, RunsFrom from);
 
 /// "method stable, run.step_s = 0.02: chosen by ..." as a line of a table; empty for null.

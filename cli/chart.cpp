@@ -236,13 +236,11 @@ std::string csv_of(const std::vector<SceneChart>& charts) {
     for (const Point& p : chart.points) {
       const auto& h = p.health;
       const auto& [outcomes, columns, strong] = p.errors;
-      out << chart.label << ',' << p.setting.method << ',' << p.setting.key << ','
+      out << csv_text(chart.label) << ',' << p.setting.method << ',' << p.setting.key << ','
           << digits(p.setting.value) << ',' << (p.setting.usual ? 1 : 0) << ','
           << dynamics::name_of(p.verdict) << ',' << h.runs << ',';
       if (!p.ran()) {  // nothing but the reason
-        std::string reason;
-        for (const char c : p.refusal) reason += c == '"' ? '\'' : c;
-        out << std::string(30, ',') << '"' << reason << "\"\n";
+        out << std::string(30, ',') << csv_text(p.refusal) << "\n";
         continue;
       }
       const auto weak = [&](const WeakError& e, double limit) {

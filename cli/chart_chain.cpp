@@ -803,6 +803,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
 
   Chart chart;
   const auto paper = dynamics::StateSpace::paper(scene.gate);
+  warn_outside_bins(starts, scene, paper);
   for (const double factor : factors_of(options)) {
     Curve curve{factor, dynamics::refined(paper, factor)};
     for (const std::int64_t trials : kTrialsPerRow)
@@ -919,8 +920,8 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   std::filesystem::remove(file("chain.svg"));  // an old figure shall not stand beside new numbers
   write_text_atomically(file("chain.csv"), csv_of(chart));
   write_text_atomically(file("chain.json"), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-  draw(file("chain.svg"), chart);
   options.give_out(json, table_of(chart, runs_limit));
+  draw(file("chain.svg"), chart);
   if (!chart.health.clean()) warn(complaint(chart.health));
   return kFine;
 }

@@ -65,8 +65,6 @@ Options::Options(std::string synopsis, std::string about, std::string example)
     : synopsis_(std::move(synopsis)), about_(std::move(about)), example_(std::move(example)),
       own_("Options") {
   shared_.add_options()
-      ("set", po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUE"),
-       "override a key of the scene, e.g. forces.random_N=20 (may be repeated)")
       ("json", po::value<std::string>()->value_name("FILE"),
        "write the result as JSON; - is standard output")
       ("threads", po::value<int>()->default_value(0)->value_name("N"),
@@ -90,6 +88,9 @@ void Options::positional_list(const std::string& name, const std::string& help) 
 }
 
 bool Options::parse(const std::vector<std::string>& arguments) {
+  (no_scene_.empty() ? own_ : hidden_).add_options()
+      ("set", po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUE"),
+       "override a key of the scene, e.g. forces.random_N=20 (may be repeated)");
   po::options_description all;
   all.add(own_).add(shared_).add(hidden_);
   using namespace po::command_line_style;
@@ -115,6 +116,7 @@ bool Options::parse(const std::vector<std::string>& arguments) {
     if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
     return false;
   }
+  if (!no_scene_.empty() && has("set")) throw UsageError("--set has no meaning here: " + no_scene_);
   for (const auto& name : required_) {
     if (has(name)) continue;
     std::string shown = name;

@@ -56,7 +56,7 @@ int run_chart(const std::vector<std::string>& arguments);
 int run_stability(const std::vector<std::string>& arguments);
 int run_chart_chain(const std::vector<std::string>& arguments);
 
-/// Options of one command with the shared ones: --set, --threads, --quiet, --json, --help.
+/// Options of one command with the shared ones: --threads, --quiet, --json, --help.
 class Options {
  public:
   /// `synopsis` e.g. "gate SCENE [options]"; `about` and `example` complete the help page.
@@ -68,6 +68,8 @@ class Options {
   /// value is a std::vector<std::string>.
   void positional_list(const std::string& name, const std::string& help);
   po::options_description_easy_init add() { return own_.add_options(); }
+  /// There is no scene to override keys of: --set is refused with `reason`, and not on the help page.
+  void without_scene(const std::string& reason) { no_scene_ = reason; }
 
   /// Reads the arguments. False when --help was asked for and printed. Throws UsageError.
   [[nodiscard]] bool parse(const std::vector<std::string>& arguments);
@@ -102,6 +104,7 @@ class Options {
   std::vector<std::string> required_;
   po::variables_map values_;
   std::string canonical_;
+  std::string no_scene_;  // why there is no --set, if there is none
 };
 
 /// Adds --seed, and --trials with the paper's 100.

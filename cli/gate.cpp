@@ -32,15 +32,23 @@ int run_gate(const std::vector<std::string>& arguments) {
   json["exited_right"] = tally.exited_right;
   json["trapped"] = tally.trapped;
   json["not_finite"] = tally.broken;
+  json["intervals_95"] = Json::object();
+  for (const char* outcome : {"traversed", "traversed_left", "traversed_right", "exited_left",
+                              "exited_right", "trapped"})
+    json["intervals_95"][outcome] = share_interval(json[outcome].get<std::int64_t>(), tally.trials);
   if (!settled.is_null()) json["method"] = settled;
   json["status"] = to_json(tally.health);
   json["made_by"] = manifest(options, scene);
 
   const auto line = [&](const char* name, std::int64_t n) {
+    const auto [low, high] = share_interval(n, tally.trials);
     return padded(name, -18) + padded(std::to_string(n), 10) +
-           padded(percent(static_cast<double>(n), static_cast<double>(tally.trials), 2), 11) + "\n";
+           padded(percent(static_cast<double>(n), static_cast<double>(tally.trials), 2), 11) +
+           "   [" + fixed(100.0 * low, 2) + ", " + fixed(100.0 * high, 2) + "]\n";
   };
-  std::string table = line("trials", tally.trials) + line("traversed", tally.traversed()) +
+  std::string table = scene_line(scene) + padded("trials", -18) +
+                      padded(std::to_string(tally.trials), 10) + "   share     95 % interval\n" +
+                      line("traversed", tally.traversed()) +
                       line("  left beam", tally.traversed_left) +
                       line("  right beam", tally.traversed_right);
   if (tally.traversed_even > 0) table += line("  both evenly", tally.traversed_even);

@@ -30,6 +30,9 @@ int run_lattice(const std::vector<std::string>& arguments) {
   json["left_field"] = tally.left_field;
   json["cut_off"] = tally.cut_off;
   json["not_finite"] = tally.broken;
+  json["intervals_95"] = {{"trapped", share_interval(tally.trapped, tally.trials)},
+                          {"left_field", share_interval(tally.left_field, tally.trials)},
+                          {"cut_off", share_interval(tally.cut_off, tally.trials)}};
   Json entries;
   for (int b = 0; b < dynamics::kBoundaries; ++b)
     entries[std::string(dynamics::kBoundaryNames[b])] = {{"count", tally.entries[b]},
@@ -40,11 +43,15 @@ int run_lattice(const std::vector<std::string>& arguments) {
   json["made_by"] = manifest(options, scene);
 
   const auto n = static_cast<double>(tally.trials);
-  std::string table = map_of(tally.final_gates.cast<double>() / n) + "trials " +
-                      std::to_string(tally.trials) + ": trapped " +
-                      percent(static_cast<double>(tally.trapped), n, 2) + ", left the field " +
-                      percent(static_cast<double>(tally.left_field), n, 2) + ", cut off " +
-                      percent(static_cast<double>(tally.cut_off), n, 2) + "\n";
+  const auto share = [&](std::int64_t part) {
+    const auto [low, high] = share_interval(part, tally.trials);
+    return percent(static_cast<double>(part), n, 2) + " [" + fixed(100.0 * low, 2) + ", " +
+           fixed(100.0 * high, 2) + "]";
+  };
+  std::string table = scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) + "trials " +
+                      std::to_string(tally.trials) + ": trapped " + share(tally.trapped) +
+                      ", left the field " + share(tally.left_field) + ", cut off " +
+                      share(tally.cut_off) + " (95 % intervals)\n";
   if (tally.broken > 0)
     table += "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
   options.give_out(json, table + method_line(settled));

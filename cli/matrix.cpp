@@ -22,6 +22,14 @@ dynamics::Transitions build_matrix(const Scene& scene, double bins, std::int64_t
   return t;
 }
 
+std::string faults_recorded(const Json& status) {
+  try {
+    return complaint(health_from(status));
+  } catch (const Json::exception&) {
+    return "the record of numerical faults is missing or damaged.";
+  }
+}
+
 MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::string& scene_path,
                                      const std::vector<std::string>& overrides) {
   lattice::MatrixFile file = lattice::read_matrix(matrix_path);
@@ -45,9 +53,8 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
   scene.gate = built_with.gate;  // the same, or the method that "auto" was settled to
   const auto text = file.text.find("status");
   Json status = text == file.text.end() ? Json() : Json::parse(text->second, nullptr, false);
-  if (!status.is_object() || !status.value("clean", false))
-    warn("the runs that made " + matrix_path + " showed numerical faults, see gatewalk show " +
-         matrix_path);
+  if (const std::string faults = faults_recorded(status); !faults.empty())
+    warn("the runs that made " + matrix_path + ": " + faults);
   return {std::move(file), std::move(scene), std::move(status)};
 }
 

@@ -22,7 +22,10 @@ struct MatrixAndScene {
   Scene scene;
   Json status;  // the health of the runs that made the matrix
 };
-/// Warns when the matrix was made by runs that showed faults. Throws UsageError when the given scene's physics are not those the matrix was built with.
+/// The faults of the runs behind a stored status, in one sentence; empty when none were seen.
+[[nodiscard]] std::string faults_recorded(const Json& status);
+/// Warns when the matrix was made by runs that showed faults. Throws UsageError when the given
+/// scene's physics are not those the matrix was built with.
 [[nodiscard]] MatrixAndScene read_matrix_and_scene(const std::string& matrix_path,
                                                    const std::string& scene_path,
                                                    const std::vector<std::string>& overrides);

@@ -1,5 +1,6 @@
 #include "cli/report.h"
 
+#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -37,6 +38,25 @@ Json to_json(const dynamics::Health& h) {
   j["evaluations"] = h.evaluations;
   j["impacts"] = h.impacts;
   return j;
+}
+
+dynamics::Health health_from(const Json& j) {
+  dynamics::Health h;
+  h.runs = j.at("runs");
+  h.penetrating = j.at("runs_penetrating_over_1_percent");
+  h.creating_energy = j.at("runs_creating_energy");
+  h.fast = j.at("runs_too_fast_for_the_step");
+  h.unstable = j.at("runs_beyond_the_stability_bound");
+  h.broken = j.at("runs_not_finite");
+  h.undefined_contacts = j.at("contacts_without_a_formula");
+  h.forced_holds = j.at("steps_forced_to_hold");
+  h.worst_penetration = j.at("worst_penetration_m");
+  h.worst_energy_created = j.at("worst_energy_created_J");
+  h.worst_speed = j.at("worst_speed_m_per_s");
+  h.steps = j.at("steps");
+  h.evaluations = j.at("evaluations");
+  h.impacts = j.at("impacts");
+  return h;
 }
 
 std::string complaint(const dynamics::Health& h) {
@@ -130,7 +150,36 @@ std::string percent(double part, double whole, int digits) {
   return fixed(whole > 0.0 ? 100.0 * part / whole : std::nan(""), digits) + " %";
 }
 
+// Brown, Cai and DasGupta, Interval estimation for a binomial proportion, Statist. Sci. 16, 2001.
+std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
+  const auto n = static_cast<double>(part), others = static_cast<double>(whole - part);
+  return {part == 0 ? 0.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.025),
+          part == whole ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
+}
+
+std::string scene_line(const Scene& scene) {
+  const auto& [gate, field, start, source, named] = scene;
+  std::ostringstream text;
+  text << source << ": start x " << start.x << ", y " << start.y << " m, v (" << start.vx << ", "
+       << start.vy << ") m/s; disc " << gate.body.mass << " kg, R " << gate.body.radius << " m; F "
+       << gate.forces.propulsion << " N, Rm " << gate.forces.random << " N; beams k "
+       << gate.beams.stiffness_left << " / " << gate.beams.stiffness_right << ", d "
+       << gate.beams.damping << "; " << gate.run.method;
+  if (gate.run.method == "event")
+    text << " " << gate.run.event_tolerance << " m\n";
+  else
+    text << " " << gate.run.step << " s\n";
+  return text.str();
+}
+
 std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
 
 std::string padded(const std::string& text, int width) {
   const auto wanted = static_cast<std::size_t>(std::abs(width));

@@ -1,7 +1,9 @@
 #pragma once
 /// Results as JSON and as tables to read.
 
+#include <array>
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "cli/command.h"
@@ -14,6 +16,8 @@ namespace gatewalk::cli {
 
 /// The record of numerical faults: {"clean": bool, counts, worst values, remarks}.
 [[nodiscard]] Json to_json(const dynamics::Health& health);
+/// Its inverse. Throws nlohmann::json::exception when a count is missing.
+[[nodiscard]] dynamics::Health health_from(const Json& j);
 /// One sentence if something was seen, else empty.
 [[nodiscard]] std::string complaint(const dynamics::Health& health);
 
@@ -28,8 +32,14 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string fixed(double x, int digits);
 /// "12.3 %"
 [[nodiscard]] std::string percent(double part, double whole, int digits = 1);
+/// What share of all trials a count of some stands for, with 95 %: Jeffreys' interval.
+[[nodiscard]] std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole);
+/// What is run, in one line: start, body, forces, beams, method.
+[[nodiscard]] std::string scene_line(const Scene& scene);
 /// A p-value with 3 decimals, or "<0.001".
 [[nodiscard]] std::string p_text(double p);
+/// A field of a CSV file (RFC 4180): in quotation marks where it needs them.
+[[nodiscard]] std::string csv_text(const std::string& text);
 /// Text padded on the left or (negative width) on the right.
 [[nodiscard]] std::string padded(const std::string& text, int width);
 

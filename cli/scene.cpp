@@ -438,8 +438,8 @@ Scene parse_scene(std::string_view text, std::string name,
     const auto it = settings.find(key.key);
     if (it != settings.end()) assign(key, it->second, scene);
   }
-  scene.names_step = settings.contains("run.step_s");
-  if (!scene.names_step)
+  for (const auto& [key, setting] : settings) scene.named.insert(std::string(key));
+  if (!scene.named.contains("run.step_s"))
     scene.gate.run.step = dynamics::default_step(scene.gate.run.method, scene.gate.forces.random_rate);
   check_together(scene, settings);
   return scene;
@@ -480,6 +480,9 @@ std::vector<std::string> physics_differences(const Scene& here, const Scene& the
     // "auto" agrees with whatever was chosen.
     const bool chosen = info.key == "run.step_s" || info.key == "run.event_tolerance_m";
     if (here.gate.run.method == "auto" && chosen) continue;
+    // These shape nothing here: how "auto" chose, and the setting of another method.
+    if (info.key == "run.tolerance" && here.gate.run.method != "auto") continue;
+    if (info.key == "run.event_tolerance_m" && there.gate.run.method != "event") continue;
     if (a != b) add(info.key, shortest(a), shortest(b));
   }
   if (here.gate.run.method != there.gate.run.method && here.gate.run.method != "auto") {

@@ -1,6 +1,7 @@
 #pragma once
 /// The scene file: everything a run depends on, in TOML, every key optional.
 
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,7 +17,7 @@ struct Scene {
   lattice::FieldParams field;
   dynamics::BodyState start{0.0, 0.0, 0.0, 15.0};  // m, m, m/s, m/s; in the first gate's frame
   std::string source;                              // the file it came from
-  bool names_step = false;                         // run.step_s is the user's, not the method's
+  std::set<std::string, std::less<>> named;        // keys the user gave, the rest are defaults
 };
 
 /// A scene that cannot be used. what() reads

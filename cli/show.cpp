@@ -1,6 +1,6 @@
 #include <sstream>
 
-#include "cli/command.h"
+#include "cli/matrix.h"
 #include "cli/report.h"
 
 namespace gatewalk::cli {
@@ -36,8 +36,8 @@ int run_show(const std::vector<std::string>& arguments) {
   options.positional("matrix", "matrix file written by gatewalk build", true);
   options.add()("rows", "a line per input state")
                ("row", po::value<int>()->value_name("I"), "all outputs of input state I (from 1)");
+  options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
-  if (options.has("set")) throw UsageError("--set has no meaning for show: a matrix keeps its scene");
   const lattice::MatrixFile file = lattice::read_matrix(options.text("matrix"));
   const Transitions& t = file.transitions;
   const int n = t.space.size();
@@ -82,9 +82,13 @@ int run_show(const std::vector<std::string>& arguments) {
       << percent(static_cast<double>(total.nonzeros), cells) << ")\n"
       << "  clamped crossings   " << percent(total.clamped_share(), 1.0) << "\n"
       << "  rows never sampled  " << total.empty_rows << "\n";
-  for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins", "status"})
+  for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins"})
     if (const auto it = file.text.find(key); it != file.text.end())
       out << "  " << padded(key, -20) << it->second << "\n";
+  const auto status = file.text.find("status");
+  const std::string faults = faults_recorded(
+      status == file.text.end() ? Json() : Json::parse(status->second, nullptr, false));
+  out << "  numerical faults    " << (faults.empty() ? "none seen" : faults) << "\n";
   if (options.has("rows")) {
     out << "\n  in  from d (m)       vx (m/s)    vy (m/s)    trials clamped |   EN    RD    LD    RT    LT  trap (%)\n";
     for (int row = 0; row < n; ++row) {

@@ -252,13 +252,14 @@ int run_stability(const std::vector<std::string>& arguments) {
   Options options("stability -o DIR [options]",
                   "Maps where each method breaks: step and stiffness, step and damping, restitution and\n"
                   "impulse threshold, first contact near a joint, grazing a tip. Writes stability.csv,\n"
-                  "stability.json and a figure per map.",
+                  "stability.json and a figure per map. The maps have scenes of their own; for a scene of\n"
+                  "yours there are gatewalk chart and run.method = \"auto\".",
                   "gatewalk stability -o results/stability --quick");
   options.add()("output,o", po::value<std::string>()->value_name("DIR"), "folder to write to")
       ("quick", "coarser maps");
   add_seed(options);
+  options.without_scene("the maps have scenes of their own");
   if (!options.parse(arguments)) return kFine;
-  if (options.has("set")) throw UsageError("--set has no meaning here: the maps have scenes of their own");
   if (options.text("output").empty()) throw UsageError("missing -o DIR: where to write the maps");
   const std::string folder = options.text("output");
   const auto file = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "cli/report.h"
+#include "lattice/gate_chain.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -46,6 +47,16 @@ void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
     if (!(std::abs(s.d) < side))
       throw UsageError("--start: d = " + fixed(s.d, 3) + " m must lie inside the gate, (-" +
                        fixed(side, 3) + ", " + fixed(side, 3) + ")");
+}
+
+void warn_outside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
+                       const dynamics::StateSpace& space) {
+  for (const PaperStart& s : starts) {
+    const lattice::ChainStart chain = lattice::chain_start(space, scene.field, s.body());
+    if (chain.clamped)
+      warn("start" + start_text(s) + " lies outside the chain's bins; the chain starts in the " +
+           "nearest one, " + text_of(space.cell(chain.start.input)));
+  }
 }
 
 std::string start_text(const PaperStart& s) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "dynamics/state_space.h"
 
 namespace gatewalk::cli {
 
@@ -23,6 +24,9 @@ void add_starts(Options& options);
 [[nodiscard]] std::vector<PaperStart> starts_of(const Options& options);
 /// Throws UsageError unless all of them lie between the sides of the scene's gates.
 void require_inside(const std::vector<PaperStart>& starts, const Scene& scene);
+/// Warns of each start that lies outside the chain's bins: the chain starts in the nearest one.
+void warn_outside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
+                       const dynamics::StateSpace& space);
 /// "  23  -11   16"
 [[nodiscard]] std::string start_text(const PaperStart& start);
 

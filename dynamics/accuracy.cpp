@@ -203,8 +203,8 @@ WeakError column_error(std::span<const TrialEnd> run, std::span<const TrialEnd> 
 }
 
 double weak_limit(const WeakError& own, std::int64_t trials) {
-  return kReferenceMargin *
-         std::max({own.total_variation, own.chance, 1.0 / static_cast<double>(trials)});
+  const double least = std::max({own.total_variation, own.chance, 1.0 / static_cast<double>(trials)});
+  return std::min(1.0, kReferenceMargin * least);
 }
 
 StrongError strong_error(const GateParams& p, std::span<const TrialEnd> run,

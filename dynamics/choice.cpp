@@ -31,13 +31,30 @@ std::vector<TrialRange> shares_of(std::int64_t trials, std::size_t starts) {
   return parts;
 }
 
-TrialEnds pilot(const GateParams& p, std::span<const BodyState> starts, std::uint64_t seed,
-                std::int64_t trials) {
-  TrialEnds ends;
-  for (std::size_t i = 0; i < starts.size(); ++i)
-    add_trial_ends(ends, p, starts[i], seed, share_of(trials, i, starts.size()));
-  return ends;
-}
+/// What all pilots have in common.
+struct Pilots {
+  const GateParams& p;
+  std::span<const BodyState> starts;
+  std::uint64_t seed;
+  const PilotProgress& progress;
+
+  [[nodiscard]] TrialEnds run(const Setting& setting, std::int64_t trials) const {
+    constexpr std::int64_t kBlock = 100;  // between two reports
+    const GateParams with = setting.applied_to(p);
+    TrialEnds ends;
+    std::int64_t done = 0;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const TrialRange all = share_of(trials, i, starts.size());
+      for (std::int64_t first = all.first; first < all.first + all.count; first += kBlock) {
+        const std::int64_t count = std::min(kBlock, all.first + all.count - first);
+        add_trial_ends(ends, with, starts[i], seed, {first, count});
+        done += count;
+        if (progress) progress(setting, done, trials);
+      }
+    }
+    return ends;
+  }
+};
 
 /// One standard error, from above: a trial that changed moves the total variation by 1/n at most,
 /// so all spread it by sqrt(changed)/n at most. (The paired standard error is smaller, and zero
@@ -48,15 +65,14 @@ double uncertainty_of(const WeakError& e, std::int64_t trials) {
 }
 
 /// Runs the pilot with the first of these that can and does so without faults.
-TrialEnds reference_pilot(const GateParams& p, std::span<const BodyState> starts,
-                          std::uint64_t seed, Choice& choice) {
+TrialEnds reference_pilot(const Pilots& pilots, Choice& choice) {
   const Setting settings[] = {{"event", "run.event_tolerance_m", 1e-5},
-                              {"stable", "run.step_s", 1.0 / (50.0 * p.forces.random_rate)}};
+                              {"stable", "run.step_s", 1.0 / (50.0 * pilots.p.forces.random_rate)}};
   std::optional<TrialEnds> ends;
   std::string refusals;
   for (const Setting& setting : settings) {
     try {
-      TrialEnds these = pilot(setting.applied_to(p), starts, seed, choice.trials);
+      TrialEnds these = pilots.run(setting, choice.trials);
       if (ends && these.verdict() != Verdict::fine) continue;
       ends = std::move(these);
       choice.reference = setting;
@@ -75,13 +91,15 @@ TrialEnds reference_pilot(const GateParams& p, std::span<const BodyState> starts
 
 }  // namespace
 
-Choice choose_method(const GateParams& p, std::span<const BodyState> starts, std::uint64_t seed) {
+Choice choose_method(const GateParams& p, std::span<const BodyState> starts, std::uint64_t seed,
+                     const PilotProgress& progress) {
   validate(p);
   if (starts.empty()) throw std::invalid_argument("a method is chosen for one start or more");
   for (const BodyState& b : starts)
     if (!std::isfinite(b.x + b.y + b.vx + b.vy) || outside(p, b))
       throw std::invalid_argument("a start from which a method is chosen must lie inside the gate");
 
+  const Pilots pilots{p, starts, seed, progress};
   Choice choice;
   const double wanted = std::ceil(kPilotTolerances / p.run.tolerance);
   choice.trials = std::max(kLeastPilot, static_cast<std::int64_t>(wanted));
@@ -90,7 +108,7 @@ Choice choose_method(const GateParams& p, std::span<const BodyState> starts, std
   for (const Candidate& c : kCandidates) {
     for (const Setting& setting : chart_settings(c.method, p)) {
       try {
-        const TrialEnds ends = pilot(setting.applied_to(p), starts, seed, kCountTrials);
+        const TrialEnds ends = pilots.run(setting, kCountTrials);
         Choice::Tried tried;
         tried.setting = setting;
         tried.work = c.microseconds * static_cast<double>(ends.health.evaluations) /
@@ -106,12 +124,12 @@ Choice choose_method(const GateParams& p, std::span<const BodyState> starts, std
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.work < b.work; });
 
-  const TrialEnds reference = reference_pilot(p, starts, seed, choice);
+  const TrialEnds reference = reference_pilot(pilots, choice);
   const std::vector<TrialRange> parts = shares_of(choice.trials, starts.size());
   for (Choice::Tried& tried : candidates) {
     if (choice.reference_verdict != Verdict::fine) break;
     if (tried.verdict == Verdict::fine) {
-      const TrialEnds ends = pilot(tried.setting.applied_to(p), starts, seed, choice.trials);
+      const TrialEnds ends = pilots.run(tried.setting, choice.trials);
       tried.error = outcome_error(ends.trials, reference.trials, parts);
       tried.uncertainty = uncertainty_of(tried.error, choice.trials);
       tried.verdict = ends.verdict();

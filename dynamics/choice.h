@@ -2,6 +2,7 @@
 /// run.method = "auto": the cheapest method and setting that a scene can do with.
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -33,12 +34,16 @@ struct Choice {
   bool met = false;                           // false: nothing was shown to fit
 };
 
+/// Told after every 100 trials of a pilot; may throw to stop.
+using PilotProgress =
+    std::function<void(const Setting& setting, std::int64_t done, std::int64_t trials)>;
+
 /// Tries settings of stable, moreau and event, cheapest first, on the same pilot trials from
 /// `starts` (shared out evenly) as a reference, until one is accurate enough. Settings that a
 /// method refuses are left out. Cost is counted, not timed, so that the same scene and seed give
 /// the same choice on any machine. Throws InvalidParameter when the scene is impossible, no method
 /// can run it or no reference can; std::invalid_argument for no start or one outside the gate.
 [[nodiscard]] Choice choose_method(const GateParams& p, std::span<const BodyState> starts,
-                                   std::uint64_t seed);
+                                   std::uint64_t seed, const PilotProgress& progress = {});
 
 }  // namespace gatewalk::dynamics

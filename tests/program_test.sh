@@ -47,6 +47,7 @@ expect 0 '"trials": 200' "$gatewalk" gate "$scenes/single_gate.toml" --trials 2e
 holds '.traversed + .exited_left + .exited_right + .trapped == .trials' gate.json
 holds '.traversed == .traversed_left + .traversed_right + .traversed_even' gate.json
 holds '.status.clean' gate.json
+holds '.trials as $n | .trapped / $n as $share | .intervals_95.trapped | .[0] < $share and $share < .[1]' gate.json
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json - --threads 1 2>/dev/null | cmp -s - gate.json ||
   fail "gate: another number of threads gave another file"
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 4 --json other.json --quiet
@@ -145,6 +146,8 @@ for bins in 0 -1 nan 1e9; do expect 2 'bins' "$gatewalk" build "$scenes/field.to
 holds '([.final_gates[][]] | add) == 100 and .trapped + .left_field + .cut_off + .not_finite == 100' lattice.json
 "$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=1 --trials 50 --json one.json --quiet
 holds '.final_gates[0][4] == 50' one.json
+# A key that shapes nothing in a matrix of this method is no difference.
+expect 0 '^trapped' "$gatewalk" predict m.nc "$scenes/field.toml" --set run.tolerance=0.01 --set run.event_tolerance_m=1e-4
 expect 2 'forces.random_N' "$gatewalk" walk m.nc "$scenes/field.toml" --set forces.random_N=12
 expect 2 'max_gates' "$gatewalk" predict m.nc --solver klu
 expect 2 'is a matrix' "$gatewalk" gate m.nc
@@ -156,8 +159,12 @@ expect 2 'run.traverse_y_m' "$gatewalk" lattice "$scenes/field.toml" --set run.t
 expect 2 'field.toml.*run.step_s' "$gatewalk" gate "$scenes/field.toml" --set beams.damping_Nms_per_rad=1e12
 # What cannot be taken at face value is said, even under --quiet.
 expect 0 'outside the chain' "$gatewalk" predict m.nc --set start.vy_m_per_s=-5 --quiet
+expect 0 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --start 0,0,-15 --start 0,0,15 --quiet --json out.json
+holds '[.starts[].start.clamped] == [true, false]' out.json
+expect 0 'run.step_s has no effect: run.method = "auto" chooses it' "$gatewalk" gate $auto --trials 5 --set run.step_s=0.01 --quiet --json out.json
+expect 0 'run.event_tolerance_m has no effect' "$gatewalk" gate "$scenes/field.toml" --trials 5 --set run.event_tolerance_m=1e-6 --quiet --json out.json
 "$gatewalk" build "$scenes/field.toml" --set run.method=paper --trials 5 -o paper.nc --quiet >/dev/null 2>&1
-expect 0 'showed numerical faults' "$gatewalk" walk paper.nc --quiet --json paper-walk.json
+expect 0 'paper.nc: the method showed faults: .* of [0-9]* gate runs' "$gatewalk" walk paper.nc --quiet --json paper-walk.json
 holds '.matrix_status.clean == false' paper-walk.json
 expect 0 'hits may have been missed' "$gatewalk" gate "$scenes/field.toml" --set body.radius_m=0.01 --set start.x_m=-12 --trials 1 --quiet
 # A start and a seed have their own noise, the same in every command.

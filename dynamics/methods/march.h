@@ -13,16 +13,13 @@ struct Spell {
   double duration;  // s
   long steps;
   double step;      // s
-  double look;      // s, time between two looks for contact
   bool usual;       // step == run.step
 
-  /// A method that cuts each step into `pieces` looks for contact in each.
-  Spell(const GateParams& p, double seconds, int pieces = 1) : duration(seconds) {
+  Spell(const GateParams& p, double seconds) : duration(seconds) {
     const double wanted = duration / p.run.step;
     steps = std::max<long>(1, std::lround(std::ceil(wanted - 1e-6)));
     usual = std::abs(wanted - static_cast<double>(steps)) < 1e-6;
     step = usual ? p.run.step : duration / static_cast<double>(steps);
-    look = step / pieces;
   }
 };
 
@@ -44,7 +41,7 @@ double march(const GateParams& p, const Spell& spell, GateState& s, double force
       s.beams = mixed(before.beams, beams, passed / spell.step);
     }
     ledger.step(s, force_x, watch, stored(s));
-    watch.state(p, s, spell.look);
+    watch.state(p, s, spell.step);
     if (left || !finite) return static_cast<double>(i) * spell.step + passed;
   }
   return spell.duration;
