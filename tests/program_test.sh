@@ -47,7 +47,7 @@ expect 0 '"trials": 200' "$gatewalk" gate "$scenes/single_gate.toml" --trials 2e
 holds '.traversed + .exited_left + .exited_right + .trapped == .trials' gate.json
 holds '.traversed == .traversed_left + .traversed_right + .traversed_even' gate.json
 holds '.status.clean' gate.json
-holds '.trials as $n | .trapped / $n as $share | .intervals_95.trapped | .[0] < $share and $share < .[1]' gate.json
+holds '(.trapped / .trials) as $share | .intervals_95.trapped | .[0] < $share and $share < .[1]' gate.json
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json - --threads 1 2>/dev/null | cmp -s - gate.json ||
   fail "gate: another number of threads gave another file"
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 4 --json other.json --quiet
