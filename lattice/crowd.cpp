@@ -16,20 +16,6 @@ double width_of_gate(const GateParams& p) { return 2.0 * p.beams.joint_x; }
 
 }  // namespace
 
-Crowd::Step::Step(const GateParams& p, double step) : h(step) {
-  const double drag = 0.5 * h * p.forces.drag;
-  mass = p.body.mass + drag;
-  body_keep = (p.body.mass - drag) / mass;
-  body_push = h / mass;
-  for (const Side side : {kLeft, kRight}) {
-    const double k = p.beams.stiffness(side);
-    const double loss = 0.5 * h * p.beams.damping + 0.25 * h * h * k;
-    inertia[side] = p.beams.inertia() + loss;
-    beam_keep[side] = (p.beams.inertia() - loss) / inertia[side];
-    beam_spring[side] = h * k / inertia[side];
-  }
-}
-
 Crowd::Crowd(const GateParams& p, const FieldParams& field, const BodyState& start)
     : p_(p), field_(field), usual_(p, p.run.step), body_(start) {
   current_ = last_ = find(field.start_column(), 0);
@@ -199,8 +185,8 @@ void Crowd::step(const Step& k, double force_x, Watch& watch) {
   ++watch.evaluations;
   const double half = 0.5 * k.h;
   const BodyState middle{body_.x + half * body_.vx, body_.y + half * body_.vy, 0.0, 0.0};
-  const double vx = k.body_keep * body_.vx + k.body_push * force_x;
-  const double vy = k.body_keep * body_.vy + k.body_push * p_.forces.propulsion;
+  const double vx = k.v_to_v * body_.vx + k.v_per_N * force_x;
+  const double vy = k.v_to_v * body_.vy + k.v_per_N * p_.forces.propulsion;
 
   contacts_.clear();
   for (const std::size_t gate : awake_) {
@@ -208,7 +194,7 @@ void Crowd::step(const Step& k, double force_x, Watch& watch) {
     for (const Side side : {kLeft, kRight}) {
       BeamState& beam = gates_[gate].beams[side];
       const double theta = beam.theta + half * beam.omega;
-      const double omega = k.beam_keep[side] * beam.omega - k.beam_spring[side] * beam.theta;
+      const double omega = k.w_to_w[side] * beam.omega - k.w_per_rad[side] * beam.theta;
       if (!out_of_reach(p_, side, here, theta)) {
         ++watch.evaluations;
         const Touch t = nearest(p_, side, here, theta);

@@ -18,6 +18,7 @@
 
 #include "dynamics/flow.h"
 #include "dynamics/gate.h"
+#include "dynamics/methods/moreau.h"
 #include "lattice/field.h"
 
 namespace gatewalk::lattice {
@@ -61,14 +62,7 @@ class Crowd {
     double time = 0.0;    // s, of the crowd's clock: when `beams` was true, if the gate sleeps
     double energy = 0.0;  // J, of `beams`, if the gate sleeps
   };
-  /// The midpoint rule over one step, free motion: v' = keep v + push F, omega' = keep omega -
-  /// spring theta; impulses act on mass and inertia.
-  struct Step {
-    double h;
-    double body_keep, body_push, mass;
-    std::array<double, 2> beam_keep, beam_spring, inertia;
-    Step(const dynamics::GateParams& p, double h);
-  };
+  using Step = dynamics::MoreauMethod::Step;
   struct Contact {
     std::size_t gate;
     dynamics::Side side;

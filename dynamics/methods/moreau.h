@@ -33,7 +33,6 @@ class MoreauMethod final : public Method {
   double advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                  Watch& watch) const override;
 
- private:
   /// The midpoint rule for a step h: what an impulse acts on, and what the step's start weighs.
   struct Step {
     double h;                         // s
@@ -45,6 +44,8 @@ class MoreauMethod final : public Method {
     std::array<double, 2> w_per_rad;  // 1/s
     Step(const GateParams& p, double h);
   };
+
+ private:
   void one_step(GateState& s, double force_x, const Step& step, Watch& watch) const;
 
   const GateParams& p_;

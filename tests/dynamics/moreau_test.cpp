@@ -8,6 +8,7 @@
 
 #include "dynamics/ensemble.h"
 #include "dynamics/gate.h"
+#include "tests/support/free_beam.h"
 #include "tests/support/measured.h"
 #include "tests/support/numbers.h"
 #include "tests/support/ride.h"
@@ -35,31 +36,7 @@ GateParams moreau(GateParams p, double step = 0.004) {
 
 // S1: second order over five halvings. Phase lags by (w0 h)^2 / 12 of w0 t, here 1e-5 of 0.045 rad.
 TEST(Moreau, FreeBeamIsSecondOrder) {
-  GateParams p;
-  p.forces.propulsion = 0.0;
-  const double w0 = std::sqrt(400.0 / p.beams.inertia()), wd = std::sqrt(w0 * w0 - 1.44);
-  const double decay = 0.5 * std::exp(-2.4), c = std::cos(2 * wd), s = std::sin(2 * wd);
-  const double theta = decay * (c + 1.2 / wd * s), omega = -decay * w0 * w0 / wd * s;
-  double last = 0.0, off = 0.0;
-  for (int halvings = 0; halvings <= 5; ++halvings) {
-    GateState start;
-    start.beams[kLeft].theta = 0.5;
-    Ride ride(moreau(p, 0.004 / (1 << halvings)), start);
-    ride.go(2.0);
-    const BeamState& beam = ride.s.beams[kLeft];
-    const double error = std::hypot(beam.theta - theta, (beam.omega - omega) / w0);
-    if (halvings == 0) {
-      EXPECT_NEAR(error, 1.14e-5, 1e-7);  // measured
-      measured({.requirement = 1, .method = "moreau", .what = "free beam after 2 s, error",
-                .figure = error, .unit = "rad", .limit = 1e-8});
-    } else {
-      EXPECT_NEAR(std::log2(last / error), 2.0, 0.1) << halvings;
-      off = std::max(off, std::abs(std::log2(last / error) - 2.0));
-    }
-    last = error;
-  }
-  measured({.requirement = 1, .method = "moreau", .what = "order over 5 halvings, off the nominal",
-            .figure = off, .limit = 0.1});
+  test::expect_free_beam_order("moreau", 2.0, 1.14e-5, 1e-7);  // measured
 }
 
 // Drag: v after n steps is ((1 - g/2) / (1 + g/2))^n of the start's, less what the forces add.

@@ -7,6 +7,7 @@
 
 #include "dynamics/ensemble.h"
 #include "dynamics/gate.h"
+#include "tests/support/free_beam.h"
 #include "tests/support/measured.h"
 #include "tests/support/numbers.h"
 #include "tests/support/ride.h"
@@ -16,7 +17,9 @@ namespace gatewalk::dynamics {
 namespace {
 
 using test::kEps;
+using test::let_go;
 using test::measured;
+using test::quiet_gate;
 using test::Ride;
 
 GateParams euler(GateParams p, double step = 0.004) {
@@ -25,43 +28,9 @@ GateParams euler(GateParams p, double step = 0.004) {
   return p;
 }
 
-/// The disc far away at rest, a beam let go at 0.5 rad.
-GateState let_go() {
-  GateState s;
-  s.beams[kLeft].theta = 0.5;
-  return s;
-}
-
-GateParams quiet_gate() {
-  GateParams p;
-  p.forces.propulsion = 0.0;
-  return p;
-}
-
 // S1: 3.3e-3 at 0.004 s after 2 s, as hypot(theta, omega / w0); first order over five halvings.
 TEST(Paper, FreeBeamHasEulersError) {
-  const GateParams p = quiet_gate();
-  const double w0 = std::sqrt(400.0 / p.beams.inertia()), wd = std::sqrt(w0 * w0 - 1.44);
-  const double decay = 0.5 * std::exp(-2.4), c = std::cos(2 * wd), s = std::sin(2 * wd);
-  const double theta = decay * (c + 1.2 / wd * s), omega = -decay * w0 * w0 / wd * s;
-  double last = 0.0, off = 0.0;
-  for (int halvings = 0; halvings <= 5; ++halvings) {
-    Ride ride(euler(p, 0.004 / (1 << halvings)), let_go());
-    ride.go(2.0);
-    const BeamState& beam = ride.s.beams[kLeft];
-    const double error = std::hypot(beam.theta - theta, (beam.omega - omega) / w0);
-    if (halvings == 0) {
-      EXPECT_NEAR(error, 3.3e-3, 5e-5);  // the printed digits
-      measured({.requirement = 1, .method = "paper", .what = "free beam after 2 s, error",
-                .figure = error, .unit = "rad", .limit = 1e-8});
-    } else {
-      EXPECT_NEAR(std::log2(last / error), 1.0, 0.1) << halvings;
-      off = std::max(off, std::abs(std::log2(last / error) - 1.0));
-    }
-    last = error;
-  }
-  measured({.requirement = 1, .method = "paper", .what = "order over 5 halvings, off the nominal",
-            .figure = off, .limit = 0.1});
+  test::expect_free_beam_order("paper", 1.0, 3.3e-3, 5e-5);  // the printed digits
 }
 
 // S2: without damping each step multiplies the energy by 1 + k h^2 / I; 3000 steps by 2.513.

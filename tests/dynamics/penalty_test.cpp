@@ -9,6 +9,7 @@
 
 #include "dynamics/ensemble.h"
 #include "dynamics/gate.h"
+#include "tests/support/free_beam.h"
 #include "tests/support/measured.h"
 #include "tests/support/numbers.h"
 #include "tests/support/ride.h"
@@ -21,7 +22,9 @@ using test::Draw;
 using test::energy_created;
 using test::kEps;
 using test::kPi;
+using test::let_go;
 using test::measured;
+using test::quiet_gate;
 using test::Ride;
 using test::same_bits;
 
@@ -37,44 +40,11 @@ GateState at_rest(double x, double y, double vx = 0.0, double vy = 0.0) {
   return s;
 }
 
-GateState let_go(double theta) {
-  GateState s;
-  s.beams[kLeft].theta = theta;
-  return s;
-}
-
-GateParams quiet_gate() {
-  GateParams p;
-  p.forces.propulsion = 0.0;
-  return p;
-}
-
 // ---- Free motion ----
 
 // S1: 1.3e-3 at 0.004 s after 2 s, as hypot(theta, omega / w0); first order over five halvings.
 TEST(Penalty, FreeBeamIsFirstOrder) {
-  const GateParams p = quiet_gate();
-  const double w0 = std::sqrt(400.0 / p.beams.inertia()), wd = std::sqrt(w0 * w0 - 1.44);
-  const double decay = 0.5 * std::exp(-2.4), c = std::cos(2 * wd), s = std::sin(2 * wd);
-  const double theta = decay * (c + 1.2 / wd * s), omega = -decay * w0 * w0 / wd * s;
-  double last = 0.0, off = 0.0;
-  for (int halvings = 0; halvings <= 5; ++halvings) {
-    Ride ride(penalty(p, 0.004 / (1 << halvings)), let_go(0.5));
-    ride.go(2.0);
-    const BeamState& beam = ride.s.beams[kLeft];
-    const double error = std::hypot(beam.theta - theta, (beam.omega - omega) / w0);
-    if (halvings == 0) {
-      EXPECT_NEAR(error, 1.3e-3, 5e-5);  // the printed digits
-      measured({.requirement = 1, .method = "penalty", .what = "free beam after 2 s, error",
-                .figure = error, .unit = "rad", .limit = 1e-8});
-    } else {
-      EXPECT_NEAR(std::log2(last / error), 1.0, 0.1) << halvings;
-      off = std::max(off, std::abs(std::log2(last / error) - 1.0));
-    }
-    last = error;
-  }
-  measured({.requirement = 1, .method = "penalty", .what = "order over 5 halvings, off the nominal",
-            .figure = off, .limit = 0.1});
+  test::expect_free_beam_order("penalty", 1.0, 1.3e-3, 5e-5);  // the printed digits
 }
 
 // S2: without damping a step keeps I omega^2 + k theta (theta - h omega); the energy swings about
