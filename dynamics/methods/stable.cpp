@@ -190,6 +190,9 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
     const Glide glided =
         hits == 0 ? glide(end, force_x, flow, half_flow) : glide(end, force_x, left);
 
+    // A body that leaves the gate counts up to that moment.
+    const bool leaves = outside(p_, end.body);
+    const double span = leaves ? leave(s, end, left) : left;
     std::array<bool, 2> hit{false, false};
     double overlap = 0.0;  // m
     for (const Side side : {kLeft, kRight}) {
@@ -205,10 +208,9 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
     if (hits == 0 && glided.handover && !finest) return 0.0;
     const double start = flow.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {
-      const GateState before = s;
       s = end;
       watch.max_penetration = std::max(watch.max_penetration, overlap);
-      return outside(p_, s.body) ? start + leave(before, s, left) : flow.dt;
+      return leaves ? start + span : flow.dt;
     }
     // Hits pile up faster than the step resolves them: from here on each one ends in a constraint.
     watch.forced_holds += hits == kMaxHits;
@@ -217,11 +219,10 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
       put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
       watch.penetration(p_, s);
-      return flow.dt;
+      return leaves ? start + span : flow.dt;
     }
-    const GateState before = s;
-    const double when = first_hit(s, force_x, end, left, hit, watch);
-    if (outside(p_, s.body)) return start + leave(before, s, when);
+    const double when = first_hit(s, force_x, end, span, hit, watch);
+    if (outside(p_, s.body)) return start + when;
     resolve_hits(p_, s, touching_, watch,
                  [&](Side, double impulse, double rebound) {
                    // What does not bounce is in contact from now on.
