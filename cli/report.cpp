@@ -61,22 +61,22 @@ dynamics::Health health_from(const Json& j) {
 
 std::string complaint(const dynamics::Health& h) {
   if (h.clean()) return "";
-  const auto share = [&](std::int64_t n) {
+  const auto of_runs = [&](std::int64_t n) {
     return std::to_string(n) + " of " + std::to_string(h.runs) + " gate runs";
   };
   std::string text = "the method showed faults:";
   if (h.penetrating > 0)
-    text += " the disc sank into a beam in " + share(h.penetrating) + " (worst " +
+    text += " the disc sank into a beam in " + of_runs(h.penetrating) + " (worst " +
             fixed(h.worst_penetration, 2) + " m);";
   if (h.creating_energy > 0)
-    text += " energy appeared from nothing in " + share(h.creating_energy) + " (worst " +
+    text += " energy appeared from nothing in " + of_runs(h.creating_energy) + " (worst " +
             fixed(h.worst_energy_created, 1) + " J);";
   if (h.fast > 0)
-    text += " disc or beam moved over half a radius in one step in " + share(h.fast) +
+    text += " disc or beam moved over half a radius in one step in " + of_runs(h.fast) +
             ", hits may have been missed: take a smaller run.step_s;";
   if (h.unstable > 0)
     text += " the step is longer than the method's stability bound for these beams in " +
-            share(h.unstable) + ": take a smaller run.step_s or another run.method;";
+            of_runs(h.unstable) + ": take a smaller run.step_s or another run.method;";
   if (h.undefined_contacts > 0)
     text += " " + std::to_string(h.undefined_contacts) +
             " steps overlapped a joint, for which it has no formula;";

@@ -48,6 +48,8 @@ holds '.traversed + .exited_left + .exited_right + .trapped == .trials' gate.jso
 holds '.traversed == .traversed_left + .traversed_right + .traversed_even' gate.json
 holds '.status.clean' gate.json
 holds '(.trapped / .trials) as $share | .intervals_95.trapped | .[0] < $share and $share < .[1]' gate.json
+# Jeffreys' interval for none of 200: up to 0.012466 (beta quantile 0.975 of 0.5, 200.5).
+holds '.traversed == 0 and .trials == 200 and .intervals_95.traversed[0] == 0 and (.intervals_95.traversed[1] - 0.012466 | fabs) < 1e-6' gate.json
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json - --threads 1 2>/dev/null | cmp -s - gate.json ||
   fail "gate: another number of threads gave another file"
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 4 --json other.json --quiet
@@ -161,6 +163,11 @@ expect 2 'field.toml.*run.step_s' "$gatewalk" gate "$scenes/field.toml" --set be
 expect 0 'outside the chain' "$gatewalk" predict m.nc --set start.vy_m_per_s=-5 --quiet
 expect 0 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --start 0,0,-15 --start 0,0,15 --quiet --json out.json
 holds '[.starts[].start.clamped] == [true, false]' out.json
+holds '[.starts[].verdict | test("total variation of [01]\\.")] | all' out.json
+# The paper's numbers stand beside its own body and beams only.
+expect 0 'fewer than 4' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20
+expect 0 '|     -  ' "$gatewalk" validate "$scenes/field.toml" --trials 20 --matrix-trials 2 --set body.mass_kg=2
+grep -q 'fewer than 4' out.txt && fail "validate: the paper's numbers beside another body"
 expect 0 'run.step_s has no effect: run.method = "auto" chooses it' "$gatewalk" gate $auto --trials 5 --set run.step_s=0.01 --quiet --json out.json
 expect 0 'run.event_tolerance_m has no effect' "$gatewalk" gate "$scenes/field.toml" --trials 5 --set run.event_tolerance_m=1e-6 --quiet --json out.json
 "$gatewalk" build "$scenes/field.toml" --set run.method=paper --trials 5 -o paper.nc --quiet >/dev/null 2>&1
@@ -281,6 +288,9 @@ jq -s '[.[0].scenes[1].settings[] | select(.method == "stable") | .errors] == [.
 holds '[.scenes[].settings[].errors | select(.) | .strong | (.parted_share >= 0.5 or .compared == 0) == (.position_m.median == null)] | unique == [true]' charts/chart.json
 holds '[.scenes[].settings[].errors | select(.) | .strong | select(.parted_share >= 0.5 and .compared > 0)] | length > 0' charts/chart.json
 grep -q 'half or more parted' charts/chart.svg || fail "chart.svg is silent about settings of which half the trials parted"
+cp "$scenes/stiff.toml" "a,b.toml"
+"$gatewalk" chart "a,b.toml" -o quoted --trials 20 --repeats 1 --methods stable --quiet >/dev/null
+grep -q '^"a,b",stable,run.step_s,' quoted/chart.csv || fail "chart.csv: a comma in a name makes two fields"
 # Every line as long as the first, reasons in quotes aside.
 [ "$(sed -E 's/"[^"]*"//' charts/chart.csv | awk -F, '{ print NF }' | sort -u | wc -l)" = 1 ] || fail "chart.csv: uneven lines"
 # Settings with the reference's bits have a place in the figure: the disc misses every beam.
