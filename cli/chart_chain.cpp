@@ -16,6 +16,7 @@
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "markov/sweep.h"
 #include "cli/starts.h"
 
 namespace gatewalk::cli {
@@ -263,7 +264,11 @@ Point point_of(const Scene& scene, const Chart& chart, std::size_t place,
   double freezing_seconds = 0.0;
   const auto ask = [&](std::int64_t k) {
     std::optional<markov::Chain> chain;
-    const double freezing = one_thread_seconds([&] { chain = lattice::make_chain(matrices[k]); });
+    std::optional<markov::Sweeper> sweeper;
+    const double freezing = one_thread_seconds([&] {
+      chain = lattice::make_chain(matrices[k]);
+      sweeper.emplace(*chain);
+    });
     if (k == 0) freezing_seconds = freezing;
     std::optional<markov::Walker> walker;
     const double tables = one_thread_seconds([&] { walker.emplace(*chain); });
@@ -271,7 +276,7 @@ Point point_of(const Scene& scene, const Chart& chart, std::size_t place,
       auto& [exact, a] = said[k][s];
       markov::FinalDistribution f;
       a.exact_seconds =
-          one_thread_seconds([&] { f = markov::propagate(*chain, field, starts[s], max_gates); });
+          one_thread_seconds([&] { f = sweeper->predict(field, starts[s], max_gates); });
       a.exact = error_of(f.final_cells, truths[s].p);
       a.never_sampled = f.unsampled;
       exact = f.final_cells;
@@ -291,11 +296,11 @@ Point point_of(const Scene& scene, const Chart& chart, std::size_t place,
   tbb::parallel_for(std::int64_t{0}, kResampled, [&](std::int64_t k) {
     if (interrupted()) return;
     const std::int64_t of = k % count;
-    const markov::Chain other =
-        lattice::make_chain(lattice::resampled(matrices[of], seed, static_cast<std::uint64_t>(k)));
+    const markov::Sweeper other(
+        lattice::make_chain(lattice::resampled(matrices[of], seed, static_cast<std::uint64_t>(k))));
     for (std::size_t s = 0; s < truths.size(); ++s)
       moved[s][k] = lattice::total_variation(
-          markov::propagate(other, field, starts[s], max_gates).final_cells, said[of][s].exact);
+          other.predict(field, starts[s], max_gates).final_cells, said[of][s].exact);
   });
   if (interrupted()) throw Interrupted{};
 

@@ -1,5 +1,6 @@
 #include "cli/matrix.h"
 #include "cli/report.h"
+#include "markov/sweep.h"
 
 namespace gatewalk::cli {
 
@@ -10,25 +11,29 @@ int run_predict(const std::vector<std::string>& arguments) {
                   "gatewalk predict matrix.nc scenes/field.toml --json prediction.json");
   options.positional("matrix", "matrix file written by gatewalk build", true);
   options.positional("scene", "scene file; without it the matrix's own scene", false);
-  options.add()("solver", po::value<std::string>()->default_value("propagate")->value_name("NAME"),
-                "propagate: step by step; klu: one sparse solve, for field.max_gates = 0 only");
+  options.add()("solver", po::value<std::string>()->default_value("auto")->value_name("NAME"),
+                "propagate: step by step; for field.max_gates = 0 also march: row by row, and klu: one "
+                "sparse solve; auto: march for large fields without limit, else propagate");
   if (!options.parse(arguments)) return kFine;
   const std::string& solver = options.get<std::string>("solver");
-  if (solver != "propagate" && solver != "klu")
-    throw UsageError("--solver " + solver + ": must be propagate or klu");
+  if (solver != "auto" && solver != "propagate" && solver != "march" && solver != "klu")
+    throw UsageError("--solver " + solver + ": must be auto, propagate, march or klu");
   require_different(options.text("matrix"), options.text("json"));
   const auto m = read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
   const auto [chain, start, start_text] = ready_chain(options, m);
   const markov::Field field{m.scene.field.columns, m.scene.field.rows};
   const int max_gates = m.scene.field.max_gates;
-  if (solver == "klu" && max_gates != 0)
-    throw UsageError("--solver klu needs field.max_gates = 0 (no limit), it is " +
+  if ((solver == "klu" || solver == "march") && max_gates != 0)
+    throw UsageError("--solver " + solver + " needs field.max_gates = 0 (no limit), it is " +
                      std::to_string(max_gates));
 
+  const markov::Sweeper sweeper(chain);
   const Stopwatch watch;
   const markov::FinalDistribution f =
-      solver == "klu" ? markov::solve_absorption(chain, field, start.start)
-                      : markov::propagate(chain, field, start.start, max_gates);
+      solver == "klu"         ? markov::solve_absorption(chain, field, start.start)
+      : solver == "march"     ? sweeper.march(field, start.start)
+      : solver == "propagate" ? sweeper.propagate(field, start.start, max_gates)
+                              : sweeper.predict(field, start.start, max_gates);
   const double seconds = watch.seconds();
 
   Json json;

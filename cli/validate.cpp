@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <sstream>
 
 #include "cli/auto.h"
 #include "cli/matrix.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "markov/sweep.h"
 #include "cli/starts.h"
 
 namespace gatewalk::cli {
@@ -86,8 +88,8 @@ struct StartReport {
 };
 
 StartReport run_start(const Options& options, const Scene& scene, const dynamics::StateSpace& space,
-                      const markov::Chain& chain, const markov::Walker& walker,
-                      const std::vector<markov::Chain>& resampled,
+                      const markov::Sweeper& sweeper, const markov::Walker& walker,
+                      const std::deque<markov::Sweeper>& resampled,
                       const PaperStart& start, std::int64_t trials, std::int64_t walks) {
   const dynamics::BodyState body{start.d, 0.0, start.vx, start.vy};
   const markov::Field field{scene.field.columns, scene.field.rows};
@@ -96,7 +98,7 @@ StartReport run_start(const Options& options, const Scene& scene, const dynamics
                 {}, {}, {}, {}, {}, {}, {}, {}};
 
   const Stopwatch exact_watch;
-  r.exact = markov::propagate(chain, field, r.chain_start.start, max_gates);
+  r.exact = sweeper.predict(field, r.chain_start.start, max_gates);
   r.exact_seconds = exact_watch.seconds();
 
   std::vector<std::int32_t> walk_cells;
@@ -126,10 +128,10 @@ StartReport run_start(const Options& options, const Scene& scene, const dynamics
   r.walks_against = lattice::compare(r.dynamics.final_gates, r.walks.final_cells, null_draws, options.seed());
   r.exact_against = lattice::compare(r.dynamics.final_gates, r.exact.final_cells, null_draws, options.seed());
   r.paper_sized = in_blocks_of_100(r.dynamics.final_gate_of_trial, walk_cells, r.exact.final_cells);
-  for (const markov::Chain& other : resampled)
+  for (const markov::Sweeper& other : resampled)
     r.matrix_noise.add(lattice::total_variation(
         r.exact.final_cells,
-        markov::propagate(other, field, r.chain_start.start, max_gates).final_cells));
+        other.predict(field, r.chain_start.start, max_gates).final_cells));
   const double s = lattice::concentration(r.dynamics.final_gates);
   r.floor_100_exact = lattice::noise_floor(s, r.exact.final_cells.size(), 100, 0);
   r.floor_100_walks = lattice::noise_floor(s, r.exact.final_cells.size(), 100, 100);
@@ -315,17 +317,18 @@ int run_validate(const std::vector<std::string>& arguments) {
   const dynamics::Transitions& t = m.file.transitions;
   warn_outside_bins(starts, scene, t.space);
   const markov::Chain chain = lattice::make_chain(t);
+  const markov::Sweeper sweeper(chain);
   const markov::Walker walker(chain);
   constexpr std::uint64_t kReplicates = 50;
-  std::vector<markov::Chain> resampled;
+  std::deque<markov::Sweeper> resampled;
   for (std::uint64_t k = 0; k < kReplicates; ++k)
-    resampled.push_back(lattice::make_chain(lattice::resampled(t, options.seed(), k)));
+    resampled.emplace_back(lattice::make_chain(lattice::resampled(t, options.seed(), k)));
 
   std::vector<StartReport> reports;
   EntryShares shares;
   dynamics::Health health = t.health;
   for (const PaperStart& start : starts) {
-    reports.push_back(run_start(options, scene, t.space, chain, walker, resampled, start, trials, walks));
+    reports.push_back(run_start(options, scene, t.space, sweeper, walker, resampled, start, trials, walks));
     const lattice::FieldTally& d = reports.back().dynamics;
     health += d.health;
     for (int b = 0; b < dynamics::kBoundaries; ++b) {

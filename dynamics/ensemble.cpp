@@ -1,17 +1,20 @@
 #include "dynamics/ensemble.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <functional>
+
+#include "dynamics/runs.h"
 
 namespace gatewalk::dynamics {
 
+RandomForce gate_force(const GateParams& p, std::uint64_t seed, std::int64_t trial) {
+  return {p.forces, Random(Purpose::gate, {seed, 0, static_cast<std::uint64_t>(trial)})};
+}
+
 GateRun run_gate_trial(const GateParams& p, const Method& method, const BodyState& start,
                        std::uint64_t seed, std::int64_t trial, std::int64_t most_work) {
-  const Stream stream{seed, 0, static_cast<std::uint64_t>(trial)};
-  RandomForce force(p.forces, Random(Purpose::gate, stream));
+  RandomForce force = gate_force(p, seed, trial);
   return run_gate(p, method, start, force, most_work);
 }
 
@@ -53,6 +56,21 @@ Health& Health::operator+=(const Health& o) {
   return *this;
 }
 
+void GateTally::add(const GateParams& p, const GateRun& run) {
+  ++trials;
+  health.add(p, run);
+  const double left = run.watch.max_theta[kLeft], right = run.watch.max_theta[kRight];
+  switch (run.ending) {
+    case Ending::traversed:
+      ++(left > right ? traversed_left : right > left ? traversed_right : traversed_even);
+      break;
+    case Ending::exited_left: ++exited_left; break;
+    case Ending::exited_right: ++exited_right; break;
+    case Ending::trapped: ++trapped; break;
+    case Ending::broken: ++broken; break;
+  }
+}
+
 GateTally& GateTally::operator+=(const GateTally& o) {
   trials += o.trials;
   traversed_left += o.traversed_left;
@@ -69,30 +87,20 @@ GateTally& GateTally::operator+=(const GateTally& o) {
 GateTally run_gate_trials(const GateParams& p, const BodyState& start, std::uint64_t seed,
                           TrialRange range) {
   const auto method = make_method(p);
-  const tbb::blocked_range<std::int64_t> trials(range.first, range.first + range.count);
-  return tbb::parallel_reduce(
-      trials, GateTally{},
-      [&](const tbb::blocked_range<std::int64_t>& part, GateTally tally) {
-        for (std::int64_t trial = part.begin(); trial != part.end(); ++trial) {
-          const GateRun run = run_gate_trial(p, *method, start, seed, trial);
-          ++tally.trials;
-          tally.health.add(p, run);
-          const double left = run.watch.max_theta[kLeft], right = run.watch.max_theta[kRight];
-          switch (run.ending) {
-            case Ending::traversed:
-              ++(left > right   ? tally.traversed_left
-                 : right > left ? tally.traversed_right
-                                : tally.traversed_even);
-              break;
-            case Ending::exited_left: ++tally.exited_left; break;
-            case Ending::exited_right: ++tally.exited_right; break;
-            case Ending::trapped: ++tally.trapped; break;
-            case Ending::broken: ++tally.broken; break;
-          }
-        }
-        return tally;
+  tbb::enumerable_thread_specific<GateTally> tallies;  // sums and largest values: any order will do
+  carry_out_trials(
+      p, *method, range.count,
+      [&](RunSlot& slot) {
+        slot.start = start;
+        slot.force = gate_force(p, seed, range.first + slot.trial);
       },
-      [](GateTally a, const GateTally& b) { return a += b; });
+      [&](RunSlot&, const GateRun& run) {
+        tallies.local().add(p, run);
+        return false;
+      });
+  GateTally sum;
+  for (const GateTally& part : tallies) sum += part;
+  return sum;
 }
 
 }  // namespace gatewalk::dynamics

@@ -15,6 +15,9 @@ struct TrialRange {
   std::int64_t count = 0;
 };
 
+/// The force of trial number `trial` from one start.
+[[nodiscard]] RandomForce gate_force(const GateParams& p, std::uint64_t seed, std::int64_t trial);
+
 /// Trial number `trial` from one start: the same run whoever asks for it. `most_work` as in run_gate.
 [[nodiscard]] GateRun run_gate_trial(const GateParams& p, const Method& method,
                                      const BodyState& start, std::uint64_t seed, std::int64_t trial,
@@ -75,6 +78,7 @@ struct GateTally {
   [[nodiscard]] std::int64_t traversed() const {
     return traversed_left + traversed_right + traversed_even;
   }
+  void add(const GateParams& p, const GateRun& run);
   GateTally& operator+=(const GateTally& other);
 };
 

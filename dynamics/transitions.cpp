@@ -1,8 +1,10 @@
 #include "dynamics/transitions.h"
 
-#include <tbb/parallel_for.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <stdexcept>
+
+#include "dynamics/runs.h"
 
 namespace gatewalk::dynamics {
 
@@ -66,30 +68,31 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
     bool clamped = false;
   };
   std::vector<Outcome> outcomes(static_cast<std::size_t>(t.space.size()) * range.count);
-  std::vector<Health> health(t.space.size());
+  tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do
+  carry_out_trials(
+      p, *method, static_cast<std::int64_t>(outcomes.size()),
+      [&](RunSlot& slot) {
+        const auto row = static_cast<int>(slot.trial / range.count);
+        const Stream stream{seed, static_cast<std::uint64_t>(row),
+                            static_cast<std::uint64_t>(range.first + slot.trial % range.count)};
+        Random random(Purpose::row, stream);
+        slot.start = entry_state(p, start_of(row, random));
+        slot.force = RandomForce(p.forces, random);
+      },
+      [&](RunSlot& slot, const GateRun& run) {
+        health.local().add(p, run);
+        Outcome& out = outcomes[static_cast<std::size_t>(slot.trial)];
+        if (run.ending == Ending::trapped) {
+          out.column = t.space.trapped();
+        } else if (run.ending != Ending::broken) {
+          const auto index = t.space.index_of(crossing_of(p, run.ending, run.exit));
+          out = {index.state, index.clamped};
+        }
+        return false;
+      });
 
-  tbb::parallel_for(0, t.space.size(), [&](int row) {
-    for (std::int64_t i = 0; i < range.count; ++i) {
-      const Stream stream{seed, static_cast<std::uint64_t>(row),
-                          static_cast<std::uint64_t>(range.first + i)};
-      Random random(Purpose::row, stream);
-      const BodyState start = entry_state(p, start_of(row, random));
-      RandomForce force(p.forces, random);
-      const GateRun run = run_gate(p, *method, start, force);
-      health[row].add(p, run);
-      Outcome& out = outcomes[row * range.count + i];
-      if (run.ending == Ending::broken) continue;
-      if (run.ending == Ending::trapped) {
-        out.column = t.space.trapped();
-        continue;
-      }
-      const auto index = t.space.index_of(crossing_of(p, run.ending, run.exit));
-      out = {index.state, index.clamped};
-    }
-  });
-
+  for (const Health& part : health) t.health += part;
   for (int row = 0; row < t.space.size(); ++row) {
-    t.health += health[row];
     for (std::int64_t i = 0; i < range.count; ++i) {
       const Outcome& out = outcomes[row * range.count + i];
       if (out.column < 0) continue;

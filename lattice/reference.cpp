@@ -3,7 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <bit>
+#include <optional>
 
+#include "dynamics/runs.h"
 #include "lattice/crowd.h"
 
 namespace gatewalk::lattice {
@@ -17,56 +19,38 @@ enum class Fate : std::uint8_t { trapped, left_field, cut_off, broken };
 struct Trial {
   Fate fate = Fate::broken;
   std::int32_t column = 0, row = 0;
+  int gates = 0;  // visited
   std::array<std::int32_t, kBoundaries> entries{}, clamped{};
   Health health;
   std::vector<Crossing> crossings;
 };
 
-/// One trial, gate by gate. `run` runs the body's gate until it leaves, `go_on` puts it into the next.
-template <class Run, class GoOn>
-Trial run_trial(const GateParams& p, const FieldParams& field, const StateSpace& space,
-                bool keep_crossings, Run run_one, GoOn go_on) {
-  Trial t;
-  t.column = field.start_column();
-  for (int gates = 1;; ++gates) {
-    const GateRun run = run_one();
-    t.health.add(p, run);
-    if (run.ending == Ending::broken || run.ending == Ending::trapped) {
-      t.fate = run.ending == Ending::broken ? Fate::broken : Fate::trapped;
-      return t;
-    }
-    const Crossing crossing = crossing_of(p, run.ending, run.exit);
-    const Move move = move_into(crossing.boundary);
-    if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
-      t.fate = Fate::left_field;
-      return t;
-    }
-    if (gates == field.max_gates) {
-      t.fate = Fate::cut_off;
-      return t;
-    }
-    if (keep_crossings) t.crossings.push_back(crossing);
-    ++t.entries[static_cast<int>(crossing.boundary)];
-    t.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
-    t.column += move.di_x;
-    t.row += move.di_y;
-    go_on(run);
+/// Takes the result of a trial's run through one gate. The crossing into the next gate; none when the
+/// trial ends here.
+std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams& field,
+                               const StateSpace& space, const GateRun& run, bool keep_crossings) {
+  t.health.add(p, run);
+  ++t.gates;
+  if (run.ending == Ending::broken || run.ending == Ending::trapped) {
+    t.fate = run.ending == Ending::broken ? Fate::broken : Fate::trapped;
+    return {};
   }
-}
-
-Trial run_trial(const GateParams& p, const Method& method, const FieldParams& field,
-                const BodyState& start, const StateSpace& space, RandomForce& force,
-                bool keep_crossings) {
-  if (field.fidelity == Fidelity::active) {
-    BodyState body = start;
-    return run_trial(
-        p, field, space, keep_crossings, [&] { return run_gate(p, method, body, force); },
-        [&](const GateRun& run) { body = shifted_into_next(p, run.ending, run.exit); });
+  const Crossing crossing = crossing_of(p, run.ending, run.exit);
+  const Move move = move_into(crossing.boundary);
+  if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
+    t.fate = Fate::left_field;
+    return {};
   }
-  Crowd crowd(p, field, start);
-  return run_trial(
-      p, field, space, keep_crossings, [&] { return crowd.run_gate(force); },
-      [&](const GateRun& run) { crowd.go_on(run.ending); });
+  if (t.gates == field.max_gates) {
+    t.fate = Fate::cut_off;
+    return {};
+  }
+  if (keep_crossings) t.crossings.push_back(crossing);
+  ++t.entries[static_cast<int>(crossing.boundary)];
+  t.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
+  t.column += move.di_x;
+  t.row += move.di_y;
+  return crossing;
 }
 
 }  // namespace
@@ -103,11 +87,32 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
   validate(p, field);
   const std::uint64_t row = stream_row(start);
   std::vector<Trial> trials(range.count);
-  tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
+  for (Trial& t : trials) t.column = field.start_column();
+  const auto force_of = [&](std::int64_t i) -> RandomForce {
     const Stream stream{seed, row, static_cast<std::uint64_t>(range.first + i)};
-    RandomForce force(p.forces, Random(Purpose::field, stream));
-    trials[i] = run_trial(p, *method, field, start, space, force, keep_crossings);
-  });
+    return {p.forces, Random(Purpose::field, stream)};
+  };
+  if (field.fidelity == Fidelity::active) {
+    carry_out_trials(
+        p, *method, range.count,
+        [&](RunSlot& slot) {
+          slot.start = start;
+          slot.force = force_of(slot.trial);
+        },
+        [&](RunSlot& slot, const GateRun& run) {
+          if (!follow(trials[slot.trial], p, field, space, run, keep_crossings)) return false;
+          slot.start = shifted_into_next(p, run.ending, run.exit);
+          return true;
+        });
+  } else {
+    tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
+      RandomForce force = force_of(i);
+      Crowd crowd(p, field, start);
+      for (GateRun run = crowd.run_gate(force);
+           follow(trials[i], p, field, space, run, keep_crossings); run = crowd.run_gate(force))
+        crowd.go_on(run.ending);
+    });
+  }
 
   FieldTally tally(field);
   tally.trials = range.count;

@@ -5,7 +5,8 @@
 /// it is trapped there, or enters a neighbouring cell in that cell's input state (`Exit`).
 ///   counts on disk (chain_io.h)  ->  Chain, rows that sum to 1 (chain.h)
 ///   Chain  ->  Monte Carlo walks (walk.h): one draw per cell, a walk is named by its number
-///   Chain  ->  exact distribution (exact.h): forward propagation, or one sparse solve
+///   Chain  ->  exact distribution: whole rows of the field at a time (sweep.h); its plain references,
+///              forward propagation and one sparse solve (exact.h)
 /// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
 /// cell limit, entered a state that was never sampled. The final cell is the last one inside.
 /// What a state means, and how large a cell is, this module does not know.
@@ -13,4 +14,5 @@
 #include "markov/chain.h"
 #include "markov/chain_io.h"
 #include "markov/exact.h"
+#include "markov/sweep.h"
 #include "markov/walk.h"

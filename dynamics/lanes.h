@@ -1,0 +1,20 @@
+#pragma once
+/// Runs of method `moreau` side by side in the lanes of vector registers (Google Highway: the
+/// instruction set is chosen when the program runs). A lane whose run has ended takes the next one at
+/// once.
+///
+/// The plain reference is MoreauMethod (methods/moreau.h): the same steps in the same order under the
+/// same random force, to the last digits; cos, sin and divisions are rounded in their own way. The
+/// same bits for any instruction set and any company in the other lanes: no fused multiply-add, no
+/// sums over lanes. One thing is looked at elsewhere: penetration at mid-step, where contacts are
+/// found, not at the end of a step.
+
+#include "dynamics/methods/moreau.h"
+#include "dynamics/runs.h"
+
+namespace gatewalk::dynamics {
+
+/// As carry_out, for params.run.method "moreau".
+void carry_out_in_lanes(const GateParams& p, const NextRun& next);
+
+}  // namespace gatewalk::dynamics

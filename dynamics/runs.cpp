@@ -1,0 +1,36 @@
+#include "dynamics/runs.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+
+#include "dynamics/lanes.h"
+
+namespace gatewalk::dynamics {
+
+void carry_out(const GateParams& p, const Method& method, const NextRun& next) {
+  if (p.run.method == "moreau") return carry_out_in_lanes(p, next);
+  RunSlot slot{-1, {}, RandomForce(p.forces, Random(Purpose::gate, {}))};
+  for (bool more = next(slot, nullptr); more;) {
+    const GateRun run = run_gate(p, method, slot.start, slot.force);
+    more = next(slot, &run);
+  }
+}
+
+void carry_out_trials(const GateParams& p, const Method& method, std::int64_t count,
+                      const BeginTrial& begin, const TakeRun& take) {
+  // Whoever is free takes the next trial: no lane waits for the end of a block.
+  std::atomic<std::int64_t> next_trial{0};
+  const NextRun next = [&](RunSlot& slot, const GateRun* ended) {
+    if (ended != nullptr && take(slot, *ended)) return true;
+    slot.trial = next_trial.fetch_add(1, std::memory_order_relaxed);
+    if (slot.trial >= count) return false;
+    begin(slot);
+    return true;
+  };
+  tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(),
+                    [&](int) { carry_out(p, method, next); });
+}
+
+}  // namespace gatewalk::dynamics

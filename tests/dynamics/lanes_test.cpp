@@ -1,0 +1,212 @@
+#include "dynamics/lanes.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <vector>
+
+#include "dynamics/ensemble.h"
+#include "tests/support/numbers.h"
+#include "tests/support/scenes.h"
+#include "tests/support/threads.h"
+
+namespace gatewalk::dynamics {
+namespace {
+
+using test::same_bits;
+
+GateParams moreau(GateParams p, double step = 0.004) {
+  p.run.method = "moreau";
+  p.run.step = step;
+  return p;
+}
+
+/// Trials 0 .. n - 1 of run_gate_trial's streams, by lanes.
+std::vector<GateRun> by_lanes(const GateParams& p, const BodyState& start, int n) {
+  std::vector<GateRun> runs(n);
+  int next = 0;
+  carry_out_in_lanes(p, [&](RunSlot& slot, const GateRun* ended) {
+    if (ended != nullptr) runs[slot.trial] = *ended;
+    if (next == n) return false;
+    slot.trial = next++;
+    slot.start = start;
+    slot.force = gate_force(p, 1, slot.trial);
+    return true;
+  });
+  return runs;
+}
+
+void expect_same_bits(const GateRun& a, const GateRun& b) {
+  EXPECT_EQ(a.ending, b.ending);
+  EXPECT_TRUE(same_bits(a.exit.x, b.exit.x) && same_bits(a.exit.y, b.exit.y));
+  EXPECT_TRUE(same_bits(a.exit.vx, b.exit.vx) && same_bits(a.exit.vy, b.exit.vy));
+  EXPECT_TRUE(same_bits(a.seconds, b.seconds));
+  const Watch &v = a.watch, &w = b.watch;
+  EXPECT_TRUE(same_bits(v.max_theta[kLeft], w.max_theta[kLeft]));
+  EXPECT_TRUE(same_bits(v.max_theta[kRight], w.max_theta[kRight]));
+  EXPECT_TRUE(same_bits(v.max_penetration, w.max_penetration));
+  EXPECT_TRUE(same_bits(v.energy_created, w.energy_created));
+  EXPECT_TRUE(same_bits(v.max_speed, w.max_speed));
+  EXPECT_EQ(v.steps, w.steps);
+  EXPECT_EQ(v.evaluations, w.evaluations);
+  EXPECT_EQ(v.impacts, w.impacts);
+  EXPECT_EQ(v.fast_steps, w.fast_steps);
+}
+
+struct LaneScene {
+  const char* name;
+  GateParams p;
+  BodyState start;
+};
+
+std::vector<LaneScene> lane_scenes() {
+  std::vector<LaneScene> scenes;
+  const auto add = [&](const char* name, GateParams p, const BodyState& start, double step = 0.004) {
+    scenes.push_back({name, moreau(p, step), start});
+  };
+  GateParams p;
+  add("field", p, {.vy = 15.0});
+  add("Sec. III-B", test::study(10.0), {});
+  p.forces.random_rate = 37.0;  // holds of five steps that are shorter than the usual ones
+  p.run.time_limit = 3.3333;
+  add("odd hold", p, {5.0, 2.0, -3.0, 12.0}, 1.0 / 185);
+  p = {};
+  p.beams.damping = 0.0;
+  p.contact.restitution = 0.0;
+  add("undamped, plastic", p, {.vy = 15.0});
+  p = {};
+  p.beams.stiffness_left = 0.0;
+  p.beams.stiffness_right = 14'000.0;
+  p.beams.mass = 1.0;
+  add("soft and stiff", p, {.vy = 15.0}, 0.001);
+  p = {};
+  p.beams.length = 40.0;  // longer than half the gate: beams overlap, both touch
+  p.body.radius = 5.0;
+  add("overlapping", p, {.vy = 15.0});
+  p = {};
+  p.forces.random = 500.0;
+  add("wild", p, {.vy = 15.0});
+  return scenes;
+}
+
+// The same noise, the same steps: what differs by rounding stays together, but for a trial in many.
+TEST(Lanes, DoWhatThePlainMethodDoes) {
+  for (const LaneScene& scene : lane_scenes()) {
+    SCOPED_TRACE(scene.name);
+    const int n = 400;
+    const auto runs = by_lanes(scene.p, scene.start, n);
+    const auto method = make_method(scene.p);
+    int parted = 0;
+    double deepest[2] = {0.0, 0.0}, fastest = 0.0;
+    for (int i = 0; i < n; ++i) {
+      const GateRun plain = run_gate_trial(scene.p, *method, scene.start, 1, i);
+      const GateRun& lane = runs[i];
+      deepest[0] = std::max(deepest[0], plain.watch.max_penetration);
+      deepest[1] = std::max(deepest[1], lane.watch.max_penetration);
+      fastest = std::max(fastest, plain.watch.max_speed);
+      const bool near = plain.ending == lane.ending &&
+                        std::hypot(plain.exit.x - lane.exit.x, plain.exit.y - lane.exit.y) < 1e-6 &&
+                        std::hypot(plain.exit.vx - lane.exit.vx, plain.exit.vy - lane.exit.vy) < 1e-6;
+      if (!near) {
+        ++parted;
+        continue;
+      }
+      EXPECT_NEAR(plain.seconds, lane.seconds, 1e-6);
+      EXPECT_EQ(plain.watch.steps, lane.watch.steps);
+      EXPECT_EQ(plain.watch.impacts, lane.watch.impacts);
+      EXPECT_EQ(plain.watch.fast_steps, lane.watch.fast_steps);
+      EXPECT_NEAR(plain.watch.max_speed, lane.watch.max_speed, 1e-6);
+      EXPECT_NEAR(plain.watch.energy_created, lane.watch.energy_created, 1e-6);
+      EXPECT_NEAR(plain.watch.max_theta[kLeft], lane.watch.max_theta[kLeft], 1e-6);
+      EXPECT_NEAR(plain.watch.max_theta[kRight], lane.watch.max_theta[kRight], 1e-6);
+    }
+    EXPECT_LE(parted, n / 100);
+    // Looked at half a step before or after; meanwhile the disc moves, and a tip, at most twice as fast.
+    EXPECT_NEAR(deepest[0], deepest[1], 3 * fastest * scene.p.run.step);
+  }
+}
+
+// A lane's neighbours, and how long it has been at work, change nothing.
+TEST(Lanes, AreIndependentOfTheirCompany) {
+  for (const LaneScene& scene : lane_scenes()) {
+    SCOPED_TRACE(scene.name);
+    const auto together = by_lanes(scene.p, scene.start, 40);
+    for (const int i : {0, 1, 7, 8, 23, 39}) {
+      GateRun alone;
+      bool given = false;
+      carry_out_in_lanes(scene.p, [&](RunSlot& slot, const GateRun* ended) {
+        if (ended != nullptr) alone = *ended;
+        if (given) return false;
+        given = true;
+        slot.start = scene.start;
+        slot.force = gate_force(scene.p, 1, i);
+        return true;
+      });
+      expect_same_bits(alone, together[i]);
+    }
+  }
+}
+
+TEST(Lanes, HaveTheSameBitsWithAnyInstructionSet) {
+  const auto targets = hwy::SupportedAndGeneratedTargets();
+  ASSERT_GE(targets.size(), 1u);
+  for (const LaneScene& scene : lane_scenes()) {
+    SCOPED_TRACE(scene.name);
+    const auto best = by_lanes(scene.p, scene.start, 60);
+    for (const std::int64_t target : targets) {
+      SCOPED_TRACE(hwy::TargetName(target));
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      const auto runs = by_lanes(scene.p, scene.start, 60);
+      hwy::SetSupportedTargetsForTest(0);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      for (std::size_t i = 0; i < runs.size(); ++i) expect_same_bits(best[i], runs[i]);
+    }
+  }
+}
+
+TEST(Lanes, TallyIsTheSameOnAnyNumberOfThreads) {
+  const GateParams p = moreau({});
+  const auto tally = [&](int threads) {
+    return test::on_threads(threads, [&] { return run_gate_trials(p, {.vy = 15.0}, 1, {0, 300}); });
+  };
+  const GateTally one = tally(1), four = tally(4);
+  EXPECT_EQ(one.trials, 300);
+  EXPECT_EQ(one.traversed_left, four.traversed_left);
+  EXPECT_EQ(one.exited_left, four.exited_left);
+  EXPECT_EQ(one.trapped, four.trapped);
+  EXPECT_EQ(one.health.evaluations, four.health.evaluations);
+  EXPECT_TRUE(same_bits(one.health.worst_energy_created, four.health.worst_energy_created));
+}
+
+// A body that starts outside has ended before the first step; one that is no number is broken; one
+// whose time is over is trapped. Each gives its lane to the next.
+TEST(Lanes, RunsThatEndAtOnce) {
+  GateParams p = moreau({});
+  p.run.time_limit = 0.004;
+  const std::vector<BodyState> starts{{0.0, 61.0, 0.0, 15.0}, {-26.0, 0.0, 0.0, 0.0},
+                                      {0.0, 0.0, 0.0, 1e308}, {0.0, 0.0, 1e308, 1e308},
+                                      {0.0, 0.0, 0.0, 15.0},  {0.0, 0.0, 0.0, -1e300}};
+  std::vector<GateRun> runs(starts.size());
+  std::size_t next = 0;
+  carry_out_in_lanes(p, [&](RunSlot& slot, const GateRun* ended) {
+    if (ended != nullptr) runs[slot.trial] = *ended;
+    if (next == starts.size()) return false;
+    slot.trial = static_cast<std::int64_t>(next);
+    slot.start = starts[next++];
+    slot.force = gate_force(p, 1, slot.trial);
+    return true;
+  });
+  const auto method = make_method(p);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    RandomForce force = gate_force(p, 1, static_cast<std::int64_t>(i));
+    const GateRun plain = run_gate(p, *method, starts[i], force);
+    EXPECT_EQ(plain.ending, runs[i].ending) << i;
+    EXPECT_EQ(plain.watch.steps, runs[i].watch.steps) << i;
+    EXPECT_EQ(plain.seconds, runs[i].seconds) << i;
+  }
+}
+
+}  // namespace
+}  // namespace gatewalk::dynamics
