@@ -14,6 +14,7 @@
 #include "cli/progress.h"
 #include "cli/report.h"
 #include "dynamics/accuracy.h"
+#include "dynamics/runs.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -123,12 +124,17 @@ Timed time_trials(const SceneChart& chart, const Setting& s, std::uint64_t seed,
   const auto method = dynamics::make_method(p);
   Timed timed;
   const Stopwatch watch;
-  while (timed.trials < n && timed.seconds < enough) {
-    if (interrupted()) throw Interrupted{};
-    (void)run_gate_trial(p, *method, chart.scene.start, seed, timed.trials, dynamics::kMostWork);
-    ++timed.trials;
-    timed.seconds = watch.seconds();
-  }
+  dynamics::carry_out(
+      p, *method,
+      [&](dynamics::RunSlot& slot, const dynamics::GateRun*) {
+        timed.seconds = watch.seconds();
+        if (timed.trials == n || timed.seconds >= enough) return false;
+        if (interrupted()) throw Interrupted{};
+        slot.start = chart.scene.start;
+        slot.force = dynamics::gate_force(p, seed, timed.trials++);
+        return true;
+      },
+      dynamics::kMostWork);
   return timed;
 }
 

@@ -1,7 +1,6 @@
 #include "dynamics/accuracy.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,8 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+
+#include "dynamics/runs.h"
 
 namespace gatewalk::dynamics {
 namespace {
@@ -150,24 +151,25 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
     Health health;
     std::int64_t cut_short = 0;
   };
-  const Faults faults = tbb::parallel_reduce(
-      tbb::blocked_range<std::int64_t>(0, range.count), Faults{},
-      [&](const tbb::blocked_range<std::int64_t>& part, Faults f) {
-        for (std::int64_t i = part.begin(); i != part.end(); ++i) {
-          const GateRun run = run_gate_trial(p, *method, start, seed, range.first + i, kMostWork);
-          f.health.add(p, run);
-          f.cut_short += run.cut_short;
-          ends.trials[before + static_cast<std::size_t>(i)] = end_of(p, space, run);
-        }
-        return f;
+  tbb::enumerable_thread_specific<Faults> faults;  // whole numbers and maxima: any order will do
+  carry_out_trials(
+      p, *method, range.count,
+      [&](RunSlot& slot) {
+        slot.start = start;
+        slot.force = gate_force(p, seed, range.first + slot.trial);
       },
-      [](Faults a, const Faults& b) {  // whole numbers and maxima: the same in any order
-        a.health += b.health;
-        a.cut_short += b.cut_short;
-        return a;
-      });
-  ends.health += faults.health;
-  ends.cut_short += faults.cut_short;
+      [&](RunSlot& slot, const GateRun& run) {
+        Faults& f = faults.local();
+        f.health.add(p, run);
+        f.cut_short += run.cut_short;
+        ends.trials[before + static_cast<std::size_t>(slot.trial)] = end_of(p, space, run);
+        return false;
+      },
+      kMostWork);
+  for (const Faults& f : faults) {
+    ends.health += f.health;
+    ends.cut_short += f.cut_short;
+  }
 }
 
 // ---- Errors ----

@@ -16,7 +16,7 @@ struct Candidate {
   std::string_view method;
   double microseconds;  // per evaluation, measured on scenes/field.toml: only ratios matter
 };
-constexpr Candidate kCandidates[] = {{"stable", 0.06}, {"moreau", 0.06}, {"event", 0.13}};
+constexpr Candidate kCandidates[] = {{"stable", 0.06}, {"moreau", 0.003}, {"event", 0.13}};
 
 /// The trials of start i among `trials`.
 TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts) {
@@ -39,7 +39,7 @@ struct Pilots {
   const PilotProgress& progress;
 
   [[nodiscard]] TrialEnds run(const Setting& setting, std::int64_t trials) const {
-    constexpr std::int64_t kBlock = 100;  // between two reports
+    constexpr std::int64_t kBlock = 500;  // between two reports
     const GateParams with = setting.applied_to(p);
     TrialEnds ends;
     std::int64_t done = 0;

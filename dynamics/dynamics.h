@@ -7,6 +7,7 @@
 ///   methods/       time stepping, one file per method behind methods/method.h
 ///   random.h       counter-based random streams, the held lateral force of Eq. (1)
 ///   gate.h         one run of one gate
+///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
 ///   ensemble.h     many runs, their outcomes and their health
 ///   state_space.h  Table III: how a body enters a gate, as a number
 ///   transitions.h  runs -> counts, the matrix of Eq. (16)
@@ -22,6 +23,7 @@
 #include "dynamics/gate.h"
 #include "dynamics/params.h"
 #include "dynamics/random.h"
+#include "dynamics/runs.h"
 #include "dynamics/stability.h"
 #include "dynamics/state_space.h"
 #include "dynamics/transitions.h"

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "dynamics/methods/march.h"
@@ -15,12 +14,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "dynamics/wide-inl.h"
+
 #ifndef GATEWALK_DYNAMICS_LANES_ONCE
 #define GATEWALK_DYNAMICS_LANES_ONCE
 
 namespace gatewalk::dynamics {
 
-constexpr int kMostLanes = 8;
+constexpr int kMostLanes = 16;
 using Row = double[kMostLanes];
 
 /// One number per lane. Beams: left, right.
@@ -40,18 +41,18 @@ struct alignas(64) LaneSteps {
 struct alignas(64) LaneWatches {
   Row y0, work, lowest, created;
   Row max_theta[2], penetration, speed_squared;
-  Row steps, evaluations, impacts, fast;
+  Row steps, impacts, fast;
 };
 
 /// The runs in the lanes and all that happens between two steps: spells of constant force, ends.
 class LaneRuns {
  public:
   LaneRuns(const GateParams& p, const NextRun& next, int lanes)
-      : p_(p), next_(next), usual_(p, p.run.step), lanes_(lanes),
-        nearly_over_(p.run.time_limit - 1e-6 * p.run.step) {
+      : p_(p), next_(next), usual_(p, p.run.step),
+        whole_hold_(p, 1.0 / p.forces.random_rate), nearly_over_(p.run.time_limit - 1e-6 * p.run.step) {
     runs_.reserve(static_cast<std::size_t>(lanes));
     for (int i = 0; i < lanes; ++i) {
-      runs_.push_back({RunSlot{-1, {}, RandomForce(p.forces, Random(Purpose::gate, {}))}, {}, {}});
+      runs_.push_back({RunSlot{-1, {}, RandomForce(p.forces, Random(Purpose::gate, {}))}, {}, whole_hold_});
       take(i, nullptr);
     }
   }
@@ -61,8 +62,8 @@ class LaneRuns {
   /// The spell in lane i is over.
   void spell_over(int i) {
     Run& run = runs_[i];
-    run.slot.force.pass(run.spell->duration);
-    run.result.seconds += run.spell->duration;
+    run.slot.force.pass(run.spell.duration);
+    run.result.seconds += run.spell.duration;
     if (!begin_spell(i)) end(i, state(bodies, i));
   }
 
@@ -88,11 +89,24 @@ class LaneRuns {
     watches.speed_squared[i] = std::max(watches.speed_squared[i], last.max_speed * last.max_speed);
     for (const Side side : {kLeft, kRight})
       watches.max_theta[side][i] = std::max(watches.max_theta[side][i], last.max_theta[side]);
-    const double gone = static_cast<double>(run.spell->steps) - steps.left[i];
-    const double seconds = gone * run.spell->step + passed;
+    const double gone = static_cast<double>(run.spell.steps) - steps.left[i];
+    const double seconds = gone * run.spell.step + passed;
     run.slot.force.pass(seconds);
     run.result.seconds += seconds;
     end(i, s);
+  }
+
+  /// The body in lane i stays in the gate.
+  void go_on(int i, const LaneBodies& after, double steps_left) {
+    bodies.x[i] = after.x[i];
+    bodies.y[i] = after.y[i];
+    bodies.vx[i] = after.vx[i];
+    bodies.vy[i] = after.vy[i];
+    for (const Side side : {kLeft, kRight}) {
+      bodies.theta[side][i] = after.theta[side][i];
+      bodies.omega[side][i] = after.omega[side][i];
+    }
+    steps.left[i] = steps_left;
   }
 
   LaneBodies bodies{};
@@ -103,7 +117,7 @@ class LaneRuns {
   struct Run {
     RunSlot slot;
     GateRun result;
-    std::optional<Spell> spell;
+    Spell spell;
   };
 
   static GateState state(const LaneBodies& b, int i) {
@@ -120,10 +134,11 @@ class LaneRuns {
     Run& run = runs_[i];
     if (run.result.seconds >= nearly_over_) return false;
     steps.force[i] = run.slot.force.value();
-    run.spell.emplace(p_, std::min(run.slot.force.left(), p_.run.time_limit - run.result.seconds));
-    steps.left[i] = static_cast<double>(run.spell->steps);
-    if (run.spell->step != steps.h[i])
-      set_step(i, run.spell->usual ? usual_ : MoreauMethod::Step(p_, run.spell->step));
+    const double seconds = std::min(run.slot.force.left(), p_.run.time_limit - run.result.seconds);
+    run.spell = seconds == whole_hold_.duration ? whole_hold_ : Spell(p_, seconds);
+    steps.left[i] = static_cast<double>(run.spell.steps);
+    if (run.spell.step != steps.h[i])
+      set_step(i, run.spell.usual ? usual_ : MoreauMethod::Step(p_, run.spell.step));
     return true;
   }
 
@@ -149,7 +164,7 @@ class LaneRuns {
     r.watch.energy_created = w.created[i];
     r.watch.max_speed = std::sqrt(w.speed_squared[i]);
     r.watch.steps = static_cast<std::int64_t>(w.steps[i]);
-    r.watch.evaluations = static_cast<std::int64_t>(w.evaluations[i]);
+    r.watch.evaluations = 3 * r.watch.steps;  // the forces and both gaps
     r.watch.impacts = static_cast<std::int64_t>(w.impacts[i]);
     r.watch.fast_steps = static_cast<std::int64_t>(w.fast[i]);
     --busy_;
@@ -186,7 +201,7 @@ class LaneRuns {
     w.y0[i] = s.body.y;
     w.lowest[i] = energy(p_, s);
     w.work[i] = w.created[i] = w.penetration[i] = w.speed_squared[i] = 0.0;
-    w.steps[i] = w.evaluations[i] = w.impacts[i] = w.fast[i] = 0.0;
+    w.steps[i] = w.impacts[i] = w.fast[i] = 0.0;
     for (const Side side : {kLeft, kRight})
       bodies.theta[side][i] = bodies.omega[side][i] = w.max_theta[side][i] = 0.0;
   }
@@ -194,8 +209,9 @@ class LaneRuns {
   const GateParams& p_;
   const NextRun& next_;
   MoreauMethod::Step usual_;
-  int lanes_, busy_ = 0;
+  Spell whole_hold_;
   double nearly_over_;
+  int busy_ = 0;
   std::vector<Run> runs_;
 };
 
@@ -206,256 +222,183 @@ class LaneRuns {
 HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<double, kMostLanes>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
-
-HWY_INLINE V all(double x) { return hn::Set(D(), x); }
-HWY_INLINE V of(const Row& row) { return hn::Load(D(), row); }
-HWY_INLINE void put(V v, Row& row) { hn::Store(v, D(), row); }
-/// c[0] + c[1] z + ...
-template <std::size_t N>
-HWY_INLINE V series(V z, const double (&c)[N]) {
-  V sum = all(c[N - 1]);
-  for (std::size_t i = N - 1; i-- > 0;) sum = hn::Add(hn::Mul(sum, z), all(c[i]));
-  return sum;
-}
-
-struct Direction2 {
-  V c, s;
+/// What tells whether disc and beam touch, nearest() of contact.h in all lanes ...
+struct Look {
+  Wide c, s, along, across;
+  Wide r, qx, qy, distance_sq;  // the nearer end point, joint or tip, at r from the joint; from there to the disc
+  WideMask interior, touches;
 };
-
-/// cos and sin to 1 or 2 units in the last place for |angle| < 10^6: reduced to [-pi/4, pi/4] by three
-/// parts of pi/2, the first two short enough for exact products; then Taylor's series, next terms
-/// below 6e-17 of the sum.
-HWY_INLINE Direction2 direction_of(V angle) {
-  const V quarter = hn::Round(hn::Mul(angle, all(0x1.45f306dc9c883p-1)));  // 2/pi
-  V r = hn::Sub(angle, hn::Mul(quarter, all(0x1.921fb54p+0)));
-  r = hn::Sub(r, hn::Mul(quarter, all(0x1.10b46118p-30)));
-  r = hn::Sub(r, hn::Mul(quarter, all(0x1.313198a2e0370p-61)));
-  const V z = hn::Mul(r, r);
-  constexpr double kSin[] = {-1.0 / 6,           1.0 / 120,           -1.0 / 5040,
-                             1.0 / 362880,       -1.0 / 39916800,     1.0 / 6227020800.0,
-                             -1.0 / 1307674368000.0};
-  constexpr double kCos[] = {-1.0 / 2,         1.0 / 24,           -1.0 / 720,
-                             1.0 / 40320,      -1.0 / 3628800,     1.0 / 479001600.0,
-                             -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
-  const V sine = hn::Add(r, hn::Mul(hn::Mul(r, z), series(z, kSin)));
-  const V cosine = hn::Add(all(1.0), hn::Mul(z, series(z, kCos)));
-  // quarter modulo 4: 0 (c, s), 1 (-s, c), 2 (-c, -s), 3 (s, -c).
-  const V turn = hn::Sub(quarter, hn::Mul(all(4.0), hn::Floor(hn::Mul(quarter, all(0.25)))));
-  const M odd = hn::Or(hn::Eq(turn, all(1.0)), hn::Eq(turn, all(3.0)));
-  const M minus_c = hn::Or(hn::Eq(turn, all(1.0)), hn::Eq(turn, all(2.0)));
-  const M minus_s = hn::Ge(turn, all(2.0));
-  const V c = hn::IfThenElse(odd, sine, cosine), s = hn::IfThenElse(odd, cosine, sine);
-  return {hn::IfThenElse(minus_c, hn::Neg(c), c), hn::IfThenElse(minus_s, hn::Neg(s), s)};
-}
-
-/// nearest() of contact.h, in all lanes.
-struct Touches {
-  V nx, ny, gap, lever;
-  M tip;
-};
-HWY_INLINE Touches touch_of(const GateParams& p, Side side, V px, V py, V theta) {
+HWY_INLINE Look look_at(const GateParams& p, Wide px, Wide py, Wide theta) {
   const auto [c, s] = direction_of(theta);
-  const V radius = all(p.body.radius), zero = hn::Zero(D());
-  const V along = hn::Add(hn::Mul(px, c), hn::Mul(py, s));
-  const V across = hn::Sub(hn::Mul(c, py), hn::Mul(s, px));
-  const M beyond_joint = hn::Gt(along, zero);
-  const M interior = hn::And(beyond_joint, hn::Lt(along, all(p.beams.length)));
-  const V sign = hn::IfThenElse(hn::Lt(across, zero), all(-1.0), all(1.0));
-  // End points: joint or tip.
-  const V r = hn::IfThenElse(beyond_joint, all(p.beams.length), zero);
-  const V qx = hn::Sub(px, hn::Mul(r, c)), qy = hn::Sub(py, hn::Mul(r, s));
-  const V dist = hn::Sqrt(hn::Add(hn::Mul(qx, qx), hn::Mul(qy, qy)));
-  const M degenerate = hn::Lt(dist, all(std::numeric_limits<double>::min()));
-  const V over = hn::Div(all(1.0), dist);
-  const V ex = hn::IfThenElse(degenerate, hn::Neg(s), hn::Mul(qx, over));
-  const V ey = hn::IfThenElse(degenerate, c, hn::Mul(qy, over));
-  const V nx = hn::IfThenElse(interior, hn::Neg(hn::Mul(sign, s)), ex);
-  const V ny = hn::IfThenElse(interior, hn::Mul(sign, c), ey);
-  const V end_lever = hn::Mul(r, hn::Sub(hn::Mul(c, ey), hn::Mul(s, ex)));
-  return {side == kLeft ? nx : hn::Neg(nx), ny,
-          hn::Sub(hn::IfThenElse(interior, hn::Abs(across), dist), radius),
-          hn::IfThenElse(interior, hn::Mul(sign, along), end_lever),
-          hn::AndNot(interior, beyond_joint)};
+  const Wide length = all(p.beams.length);
+  const Wide along = px * c + py * s, across = c * py - s * px;
+  const WideMask beyond_joint = along > all(0.0), interior = beyond_joint & (along < length);
+  const Wide r = or_zero(beyond_joint, length);
+  const Wide qx = px - r * c, qy = py - r * s;
+  const Wide distance_sq = qx * qx + qy * qy;
+  const Wide away_sq = choose(interior, across * across, distance_sq);
+  return {c, s, along, across, r, qx, qy, distance_sq, interior,
+          away_sq <= all(p.body.radius * p.body.radius)};
 }
 
-/// True where the disc cannot touch the beam (out_of_reach of contact.h) does not hold.
-HWY_INLINE M in_reach(const GateParams& p, V px, V py, V theta) {
-  const double reach = p.beams.length + p.body.radius;
-  const V far_sq = hn::Add(hn::Mul(px, px), hn::Mul(py, py));
-  const V rise = hn::Mul(all(p.beams.length), theta), zero = hn::Zero(D()), radius = all(p.body.radius);
-  const M below = hn::Lt(hn::Add(py, radius), hn::Min(zero, rise));
-  const M above = hn::Gt(hn::Sub(py, radius), hn::Max(zero, rise));
-  const M turned = hn::Gt(hn::Abs(theta), all(3.0));
-  const M near = hn::Not(hn::Gt(far_sq, all(reach * reach)));
-  return hn::And(near, hn::Or(turned, hn::Not(hn::Or(below, above))));
+/// ... and where, in the lanes that do.
+struct Touches {
+  Wide nx, ny, gap, lever;
+  WideMask tip;
+};
+HWY_INLINE Touches touch_of(const GateParams& p, Side side, const Look& at) {
+  const Wide radius = all(p.body.radius);
+  const Wide distance = sqrt(at.distance_sq), over = all(1.0) / distance;
+  const WideMask degenerate = distance < all(std::numeric_limits<double>::min());
+  const Wide ex = choose(degenerate, -at.s, at.qx * over), ey = choose(degenerate, at.c, at.qy * over);
+  const Wide sign = choose(at.across < all(0.0), all(-1.0), all(1.0));
+  const Wide nx = choose(at.interior, -(sign * at.s), ex);
+  return {side == kLeft ? nx : -nx, choose(at.interior, sign * at.c, ey),
+          choose(at.interior, abs(at.across), distance) - radius,
+          choose(at.interior, sign * at.along, at.r * (at.c * ey - at.s * ex)),
+          ~at.interior & (at.r > all(0.0))};
 }
 
 /// One step in every lane (MoreauMethod::one_step), then the ends of spells and runs.
-void carry_out(const GateParams& p, const NextRun& next) {
-  const D d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  LaneRuns runs(p, next, lanes);
-  LaneBodies after{};
-  const V zero = hn::Zero(d), one = all(1.0), half_unit = all(0.5);
-  while (runs.any()) {
-    const LaneBodies& b = runs.bodies;
-    LaneSteps& k = runs.steps;
-    LaneWatches& w = runs.watches;
-    const V h = of(k.h), half = hn::Mul(half_unit, h), force = of(k.force);
-    const V x0 = of(b.x), y0 = of(b.y), vx0 = of(b.vx), vy0 = of(b.vy);
-    const V x = hn::Add(x0, hn::Mul(half, vx0)), y = hn::Add(y0, hn::Mul(half, vy0));
-    const V decay = of(k.v_to_v), per_N = of(k.v_per_N);
-    V vx = hn::Add(hn::Mul(decay, vx0), hn::Mul(per_N, force));
-    V vy = hn::Add(hn::Mul(decay, vy0), hn::Mul(per_N, all(p.forces.propulsion)));
-    const V theta0[2] = {of(b.theta[0]), of(b.theta[1])};
-    const V omega0[2] = {of(b.omega[0]), of(b.omega[1])};
-    V theta[2], omega[2], px[2];
-    const V py = hn::Sub(y, all(p.beams.joint_y));
-    M near[2], active[2];
-    for (const Side side : {kLeft, kRight}) {
-      theta[side] = hn::Add(theta0[side], hn::Mul(half, omega0[side]));
-      omega[side] = hn::Sub(hn::Mul(of(k.w_to_w[side]), omega0[side]),
-                            hn::Mul(of(k.w_per_rad[side]), theta0[side]));
-      px[side] = side == kLeft ? hn::Add(x, all(p.beams.joint_x)) : hn::Sub(all(p.beams.joint_x), x);
-      near[side] = in_reach(p, px[side], py, theta[side]);
-    }
-    V evaluations = hn::Add(of(w.evaluations), one), impacts = of(w.impacts);
-    V deepest = of(w.penetration);
-    if (!hn::AllFalse(d, hn::Or(near[kLeft], near[kRight]))) {
-      Touches t[2];
-      for (const Side side : {kLeft, kRight}) {
-        t[side] = touch_of(p, side, px[side], py, theta[side]);
-        evaluations = hn::Add(evaluations, hn::IfThenElseZero(near[side], one));
-        active[side] = hn::And(near[side], hn::Le(t[side].gap, zero));
-        deepest = hn::IfThenElse(near[side], hn::Max(deepest, hn::Neg(t[side].gap)), deepest);
-      }
-      if (!hn::AllFalse(d, hn::Or(active[kLeft], active[kRight]))) {
-        const V inv_mass = of(k.inv_mass);
-        V before[2], rate[2], give[2];  // give: 1/M + l^2/I
-        for (const Side side : {kLeft, kRight}) {
-          const Touches& c = t[side];
-          const V e = hn::IfThenElse(c.tip, all(p.contact.tip_restitution), all(p.contact.restitution));
-          const auto gap_rate = [&](V ux, V uy, V turning) HWY_ATTR {
-            return hn::Sub(hn::Add(hn::Mul(c.nx, ux), hn::Mul(c.ny, uy)), hn::Mul(c.lever, turning));
-          };
-          before[side] = gap_rate(vx0, vy0, omega0[side]);
-          rate[side] = hn::Add(gap_rate(vx, vy, omega[side]), hn::Mul(e, before[side]));
-          give[side] = hn::Add(inv_mass, hn::Mul(hn::Mul(c.lever, c.lever), of(k.inv_inertia[side])));
-        }
-        // push_only of contact.h: one alone if that leaves the other open, else both.
-        const V cross = hn::Mul(hn::Add(hn::Mul(t[kLeft].nx, t[kRight].nx), hn::Mul(t[kLeft].ny, t[kRight].ny)), inv_mass);
-        M alone[2], need[2];
-        V single[2];
-        for (const Side side : {kLeft, kRight}) {
-          need[side] = hn::And(active[side], hn::Lt(rate[side], zero));
-          single[side] = hn::Neg(hn::Div(rate[side], give[side]));
-        }
-        for (const Side side : {kLeft, kRight}) {
-          const int other = 1 - side;
-          const M open = hn::Ge(hn::Add(rate[other], hn::Mul(cross, single[side])), zero);
-          alone[side] = hn::And(need[side], hn::Or(hn::Not(active[other]), open));
-        }
-        const V product = hn::Mul(give[kLeft], give[kRight]);
-        const V det = hn::Sub(product, hn::Mul(cross, cross));
-        const M same = hn::Le(det, hn::Mul(all(1e-14), product));
-        const V shared = hn::Neg(hn::Div(hn::Add(rate[kLeft], rate[kRight]),
-                                         hn::Add(hn::Add(give[kLeft], give[kRight]), hn::Mul(all(2.0), cross))));
-        const V over = hn::Div(one, det);
-        const M both = hn::AndNot(hn::Or(alone[kLeft], alone[kRight]), hn::Or(need[kLeft], need[kRight]));
-        V jx = zero, jy = zero;
-        for (const Side side : {kLeft, kRight}) {
-          const int other = 1 - side;
-          const V pair = hn::Mul(hn::Sub(hn::Mul(rate[other], cross), hn::Mul(rate[side], give[other])), over);
-          const V joint = hn::Max(zero, hn::IfThenElse(same, shared, pair));
-          const M one_only = side == kLeft ? alone[kLeft] : hn::AndNot(alone[kLeft], alone[kRight]);
-          const V impulse = hn::IfThenElse(one_only, single[side], hn::IfThenElseZero(both, joint));
-          jx = hn::Add(jx, hn::Mul(impulse, t[side].nx));
-          jy = hn::Add(jy, hn::Mul(impulse, t[side].ny));
-          omega[side] = hn::Sub(omega[side], hn::Mul(hn::Mul(impulse, t[side].lever), of(k.inv_inertia[side])));
-          const M new_hit = hn::And(hn::Gt(impulse, zero), hn::Gt(t[side].gap, hn::Mul(h, before[side])));
-          impacts = hn::Add(impacts, hn::IfThenElseZero(new_hit, one));
-        }
-        vx = hn::Add(vx, hn::Mul(jx, inv_mass));
-        vy = hn::Add(vy, hn::Mul(jy, inv_mass));
-      }
-    }
-    const V x1 = hn::Add(x, hn::Mul(half, vx)), y1 = hn::Add(y, hn::Mul(half, vy));
-    put(x1, after.x);
-    put(y1, after.y);
-    put(vx, after.vx);
-    put(vy, after.vy);
-    put(evaluations, w.evaluations);
-    put(impacts, w.impacts);
-    put(deepest, w.penetration);
-    const V speed_sq = hn::Add(hn::Mul(vx, vx), hn::Mul(vy, vy));
-    V elastic = zero, spin = zero, fastest = zero;
-    for (const Side side : {kLeft, kRight}) {
-      theta[side] = hn::Add(theta[side], hn::Mul(half, omega[side]));
-      put(theta[side], after.theta[side]);
-      put(omega[side], after.omega[side]);
-      elastic = hn::Add(elastic, hn::Mul(all(p.beams.stiffness(side)), hn::Mul(theta[side], theta[side])));
-      spin = hn::Add(spin, hn::Mul(omega[side], omega[side]));
-      fastest = hn::Max(fastest, hn::Abs(omega[side]));
-    }
-    const V y_max = all(p.run.traverse_y), side_x = all(p.beams.joint_x);
-    const M gone = hn::Or(hn::Or(hn::Gt(y1, y_max), hn::Gt(hn::Abs(x1), side_x)),
-                          hn::Not(hn::IsFinite(hn::Add(vx, vy))));
+HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
+  LaneBodies& b = runs.bodies;
+  LaneSteps& k = runs.steps;
+  LaneWatches& w = runs.watches;
+  const Wide zero = all(0.0), one = all(1.0);
+  const Wide h = load(k.h), half = 0.5 * h, force = load(k.force);
+  const Wide x0 = load(b.x), y0 = load(b.y), vx0 = load(b.vx), vy0 = load(b.vy);
+  const Wide x = x0 + half * vx0, y = y0 + half * vy0, py = y - all(p.beams.joint_y);
+  const Wide decay = load(k.v_to_v), per_N = load(k.v_per_N);
+  Wide vx = decay * vx0 + per_N * force, vy = decay * vy0 + p.forces.propulsion * per_N;
+  const Wide omega0[2] = {load(b.omega[kLeft]), load(b.omega[kRight])};
+  Wide theta[2], omega[2];
+  Touches t[2];
+  WideMask active[2];
+  for (const Side side : {kLeft, kRight}) {
+    const Wide theta0 = load(b.theta[side]);
+    theta[side] = theta0 + half * omega0[side];
+    omega[side] = load(k.w_to_w[side]) * omega0[side] - load(k.w_per_rad[side]) * theta0;
+    const Wide px = side == kLeft ? x + all(p.beams.joint_x) : all(p.beams.joint_x) - x;
+    const Look at = look_at(p, px, py, theta[side]);
+    active[side] = at.touches;
+    t[side] = touch_of(p, side, at);
+  }
 
-    // Watch::motion and EnergyLedger::step, but for the runs that end in this step.
-    const M stays = hn::Not(gone);
-    const V work = hn::Add(of(w.work), hn::Mul(force, hn::Sub(x1, x0)));
-    const V kinetic = hn::Add(hn::Mul(all(p.body.mass), speed_sq), hn::Mul(all(p.beams.inertia()), spin));
-    const V balance = hn::Sub(hn::Sub(hn::Mul(half_unit, hn::Add(kinetic, elastic)),
-                                      hn::Mul(all(p.forces.propulsion), hn::Sub(y1, of(w.y0)))), work);
-    const V lowest = of(w.lowest), created = of(w.created);
-    const auto keep = [&](V value, V old, Row& row) HWY_ATTR { put(hn::IfThenElse(stays, value, old), row); };
-    keep(work, of(w.work), w.work);
-    keep(hn::Max(created, hn::Sub(balance, lowest)), created, w.created);
-    keep(hn::Min(lowest, balance), lowest, w.lowest);
-    const V speeds = of(w.speed_squared);
-    keep(hn::Max(speeds, speed_sq), speeds, w.speed_squared);
+  // Both beams at once, with push_only of contact.h: one alone if that leaves the other open, else both.
+  const Wide inv_mass = load(k.inv_mass);
+  Wide before[2], rate[2], give[2], impulse[2];  // give: 1/M + l^2/I
+  WideMask need[2], alone[2];
+  for (const Side side : {kLeft, kRight}) {
+    const Touches& c = t[side];
+    const Wide e = choose(c.tip, all(p.contact.tip_restitution), all(p.contact.restitution));
+    before[side] = c.nx * vx0 + c.ny * vy0 - c.lever * omega0[side];
+    rate[side] = c.nx * vx + c.ny * vy - c.lever * omega[side] + e * before[side];
+    give[side] = inv_mass + c.lever * c.lever * load(k.inv_inertia[side]);
+    need[side] = active[side] & (rate[side] < zero);
+    impulse[side] = -(rate[side] / give[side]);
+  }
+  const Wide cross = (t[kLeft].nx * t[kRight].nx + t[kLeft].ny * t[kRight].ny) * inv_mass;
+  for (const Side side : {kLeft, kRight}) {
+    const int other = 1 - side;
+    const WideMask open = rate[other] + cross * impulse[side] >= zero;
+    alone[side] = need[side] & (~active[other] | open);
+  }
+  alone[kRight] = alone[kRight] & ~alone[kLeft];
+  const WideMask both = (need[kLeft] | need[kRight]) & ~(alone[kLeft] | alone[kRight]);
+  for (const Side side : {kLeft, kRight}) impulse[side] = or_zero(alone[side], impulse[side]);
+  if (HWY_UNLIKELY(any(both))) {
+    const Wide product = give[kLeft] * give[kRight], det = product - cross * cross;
+    const WideMask same = det <= 1e-14 * product;
+    const Wide shared = -((rate[kLeft] + rate[kRight]) / (give[kLeft] + give[kRight] + 2.0 * cross));
+    const Wide over = one / det;
     for (const Side side : {kLeft, kRight}) {
-      const V most = of(w.max_theta[side]);
-      keep(hn::Max(most, hn::Abs(theta[side])), most, w.max_theta[side]);
-    }
-    const V steps = of(w.steps), fasts = of(w.fast);
-    keep(hn::Add(steps, one), steps, w.steps);
-    // (v + L |omega|) h > R/2, without a root
-    const V rest = hn::Sub(all(0.5 * p.body.radius), hn::Mul(hn::Mul(fastest, all(p.beams.length)), h));
-    const M too_fast = hn::Or(hn::Lt(rest, zero), hn::Gt(hn::Mul(speed_sq, hn::Mul(h, h)), hn::Mul(rest, rest)));
-    keep(hn::Add(fasts, hn::IfThenElseZero(too_fast, one)), fasts, w.fast);
-
-    const bool some_gone = !hn::AllFalse(d, gone);
-    if (HWY_UNLIKELY(some_gone)) {
-      Row flag;
-      hn::StoreU(hn::IfThenElseZero(gone, one), d, flag);
-      for (int i = 0; i < lanes; ++i) {
-        if (flag[i] == 0.0) continue;
-        runs.left(i, after);
-        // The next run starts from `bodies`, which become the old ones.
-        after.x[i] = runs.bodies.x[i];
-        after.y[i] = runs.bodies.y[i];
-        after.vx[i] = runs.bodies.vx[i];
-        after.vy[i] = runs.bodies.vy[i];
-        for (const Side side : {kLeft, kRight})
-          after.theta[side][i] = after.omega[side][i] = 0.0;
-        k.left[i] += 1.0;  // has not taken this step
-      }
-    }
-    runs.bodies = after;
-    const V left = hn::Sub(of(k.left), one);
-    put(left, k.left);
-    const M over = hn::Le(left, zero);
-    if (!hn::AllFalse(d, over)) {
-      for (int i = 0; i < lanes; ++i)
-        if (k.left[i] <= 0.0) runs.spell_over(i);
+      const int other = 1 - side;
+      const Wide pair = (rate[other] * cross - rate[side] * give[other]) * over;
+      impulse[side] = choose(both, max(zero, choose(same, shared, pair)), impulse[side]);
     }
   }
+  Wide jx = zero, jy = zero, deepest = load(w.penetration), impacts = load(w.impacts);
+  for (const Side side : {kLeft, kRight}) {
+    jx = jx + impulse[side] * t[side].nx;
+    jy = jy + impulse[side] * t[side].ny;
+    omega[side] = omega[side] - impulse[side] * t[side].lever * load(k.inv_inertia[side]);
+    const WideMask new_hit = (impulse[side] > zero) & (t[side].gap > h * before[side]);
+    impacts = impacts + or_zero(new_hit, one);
+    deepest = choose(active[side], max(deepest, -t[side].gap), deepest);
+  }
+  store(impacts, w.impacts);
+  store(deepest, w.penetration);
+  vx = vx + jx * inv_mass;
+  vy = vy + jy * inv_mass;
+
+  const Wide x1 = x + half * vx, y1 = y + half * vy;
+  const Wide speed_sq = vx * vx + vy * vy;
+  Wide elastic = zero, spin = zero, fastest = zero;
+  for (const Side side : {kLeft, kRight}) {
+    theta[side] = theta[side] + half * omega[side];
+    elastic = elastic + p.beams.stiffness(side) * (theta[side] * theta[side]);
+    spin = spin + omega[side] * omega[side];
+    fastest = max(fastest, abs(omega[side]));
+  }
+  const WideMask gone =
+      (y1 > all(p.run.traverse_y)) | (abs(x1) > all(p.beams.joint_x)) | ~finite(vx + vy);
+
+  // Watch::motion and EnergyLedger::step, but for the runs that end in this step.
+  const Wide work = load(w.work) + force * (x1 - x0);
+  const Wide kinetic = p.body.mass * speed_sq + p.beams.inertia() * spin;
+  const Wide balance = 0.5 * (kinetic + elastic) - p.forces.propulsion * (y1 - load(w.y0)) - work;
+  const auto keep = [&](Wide value, Row& row) HWY_ATTR { store(choose(gone, load(row), value), row); };
+  keep(work, w.work);
+  keep(max(load(w.created), balance - load(w.lowest)), w.created);
+  keep(min(load(w.lowest), balance), w.lowest);
+  keep(max(load(w.speed_squared), speed_sq), w.speed_squared);
+  for (const Side side : {kLeft, kRight})
+    keep(max(load(w.max_theta[side]), abs(theta[side])), w.max_theta[side]);
+  keep(load(w.steps) + one, w.steps);
+  // (v + L |omega|) h > R/2, without a root
+  const Wide rest = all(0.5 * p.body.radius) - p.beams.length * fastest * h;
+  const WideMask too_fast = (rest < zero) | (speed_sq * (h * h) > rest * rest);
+  keep(load(w.fast) + or_zero(too_fast, one), w.fast);
+
+  const auto store_to = [&](LaneBodies& to) HWY_ATTR {
+    store(x1, to.x);
+    store(y1, to.y);
+    store(vx, to.vx);
+    store(vy, to.vy);
+    for (const Side side : {kLeft, kRight}) {
+      store(theta[side], to.theta[side]);
+      store(omega[side], to.omega[side]);
+    }
+  };
+  const Wide left = load(k.left) - one;
+  const int lanes = static_cast<int>(width());
+  if (HWY_LIKELY(!any(gone))) {
+    store_to(b);
+    store(left, k.left);
+  } else {
+    LaneBodies after;
+    Row flag, spell_left;
+    store_to(after);
+    store(left, spell_left);
+    store(or_zero(gone, one), flag);
+    for (int i = 0; i < lanes; ++i) {
+      if (flag[i] == 0.0) {
+        runs.go_on(i, after, spell_left[i]);
+      } else {
+        runs.left(i, after);
+      }
+    }
+  }
+  if (any(load(k.left) <= zero)) {
+    for (int i = 0; i < lanes; ++i)
+      if (k.left[i] <= 0.0) runs.spell_over(i);
+  }
+}
+
+void carry_out(const GateParams& p, const NextRun& next) {
+  LaneRuns runs(p, next, static_cast<int>(width()));
+  while (runs.any()) step(p, runs);
 }
 
 }  // namespace HWY_NAMESPACE

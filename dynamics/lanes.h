@@ -6,8 +6,8 @@
 /// The plain reference is MoreauMethod (methods/moreau.h): the same steps in the same order under the
 /// same random force, to the last digits; cos, sin and divisions are rounded in their own way. The
 /// same bits for any instruction set and any company in the other lanes: no fused multiply-add, no
-/// sums over lanes. One thing is looked at elsewhere: penetration at mid-step, where contacts are
-/// found, not at the end of a step.
+/// sums over lanes. Two things differ in what is seen: penetration is looked at in mid-step, where
+/// contacts are found, not at the end of a step; and every step looks at both beams, in reach or not.
 
 #include "dynamics/methods/moreau.h"
 #include "dynamics/runs.h"
@@ -16,5 +16,10 @@ namespace gatewalk::dynamics {
 
 /// As carry_out, for params.run.method "moreau".
 void carry_out_in_lanes(const GateParams& p, const NextRun& next);
+
+/// That a run can take: those of its steps, of which a hold of the random force may add one.
+[[nodiscard]] inline double most_evaluations_in_lanes(const GateParams& p) {
+  return 3.0 * p.run.time_limit * (1.0 / p.run.step + p.forces.random_rate);
+}
 
 }  // namespace gatewalk::dynamics

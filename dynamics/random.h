@@ -3,6 +3,7 @@
 
 #include <Random123/philox.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -24,7 +25,7 @@ enum class Purpose : std::uint64_t { gate = 1, row = 2, field = 3, comparison = 
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.
 [[nodiscard]] inline double open_uniform(std::uint64_t word) {
-  return std::fmin((static_cast<double>(word >> 11) + 0.5) * 0x1p-53, 1.0 - 0x1p-53);
+  return std::min((static_cast<double>(word >> 11) + 0.5) * 0x1p-53, 1.0 - 0x1p-53);
 }
 
 /// Words, uniforms and standard normals of one stream (Philox 4x64, Salmon et al. 2011).
@@ -47,7 +48,13 @@ class Random {
     return static_cast<std::int64_t>((static_cast<Wide>(word()) * static_cast<Wide>(n)) >> 64);
   }
 
-  /// Box-Muller in double; two uniforms give two normals.
+  /// As many standard normals at once as keep the longest registers busy (Google Highway), with the
+  /// same bits for any instruction set and any C library.
+  using Normals = std::array<double, 32>;
+  void normals(Normals& out);
+
+  /// One standard normal, Box-Muller in double; two uniforms give two: the plain reference of
+  /// normals(), which takes the same uniforms in the same order and differs in the last digits.
   [[nodiscard]] double normal() {
     if (has_spare_) {
       has_spare_ = false;
@@ -80,7 +87,11 @@ class RandomForce {
   /// Force in force now (N), for another left() seconds > 0. Draws when the last one has run out.
   [[nodiscard]] double value() {
     if (left_ <= kSliver * hold_) {
-      value_ = scale_ * random_.normal();
+      if (used_ == normals_.size()) {
+        random_.normals(normals_);
+        used_ = 0;
+      }
+      value_ = scale_ * normals_[used_++];
       left_ = hold_;
     }
     return value_;
@@ -96,6 +107,8 @@ class RandomForce {
   double hold_;
   double left_ = 0.0;
   double value_ = 0.0;
+  Random::Normals normals_{};
+  std::size_t used_ = normals_.size();
 };
 
 }  // namespace gatewalk::dynamics

@@ -9,17 +9,19 @@
 
 namespace gatewalk::dynamics {
 
-void carry_out(const GateParams& p, const Method& method, const NextRun& next) {
-  if (p.run.method == "moreau") return carry_out_in_lanes(p, next);
+void carry_out(const GateParams& p, const Method& method, const NextRun& next,
+               std::int64_t most_work) {
+  if (p.run.method == "moreau" && most_evaluations_in_lanes(p) <= static_cast<double>(most_work))
+    return carry_out_in_lanes(p, next);
   RunSlot slot{-1, {}, RandomForce(p.forces, Random(Purpose::gate, {}))};
   for (bool more = next(slot, nullptr); more;) {
-    const GateRun run = run_gate(p, method, slot.start, slot.force);
+    const GateRun run = run_gate(p, method, slot.start, slot.force, most_work);
     more = next(slot, &run);
   }
 }
 
 void carry_out_trials(const GateParams& p, const Method& method, std::int64_t count,
-                      const BeginTrial& begin, const TakeRun& take) {
+                      const BeginTrial& begin, const TakeRun& take, std::int64_t most_work) {
   // Whoever is free takes the next trial: no lane waits for the end of a block.
   std::atomic<std::int64_t> next_trial{0};
   const NextRun next = [&](RunSlot& slot, const GateRun* ended) {
@@ -30,7 +32,7 @@ void carry_out_trials(const GateParams& p, const Method& method, std::int64_t co
     return true;
   };
   tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(),
-                    [&](int) { carry_out(p, method, next); });
+                    [&](int) { carry_out(p, method, next, most_work); });
 }
 
 }  // namespace gatewalk::dynamics

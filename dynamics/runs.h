@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 
 #include "dynamics/gate.h"
 
@@ -21,10 +22,13 @@ struct RunSlot {
 /// this slot. Slots are asked in any order.
 using NextRun = std::function<bool(RunSlot& slot, const GateRun* ended)>;
 
-/// Carries out runs on this thread until `next` has no more. Method `moreau` takes several at a time
-/// (lanes.h), each in a slot of its own; all others one after the other. What becomes of a run
-/// depends on its slot alone.
-void carry_out(const GateParams& p, const Method& method, const NextRun& next);
+inline constexpr std::int64_t kAnyWork = std::numeric_limits<std::int64_t>::max();
+
+/// Carries out runs on this thread until `next` has no more, each as run_gate does. Method `moreau`
+/// takes several at a time (lanes.h), each in a slot of its own, unless a run could take more than
+/// `most_work`; all others one after the other. What becomes of a run depends on its slot alone.
+void carry_out(const GateParams& p, const Method& method, const NextRun& next,
+               std::int64_t most_work = kAnyWork);
 
 /// Puts the first run of a trial into the slot.
 using BeginTrial = std::function<void(RunSlot& slot)>;
@@ -34,6 +38,7 @@ using TakeRun = std::function<bool(RunSlot& slot, const GateRun& run)>;
 /// Carries out all runs of trials 0 .. count - 1 on all threads of the current TBB arena. Both
 /// functions are called by several threads at once, for different trials.
 void carry_out_trials(const GateParams& p, const Method& method, std::int64_t count,
-                      const BeginTrial& begin, const TakeRun& take);
+                      const BeginTrial& begin, const TakeRun& take,
+                      std::int64_t most_work = kAnyWork);
 
 }  // namespace gatewalk::dynamics

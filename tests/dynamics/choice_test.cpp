@@ -86,7 +86,6 @@ TEST(Choice, MeetsItsToleranceAndATightOneIsDearer) {
   }
   const Choice::Tried &loose = made[0].tried.back(), &tight = made[1].tried.back();
   EXPECT_GT(tight.work, loose.work);
-  EXPECT_GT(loose.error.total_variation, 0.001);
   bool rejected = false;
   for (const Choice::Tried& t : made[1].tried)
     rejected |= t.setting.method == loose.setting.method &&
@@ -97,7 +96,8 @@ TEST(Choice, MeetsItsToleranceAndATightOneIsDearer) {
 // With any error allowed it is the cheapest setting without faults. Same method: work is counted
 // evaluations, so every setting that costs less has faults.
 TEST(Choice, TakesTheCheapestThatWorks) {
-  const GateParams p = stiff(1.0, 2.0);
+  GateParams p = stiff(1.0, 2.0);
+  p.beams.stiffness_left = p.beams.stiffness_right = 400.0;
   const Choice c = choose(p);
   ASSERT_TRUE(c.met);
   expect_in_order(c, 1.0);
@@ -111,7 +111,7 @@ TEST(Choice, TakesTheCheapestThatWorks) {
       ++dearer;
     }
   }
-  EXPECT_GE(dearer, 5);  // there was something to save
+  EXPECT_GE(dearer, 2);  // there was something to save
   // Faulty settings that cost less are shown, uncompared.
   for (std::size_t i = 0; i + 1 < c.tried.size(); ++i)
     EXPECT_NE(c.tried[i].verdict, Verdict::fine) << c.tried[i].setting.method;

@@ -1,12 +1,12 @@
 #include "dynamics/lanes.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <vector>
 
 #include "dynamics/ensemble.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 #include "tests/support/threads.h"
@@ -132,7 +132,7 @@ TEST(Lanes, AreIndependentOfTheirCompany) {
   for (const LaneScene& scene : lane_scenes()) {
     SCOPED_TRACE(scene.name);
     const auto together = by_lanes(scene.p, scene.start, 40);
-    for (const int i : {0, 1, 7, 8, 23, 39}) {
+    for (const int i : {0, 1, 7, 8, 15, 16, 23, 39}) {
       GateRun alone;
       bool given = false;
       carry_out_in_lanes(scene.p, [&](RunSlot& slot, const GateRun* ended) {
@@ -149,20 +149,13 @@ TEST(Lanes, AreIndependentOfTheirCompany) {
 }
 
 TEST(Lanes, HaveTheSameBitsWithAnyInstructionSet) {
-  const auto targets = hwy::SupportedAndGeneratedTargets();
-  ASSERT_GE(targets.size(), 1u);
   for (const LaneScene& scene : lane_scenes()) {
     SCOPED_TRACE(scene.name);
     const auto best = by_lanes(scene.p, scene.start, 60);
-    for (const std::int64_t target : targets) {
-      SCOPED_TRACE(hwy::TargetName(target));
-      hwy::SetSupportedTargetsForTest(target);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    test::on_every_instruction_set([&] {
       const auto runs = by_lanes(scene.p, scene.start, 60);
-      hwy::SetSupportedTargetsForTest(0);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
       for (std::size_t i = 0; i < runs.size(); ++i) expect_same_bits(best[i], runs[i]);
-    }
+    });
   }
 }
 

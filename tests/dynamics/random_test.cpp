@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "tests/support/instruction_sets.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::dynamics {
@@ -140,6 +141,44 @@ TEST(Random, NormalsAreStandardNormal) {
   EXPECT_NEAR(beyond, n * tail, 4 * std::sqrt(n * tail));
 }
 
+// The plain reference takes the same uniforms; what differs is rounding, relative to the radius of a
+// pair and including that of the angle, 2 pi eps.
+TEST(Random, NormalsByTheBatchAreThoseOfThePlainReference) {
+  constexpr double eps = std::numeric_limits<double>::epsilon();
+  double worst = 0.0;
+  for (std::uint64_t trial = 0; trial < 2000; ++trial) {
+    const Stream name{.seed = 9, .row = 1, .trial = trial};
+    Random plain(Purpose::gate, name), batch(Purpose::gate, name);
+    for (int round = 0; round < 3; ++round) {
+      Random::Normals normals;
+      batch.normals(normals);
+      for (std::size_t i = 0; i < normals.size(); i += 2) {
+        const double x = plain.normal(), y = plain.normal();
+        const double radius = std::hypot(x, y);
+        worst = std::max({worst, std::abs(normals[i] - x) / radius, std::abs(normals[i + 1] - y) / radius});
+      }
+    }
+    EXPECT_EQ(plain.word(), batch.word());  // as many were taken
+  }
+  EXPECT_LE(worst, 10 * eps);
+  EXPECT_GT(worst, 0.0);
+}
+
+TEST(Random, NormalsHaveTheSameBitsWithAnyInstructionSet) {
+  const auto draw = [] {
+    std::vector<double> all;
+    Random random(Purpose::gate, {.seed = 9, .row = 2, .trial = 0});
+    for (int round = 0; round < 500; ++round) {
+      Random::Normals normals;
+      random.normals(normals);
+      all.insert(all.end(), normals.begin(), normals.end());
+    }
+    return all;
+  };
+  const std::vector<double> best = draw();
+  test::on_every_instruction_set([&] { EXPECT_EQ(draw(), best); });
+}
+
 TEST(Random, NormalsFollowTheNormalDistribution) {
   Random random(Purpose::gate, {.seed = 3, .row = 0, .trial = 0});
   std::vector<double> x(100'000);
@@ -166,8 +205,11 @@ RandomForce force_of(std::uint64_t trial, double sign = 1.0) {
 TEST(RandomForce, HoldsEachDrawForOneFiftiethOfASecond) {
   RandomForce force = force_of(0);
   Random draws(Purpose::gate, {.seed = 1, .row = 0, .trial = 0});
+  Random::Normals normals;
   for (int hold = 0; hold < 1000; ++hold) {
-    const double expected = 20.0 * draws.normal();
+    const std::size_t used = static_cast<std::size_t>(hold) % normals.size();
+    if (used == 0) draws.normals(normals);
+    const double expected = 20.0 * normals[used];
     for (int step = 0; step < 5; ++step) {
       EXPECT_EQ(force.value(), expected) << hold << ' ' << step;
       EXPECT_NEAR(force.left(), 0.02 - 0.004 * step, 1e-15);

@@ -1,0 +1,45 @@
+#include "dynamics/random.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dynamics/normals.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "dynamics/wide-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace gatewalk::dynamics {
+namespace HWY_NAMESPACE {
+
+/// Box-Muller for n pairs of uniforms, n a multiple of 16.
+void box_muller(const double* radius, const double* angle, std::size_t n, double* normals) {
+  const D d;
+  for (std::size_t i = 0; i < n; i += width()) {
+    const Wide r = sqrt(-2.0 * log(load(radius + i)));
+    const Direction2 to = direction_of(2.0 * std::numbers::pi * load(angle + i));
+    const Wide x = r * to.c, y = r * to.s;
+    hn::StoreInterleaved2(x.a, y.a, d, normals + 2 * i);
+    hn::StoreInterleaved2(x.b, y.b, d, normals + 2 * i + width());
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace gatewalk::dynamics
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace gatewalk::dynamics {
+HWY_EXPORT(box_muller);
+
+void Random::normals(Normals& out) {
+  constexpr std::size_t kPairs = std::tuple_size_v<Normals> / 2;
+  std::array<double, kPairs> radius, angle;
+  for (std::size_t i = 0; i < kPairs; ++i) {
+    radius[i] = uniform();
+    angle[i] = uniform();
+  }
+  HWY_DYNAMIC_DISPATCH(box_muller)(radius.data(), angle.data(), kPairs, out.data());
+}
+
+}  // namespace gatewalk::dynamics
+#endif

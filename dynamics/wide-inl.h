@@ -1,0 +1,145 @@
+// Numbers side by side in two vector registers, written as one, for use inside Highway's foreach_target
+// (so no plain include guard). Two registers because a single one waits for itself: the two do not
+// depend on each other. Nothing is fused and nothing is summed over lanes, so that every lane has the
+// same bits with any instruction set.
+#if defined(GATEWALK_DYNAMICS_WIDE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef GATEWALK_DYNAMICS_WIDE_INL_H_
+#undef GATEWALK_DYNAMICS_WIDE_INL_H_
+#else
+#define GATEWALK_DYNAMICS_WIDE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace gatewalk::dynamics {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, 8>;  // 16 numbers at most
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+struct Wide {
+  V a, b;
+};
+struct WideMask {
+  M a, b;
+};
+
+HWY_INLINE std::size_t width() { return 2 * hn::Lanes(D()); }
+HWY_INLINE Wide all(double x) { return {hn::Set(D(), x), hn::Set(D(), x)}; }
+HWY_INLINE Wide load(const double* from) {
+  return {hn::LoadU(D(), from), hn::LoadU(D(), from + hn::Lanes(D()))};
+}
+HWY_INLINE void store(Wide x, double* to) {
+  hn::StoreU(x.a, D(), to);
+  hn::StoreU(x.b, D(), to + hn::Lanes(D()));
+}
+
+HWY_INLINE Wide operator+(Wide x, Wide y) { return {hn::Add(x.a, y.a), hn::Add(x.b, y.b)}; }
+HWY_INLINE Wide operator-(Wide x, Wide y) { return {hn::Sub(x.a, y.a), hn::Sub(x.b, y.b)}; }
+HWY_INLINE Wide operator*(Wide x, Wide y) { return {hn::Mul(x.a, y.a), hn::Mul(x.b, y.b)}; }
+HWY_INLINE Wide operator/(Wide x, Wide y) { return {hn::Div(x.a, y.a), hn::Div(x.b, y.b)}; }
+HWY_INLINE Wide operator*(double x, Wide y) { return all(x) * y; }
+HWY_INLINE Wide operator-(Wide x) { return {hn::Neg(x.a), hn::Neg(x.b)}; }
+HWY_INLINE Wide sqrt(Wide x) { return {hn::Sqrt(x.a), hn::Sqrt(x.b)}; }
+HWY_INLINE Wide abs(Wide x) { return {hn::Abs(x.a), hn::Abs(x.b)}; }
+HWY_INLINE Wide max(Wide x, Wide y) { return {hn::Max(x.a, y.a), hn::Max(x.b, y.b)}; }
+HWY_INLINE Wide min(Wide x, Wide y) { return {hn::Min(x.a, y.a), hn::Min(x.b, y.b)}; }
+HWY_INLINE Wide round(Wide x) { return {hn::Round(x.a), hn::Round(x.b)}; }
+HWY_INLINE Wide floor(Wide x) { return {hn::Floor(x.a), hn::Floor(x.b)}; }
+
+HWY_INLINE WideMask operator<(Wide x, Wide y) { return {hn::Lt(x.a, y.a), hn::Lt(x.b, y.b)}; }
+HWY_INLINE WideMask operator<=(Wide x, Wide y) { return {hn::Le(x.a, y.a), hn::Le(x.b, y.b)}; }
+HWY_INLINE WideMask operator>(Wide x, Wide y) { return y < x; }
+HWY_INLINE WideMask operator>=(Wide x, Wide y) { return y <= x; }
+HWY_INLINE WideMask operator==(Wide x, Wide y) { return {hn::Eq(x.a, y.a), hn::Eq(x.b, y.b)}; }
+HWY_INLINE WideMask finite(Wide x) { return {hn::IsFinite(x.a), hn::IsFinite(x.b)}; }
+HWY_INLINE WideMask operator&(WideMask x, WideMask y) { return {hn::And(x.a, y.a), hn::And(x.b, y.b)}; }
+HWY_INLINE WideMask operator|(WideMask x, WideMask y) { return {hn::Or(x.a, y.a), hn::Or(x.b, y.b)}; }
+HWY_INLINE WideMask operator~(WideMask x) { return {hn::Not(x.a), hn::Not(x.b)}; }
+HWY_INLINE bool any(WideMask x) { return !hn::AllFalse(D(), hn::Or(x.a, x.b)); }
+
+HWY_INLINE Wide choose(WideMask m, Wide yes, Wide no) {
+  return {hn::IfThenElse(m.a, yes.a, no.a), hn::IfThenElse(m.b, yes.b, no.b)};
+}
+HWY_INLINE Wide or_zero(WideMask m, Wide yes) {
+  return {hn::IfThenElseZero(m.a, yes.a), hn::IfThenElseZero(m.b, yes.b)};
+}
+
+/// c[0] + c[1] z + ...; even and odd powers apart, so that one need not wait for the other.
+template <std::size_t N>
+HWY_INLINE Wide series(Wide z, const double (&c)[N]) {
+  static_assert(N >= 2);
+  const Wide zz = z * z;
+  Wide last = all(c[N - 1]), other = all(c[N - 2]);
+  for (std::size_t i = N - 2; i-- > 0;) {
+    const Wide next = last * zz + all(c[i]);
+    last = other;
+    other = next;
+  }
+  return other + last * z;
+}
+
+struct Direction2 {
+  Wide c, s;
+};
+
+/// cos and sin to 1 or 2 units in the last place for |angle| < 10^6: reduced to [-pi/4, pi/4] by three
+/// parts of pi/2, the first two short enough for exact products; then Taylor's series, next terms
+/// below 6e-17 of the sum.
+HWY_INLINE Direction2 direction_of(Wide angle) {
+  const Wide quarter = round(0x1.45f306dc9c883p-1 * angle);  // 2/pi
+  Wide r = angle - 0x1.921fb54p+0 * quarter;
+  r = r - 0x1.10b46118p-30 * quarter;
+  r = r - 0x1.313198a2e0370p-61 * quarter;
+  const Wide z = r * r;
+  constexpr double kSin[] = {-1.0 / 6,           1.0 / 120,           -1.0 / 5040,
+                             1.0 / 362880,       -1.0 / 39916800,     1.0 / 6227020800.0,
+                             -1.0 / 1307674368000.0};
+  constexpr double kCos[] = {-1.0 / 2,         1.0 / 24,           -1.0 / 720,
+                             1.0 / 40320,      -1.0 / 3628800,     1.0 / 479001600.0,
+                             -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
+  const Wide sine = r + r * z * series(z, kSin);
+  const Wide cosine = all(1.0) + z * series(z, kCos);
+  // quarter modulo 4: 0 (c, s), 1 (-s, c), 2 (-c, -s), 3 (s, -c).
+  const Wide turn = quarter - 4.0 * floor(0.25 * quarter);
+  const WideMask one = turn == all(1.0), upper = turn >= all(2.0), odd = one | (turn == all(3.0));
+  const Wide c = choose(odd, sine, cosine), s = choose(odd, cosine, sine);
+  return {choose(one | (turn == all(2.0)), -c, c), choose(upper, -s, s)};
+}
+
+/// log to 1 or 2 units in the last place, for normal x > 0: x = 2^e m with m in [1/sqrt 2, sqrt 2),
+/// log m = 2 artanh s with s = (m - 1)/(m + 1), |s| < 0.172; next term of the series below 3e-17.
+HWY_INLINE Wide log(Wide x) {
+  const hn::RebindToUnsigned<D> du;
+  const hn::RebindToSigned<D> di;
+  const auto fraction = [&](V v) HWY_ATTR {
+    const auto low = hn::And(hn::BitCast(du, v), hn::Set(du, 0xfffffffffffff));
+    return hn::BitCast(D(), hn::Or(low, hn::Set(du, 0x3ff0000000000000)));
+  };
+  const auto exponent = [&](V v) HWY_ATTR {
+    const auto biased = hn::BitCast(di, hn::ShiftRight<52>(hn::BitCast(du, v)));
+    return hn::ConvertTo(D(), hn::Sub(biased, hn::Set(di, 1023)));
+  };
+  Wide m{fraction(x.a), fraction(x.b)}, e{exponent(x.a), exponent(x.b)};
+  const WideMask upper = m > all(0x1.6a09e667f3bcdp+0);  // sqrt 2
+  m = choose(upper, 0.5 * m, m);
+  e = choose(upper, e + all(1.0), e);
+  const Wide s = (m - all(1.0)) / (m + all(1.0));
+  const Wide z = s * s, twice = s + s;
+  constexpr double kArtanh[] = {1.0 / 3,  1.0 / 5,  1.0 / 7,  1.0 / 9,  1.0 / 11,
+                                1.0 / 13, 1.0 / 15, 1.0 / 17, 1.0 / 19};
+  // log 2 in two parts, the first short enough for exact products.
+  const Wide low = twice * z * series(z, kArtanh) + 0x1.ef35793c76730p-45 * e;
+  return 0x1.62e42fefa3800p-1 * e + (twice + low);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace gatewalk::dynamics
+HWY_AFTER_NAMESPACE();
+
+#endif
