@@ -34,8 +34,8 @@ struct Setting {
 /// Methods that have a list of settings, in the order of a chart.
 [[nodiscard]] std::span<const std::string_view> chart_methods();
 
-/// Steps hold/n, n = 1, 2, 3, 4, 5, 8, 10, 20, for the methods with a fixed step; tolerances 0.3
-/// to 1e-4 m for `event`. From coarse to fine. Throws std::invalid_argument for another name.
+/// Steps hold/n, n = 1, 2, 3, 4, 5, 8, 10, 20, for the methods with a fixed step, and 40 for `moreau`;
+/// tolerances 0.3 to 1e-4 m for `event`. From coarse to fine. Throws std::invalid_argument for another name.
 [[nodiscard]] std::vector<Setting> chart_settings(std::string_view method, const GateParams& p);
 
 /// What everything is compared with, `event` at 1e-7 m, and the same ten times coarser, which
