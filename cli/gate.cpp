@@ -22,20 +22,7 @@ int run_gate(const std::vector<std::string>& arguments) {
     tally += dynamics::run_gate_trials(scene.gate, scene.start, options.seed(), {first, n});
   });
 
-  Json json;
-  json["trials"] = tally.trials;
-  json["traversed"] = tally.traversed();
-  json["traversed_left"] = tally.traversed_left;
-  json["traversed_right"] = tally.traversed_right;
-  json["traversed_even"] = tally.traversed_even;
-  json["exited_left"] = tally.exited_left;
-  json["exited_right"] = tally.exited_right;
-  json["trapped"] = tally.trapped;
-  json["not_finite"] = tally.broken;
-  json["intervals_95"] = Json::object();
-  for (const char* outcome : {"traversed", "traversed_left", "traversed_right", "exited_left",
-                              "exited_right", "trapped"})
-    json["intervals_95"][outcome] = share_interval(json[outcome].get<std::int64_t>(), tally.trials);
+  Json json = to_json(tally);
   if (!settled.is_null()) json["method"] = settled;
   json["status"] = to_json(tally.health);
   json["made_by"] = manifest(options, scene);

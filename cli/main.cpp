@@ -10,8 +10,9 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::array<Command, 11> kCommands{{
+constexpr std::array<Command, 12> kCommands{{
     {"gate", "run one gate many times and count the outcomes", run_gate},
+    {"sweep", "the same over a grid of scene keys", run_sweep},
     {"build", "fill the input-output matrix from single-gate runs", run_build},
     {"show", "show what a matrix file holds", run_show},
     {"walk", "walk the field by drawing from the matrix", run_walk},

@@ -157,8 +157,26 @@ std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
           part == whole ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
 }
 
+Json to_json(const dynamics::GateTally& tally) {
+  Json json;
+  json["trials"] = tally.trials;
+  json["traversed"] = tally.traversed();
+  json["traversed_left"] = tally.traversed_left;
+  json["traversed_right"] = tally.traversed_right;
+  json["traversed_even"] = tally.traversed_even;
+  json["exited_left"] = tally.exited_left;
+  json["exited_right"] = tally.exited_right;
+  json["trapped"] = tally.trapped;
+  json["not_finite"] = tally.broken;
+  json["intervals_95"] = Json::object();
+  for (const char* outcome : {"traversed", "traversed_left", "traversed_right", "exited_left",
+                              "exited_right", "trapped"})
+    json["intervals_95"][outcome] = share_interval(json[outcome].get<std::int64_t>(), tally.trials);
+  return json;
+}
+
 std::string scene_line(const Scene& scene) {
-  const auto& [gate, field, start, source, named] = scene;
+  const auto& [gate, field, start, source, named, sweep] = scene;
   std::ostringstream text;
   text << source << ": start x " << start.x << ", y " << start.y << " m, v (" << start.vx << ", "
        << start.vy << ") m/s; disc " << gate.body.mass << " kg, R " << gate.body.radius << " m; F "

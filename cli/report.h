@@ -21,6 +21,8 @@ namespace gatewalk::cli {
 /// One sentence if something was seen, else empty.
 [[nodiscard]] std::string complaint(const dynamics::Health& health);
 
+/// How runs of one gate ended: counts, and 95 % intervals of their shares.
+[[nodiscard]] Json to_json(const dynamics::GateTally& tally);
 [[nodiscard]] Json to_json(const lattice::Comparison& c);
 [[nodiscard]] Json grid(const markov::CellCounts& cells);
 [[nodiscard]] Json grid(const markov::CellProbabilities& cells);

@@ -32,6 +32,7 @@ constexpr std::size_t kLongestCompared = 100;  // bytes of an unknown key
 
 constexpr std::string_view kMethodKey = "run.method";
 constexpr std::string_view kFidelityKey = "field.fidelity";
+constexpr std::string_view kSweepTable = "sweep";
 
 using Slot = std::variant<double*, int*, std::string*, lattice::Fidelity*>;
 
@@ -266,6 +267,7 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
     const std::string table_name(table_key.str());
     const std::string table_origin = origin(table_node.source().begin.line);
     const toml::table* table = table_node.as_table();
+    if (table_name == kSweepTable) continue;  // see variations_of
     if (!is_table(table_name)) {
       throw SceneError(table_origin + ": unknown "
                        + (table ? "table " + printable(table_name) + "; the closest known table is "
@@ -280,14 +282,55 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
     for (const auto& [key, node] : *table) {
       const std::string name = table_name + "." + std::string(key.str());
       const std::string key_origin = origin(node.source().begin.line);
-      if (!find_key(name)) {
-        throw SceneError(key_origin + ": unknown key " + printable(name)
-                         + "; the closest known key is " + std::string(closest_key(name)));
-      }
+      require_key(name, key_origin);
       settings[name] = {&node, key_origin};
     }
   }
   return settings;
+}
+
+/// Table [sweep]: keys of the scene with text "4:1:9" or "1,2", or an array of numbers or texts.
+std::vector<Variation> variations_of(const toml::table& document, const Origin& origin) {
+  struct Found {
+    toml::source_position place;
+    Variation variation;
+  };
+  std::vector<Found> found;
+  const auto item = [&](const toml::node& node, const std::string& begin) {
+    if (const auto* text = node.as_string()) return text->get();
+    if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
+    if (const auto* number = node.as_floating_point()) return shortest(number->get());
+    throw SceneError(begin + shown_value(node) + " is not permitted: must be \"from:step:to\", or a number or text, or an array of these");
+  };
+  const auto take = [&](const std::string& name, const toml::node& node) {
+    const std::string at = origin(node.source().begin.line);
+    require_key(name, at);
+    const std::string begin = at + ": sweep." + name;
+    std::string values;
+    if (const auto* array = node.as_array()) {
+      for (const toml::node& n : *array) values += (values.empty() ? "" : ",") + item(n, begin);
+    } else {
+      values = item(node, begin);
+    }
+    found.push_back({node.source().begin, {name, values, begin}});
+  };
+  const toml::node* sweep = document.get(kSweepTable);
+  if (!sweep) return {};
+  if (!sweep->is_table())
+    throw SceneError(origin(sweep->source().begin.line) + ": sweep" + shown_value(*sweep) +
+                     " is not permitted: must be a table, written [sweep]");
+  for (const auto& [table, node] : *sweep->as_table()) {
+    const std::string name(table.str());
+    if (!node.is_table()) {
+      take(name, node);  // a whole key in quotation marks
+      continue;
+    }
+    for (const auto& [key, value] : *node.as_table()) take(name + "." + std::string(key.str()), value);
+  }
+  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.place < b.place; });
+  std::vector<Variation> variations;
+  for (Found& f : found) variations.push_back(std::move(f.variation));
+  return variations;
 }
 
 /// Adds "key=value" to `settings`; `documents` keeps the parsed values alive.
@@ -414,6 +457,12 @@ std::string read_file(const std::string& path) {
 
 }  // namespace
 
+void require_key(const std::string& key, const std::string& origin) {
+  if (find_key(key)) return;
+  throw SceneError(origin + ": unknown key " + printable(key) + "; the closest known key is " +
+                   std::string(closest_key(key)));
+}
+
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
   const std::string text = read_file(path);
   if (text.starts_with("\x89HDF")) throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
@@ -434,6 +483,7 @@ Scene parse_scene(std::string_view text, std::string name,
 
   Scene scene;
   scene.source = name;
+  scene.sweep = variations_of(document, origin);
   for (const SceneKey& key : scene_keys()) {
     const auto it = settings.find(key.key);
     if (it != settings.end()) assign(key, it->second, scene);

@@ -12,12 +12,19 @@
 
 namespace gatewalk::cli {
 
+/// A key and the values that a sweep gives it: "4:1:9" (from:step:to) or "300,400,500".
+struct Variation {
+  std::string key, values;
+  std::string origin;  // how a message about it begins
+};
+
 struct Scene {
   dynamics::GateParams gate;
   lattice::FieldParams field;
   dynamics::BodyState start{0.0, 0.0, 0.0, 15.0};  // m, m, m/s, m/s; in the first gate's frame
   std::string source;                              // the file it came from
   std::set<std::string, std::less<>> named;        // keys the user gave, the rest are defaults
+  std::vector<Variation> sweep;                    // table [sweep], in the order of the file
 };
 
 /// A scene that cannot be used. what() reads
@@ -36,7 +43,10 @@ class SceneError : public std::runtime_error {
 [[nodiscard]] Scene parse_scene(std::string_view text, std::string name,
                                 const std::vector<std::string>& overrides = {});
 
-/// The complete scene, every key in a fixed order, numbers with the digits that read back the same.
+/// Throws SceneError unless `key` is one of a scene; `origin` begins the message.
+void require_key(const std::string& key, const std::string& origin);
+
+/// The complete scene, every key in a fixed order, but no sweep; numbers with the digits that read back the same.
 [[nodiscard]] std::string to_toml(const Scene& scene);
 
 /// What differs between two scenes among the keys that shape a transition matrix (all of

@@ -276,8 +276,8 @@ ls | grep -q tmp && fail "temporary files stayed behind: $(ls)"
 # chart: a line per scene, method and setting; wrong use is said before any work.
 "$gatewalk" chart "$scenes/field.toml" "$scenes/stiff.toml" -o charts --trials 20 --repeats 1 --seed 2 --quiet >/dev/null 2>chart.err ||
   fail "chart: $(head -n 3 chart.err)"
-[ "$(wc -l <charts/chart.csv)" = 81 ] || fail "chart.csv has $(wc -l <charts/chart.csv) lines"
-[ "$(cut -d, -f1-2 charts/chart.csv | sort | uniq -c | awk '$1 == 8' | wc -l)" = 10 ] || fail "chart.csv: not 8 settings each"
+[ "$(wc -l <charts/chart.csv)" = 83 ] || fail "chart.csv has $(wc -l <charts/chart.csv) lines"
+[ "$(cut -d, -f1-2 charts/chart.csv | sort | uniq -c | awk '$1 == ($2 ~ /moreau/ ? 9 : 8)' | wc -l)" = 10 ] || fail "chart.csv: settings per method"
 holds '[.scenes[].settings[] | select(.status != "refused") | .health.runs == 20 and .microseconds_per_trial.min > 0] | all' charts/chart.json
 holds '[.scenes[].reference.outcomes | add] == [20, 20]' charts/chart.json
 holds '[.scenes[].settings[] | select(.default)] | length == 10' charts/chart.json
@@ -319,6 +319,29 @@ done
 sed -E 's/^stiffness_left_Nm_per_rad.*/stiffness_left_Nm_per_rad = 1e12/; s/^method = .*/method = "paper"/' \
   "$scenes/field.toml" >rigid.toml
 expect 2 'rigid.toml: no reference' timeout 20 "$gatewalk" chart "$scenes/field.toml" rigid.toml -o charts --trials 1e7
+
+# sweep: a point is what gate gives for those keys; from:step:to and lists; the scene's own grid.
+"$gatewalk" sweep "$scenes/single_gate.toml" --trials 60 --seed 5 --vary forces.propulsion_N=8:0.5:9 \
+  --vary run.method=stable,moreau --csv sweep.csv --json sweep.json --quiet 2>/dev/null || fail "sweep"
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 60 --seed 5 --set forces.propulsion_N=8.5 --json point.json --quiet
+holds '[.points[].at["forces.propulsion_N"]] == [8, 8, 8.5, 8.5, 9, 9]' sweep.json
+[ "$(jq -cS '.points[2] | del(.at)' sweep.json)" = "$(jq -cS 'del(.made_by)' point.json)" ] ||
+  [ "$(jq -cS '.points[2] | del(.at, .intervals_95.right_of_traversed)' sweep.json)" = "$(jq -cS 'del(.made_by)' point.json)" ] ||
+  fail "sweep: a point is not what gate gives"
+[ "$(wc -l <sweep.csv)" = 7 ] || fail "sweep: $(wc -l <sweep.csv) lines"
+[ "$(head -n 1 sweep.csv | cut -d, -f1,2,3)" = "forces.propulsion_N,run.method,method" ] || fail "sweep: $(head -n 1 sweep.csv)"
+expect 0 '60 points of 1 trials' "$gatewalk" sweep "$scenes/fig8.toml" --trials 1 --quiet
+expect 0 '^216 points of 1 trials' "$gatewalk" sweep "$scenes/fig12.toml" --trials 1 --quiet
+expect 0 '^12 points' "$gatewalk" sweep "$scenes/fig8.toml" --trials 1 --quiet --vary forces.random_N=20
+expect 2 'nothing to vary' "$gatewalk" sweep "$scenes/field.toml"
+expect 2 'closest known key is forces.random_N' "$gatewalk" sweep "$scenes/field.toml" --vary forces.randm_N=1
+expect 2 'holds no value' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1:1:0
+expect 2 "'2,' in" "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1:1:2,
+expect 2 'holds' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1:0:2
+expect 2 'lacks a value' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1,,2
+expect 2 'varied twice' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1 --vary forces.random_N=2
+expect 2 'must lie in' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1,-1
+expect 2 'more than 100000' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=0:1e-9:1
 
 # stability: five maps of five methods.
 "$gatewalk" stability -o maps --quick --quiet >/dev/null 2>maps.err || fail "stability: $(head -n 3 maps.err)"

@@ -495,6 +495,40 @@ TEST(Overrides, CannotSmuggleASecondLine) {
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
+TEST(Sweep, IsATableOfKeysAndValues) {
+  const Scene scene = parse_scene(R"([sweep]
+forces.propulsion_N = "4:1:9"
+beams.damping_Nms_per_rad = [50, 1.5]
+"run.method" = ["stable", "paper"]
+field.columns = 3
+)", "a.toml");
+  ASSERT_EQ(scene.sweep.size(), 4u);
+  EXPECT_EQ(scene.sweep[0].key, "forces.propulsion_N");
+  EXPECT_EQ(scene.sweep[0].values, "4:1:9");
+  EXPECT_EQ(scene.sweep[1].key, "beams.damping_Nms_per_rad");
+  EXPECT_EQ(scene.sweep[1].values, "50,1.5");
+  EXPECT_EQ(scene.sweep[2].key, "run.method");
+  EXPECT_EQ(scene.sweep[2].values, "stable,paper");
+  EXPECT_EQ(scene.sweep[3].values, "3");
+  EXPECT_TRUE(scene.named.empty());  // the scene itself has its defaults
+  EXPECT_EQ(to_toml(scene), kDefaultScene);
+}
+
+TEST(Sweep, RefusesWhatIsNoKeyOrNoValue) {
+  const auto message = [](const std::string& text) {
+    try {
+      (void)parse_scene(text, "bad.toml");
+    } catch (const SceneError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message("[sweep]\nforces.randm_N = 3"),
+            "bad.toml:2: unknown key forces.randm_N; the closest known key is forces.random_N");
+  EXPECT_TRUE(message("[sweep]\nforces.random_N = true").starts_with("bad.toml:2: sweep.forces.random_N = true"));
+  EXPECT_TRUE(message("sweep = 3").starts_with("bad.toml:1: sweep = 3"));
+}
+
 TEST(ToToml, ReadsBackBitForBit) {
   std::mt19937_64 random(7);  // NOLINT: the same numbers every time
   const auto spread = [&](double low_power, double high_power) {
