@@ -6,6 +6,7 @@ import csv
 import json
 import statistics
 import sys
+import textwrap
 from collections import defaultdict
 
 
@@ -38,7 +39,9 @@ def digits(x, n=3):
 
 
 def shown(x):
-    """Numbers in three digits for people, anything else as it is."""
+    """Counts in full, other numbers in three digits, anything else as it is."""
+    if str(x).isdigit():
+        return f"{int(x):,}".replace(",", " ")
     try:
         x = float(digits(x))
     except ValueError:
@@ -192,23 +195,20 @@ def size_text(folder):
 
 def budget_text(folder):
     b = {r["what"]: float(r["value"]) for r in read_csv(f"{folder}/budget.csv")}
-    yield f"""## Time to a total variation of 0.01
-
-Direct simulation needs {b['trials_for_0.01']:.0f} trials to be off by 0.01 on average. With the matrix at hand one
-exact prediction takes {1e3 * b['predict_seconds']:.3g} ms; the matrix takes {b['matrix_seconds']:.2g} s.
-"""
+    yield "## Time to a total variation of 0.01\n"
+    yield textwrap.fill(f"""Direct simulation needs {b['trials_for_0.01']:.0f} trials to be off by 0.01 on average. With the matrix at hand one
+exact prediction takes {1e3 * b['predict_seconds']:.3g} ms; the matrix takes {b['matrix_seconds']:.2g} s.""", 115) + "\n"
     yield from table(["stable", "moreau"], {
         "full dynamics by": lambda m: "moreau in lanes" if m == "moreau" else m,
         "seconds": lambda m: b[m + "_seconds"],
         "over one prediction": lambda m: b[m + "_over_predict"],
         "over matrix and prediction": lambda m: b[m + "_over_matrix_and_predict"],
         "the matrix pays from start": lambda m: b[m + "_pays_from_starts"]})
-    yield f"""But the chain is not the truth: the prediction of this matrix is off by {b['chain_total_variation']:.2g} (the
+    yield textwrap.fill(f"""But the chain is not the truth: the prediction of this matrix is off by {b['chain_total_variation']:.2g} (the
 truth's own trials make some {b['truth_floor']:.1g} of it). Direct simulation is that close after
 {b['trials_for_chains_error']:.0f} trials, {b['stable_seconds_to_chains_error']:.2g} s by `stable`,
 {b['moreau_seconds_to_chains_error']:.2g} s in lanes; at this error the matrix pays from start
-{b['stable_pays_from_starts_at_chains_error']:.0f} and {b['moreau_pays_from_starts_at_chains_error']:.0f} on.
-"""
+{b['stable_pays_from_starts_at_chains_error']:.0f} and {b['moreau_pays_from_starts_at_chains_error']:.0f} on.""", 115)
 
 
 def main(work, folder):

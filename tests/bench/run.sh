@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # gatewalk's speed beside its peers, and its cost against size. No part of the tests.
-#   tests/bench/run.sh [FOLDER]      about 10 minutes on two cores, without building
+#   tests/bench/run.sh [FOLDER]      under 10 minutes on two quiet cores, without building
 # Installs the peers (Debian 12), builds into build-bench/, writes to FOLDER (results/speed): CSV files,
 # peers.svg, size.svg, speed.md, manifest.txt. Only what is measured side by side is compared; a quiet
 # machine still helps.
