@@ -1,0 +1,29 @@
+#pragma once
+/// The same gate in general physics engines, each written as its manual says: a disc, two rods of
+/// their own mass on hinges, springs and dampers there, no gravity, no friction, beams that do not
+/// collide with each other. Restitution as in the scene, the tip's own where the disc touches a tip.
+
+#include <memory>
+
+#include "dynamics/dynamics.h"
+
+namespace gatewalk::bench {
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  /// One step of p.run.step under lateral force `force_x` (N); the disc's place after it (m).
+  virtual dynamics::BodyState step(double force_x) = 0;
+};
+
+[[nodiscard]] std::unique_ptr<Engine> make_chipmunk(const dynamics::GateParams& p);
+[[nodiscard]] std::unique_ptr<Engine> make_box2d(const dynamics::GateParams& p);
+[[nodiscard]] std::unique_ptr<Engine> make_ode(const dynamics::GateParams& p);
+
+/// The restitution of a disc at (x, y) from the joint of a beam along the unit vector (c, s).
+[[nodiscard]] inline double restitution(const dynamics::GateParams& p, double x, double y, double c,
+                                        double s) {
+  return x * c + y * s >= p.beams.length ? p.contact.tip_restitution : p.contact.restitution;
+}
+
+}  // namespace gatewalk::bench
