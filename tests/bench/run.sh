@@ -30,8 +30,13 @@ optimised_chipmunk() {
   [ ! -e "$chipmunk/lib/src/libchipmunk.so.7" ] || return 0
   mkdir -p "$chipmunk/lists/partial"
   cd "$chipmunk"
-  echo "deb-src http://deb.debian.org/debian $(. /etc/os-release && echo "$VERSION_CODENAME") main" >sources.list
-  local apt=(apt-get -qq -o Dir::Etc::SourceList="$PWD/sources.list" -o Dir::Etc::SourceParts=-
+  # Where this machine gets its packages from, asked for their sources.
+  mkdir -p parts
+  for list in /etc/apt/sources.list /etc/apt/sources.list.d/*; do
+    [ -f "$list" ] || continue
+    sed -e 's/^deb /deb-src /' -e 's/^Types:.*/Types: deb-src/' "$list" >"parts/$(basename "$list" | sed 's/^sources.list$/main.list/')"
+  done
+  local apt=(apt-get -qq -o Dir::Etc::SourceList=/dev/null -o Dir::Etc::SourceParts="$PWD/parts"
     -o Dir::State::Lists="$PWD/lists")
   "${apt[@]}" update && "${apt[@]}" source chipmunk &&
     cmake -S chipmunk-*/ -B lib -DCMAKE_BUILD_TYPE=Release -DBUILD_DEMOS=OFF -DBUILD_STATIC=OFF \
