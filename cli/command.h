@@ -46,6 +46,7 @@ struct Command {
 /// Every command, in the order of the help page.
 int run_gate(const std::vector<std::string>& arguments);
 int run_sweep(const std::vector<std::string>& arguments);
+int run_landscape(const std::vector<std::string>& arguments);
 int run_build(const std::vector<std::string>& arguments);
 int run_show(const std::vector<std::string>& arguments);
 int run_walk(const std::vector<std::string>& arguments);

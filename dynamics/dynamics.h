@@ -10,6 +10,7 @@
 ///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
 ///   ensemble.h     many runs, their outcomes and their health
 ///   state_space.h  Table III: how a body enters a gate, as a number
+///   landscape.h    potential energy Eqs. (14), (15), the lowest way through
 ///   transitions.h  runs -> counts, the matrix of Eq. (16)
 ///   verdict.h      one word for how far a method can be trusted
 ///   accuracy.h     a method's errors against a reference under the same noise
@@ -21,6 +22,7 @@
 #include "dynamics/ensemble.h"
 #include "dynamics/flow.h"
 #include "dynamics/gate.h"
+#include "dynamics/landscape.h"
 #include "dynamics/params.h"
 #include "dynamics/random.h"
 #include "dynamics/runs.h"

@@ -343,6 +343,19 @@ expect 2 'varied twice' "$gatewalk" sweep "$scenes/field.toml" --vary forces.ran
 expect 2 'must lie in' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1,-1
 expect 2 'more than 100000' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=0:1e-9:1
 
+# landscape: the paper's grid, the pass of its equal beams, three files.
+"$gatewalk" landscape "$scenes/single_gate.toml" -o land --trials 20 --quiet --set beams.stiffness_left_Nm_per_rad=500 \
+  --set beams.stiffness_right_Nm_per_rad=500 >land.txt || fail "landscape"
+holds '.passes[0].from_start.barrier_J | . > 32 and . < 32.1' land/landscape.json
+holds '.passes[1].above_start_J | . > 18.15 and . < 20' land/landscape.json
+[ "$(wc -l <land/landscape.csv)" = $((101 * 131 + 1)) ] || fail "landscape.csv has $(wc -l <land/landscape.csv) lines"
+grep -q 'measured' land.txt && [ -s land/landscape.svg ] || fail "landscape: $(cat land.txt)"
+expect 0 'no basin on the way' "$gatewalk" landscape "$scenes/single_gate.toml" -o land --quiet --set beams.stiffness_left_Nm_per_rad=100
+expect 0 '' "$gatewalk" landscape "$scenes/single_gate.toml" -o land --quiet --beam right
+expect 2 'must be both' "$gatewalk" landscape "$scenes/single_gate.toml" -o land --beam top
+expect 2 'must lie in' "$gatewalk" landscape "$scenes/single_gate.toml" -o land --spacing 0
+expect 2 'missing -o' "$gatewalk" landscape "$scenes/single_gate.toml"
+
 # stability: five maps of five methods.
 "$gatewalk" stability -o maps --quick --quiet >/dev/null 2>maps.err || fail "stability: $(head -n 3 maps.err)"
 holds '.maps | length == 25' maps/stability.json

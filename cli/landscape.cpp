@@ -1,0 +1,192 @@
+#include "dynamics/landscape.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "cli/auto.h"
+#include "cli/command.h"
+#include "cli/drawing.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/report.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using dynamics::Landscape;
+using dynamics::Pass;
+
+constexpr double kFiner = 10.0;  // the pass is looked for on a grid so much finer too
+
+dynamics::BeamsThatPush beams_of(const std::string& name) {
+  if (name != "both" && name != "left" && name != "right")
+    throw UsageError("--beam " + name + ": must be both, left or right");
+  return {name != "right", name != "left"};
+}
+
+double kinetic(const Scene& s) {
+  return 0.5 * s.gate.body.mass * (s.start.vx * s.start.vx + s.start.vy * s.start.vy);
+}
+
+Json json_of(const Pass& pass) {
+  return {{"x_m", pass.x},
+          {"y_m", pass.y},
+          {"energy_J", pass.energy},
+          {"begins_at_J", pass.start_energy},
+          {"barrier_J", pass.barrier()},
+          {"way_m", pass.way}};
+}
+
+std::string csv_of(const Landscape& l) {
+  std::ostringstream out;
+  out << "x_m,y_m,elastic_J,total_J\n";
+  for (std::size_t i = 0; i < l.y.size(); ++i)
+    for (std::size_t j = 0; j < l.x.size(); ++j)
+      out << digits(l.x[j]) << ',' << digits(l.y[i]) << ',' << digits(l.elastic(i, j)) << ','
+          << digits(l.total(i, j)) << '\n';
+  return out.str();
+}
+
+/// The paper's Fig. 5: elastic energy as a surface and from above, with the propulsion as a surface, and,
+/// from above, the lowest way through.
+void draw(const std::string& path, const Landscape& l, const Pass& pass, double ceiling) {
+  std::ostringstream rows, way, out;
+  const auto capped = [ceiling](double e) { return digits(std::min(e, ceiling)); };
+  for (std::size_t i = 0; i < l.y.size(); ++i) {
+    for (std::size_t j = 0; j < l.x.size(); ++j)
+      rows << digits(l.x[j]) << ' ' << digits(l.y[i]) << ' ' << capped(l.elastic(i, j)) << ' '
+           << capped(l.total(i, j)) << '\n';
+    rows << '\n';
+  }
+  for (const auto& [x, y] : pass.way) way << digits(x) << ' ' << digits(y) << '\n';
+  const auto surface = [](const char* title, int column, const char* origin) {
+    return std::string("unset colorbox\nset size noratio\nset size 0.52,0.52\nset origin ") + origin +
+           "\nset lmargin 6\nset rmargin 2\nset tmargin 2\nset bmargin 2\nset view 58,330,0.95\nset title '" + title +
+           "'\nset ytics 20\nsplot $grid using 1:2:" + std::to_string(column) + " with pm3d\n";
+  };
+  const auto from_above = [](const char* title, const char* origin) {
+    return std::string("set colorbox\nset size 0.48,0.5\nset size ratio -1\nset origin ") + origin +
+           "\nset lmargin 8\nset rmargin 10\nset tmargin 2\nset bmargin 4\nset title '" + title + "'\nset ytics 10\n";
+  };
+  out << data_block("$grid", rows.str()) << data_block("$way", way.str())
+      << "set multiplot\nset xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'J'\nset pm3d\nunset key\n"
+         "set xrange [" << digits(l.x.front()) << ":" << digits(l.x.back()) << "]\nset yrange [" << digits(l.y.front())
+      << ":" << digits(l.y.back()) << "]\nset cbrange [0:" << digits(ceiling) << "]\nset zrange [0:" << digits(ceiling) << "]\n"
+         "set palette defined (0 '#30123b', 1 '#4145ab', 2 '#4675ed', 3 '#39a2fc', 4 '#1bcfd4', 5 '#24eca6', "
+         "6 '#61fc6c', 7 '#a4fc3b', 8 '#d1e834', 9 '#f3c63a', 10 '#fe9b2d', 11 '#f36315', 12 '#d93806', 13 '#7a0403')\n"
+         "set xyplane 0\nset xtics 10\n"
+      << surface("elastic energy, Eq. (14)", 3, "0.0,0.49")
+      << from_above("the same from above", "0.52,0.5") << "plot $grid using 1:2:3 with image\n"
+      << surface("with the propulsion, Eq. (15)", 4, "0.0,-0.01")
+      << from_above("lowest way through (white), its highest point", "0.52,0.0")
+      << "plot $grid using 1:2:4 with image, $way using 1:2 with lines lw 2 lc rgb '#ffffff', '-' using 1:2 with "
+         "points pt 7 ps 1 lc rgb '#ff00ff'\n"
+      << digits(pass.x) << ' ' << digits(pass.y) << "\ne\nunset multiplot\n";
+  draw_svg(path, 1100, 950, out.str());
+}
+
+}  // namespace
+
+int run_landscape(const std::vector<std::string>& arguments) {
+  Options options("landscape SCENE -o DIR [options]",
+                  "The potential energy of body and beams over the gate, Eqs. (14) and (15) of the paper, with beams\n"
+                  "deflected forward; the way through whose highest point is lowest, and how far that lies above the\n"
+                  "energy of the start and above the basin on the way. Writes landscape.csv, landscape.json, landscape.svg.",
+                  "gatewalk landscape scenes/single_gate.toml -o landscape --trials 1000");
+  options.positional("scene", "scene file (TOML)", true);
+  options.add()("output,o", po::value<std::string>()->value_name("DIR"), "folder to write to")(
+      "spacing", po::value<double>()->default_value(0.5, "0.5")->value_name("M"), "of the grid, in m; the paper's is 0.5")(
+      "beam", po::value<std::string>()->default_value("both")->value_name("WHICH"),
+      "beams that resist: both, left or right (the other swings free: Fig. 6C)")(
+      "trials", po::value<Count>()->default_value(Count{0}, "0")->value_name("N"),
+      "also run the gate N times: who passes, beside who should");
+  add_seed(options);
+  if (!options.parse(arguments)) return kFine;
+  const std::string folder = options.text("output");
+  if (folder.empty()) throw UsageError("missing -o: gatewalk landscape SCENE -o DIR");
+  const double spacing = options.get<double>("spacing");
+  const auto beams = beams_of(options.get<std::string>("beam"));
+  const std::int64_t trials = options.count("trials", 0);
+  Scene scene = read_scene(options.text("scene"), options.overrides());
+  const double low = std::min(0.0, scene.start.y);
+  const double least = (scene.gate.run.traverse_y - low) / 10'000;
+  if (!(spacing >= least && spacing <= scene.gate.beams.joint_x))
+    throw UsageError("--spacing " + digits(spacing) + ": must lie in [" + digits(least) + ", " +
+                     digits(scene.gate.beams.joint_x) + "] m");
+  require_folder(folder);
+  for (const char* file : {"/landscape.csv", "/landscape.json", "/landscape.svg"}) require_writable(folder + file);
+
+  // On the grid that is asked for and on a finer one: the pass may lie between grid points.
+  struct Level {
+    double spacing;
+    Landscape l;
+    Pass from_start, from_basin;
+    /// J; below zero where the start lies higher than the pass out of the basin.
+    [[nodiscard]] double above_start() const { return from_basin.energy - from_start.start_energy; }
+    [[nodiscard]] bool downhill() const { return from_basin.way.size() == 1; }
+  };
+  std::vector<Level> levels;
+  for (const double step : {spacing, std::max(spacing / kFiner, least)}) {
+    Landscape l = dynamics::landscape(scene.gate, low, step, beams);
+    const Pass from_start = dynamics::lowest_pass(l, scene.start.x, scene.start.y);
+    const auto [x, y] = dynamics::basin_below(l, scene.start.x, scene.start.y);
+    const Pass from_basin = dynamics::lowest_pass(l, x, y);
+    levels.push_back({step, std::move(l), from_start, from_basin});
+  }
+  const Landscape& l = levels.front().l;
+  const Level& fine = levels.back();
+  const double moving = kinetic(scene);
+
+  Json json;
+  json["spacing_m"] = spacing;
+  json["beams"] = options.get<std::string>("beam");
+  json["start_kinetic_energy_J"] = moving;
+  json["passes"] = Json::array();
+  std::string table = scene_line(scene) +
+                      padded("", -22) + "pass at x (m)  y (m)   above the start (J)   above the basin (J)  basin at x (m)  y (m)\n";
+  for (const Level& level : levels) {
+    const auto& [x, y] = level.from_basin.way.front();
+    json["passes"].push_back({{"grid_m", level.spacing},
+                              {"from_start", json_of(level.from_start)},
+                              {"from_basin", json_of(level.from_basin)},
+                              {"basin_m", level.from_basin.way.front()},
+                              {"above_start_J", level.above_start()}});
+    table += padded("grid " + digits(level.spacing) + " m", -22);
+    if (level.downhill()) {
+      table += "  no basin on the way: downhill to the far boundary\n";
+      continue;
+    }
+    table += padded(fixed(level.from_basin.x, 2), 13) + padded(fixed(level.from_basin.y, 2), 7) +
+             padded(fixed(level.above_start(), 2), 22) + padded(fixed(level.from_basin.barrier(), 2), 22) +
+             padded(fixed(x, 2), 16) + padded(fixed(y, 2), 7) + "\n";
+  }
+  table += "The start has " + fixed(moving, 2) + " J of kinetic energy: " +
+           (fine.above_start() > moving ? "too little for the pass without work of the random force.\n"
+                                    : "enough for the pass, if it loses none on the way.\n");
+  if (trials > 0) {
+    const Json settled = settle_method(options, scene, RunsFrom::start);
+    dynamics::GateTally tally;
+    run_in_batches("gate runs", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
+      tally += dynamics::run_gate_trials(scene.gate, scene.start, options.seed(), {first, n});
+    });
+    json["measured"] = to_json(tally);
+    if (!settled.is_null()) json["measured"]["method"] = settled;
+    json["measured"]["status"] = to_json(tally.health);
+    const auto [from, to] = share_interval(tally.traversed(), tally.trials);
+    table += "measured: " + percent(static_cast<double>(tally.traversed()), static_cast<double>(trials)) + " of " +
+             std::to_string(trials) + " trials traverse, 95 % [" + fixed(100.0 * from, 1) + ", " + fixed(100.0 * to, 1) + "]\n";
+    if (!tally.health.clean()) warn(complaint(tally.health));
+  }
+  json["made_by"] = manifest(options, scene);
+  write_text_atomically(folder + "/landscape.csv", csv_of(l));
+  write_text_atomically(folder + "/landscape.json", json.dump(2) + "\n");
+  // Beside the joints the beams' energy leaves every scale; what matters lies lower.
+  double ceiling = 0.0;
+  for (const double k : {scene.gate.beams.stiffness_left, scene.gate.beams.stiffness_right})
+    ceiling = std::max(ceiling, 0.5 * k * 2.0);
+  draw(folder + "/landscape.svg", l, fine.downhill() ? fine.from_start : fine.from_basin, 1.2 * ceiling + scene.gate.forces.propulsion * 20.0);
+  options.give_out(json, table);
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

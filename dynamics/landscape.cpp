@@ -1,0 +1,142 @@
+#include "dynamics/landscape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <stdexcept>
+#include <tuple>
+
+#include "dynamics/contact.h"
+
+namespace gatewalk::dynamics {
+
+// d, phi: the centre seen from the joint, in the beam's own frame. A beam turned forward by theta has
+// the disc behind it, theta > phi. Its side touches where the tangent from the joint does, at the
+// distance sqrt(d^2 - R^2): theta = phi + asin(R/d). If that is beyond the tip, the tip touches:
+// R^2 = d^2 + L^2 - 2 d L cos(theta - phi).
+double forward_deflection(const GateParams& p, Side side, double x, double y) {
+  const double length = p.beams.length, radius = p.body.radius;
+  const double px = from_joint(p, side, x), py = y - p.beams.joint_y;
+  const double d = std::hypot(px, py), phi = std::atan2(py, px);
+  if (d >= length + radius) return 0.0;
+  if (d < radius) return std::numeric_limits<double>::infinity();
+  const bool on_side = d * d - radius * radius <= length * length;
+  const double opening =
+      on_side ? std::asin(radius / d)
+              : std::acos((d * d + length * length - radius * radius) / (2.0 * d * length));
+  return std::max(0.0, phi + opening);
+}
+
+double beam_energy(const GateParams& p, double x, double y, BeamsThatPush beams) {
+  double energy = 0.0;
+  for (const Side side : {kLeft, kRight}) {
+    const double theta = beams[side] ? forward_deflection(p, side, x, y) : 0.0;
+    if (theta > 0.0) energy += 0.5 * p.beams.stiffness(side) * theta * theta;  // Eq. (14)
+  }
+  return energy;
+}
+
+double propulsion_energy(const GateParams& p, double y) {
+  return p.forces.propulsion * (p.run.traverse_y - y);  // Eq. (15)
+}
+
+namespace {
+
+std::vector<double> points(double low, double high, double spacing) {
+  const double steps = std::max(1.0, std::ceil((high - low) / spacing - 1e-9));
+  std::vector<double> v;
+  for (int i = 0; i <= static_cast<int>(steps); ++i) v.push_back(low + (high - low) * i / steps);
+  return v;
+}
+
+std::size_t nearest_point(const std::vector<double>& v, double x) {
+  const double spacing = v[1] - v[0];
+  if (!(x >= v.front() - 0.5 * spacing && x <= v.back() + 0.5 * spacing))
+    throw std::invalid_argument("the start lies outside the landscape");
+  return static_cast<std::size_t>(std::lround((std::clamp(x, v.front(), v.back()) - v.front()) / spacing));
+}
+
+}  // namespace
+
+Landscape landscape(const GateParams& p, double y_low, double spacing, BeamsThatPush beams) {
+  validate(p);
+  const double width = 2.0 * p.beams.joint_x, depth = p.run.traverse_y - y_low;
+  if (!(spacing > 0.0) || !(depth > 0.0))
+    throw std::invalid_argument("landscape: spacing must be positive and y_low below traverse_y");
+  if (!((width / spacing + 2.0) * (depth / spacing + 2.0) <= 1e8))
+    throw std::invalid_argument("landscape: more than 1e8 grid points");
+  Landscape l{points(-p.beams.joint_x, p.beams.joint_x, spacing), points(y_low, p.run.traverse_y, spacing), {}, {}};
+  const auto rows = static_cast<Eigen::Index>(l.y.size()), columns = static_cast<Eigen::Index>(l.x.size());
+  l.elastic.resize(rows, columns);
+  l.total.resize(rows, columns);
+  for (Eigen::Index i = 0; i < rows; ++i)
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      l.elastic(i, j) = beam_energy(p, l.x[j], l.y[i], beams);
+      l.total(i, j) = l.elastic(i, j) + propulsion_energy(p, l.y[i]);
+    }
+  return l;
+}
+
+std::array<double, 2> basin_below(const Landscape& l, double x, double y) {
+  auto row = static_cast<Eigen::Index>(nearest_point(l.y, y)), column = static_cast<Eigen::Index>(nearest_point(l.x, x));
+  for (;;) {
+    const Eigen::Index top = std::max<Eigen::Index>(row - 1, 0), left = std::max<Eigen::Index>(column - 1, 0);
+    const Eigen::Index height = std::min(row + 2, l.total.rows()) - top, width = std::min(column + 2, l.total.cols()) - left;
+    Eigen::Index down = 0, right = 0;
+    const double lowest = l.total.block(top, left, height, width).minCoeff(&down, &right);
+    if (!(lowest < l.total(row, column))) return {l.x[static_cast<std::size_t>(column)], l.y[static_cast<std::size_t>(row)]};
+    row = top + down;
+    column = left + right;
+  }
+}
+
+// Dijkstra with the highest energy on the way for a distance; of ways equally high the shortest.
+Pass lowest_pass(const Landscape& l, double x, double y) {
+  const std::size_t columns = l.x.size(), rows = l.y.size();
+  const double dx = l.x[1] - l.x[0], dy = l.y[1] - l.y[0];
+  const auto energy = [&](std::size_t cell) {
+    return l.total(static_cast<Eigen::Index>(cell / columns), static_cast<Eigen::Index>(cell % columns));
+  };
+  const std::size_t start = nearest_point(l.y, y) * columns + nearest_point(l.x, x);
+  using Reached = std::tuple<double, double, std::size_t, std::size_t>;  // highest, length, cell, from
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
+  constexpr std::size_t kNotYet = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> from(columns * rows, kNotYet);
+  next.push({energy(start), 0.0, start, start});
+  std::size_t end = kNotYet;
+  while (!next.empty() && end == kNotYet) {
+    const auto [highest, length, cell, before] = next.top();
+    next.pop();
+    if (from[cell] != kNotYet) continue;
+    from[cell] = before;
+    const auto row = static_cast<std::ptrdiff_t>(cell / columns), column = static_cast<std::ptrdiff_t>(cell % columns);
+    if (row + 1 == static_cast<std::ptrdiff_t>(rows)) end = cell;
+    for (const std::ptrdiff_t up : {-1, 0, 1})
+      for (const std::ptrdiff_t right : {-1, 0, 1}) {
+        const std::ptrdiff_t r = row + up, c = column + right;
+        if (r < 0 || c < 0 || r >= static_cast<std::ptrdiff_t>(rows) || c >= static_cast<std::ptrdiff_t>(columns)) continue;
+        const std::size_t to = static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(c);
+        if (from[to] != kNotYet || !std::isfinite(energy(to))) continue;
+        next.push({std::max(highest, energy(to)),
+                   length + std::hypot(static_cast<double>(right) * dx, static_cast<double>(up) * dy), to, cell});
+      }
+  }
+  if (end == kNotYet) throw std::runtime_error("no way through the gate: the disc covers a joint all over its width");
+
+  Pass pass;
+  pass.start_energy = energy(start);
+  std::size_t highest = start;
+  for (std::size_t cell = end;; cell = from[cell]) {
+    pass.way.push_back({l.x[cell % columns], l.y[cell / columns]});
+    if (energy(cell) > energy(highest)) highest = cell;
+    if (cell == start) break;
+  }
+  std::reverse(pass.way.begin(), pass.way.end());
+  pass.x = l.x[highest % columns];
+  pass.y = l.y[highest / columns];
+  pass.energy = energy(highest);
+  return pass;
+}
+
+}  // namespace gatewalk::dynamics
