@@ -6,18 +6,228 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+// Registers whose length is not known when this is compiled cannot stand in arrays.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "markov/walk.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef GATEWALK_MARKOV_WALK_ONCE
+#define GATEWALK_MARKOV_WALK_ONCE
+
 namespace gatewalk::markov {
+
+using Word = std::uint64_t;
+
+/// A move in one word, so that a draw takes two look-ups. Bits 0 to 9: di_x + 512; 10 to 31: slots of
+/// the row it leads to; 32 to 41: di_y + 512; 42 to 62: that row's first slot; 63: the walk ends.
+constexpr int kReach = 512;
+constexpr Word kMostSlots = Word{1} << 21;
+constexpr Word kStay = (Word{kReach} << 32) + kReach;
+constexpr Word kShift = (Word{1} << 63) + (Word{0x3ff} << 32) + 0x3ff;  // the bits that change the cell
+constexpr Word kTrapped = (Word{1} << 63) + kStay;
+constexpr Word kUnsampled = kTrapped + (Word{1} << 10);
+constexpr Word kCutOff = kTrapped + (Word{2} << 10);
+
+constexpr Word move_to(std::size_t first_slot, int slots, int di_x, int di_y) {
+  return (Word{first_slot} << 42) + (static_cast<Word>(di_y + kReach) << 32) +
+         (static_cast<Word>(slots) << 10) + static_cast<Word>(di_x + kReach);
+}
+
+/// A cell in one word: its row above, its column below.
+constexpr Word cell_at(int column, int row) {
+  return (static_cast<Word>(row) << 32) + static_cast<Word>(column);
+}
+
+struct Rules {
+  const Word* keep;    // (slots)
+  const Word* moves;   // (slots x 2)
+  Word corner;         // the last cell
+  Word key[2], input;  // of the stream
+};
+
+constexpr int kMostLanes = 8;
+constexpr int kTogether = 4;  // registers of Philox blocks: a round waits long for its products
+constexpr int kPool = 2048;   // walks
+
+/// Walks that have drawn equally often. Those on their way stand at the front of `on`, those that
+/// ended at the back of `ended`, with their last move.
+struct alignas(64) Pool {
+  static constexpr int kRoom = kPool + kTogether * kMostLanes;  // whole registers
+  struct Walks {
+    Word move[kRoom], cell[kRoom], number[kRoom];
+  };
+  Walks on, ended;
+  Word words[4][kRoom];
+  int walking, first_ended;
+};
+
+/// For every set of marked lanes: first the marked, then the others, four bits each.
+constexpr auto kMarkedFirst = [] {
+  std::array<Word, 1 << kMostLanes> order{};
+  for (Word marks = 0; marks < order.size(); ++marks) {
+    int place = 0;
+    for (const Word mark : {1, 0})
+      for (Word lane = 0; lane < kMostLanes; ++lane)
+        if ((marks >> lane & 1) == mark) order[marks] += lane << (4 * place++);
+  }
+  return order;
+}();
+
+}  // namespace gatewalk::markov
+
+#endif  // GATEWALK_MARKOV_WALK_ONCE
+
+HWY_BEFORE_NAMESPACE();
+namespace gatewalk::markov {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<Word, kMostLanes>;
+using V = hn::Vec<D>;
+
+HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(D())); }
+HWY_INLINE V all(Word word) { return hn::Set(D(), word); }
+HWY_INLINE V low_half(V v) { return hn::And(v, all(0xffffffff)); }
+HWY_INLINE V high_half(V v) { return hn::ShiftRight<32>(v); }
+
+/// Product of the low halves.
+HWY_INLINE V mul_low(V a, V b) {
+#if HWY_TARGET == HWY_SCALAR  // has no registers of two halves
+  return hn::Mul(low_half(a), low_half(b));
+#else
+  const hn::Repartition<std::uint32_t, D> halves;
+  return hn::MulEven(hn::BitCast(halves, a), hn::BitCast(halves, b));
+#endif
+}
+
+/// The high word of a b.
+HWY_INLINE V mul_high(V a, Word b) {
+  const V a1 = high_half(a), b0 = all(b & 0xffffffff), b1 = all(b >> 32);
+  const V middle = hn::Add(mul_low(a1, b0), high_half(mul_low(a, b0)));
+  const V carry = high_half(hn::Add(mul_low(a, b1), low_half(middle)));
+  return hn::Add(hn::Add(mul_low(a1, b1), high_half(middle)), carry);
+}
+
+HWY_INLINE V look_up(const Word* table, V index) {
+  return hn::GatherIndex(D(), table, hn::BitCast(hn::RebindToSigned<D>(), index));
+}
+
+/// Block `block` of every walk's Philox4x64-10 (Salmon et al. 2011).
+void fill_words(const Rules& rules, Word block, Pool& pool) {
+  constexpr Word kMultiplier[] = {0xd2e7470ee14c6c93, 0xca5a826395121157};
+  constexpr Word kBump[] = {0x9e3779b97f4a7c15, 0xbb67ae8584caa73b};
+  const D d;
+  for (int i = 0; i < pool.walking; i += kTogether * lanes()) {
+    V words[kTogether][4];
+    for (int k = 0; k < kTogether; ++k) {
+      words[k][0] = all(block);
+      words[k][1] = hn::Load(d, pool.on.number + i + k * lanes());
+      words[k][2] = all(rules.input);
+      words[k][3] = hn::Zero(d);
+    }
+    for (Word round = 0; round < 10; ++round) {
+      const V key[] = {all(rules.key[0] + round * kBump[0]), all(rules.key[1] + round * kBump[1])};
+      for (auto& w : words) {
+        const V high[] = {mul_high(w[0], kMultiplier[0]), mul_high(w[2], kMultiplier[1])};
+        const V low[] = {hn::Mul(w[0], all(kMultiplier[0])), hn::Mul(w[2], all(kMultiplier[1]))};
+        w[0] = hn::Xor(hn::Xor(high[1], w[1]), key[0]);
+        w[1] = low[1];
+        w[2] = hn::Xor(hn::Xor(high[0], w[3]), key[1]);
+        w[3] = low[0];
+      }
+    }
+    for (int k = 0; k < kTogether; ++k)
+      for (int j = 0; j < 4; ++j) hn::Store(words[k][j], d, pool.words[j] + i + k * lanes());
+  }
+}
+
+/// Every walk draws a move from the row that its last one led to (Walker::pick).
+void draw_moves(const Rules& rules, const Word* words, Pool& pool) {
+  const D d;
+  for (int i = 0; i < pool.walking; i += lanes()) {
+    const V last = hn::Load(d, pool.on.move + i), word = hn::Load(d, words + i);
+    const V slots = hn::And(hn::ShiftRight<10>(last), all((1 << 22) - 1));
+    const V first_slot = hn::And(hn::ShiftRight<42>(last), all(kMostSlots - 1));
+    const V low = mul_low(word, slots);
+    const V high = hn::Add(mul_low(high_half(word), slots), high_half(low));
+    const V slot = hn::Add(first_slot, high_half(high));
+    const V within = hn::Or(hn::ShiftLeft<32>(high), low_half(low));
+    const V second = hn::IfThenElseZero(hn::Gt(within, look_up(rules.keep, slot)), all(1));
+    hn::Store(look_up(rules.moves, hn::Add(hn::Add(slot, slot), second)), d, pool.on.move + i);
+  }
+}
+
+/// Every walk moves or ends, the last time all do. Who walks on closes up to the front, with the words
+/// from the `next_word`-th on.
+void carry_out_moves(const Rules& rules, int next_word, bool last_time, Pool& pool) {
+  const D d;
+  const V nibbles = hn::ShiftLeft<2>(hn::Iota(d, 0));
+  int walking = 0, first_ended = pool.first_ended, i = 0;
+  for (; i < pool.walking; i += lanes()) {
+    V move = hn::Load(d, pool.on.move + i), cell = hn::Load(d, pool.on.cell + i);
+    // Outside of the field, and at an end, a half of `next` or of `corner - next` is negative.
+    const V next = hn::Sub(hn::Add(cell, hn::And(move, all(kShift))), all(kStay));
+    const V signs = hn::And(hn::Or(next, hn::Sub(all(rules.corner), next)), all(0x80000000'80000000));
+    auto goes_on = hn::Eq(signs, hn::Zero(d));
+    if (last_time) {
+      move = hn::IfThenElse(goes_on, all(kCutOff), move);
+      goes_on = hn::MaskFromVec(hn::Zero(d));
+    }
+    cell = hn::IfThenElse(goes_on, next, cell);
+
+    // Lanes behind the last walk never end, and are cut off below.
+    const auto walks = hn::FirstN(d, static_cast<std::size_t>(pool.walking - i));
+    const auto kept = hn::Or(goes_on, hn::Not(walks));
+    std::uint8_t marks[8];
+    hn::StoreMaskBits(d, kept, marks);
+    const V order = hn::And(hn::Shr(all(kMarkedFirst[marks[0]]), nibbles), all(kMostLanes - 1));
+    const auto kept_first = [&, from = hn::IndicesFromVec(d, order)](V v) HWY_ATTR {
+      return hn::TableLookupLanes(v, from);
+    };
+    move = kept_first(move);
+    cell = kept_first(cell);
+    const V number = kept_first(hn::Load(d, pool.on.number + i));
+    const auto put = [&](Pool::Walks& to, int at) HWY_ATTR {
+      hn::StoreU(move, d, to.move + at);
+      hn::StoreU(cell, d, to.cell + at);
+      hn::StoreU(number, d, to.number + at);
+    };
+    put(pool.on, walking);
+    put(pool.ended, first_ended - lanes());
+    for (int j = next_word; j < 4; ++j)
+      hn::StoreU(kept_first(hn::Load(d, pool.words[j] + i)), d, pool.words[j] + walking);
+    const int keeps = static_cast<int>(hn::CountTrue(d, kept));
+    walking += keeps;
+    first_ended -= lanes() - keeps;
+  }
+  pool.walking -= i - walking;
+  pool.first_ended = first_ended;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace gatewalk::markov
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace gatewalk::markov {
+HWY_EXPORT(fill_words);
+HWY_EXPORT(draw_moves);
+HWY_EXPORT(carry_out_moves);
+
 namespace {
 
 __extension__ using Wide = unsigned __int128;
 
 constexpr int kCellsWithoutLimit = 1'000'000;
-constexpr std::int64_t kWalksPerTask = 4096;
 
 }  // namespace
 
@@ -43,7 +253,10 @@ WalkTally& WalkTally::operator+=(const WalkTally& other) {
 // A row of n entries gets n slots of 2^64 units. Entry j owns p_j n 2^64 units, and together they
 // fill the slots exactly: each slot takes a small entry whole and is topped up from one large one.
 Walker::Walker(const Chain& chain)
-    : chain_(chain), slots_(static_cast<std::size_t>(chain.matrix().nonZeros())) {
+    : chain_(chain),
+      keep_(static_cast<std::size_t>(chain.matrix().nonZeros()) + 1,
+            std::numeric_limits<Word>::max()),
+      outputs_(2 * keep_.size()) {
   constexpr Wide kSlotUnits = Wide{1} << 64;
   const Probabilities& p = chain_.matrix();
   std::vector<Wide> units;
@@ -54,7 +267,6 @@ Walker::Walker(const Chain& chain)
     if (count == 0) continue;
     const double* value = p.valuePtr() + begin;
     const int* output = p.innerIndexPtr() + begin;
-    Slot* slot = slots_.data() + begin;
 
     units.resize(static_cast<std::size_t>(count));
     Wide sum = 0;
@@ -67,6 +279,12 @@ Walker::Walker(const Chain& chain)
     const auto largest = std::max_element(units.begin(), units.end());
     *largest += static_cast<Wide>(count) * kSlotUnits - sum;  // modulo 2^128: may be a decrease
 
+    const auto set = [&](int slot, Word keep, int first, int second) {
+      const auto at = static_cast<std::size_t>(begin + slot);
+      keep_[at] = keep;
+      outputs_[2 * at] = output[first];
+      outputs_[2 * at + 1] = output[second];
+    };
     small.clear();
     large.clear();
     for (int j = 0; j < count; ++j) (units[j] < kSlotUnits ? small : large).push_back(j);
@@ -74,38 +292,155 @@ Walker::Walker(const Chain& chain)
       const int s = small.back();
       const int l = large.back();
       small.pop_back();
-      slot[s] = {static_cast<std::uint64_t>(units[s]) - 1, output[s], output[l]};
+      set(s, static_cast<Word>(units[s]) - 1, s, l);
       units[l] -= kSlotUnits - units[s];
       if (units[l] < kSlotUnits) {
         large.pop_back();
         small.push_back(l);
       }
     }
-    for (const int l : large) {
-      slot[l] = {std::numeric_limits<std::uint64_t>::max(), output[l], output[l]};
-    }
+    for (const int l : large) set(l, std::numeric_limits<Word>::max(), l, l);
   }
+
+  const auto far = [](const Exit& exit) {
+    return std::min(exit.di_x, exit.di_y) < -kReach || std::max(exit.di_x, exit.di_y) >= kReach;
+  };
+  const std::vector<Exit>& exits = chain_.exits();
+  if (keep_.size() > kMostSlots || std::any_of(exits.begin(), exits.end(), far)) return;
+  moves_.reserve(outputs_.size());
+  for (const int output : outputs_) moves_.push_back(packed(exits[static_cast<std::size_t>(output)]));
+  moves_.end()[-2] = kUnsampled;  // its slot keeps every word
 }
 
-std::int32_t Walker::pick(const Slot* slots, std::uint64_t count, std::uint64_t word) {
-  const Wide product = static_cast<Wide>(word) * count;
-  const Slot& slot = slots[static_cast<std::size_t>(product >> 64)];
-  return static_cast<std::uint64_t>(product) <= slot.keep ? slot.here : slot.other;
+Word Walker::packed(const Exit& exit) const {
+  if (exit.next_input == Exit::kTrapped) return kTrapped;
+  const int* const begin = chain_.matrix().outerIndexPtr() + exit.next_input;
+  return chain_.is_sampled(exit.next_input)
+             ? move_to(static_cast<std::size_t>(begin[0]), begin[1] - begin[0], exit.di_x, exit.di_y)
+             : move_to(keep_.size() - 1, 1, exit.di_x, exit.di_y);
 }
 
-int Walker::draw(int row, std::uint64_t word) const {
+std::int32_t Walker::pick(int row, Word word) const {
+  const int* const begin = chain_.matrix().outerIndexPtr() + row;
+  const Wide product = static_cast<Wide>(word) * static_cast<Wide>(begin[1] - begin[0]);
+  const std::size_t slot = static_cast<std::size_t>(begin[0]) + static_cast<std::size_t>(product >> 64);
+  return outputs_[2 * slot + (static_cast<Word>(product) > keep_[slot])];
+}
+
+int Walker::draw(int row, Word word) const {
   if (row < 0 || row >= chain_.inputs() || !chain_.is_sampled(row)) {
     throw std::invalid_argument("row " + std::to_string(row + 1) +
                                 " (counted from 1) cannot be drawn from: it does not exist or was "
                                 "never sampled");
   }
-  const int* row_begin = chain_.matrix().outerIndexPtr();
-  return pick(slots_.data() + row_begin[row],
-              static_cast<std::uint64_t>(row_begin[row + 1] - row_begin[row]), word);
+  return pick(row, word);
 }
 
-WalkTally Walker::walk(const Field& field, const Start& start, int max_cells, std::uint64_t seed,
-                       WalkRange range, std::vector<std::int32_t>* final_cell_of_walk) const {
+/// What one call of walk() asks for.
+struct Walker::Job {
+  Field field;
+  Start start;
+  int limit;
+  Word seed;
+  WalkRange range;
+  std::int32_t* final_cell_of_walk;  // may be null
+
+  void count(std::int64_t column, std::int64_t row, std::int64_t number, WalkTally& tally) const {
+    const std::int64_t cell = row * field.columns + column;
+    ++tally.final_cells.data()[cell];
+    if (final_cell_of_walk)
+      final_cell_of_walk[number - range.first] = static_cast<std::int32_t>(cell);
+  }
+};
+
+void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
+                          WalkTally& tally) const {
+  for (std::int64_t number = first; number < last; ++number) {
+    std::int64_t column = job.start.column;
+    std::int64_t row = job.start.row;
+    int input = job.start.input;
+    r123::Philox4x64::ctr_type words;
+    for (Word drawn = 0;; ++drawn) {
+      if (!chain_.is_sampled(input)) {
+        ++tally.unsampled;
+        break;
+      }
+      if (drawn % 4 == 0) {
+        words = r123::Philox4x64{}(
+            {{drawn / 4, static_cast<Word>(number), static_cast<Word>(job.start.input), 0}},
+            {{job.seed, kWalkStream}});
+      }
+      ++tally.steps;
+      const int output = pick(input, words[static_cast<std::size_t>(drawn % 4)]);
+      const Exit& exit = chain_.exits()[static_cast<std::size_t>(output)];
+      if (exit.next_input == Exit::kTrapped) {
+        ++tally.trapped;
+        break;
+      }
+      const std::int64_t next_column = column + exit.di_x;
+      const std::int64_t next_row = row + exit.di_y;
+      if (next_column < 0 || next_column >= job.field.columns || next_row < 0 ||
+          next_row >= job.field.rows) {
+        ++tally.left_field;
+        break;
+      }
+      if (drawn + 1 == static_cast<Word>(job.limit)) {
+        ++tally.cut_off;
+        break;
+      }
+      column = next_column;
+      row = next_row;
+      input = exit.next_input;
+    }
+    job.count(column, row, number, tally);
+  }
+}
+
+void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last,
+                           WalkTally& tally) const {
+  const Rules rules{keep_.data(), moves_.data(), cell_at(job.field.columns - 1, job.field.rows - 1),
+                    {job.seed, kWalkStream}, static_cast<Word>(job.start.input)};
+  const Word start_move = packed({job.start.input, 0, 0});
+  const Word start_cell = cell_at(job.start.column, job.start.row);
+  Pool pool;
+  for (int walks; first < last; first += walks) {
+    walks = static_cast<int>(std::min<std::int64_t>(kPool, last - first));
+    // The lanes behind the last walk need a row to draw from, too.
+    for (int i = 0; i < walks + kMostLanes; ++i) {
+      pool.on.move[i] = start_move;
+      pool.on.cell[i] = start_cell;
+      pool.on.number[i] = static_cast<Word>(first) + static_cast<Word>(i);
+    }
+    pool.walking = walks;
+    pool.first_ended = Pool::kRoom;
+    for (int drawn = 0; pool.walking > 0; ++drawn) {
+      tally.steps += pool.walking;
+      const int word = drawn % 4;
+      if (word == 0) HWY_DYNAMIC_DISPATCH(fill_words)(rules, static_cast<Word>(drawn / 4), pool);
+      HWY_DYNAMIC_DISPATCH(draw_moves)(rules, pool.words[word], pool);
+      HWY_DYNAMIC_DISPATCH(carry_out_moves)(rules, word + 1, drawn + 1 == job.limit, pool);
+    }
+
+    std::int64_t trapped = 0, cut_off = 0, unsampled = 0;
+    for (int i = pool.first_ended; i < Pool::kRoom; ++i) {
+      const Word cell = pool.ended.cell[i], move = pool.ended.move[i];
+      trapped += move == kTrapped;
+      cut_off += move == kCutOff;
+      unsampled += move == kUnsampled;
+      job.count(static_cast<std::int64_t>(cell & 0xffffffff), static_cast<std::int64_t>(cell >> 32),
+                static_cast<std::int64_t>(pool.ended.number[i]), tally);
+    }
+    tally.trapped += trapped;
+    tally.cut_off += cut_off;
+    tally.unsampled += unsampled;
+    tally.left_field += walks - trapped - cut_off - unsampled;
+    tally.steps -= unsampled;  // there is nothing to draw from
+  }
+}
+
+WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int max_cells,
+                      Word seed, WalkRange range,
+                      std::vector<std::int32_t>* final_cell_of_walk) const {
   validate(chain_, field, start, max_cells);
   if (range.first < 0 || range.count < 0 ||
       range.first > std::numeric_limits<std::int64_t>::max() - range.count) {
@@ -113,77 +448,37 @@ WalkTally Walker::walk(const Field& field, const Start& start, int max_cells, st
                                 std::to_string(range.first) + " on is not a range from 0 up");
   }
   if (final_cell_of_walk) final_cell_of_walk->resize(static_cast<std::size_t>(range.count));
+  const Job job{field, start, max_cells == 0 ? kCellsWithoutLimit : max_cells, seed, range,
+                final_cell_of_walk ? final_cell_of_walk->data() : nullptr};
 
-  const int limit = max_cells == 0 ? kCellsWithoutLimit : max_cells;
-  const int* const row_begin = chain_.matrix().outerIndexPtr();
-  const Slot* const slots = slots_.data();
-  const Exit* const exits = chain_.exits().data();
-  const auto state = static_cast<std::uint64_t>(start.input);
-  const r123::Philox4x64::key_type key = {{seed, kWalkStream}};
-
-  const auto run = [&](std::int64_t first, std::int64_t last, WalkTally& tally) {
-    WalkTally ends;  // local, so that the counters stay in registers
-    std::int64_t* const final_cells = tally.final_cells.data();
-    for (std::int64_t number = first; number < last; ++number) {
-      std::int64_t column = start.column;
-      std::int64_t row = start.row;
-      int input = start.input;
-      int cells = 1;
-      r123::Philox4x64::ctr_type words;
-      for (std::uint64_t drawn = 0;; ++drawn, ++cells) {
-        const int begin = row_begin[input];
-        const int count = row_begin[input + 1] - begin;
-        if (count == 0) {
-          ++ends.unsampled;
-          break;
-        }
-        if (drawn % 4 == 0) {
-          words = r123::Philox4x64{}({{drawn / 4, static_cast<std::uint64_t>(number), state, 0}}, key);
-        }
-        ++ends.steps;
-        const Exit& exit = exits[pick(slots + begin, static_cast<std::uint64_t>(count),
-                                      words[static_cast<std::size_t>(drawn % 4)])];
-        if (exit.next_input == Exit::kTrapped) {
-          ++ends.trapped;
-          break;
-        }
-        const std::int64_t next_column = column + exit.di_x;
-        const std::int64_t next_row = row + exit.di_y;
-        if (next_column < 0 || next_column >= field.columns || next_row < 0 ||
-            next_row >= field.rows) {
-          ++ends.left_field;
-          break;
-        }
-        if (cells == limit) {
-          ++ends.cut_off;
-          break;
-        }
-        column = next_column;
-        row = next_row;
-        input = exit.next_input;
-      }
-      const std::int64_t cell = row * field.columns + column;
-      ++final_cells[cell];
-      if (final_cell_of_walk) {
-        (*final_cell_of_walk)[static_cast<std::size_t>(number - range.first)] =
-            static_cast<std::int32_t>(cell);
-      }
-    }
-    ends.walks = last - first;
-    tally += ends;
-  };
-
-  WalkTally none;
-  none.final_cells = CellCounts::Zero(field.rows, field.columns);
-  tbb::enumerable_thread_specific<WalkTally> tallies(none);
-  tbb::parallel_for(tbb::blocked_range<std::int64_t>(range.first, range.first + range.count,
-                                                     kWalksPerTask),
-                    [&](const tbb::blocked_range<std::int64_t>& part) {
-                      run(part.begin(), part.end(), tallies.local());
-                    });
-  WalkTally total = none;
+  WalkTally total;
+  total.final_cells = CellCounts::Zero(field.rows, field.columns);
+  tbb::enumerable_thread_specific<WalkTally> tallies(total);
+  const std::int64_t pools = range.count / kPool + (range.count % kPool > 0);
+  tbb::parallel_for(
+      tbb::blocked_range<std::int64_t>(0, pools), [&](const tbb::blocked_range<std::int64_t>& part) {
+        const std::int64_t first = range.first + part.begin() * kPool;
+        const std::int64_t last = range.first + (part.end() < pools ? part.end() * kPool : range.count);
+        if (in_lanes)
+          walk_in_lanes(job, first, last, tallies.local());
+        else
+          walk_plainly(job, first, last, tallies.local());
+      });
   for (const WalkTally& tally : tallies) total += tally;
+  total.walks = range.count;
   return total;
 }
 
+WalkTally Walker::walk(const Field& field, const Start& start, int max_cells, Word seed,
+                       WalkRange range, std::vector<std::int32_t>* final_cell_of_walk) const {
+  return run(walks_in_lanes(), field, start, max_cells, seed, range, final_cell_of_walk);
+}
+
+WalkTally Walker::walk_plainly(const Field& field, const Start& start, int max_cells, Word seed,
+                               WalkRange range,
+                               std::vector<std::int32_t>* final_cell_of_walk) const {
+  return run(false, field, start, max_cells, seed, range, final_cell_of_walk);
+}
+
 }  // namespace gatewalk::markov
+#endif

@@ -32,8 +32,8 @@ struct WalkTally {
 };
 
 /// Walk w under `seed` draws from Philox4x64-10 with key {seed, kWalkStream} and counter
-/// {block, w, start input, 0}: four words a block, one word a draw. Other users of the same seed take another
-/// second key word, so no two ever share a stream.
+/// {block, w, start input, 0}: four words a block, one word a draw. Other users of the same seed take
+/// another second key word, so no two ever share a stream.
 inline constexpr std::uint64_t kWalkStream = 0x77616c6b'00000001;  // "walk", version 1
 
 /// Draws from the rows of a chain: Walker's alias method (Vose's construction), one table per row,
@@ -46,25 +46,38 @@ class Walker {
   /// An output of `row` for a uniform 64-bit word; never one of probability zero.
   [[nodiscard]] int draw(int row, std::uint64_t word) const;
 
-  /// Runs `range` (from 0 up) on all threads of the current TBB arena. At most `max_cells` cells
-  /// are visited (0: no limit; then a walk is still cut off after 10^6 cells, and counted so). Same
-  /// tally for any number of threads. `final_cell_of_walk`, if given, gets row * columns + column
-  /// per walk.
+  /// Runs `range` (from 0 up) on all threads of the current TBB arena, many walks at once in vector
+  /// registers (Google Highway). At most `max_cells` cells are visited (0: no limit; then a walk is
+  /// still cut off after 10^6 cells, and counted so). Same walks for any number of threads and any
+  /// instruction set. `final_cell_of_walk`, if given, gets row * columns + column per walk. Chains
+  /// with an exit of 512 cells or more, or with 2^21 nonzeros or more, are walked plainly.
   [[nodiscard]] WalkTally walk(const Field& field, const Start& start, int max_cells,
                                std::uint64_t seed, WalkRange range,
                                std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
 
+  /// The same walks, one after the other: the plain reference.
+  [[nodiscard]] WalkTally walk_plainly(const Field& field, const Start& start, int max_cells,
+                                       std::uint64_t seed, WalkRange range,
+                                       std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
+
+  /// Whether walk() uses vector registers.
+  [[nodiscard]] bool walks_in_lanes() const { return !moves_.empty(); }
+
  private:
-  struct Slot {
-    std::uint64_t keep;  // keep `here` when the word's low part is at most this
-    std::int32_t here;
-    std::int32_t other;
-  };
-  [[nodiscard]] static std::int32_t pick(const Slot* slots, std::uint64_t count,
-                                         std::uint64_t word);
+  struct Job;
+  [[nodiscard]] WalkTally run(bool in_lanes, const Field& field, const Start& start, int max_cells,
+                              std::uint64_t seed, WalkRange range,
+                              std::vector<std::int32_t>* final_cell_of_walk) const;
+  void walk_plainly(const Job& job, std::int64_t first, std::int64_t last, WalkTally& tally) const;
+  void walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last, WalkTally& tally) const;
+  [[nodiscard]] std::int32_t pick(int row, std::uint64_t word) const;
+  [[nodiscard]] std::uint64_t packed(const Exit& exit) const;
 
   Chain chain_;
-  std::vector<Slot> slots_;  // one per nonzero, in the order of the matrix: its rows begin alike
+  // Slots: one per nonzero, in the order of the matrix, and one more for all unsampled rows in lanes.
+  std::vector<std::uint64_t> keep_;    // (slots) the first output, up to here within the slot
+  std::vector<std::int32_t> outputs_;  // (slots x 2) else the second
+  std::vector<std::uint64_t> moves_;   // (slots x 2) outputs packed for lanes; empty if that cannot be
 };
 
 }  // namespace gatewalk::markov

@@ -2,20 +2,24 @@
 
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <stdexcept>
 
 #include "chains.h"
+#include "markov/exact.h"
 
 namespace gatewalk::markov {
 namespace {
 
+using test::empty_row;
 using test::kBottomCentre;
 using test::kNineByNine;
 using test::lattice_counts;
@@ -23,11 +27,79 @@ using test::lattice_exits;
 using test::matrix;
 
 constexpr std::uint64_t kLastWord = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t kLongSeed = 0xfedcba98'76543210;
 
 bool same(const WalkTally& a, const WalkTally& b) {
   return (a.final_cells == b.final_cells).all() && a.walks == b.walks && a.trapped == b.trapped &&
          a.left_field == b.left_field && a.cut_off == b.cut_off && a.unsampled == b.unsampled &&
          a.steps == b.steps;
+}
+
+struct Walked {
+  WalkTally tally;
+  std::vector<std::int32_t> final_cells;
+  friend bool operator==(const Walked& a, const Walked& b) {
+    return same(a.tally, b.tally) && a.final_cells == b.final_cells;
+  }
+};
+
+Walked in_lanes(const Walker& walker, const Field& field, const Start& start, int max_cells,
+                WalkRange range) {
+  Walked walked;
+  walked.tally = walker.walk(field, start, max_cells, kLongSeed, range, &walked.final_cells);
+  return walked;
+}
+
+Walked plainly(const Walker& walker, const Field& field, const Start& start, int max_cells,
+               WalkRange range) {
+  Walked walked;
+  walked.tally = walker.walk_plainly(field, start, max_cells, kLongSeed, range, &walked.final_cells);
+  return walked;
+}
+
+/// Calls `run` with every instruction set that there is here.
+void with_every_target(const std::function<void()>& run) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    run();
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+}
+
+/// Rows 0, 12 (where kBottomCentre starts), 40 and 86 were never sampled.
+Chain with_gaps(std::uint64_t seed) {
+  Counts counts = lattice_counts(seed);
+  for (const int row : {0, 12, 40, 86}) empty_row(counts, row);
+  return Chain::from_counts(counts, lattice_exits());
+}
+
+/// Moves of up to `reach` cells, in all directions.
+Chain leaping(std::uint64_t seed, int reach) {
+  auto exits = lattice_exits();
+  test::Words words(seed);
+  for (std::size_t j = 0; j + 1 < exits.size(); ++j) {
+    exits[j].di_x = words.below(2 * reach + 1) - reach;
+    exits[j].di_y = words.below(2 * reach + 1) - reach;
+  }
+  return Chain::from_counts(lattice_counts(seed), exits);
+}
+
+/// Very many nonzeros, all but three in the first row: to the right, up or on the spot.
+Chain with_nonzeros(int nonzeros) {
+  const int outputs = nonzeros - 3;
+  Counts counts(2, outputs);
+  counts.reserve(nonzeros);
+  for (const auto& [row, entries] : {std::pair{0, outputs}, {1, 3}}) {
+    counts.startVec(row);
+    for (int j = 0; j < entries; ++j) counts.insertBack(row, j) = 1 + j % 5;
+  }
+  counts.finalize();
+  std::vector<Exit> exits;
+  for (int j = 0; j < outputs; ++j) exits.push_back({j % 2, j % 3 == 0, j % 3 == 1});
+  return Chain::from_counts(counts, exits);
 }
 
 // How many of the 2^64 words draw each output. A slot shows one output, then perhaps another.
@@ -147,7 +219,7 @@ TEST(Walk, IsTheDocumentedStream) {
   EXPECT_EQ(known[3], 0x7e68b68aec7ba23bU);
 
   Counts counts = lattice_counts(3);
-  test::empty_row(counts, 40);
+  empty_row(counts, 40);
   const Chain chain = Chain::from_counts(counts, lattice_exits());
   const Walker walker(chain);
   constexpr std::uint64_t kSeed = 2024;
@@ -197,6 +269,147 @@ TEST(Walk, IsTheDocumentedStream) {
   }
 }
 
+TEST(Walk, IsThePlainReferenceWalkByWalk) {
+  struct Place {
+    Field field;
+    Start start;
+  };
+  const Place places[] = {{{1, 1}, {0, 0, 5}},        {kNineByNine, kBottomCentre},
+                          {kNineByNine, {8, 8, 40}},  {{400, 1}, {399, 0, 30}},
+                          {{1, 400}, {0, 0, 3}},      {{301, 301}, {150, 0, 12}}};
+  const Chain chains[] = {Chain::from_counts(lattice_counts(1), lattice_exits()),
+                          Chain::from_counts(lattice_counts(2), lattice_exits()),
+                          with_gaps(3),
+                          leaping(4, 2),
+                          leaping(5, 511)};
+  for (const Chain& chain : chains) {
+    const Walker walker(chain);
+    EXPECT_TRUE(walker.walks_in_lanes());
+    for (const auto& [field, start] : places) {
+      for (const int max_cells : {0, 1, 2, 3, 4, 5, 13}) {
+        const WalkRange range{(std::int64_t{1} << 33) + 5, 2500};
+        EXPECT_EQ(in_lanes(walker, field, start, max_cells, range),
+                  plainly(walker, field, start, max_cells, range))
+            << &chain - chains << ": " << field.columns << " x " << field.rows << ", " << max_cells;
+      }
+    }
+  }
+}
+
+TEST(Walk, AnyNumberOfWalksFitsIntoRegisters) {
+  const Walker walker(with_gaps(2));
+  for (const std::int64_t count : {0, 1, 2, 7, 8, 9, 31, 32, 33, 2047, 2048, 2049, 4096, 10'001}) {
+    for (const std::int64_t first : {std::int64_t{0}, std::int64_t{1} << 40}) {
+      EXPECT_EQ(in_lanes(walker, kNineByNine, {4, 0, 13}, 0, {first, count}),
+                plainly(walker, kNineByNine, {4, 0, 13}, 0, {first, count}))
+          << count << " from " << first;
+    }
+  }
+}
+
+TEST(Walk, IsTheSameWithAnyInstructionSet) {
+  const Walker walker(with_gaps(6));
+  const Start start{4, 0, 20};
+  const WalkRange range{7, 3001};
+  const Walked limited = plainly(walker, kNineByNine, start, 13, range);
+  const Walked free = plainly(walker, {33, 33}, start, 0, range);
+  with_every_target([&] {
+    EXPECT_EQ(in_lanes(walker, kNineByNine, start, 13, range), limited);
+    EXPECT_EQ(in_lanes(walker, {33, 33}, start, 0, range), free);
+  });
+}
+
+TEST(Walk, RowsOfOneEntryAndOfHardlyPossibleOnes) {
+  const Walker walker(Chain::from_probabilities(
+      matrix(3, 4, {{0, 0, 0.5}, {0, 1, 0.5}, {1, 0, 1.0 - 1e-12}, {1, 2, 1e-12}, {2, 3, 1.0}}),
+      {{0, 1, 0}, {1, 0, 1}, {2, -1, 0}, {}}));
+  for (int input = 0; input < 3; ++input) {
+    EXPECT_EQ(in_lanes(walker, {5, 4}, {2, 1, input}, 0, {0, 5000}),
+              plainly(walker, {5, 4}, {2, 1, input}, 0, {0, 5000}));
+  }
+}
+
+TEST(Walk, TheLowHalfOfAWordCounts) {
+  // 1/4 + 1.25 2^-33: what a word must not exceed within the first of two slots is 0x8000000140000000
+  // less one. This walk's word decides in its low half, and in the carry out of it.
+  const double p = 0.25 + 1.25 / 8589934592.0;
+  const Walker walker(
+      Chain::from_probabilities(matrix(1, 2, {{0, 0, p}, {0, 1, 1 - p}}), {{}, {0, 1, 0}}));
+  constexpr std::int64_t kWalk = 4'702'487'437;
+  const auto word = r123::Philox4x64{}({{0, kWalk, 0, 0}}, {{99, kWalkStream}})[0];
+  EXPECT_EQ(word, 0x40000000c60f51e4U);
+  EXPECT_EQ(walker.draw(0, 0x400000009fffffff), 0);
+  EXPECT_EQ(walker.draw(0, 0x40000000a0000000), 1);
+  with_every_target([&] {
+    EXPECT_EQ(walker.walk({1, 1}, {0, 0, 0}, 0, 99, {kWalk, 1}).left_field, 1);
+  });
+}
+
+TEST(Walk, NothingSampledAtAll) {
+  const Walker walker(Chain::from_probabilities(matrix(2, 2, {}), {{0, 0, 0}, {}}));
+  const Walked walked = in_lanes(walker, {3, 2}, {1, 1, 1}, 0, {0, 100});
+  EXPECT_EQ(walked, plainly(walker, {3, 2}, {1, 1, 1}, 0, {0, 100}));
+  EXPECT_EQ(walked.tally.unsampled, 100);
+  EXPECT_EQ(walked.tally.steps, 0);
+  EXPECT_EQ(walked.tally.final_cells(1, 1), 100);
+}
+
+TEST(Walk, WhatFitsIntoNoRegisterIsWalkedPlainly) {
+  for (const auto& [exit, fits] : std::initializer_list<std::pair<Exit, bool>>{
+           {{0, 511, 0}, true}, {{0, 512, 0}, false}, {{0, -512, 0}, true}, {{0, -513, 0}, false},
+           {{0, 0, 511}, true}, {{0, 0, 512}, false}, {{0, 0, -512}, true}, {{0, 0, -513}, false}}) {
+    const Walker walker(
+        Chain::from_probabilities(matrix(1, 2, {{0, 0, 0.5}, {0, 1, 0.5}}), {{0, 0, 0}, exit}));
+    EXPECT_EQ(walker.walks_in_lanes(), fits);
+    const int columns = exit.di_x == 0 ? 1 : 2000, rows = exit.di_y == 0 ? 1 : 2000;
+    const Start start{columns / 2, rows / 2, 0};
+    EXPECT_EQ(in_lanes(walker, {columns, rows}, start, 9, {0, 500}),
+              plainly(walker, {columns, rows}, start, 9, {0, 500}));
+  }
+  for (const int nonzeros : {(1 << 21) - 1, 1 << 21}) {
+    const Walker walker(with_nonzeros(nonzeros));
+    EXPECT_EQ(walker.walks_in_lanes(), nonzeros < 1 << 21);
+    EXPECT_EQ(in_lanes(walker, {9, 9}, {0, 0, 0}, 0, {0, 20'000}),
+              plainly(walker, {9, 9}, {0, 0, 0}, 0, {0, 20'000}));
+  }
+}
+
+TEST(Walk, TenMillionWalksPassChiSquareAgainstTheExactDistribution) {
+  constexpr std::int64_t kWalks = 10'000'000;
+  const Chain chain = Chain::from_counts(lattice_counts(8), lattice_exits());
+  const FinalDistribution exact = propagate(chain, kNineByNine, kBottomCentre, 13);
+  const WalkTally tally = Walker(chain).walk(kNineByNine, kBottomCentre, 13, 3, {0, kWalks});
+  // Cells of fewer than 20 expected walks count as one.
+  double chi2 = 0, rare = 0, rare_expected = 0;
+  int cells = 0;
+  const auto add = [&](double walks, double expected) {
+    chi2 += (walks - expected) * (walks - expected) / expected;
+    ++cells;
+  };
+  for (int row = 0; row < 9; ++row) {
+    for (int column = 0; column < 9; ++column) {
+      const auto walks = static_cast<double>(tally.final_cells(row, column));
+      const double expected = kWalks * exact.final_cells(row, column);
+      if (expected >= 20) {
+        add(walks, expected);
+      } else {
+        rare += walks;
+        rare_expected += expected;
+      }
+    }
+  }
+  if (rare_expected > 0) add(rare, rare_expected);
+  EXPECT_GT(cells, 50);
+  // Wilson and Hilferty: the cube root of chi2 / n is nearly normal, of variance 2 / (9 n).
+  const double n = cells - 1, variance = 2 / (9 * n);
+  EXPECT_NEAR(std::cbrt(chi2 / n), 1 - variance, 4 * std::sqrt(variance)) << chi2 << " of " << n;
+  for (const auto& [count, p] : {std::pair{tally.trapped, exact.trapped},
+                                 {tally.left_field, exact.left_field},
+                                 {tally.cut_off, exact.cut_off}}) {
+    EXPECT_NEAR(static_cast<double>(count), kWalks * p, 4 * std::sqrt(kWalks * p * (1 - p)));
+  }
+}
+
 TEST(Walk, SameTallyForAnyThreadsAndAnySplit) {
   const Walker walker(Chain::from_counts(lattice_counts(1), lattice_exits()));
   const auto run = [&](WalkRange range, std::vector<std::int32_t>* cells) {
@@ -209,6 +422,7 @@ TEST(Walk, SameTallyForAnyThreadsAndAnySplit) {
     return run({0, kWalks}, &cells_alone);
   }();
   EXPECT_EQ(alone.walks, kWalks);
+  EXPECT_TRUE(same(alone, walker.walk_plainly(kNineByNine, kBottomCentre, 13, 42, {0, kWalks})));
   for (const int threads : {2, 3, 8}) {
     const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));
