@@ -13,7 +13,7 @@ int run_predict(const std::vector<std::string>& arguments) {
   options.positional("scene", "scene file; without it the matrix's own scene", false);
   options.add()("solver", po::value<std::string>()->default_value("auto")->value_name("NAME"),
                 "propagate: step by step; for field.max_gates = 0 also march: row by row, and klu: one "
-                "sparse solve; auto: march for large fields without limit, else propagate");
+                "sparse solve; auto: march without limit, else propagate");
   if (!options.parse(arguments)) return kFine;
   const std::string& solver = options.get<std::string>("solver");
   if (solver != "auto" && solver != "propagate" && solver != "march" && solver != "klu")

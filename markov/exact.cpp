@@ -3,6 +3,7 @@
 #include <klu.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -199,6 +200,18 @@ std::vector<double> visits(Transient& t) {
   return x;
 }
 
+// start - (I - Q)^T draws, in magnitude: what the draws do not account for and would walk on.
+double missing(const Transient& t, const std::vector<double>& draws) {
+  std::vector<double> left(draws.size(), 0.0);
+  left.front() = 1.0;
+  for (std::size_t s = 0; s < draws.size(); ++s)
+    for (auto k = static_cast<std::size_t>(t.begin[s]); k < static_cast<std::size_t>(t.begin[s + 1]); ++k)
+      left[static_cast<std::size_t>(t.index[k])] -= t.value[k] * draws[s];
+  CompensatedSum sum;
+  for (const double mass : left) sum += std::abs(mass);
+  return sum.value();
+}
+
 }  // namespace
 
 FinalDistribution propagate(const Chain& chain, const Field& field, const Start& start,
@@ -279,6 +292,8 @@ FinalDistribution propagate(const Chain& chain, const Field& field, const Start&
   FinalDistribution result = ends.result();
   result.remainder = walking;
   result.mean_steps = draws.value();
+  result.rounding = rounding_bound(result.mean_steps, chain.inputs() + chain.outputs() + 2,
+                                   chain.inputs() + chain.outputs() + 8);
   result.steps = steps;
   return result;
 }
@@ -315,7 +330,10 @@ FinalDistribution solve_absorption(const Chain& chain, const Field& field, const
     }
   }
   FinalDistribution result = ends.result();
+  result.remainder = missing(t, draws);
   result.mean_steps = mean_steps.value();
+  result.rounding = rounding_bound(result.mean_steps, 2.0 * (chain.inputs() + chain.outputs() + 4),
+                                   chain.outputs() + 8);
   return result;
 }
 

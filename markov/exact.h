@@ -16,7 +16,12 @@ struct FinalDistribution {
   double left_field = 0.0;
   double cut_off = 0.0;     // visited max_cells cells and would have gone on
   double unsampled = 0.0;   // entered a state whose row was never sampled
-  double remainder = 0.0;   // still walking when the sum was stopped: bounds every error above
+  /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for. As
+  /// that would end at most once, it bounds the errors of all cells together, and of each number above.
+  double remainder = 0.0;
+  /// What rounding adds to these errors at most, to first order in 1e-16 (that of counts into
+  /// probabilities included).
+  double rounding = 0.0;
   double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; without the remainder's
   int steps = 0;            // propagation steps done (0 for a solve)
 };

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <stdexcept>
 
 #include "chains.h"
@@ -20,6 +19,8 @@ using test::kNineByNine;
 using test::lattice_counts;
 using test::lattice_exits;
 using test::matrix;
+using test::nearly_closed;
+using test::propagate_plainly;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr std::array kLimits = {1, 2, 3, 13};
@@ -40,58 +41,6 @@ void expect_near(const FinalDistribution& a, const FinalDistribution& b, double 
   EXPECT_NEAR(a.left_field, b.left_field, bound);
   EXPECT_NEAR(a.cut_off, b.cut_off, bound);
   EXPECT_NEAR(a.unsampled, b.unsampled, bound);
-}
-
-// The rule of a step as walk.h words it: no boxes, no sparse rows, and digits to spare.
-FinalDistribution propagate_plainly(const Chain& chain, const Field& field, const Start& start,
-                                    int max_cells) {
-  using State = std::array<int, 3>;             // column, row, input
-  const Eigen::MatrixXd p = chain.matrix();     // (n_in x n_out)
-  long double trapped = 0, left_field = 0, cut_off = 0, unsampled = 0, draws = 0;
-  std::map<std::array<int, 2>, long double> final_cells;
-  std::map<State, long double> walking = {{{start.column, start.row, start.input}, 1.0L}};
-  for (int visited = 1; !walking.empty(); ++visited) {
-    std::map<State, long double> next;
-    for (const auto& [state, mass] : walking) {
-      const auto [column, row, input] = state;
-      if (p.row(input).sum() == 0.0) {
-        unsampled += mass;
-        final_cells[{row, column}] += mass;
-        continue;
-      }
-      draws += mass;
-      for (int output = 0; output < chain.outputs(); ++output) {
-        const long double m = mass * p(input, output);
-        if (m == 0) continue;
-        const Exit& exit = chain.exits()[static_cast<std::size_t>(output)];
-        const int c = column + exit.di_x;
-        const int r = row + exit.di_y;
-        const bool is_inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
-        long double* const end = exit.next_input == Exit::kTrapped ? &trapped
-                                 : !is_inside                      ? &left_field
-                                 : visited == max_cells            ? &cut_off
-                                                                   : nullptr;
-        if (end) {
-          *end += m;
-          final_cells[{row, column}] += m;
-        } else {
-          next[{c, r, exit.next_input}] += m;
-        }
-      }
-    }
-    walking = std::move(next);
-  }
-  FinalDistribution d;
-  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
-  for (const auto& [cell, mass] : final_cells) {
-    d.final_cells(cell[0], cell[1]) = static_cast<double>(mass);
-  }
-  d.trapped = static_cast<double>(trapped);
-  d.left_field = static_cast<double>(left_field);
-  d.cut_off = static_cast<double>(cut_off);
-  d.unsampled = static_cast<double>(unsampled);
-  d.mean_steps = static_cast<double>(draws);
-  return d;
 }
 
 // Bernstein: a binomial count is further off than this with probability below 2 e^-20 = 4e-9.
@@ -356,13 +305,6 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   const Chain one = Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 0}});
   EXPECT_THROW((void)solve_absorption(one, {1, 1}, {}), std::runtime_error);
   EXPECT_EQ(propagate(one, {1, 1}, {}, 0, 0.0, 7).remainder, 1.0);
-}
-
-// Two states that pass to each other with 1 - escape, so I - Q has condition 2/escape.
-Chain nearly_closed(double escape) {
-  return Chain::from_probabilities(
-      matrix(2, 3, {{0, 1, 1 - escape}, {0, 2, escape}, {1, 0, 1 - escape}, {1, 2, escape}}),
-      {{0, -1, 0}, {1, 1, 0}, {}});
 }
 
 TEST(Exact, TheConditionGateKeepsSixDigits) {
