@@ -47,6 +47,7 @@ class Steps {
 
   std::vector<Walks> run(int max_cells, double tolerance, int max_steps) {
     if (board_->colours() == 2) colour_ = 1 - colour_;
+    std::vector<std::ptrdiff_t> first_draws;  // where they put mass
     for (std::size_t j = 0; j < walks_.size(); ++j) {
       Walks& w = walks_[j];
       if (max_cells == 0 && (max_steps == 0 || tolerance >= 1.0) &&
@@ -57,7 +58,8 @@ class Steps {
       }
       w.draw_first(plan_.at(w.start.row).chain, field_, max_cells == 1,
                    [&](std::int64_t column, std::int64_t row, int input, double p) {
-                     now_[input * stride_ + place(j, column, row).at] += p;
+                     first_draws.push_back(input * stride_ + place(j, column, row).at);
+                     now_[first_draws.back()] += p;
                    });
       w.steps = w.draws.value() > 0.0 ? 1 : 0;
     }
@@ -71,6 +73,8 @@ class Steps {
       for (const Range& r : window())
         accumulate(now_, visits(), plan_.inputs, stride_, r.first, r.last);
       step();
+      // Groups overwrite what groups have written, but the first draw may lead where no group does.
+      for (const std::ptrdiff_t at : std::exchange(first_draws, {})) next_[at] = 0.0;
     }
     for (colour_ = 0; colour_ < board_->colours(); ++colour_) count(visits(), false);
     return std::move(walks_);

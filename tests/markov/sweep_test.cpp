@@ -61,6 +61,90 @@ Chain with_gaps(std::uint64_t seed, std::vector<Exit> exits) {
   return Chain::from_counts(counts, std::move(exits));
 }
 
+/// One output per row, few of the rows ever entered: mass is drawn where no walk returns to.
+Chain thin(std::uint64_t seed, std::vector<Exit> exits) {
+  test::Words words(seed);
+  Counts counts(87, 88);
+  for (int row = 0; row < 87; ++row) {
+    if (row % 10 != 3) counts.coeffRef(row, row % 7 == 0 ? 87 : words.below(87)) = 1;
+    if (row % 9 == 0) counts.coeffRef(row, words.below(88)) += 1;
+  }
+  return Chain::from_counts(counts, std::move(exits));
+}
+
+TEST(Sweep, PropagatesAsThePlainReferenceWhereFewRowsAreEntered) {
+  for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const Chain chain = thin(seed, exits);
+      const Sweeper sweeper(chain);
+      for (int input = 0; input < 87; ++input) {
+        for (const int limit : {1, 2, 3, 4, 5, 13}) {
+          const Start start{2, 1, input};
+          const auto plain = propagate(chain, {6, 5}, start, limit);
+          const auto fast = sweeper.propagate({6, 5}, start, limit);
+          SCOPED_TRACE(std::to_string(input) + ", limit " + std::to_string(limit));
+          expect_near(plain, fast, 1e-15);
+          EXPECT_EQ(plain.steps, fast.steps);
+        }
+        if (!sweeper.can_march()) continue;
+        try {
+          const auto marched = sweeper.march({6, 5}, {2, 1, input}, 1e-13, RowMethod::cheapest, 1000);
+          expect_near(marched, propagate(chain, {6, 5}, {2, 1, input}, 0, 1e-13, 1000), 1e-12);
+        } catch (const std::runtime_error&) {  // left and right for ever
+          EXPECT_GT(propagate(chain, {6, 5}, {2, 1, input}, 0, 1e-13, 1000).remainder, 0.1);
+        }
+      }
+    }
+  }
+}
+
+/// Up to 9 inputs, moves of up to 2 cells (of `up` alone: none down), rows of any number of outputs.
+Chain random_chain(test::Words& words, bool chequered, bool up) {
+  const int inputs = 1 + words.below(9), outputs = 1 + words.below(14);
+  std::vector<Exit> exits;
+  Counts counts(inputs, outputs);
+  for (int j = 0; j < outputs; ++j) {
+    Exit exit{words.below(inputs), words.below(5) - 2, words.below(5) - 2};
+    if (up) exit.di_y = std::abs(exit.di_y);
+    if (chequered && (exit.di_x + exit.di_y) % 2 == 0) exit.di_x += 1;
+    if (words.below(5) == 0) exit = {};
+    exits.push_back(exit);
+    for (int row = 0; row < inputs; ++row)
+      if (words.below(3) == 0) counts.coeffRef(row, j) = 1 + words.below(9);
+  }
+  return Chain::from_counts(counts, exits);
+}
+
+TEST(Sweep, RandomChains) {
+  test::Words words(1);
+  for (int k = 0; k < 600; ++k) {
+    SCOPED_TRACE(k);
+    const Chain chain = random_chain(words, k % 2 == 0, k % 3 == 0);
+    const Sweeper sweeper(chain);
+    const Field field{1 + words.below(12), 1 + words.below(12)};
+    std::vector<Start> starts;
+    for (int j = 0; j < 1 + k % 5; ++j)
+      starts.push_back({words.below(field.columns), words.below(field.rows), words.below(chain.inputs())});
+    const int limit = 1 + words.below(15);
+    const auto fast = sweeper.propagate_all(field, starts, limit);
+    const auto free = sweeper.propagate_all(field, starts, 0, 1e-13, 60);
+    for (std::size_t j = 0; j < starts.size(); ++j) {
+      const auto plain = propagate(chain, field, starts[j], limit);
+      expect_near(plain, fast[j], 1e-14);
+      EXPECT_EQ(plain.steps, fast[j].steps);
+      const auto plainly_free = propagate(chain, field, starts[j], 0, 1e-13, 60);
+      expect_near(plainly_free, free[j], 1e-14);
+      EXPECT_NEAR(plainly_free.remainder, free[j].remainder, 1e-14);
+      EXPECT_EQ(plainly_free.steps, free[j].steps);
+      if (!sweeper.can_march()) continue;
+      const auto far = propagate(chain, field, starts[j], 0, 1e-13, 2000);
+      if (far.remainder > 1e-12) continue;  // circles
+      for (const auto method : kMethods)
+        expect_near(far, sweeper.march(field, starts[j], 1e-13, method), 1e-11);
+    }
+  }
+}
+
 TEST(Sweep, PropagatesAsThePlainReference) {
   const std::vector<std::pair<Field, Start>> places{
       {kNineByNine, kBottomCentre}, {{1, 1}, {0, 0, 5}}, {{3, 5}, {2, 4, 80}},
