@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "markov/sweep_plan.h"
 
@@ -112,6 +113,14 @@ std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains, std::
   return plan;
 }
 
+void validate_all(const SweepPlan& plan, const Field& field, const std::vector<Start>& starts,
+                  int max_cells) {
+  for (const Start& s : starts) validate(plan.rules.front().chain, field, s, max_cells);
+  if (!plan.rules_of_row.empty() && std::ssize(plan.rules_of_row) != field.rows)
+    throw std::invalid_argument("rows: chains for " + std::to_string(plan.rules_of_row.size()) +
+                                " rows, the field has " + std::to_string(field.rows));
+}
+
 /// Starts side by side in groups of `size`, groups on all threads.
 template <class Run>
 std::vector<FinalDistribution> in_groups(const std::vector<Start>& starts, std::int64_t size, Run run) {
@@ -129,6 +138,8 @@ std::vector<FinalDistribution> in_groups(const std::vector<Start>& starts, std::
 
 Sweeper::Sweeper(const Chain& chain) : plan_(plan_of({chain}, {})) {}
 
+Sweeper::Sweeper(const RowChains& rows) : plan_(plan_of(rows.chains, rows.chain_of_row)) {}
+
 Sweeper::~Sweeper() = default;
 
 bool Sweeper::can_march() const { return plan_->lowest >= 0; }
@@ -137,7 +148,7 @@ std::vector<FinalDistribution> Sweeper::propagate_all(const Field& field,
                                                       const std::vector<Start>& starts,
                                                       int max_cells, double tolerance,
                                                       int max_steps_without_limit) const {
-  for (const Start& s : starts) validate(plan_->at(0).chain, field, s, max_cells);
+  validate_all(*plan_, field, starts, max_cells);
   if (!(tolerance >= 0.0) || max_steps_without_limit < 0)
     throw std::invalid_argument("propagate: tolerance and step limit must not be negative");
   // Measured: a few small fields together leave fewer lanes empty, more of them leave the cache.
@@ -150,7 +161,7 @@ std::vector<FinalDistribution> Sweeper::propagate_all(const Field& field,
 std::vector<FinalDistribution> Sweeper::march_all(const Field& field,
                                                   const std::vector<Start>& starts, double tolerance,
                                                   RowMethod method, int most_sums) const {
-  for (const Start& s : starts) validate(plan_->at(0).chain, field, s, 0);
+  validate_all(*plan_, field, starts, 0);
   if (!can_march()) throw std::invalid_argument("march: an exit leads to a row below");
   if (!(tolerance >= 0.0)) throw std::invalid_argument("march: tolerance must not be negative");
   return in_groups(starts, std::clamp(40 / field.columns, 1, 4), [&](const auto& group) {

@@ -11,12 +11,14 @@ namespace gatewalk::markov {
 
 struct SweepPlan;  // sweep.cpp
 
-/// A chain prepared for any field and starts. May be used from several threads at a time.
+/// A chain, or one per row, prepared for any field and starts. May be used from several threads at a time.
 /// Predictions from several starts are made side by side, each on its own: the same bits as one by
 /// one, in less time.
 class Sweeper {
  public:
   explicit Sweeper(const Chain& chain);
+  /// For fields of as many rows as `rows` has; each distinct chain is prepared once.
+  explicit Sweeper(const RowChains& rows);
   ~Sweeper();
   Sweeper(const Sweeper&) = delete;
   Sweeper& operator=(const Sweeper&) = delete;

@@ -78,6 +78,7 @@ class Rows {
     push_all(table, board_.ways(0), stride_, nullptr, whole_, from, to, true);
   }
   void tally(const Table& table, const double* mass) {
+    std::fill_n(tally_, (kMoved + std::ssize(plan_.moves)) * stride_, 0.0);  // not every chain ends all ways
     push_all(table, board_.still(0), stride_, nullptr, whole_, mass, tally_, false);
   }
   void add(const double* from, double* to) const {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -283,6 +284,107 @@ TEST(Exact, PartlyEmptyFieldsAndLongMoves) {
     expect_near(propagate(chain, {4, 3}, {1, 1, 0}, max_cells),
                 propagate_plainly(chain, {4, 3}, {1, 1, 0}, max_cells), 8 * kEps);
   }
+}
+
+// ---- Rows that differ ----
+
+// Brute force: all (cell, input) pairs in one dense matrix; visits by its inverse, or (with a limit) by
+// its powers; then every output of every visit is looked at once.
+FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& field, const Start& start,
+                          int max_cells) {
+  const int n = chain_of_row.front().inputs(), cells = field.columns * field.rows;
+  const auto state = [&](int column, int row, int input) { return (row * field.columns + column) * n + input; };
+  struct Draw {
+    double p;
+    int next;  // state; or where it ends, below
+  };
+  enum : int { kTrapped = -1, kLeft = -2 };
+  const auto draws = [&](int s) {
+    const int column = s / n % field.columns, row = s / n / field.columns;
+    std::vector<Draw> all;
+    const Chain& chain = chain_of_row[static_cast<std::size_t>(row)];
+    for (int j = 0; j < chain.outputs(); ++j) {
+      const Exit& exit = chain.exits()[static_cast<std::size_t>(j)];
+      const int c = column + exit.di_x, r = row + exit.di_y;
+      const bool inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
+      all.push_back({chain.matrix().coeff(s % n, j), exit.next_input == Exit::kTrapped ? kTrapped
+                                                     : inside ? state(c, r, exit.next_input) : kLeft});
+    }
+    return all;
+  };
+  const auto sampled = [&](int s) {
+    return chain_of_row[static_cast<std::size_t>(s / n / field.columns)].is_sampled(s % n);
+  };
+  Eigen::MatrixXd q = Eigen::MatrixXd::Zero(n * cells, n * cells);
+  for (int s = 0; s < n * cells; ++s)
+    for (const Draw& d : draws(s))
+      if (d.next >= 0) q(d.next, s) += d.p;
+  Eigen::VectorXd now = Eigen::VectorXd::Zero(n * cells), visits = now, last = now;
+  now(state(start.column, start.row, start.input)) = 1.0;
+  if (max_cells == 0) {
+    visits = (Eigen::MatrixXd::Identity(n * cells, n * cells) - q).partialPivLu().solve(now);
+  } else {
+    for (int k = 1; k < max_cells; ++k) {
+      visits += now;
+      now = q * now;
+    }
+    last = now;
+  }
+  FinalDistribution d;
+  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
+  for (int s = 0; s < n * cells; ++s) {
+    const auto end = [&](double& why, double mass) {
+      why += mass;
+      d.final_cells.data()[s / n] += mass;
+    };
+    if (!sampled(s)) end(d.unsampled, visits(s) + last(s));
+    for (const Draw& draw : draws(s)) {
+      if (draw.next == kTrapped) end(d.trapped, draw.p * (visits(s) + last(s)));
+      if (draw.next == kLeft) end(d.left_field, draw.p * (visits(s) + last(s)));
+      if (draw.next >= 0) end(d.cut_off, draw.p * last(s));
+    }
+  }
+  return d;
+}
+
+TEST(Exact, RowsThatDifferAreTheDenseSolution) {
+  // Row by row another chain, some inputs sampled in one of them only.
+  std::vector<Chain> chains;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Counts counts = lattice_counts(seed);
+    for (int row = 0; row < 87; ++row)
+      if ((row + static_cast<int>(seed)) % 5 == 0) test::empty_row(counts, row);
+    chains.push_back(Chain::from_counts(counts, lattice_exits()));
+  }
+  for (const std::vector<int>& of_row : {std::vector{0, 1, 2}, {2, 0, 0}, {1, 1, 1}}) {
+    const RowChains rows(chains, of_row);
+    std::vector<Chain> each;
+    for (const int k : of_row) each.push_back(chains[static_cast<std::size_t>(k)]);
+    for (const Start start : {Start{1, 0, 11}, {0, 1, 30}, {2, 2, 86}}) {
+      const Field field{3, 3};
+      for (const int max_cells : {1, 2, 5, 0}) {
+        const FinalDistribution brute = densely(each, field, start, max_cells);
+        const FinalDistribution d = propagate(rows, field, start, max_cells);
+        expect_whole(d);
+        expect_near(d, brute, d.remainder + 1e-13);
+        if (max_cells == 0) expect_near(solve_absorption(rows, field, start), brute, 1e-13);
+        if (of_row == std::vector{1, 1, 1})
+          expect_near(propagate(chains[1], field, start, max_cells), d, 0.0);
+      }
+    }
+  }
+}
+
+TEST(Exact, RefusesRowsThatDoNotFit) {
+  const Chain one = ruin(0.5), two = nearly_closed(0.5);
+  EXPECT_THROW(RowChains({}, {}), std::invalid_argument);
+  EXPECT_THROW(RowChains({one, two}, {0, 1}), std::invalid_argument);
+  EXPECT_THROW(RowChains({one}, {0, 1}), std::invalid_argument);
+  EXPECT_THROW(RowChains({one}, {-1}), std::invalid_argument);
+  const RowChains rows({one, one}, {0, 1});
+  EXPECT_NO_THROW((void)propagate(rows, {3, 2}, {}, 1));
+  EXPECT_THROW((void)propagate(rows, {3, 1}, {}, 1), std::invalid_argument);
+  EXPECT_THROW((void)solve_absorption(rows, {3, 3}, {}), std::invalid_argument);
 }
 
 // ---- Chains that (almost) never end ----

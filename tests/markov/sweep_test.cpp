@@ -37,6 +37,15 @@ void expect_whole(const FinalDistribution& d) {
   EXPECT_GE(d.final_cells.minCoeff(), 0.0);
 }
 
+bool same_bits(const FinalDistribution& a, const FinalDistribution& b) {
+  const auto bytes = sizeof(double) * static_cast<std::size_t>(a.final_cells.size());
+  return a.final_cells.size() == b.final_cells.size() &&
+         std::memcmp(a.final_cells.data(), b.final_cells.data(), bytes) == 0 &&
+         a.trapped == b.trapped && a.left_field == b.left_field && a.cut_off == b.cut_off &&
+         a.unsampled == b.unsampled && a.remainder == b.remainder && a.mean_steps == b.mean_steps &&
+         a.steps == b.steps;
+}
+
 /// Exits of the paper's kind: left, right and up only.
 std::vector<Exit> never_down() {
   auto exits = lattice_exits();
@@ -142,6 +151,52 @@ TEST(Sweep, RandomChains) {
       for (const auto method : kMethods)
         expect_near(far, sweeper.march(field, starts[j], 1e-13, method), 1e-11);
     }
+  }
+}
+
+TEST(Sweep, RowsThatDifferAreThePlainReference) {
+  for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
+    const std::vector<Chain> chains{with_gaps(1, exits), thin(2, exits), Chain::from_counts(lattice_counts(3), exits)};
+    for (const std::vector<int>& of_row :
+         {std::vector{0, 1, 2, 0, 1, 2, 2, 0}, {2, 2, 2, 0, 0, 2, 2, 2}, {1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 2}}) {
+      const RowChains rows(chains, of_row);
+      const Sweeper sweeper(rows);
+      for (const int columns : {1, 5, 9, 40}) {
+        const Field field{columns, 8};
+        const std::vector<Start> starts{{columns / 2, 0, 12}, {0, 3, 40}, {columns - 1, 7, 60}, {columns / 3, 2, 85}};
+        for (const int limit : {1, 2, 13, 0}) {
+          const auto fast = sweeper.propagate_all(field, starts, limit, 1e-13, 300);
+          for (std::size_t k = 0; k < starts.size(); ++k) {
+            const auto plain = propagate(rows, field, starts[k], limit, 1e-13, 300);
+            expect_near(plain, fast[k], 1e-14);
+            EXPECT_NEAR(plain.remainder, fast[k].remainder, 1e-14);
+            EXPECT_EQ(plain.steps, fast[k].steps);
+          }
+        }
+        if (!sweeper.can_march()) continue;
+        for (std::size_t k = 0; k < starts.size(); ++k) {
+          const auto plain = propagate(rows, field, starts[k], 0, 1e-13, 300);
+          if (plain.remainder > 1e-12) continue;  // circles in a thin row
+          for (const auto method : kMethods)
+            expect_near(plain, sweeper.march(field, starts[k], 1e-13, method), 1e-12);
+        }
+      }
+    }
+  }
+}
+
+// Equal chains are prepared twice here, and drawn from in turn: not a bit changes.
+TEST(Sweep, EqualChainsInTurnHaveTheBitsOfOne) {
+  for (const auto& exits : {never_down(), leaps()}) {
+    const Chain chain = with_gaps(5, exits);
+    const Sweeper one(chain), two(RowChains({chain, chain}, {0, 1, 1, 0, 1, 0, 0, 0, 1}));
+    const std::vector<Start> starts{{4, 0, 12}, {1, 5, 33}};
+    for (const int limit : {2, 13, 0}) {
+      const auto a = one.predict_all(kNineByNine, starts, limit), b = two.predict_all(kNineByNine, starts, limit);
+      for (std::size_t k = 0; k < starts.size(); ++k) EXPECT_TRUE(same_bits(a[k], b[k])) << limit;
+    }
+    EXPECT_THROW((void)two.predict({9, 8}, kBottomCentre, 13), std::invalid_argument);
+    EXPECT_THROW((void)two.predict({9, 10}, kBottomCentre, 0), std::invalid_argument);
   }
 }
 
@@ -283,15 +338,6 @@ TEST(Sweep, RemainderOfEliminationIsHonest) {
   for (const double escape : {1e-13, 1e-16, 1e-300})
     EXPECT_THROW((void)Sweeper(test::nearly_closed(escape)).march({2, 1}, {}, 1e-13, RowMethod::elimination, 1000),
                  std::runtime_error);
-}
-
-bool same_bits(const FinalDistribution& a, const FinalDistribution& b) {
-  const auto bytes = sizeof(double) * static_cast<std::size_t>(a.final_cells.size());
-  return a.final_cells.size() == b.final_cells.size() &&
-         std::memcmp(a.final_cells.data(), b.final_cells.data(), bytes) == 0 &&
-         a.trapped == b.trapped && a.left_field == b.left_field && a.cut_off == b.cut_off &&
-         a.unsampled == b.unsampled && a.remainder == b.remainder && a.mean_steps == b.mean_steps &&
-         a.steps == b.steps;
 }
 
 // Starts in other cells and rows, some of which end early, more than go together in a group.
