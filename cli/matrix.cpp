@@ -58,24 +58,26 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
   return {std::move(file), std::move(scene), std::move(status)};
 }
 
-ReadyChain ready_chain(const Options& options, const MatrixAndScene& m) {
-  ReadyChain ready{
-      lattice::make_chain(m.file.transitions),
-      lattice::chain_start(m.file.transitions.space, m.scene.field, m.scene.start),
-      {}};
-  const dynamics::Cell cell = m.file.transitions.space.cell(ready.start.start.input);
-  ready.start_text = text_of(cell);
-  const dynamics::BodyState& b = m.scene.start;
+ReadyStart ready_start(const Options& options, const MatrixAndScene& m,
+                       const dynamics::BodyState& body, const std::string& name) {
+  const dynamics::StateSpace& space = m.file.transitions.space;
+  const lattice::ChainStart start = lattice::chain_start(space, m.scene.field, body);
+  const dynamics::Cell cell = space.cell(start.start.input);
+  const std::string text = text_of(cell);
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
     return v == edges[0] || v == edges[1];
   };
-  if (ready.start.clamped)
-    warn("the start lies outside the chain's bins; the prediction is that of the nearest one, " +
-         ready.start_text);
-  else if (on_edge(cell.d, b.x) || on_edge(cell.vx, b.vx) || on_edge(cell.vy, b.vy))
-    remark(options, "the start lies on an edge of its bin, " + ready.start_text +
+  if (start.clamped)
+    warn(name + " lies outside the chain's bins; the prediction is that of the nearest one, " + text);
+  else if (on_edge(cell.d, body.x) || on_edge(cell.vx, body.vx) || on_edge(cell.vy, body.vy))
+    remark(options, name + " lies on an edge of its bin, " + text +
                         "; its prediction is that of the whole bin");
-  return ready;
+  return {start, text};
+}
+
+ReadyChain ready_chain(const Options& options, const MatrixAndScene& m) {
+  const auto [start, text] = ready_start(options, m, m.scene.start, "the start");
+  return {lattice::make_chain(m.file.transitions), start, text};
 }
 
 }  // namespace gatewalk::cli

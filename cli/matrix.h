@@ -30,12 +30,20 @@ struct MatrixAndScene {
                                                    const std::string& scene_path,
                                                    const std::vector<std::string>& overrides);
 
-/// Chain and start for that scene. Warns when the start lies outside the bins, remarks when it lies
-/// on an edge of its bin: then another bin would serve it as well.
+/// Where the chain starts for a body. Warns when that lies outside the bins, remarks when it lies on an
+/// edge of its bin: then another bin would serve it as well. `name`: "the start".
+struct ReadyStart {
+  lattice::ChainStart start;
+  std::string text;  // its bin: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
+};
+[[nodiscard]] ReadyStart ready_start(const Options& options, const MatrixAndScene& m,
+                                     const dynamics::BodyState& body, const std::string& name);
+
+/// Chain and start for that scene.
 struct ReadyChain {
   markov::Chain chain;
   lattice::ChainStart start;
-  std::string start_text;  // "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
+  std::string start_text;
 };
 [[nodiscard]] ReadyChain ready_chain(const Options& options, const MatrixAndScene& m);
 

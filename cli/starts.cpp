@@ -27,10 +27,11 @@ PaperStart parse_start(const std::string& text) {
 
 }  // namespace
 
-void add_starts(Options& options) {
+void add_starts(Options& options, const std::string& by_default) {
+  const std::string help = "start at x = D m, y = 0 with this velocity in m/s (may be repeated; "
+                           "default: " + by_default + ")";
   options.add()("start", po::value<std::vector<std::string>>()->composing()->value_name("D,VX,VY"),
-                "start at x = D m, y = 0 with this velocity in m/s (may be repeated; default: the "
-                "four of Table IV)");
+                help.c_str());
 }
 
 std::vector<PaperStart> starts_of(const Options& options) {

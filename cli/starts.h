@@ -18,8 +18,8 @@ struct PaperStart {
   [[nodiscard]] dynamics::BodyState body() const { return {d, 0.0, vx, vy}; }
 };
 
-/// Declares --start.
-void add_starts(Options& options);
+/// Declares --start; `by_default` says where to start without it.
+void add_starts(Options& options, const std::string& by_default = "the four of Table IV");
 /// The starts given, else those of Table IV. Throws UsageError for a malformed one.
 [[nodiscard]] std::vector<PaperStart> starts_of(const Options& options);
 /// Throws UsageError unless all of them lie between the sides of the scene's gates.

@@ -2,6 +2,7 @@
 /// Where walks end, as all exact methods count it.
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "markov/exact.h"
@@ -16,6 +17,13 @@ namespace gatewalk::markov {
   row += di_y;
   const bool inside = column >= 0 && column < field.columns && row >= 0 && row < field.rows;
   return inside ? row * field.columns + column : -1;
+}
+
+/// What rounding makes at most, in all cells together and to first order. Each move is a sum of
+/// products, all positive, that goes through `per_move` roundings: a share of the mass moved, and
+/// misplaced mass ends but once. The mass that ends, 1, goes through `ending` more.
+[[nodiscard]] inline double rounding_bound(double mean_steps, double per_move, double ending) {
+  return 0.5 * std::numeric_limits<double>::epsilon() * (mean_steps * per_move + ending);
 }
 
 /// Collects where walks end.

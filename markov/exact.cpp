@@ -3,6 +3,7 @@
 #include <klu.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -23,8 +24,7 @@ struct Link {
 struct Neighbour {
   int di_x;
   int di_y;
-  std::vector<Link> sampled;    // outputs that walk on
-  std::vector<Link> unsampled;  // outputs into a row nobody has measured
+  std::vector<Link> links;
 };
 struct Stencil {
   std::vector<Neighbour> neighbours;
@@ -43,9 +43,8 @@ Stencil stencil_of(const Chain& chain) {
     auto it = std::find_if(all.begin(), all.end(), [&](const Neighbour& n) {
       return n.di_x == exit.di_x && n.di_y == exit.di_y;
     });
-    if (it == all.end()) it = all.insert(it, {exit.di_x, exit.di_y, {}, {}});
-    (chain.is_sampled(exit.next_input) ? it->sampled : it->unsampled)
-        .push_back({output, exit.next_input});
+    if (it == all.end()) it = all.insert(it, {exit.di_x, exit.di_y, {}});
+    it->links.push_back({output, exit.next_input});
   }
   return stencil;
 }
@@ -90,8 +89,8 @@ struct Transient {
   std::vector<double> value;
 };
 
-Transient reachable(const Chain& chain, const Field& field, const Start& start) {
-  const std::int64_t n_in = chain.inputs();
+Transient reachable(const RowChains& rows, const Field& field, const Start& start) {
+  const std::int64_t n_in = rows.at(0).inputs();
   const std::int64_t cells = std::int64_t{field.columns} * field.rows;
   constexpr std::int64_t kUnknown = -1;
   std::vector<std::int64_t> number(static_cast<std::size_t>(cells * n_in), kUnknown);
@@ -121,12 +120,14 @@ Transient reachable(const Chain& chain, const Field& field, const Start& start) 
   for (std::size_t s = 0; s < t.states.size(); ++s) {
     const std::int64_t cell = t.states[s] / n_in;
     add(static_cast<std::int64_t>(s), 1.0);
+    const Chain& chain = rows.at(cell / field.columns);
     for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-      if (exit.next_input == Exit::kTrapped || !chain.is_sampled(exit.next_input)) continue;
+      if (exit.next_input == Exit::kTrapped) continue;
       const std::int64_t next = neighbour_cell(field, cell % field.columns, cell / field.columns,
                                                exit.di_x, exit.di_y);
-      if (next >= 0) add(visit(next * n_in + exit.next_input), -it.value());
+      if (next >= 0 && rows.at(next / field.columns).is_sampled(exit.next_input))
+        add(visit(next * n_in + exit.next_input), -it.value());
     }
     t.begin.push_back(static_cast<std::int64_t>(t.index.size()));
   }
@@ -199,28 +200,65 @@ std::vector<double> visits(Transient& t) {
   return x;
 }
 
+// start - (I - Q)^T draws, in magnitude: what the draws do not account for and would walk on.
+double missing(const Transient& t, const std::vector<double>& draws) {
+  std::vector<double> left(draws.size(), 0.0);
+  left.front() = 1.0;
+  for (std::size_t s = 0; s < draws.size(); ++s)
+    for (auto k = static_cast<std::size_t>(t.begin[s]); k < static_cast<std::size_t>(t.begin[s + 1]); ++k)
+      left[static_cast<std::size_t>(t.index[k])] -= t.value[k] * draws[s];
+  CompensatedSum sum;
+  for (const double mass : left) sum += std::abs(mass);
+  return sum.value();
+}
+
 }  // namespace
 
-FinalDistribution propagate(const Chain& chain, const Field& field, const Start& start,
+RowChains::RowChains(std::vector<Chain> distinct, std::vector<int> of_row)
+    : chains(std::move(distinct)), chain_of_row(std::move(of_row)) {
+  if (chains.empty()) throw std::invalid_argument("rows: no chain is given");
+  for (const Chain& chain : chains)
+    if (chain.inputs() != chains.front().inputs())
+      throw std::invalid_argument("rows: chains of " + std::to_string(chains.front().inputs()) +
+                                  " and of " + std::to_string(chain.inputs()) +
+                                  " inputs cannot share a field");
+  for (std::size_t row = 0; row < chain_of_row.size(); ++row)
+    if (chain_of_row[row] < 0 || chain_of_row[row] >= std::ssize(chains))
+      throw std::invalid_argument("rows: row " + std::to_string(row) + " is given chain " +
+                                  std::to_string(chain_of_row[row]) + " of " +
+                                  std::to_string(chains.size()));
+}
+
+void validate(const RowChains& rows, const Field& field, const Start& start, int max_cells) {
+  validate(rows.chains.front(), field, start, max_cells);
+  if (std::ssize(rows.chain_of_row) != field.rows)
+    throw std::invalid_argument("rows: chains for " + std::to_string(rows.chain_of_row.size()) +
+                                " rows, the field has " + std::to_string(field.rows));
+}
+
+FinalDistribution propagate(const RowChains& rows, const Field& field, const Start& start,
                             int max_cells, double tolerance, int max_steps_without_limit) {
-  validate(chain, field, start, max_cells);
+  validate(rows, field, start, max_cells);
   if (!(tolerance >= 0.0) || max_steps_without_limit < 0) {
     throw std::invalid_argument("propagate: tolerance and step limit must not be negative");
   }
-  const Stencil stencil = stencil_of(chain);
-  const int* const row_begin = chain.matrix().outerIndexPtr();
-  const int* const output = chain.matrix().innerIndexPtr();
-  const double* const p = chain.matrix().valuePtr();
+  const int n_in = rows.at(0).inputs();
+  int n_out = 0;
+  std::vector<Stencil> stencils;
+  for (const Chain& chain : rows.chains) {
+    stencils.push_back(stencil_of(chain));
+    n_out = std::max(n_out, chain.outputs());
+  }
 
   Ends ends(field);
-  Mass now(field, chain.inputs());
-  Mass next(field, chain.inputs());
-  std::vector<double> out(static_cast<std::size_t>(chain.outputs()));  // mass per output of a cell
+  Mass now(field, n_in);
+  Mass next(field, n_in);
+  std::vector<double> out(static_cast<std::size_t>(n_out));  // mass per output of a cell
   CompensatedSum draws;
 
   double walking = 1.0;
   const std::int64_t start_cell = std::int64_t{start.row} * field.columns + start.column;
-  if (chain.is_sampled(start.input)) {
+  if (rows.at(start.row).is_sampled(start.input)) {
     now.activate(start_cell);
     now.at(start_cell)[start.input] = walking;
   } else {
@@ -236,13 +274,15 @@ FinalDistribution propagate(const Chain& chain, const Field& field, const Start&
     const bool is_last = steps == max_cells;
     CompensatedSum walks_on;
     for (const std::int64_t cell : now.active()) {
+      const std::int64_t column = cell % field.columns, row = cell / field.columns;
+      const Probabilities& p = rows.at(row).matrix();
+      const Stencil& stencil = stencils[static_cast<std::size_t>(rows.chain_of_row[static_cast<std::size_t>(row)])];
       std::fill(out.begin(), out.end(), 0.0);
       const double* const mass = now.at(cell);
-      for (int input = 0; input < chain.inputs(); ++input) {  // out = mass P, Eq. (16)
+      for (int input = 0; input < n_in; ++input) {  // out = mass P, Eq. (16)
         if (mass[input] == 0.0) continue;
-        for (int k = row_begin[input]; k < row_begin[input + 1]; ++k) {
-          out[static_cast<std::size_t>(output[k])] += mass[input] * p[k];
-        }
+        for (Probabilities::InnerIterator it(p, input); it; ++it)
+          out[static_cast<std::size_t>(it.col())] += mass[input] * it.value();
       }
       const auto mass_of = [&out](int o) { return out[static_cast<std::size_t>(o)]; };
 
@@ -251,23 +291,28 @@ FinalDistribution propagate(const Chain& chain, const Field& field, const Start&
       ends.add(ends.trapped, cell, trapped);
 
       for (const Neighbour& n : stencil.neighbours) {
-        double into_sampled = 0.0, into_unsampled = 0.0;
-        for (const Link& link : n.sampled) into_sampled += mass_of(link.output);
-        for (const Link& link : n.unsampled) into_unsampled += mass_of(link.output);
-        const double moves = into_sampled + into_unsampled;
+        double moves = 0.0;
+        for (const Link& link : n.links) moves += mass_of(link.output);
         if (moves == 0.0) continue;
-        const std::int64_t target = neighbour_cell(field, cell % field.columns,
-                                                   cell / field.columns, n.di_x, n.di_y);
+        const std::int64_t target = neighbour_cell(field, column, row, n.di_x, n.di_y);
         if (target < 0) {
           ends.add(ends.left_field, cell, moves);
         } else if (is_last) {
           ends.add(ends.cut_off, cell, moves);
         } else {
-          ends.add(ends.unsampled, target, into_unsampled);
-          next.activate(target);
-          double* const there = next.at(target);
-          for (const Link& link : n.sampled) there[link.input] += mass_of(link.output);
-          walks_on += into_sampled;
+          const Chain& there = rows.at(target / field.columns);
+          double* const entering = next.at(target);
+          for (const Link& link : n.links) {
+            const double m = mass_of(link.output);
+            if (m == 0.0) continue;
+            if (there.is_sampled(link.input)) {
+              next.activate(target);
+              entering[link.input] += m;
+              walks_on += m;
+            } else {
+              ends.add(ends.unsampled, target, m);
+            }
+          }
         }
       }
     }
@@ -279,25 +324,46 @@ FinalDistribution propagate(const Chain& chain, const Field& field, const Start&
   FinalDistribution result = ends.result();
   result.remainder = walking;
   result.mean_steps = draws.value();
+  result.rounding = rounding_bound(result.mean_steps, n_in + n_out + 2, n_in + n_out + 8);
   result.steps = steps;
   return result;
 }
 
+namespace {
+
+RowChains all_rows(const Chain& chain, const Field& field) {
+  return {{chain}, std::vector<int>(static_cast<std::size_t>(std::max(field.rows, 0)), 0)};
+}
+
+}  // namespace
+
+FinalDistribution propagate(const Chain& chain, const Field& field, const Start& start,
+                            int max_cells, double tolerance, int max_steps_without_limit) {
+  return propagate(all_rows(chain, field), field, start, max_cells, tolerance, max_steps_without_limit);
+}
+
 FinalDistribution solve_absorption(const Chain& chain, const Field& field, const Start& start) {
-  validate(chain, field, start, 0);
+  return solve_absorption(all_rows(chain, field), field, start);
+}
+
+FinalDistribution solve_absorption(const RowChains& rows, const Field& field, const Start& start) {
+  validate(rows, field, start, 0);
   Ends ends(field);
-  const std::int64_t n_in = chain.inputs();
-  if (!chain.is_sampled(start.input)) {
+  const std::int64_t n_in = rows.at(0).inputs();
+  if (!rows.at(start.row).is_sampled(start.input)) {
     ends.add(ends.unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
     return ends.result();
   }
-  Transient t = reachable(chain, field, start);
+  Transient t = reachable(rows, field, start);
   const std::vector<double> draws = visits(t);
 
   CompensatedSum mean_steps;
+  int n_out = 0;
   for (std::size_t s = 0; s < draws.size(); ++s) {
     mean_steps += draws[s];
     const std::int64_t cell = t.states[s] / n_in;
+    const Chain& chain = rows.at(cell / field.columns);
+    n_out = std::max(n_out, chain.outputs());
     for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
       const double mass = draws[s] * it.value();
@@ -309,13 +375,15 @@ FinalDistribution solve_absorption(const Chain& chain, const Field& field, const
                                                exit.di_x, exit.di_y);
       if (next < 0) {
         ends.add(ends.left_field, cell, mass);
-      } else if (!chain.is_sampled(exit.next_input)) {
+      } else if (!rows.at(next / field.columns).is_sampled(exit.next_input)) {
         ends.add(ends.unsampled, next, mass);
       }
     }
   }
   FinalDistribution result = ends.result();
+  result.remainder = missing(t, draws);
   result.mean_steps = mean_steps.value();
+  result.rounding = rounding_bound(result.mean_steps, 2.0 * static_cast<double>(n_in + n_out + 4), n_out + 8);
   return result;
 }
 

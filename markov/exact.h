@@ -1,11 +1,30 @@
 #pragma once
 /// The exact distribution of the final cell: what infinitely many walks would give.
 
+#include <vector>
+
 #include "markov/chain.h"
 
 namespace gatewalk::markov {
 
 using CellProbabilities = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Rows of the field that differ: who is in row r draws from chains[chain_of_row[r]].
+struct RowChains {
+  std::vector<Chain> chains;      // distinct ones
+  std::vector<int> chain_of_row;  // (rows)
+
+  /// Throws std::invalid_argument unless there is a chain, all have the same number of inputs, and each
+  /// row is given one of them.
+  RowChains(std::vector<Chain> distinct, std::vector<int> of_row);
+
+  [[nodiscard]] const Chain& at(std::int64_t row) const {
+    return chains[static_cast<std::size_t>(chain_of_row[static_cast<std::size_t>(row)])];
+  }
+};
+
+/// As validate() of chain.h; there must be as many rows as the field has.
+void validate(const RowChains& rows, const Field& field, const Start& start, int max_cells);
 
 /// final_cells.sum() + remainder == 1 and trapped + left_field + cut_off + unsampled + remainder
 /// == 1, both within 1e-12 as long as mean_steps times what a row's sum lacks from 1 (counts: some
@@ -16,7 +35,12 @@ struct FinalDistribution {
   double left_field = 0.0;
   double cut_off = 0.0;     // visited max_cells cells and would have gone on
   double unsampled = 0.0;   // entered a state whose row was never sampled
-  double remainder = 0.0;   // still walking when the sum was stopped: bounds every error above
+  /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for. As
+  /// that would end at most once, it bounds the errors of all cells together, and of each number above.
+  double remainder = 0.0;
+  /// What rounding adds to these errors at most, to first order in 1e-16 (that of counts into
+  /// probabilities included).
+  double rounding = 0.0;
   double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; without the remainder's
   int steps = 0;            // propagation steps done (0 for a solve)
 };
@@ -29,6 +53,10 @@ struct FinalDistribution {
                                           const Start& start, int max_cells,
                                           double tolerance = 1e-13,
                                           int max_steps_without_limit = 1'000'000);
+[[nodiscard]] FinalDistribution propagate(const RowChains& rows, const Field& field,
+                                          const Start& start, int max_cells,
+                                          double tolerance = 1e-13,
+                                          int max_steps_without_limit = 1'000'000);
 
 /// Without limit, by one sparse LU solve of (I - Q)^T visits = start over the reachable transient
 /// (cell, input) pairs (SuiteSparse KLU). Throws std::runtime_error when the matrix is singular (a
@@ -36,6 +64,8 @@ struct FinalDistribution {
 /// A second route to check the first by, not a faster one: 9 x 9 cells of 87 states take some 0.3 s
 /// where propagation takes 2 ms.
 [[nodiscard]] FinalDistribution solve_absorption(const Chain& chain, const Field& field,
+                                                 const Start& start);
+[[nodiscard]] FinalDistribution solve_absorption(const RowChains& rows, const Field& field,
                                                  const Start& start);
 
 }  // namespace gatewalk::markov

@@ -127,6 +127,53 @@ holds '(.trapped + .left_field + .cut_off - 1 | fabs) < 1e-12' predict.json
 holds '.cut_off == 0' free.json
 jq -s '[[.[0].final_gates[][]], [.[1].final_gates[][]]] | transpose | map(.[0] - .[1] | fabs) | max < 1e-10' free.json klu.json |
   grep -q true || fail "the two solvers disagree"
+# Several starts: an entry each, in order, as each alone; none given: the scene's.
+expect 0 '^start d 4 m, vx 5 m/s, vy 10.5 m/s$' "$gatewalk" predict m.nc --start 0,0,15 --start 4,5,10.5 --start 0,0,-3 --json starts.json
+[ "$(grep -c '^trapped' out.txt)" = 3 ] || fail "predict: not a result per start"
+grep -q 'start d 0 m, vx 0 m/s, vy -3 m/s lies outside the chain' out.txt || fail "predict: a start outside the bins without a word"
+"$gatewalk" predict m.nc --set start.x_m=4 --set start.vx_m_per_s=5 --set start.vy_m_per_s=10.5 --json start.json --quiet
+for k in 0 1; do
+  jq -s ".[0].starts[$k] as \$one | .[1] | to_entries | map(select(.key | IN(\"final_gates\", \"trapped\", \"left_field\", \"cut_off\", \"steps\", \"start_state\")) | .value == \$one[.key]) | length == 6 and all" \
+    starts.json "$([ $k = 0 ] && echo predict.json || echo start.json)" | grep -q true || fail "predict: start $k is not as alone"
+done
+holds '[.starts[].start_state.clamped] == [false, false, true] and (has("final_gates") | not)' starts.json
+holds '.starts[1].start == {"d_m": 4, "vx_m_per_s": 5, "vy_m_per_s": 10.5}' starts.json
+for solver in march klu propagate; do
+  "$gatewalk" predict m.nc --set field.max_gates=0 --solver $solver --start 0,0,15 --start 4,5,10 --json starts-$solver.json --quiet
+  jq -s '[[.[0].starts[].final_gates[][]], [.[1].starts[].final_gates[][]]] | transpose | (length == 162) and (map(.[0] - .[1] | fabs) | max < 1e-10)' \
+    starts-$solver.json starts-march.json | grep -q true || fail "predict: march and $solver disagree"
+done
+expect 2 'three numbers' "$gatewalk" predict m.nc --start 1,2
+# Rows of other gates: below them nothing changes; a copy of the base changes nothing; two routes agree.
+"$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 --set beams.stiffness_left_Nm_per_rad=2000 -o stiff.nc --quiet >/dev/null
+cp m.nc copy.nc
+for limit in 13 0; do
+  "$gatewalk" predict m.nc --set field.max_gates=$limit --json base.json --quiet
+  "$gatewalk" predict m.nc --set field.max_gates=$limit --row 0-8=copy.nc --json same.json --quiet
+  jq -s '.[0].final_gates == .[1].final_gates' base.json same.json | grep -q true || fail "predict: rows of the same gates change something"
+  expect 0 '^rows 4 to 6: gates of stiff.nc$' "$gatewalk" predict m.nc --set field.max_gates=$limit --row 4-6=stiff.nc --row 2=copy.nc --json rows.json
+  jq -s '[.[0].final_gates[0:4] == .[1].final_gates[0:4], .[0].final_gates[4] == .[1].final_gates[4]] == [true, false]' base.json rows.json |
+    grep -q true || fail "predict: other gates in rows 4 to 6 change rows below, or not row 4"
+  holds '(([.final_gates[][]] | add) - 1 | fabs) < 1e-12 and (.rows | map([.first, .last, .matrix])) == [[4, 6, "stiff.nc"], [2, 2, "copy.nc"]]' rows.json
+done
+"$gatewalk" predict m.nc --set field.max_gates=0 --row 4-6=stiff.nc --row 2=copy.nc --solver klu --json rows-klu.json --quiet
+jq -s '[[.[0].final_gates[][]], [.[1].final_gates[][]]] | transpose | map(.[0] - .[1] | fabs) | max < 1e-10' rows.json rows-klu.json |
+  grep -q true || fail "predict: march and klu disagree on rows of other gates"
+for rows in 4-6 4-6= =stiff.nc 4.5=stiff.nc "4 =stiff.nc" 4-=stiff.nc 1-2-3=stiff.nc -1=stiff.nc; do
+  expect 2 'must be rows i_y and a matrix' "$gatewalk" predict m.nc --row "$rows"
+done
+expect 2 'rows of this field are 0 to 8' "$gatewalk" predict m.nc --row 4-9=stiff.nc
+expect 2 'lower row comes first' "$gatewalk" predict m.nc --row 6-4=stiff.nc
+expect 2 'row 6 is given twice' "$gatewalk" predict m.nc --row 4-6=stiff.nc --row 6-8=copy.nc
+expect 2 'nosuch.nc' "$gatewalk" predict m.nc --row 4=nosuch.nc
+expect 2 'the same: copy.nc' "$gatewalk" predict m.nc --row 4=copy.nc --json copy.nc
+"$gatewalk" build "$scenes/field.toml" --trials 1 --bins 0.5 -o other-bins.nc --quiet >/dev/null
+expect 2 'other bins' "$gatewalk" predict m.nc --row 4=other-bins.nc
+"$gatewalk" build "$scenes/field.toml" --trials 1 --set body.mass_kg=2 -o other-body.nc --quiet >/dev/null
+expect 2 'another body' "$gatewalk" predict m.nc --row 4=other-body.nc
+"$gatewalk" build "$scenes/field.toml" --trials 1 --set beams.joint_x_m=26 -o other-gates.nc --quiet >/dev/null
+expect 2 '52.000 m wide' "$gatewalk" predict m.nc --row 4=other-gates.nc
+expect 2 'inside the gate' "$gatewalk" predict m.nc --start 25,0,15
 # Other bins than the paper's: recorded in the file, and every command takes them.
 expect 0 '696 x 697 matrix' "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 2 --seed 1 -o fine.nc
 expect 0 '23 x 24 matrix' "$gatewalk" build "$scenes/field.toml" --trials 5 --bins 0.5 --seed 1 -o coarse.nc

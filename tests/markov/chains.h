@@ -1,10 +1,13 @@
 #pragma once
 /// Chains that several tests walk on.
 
+#include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
-#include "markov/chain.h"
+#include "markov/exact.h"
 
 namespace gatewalk::markov::test {
 
@@ -78,7 +81,66 @@ inline void empty_row(Counts& counts, int row) {
   counts.prune([row](Eigen::Index r, Eigen::Index, std::int64_t) { return r != row; });
 }
 
+/// Two states that pass to each other with 1 - escape, so I - Q has condition 2/escape.
+inline Chain nearly_closed(double escape) {
+  return Chain::from_probabilities(
+      matrix(2, 3, {{0, 1, 1 - escape}, {0, 2, escape}, {1, 0, 1 - escape}, {1, 2, escape}}),
+      {{0, -1, 0}, {1, 1, 0}, {}});
+}
+
 inline constexpr Field kNineByNine{9, 9};
 inline constexpr Start kBottomCentre{4, 0, 12};
+
+/// The rule of a step as walk.h words it: no boxes, no sparse rows, and digits to spare.
+inline FinalDistribution propagate_plainly(const Chain& chain, const Field& field, const Start& start,
+                                    int max_cells) {
+  using State = std::array<int, 3>;             // column, row, input
+  const Eigen::MatrixXd p = chain.matrix();     // (n_in x n_out)
+  long double trapped = 0, left_field = 0, cut_off = 0, unsampled = 0, draws = 0;
+  std::map<std::array<int, 2>, long double> final_cells;
+  std::map<State, long double> walking = {{{start.column, start.row, start.input}, 1.0L}};
+  for (int visited = 1; !walking.empty(); ++visited) {
+    std::map<State, long double> next;
+    for (const auto& [state, mass] : walking) {
+      const auto [column, row, input] = state;
+      if (p.row(input).sum() == 0.0) {
+        unsampled += mass;
+        final_cells[{row, column}] += mass;
+        continue;
+      }
+      draws += mass;
+      for (int output = 0; output < chain.outputs(); ++output) {
+        const long double m = mass * p(input, output);
+        if (m == 0) continue;
+        const Exit& exit = chain.exits()[static_cast<std::size_t>(output)];
+        const int c = column + exit.di_x;
+        const int r = row + exit.di_y;
+        const bool is_inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
+        long double* const end = exit.next_input == Exit::kTrapped ? &trapped
+                                 : !is_inside                      ? &left_field
+                                 : visited == max_cells            ? &cut_off
+                                                                   : nullptr;
+        if (end) {
+          *end += m;
+          final_cells[{row, column}] += m;
+        } else {
+          next[{c, r, exit.next_input}] += m;
+        }
+      }
+    }
+    walking = std::move(next);
+  }
+  FinalDistribution d;
+  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
+  for (const auto& [cell, mass] : final_cells) {
+    d.final_cells(cell[0], cell[1]) = static_cast<double>(mass);
+  }
+  d.trapped = static_cast<double>(trapped);
+  d.left_field = static_cast<double>(left_field);
+  d.cut_off = static_cast<double>(cut_off);
+  d.unsampled = static_cast<double>(unsampled);
+  d.mean_steps = static_cast<double>(draws);
+  return d;
+}
 
 }  // namespace gatewalk::markov::test

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <stdexcept>
 
 #include "chains.h"
@@ -20,6 +20,8 @@ using test::kNineByNine;
 using test::lattice_counts;
 using test::lattice_exits;
 using test::matrix;
+using test::nearly_closed;
+using test::propagate_plainly;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr std::array kLimits = {1, 2, 3, 13};
@@ -40,58 +42,6 @@ void expect_near(const FinalDistribution& a, const FinalDistribution& b, double 
   EXPECT_NEAR(a.left_field, b.left_field, bound);
   EXPECT_NEAR(a.cut_off, b.cut_off, bound);
   EXPECT_NEAR(a.unsampled, b.unsampled, bound);
-}
-
-// The rule of a step as walk.h words it: no boxes, no sparse rows, and digits to spare.
-FinalDistribution propagate_plainly(const Chain& chain, const Field& field, const Start& start,
-                                    int max_cells) {
-  using State = std::array<int, 3>;             // column, row, input
-  const Eigen::MatrixXd p = chain.matrix();     // (n_in x n_out)
-  long double trapped = 0, left_field = 0, cut_off = 0, unsampled = 0, draws = 0;
-  std::map<std::array<int, 2>, long double> final_cells;
-  std::map<State, long double> walking = {{{start.column, start.row, start.input}, 1.0L}};
-  for (int visited = 1; !walking.empty(); ++visited) {
-    std::map<State, long double> next;
-    for (const auto& [state, mass] : walking) {
-      const auto [column, row, input] = state;
-      if (p.row(input).sum() == 0.0) {
-        unsampled += mass;
-        final_cells[{row, column}] += mass;
-        continue;
-      }
-      draws += mass;
-      for (int output = 0; output < chain.outputs(); ++output) {
-        const long double m = mass * p(input, output);
-        if (m == 0) continue;
-        const Exit& exit = chain.exits()[static_cast<std::size_t>(output)];
-        const int c = column + exit.di_x;
-        const int r = row + exit.di_y;
-        const bool is_inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
-        long double* const end = exit.next_input == Exit::kTrapped ? &trapped
-                                 : !is_inside                      ? &left_field
-                                 : visited == max_cells            ? &cut_off
-                                                                   : nullptr;
-        if (end) {
-          *end += m;
-          final_cells[{row, column}] += m;
-        } else {
-          next[{c, r, exit.next_input}] += m;
-        }
-      }
-    }
-    walking = std::move(next);
-  }
-  FinalDistribution d;
-  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
-  for (const auto& [cell, mass] : final_cells) {
-    d.final_cells(cell[0], cell[1]) = static_cast<double>(mass);
-  }
-  d.trapped = static_cast<double>(trapped);
-  d.left_field = static_cast<double>(left_field);
-  d.cut_off = static_cast<double>(cut_off);
-  d.unsampled = static_cast<double>(unsampled);
-  d.mean_steps = static_cast<double>(draws);
-  return d;
 }
 
 // Bernstein: a binomial count is further off than this with probability below 2 e^-20 = 4e-9.
@@ -336,6 +286,107 @@ TEST(Exact, PartlyEmptyFieldsAndLongMoves) {
   }
 }
 
+// ---- Rows that differ ----
+
+// Brute force: all (cell, input) pairs in one dense matrix; visits by its inverse, or (with a limit) by
+// its powers; then every output of every visit is looked at once.
+FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& field, const Start& start,
+                          int max_cells) {
+  const int n = chain_of_row.front().inputs(), cells = field.columns * field.rows;
+  const auto state = [&](int column, int row, int input) { return (row * field.columns + column) * n + input; };
+  struct Draw {
+    double p;
+    int next;  // state; or where it ends, below
+  };
+  enum : int { kTrapped = -1, kLeft = -2 };
+  const auto draws = [&](int s) {
+    const int column = s / n % field.columns, row = s / n / field.columns;
+    std::vector<Draw> all;
+    const Chain& chain = chain_of_row[static_cast<std::size_t>(row)];
+    for (int j = 0; j < chain.outputs(); ++j) {
+      const Exit& exit = chain.exits()[static_cast<std::size_t>(j)];
+      const int c = column + exit.di_x, r = row + exit.di_y;
+      const bool inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
+      all.push_back({chain.matrix().coeff(s % n, j), exit.next_input == Exit::kTrapped ? kTrapped
+                                                     : inside ? state(c, r, exit.next_input) : kLeft});
+    }
+    return all;
+  };
+  const auto sampled = [&](int s) {
+    return chain_of_row[static_cast<std::size_t>(s / n / field.columns)].is_sampled(s % n);
+  };
+  Eigen::MatrixXd q = Eigen::MatrixXd::Zero(n * cells, n * cells);
+  for (int s = 0; s < n * cells; ++s)
+    for (const Draw& d : draws(s))
+      if (d.next >= 0) q(d.next, s) += d.p;
+  Eigen::VectorXd now = Eigen::VectorXd::Zero(n * cells), visits = now, last = now;
+  now(state(start.column, start.row, start.input)) = 1.0;
+  if (max_cells == 0) {
+    visits = (Eigen::MatrixXd::Identity(n * cells, n * cells) - q).partialPivLu().solve(now);
+  } else {
+    for (int k = 1; k < max_cells; ++k) {
+      visits += now;
+      now = q * now;
+    }
+    last = now;
+  }
+  FinalDistribution d;
+  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
+  for (int s = 0; s < n * cells; ++s) {
+    const auto end = [&](double& why, double mass) {
+      why += mass;
+      d.final_cells.data()[s / n] += mass;
+    };
+    if (!sampled(s)) end(d.unsampled, visits(s) + last(s));
+    for (const Draw& draw : draws(s)) {
+      if (draw.next == kTrapped) end(d.trapped, draw.p * (visits(s) + last(s)));
+      if (draw.next == kLeft) end(d.left_field, draw.p * (visits(s) + last(s)));
+      if (draw.next >= 0) end(d.cut_off, draw.p * last(s));
+    }
+  }
+  return d;
+}
+
+TEST(Exact, RowsThatDifferAreTheDenseSolution) {
+  // Row by row another chain, some inputs sampled in one of them only.
+  std::vector<Chain> chains;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Counts counts = lattice_counts(seed);
+    for (int row = 0; row < 87; ++row)
+      if ((row + static_cast<int>(seed)) % 5 == 0) test::empty_row(counts, row);
+    chains.push_back(Chain::from_counts(counts, lattice_exits()));
+  }
+  for (const std::vector<int>& of_row : {std::vector{0, 1, 2}, {2, 0, 0}, {1, 1, 1}}) {
+    const RowChains rows(chains, of_row);
+    std::vector<Chain> each;
+    for (const int k : of_row) each.push_back(chains[static_cast<std::size_t>(k)]);
+    for (const Start start : {Start{1, 0, 11}, {0, 1, 30}, {2, 2, 86}}) {
+      const Field field{3, 3};
+      for (const int max_cells : {1, 2, 5, 0}) {
+        const FinalDistribution brute = densely(each, field, start, max_cells);
+        const FinalDistribution d = propagate(rows, field, start, max_cells);
+        expect_whole(d);
+        expect_near(d, brute, d.remainder + 1e-13);
+        if (max_cells == 0) expect_near(solve_absorption(rows, field, start), brute, 1e-13);
+        if (of_row == std::vector{1, 1, 1})
+          expect_near(propagate(chains[1], field, start, max_cells), d, 0.0);
+      }
+    }
+  }
+}
+
+TEST(Exact, RefusesRowsThatDoNotFit) {
+  const Chain one = ruin(0.5), two = nearly_closed(0.5);
+  EXPECT_THROW(RowChains({}, {}), std::invalid_argument);
+  EXPECT_THROW(RowChains({one, two}, {0, 1}), std::invalid_argument);
+  EXPECT_THROW(RowChains({one}, {0, 1}), std::invalid_argument);
+  EXPECT_THROW(RowChains({one}, {-1}), std::invalid_argument);
+  const RowChains rows({one, one}, {0, 1});
+  EXPECT_NO_THROW((void)propagate(rows, {3, 2}, {}, 1));
+  EXPECT_THROW((void)propagate(rows, {3, 1}, {}, 1), std::invalid_argument);
+  EXPECT_THROW((void)solve_absorption(rows, {3, 3}, {}), std::invalid_argument);
+}
+
 // ---- Chains that (almost) never end ----
 
 TEST(Exact, AClosedLoopHasNoSolution) {
@@ -356,13 +407,6 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   const Chain one = Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 0}});
   EXPECT_THROW((void)solve_absorption(one, {1, 1}, {}), std::runtime_error);
   EXPECT_EQ(propagate(one, {1, 1}, {}, 0, 0.0, 7).remainder, 1.0);
-}
-
-// Two states that pass to each other with 1 - escape, so I - Q has condition 2/escape.
-Chain nearly_closed(double escape) {
-  return Chain::from_probabilities(
-      matrix(2, 3, {{0, 1, 1 - escape}, {0, 2, escape}, {1, 0, 1 - escape}, {1, 2, escape}}),
-      {{0, -1, 0}, {1, 1, 0}, {}});
 }
 
 TEST(Exact, TheConditionGateKeepsSixDigits) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -18,6 +20,9 @@ using test::lattice_counts;
 using test::lattice_exits;
 using test::matrix;
 
+using RowMethod = Sweeper::RowMethod;
+constexpr std::array kMethods = {RowMethod::elimination, RowMethod::sums};
+
 void expect_near(const FinalDistribution& a, const FinalDistribution& b, double bound) {
   EXPECT_LE((a.final_cells - b.final_cells).abs().maxCoeff(), bound);
   EXPECT_NEAR(a.trapped, b.trapped, bound);
@@ -30,6 +35,15 @@ void expect_whole(const FinalDistribution& d) {
   EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0, 1e-12);
   EXPECT_NEAR(d.trapped + d.left_field + d.cut_off + d.unsampled + d.remainder, 1.0, 1e-12);
   EXPECT_GE(d.final_cells.minCoeff(), 0.0);
+}
+
+bool same_bits(const FinalDistribution& a, const FinalDistribution& b) {
+  const auto bytes = sizeof(double) * static_cast<std::size_t>(a.final_cells.size());
+  return a.final_cells.size() == b.final_cells.size() &&
+         std::memcmp(a.final_cells.data(), b.final_cells.data(), bytes) == 0 &&
+         a.trapped == b.trapped && a.left_field == b.left_field && a.cut_off == b.cut_off &&
+         a.unsampled == b.unsampled && a.remainder == b.remainder && a.mean_steps == b.mean_steps &&
+         a.steps == b.steps;
 }
 
 /// Exits of the paper's kind: left, right and up only.
@@ -54,6 +68,136 @@ Chain with_gaps(std::uint64_t seed, std::vector<Exit> exits) {
   Counts counts = lattice_counts(seed);
   for (const int row : {3, 40, 60}) test::empty_row(counts, row);
   return Chain::from_counts(counts, std::move(exits));
+}
+
+/// One output per row, few of the rows ever entered: mass is drawn where no walk returns to.
+Chain thin(std::uint64_t seed, std::vector<Exit> exits) {
+  test::Words words(seed);
+  Counts counts(87, 88);
+  for (int row = 0; row < 87; ++row) {
+    if (row % 10 != 3) counts.coeffRef(row, row % 7 == 0 ? 87 : words.below(87)) = 1;
+    if (row % 9 == 0) counts.coeffRef(row, words.below(88)) += 1;
+  }
+  return Chain::from_counts(counts, std::move(exits));
+}
+
+TEST(Sweep, PropagatesAsThePlainReferenceWhereFewRowsAreEntered) {
+  for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const Chain chain = thin(seed, exits);
+      const Sweeper sweeper(chain);
+      for (int input = 0; input < 87; ++input) {
+        for (const int limit : {1, 2, 3, 4, 5, 13}) {
+          const Start start{2, 1, input};
+          const auto plain = propagate(chain, {6, 5}, start, limit);
+          const auto fast = sweeper.propagate({6, 5}, start, limit);
+          SCOPED_TRACE(std::to_string(input) + ", limit " + std::to_string(limit));
+          expect_near(plain, fast, 1e-15);
+          EXPECT_EQ(plain.steps, fast.steps);
+        }
+        if (!sweeper.can_march()) continue;
+        try {
+          const auto marched = sweeper.march({6, 5}, {2, 1, input}, 1e-13, RowMethod::cheapest, 1000);
+          expect_near(marched, propagate(chain, {6, 5}, {2, 1, input}, 0, 1e-13, 1000), 1e-12);
+        } catch (const std::runtime_error&) {  // left and right for ever
+          EXPECT_GT(propagate(chain, {6, 5}, {2, 1, input}, 0, 1e-13, 1000).remainder, 0.1);
+        }
+      }
+    }
+  }
+}
+
+/// Up to 9 inputs, moves of up to 2 cells (of `up` alone: none down), rows of any number of outputs.
+Chain random_chain(test::Words& words, bool chequered, bool up) {
+  const int inputs = 1 + words.below(9), outputs = 1 + words.below(14);
+  std::vector<Exit> exits;
+  Counts counts(inputs, outputs);
+  for (int j = 0; j < outputs; ++j) {
+    Exit exit{words.below(inputs), words.below(5) - 2, words.below(5) - 2};
+    if (up) exit.di_y = std::abs(exit.di_y);
+    if (chequered && (exit.di_x + exit.di_y) % 2 == 0) exit.di_x += 1;
+    if (words.below(5) == 0) exit = {};
+    exits.push_back(exit);
+    for (int row = 0; row < inputs; ++row)
+      if (words.below(3) == 0) counts.coeffRef(row, j) = 1 + words.below(9);
+  }
+  return Chain::from_counts(counts, exits);
+}
+
+TEST(Sweep, RandomChains) {
+  test::Words words(1);
+  for (int k = 0; k < 600; ++k) {
+    SCOPED_TRACE(k);
+    const Chain chain = random_chain(words, k % 2 == 0, k % 3 == 0);
+    const Sweeper sweeper(chain);
+    const Field field{1 + words.below(12), 1 + words.below(12)};
+    std::vector<Start> starts;
+    for (int j = 0; j < 1 + k % 5; ++j)
+      starts.push_back({words.below(field.columns), words.below(field.rows), words.below(chain.inputs())});
+    const int limit = 1 + words.below(15);
+    const auto fast = sweeper.propagate_all(field, starts, limit);
+    const auto free = sweeper.propagate_all(field, starts, 0, 1e-13, 60);
+    for (std::size_t j = 0; j < starts.size(); ++j) {
+      const auto plain = propagate(chain, field, starts[j], limit);
+      expect_near(plain, fast[j], 1e-14);
+      EXPECT_EQ(plain.steps, fast[j].steps);
+      const auto plainly_free = propagate(chain, field, starts[j], 0, 1e-13, 60);
+      expect_near(plainly_free, free[j], 1e-14);
+      EXPECT_NEAR(plainly_free.remainder, free[j].remainder, 1e-14);
+      EXPECT_EQ(plainly_free.steps, free[j].steps);
+      if (!sweeper.can_march()) continue;
+      const auto far = propagate(chain, field, starts[j], 0, 1e-13, 2000);
+      if (far.remainder > 1e-12) continue;  // circles
+      for (const auto method : kMethods)
+        expect_near(far, sweeper.march(field, starts[j], 1e-13, method), 1e-11);
+    }
+  }
+}
+
+TEST(Sweep, RowsThatDifferAreThePlainReference) {
+  for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
+    const std::vector<Chain> chains{with_gaps(1, exits), thin(2, exits), Chain::from_counts(lattice_counts(3), exits)};
+    for (const std::vector<int>& of_row :
+         {std::vector{0, 1, 2, 0, 1, 2, 2, 0}, {2, 2, 2, 0, 0, 2, 2, 2}, {1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 2}}) {
+      const RowChains rows(chains, of_row);
+      const Sweeper sweeper(rows);
+      for (const int columns : {1, 5, 9, 40}) {
+        const Field field{columns, 8};
+        const std::vector<Start> starts{{columns / 2, 0, 12}, {0, 3, 40}, {columns - 1, 7, 60}, {columns / 3, 2, 85}};
+        for (const int limit : {1, 2, 13, 0}) {
+          const auto fast = sweeper.propagate_all(field, starts, limit, 1e-13, 300);
+          for (std::size_t k = 0; k < starts.size(); ++k) {
+            const auto plain = propagate(rows, field, starts[k], limit, 1e-13, 300);
+            expect_near(plain, fast[k], 1e-14);
+            EXPECT_NEAR(plain.remainder, fast[k].remainder, 1e-14);
+            EXPECT_EQ(plain.steps, fast[k].steps);
+          }
+        }
+        if (!sweeper.can_march()) continue;
+        for (std::size_t k = 0; k < starts.size(); ++k) {
+          const auto plain = propagate(rows, field, starts[k], 0, 1e-13, 300);
+          if (plain.remainder > 1e-12) continue;  // circles in a thin row
+          for (const auto method : kMethods)
+            expect_near(plain, sweeper.march(field, starts[k], 1e-13, method), 1e-12);
+        }
+      }
+    }
+  }
+}
+
+// Equal chains are prepared twice here, and drawn from in turn: not a bit changes.
+TEST(Sweep, EqualChainsInTurnHaveTheBitsOfOne) {
+  for (const auto& exits : {never_down(), leaps()}) {
+    const Chain chain = with_gaps(5, exits);
+    const Sweeper one(chain), two(RowChains({chain, chain}, {0, 1, 1, 0, 1, 0, 0, 0, 1}));
+    const std::vector<Start> starts{{4, 0, 12}, {1, 5, 33}};
+    for (const int limit : {2, 13, 0}) {
+      const auto a = one.predict_all(kNineByNine, starts, limit), b = two.predict_all(kNineByNine, starts, limit);
+      for (std::size_t k = 0; k < starts.size(); ++k) EXPECT_TRUE(same_bits(a[k], b[k])) << limit;
+    }
+    EXPECT_THROW((void)two.predict({9, 8}, kBottomCentre, 13), std::invalid_argument);
+    EXPECT_THROW((void)two.predict({9, 10}, kBottomCentre, 0), std::invalid_argument);
+  }
 }
 
 TEST(Sweep, PropagatesAsThePlainReference) {
@@ -92,6 +236,23 @@ TEST(Sweep, StartInARowThatWasNeverSampled) {
   }
 }
 
+/// Left and right, rarely up, hardly ever trapped: walks of thousands of steps.
+Chain weakly_trapping(std::uint64_t seed) {
+  test::Words words(seed);
+  Counts counts(87, 88);
+  for (int row = 0; row < 87; ++row) {
+    std::int64_t sideways = 0;
+    for (int k = 0; k < 12; ++k) {
+      const std::int64_t n = 1000 * (1 + words.below(15));
+      counts.coeffRef(row, 25 + words.below(60)) += n;
+      sideways += n;
+    }
+    counts.coeffRef(row, words.below(25)) += sideways / 200;
+    counts.coeffRef(row, 87) += sideways / 1250;
+  }
+  return Chain::from_counts(counts, never_down());
+}
+
 // Two other routes to the same: step by step until nothing is left, and one factorisation.
 TEST(Sweep, MarchIsTheLimitOfPropagation) {
   for (const std::uint64_t seed : {1, 2, 3}) {
@@ -100,14 +261,111 @@ TEST(Sweep, MarchIsTheLimitOfPropagation) {
     ASSERT_TRUE(sweeper.can_march());
     for (const auto& [field, start] : std::vector<std::pair<Field, Start>>{
              {kNineByNine, kBottomCentre}, {{9, 9}, {0, 8, 3 + 1}}, {{1, 30}, {0, 0, 2}}, {{40, 3}, {39, 1, 7}}}) {
-      const auto d = sweeper.march(field, start);
-      expect_whole(d);
-      EXPECT_LE(d.remainder, 1e-12);
-      expect_near(d, propagate(chain, field, start, 0), 1e-12);
+      const auto propagated = propagate(chain, field, start, 0);
       const auto solved = solve_absorption(chain, field, start);
-      expect_near(d, solved, 1e-12);
-      EXPECT_NEAR(d.mean_steps, solved.mean_steps, 1e-10);
+      for (const auto method : kMethods) {
+        const auto d = sweeper.march(field, start, 1e-13, method);
+        expect_whole(d);
+        EXPECT_LE(d.remainder, 1e-12);
+        expect_near(d, propagated, 1e-12);
+        expect_near(d, solved, 1e-12);
+        EXPECT_NEAR(d.mean_steps, solved.mean_steps, 1e-10);
+      }
     }
+  }
+}
+
+TEST(Sweep, MarchTakesLongWalksWithoutSummingThem) {
+  for (const std::uint64_t seed : {1, 2}) {
+    const Chain chain = weakly_trapping(seed);
+    const Sweeper sweeper(chain);
+    for (const Field field : {kNineByNine, Field{60, 4}}) {
+      const Start start{field.columns / 2, 0, 12};
+      const auto solved = solve_absorption(chain, field, start);
+      const auto eliminated = sweeper.march(field, start, 1e-13, RowMethod::elimination);
+      const auto summed = sweeper.march(field, start, 1e-13, RowMethod::sums);
+      expect_whole(eliminated);
+      EXPECT_GT(solved.mean_steps, 20.0);
+      EXPECT_GT(summed.steps, 1000);
+      EXPECT_EQ(eliminated.steps, 0);
+      EXPECT_GT(eliminated.remainder, 0.0) << "not measured";
+      EXPECT_LE(eliminated.remainder, 1e-12);
+      expect_near(eliminated, solved, 1e-11);
+      expect_near(summed, solved, 1e-11);
+      EXPECT_EQ(sweeper.predict(field, start, 0).steps, 0) << "sums were chosen";
+    }
+  }
+}
+
+// Each number lies within remainder + rounding of a route with more digits, and the two say
+// something: they are small.
+TEST(Sweep, RemainderAndRoundingBoundTheError) {
+  const auto expect_bounded = [](const FinalDistribution& d, const FinalDistribution& exact) {
+    const double bound = d.remainder + d.rounding;
+    EXPECT_LE((d.final_cells - exact.final_cells).abs().sum(), bound);
+    EXPECT_LE(std::abs(d.trapped - exact.trapped) + std::abs(d.left_field - exact.left_field) +
+                  std::abs(d.cut_off - exact.cut_off) + std::abs(d.unsampled - exact.unsampled),
+              bound);
+    EXPECT_GT(d.rounding, 1e-15);
+    EXPECT_LE(bound, 1e-11);
+  };
+  const Chain chain = with_gaps(2, never_down());
+  const Sweeper sweeper(chain);
+  for (const int limit : {1, 2, 13, 100}) {
+    const auto exact = test::propagate_plainly(chain, kNineByNine, kBottomCentre, limit);
+    expect_bounded(sweeper.propagate(kNineByNine, kBottomCentre, limit), exact);
+    expect_bounded(propagate(chain, kNineByNine, kBottomCentre, limit), exact);
+  }
+  const auto exact = test::propagate_plainly(chain, kNineByNine, kBottomCentre, 600);
+  EXPECT_LE(exact.cut_off, 1e-25);
+  expect_bounded(sweeper.propagate(kNineByNine, kBottomCentre, 0), exact);
+  expect_bounded(propagate(chain, kNineByNine, kBottomCentre, 0), exact);
+  expect_bounded(solve_absorption(chain, kNineByNine, kBottomCentre), exact);
+  for (const auto method : kMethods)
+    for (const double tolerance : {1e-13, 1e-12})
+      expect_bounded(sweeper.march(kNineByNine, kBottomCentre, tolerance, method), exact);
+}
+
+// The longer the walks, the fewer digits hold; how many is said, or refused.
+TEST(Sweep, RemainderOfEliminationIsHonest) {
+  for (const double escape : {1e-3, 1e-6, 1e-8}) {
+    const auto d = Sweeper(test::nearly_closed(escape)).march({2, 1}, {}, 1e-13, RowMethod::elimination);
+    const double error = std::abs(d.final_cells(0, 0) - 1 / (2 - escape));
+    EXPECT_LE(error, d.remainder + d.rounding);
+    EXPECT_LE(d.remainder, 1e-15 / escape);
+    EXPECT_LE(d.rounding, 1e-13 / escape);
+  }
+  for (const double escape : {1e-13, 1e-16, 1e-300})
+    EXPECT_THROW((void)Sweeper(test::nearly_closed(escape)).march({2, 1}, {}, 1e-13, RowMethod::elimination, 1000),
+                 std::runtime_error);
+}
+
+// Starts in other cells and rows, some of which end early, more than go together in a group.
+TEST(Sweep, SeveralStartsHaveTheBitsOfEachAlone) {
+  for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
+    const Chain chain = with_gaps(3, exits);
+    const Sweeper sweeper(chain);
+    for (const Field field : {kNineByNine, Field{1, 3}, Field{5, 12}, Field{30, 2}}) {
+      std::vector<Start> starts;
+      for (int k = 0; k < 11; ++k)
+        starts.push_back({k * 3 % field.columns, k * 5 % field.rows, 7 * k % 87});
+      starts.push_back({0, 0, 40});  // never sampled
+      for (const int limit : {1, 2, 13, 0}) {
+        const auto together = sweeper.predict_all(field, starts, limit);
+        ASSERT_EQ(together.size(), starts.size());
+        for (std::size_t k = 0; k < starts.size(); ++k)
+          EXPECT_TRUE(same_bits(together[k], sweeper.predict(field, starts[k], limit)))
+              << field.columns << " x " << field.rows << ", limit " << limit << ", start " << k;
+      }
+      if (!sweeper.can_march()) continue;
+      for (const auto method : kMethods) {
+        const auto together = sweeper.march_all(field, starts, 1e-9, method);
+        for (std::size_t k = 0; k < starts.size(); ++k)
+          EXPECT_TRUE(same_bits(together[k], sweeper.march(field, starts[k], 1e-9, method)));
+      }
+    }
+    EXPECT_TRUE(sweeper.predict_all(kNineByNine, {}, 13).empty());
+    EXPECT_THROW((void)sweeper.predict_all(kNineByNine, {kBottomCentre, {9, 0, 0}}, 13), std::invalid_argument);
   }
 }
 
@@ -125,7 +383,7 @@ TEST(Sweep, RemainderIsWhatTheToleranceLeaves) {
   const Sweeper sweeper(chain);
   const auto exact = solve_absorption(chain, kNineByNine, kBottomCentre);
   for (const double tolerance : {1e-2, 1e-4, 1e-8}) {
-    const auto d = sweeper.march(kNineByNine, kBottomCentre, tolerance);
+    const auto d = sweeper.march(kNineByNine, kBottomCentre, tolerance, RowMethod::sums);
     EXPECT_GT(d.remainder, 0.0);
     EXPECT_LE(d.remainder, tolerance * kNineByNine.rows);
     expect_whole(d);
@@ -133,7 +391,7 @@ TEST(Sweep, RemainderIsWhatTheToleranceLeaves) {
     EXPECT_GE((exact.final_cells - d.final_cells).minCoeff(), -1e-15);
     EXPECT_LE((exact.final_cells - d.final_cells).maxCoeff(), d.remainder + 1e-15);
   }
-  const auto all = sweeper.march(kNineByNine, kBottomCentre, 0.0);
+  const auto all = sweeper.march(kNineByNine, kBottomCentre, 0.0, RowMethod::sums);
   EXPECT_LE(all.remainder, 1e-270);
   expect_near(all, exact, 1e-13);
 }
@@ -148,31 +406,38 @@ TEST(Sweep, MarchRefusesWhatItCannotDo) {
   // Left and right for ever.
   const Chain circle = Chain::from_probabilities(
       matrix(2, 2, {{0, 1, 1.0}, {1, 0, 1.0}}), {{0, 1, 0}, {1, -1, 0}});
-  EXPECT_THROW((void)Sweeper(circle).march({2, 1}, {1, 0, 0}, 1e-13, 1000), std::runtime_error);
+  EXPECT_THROW((void)Sweeper(circle).march({2, 1}, {1, 0, 0}, 1e-13, RowMethod::cheapest, 1000),
+               std::runtime_error);
   const auto still = Sweeper(circle).propagate({2, 1}, {1, 0, 0}, 0, 1e-13, 100);
   EXPECT_EQ(still.remainder, 1.0);
   EXPECT_EQ(still.steps, 100);
 }
 
 TEST(Sweep, HasTheSameBitsWithAnyInstructionSet) {
-  const Chain chain = with_gaps(4, never_down());
-  const Sweeper sweeper(chain);
-  const auto same = [](const FinalDistribution& a, const FinalDistribution& b) {
-    const auto bytes = sizeof(double) * static_cast<std::size_t>(a.final_cells.size());
-    return std::memcmp(a.final_cells.data(), b.final_cells.data(), bytes) == 0 &&
-           a.trapped == b.trapped && a.left_field == b.left_field && a.remainder == b.remainder;
-  };
   const Field field{13, 7};
-  const Start start{6, 0, 11};
-  const auto walked = sweeper.propagate(field, start, 13), marched = sweeper.march(field, start);
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_TRUE(same(walked, sweeper.propagate(field, start, 13)));
-    EXPECT_TRUE(same(marched, sweeper.march(field, start)));
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  const std::vector<Start> starts{{6, 0, 11}, {0, 1, 30}, {12, 3, 70}};
+  for (const auto& exits : {never_down(), leaps()}) {
+    const Chain chain = with_gaps(4, exits);
+    const auto all = [&] {
+      const Sweeper sweeper(chain);
+      auto results = sweeper.propagate_all(field, starts, 13);
+      results.push_back(sweeper.propagate({70, 20}, starts.front(), 0));
+      if (sweeper.can_march())
+        for (const auto method : kMethods)
+          for (const auto& d : sweeper.march_all(field, starts, 1e-13, method)) results.push_back(d);
+      return results;
+    };
+    const auto before = all();
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      SCOPED_TRACE(hwy::TargetName(target));
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      const auto now = all();
+      ASSERT_EQ(now.size(), before.size());
+      for (std::size_t k = 0; k < now.size(); ++k) EXPECT_TRUE(same_bits(before[k], now[k])) << k;
+      hwy::SetSupportedTargetsForTest(0);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    }
   }
 }
 

@@ -1,0 +1,64 @@
+#pragma once
+/// Visits in a row of equal cells, of walks that move to the neighbour at the right or the left until
+/// they end or leave the row: block elimination from the left, whatever the number of moves.
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <vector>
+
+#include "markov/chain.h"
+
+namespace gatewalk::markov {
+
+/// Dense, column by column, each padded with zeros to `height` numbers.
+struct Block {
+  int rows = 0, columns = 0, height = 0;
+  std::vector<double> p;
+  Block() = default;
+  Block(int n_rows, int n_columns);
+  [[nodiscard]] double* column(int j) { return p.data() + std::ptrdiff_t{j} * height; }
+  [[nodiscard]] const double* column(int j) const { return p.data() + std::ptrdiff_t{j} * height; }
+};
+
+class RowSolver {
+ public:
+  /// Whether all moves of the chain within a row go one cell on.
+  [[nodiscard]] static bool suits(const Chain& chain);
+  explicit RowSolver(const Chain& chain);
+
+  /// What walks do that enter a column from its left (r) or right (l), all columns at its left
+  /// eliminated. With P = `back` of the column before:
+  struct Column {
+    Block visits;  // N = (I - P Lr)^-1: visits of r per r entered
+    Block turned;  // M = N P Ll: visits of r per visit of l
+    Block back;    // P = Rl + Rr M: leaves to the right, per visit of l
+  };
+
+  /// Operations (products of registers) that solve() takes per column, that a further column() takes.
+  [[nodiscard]] double solve_cost() const;
+  [[nodiscard]] double column_cost() const;
+
+  /// The first `count` columns; the last one stands for all further ones once they hardly differ. Empty
+  /// if walks can circle (almost) for ever, or the columns do not fit the memory allowed.
+  /// They are kept: only columns that no call asked for before take time. Thread-safe.
+  [[nodiscard]] std::vector<const Column*> columns(int count) const;
+
+  /// Numbers that solve() needs to work with.
+  [[nodiscard]] std::size_t workspace(int count) const;
+  /// visits += (I - Q)^-1 entering, both in stripes (stripes.h) that begin at the first column.
+  void solve(const std::vector<const Column*>& columns, const double* entering, double* visits,
+             std::ptrdiff_t stride, double* workspace) const;
+
+ private:
+  [[nodiscard]] bool append() const;
+
+  std::vector<int> right_, left_;  // inputs entered by a move to the right, left
+  std::vector<char> is_also_right_;  // of left_
+  Block rr_, rl_, lr_, ll_;  // rl: to the right after entering by a move to the left
+  mutable std::mutex growing_;
+  mutable std::deque<Column> columns_;
+  mutable bool is_settled_ = false, is_singular_ = false;
+};
+
+}  // namespace gatewalk::markov
