@@ -109,7 +109,7 @@ int run_landscape(const std::vector<std::string>& arguments) {
   const std::int64_t trials = options.count("trials", 0);
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const double low = std::min(0.0, scene.start.y);
-  const double least = (scene.gate.run.traverse_y - low) / 10'000;
+  const double least = (scene.gate.run.traverse_y - low) / 2000;
   if (!(spacing >= least && spacing <= scene.gate.beams.joint_x))
     throw UsageError("--spacing " + digits(spacing) + ": must lie in [" + digits(least) + ", " +
                      digits(scene.gate.beams.joint_x) + "] m");

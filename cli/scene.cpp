@@ -329,7 +329,11 @@ std::vector<Variation> variations_of(const toml::table& document, const Origin& 
   }
   std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.place < b.place; });
   std::vector<Variation> variations;
-  for (Found& f : found) variations.push_back(std::move(f.variation));
+  for (Found& f : found) {
+    for (const Variation& v : variations)
+      if (v.key == f.variation.key) throw SceneError(f.variation.origin + " is there twice");
+    variations.push_back(std::move(f.variation));
+  }
   return variations;
 }
 
@@ -464,9 +468,13 @@ void require_key(const std::string& key, const std::string& origin) {
 }
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  const std::string text = read_file(path);
+  return parse_scene(scene_text(path), path, overrides);
+}
+
+std::string scene_text(const std::string& path) {
+  std::string text = read_file(path);
   if (text.starts_with("\x89HDF")) throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
-  return parse_scene(text, path, overrides);
+  return text;
 }
 
 Scene parse_scene(std::string_view text, std::string name,

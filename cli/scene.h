@@ -39,6 +39,9 @@ class SceneError : public std::runtime_error {
 /// first '=' (text may stand without quotes); the last one of a key wins. Throws SceneError.
 [[nodiscard]] Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
 
+/// The text of a scene file, for parse_scene. Throws SceneError.
+[[nodiscard]] std::string scene_text(const std::string& path);
+
 /// The same for text already in memory; `name` stands for the file in messages.
 [[nodiscard]] Scene parse_scene(std::string_view text, std::string name,
                                 const std::vector<std::string>& overrides = {});

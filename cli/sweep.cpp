@@ -50,14 +50,16 @@ Axis axis_of(const Variation& v) {
   if (ends.size() > 3) throw SceneError(v.origin + ": '" + v.values + "' is not from:step:to");
   const double from = number_in(ends.front(), v), to = number_in(ends.back(), v);
   const double step = ends.size() == 3 ? number_in(ends[1], v) : 1.0;
+  if (step == 0.0) throw SceneError(v.origin + ": the step in '" + v.values + "' is 0");
   const double count = std::floor((to - from) / step + 1e-9) + 1.0;
   if (!(count >= 1.0)) throw SceneError(v.origin + ": '" + v.values + "' holds no value: the step leads away from the end");
   if (count > static_cast<double>(kMostPoints))
     throw SceneError(v.origin + ": '" + v.values + "' holds more than " + std::to_string(kMostPoints) + " values");
   for (int i = 0; i < static_cast<int>(count); ++i) {
     std::ostringstream text;
-    text.precision(12);  // 0.1 * 3 is 0.3
-    text << from + i * step;
+    text.precision(15);  // 0.1 * 3 is 0.3
+    const double value = from + i * step;
+    text << (std::abs(value) < 1e-9 * std::abs(step) ? 0.0 : value);
     axis.values.push_back(text.str());
   }
   return axis;
@@ -101,7 +103,7 @@ struct Point {
 };
 
 /// Every combination, the last axis running fastest.
-std::vector<Point> grid_of(const Options& options, const std::vector<Axis>& axes) {
+std::vector<Point> grid_of(const Options& options, const std::string& scene, const std::vector<Axis>& axes) {
   std::vector<Point> points(1);
   for (const Axis& axis : axes) {
     std::vector<Point> longer;
@@ -115,7 +117,7 @@ std::vector<Point> grid_of(const Options& options, const std::vector<Axis>& axes
   for (Point& p : points) {
     std::vector<std::string> overrides = options.overrides();
     for (std::size_t i = 0; i < axes.size(); ++i) overrides.push_back(axes[i].key + "=" + p.values[i]);
-    p.scene = read_scene(options.text("scene"), overrides);
+    p.scene = parse_scene(scene, options.text("scene"), overrides);
   }
   return points;
 }
@@ -210,11 +212,16 @@ int run_sweep(const std::vector<std::string>& arguments) {
   if (csv == "-" && options.text("json") == "-") throw UsageError("--csv - and --json - would be mixed up");
   if (!csv.empty()) require_writable(csv);
   const std::int64_t trials = options.count("trials");
-  const Scene scene = read_scene(options.text("scene"), options.overrides());
+  const std::string text = scene_text(options.text("scene"));
+  const Scene scene = parse_scene(text, options.text("scene"), options.overrides());
   const std::vector<Axis> axes =
       axes_of(scene.sweep, options.has("vary") ? options.get<std::vector<std::string>>("vary")
                                                : std::vector<std::string>());
-  std::vector<Point> points = grid_of(options, axes);
+  for (const Axis& axis : axes)
+    for (const std::string& set : options.overrides())
+      if (set.substr(0, set.find('=')) == axis.key)
+        throw UsageError("--set " + set + " has no effect: " + axis.key + " is varied; --vary " + set + " fixes it");
+  std::vector<Point> points = grid_of(options, text, axes);
 
   constexpr std::int64_t kEach = 1000;  // of the progress line
   Progress progress("sweep", kEach * static_cast<std::int64_t>(points.size()), options.talk());
@@ -231,9 +238,9 @@ int run_sweep(const std::vector<std::string>& arguments) {
   }
   progress.finish();
 
-  const auto value = [](const std::string& text) {
-    const Json number = Json::parse(text, nullptr, false);
-    return number.is_number() ? number : Json(text);
+  const auto value = [](const std::string& given) {
+    const Json number = Json::parse(given, nullptr, false);
+    return number.is_number() ? number : Json(given);
   };
   Json json;
   json["vary"] = Json::array();

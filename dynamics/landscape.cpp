@@ -79,19 +79,30 @@ Landscape landscape(const GateParams& p, double y_low, double spacing, BeamsThat
 }
 
 std::array<double, 2> basin_below(const Landscape& l, double x, double y) {
+  const double dx = l.x[1] - l.x[0], dy = l.y[1] - l.y[0];
   auto row = static_cast<Eigen::Index>(nearest_point(l.y, y)), column = static_cast<Eigen::Index>(nearest_point(l.x, x));
   for (;;) {
-    const Eigen::Index top = std::max<Eigen::Index>(row - 1, 0), left = std::max<Eigen::Index>(column - 1, 0);
-    const Eigen::Index height = std::min(row + 2, l.total.rows()) - top, width = std::min(column + 2, l.total.cols()) - left;
+    double steepest = 0.0;  // J/m
     Eigen::Index down = 0, right = 0;
-    const double lowest = l.total.block(top, left, height, width).minCoeff(&down, &right);
-    if (!(lowest < l.total(row, column))) return {l.x[static_cast<std::size_t>(column)], l.y[static_cast<std::size_t>(row)]};
-    row = top + down;
-    column = left + right;
+    for (const Eigen::Index i : {1, 0, -1})
+      for (const Eigen::Index j : {0, -1, 1}) {  // straight on before aside
+        if (row + i < 0 || row + i >= l.total.rows() || column + j < 0 || column + j >= l.total.cols()) continue;
+        const double drop = l.total(row, column) - l.total(row + i, column + j);
+        if (i == 0 && j == 0) continue;
+        const double slope = drop / std::hypot(static_cast<double>(i) * dy, static_cast<double>(j) * dx);
+        if (slope > steepest * (1 + 1e-9)) {
+          steepest = slope;
+          down = i;
+          right = j;
+        }
+      }
+    if (down == 0 && right == 0) return {l.x[static_cast<std::size_t>(column)], l.y[static_cast<std::size_t>(row)]};
+    row += down;
+    column += right;
   }
 }
 
-// Dijkstra with the highest energy on the way for a distance; of ways equally high the shortest.
+// Dijkstra with the highest energy on the way for a distance; of ways equally high a short one.
 Pass lowest_pass(const Landscape& l, double x, double y) {
   const std::size_t columns = l.x.size(), rows = l.y.size();
   const double dx = l.x[1] - l.x[0], dy = l.y[1] - l.y[0];

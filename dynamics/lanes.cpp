@@ -83,9 +83,10 @@ class LaneRuns {
                            (watches.work[i] + steps.force[i] * (s.body.x - before.body.x));
     watches.created[i] = std::max(watches.created[i], balance - watches.lowest[i]);
     Watch last;
-    last.motion(p_, s, h);
+    last.state(p_, s, h);
     watches.steps[i] += 1.0;
     watches.fast[i] += static_cast<double>(last.fast_steps);
+    watches.penetration[i] = std::max(watches.penetration[i], last.max_penetration);
     watches.speed_squared[i] = std::max(watches.speed_squared[i], last.max_speed * last.max_speed);
     for (const Side side : {kLeft, kRight})
       watches.max_theta[side][i] = std::max(watches.max_theta[side][i], last.max_theta[side]);
@@ -318,17 +319,15 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
       impulse[side] = choose(both, max(zero, choose(same, shared, pair)), impulse[side]);
     }
   }
-  Wide jx = zero, jy = zero, deepest = load(w.penetration), impacts = load(w.impacts);
+  Wide jx = zero, jy = zero, impacts = load(w.impacts);
   for (const Side side : {kLeft, kRight}) {
     jx = jx + impulse[side] * t[side].nx;
     jy = jy + impulse[side] * t[side].ny;
     omega[side] = omega[side] - impulse[side] * t[side].lever * load(k.inv_inertia[side]);
     const WideMask new_hit = (impulse[side] > zero) & (t[side].gap > h * before[side]);
     impacts = impacts + or_zero(new_hit, one);
-    deepest = choose(active[side], max(deepest, -t[side].gap), deepest);
   }
   store(impacts, w.impacts);
-  store(deepest, w.penetration);
   vx = vx + jx * inv_mass;
   vy = vy + jy * inv_mass;
 
@@ -355,6 +354,13 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
   keep(max(load(w.speed_squared), speed_sq), w.speed_squared);
   for (const Side side : {kLeft, kRight})
     keep(max(load(w.max_theta[side]), abs(theta[side])), w.max_theta[side]);
+  // Penetration at the end of the step, from the gap in mid-step and its rate since.
+  Wide deepest = load(w.penetration);
+  for (const Side side : {kLeft, kRight}) {
+    const Touches& c = t[side];
+    deepest = max(deepest, -(c.gap + half * (c.nx * vx + c.ny * vy - c.lever * omega[side])));
+  }
+  keep(deepest, w.penetration);
   keep(load(w.steps) + one, w.steps);
   // (v + L |omega|) h > R/2, without a root
   const Wide rest = all(0.5 * p.body.radius) - p.beams.length * fastest * h;

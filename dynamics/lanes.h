@@ -6,8 +6,8 @@
 /// The plain reference is MoreauMethod (methods/moreau.h): the same steps in the same order under the
 /// same random force, to the last digits; cos, sin and divisions are rounded in their own way. The
 /// same bits for any instruction set and any company in the other lanes: no fused multiply-add, no
-/// sums over lanes. Two things differ in what is seen: penetration is looked at in mid-step, where
-/// contacts are found, not at the end of a step; and every step looks at both beams, in reach or not.
+/// sums over lanes. Two things differ in what is seen: penetration at the end of a step is taken from the
+/// gap and its rate in mid-step, off by (v h)^2 / R at most; and every step looks at both beams, in reach or not.
 
 #include "dynamics/methods/moreau.h"
 #include "dynamics/runs.h"

@@ -31,8 +31,14 @@ void carry_out_trials(const GateParams& p, const Method& method, std::int64_t co
     begin(slot);
     return true;
   };
-  tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(),
-                    [&](int) { carry_out(p, method, next, most_work); });
+  tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(), [&](int) {
+    try {
+      carry_out(p, method, next, most_work);
+    } catch (...) {
+      next_trial = count;  // nobody takes another one
+      throw;
+    }
+  });
 }
 
 }  // namespace gatewalk::dynamics

@@ -384,8 +384,12 @@ expect 2 'nothing to vary' "$gatewalk" sweep "$scenes/field.toml"
 expect 2 'closest known key is forces.random_N' "$gatewalk" sweep "$scenes/field.toml" --vary forces.randm_N=1
 expect 2 'holds no value' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1:1:0
 expect 2 "'2,' in" "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1:1:2,
-expect 2 'holds' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1:0:2
 expect 2 'lacks a value' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1,,2
+expect 2 'has no effect' "$gatewalk" sweep "$scenes/fig8.toml" --set forces.random_N=1
+expect 2 'step in' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1:0:2
+expect 0 '^7 points' "$gatewalk" sweep "$scenes/field.toml" --trials 1 --quiet --vary start.vx_m_per_s=-0.3:0.1:0.3
+cat "$scenes/fig8.toml" | "$gatewalk" sweep /dev/stdin --trials 5 --quiet --vary forces.random_N=20 --csv - >piped.csv
+"$gatewalk" sweep "$scenes/fig8.toml" --trials 5 --quiet --vary forces.random_N=20 --csv - | cmp - piped.csv || fail "sweep of a pipe"
 expect 2 'varied twice' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1 --vary forces.random_N=2
 expect 2 'must lie in' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1,-1
 expect 2 'more than 100000' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=0:1e-9:1

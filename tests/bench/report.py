@@ -137,7 +137,7 @@ def chain(work):
 def dynamics_text(folder, rows):
     yield """## One gate, beside general engines
 
-From rest, Rm 10 N; A: F_prop 8 N, k 400/400; B: F_prop 7 N, k 300/500. The same trials under the same random
+From rest, Rm 10 N; A: F_prop 8 N, k 400/400; B: F_prop 7 N, k 300/500. Trials of the same random streams, under the same random
 force (Octave: its own). Step 0.004 s, `stable` 0.02 s. Medians of interleaved rounds, CPU time. Chipmunk is
 Debian's source in Chipmunk's own Release profile; Debian's build of it has the assertions on. All others are
 Debian's builds.

@@ -526,6 +526,7 @@ TEST(Sweep, RefusesWhatIsNoKeyOrNoValue) {
   EXPECT_EQ(message("[sweep]\nforces.randm_N = 3"),
             "bad.toml:2: unknown key forces.randm_N; the closest known key is forces.random_N");
   EXPECT_TRUE(message("[sweep]\nforces.random_N = true").starts_with("bad.toml:2: sweep.forces.random_N = true"));
+  EXPECT_EQ(message("[sweep]\n\"forces.random_N\" = 1\nforces.random_N = 2"), "bad.toml:3: sweep.forces.random_N is there twice");
   EXPECT_TRUE(message("sweep = 3").starts_with("bad.toml:1: sweep = 3"));
 }
 

@@ -167,7 +167,7 @@ TEST(Landscape, ThePassIsTheLowestOfTheHighest) {
   EXPECT_EQ(pass.start_energy, 1.0);
   EXPECT_EQ(pass.barrier(), 6.0);
   EXPECT_EQ(basin_below(l, 2.0, 0.0), (std::array<double, 2>{0.0, 0.0}));  // 3, 2, 1
-  EXPECT_EQ(basin_below(l, 2.0, 1.0), (std::array<double, 2>{1.0, 2.0}));  // beyond the wall: 0
+  EXPECT_EQ(basin_below(l, 2.0, 1.0), (std::array<double, 2>{2.0, 2.0}));  // beyond the wall, straight on
   ASSERT_EQ(pass.way.size(), 4u);  // (0,0), (1,0), (2,1), then up
   l.total.row(1) = std::numeric_limits<double>::infinity();
   EXPECT_THROW((void)lowest_pass(l, 0.0, 0.0), std::runtime_error);

@@ -98,6 +98,7 @@ TEST(Lanes, DoWhatThePlainMethodDoes) {
     const auto runs = by_lanes(scene.p, scene.start, n);
     const auto method = make_method(scene.p);
     int parted = 0;
+    int penetrating[2] = {0, 0};
     double deepest[2] = {0.0, 0.0}, fastest = 0.0;
     for (int i = 0; i < n; ++i) {
       const GateRun plain = run_gate_trial(scene.p, *method, scene.start, 1, i);
@@ -105,6 +106,8 @@ TEST(Lanes, DoWhatThePlainMethodDoes) {
       deepest[0] = std::max(deepest[0], plain.watch.max_penetration);
       deepest[1] = std::max(deepest[1], lane.watch.max_penetration);
       fastest = std::max(fastest, plain.watch.max_speed);
+      penetrating[0] += plain.watch.max_penetration > 0.01 * scene.p.body.radius;
+      penetrating[1] += lane.watch.max_penetration > 0.01 * scene.p.body.radius;
       const bool near = plain.ending == lane.ending &&
                         std::hypot(plain.exit.x - lane.exit.x, plain.exit.y - lane.exit.y) < 1e-6 &&
                         std::hypot(plain.exit.vx - lane.exit.vx, plain.exit.vy - lane.exit.vy) < 1e-6;
@@ -122,8 +125,9 @@ TEST(Lanes, DoWhatThePlainMethodDoes) {
       EXPECT_NEAR(plain.watch.max_theta[kRight], lane.watch.max_theta[kRight], 1e-6);
     }
     EXPECT_LE(parted, n / 100);
-    // Looked at half a step before or after; meanwhile the disc moves, and a tip, at most twice as fast.
-    EXPECT_NEAR(deepest[0], deepest[1], 3 * fastest * scene.p.run.step);
+    const double way = fastest * scene.p.run.step;
+    EXPECT_NEAR(deepest[0], deepest[1], way * way / scene.p.body.radius);
+    EXPECT_EQ(penetrating[0], penetrating[1]);
   }
 }
 
