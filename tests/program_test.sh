@@ -144,6 +144,18 @@ for solver in march klu propagate; do
     starts-$solver.json starts-march.json | grep -q true || fail "predict: march and $solver disagree"
 done
 expect 2 'three numbers' "$gatewalk" predict m.nc --start 1,2
+# A large field: a map that fits a screen, JSON with every gate, two routes.
+large="--set field.max_gates=0 --set field.columns=301 --set field.rows=301"
+# shellcheck disable=SC2086
+{
+expect 0 '^elsewhere in the 301 x 301 gates: 0.0' "$gatewalk" predict m.nc $large --json large.json
+[ "$(wc -l <out.txt)" -lt 50 ] || fail "predict: $(wc -l <out.txt) lines for a large field"
+holds '(.final_gates | length == 301 and (map(length) | unique == [301])) and (([.final_gates[][]] | add) - 1 | fabs) < 1e-11' large.json
+"$gatewalk" walk m.nc $large --walks 20000 --json large-walk.json --quiet
+# Rows of 20000 walks: mean distance by chance below 0.01.
+jq -s '[[.[0].final_gates[] | add], [.[1].final_gates[] | add / 20000]] | transpose | map(.[0] - .[1] | fabs) | add / 2 < 0.02' large.json large-walk.json |
+  grep -q true || fail "walk and predict disagree on a large field"
+}
 # Rows of other gates: below them nothing changes; a copy of the base changes nothing; two routes agree.
 "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 --set beams.stiffness_left_Nm_per_rad=2000 -o stiff.nc --quiet >/dev/null
 cp m.nc copy.nc
