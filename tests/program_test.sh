@@ -125,8 +125,12 @@ holds '(.trapped + .left_field + .cut_off - 1 | fabs) < 1e-12' predict.json
 "$gatewalk" predict m.nc --set field.max_gates=0 --json free.json --quiet
 "$gatewalk" predict m.nc --set field.max_gates=0 --solver klu --json klu.json --quiet
 holds '.cut_off == 0' free.json
-jq -s '[[.[0].final_gates[][]], [.[1].final_gates[][]]] | transpose | map(.[0] - .[1] | fabs) | max < 1e-10' free.json klu.json |
-  grep -q true || fail "the two solvers disagree"
+jq -s '([[.[0].final_gates[][]], [.[1].final_gates[][]]] | transpose | map(.[0] - .[1] | fabs) | add) <= .[0].error_at_most + .[1].error_at_most' free.json klu.json |
+  grep -q true || fail "the two solvers disagree by more than they own to"
+for file in predict free klu; do
+  holds '.rounding_at_most > 1e-15 and .error_at_most == .still_walking + .rounding_at_most and .error_at_most < 1e-11' $file.json
+done
+expect 0 '^numerical error of all shares together: at most [0-9.]*e-1[0-9] (0 still walking, rounding [0-9.]*e-1[0-9])$' "$gatewalk" predict m.nc
 # Several starts: an entry each, in order, as each alone; none given: the scene's.
 expect 0 '^start d 4 m, vx 5 m/s, vy 10.5 m/s$' "$gatewalk" predict m.nc --start 0,0,15 --start 4,5,10.5 --start 0,0,-3 --json starts.json
 [ "$(grep -c '^trapped' out.txt)" = 3 ] || fail "predict: not a result per start"
