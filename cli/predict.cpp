@@ -111,6 +111,8 @@ void add_to(Json& json, const FinalDistribution& f) {
   json["cut_off"] = f.cut_off;
   json["never_sampled"] = f.unsampled;
   json["still_walking"] = f.remainder;
+  json["rounding_at_most"] = f.rounding;
+  json["error_at_most"] = f.remainder + f.rounding;
   json["steps"] = f.steps;
 }
 
@@ -130,9 +132,13 @@ std::string table_of(const FinalDistribution& f, const ReadyStart& start) {
                       percent(f.cut_off, 1.0, 2) + "\nstart: " + start.text + "\n";
   if (f.unsampled > 0.0)
     table += "reaches a row that was never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
-  if (f.remainder > 1e-12)
+  if (f.remainder > 1e-8)
     table += "still walking when the sum was stopped: " + percent(f.remainder, 1.0, 6) + "\n";
-  return table;
+  std::ostringstream bound;
+  bound.precision(2);
+  bound << "numerical error of all shares together: at most " << f.remainder + f.rounding << " (" << f.remainder
+        << " still walking, rounding " << f.rounding << ")\n";
+  return table + bound.str();
 }
 
 }  // namespace
@@ -140,7 +146,8 @@ std::string table_of(const FinalDistribution& f, const ReadyStart& start) {
 int run_predict(const std::vector<std::string>& arguments) {
   Options options("predict MATRIX.nc [SCENE] [options]",
                   "The exact distribution of the final gate: what infinitely many walks with this matrix\n"
-                  "would give. How far the matrix itself can be trusted, gatewalk validate says.",
+                  "would give, with a bound on its numerical error. How far the matrix itself can be\n"
+                  "trusted, gatewalk validate says.",
                   "gatewalk predict matrix.nc scenes/field.toml --start 0,0,15 --start 4,5,10 --json "
                   "prediction.json");
   options.positional("matrix", "matrix file written by gatewalk build", true);

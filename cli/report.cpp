@@ -1,5 +1,6 @@
 #include "cli/report.h"
 
+#include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <cstdio>
@@ -122,21 +123,65 @@ Json rows_of(const Cells& cells) {
 Json grid(const markov::CellCounts& cells) { return rows_of(cells); }
 Json grid(const markov::CellProbabilities& cells) { return rows_of(cells); }
 
+namespace {
+
+/// Places from `first` on, `count` of them, printed in blocks of `block`.
+struct Span {
+  Eigen::Index first, count, block;
+};
+
+/// All of them if they can be printed; else those between ends that hold next to nothing, in blocks if
+/// they are still too many.
+Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
+  constexpr double kNextToNothing = 5e-5;  // prints as 0.00 %
+  Span span{0, shares.size(), 1};
+  if (span.count <= most) return span;
+  const double small = kNextToNothing * shares.sum();
+  Eigen::Index low = 0, high = shares.size() - 1;
+  for (double left = shares(low); left < small && low < high; left += shares(low)) ++low;
+  for (double left = shares(high); left < small && high > low; left += shares(high)) --high;
+  span = {low, high - low + 1, (high - low) / most + 1};
+  return span;
+}
+
+}  // namespace
+
 std::string map_of(const markov::CellProbabilities& shares) {
-  if (shares.cols() > 15 || shares.rows() > 40) return "";
-  const auto half = static_cast<int>(shares.cols() / 2);
-  std::string text = "final gate, % of trials (i_y upwards, i_x to the right)\n";
-  for (auto r = static_cast<int>(shares.rows()) - 1; r >= 0; --r) {
-    text += padded(std::to_string(r), 4) + " |";
-    for (int c = 0; c < shares.cols(); ++c) {
-      const double share = 100.0 * shares(r, c);
-      text += share == 0.0 ? padded(".", 7) : padded(fixed(share, 2), 7);
+  const Span rows = span_of(shares.rowwise().sum(), 40);
+  Span columns = span_of(shares.colwise().sum().transpose(), 15);
+  const Eigen::Index half = shares.cols() / 2;
+  std::string text = "final gate, % of trials (i_y upwards, i_x to the right";
+  if (rows.block > 1 || columns.block > 1) {
+    // The start's column in the middle of a block, so that left and right can be compared.
+    columns.block |= 1;
+    const Eigen::Index end = columns.first + columns.count;
+    const Eigen::Index to_left = half - columns.block / 2 - columns.first;  // from the middle block
+    columns.first += to_left - (to_left + (to_left > 0 ? columns.block - 1 : 0)) / columns.block * columns.block;
+    columns.count = end - columns.first;
+    text += "; blocks of " + std::to_string(columns.block) + " x " + std::to_string(rows.block) +
+            " gates: i_x in their middle, i_y at their lower end";
+  }
+  text += ")\n";
+  double shown = 0.0;
+  for (Eigen::Index r = (rows.count - 1) / rows.block * rows.block; r >= 0; r -= rows.block) {
+    text += padded(std::to_string(rows.first + r), 4) + " |";
+    for (Eigen::Index c = columns.first; c < columns.first + columns.count; c += columns.block) {
+      const Eigen::Index left = std::max<Eigen::Index>(0, c), right = std::min(shares.cols(), c + columns.block);
+      const double share =
+          shares.block(rows.first + r, left, std::min(rows.block, rows.count - r), right - left).sum();
+      shown += share;
+      text += share == 0.0 ? padded(".", 7) : padded(fixed(100.0 * share, 2), 7);
     }
     text += "\n";
   }
   text += "  i_x ";
-  for (int c = 0; c < shares.cols(); ++c) text += padded(std::to_string(c - half), 7);
-  return text + "\n";
+  for (Eigen::Index c = columns.first; c < columns.first + columns.count; c += columns.block)
+    text += padded(std::to_string(c + columns.block / 2 - half), 7);
+  text += "\n";
+  if (rows.count < shares.rows() || columns.count < shares.cols())
+    text += "elsewhere in the " + std::to_string(shares.cols()) + " x " + std::to_string(shares.rows()) +
+            " gates: " + percent(std::max(0.0, shares.sum() - shown), 1.0, 4) + "\n";
+  return text;
 }
 
 std::string fixed(double x, int digits) {

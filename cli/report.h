@@ -27,7 +27,8 @@ namespace gatewalk::cli {
 [[nodiscard]] Json grid(const markov::CellCounts& cells);
 [[nodiscard]] Json grid(const markov::CellProbabilities& cells);
 
-/// The field seen from above, farthest row on top, in percent; empty for fields too wide to print.
+/// The field seen from above, farthest row on top, in percent. Of fields too large to print: where all
+/// but next to nothing lies, in blocks if need be.
 [[nodiscard]] std::string map_of(const markov::CellProbabilities& shares);
 
 /// Fixed-point text of x with `digits` decimals; "-" for a value that is not a number.

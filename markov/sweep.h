@@ -40,17 +40,18 @@ class Sweeper {
   /// lets it; `cheapest`: what takes fewer operations by estimate.
   enum class RowMethod { cheapest, elimination, sums };
 
-  /// Without limit, row by row: at most `tolerance` of what enters a row is left walking in it (all
-  /// that is left anywhere: `remainder`), then the next row is entered. Memory: a few rows x n_in
-  /// numbers, whatever the number of rows, and for elimination up to 512 MiB. Throws
+  /// Without limit, row by row: of what enters a row so little is left walking in it that at most
+  /// `tolerance` is left in all (`remainder`; elimination may leave more where rounding lets it not do
+  /// better), then the next row is entered. Memory: a few rows x n_in numbers, whatever the number of
+  /// rows, and for elimination up to 512 MiB. Throws
   /// std::invalid_argument unless can_march(); std::runtime_error when walks can circle (almost) for
   /// ever: a row takes more than `most_sums` sums, or is solved to fewer than 6 digits.
   [[nodiscard]] FinalDistribution march(const Field& field, const Start& start,
-                                        double tolerance = 1e-13,
+                                        double tolerance = 1e-12,
                                         RowMethod method = RowMethod::cheapest,
                                         int most_sums = 1'000'000) const;
   [[nodiscard]] std::vector<FinalDistribution> march_all(
-      const Field& field, const std::vector<Start>& starts, double tolerance = 1e-13,
+      const Field& field, const std::vector<Start>& starts, double tolerance = 1e-12,
       RowMethod method = RowMethod::cheapest, int most_sums = 1'000'000) const;
 
   /// Without limit march(), if it can be used; else propagate().

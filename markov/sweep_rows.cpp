@@ -14,6 +14,7 @@ std::vector<Move> sideways_only(std::vector<Move> moves) {
 }
 
 constexpr double kFewDigits = 1e-6;
+constexpr double kRoundingOnly = 1e-14;  // another round makes it no better
 
 [[noreturn]] void refuse() {
   throw std::runtime_error("march: fewer than 6 digits hold: walks can circle (almost) for ever");
@@ -24,7 +25,7 @@ class Rows {
  public:
   Rows(const SweepPlan& plan, const Field& field, const std::vector<Start>& starts, double tolerance,
        Sweeper::RowMethod method, int most_sums)
-      : plan_(plan), field_(field), tolerance_(tolerance), most_sums_(most_sums),
+      : plan_(plan), field_(field), tolerance_(tolerance / (field.rows + 1)), most_sums_(most_sums),
         board_(field.columns, 1, sideways_only(plan.moves), 1, std::vector<std::int64_t>(starts.size())),
         stride_(board_.stride()), all_(plan.inputs * stride_),
         numbers_((5 + plan.highest) * all_ + (kMoved + std::ssize(plan.moves)) * stride_) {
@@ -195,7 +196,7 @@ class Rows {
       bool any = false;
       for (std::size_t j = 0; j < walks_.size(); ++j) {
         const bool better = round == 0 || found[j] < 0.5 * missing[j];
-        wanted[j] = wanted[j] && better && found[j] > tolerance_ * entered_[j];
+        wanted[j] = wanted[j] && better && found[j] > std::max(tolerance_, kRoundingOnly) * entered_[j];
         any = any || wanted[j];
       }
       missing = found;
@@ -222,7 +223,7 @@ class Rows {
       const Rules& rules = plan_.rules[k];
       if (!rules.solver) continue;
       const double width = field_.columns, rows = static_cast<double>(field_.rows - first_);
-      const double sums = std::log(1e-13) / std::log(std::min(rules.stays, 1.0 - 1e-6));
+      const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) / std::log(std::min(rules.stays, 1.0 - 1e-6));
       const double by_sums = rows * sums * static_cast<double>(rules.sideways.terms.size()) *
                              std::ceil(width / kLanes);
       const double by_elimination = std::min(width, 0.5 * sums) * rules.solver->column_cost() +
@@ -234,7 +235,7 @@ class Rows {
 
   const SweepPlan& plan_;
   Field field_;
-  double tolerance_;
+  double tolerance_;  // share of a row, and of all rows above together
   int most_sums_, most_sums_taken_ = 0;
   Board board_;
   std::ptrdiff_t stride_, all_;

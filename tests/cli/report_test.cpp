@@ -1,0 +1,86 @@
+#include "cli/report.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace gatewalk::cli {
+namespace {
+
+using markov::CellProbabilities;
+
+struct Printed {
+  std::vector<std::vector<double>> rows;  // farthest first
+  std::vector<int> row_labels, columns;
+  std::string head, tail;
+};
+
+Printed printed(const CellProbabilities& shares) {
+  Printed p;
+  std::istringstream text(map_of(shares));
+  std::getline(text, p.head);
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line);
+    std::string word;
+    if (line.find(" |") != std::string::npos) {
+      words >> word;
+      p.row_labels.push_back(std::stoi(word));
+      words >> word;
+      p.rows.emplace_back();
+      while (words >> word) p.rows.back().push_back(word == "." ? 0.0 : std::stod(word));
+    } else if (line.find("i_x") != std::string::npos) {
+      words >> word;
+      for (int i = 0; words >> i;) p.columns.push_back(i);
+    } else {
+      p.tail += line;
+    }
+  }
+  return p;
+}
+
+TEST(MapOf, SmallFieldsAreShownWhole) {
+  CellProbabilities shares = CellProbabilities::Zero(2, 3);
+  shares(0, 1) = 0.25;
+  shares(1, 2) = 0.75;
+  EXPECT_EQ(map_of(shares),
+            "final gate, % of trials (i_y upwards, i_x to the right)\n"
+            "   1 |      .      .  75.00\n"
+            "   0 |      .  25.00      .\n"
+            "  i_x      -1      0      1\n");
+}
+
+TEST(MapOf, LargeFieldsAreShownWhereTheSharesLie) {
+  CellProbabilities shares = CellProbabilities::Zero(500, 301);
+  shares(123, 140) = 0.5;
+  shares(130, 149) = 0.49999;
+  shares(400, 7) = 1e-5;
+  const Printed p = printed(shares);
+  EXPECT_EQ(p.head, "final gate, % of trials (i_y upwards, i_x to the right)");
+  EXPECT_EQ(p.row_labels, (std::vector{130, 129, 128, 127, 126, 125, 124, 123}));
+  EXPECT_EQ(p.columns, (std::vector{-10, -9, -8, -7, -6, -5, -4, -3, -2, -1}));
+  EXPECT_EQ(p.rows.back().front(), 50.0);
+  EXPECT_EQ(p.rows.front().back(), 50.0);
+  EXPECT_EQ(p.tail, "elsewhere in the 301 x 500 gates: 0.0010 %");
+}
+
+TEST(MapOf, WideSharesAreShownInBlocksAroundTheStart) {
+  for (const auto& [rows, columns] : {std::pair{200, 301}, {41, 16}, {3, 100}, {1000, 9}, {2001, 2001}}) {
+    const CellProbabilities shares =
+        CellProbabilities::Constant(rows, columns, 1.0 / rows / columns);
+    const Printed p = printed(shares);
+    EXPECT_LE(p.rows.size(), 40u);
+    EXPECT_LE(p.columns.size(), 16u);
+    EXPECT_NE(std::find(p.columns.begin(), p.columns.end(), 0), p.columns.end());
+    double sum = 0.0;
+    for (const auto& row : p.rows) {
+      EXPECT_EQ(row.size(), p.columns.size());
+      for (const double share : row) sum += share;
+    }
+    EXPECT_NEAR(sum, 100.0, 0.005 * static_cast<double>(p.rows.size() * p.columns.size()));
+    EXPECT_EQ(p.row_labels.back(), 0);
+    EXPECT_EQ(p.tail, "");
+  }
+}
+
+}  // namespace
+}  // namespace gatewalk::cli

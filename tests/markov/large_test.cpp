@@ -1,0 +1,115 @@
+/// Large fields without limit: 301 x 301 cells in a usual run. 1001 x 1001 and a million walks:
+///     GATEWALK_LONG=1 build/tests/markov_tests --gtest_filter='LargeField.*'
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chains.h"
+#include "markov/sweep.h"
+#include "markov/walk.h"
+#include "tests/support/long.h"
+
+namespace gatewalk::markov {
+namespace {
+
+const int kSide = gatewalk::test::usual_or_full(301, 1001);
+const std::int64_t kWalks = gatewalk::test::usual_or_full(20'000, 1'000'000);
+
+/// The paper's shape: from below (0 to 24), to the right (25 to 54), to the left (55 to 84). Walks keep
+/// their direction for some 20 cells and end in `trapped` of the draws.
+Chain keeping_on(double trapped) {
+  test::Words words(11);
+  auto exits = test::lattice_exits();
+  for (Exit& exit : exits)
+    if (exit.di_y < 0) exit.di_y = 1;
+  std::vector<test::Entry> entries;
+  for (int row = 0; row < 87; ++row) {
+    const int kind = row < 25 ? 0 : row < 55 ? 1 : row < 85 ? 2 : 0;  // up, right, left
+    const double up = kind == 0 ? 0.9 : 0.05;
+    const auto share_out = [&](double p, int first, int count) {
+      for (int k = 0; k < 4; ++k) entries.push_back({row, first + (words.below(count / 4) * 4 + k) % count, p / 4});
+    };
+    share_out((1 - trapped) * up, 0, 25);
+    share_out((1 - trapped) * (1 - up) * (kind == 1 ? 0.9 : kind == 2 ? 0.1 : 0.5), 25, 30);
+    share_out((1 - trapped) * (1 - up) * (kind == 1 ? 0.1 : kind == 2 ? 0.9 : 0.5), 55, 30);
+    entries.push_back({row, 87, trapped});
+  }
+  Probabilities p(87, 88);
+  for (const test::Entry& e : entries) p.coeffRef(e.row, e.column) += e.p;
+  return Chain::from_probabilities(p, exits);
+}
+
+void expect_whole(const FinalDistribution& d) {
+  EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0, 1e-12);
+  EXPECT_NEAR(d.trapped + d.left_field + d.cut_off + d.unsampled + d.remainder, 1.0, 1e-12);
+  EXPECT_LE(d.remainder + d.rounding, 1e-10);
+}
+
+using Shares = Eigen::ArrayXd;
+
+// A count of n walks is off a probability p by sqrt(p (1 - p) / n) or less on average; one walk moves
+// the total variation by 1/n, so it exceeds its mean by more than sqrt(10 / n) once in e^20 = 5e8
+// (McDiarmid).
+void expect_as_walked(const Shares& walked, const Shares& p, const char* what) {
+  const auto n = static_cast<double>(kWalks);
+  const double apart = 0.5 * (walked / n - p).abs().sum();
+  const double by_chance = 0.5 * (p * (1 - p).max(0.0) / n).sqrt().sum();
+  EXPECT_LE(apart, by_chance + std::sqrt(10 / n)) << what;
+  EXPECT_GE(apart, 0.3 * by_chance) << what << ": walks do not vary";
+}
+
+TEST(LargeField, IsAsWalked) {
+  const Field field{kSide, kSide};
+  const Start start{kSide / 2, 0, 12};
+  const Chain chain = keeping_on(1e-3);
+  const auto d = Sweeper(chain).predict(field, start, 0);
+  expect_whole(d);
+  // All of the field is reached.
+  EXPECT_GT(d.final_cells.row(kSide - 1).sum(), 0.05);
+  EXPECT_GT(d.final_cells.col(kSide - 1).sum() / d.final_cells.sum(), 1e-9);
+
+  const WalkTally tally = Walker(chain).walk(field, start, 0, 5, {0, kWalks});
+  const Eigen::ArrayXXd walked = tally.final_cells.cast<double>();
+  expect_as_walked(walked.rowwise().sum(), d.final_cells.rowwise().sum(), "final rows");
+  expect_as_walked(walked.colwise().sum().transpose(), d.final_cells.colwise().sum().transpose(), "final columns");
+  const auto n = static_cast<double>(kWalks);
+  const Shares fates{{static_cast<double>(tally.trapped), static_cast<double>(tally.left_field)}};
+  expect_as_walked(fates, Shares{{d.trapped, d.left_field}}, "fates");
+  EXPECT_NEAR(static_cast<double>(tally.steps) / n / d.mean_steps, 1.0, 10 / std::sqrt(n));
+}
+
+// Two routes: columns eliminated, moves summed.
+TEST(LargeField, EliminationIsSummation) {
+  const Field field{kSide, kSide / 3};
+  const Start start{kSide / 3, 0, 3};
+  const Sweeper sweeper(keeping_on(1e-3));
+  const auto a = sweeper.march(field, start, 1e-12, Sweeper::RowMethod::elimination);
+  const auto b = sweeper.march(field, start, 1e-12, Sweeper::RowMethod::sums);
+  expect_whole(a);
+  expect_whole(b);
+  EXPECT_LE((a.final_cells - b.final_cells).abs().sum(), a.remainder + a.rounding + b.remainder + b.rounding);
+  EXPECT_LE((a.final_cells - b.final_cells).abs().sum(), 1e-11);
+  EXPECT_NEAR(a.mean_steps / b.mean_steps, 1.0, 1e-9);
+}
+
+// Where walks end long before any border, rows (and columns) alone are a chain of their own: the same
+// one with its moves in the other direction struck out.
+TEST(LargeField, RowsAndColumnsAreChainsOfTheirOwn) {
+  const Chain chain = keeping_on(0.3);
+  const auto d = Sweeper(chain).predict({kSide, kSide}, {kSide / 2, 0, 12}, 0);
+  expect_whole(d);
+  EXPECT_LE(d.left_field, 1e-13);
+  const auto without = [&](bool x) {
+    auto exits = chain.exits();
+    for (Exit& exit : exits) (x ? exit.di_x : exit.di_y) = 0;
+    return Chain::from_probabilities(chain.matrix(), exits);
+  };
+  const auto rows = propagate(without(true), {1, kSide}, {0, 0, 12}, 0);
+  const auto columns = propagate(without(false), {kSide, 1}, {kSide / 2, 0, 12}, 0);
+  EXPECT_LE((d.final_cells.rowwise().sum() - rows.final_cells.col(0)).abs().maxCoeff(), 1e-12);
+  EXPECT_LE((d.final_cells.colwise().sum() - columns.final_cells.row(0)).abs().maxCoeff(), 1e-12);
+}
+
+}  // namespace
+}  // namespace gatewalk::markov
