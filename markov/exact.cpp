@@ -384,6 +384,11 @@ FinalDistribution solve_absorption(const RowChains& rows, const Field& field, co
   result.remainder = missing(t, draws);
   result.mean_steps = mean_steps.value();
   result.rounding = rounding_bound(result.mean_steps, 2.0 * static_cast<double>(n_in + n_out + 4), n_out + 8);
+  // A condition estimate does not see a closed loop of one state.
+  const double total = result.trapped + result.left_field + result.unsampled + result.remainder;
+  if (!(std::abs(total - 1.0) <= 1e-6) || !(result.rounding >= 0.0))
+    throw std::runtime_error("absorption: I - Q is singular or nearly so: a walk can circle (almost) for ever, "
+                             "fewer than 6 digits hold");
   return result;
 }
 

@@ -12,6 +12,8 @@
 namespace gatewalk::markov {
 namespace {
 
+constexpr int kFarthest = 10'000;  // cells; stripes have room for a move beyond each end
+
 std::ptrdiff_t number_of(const std::vector<Move>& moves, const Exit& exit) {
   return std::find_if(moves.begin(), moves.end(), [&](const Move& m) {
            return m.di_x == exit.di_x && m.di_y == exit.di_y;
@@ -29,9 +31,9 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
   Rules rules{chain, {}, {}, {}, {}, {}, {}, {}, {}, nullptr, 0.0};
   std::vector<Entry> moves, first_sideways, further_sideways, ends, walking;
   std::vector<std::vector<Entry>> upwards(static_cast<std::size_t>(plan.highest));
-  double stays = 0.0;
   for (int input = 0; input < plan.inputs; ++input) {
     const auto i = static_cast<std::size_t>(input);
+    double stays = 0.0;
     if (!is_entered[i]) continue;  // no mass but that of a start, of which the first draw is made apart
     if (chain.is_sampled(input)) {
       rules.walking_inputs.push_back(input);
@@ -57,6 +59,7 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
         stays += it.value();
       }
     }
+    rules.stays = std::max(rules.stays, stays);
   }
   rules.moves = Table(std::move(moves));
   rules.first_sideways = Table(std::move(first_sideways));
@@ -64,7 +67,6 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
   for (auto& entries : upwards) rules.upwards.emplace_back(std::move(entries));
   rules.ends = Table(std::move(ends));
   rules.walking = Table(std::move(walking));
-  rules.stays = plan.sideways.empty() ? 0.0 : stays / static_cast<double>(plan.sideways.size());
   if (RowSolver::suits(chain)) rules.solver = std::make_unique<const RowSolver>(chain);
   return rules;
 }
@@ -86,6 +88,9 @@ std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains, std::
     for (Eigen::Index k = 0; k < chain.matrix().nonZeros(); ++k) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(chain.matrix().innerIndexPtr()[k])];
       if (exit.next_input == Exit::kTrapped) continue;
+      if (std::max(exit.di_x, exit.di_y) > kFarthest || std::min(exit.di_x, exit.di_y) < -kFarthest)
+        throw std::invalid_argument("sweep: a move of (" + std::to_string(exit.di_x) + ", " + std::to_string(exit.di_y) +
+                                    ") cells is more than " + std::to_string(kFarthest) + "; propagate (exact.h) takes it");
       const auto next = static_cast<std::size_t>(exit.next_input);
       is_entered[next] = 1;
       if (exit.di_y > 0) from_below[next] = 1;
@@ -163,7 +168,8 @@ std::vector<FinalDistribution> Sweeper::march_all(const Field& field,
                                                   RowMethod method, int most_sums) const {
   validate_all(*plan_, field, starts, 0);
   if (!can_march()) throw std::invalid_argument("march: an exit leads to a row below");
-  if (!(tolerance >= 0.0)) throw std::invalid_argument("march: tolerance must not be negative");
+  if (!(tolerance >= 0.0) || most_sums < 1)
+    throw std::invalid_argument("march: tolerance must not be negative, most_sums be positive");
   return in_groups(starts, std::clamp(40 / field.columns, 1, 4), [&](const auto& group) {
     return sweep_rows(*plan_, field, group, tolerance, method, most_sums);
   });

@@ -16,6 +16,7 @@ struct SweepPlan;  // sweep.cpp
 /// one, in less time.
 class Sweeper {
  public:
+  /// Throws std::invalid_argument for moves of more than 10^4 cells.
   explicit Sweeper(const Chain& chain);
   /// For fields of as many rows as `rows` has; each distinct chain is prepared once.
   explicit Sweeper(const RowChains& rows);

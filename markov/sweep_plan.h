@@ -29,7 +29,7 @@ struct Rules {
   Table ends;                       // to kTrapped, ...
   Table walking;                    // to kTotal: all that walks on
   std::unique_ptr<const RowSolver> solver;
-  double stays = 0.0;               // mean chance to stay in the row, of inputs entered sideways
+  double stays = 0.0;               // largest chance to stay in the row, of inputs entered sideways
 };
 
 struct SweepPlan {

@@ -40,6 +40,7 @@ class Rows {
       first_ = std::min<std::int64_t>(first_, s.row);
     }
     passed_.resize(starts.size());
+    most_sums_taken_.resize(starts.size());
     choose(method);
   }
 
@@ -67,7 +68,7 @@ class Rows {
   }
 
   /// Sums of visits, in the row that took most.
-  [[nodiscard]] int most_sums_taken() const { return most_sums_taken_; }
+  [[nodiscard]] int most_sums_taken(std::size_t j) const { return most_sums_taken_[j]; }
   /// Mass that entered rows, over all rows.
   [[nodiscard]] double passed(std::size_t j) const { return passed_[j]; }
 
@@ -109,7 +110,7 @@ class Rows {
   bool enter(std::int64_t row) {
     entered_ = totals(plan_.arriving, entering_.front());
     std::vector<double> left = entered_;
-    for (std::size_t k = 1; k < entering_.size(); ++k) {
+    for (std::size_t k = 1; k < entering_.size() && row + static_cast<std::int64_t>(k) < field_.rows; ++k) {
       const std::vector<double> above = totals(plan_.arriving, entering_[k]);
       std::transform(left.begin(), left.end(), above.begin(), left.begin(), std::plus<>());
     }
@@ -146,6 +147,7 @@ class Rows {
         if (done[j]) continue;
         done[j] = walking[j] <= std::max(tolerance_ * entered_[j], kNothing);
         if (done[j]) {
+          most_sums_taken_[j] = std::max(most_sums_taken_[j], sums);
           walks_[j].remainder += walking[j];
           erase(j, now_);
           continue;
@@ -158,7 +160,6 @@ class Rows {
         ++walks_[j].steps;
         any = true;
       }
-      most_sums_taken_ = std::max(most_sums_taken_, sums);
       if (!any) return;
       add(now_, visits_);
       clear(next_);
@@ -222,8 +223,8 @@ class Rows {
     for (std::size_t k = 0; k < plan_.rules.size(); ++k) {
       const Rules& rules = plan_.rules[k];
       if (!rules.solver) continue;
-      const double width = field_.columns, rows = static_cast<double>(field_.rows - first_);
-      const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) / std::log(std::min(rules.stays, 1.0 - 1e-6));
+      const double width = field_.columns, rows = field_.rows;  // whatever the starts: same bits in any company
+      const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) / std::log(std::clamp(rules.stays, 1e-6, 1.0 - 1e-9));
       const double by_sums = rows * sums * static_cast<double>(rules.sideways.terms.size()) *
                              std::ceil(width / kLanes);
       const double by_elimination = std::min(width, 0.5 * sums) * rules.solver->column_cost() +
@@ -236,7 +237,7 @@ class Rows {
   const SweepPlan& plan_;
   Field field_;
   double tolerance_;  // share of a row, and of all rows above together
-  int most_sums_, most_sums_taken_ = 0;
+  int most_sums_;
   Board board_;
   std::ptrdiff_t stride_, all_;
   Numbers numbers_;
@@ -248,6 +249,7 @@ class Rows {
   std::int64_t first_ = 0;  // row
   std::vector<Walks> walks_;
   std::vector<double> entered_, passed_;  // per start: this row, rows until now
+  std::vector<int> most_sums_taken_;      // per start
   std::vector<std::vector<const RowSolver::Column*>> columns_;  // per chain
   std::vector<double> workspace_;
 };
@@ -264,8 +266,8 @@ std::vector<FinalDistribution> sweep_rows(const SweepPlan& plan, const Field& fi
   for (std::size_t j = 0; j < walks.size(); ++j) {
     results.push_back(walks[j].result(
         2.0 * (plan.most_terms + 4),
-        (rows.most_sums_taken() + 1) * rows.passed(j) + plan.inputs + plan.outputs + 8));
-    if (results.back().rounding > kFewDigits) refuse();
+        (rows.most_sums_taken(j) + 1) * rows.passed(j) + plan.inputs + plan.outputs + 8));
+    if (!(results.back().rounding >= 0.0 && results.back().rounding <= kFewDigits)) refuse();
   }
   return results;
 }

@@ -407,6 +407,12 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   const Chain one = Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 0}});
   EXPECT_THROW((void)solve_absorption(one, {1, 1}, {}), std::runtime_error);
   EXPECT_EQ(propagate(one, {1, 1}, {}, 0, 0.0, 7).remainder, 1.0);
+  // Rounding may make the sum of its row 1 +- 1e-16: no less a loop.
+  for (const double p : {1.0 / 6, 0.1, 0.3, 1.0 / 7}) {
+    const Chain parts = Chain::from_probabilities(matrix(1, 3, {{0, 0, p}, {0, 1, p}, {0, 2, 1.0 - 2 * p}}),
+                                                  {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+    EXPECT_THROW((void)solve_absorption(parts, {1, 1}, {}), std::runtime_error) << p;
+  }
 }
 
 TEST(Exact, TheConditionGateKeepsSixDigits) {

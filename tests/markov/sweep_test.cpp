@@ -43,7 +43,7 @@ bool same_bits(const FinalDistribution& a, const FinalDistribution& b) {
          std::memcmp(a.final_cells.data(), b.final_cells.data(), bytes) == 0 &&
          a.trapped == b.trapped && a.left_field == b.left_field && a.cut_off == b.cut_off &&
          a.unsampled == b.unsampled && a.remainder == b.remainder && a.mean_steps == b.mean_steps &&
-         a.steps == b.steps;
+         a.rounding == b.rounding && a.steps == b.steps;
 }
 
 /// Exits of the paper's kind: left, right and up only.
@@ -223,6 +223,40 @@ TEST(Sweep, PropagatesAsThePlainReference) {
       }
     }
   }
+}
+
+// What goes up by two rows and out of the field has left it, and does not remain as well; a loose tolerance
+// shows it.
+TEST(Sweep, LeapsOutOfTheTopAreCountedOnce) {
+  const Chain chain = Chain::from_probabilities(
+      matrix(2, 4, {{0, 2, 1.0}, {1, 0, 0.05}, {1, 1, 0.01}, {1, 3, 0.94}}), {{0, 0, 1}, {1, 0, 2}, {1, 0, 1}, {}});
+  for (const RowMethod method : kMethods)
+    expect_whole(Sweeper(chain).march({1, 3}, {0, 0, 0}, 0.3, method));
+}
+
+// Two states that hardly ever let go of each other, among many that do at once.
+TEST(Sweep, FindsAFewThatCircleForLong) {
+  constexpr int n = 40;
+  std::vector<Entry> entries;
+  std::vector<Exit> exits;
+  for (int i = 0; i < n; ++i) {
+    entries.push_back({i, i, i < 2 ? 1.0 - 1e-6 : 0.1});
+    entries.push_back({i, n, i < 2 ? 1e-6 : 0.9});
+    exits.push_back({i < 2 ? 1 - i : i, i % 2 == 0 ? 1 : -1, 0});
+  }
+  exits.push_back({});
+  const Chain chain = Chain::from_probabilities(matrix(n, n + 1, entries), exits);
+  const auto d = Sweeper(chain).predict({5, 1}, {2, 0, 0}, 0);
+  EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0, d.rounding + 1e-13);  // some 10^6 moves are rounded
+  EXPECT_LT(d.rounding, 1e-6);
+  expect_near(d, solve_absorption(chain, {5, 1}, {2, 0, 0}), 1e-9);
+}
+
+TEST(Sweep, RefusesMovesBeyondAnyField) {
+  const Chain chain = Chain::from_probabilities(matrix(1, 2, {{0, 0, 0.5}, {0, 1, 0.5}}), {{0, 1'000'000, 0}, {}});
+  EXPECT_THROW(Sweeper{chain}, std::invalid_argument);
+  EXPECT_THROW((void)Sweeper(Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{}})).march({1, 1}, {}, 0.1, RowMethod::sums, 0),
+               std::invalid_argument);
 }
 
 TEST(Sweep, StartInARowThatWasNeverSampled) {
