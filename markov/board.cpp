@@ -1,7 +1,5 @@
 #include "markov/board.h"
 
-#include <tuple>
-
 namespace gatewalk::markov {
 namespace {
 
@@ -10,28 +8,33 @@ constexpr std::ptrdiff_t lanes_up(std::ptrdiff_t x) { return lanes_down(x + kLan
 
 }  // namespace
 
-Table::Table(std::vector<Entry> entries) {
-  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.target, a.move, a.source) < std::tie(b.target, b.move, b.source);
-  });
-  std::size_t pass = 0;
-  int of_target = 0;
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    const Entry& e = entries[k];
-    const bool new_target = k == 0 || e.target != entries[k - 1].target;
-    if (new_target || e.move != entries[k - 1].move) {
-      pass = new_target ? 0 : pass + 1;
+Table::Table(const std::vector<Entry>& entries) {
+  // Sorted by target and move, otherwise in their order: by counting.
+  int moves = 0, targets = 0;
+  for (const Entry& e : entries) {
+    moves = std::max(moves, e.move + 1);
+    targets = std::max(targets, e.target + 1);
+  }
+  std::vector<int> end(static_cast<std::size_t>(targets * moves) + 1);
+  const auto kind = [&](const Entry& e) { return static_cast<std::size_t>(e.target * moves + e.move); };
+  for (const Entry& e : entries) ++end[kind(e) + 1];
+  for (std::size_t k = 1; k < end.size(); ++k) end[k] += end[k - 1];
+  terms.resize(entries.size());
+  for (const Entry& e : entries) {
+    int& place = end[kind(e)];  // after the last: the beginning of the next kind
+    terms[static_cast<std::size_t>(place++)] = {e.p, e.source};
+  }
+  for (int target = 0, begin = 0; target < targets; ++target) {
+    std::size_t pass = 0;
+    const int first = begin;
+    for (int move = 0; move < moves; ++move) {
+      const int next = end[static_cast<std::size_t>(target * moves + move)];
+      if (next == begin) continue;
       if (pass == passes.size()) passes.emplace_back();
-      const auto begin = static_cast<int>(terms.size());
-      passes[pass].push_back({begin, begin, e.target, e.move});
-    } else if (e.source == terms.back().source) {
-      terms.back().p += e.p;
-      continue;
+      passes[pass++].push_back({begin, next, target, move});
+      begin = next;
     }
-    terms.push_back({e.p, e.source});
-    ++passes[pass].back().end;
-    of_target = new_target ? 1 : of_target + 1;
-    most_terms = std::max(most_terms, of_target);
+    most_terms = std::max(most_terms, begin - first);
   }
 }
 

@@ -30,7 +30,7 @@ struct Table {
   int most_terms = 0;  // of a target
 
   Table() = default;
-  explicit Table(std::vector<Entry> entries);
+  explicit Table(const std::vector<Entry>& entries);
 };
 
 struct Range {

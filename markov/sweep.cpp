@@ -31,8 +31,10 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
   Rules rules{chain, {}, {}, {}, {}, {}, {}, {}, {}, nullptr, 0.0};
   std::vector<Entry> moves, first_sideways, further_sideways, ends, walking;
   std::vector<std::vector<Entry>> upwards(static_cast<std::size_t>(plan.highest));
+  std::vector<double> shares(kMoved + plan.moves.size());  // of an input, by ending
   for (int input = 0; input < plan.inputs; ++input) {
     const auto i = static_cast<std::size_t>(input);
+    std::fill(shares.begin(), shares.end(), 0.0);
     double stays = 0.0;
     if (!is_entered[i]) continue;  // no mass but that of a start, of which the first draw is made apart
     if (chain.is_sampled(input)) {
@@ -40,17 +42,17 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
       walking.push_back({kTotal, 0, input, 1.0});
     } else {
       rules.unsampled.push_back(input);
-      ends.push_back({kUnsampled, 0, input, 1.0});
+      shares[kUnsampled] = 1.0;
     }
     for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
       if (exit.next_input == Exit::kTrapped) {
-        ends.push_back({kTrapped, 0, input, it.value()});
+        shares[kTrapped] += it.value();
         continue;
       }
       const auto move = static_cast<int>(number_of(plan.moves, exit));
       const Entry entry{exit.next_input, move, input, it.value()};
-      ends.push_back({kMoved + move, 0, input, it.value()});
+      shares[static_cast<std::size_t>(kMoved + move)] += it.value();
       moves.push_back(entry);
       if (exit.di_y > 0) upwards[static_cast<std::size_t>(exit.di_y) - 1].push_back(entry);
       if (exit.di_y == 0 && from_below[i]) first_sideways.push_back(entry);
@@ -60,13 +62,15 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
       }
     }
     rules.stays = std::max(rules.stays, stays);
+    for (std::size_t ending = 0; ending < shares.size(); ++ending)
+      if (shares[ending] > 0.0) ends.push_back({static_cast<int>(ending), 0, input, shares[ending]});
   }
-  rules.moves = Table(std::move(moves));
-  rules.first_sideways = Table(std::move(first_sideways));
-  rules.sideways = Table(std::move(further_sideways));
-  for (auto& entries : upwards) rules.upwards.emplace_back(std::move(entries));
-  rules.ends = Table(std::move(ends));
-  rules.walking = Table(std::move(walking));
+  rules.moves = Table(moves);
+  rules.first_sideways = Table(first_sideways);
+  rules.sideways = Table(further_sideways);
+  for (const auto& entries : upwards) rules.upwards.emplace_back(entries);
+  rules.ends = Table(ends);
+  rules.walking = Table(walking);
   if (RowSolver::suits(chain)) rules.solver = std::make_unique<const RowSolver>(chain);
   return rules;
 }
@@ -74,7 +78,7 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
 Table totals_of(const std::vector<int>& inputs) {
   std::vector<Entry> entries;
   for (const int input : inputs) entries.push_back({kTotal, 0, input, 1.0});
-  return Table(std::move(entries));
+  return Table(entries);
 }
 
 std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains, std::vector<int> chain_of_row) {

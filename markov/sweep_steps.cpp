@@ -103,8 +103,7 @@ class Steps {
     cover(window_.bottom, window_.top, ranges);
     return ranges;
   }
-  /// Each chain's groups (a table of its rules) in its own rows.
-  /// `to`: so many stripes.
+  /// Each chain's groups (a table of its rules) in its own rows, to so many stripes.
   void push_by_rows(Table Rules::*table, const Way* ways, const double* from, double* to,
                     std::ptrdiff_t stripes) {
     const Table& first = plan_.rules.front().*table;
@@ -176,7 +175,6 @@ class Steps {
         CompensatedSum left;
         each_cell(j, [&](std::int64_t, std::int64_t, std::ptrdiff_t at) { left += tally_[kTotal * stride_ + at]; });
         w.over = stop || left.value() <= std::max(tolerance, kNothing);
-        if (w.over) w.remainder += left.value();
       }
       if (w.over) close(j);
       any = any || !w.over;
@@ -185,23 +183,25 @@ class Steps {
   }
 
   [[nodiscard]] bool walks_on(std::size_t j) const {
+    constexpr double kNobody = 1e-30;  // of all walks, in a state of a cell: far below rounding
     bool any = false;
     each_cell(j, [&](std::int64_t, std::int64_t row, std::ptrdiff_t at) {
       const auto& inputs = plan_.at(row).walking_inputs;
       any = any || std::any_of(inputs.begin(), inputs.end(), [&](int input) {
-        return now_[input * stride_ + at] > kNothing;
+        return now_[input * stride_ + at] > kNobody;
       });
     });
     return any;
   }
 
-  /// What came into states never sampled has ended; nothing else goes on.
+  /// What came into states never sampled has ended; what walks remains.
   void close(std::size_t j) {
     each_cell(j, [&](std::int64_t, std::int64_t row, std::ptrdiff_t at) {
       for (const int input : plan_.at(row).unsampled)
         visits()[input * stride_ + at] += now_[input * stride_ + at];
-      for (std::ptrdiff_t input = 0; input < plan_.inputs; ++input)
-        now_[input * stride_ + at] = 0.0;
+      for (const int input : plan_.at(row).walking_inputs)
+        walks_[j].remainder += now_[input * stride_ + at];
+      for (std::ptrdiff_t input = 0; input < plan_.inputs; ++input) now_[input * stride_ + at] = 0.0;
     });
   }
 

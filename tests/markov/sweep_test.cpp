@@ -259,6 +259,17 @@ TEST(Sweep, RefusesMovesBeyondAnyField) {
                std::invalid_argument);
 }
 
+// A limit far beyond the walks costs no steps: it is as none.
+TEST(Sweep, StopsBeforeALimitThatNobodyReaches) {
+  const Chain chain = with_gaps(1, never_down());
+  const Sweeper sweeper(chain);
+  const auto d = sweeper.propagate(kNineByNine, kBottomCentre, 1'000'000);
+  EXPECT_LT(d.steps, 1000);
+  EXPECT_EQ(d.cut_off, 0.0);
+  EXPECT_LT(d.remainder, 1e-25);
+  expect_near(d, solve_absorption(chain, kNineByNine, kBottomCentre), 1e-13);
+}
+
 TEST(Sweep, StartInARowThatWasNeverSampled) {
   const Chain chain = with_gaps(1, never_down());
   const Sweeper sweeper(chain);
