@@ -29,6 +29,7 @@ void warn_unused(const Scene& scene) {
   const auto unused = [&](const char* key, bool used, const std::string& why) {
     if (!used && scene.named.contains(key)) warn(std::string(key) + " has no effect: " + why);
   };
+  if (!scene.sweep.empty()) warn("the table [sweep] of " + scene.source + " has no effect here: gatewalk sweep runs it");
   const std::string says = "run.method = \"" + method + "\" ";
   const bool chosen = method == "auto", event = method == "event";
   unused("run.step_s", !chosen && !event, says + (chosen ? "chooses it" : "has no step"));

@@ -40,7 +40,7 @@ double number_in(const std::string& text, const Variation& v) {
 Axis axis_of(const Variation& v) {
   Axis axis{v.key, {}};
   const auto ends = split(v.values, ':');
-  if (ends.size() == 1) {
+  if (ends.size() <= 1) {
     axis.values = split(v.values, ',');
     if (axis.values.empty() || std::any_of(axis.values.begin(), axis.values.end(),
                                            [](const std::string& s) { return s.empty(); }))
@@ -118,6 +118,7 @@ std::vector<Point> grid_of(const Options& options, const std::string& scene, con
     std::vector<std::string> overrides = options.overrides();
     for (std::size_t i = 0; i < axes.size(); ++i) overrides.push_back(axes[i].key + "=" + p.values[i]);
     p.scene = parse_scene(scene, options.text("scene"), overrides);
+    p.scene.sweep.clear();  // this is one of its points
   }
   return points;
 }
@@ -163,8 +164,8 @@ std::string csv_of(const std::vector<Axis>& axes, const std::vector<Point>& poin
   return out.str();
 }
 
-std::string table_of(const std::vector<Axis>& axes, const std::vector<Point>& points) {
-  std::string text = scene_line(points.front().scene) + std::to_string(points.size()) + " points of " +
+std::string table_of(const Scene& scene, const std::vector<Axis>& axes, const std::vector<Point>& points) {
+  std::string text = scene_line(scene) + "but for the keys varied. " + std::to_string(points.size()) + " points of " +
                      std::to_string(points.front().tally.trials) +
                      " trials, all under the same noise; % of them with 95 % intervals.\n\n";
   std::vector<int> widths;
@@ -266,7 +267,7 @@ int run_sweep(const std::vector<std::string>& arguments) {
     if (!options.text("json").empty()) options.give_out(json, "");
   } else {
     if (!csv.empty()) write_text_atomically(csv, csv_of(axes, points));
-    options.give_out(json, table_of(axes, points));
+    options.give_out(json, table_of(scene, axes, points));
   }
   if (!health.clean()) warn(complaint(health));
   return kFine;
