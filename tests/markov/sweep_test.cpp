@@ -1,7 +1,6 @@
 #include "markov/sweep.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <stdexcept>
 
 #include "chains.h"
+#include "tests/support/instruction_sets.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -473,16 +473,11 @@ TEST(Sweep, HasTheSameBitsWithAnyInstructionSet) {
       return results;
     };
     const auto before = all();
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      SCOPED_TRACE(hwy::TargetName(target));
-      hwy::SetSupportedTargetsForTest(target);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    gatewalk::test::on_every_instruction_set([&] {
       const auto now = all();
       ASSERT_EQ(now.size(), before.size());
       for (std::size_t k = 0; k < now.size(); ++k) EXPECT_TRUE(same_bits(before[k], now[k])) << k;
-      hwy::SetSupportedTargetsForTest(0);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    }
+    });
   }
 }
 

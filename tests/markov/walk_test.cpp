@@ -2,19 +2,18 @@
 
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <stdexcept>
 
 #include "chains.h"
 #include "markov/exact.h"
+#include "tests/support/instruction_sets.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -55,18 +54,6 @@ Walked plainly(const Walker& walker, const Field& field, const Start& start, int
   Walked walked;
   walked.tally = walker.walk_plainly(field, start, max_cells, kLongSeed, range, &walked.final_cells);
   return walked;
-}
-
-/// Calls `run` with every instruction set that there is here.
-void with_every_target(const std::function<void()>& run) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    run();
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
 }
 
 /// Rows 0, 12 (where kBottomCentre starts), 40 and 86 were never sampled.
@@ -313,7 +300,7 @@ TEST(Walk, IsTheSameWithAnyInstructionSet) {
   const WalkRange range{7, 3001};
   const Walked limited = plainly(walker, kNineByNine, start, 13, range);
   const Walked free = plainly(walker, {33, 33}, start, 0, range);
-  with_every_target([&] {
+  gatewalk::test::on_every_instruction_set([&] {
     EXPECT_EQ(in_lanes(walker, kNineByNine, start, 13, range), limited);
     EXPECT_EQ(in_lanes(walker, {33, 33}, start, 0, range), free);
   });
@@ -340,7 +327,7 @@ TEST(Walk, TheLowHalfOfAWordCounts) {
   EXPECT_EQ(word, 0x40000000c60f51e4U);
   EXPECT_EQ(walker.draw(0, 0x400000009fffffff), 0);
   EXPECT_EQ(walker.draw(0, 0x40000000a0000000), 1);
-  with_every_target([&] {
+  gatewalk::test::on_every_instruction_set([&] {
     EXPECT_EQ(walker.walk({1, 1}, {0, 0, 0}, 0, 99, {kWalk, 1}).left_field, 1);
   });
 }
