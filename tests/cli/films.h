@@ -1,0 +1,44 @@
+#pragma once
+/// A small film, made by hand: the body goes straight ahead and pushes both beams aside.
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/command.h"
+
+namespace gatewalk::cli {
+
+/// `steps` steps of 0.02 s; the body moves 0.5 m in each.
+inline Json small_film(int steps = 50) {
+  Json run = {{"label", "trial 1: traversed left after " + std::to_string(steps / 50) + " s"},
+              {"ending", "traversed left"},
+              {"propulsion_N", 7.0}};
+  for (const char* name : {"t", "gx", "gy", "x", "y", "vx", "vy", "left", "right", "contact_left", "contact_right",
+                           "random_N", "body_J", "beams_J", "elastic_J", "work_J", "lost_J", "lost_in_hits_J"})
+    run[name] = Json::array();
+  for (int i = 0; i <= steps; ++i) {
+    const double y = 0.5 * i, pushed = std::clamp(0.05 * (y - 15.0), 0.0, 1.2);
+    const int contact = pushed == 0.0 ? 0 : y < 17.0 ? 1 : 2;
+    run["t"].push_back(0.02 * i);
+    run["gx"].push_back(0);
+    run["gy"].push_back(0);
+    run["x"].push_back(0.0);
+    run["y"].push_back(y);
+    run["vx"].push_back(0.0);
+    run["vy"].push_back(25.0);
+    for (const char* side : {"left", "right"}) run[side].push_back(pushed);
+    for (const char* side : {"contact_left", "contact_right"}) run[side].push_back(contact);
+    run["random_N"].push_back(10.0 * std::sin(i));
+    run["body_J"].push_back(312.5);
+    run["beams_J"].push_back(i % 3);
+    run["elastic_J"].push_back(250.0 * pushed * pushed);
+    run["work_J"].push_back(7.0 * y);
+    run["lost_J"].push_back(3.0 * y);
+    run["lost_in_hits_J"].push_back(0.0);
+  }
+  return {{"title", "A small film"}, {"radius_m", 10.0}, {"beam_m", 25.0}, {"joint_x_m", 25.0},
+          {"joint_y_m", 30.0},       {"gate_m", {50.0, 60.0}}, {"columns", 1}, {"rows", 1},
+          {"start_column", 0},       {"runs", {run}}};
+}
+
+}  // namespace gatewalk::cli

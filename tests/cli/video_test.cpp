@@ -1,0 +1,199 @@
+#include "cli/video.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "cli/child.h"
+#include "cli/interrupt.h"
+#include "tests/cli/films.h"
+
+namespace gatewalk::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Video : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "gatewalk-video-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    path_ = std::getenv("PATH");
+  }
+  void TearDown() override {
+    ::setenv("PATH", path_.c_str(), 1);
+    fs::remove_all(folder_);
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::ptrdiff_t files() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator{});
+  }
+  /// A folder that stands alone in PATH, with an ffmpeg that does as told.
+  void instead_of_ffmpeg(const std::string& script) {
+    fs::create_directory(folder_ / "bin");
+    std::ofstream(path("bin/ffmpeg")) << "#!/bin/sh\n" << script << "\n";
+    ::chmod(path("bin/ffmpeg").c_str(), 0700);
+    ::setenv("PATH", path("bin").c_str(), 1);
+  }
+
+  fs::path folder_;
+  std::string path_;
+};
+
+std::string complaint_of(const std::string& path, const Json& film = small_film(5), int run = 0,
+                         const VideoOptions& options = {}) {
+  try {
+    write_video(path, film, run, options);
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "(written)";
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What ffprobe says of a video, "name=value" by lines, with its pictures counted one by one.
+std::string probed(const std::string& path) {
+  const File nothing = scratch_file();
+  Child ffprobe({"ffprobe", "-v", "error", "-count_frames", "-show_streams", "-show_format", path},
+                ::fileno(nothing.get()), "ffprobe was not found");
+  return ffprobe.output();
+}
+
+double number(const std::string& words, const std::string& name) {
+  const std::size_t at = words.find("\n" + name + "=");
+  return at == words.npos ? -1.0 : std::strtod(words.c_str() + at + name.size() + 2, nullptr);
+}
+
+TEST_F(Video, IsOneThatPlaysEverywhere) {
+  write_video(path("a.mp4"), small_film(), 0);  // 1 s, then a second that stands
+  const std::string words = probed(path("a.mp4"));
+  for (const char* fact : {"codec_name=h264", "pix_fmt=yuv420p", "width=1280", "height=720", "r_frame_rate=50/1",
+                           "color_space=bt709", "nb_streams=1"})
+    EXPECT_NE(words.find(std::string("\n") + fact + "\n"), words.npos) << fact << "\n" << words;
+  EXPECT_EQ(number(words, "nb_read_frames"), 101);
+  EXPECT_NEAR(number(words, "duration"), 2.02, 0.001);
+  const std::string video = bytes_of(path("a.mp4"));
+  EXPECT_LT(video.find("moov"), video.find("mdat")) << "plays before all of it is there";
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(Video, SpeedAndFramesPerSecond) {
+  write_video(path("a.mp4"), small_film(), 0, {.speed = 0.5, .frames_per_second = 10.0});
+  const std::string words = probed(path("a.mp4"));
+  EXPECT_EQ(number(words, "nb_read_frames"), 20 + 1 + 10);
+  EXPECT_NEAR(number(words, "duration"), 3.1, 0.001);
+}
+
+/// The mean of red, green and blue of the picture at a time, in a box of it.
+std::array<double, 3> mean_colour(const std::string& path, double time, const std::string& box) {
+  const File nothing = scratch_file();
+  Child ffmpeg({"ffmpeg", "-v", "error", "-i", path, "-ss", std::to_string(time), "-frames:v", "1", "-vf",
+                "crop=" + box, "-f", "rawvideo", "-pix_fmt", "rgb24", "pipe:1"},
+               ::fileno(nothing.get()), "ffmpeg was not found");
+  const std::string pixels = ffmpeg.output();
+  std::array<double, 3> mean{};
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    mean[i % 3] += static_cast<unsigned char>(pixels[i]) * 3.0 / static_cast<double>(pixels.size());
+  return mean;
+}
+
+TEST_F(Video, ShowsTheBodyMovingAndTheBeamsInTheirColours) {
+  write_video(path("a.mp4"), small_film(), 0);
+  // At rest the beams lie across the stage's middle: blue on the left, red on the right.
+  const auto left = mean_colour(path("a.mp4"), 0.0, "60:4:400:327"), right = mean_colour(path("a.mp4"), 0.0, "60:4:500:327");
+  EXPECT_GT(left[2], left[0] + 80) << "left beam";
+  EXPECT_GT(right[0], right[2] + 80) << "right beam";
+  // Where the body was at the start there is bare ground at the end.
+  const std::string start = "20:20:490:590";
+  EXPECT_GT(mean_colour(path("a.mp4"), 1.5, start)[0], mean_colour(path("a.mp4"), 0.0, start)[0] + 5);
+}
+
+TEST_F(Video, MissingFfmpegIsSaidAndLeavesNothing) {
+  ::setenv("PATH", "/nonexistent", 1);
+  EXPECT_EQ(complaint_of(path("a.mp4")), "ffmpeg was not found; it packs the video (Debian: ffmpeg)");
+  EXPECT_EQ(files(), 0);
+}
+
+TEST_F(Video, FailuresCarryFfmpegsWordsAndLeaveTheOldFile) {
+  std::ofstream(path("a.mp4")) << "old";
+  instead_of_ffmpeg("echo no disk, no film >&2; exit 3");
+  // Enough pictures for it to go away in their middle.
+  EXPECT_EQ(complaint_of(path("a.mp4"), small_film(50)), "ffmpeg failed: no disk, no film");
+  EXPECT_EQ(bytes_of(path("a.mp4")), "old");
+  instead_of_ffmpeg("exit 0");
+  EXPECT_EQ(complaint_of(path("a.mp4"), small_film(50)), "ffmpeg stopped reading before the end");
+  EXPECT_EQ(bytes_of(path("a.mp4")), "old");
+  EXPECT_EQ(files(), 2) << "a.mp4 and bin";
+}
+
+TEST_F(Video, AFileThatCannotBeWrittenIsSaidAtOnce) {
+  ::setenv("PATH", "/nonexistent", 1);  // before ffmpeg is looked for
+  EXPECT_NE(complaint_of(path("none/a.mp4")).find("No such file or directory"), std::string::npos);
+}
+
+TEST_F(Video, RefusesAFilmThatIsIncomplete) {
+  Json film = small_film(5);
+  film["runs"][0].erase("left");
+  EXPECT_NE(complaint_of(path("a.mp4"), film).find("key 'left' not found"), std::string::npos);
+  film = small_film(5);
+  film["runs"][0]["x"].erase(0);
+  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: x has 5 entries, t has 6");
+  film = small_film(5);
+  film["runs"][0]["vy"][2] = nullptr;
+  EXPECT_NE(complaint_of(path("a.mp4"), film).find("film: "), std::string::npos);
+  film = small_film(5);
+  film["runs"][0]["contact_left"][3] = 4;
+  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: a contact is none of 0, 1, 2");
+  film = small_film(5);
+  film["runs"][0]["t"][1] = 7.0;
+  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: t goes back in time");
+  for (const int run : {-1, 1}) EXPECT_NE(complaint_of(path("a.mp4"), small_film(5), run).find("film: "), std::string::npos);
+  for (const double speed : {0.0, -1.0, std::nan("")})
+    EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.speed = speed}), "a video's speed must be above 0");
+  EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.frames_per_second = 0.0}),
+            "a video has 1 to 240 frames a second");
+  EXPECT_EQ(files(), 0);
+}
+
+using VideoDeathTest = Video;
+
+TEST_F(VideoDeathTest, CtrlCEndsItAndLeavesNothing) {
+  // With an ffmpeg that reads nothing, and with one that does not end.
+  for (const char* script : {"exec /bin/sleep 60", "/bin/cat >/dev/null; exec /bin/sleep 60"}) {
+    instead_of_ffmpeg(script);
+    EXPECT_EXIT(
+        {
+          install_interrupt_handler();
+          std::thread([] {
+            std::this_thread::sleep_for(std::chrono::seconds(2));
+            ::kill(::getpid(), SIGINT);
+          }).detach();
+          try {
+            write_video(path("a.mp4"), small_film(5), 0);
+          } catch (const Interrupted&) {
+            ::_exit(7);
+          }
+          ::_exit(1);
+        },
+        testing::ExitedWithCode(7), "");
+    EXPECT_EQ(files(), 1) << "bin";
+  }
+}
+
+}  // namespace
+}  // namespace gatewalk::cli
