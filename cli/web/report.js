@@ -121,7 +121,7 @@
       const place = document.createElement('div');
       const result = await vegaEmbed(place, {
         $schema: 'https://vega.github.io/schema/vega-lite/v6.json',  // a name, never fetched
-        background: null, width, height: one.height, autosize: {type: 'fit', contains: 'padding'}, config: look(), ...made.spec,
+        background: null, width, height: made.height ?? one.height, autosize: {type: 'fit', contains: 'padding'}, config: look(), ...made.spec,
       }, {actions: false, renderer: 'svg', defaultStyle: false, tooltip: {disableDefaultStyle: true}});
       if (turn !== one.turn) return result.finalize();
       one.finalize?.();
@@ -191,7 +191,8 @@
           encoding: {color: {field: 'value', type: 'quantitative', scale: {range, domain, clamp: true}, legend: null}}},
         {mark: {type: 'text', fontSize: size},
           encoding: {text: {field: 'text'},
-            color: {condition: {test: `datum.value > ${limit}`, value: bright.above}, value: bright.below}}},
+            color: {condition: [{test: 'datum.value === null', value: css('ink')}, {test: `datum.value > ${limit}`, value: bright.above}],
+              value: bright.below}}},
       ],
     };
   }
@@ -230,24 +231,25 @@
 
   /// The camera, farther away where there is little width for the axes' names.
   function from(name, width) {
-    const {eye, ...rest} = kCameras[name], far = width < 440 ? 1.25 : 1;
+    const {eye, ...rest} = kCameras[name], far = width < 440 ? 1.1 : 1;
     return {eye: {x: eye.x * far, y: eye.y * far, z: eye.z * far}, up: {x: 0, y: 0, z: 1}, ...rest};
   }
 
   function draw3d(one, {traces, camera, zTitle, zRange}, width) {
     library('plotly-gl3d.min.js');
-    const ink = css('ink'), line = css('line');
+    const ink = css('ink'), line = css('line'), height = Math.min(one.height, Math.round(0.95 * width));
+    one.box.style.minHeight = `${height}px`;
     const axis = (title, more) => ({title: {text: title, font: {size: 13}}, color: ink, gridcolor: line, zerolinecolor: line,
       showbackground: false, tickfont: {size: 12}, showspikes: false, ...more});
-    const flat = camera === 'above';
+    const flat = camera === 'above', size = flat ? 1.35 : 1;  // without perspective, the size is that of the box itself
     const layout = {
-      width, height: one.height, margin: {l: 0, r: 0, t: 0, b: 0}, showlegend: false, paper_bgcolor: 'rgba(0,0,0,0)',
+      width, height, margin: {l: 0, r: 0, t: 0, b: 0}, showlegend: false, paper_bgcolor: 'rgba(0,0,0,0)',
       font: {family: getComputedStyle(document.body).fontFamily, color: ink, size: 13},
       hoverlabel: {bgcolor: css('card'), bordercolor: line, font: {color: ink, size: 14}},
       scene: {
-        xaxis: axis('x (m)', {nticks: 6}), yaxis: axis('y (m)', {nticks: 7}),
+        xaxis: axis('x (m)', {nticks: 6, ...(flat ? {tickangle: 0} : {})}), yaxis: axis('y (m)', {nticks: 7}),
         zaxis: axis(flat ? '' : zTitle, {range: zRange, nticks: 5, showticklabels: !flat}),
-        aspectmode: 'manual', aspectratio: {x: 1, y: 1.2, z: 0.6}, camera: from(camera, width), dragmode: 'turntable',
+        aspectmode: 'manual', aspectratio: {x: size, y: 1.2 * size, z: 0.6 * size}, camera: from(camera, width), dragmode: 'turntable',
       },
     };
     Plotly.react(one.box, traces, layout, {displayModeBar: false, scrollZoom: true});
@@ -269,10 +271,10 @@
     return {
       type: 'surface', x, y, z: z.map(row => row.map(cut)), text: z.map(row => row.map(v => v === null ? '' : v.toFixed(0))),
       hovertemplate: 'x %{x:.1f} m, y %{y:.1f} m<br>%{text} J<extra></extra>', opacity, showscale: scale,
-      colorbar: {thickness: 12, len: 0.8, title: {text: 'J', side: 'right'}, outlinewidth: 0},
+      colorbar: {thickness: 12, len: 0.8, title: {text: 'J', side: 'top'}, outlinewidth: 0},
       colorscale: colours ?? 'Viridis', lighting: {ambient: 0.72, diffuse: 0.5, specular: 0.04, roughness: 0.9},
       contours: {z: {show: true, usecolormap: false, start: 50, end: 5000, size: 50,
-        color: dark ? 'rgba(255,255,255,.25)' : 'rgba(0,0,0,.25)', width: 1}},
+        color: dark ? '#6a727d' : '#9299a2', width: 1}},
     };
   }
   const faint = () => dark ? [[0, '#2a3038'], [1, '#8b96a3']] : [[0, '#eceae6'], [1, '#9aa1a9']];
@@ -317,8 +319,8 @@
         make: width => ({spec: heat(rows.filter(r => r.damping === damping && r.propulsion === propulsion).map(r => ({...r,
           x: r.k_left, y: r.random, value: r.right, text: r.right === null ? '–' : `${Math.round(100 * r.right)}`,
           Right: r.right === null ? 'none traversed' : `${percent(r.right)} ${interval(r)}`, Of: `${r.successes} of ${r.trials} trials`})),
-        {x: 'left beam stiffness (N·m/rad)', y: 'random force (N)', range: ramp('cividis', 0, 1, 9), domain: [0, high],
-          bright: {from: 0.55, above: '#111111', below: '#ffffff'}, width,
+        {x: 'left beam stiffness (N·m/rad)', y: 'random force (N)', range: ramp('viridis', 0, 1, 9), domain: [0, high],
+          bright: {from: 0.6, above: '#111111', below: '#ffffff'}, width,
           tooltip: [tip('k_left', 'Left stiffness, N·m/rad'), tip('random', 'Random force, N'), tip('Right', 'Right, 95 %'),
             tip('Of', 'Traversed')]})})});
     }
@@ -378,11 +380,11 @@
     const state = {camera: 'slanted'};
     views(chart, state);
     drawing(chart, {title: 'Potential energy against time', height: 330, wide: true,
-      note: 'Shaded: the system lies below the landscape of both beams, its trajectory penetrates the surface.', make: () => ({
+      note: 'Shaded: the system lies below the landscape of both beams, its trajectory penetrates the surface.', make: width => ({
         keys: lines.map(([, label, c, symbol]) => [symbol, colour(c), label]),
         spec: {
           data: {values},
-          encoding: {x: {field: 't', type: 'quantitative', title: 'time (s)', axis: {grid: false}, scale: {nice: false}}},
+          encoding: {x: {field: 't', type: 'quantitative', title: 'time (s)', axis: {grid: false, tickCount: Math.floor(width / 90)}, scale: {nice: false}}},
           layer: [
             {mark: {type: 'area', opacity: 0.25, color: colour('orange')}, encoding: {y: {field: 'potential', type: 'quantitative',
               title: 'energy (J)'}, y2: {field: 'top'}}},
@@ -462,17 +464,16 @@
     for (const [field, title, better] of [['corrcoef', 'Correlation coefficient', 'right is better'], ['rmse', 'RMSE, trials per 100', 'left is better']]) {
       const values = rows.map((r, i) => ({i, label: r.start, paper: r[`paper_${field}`], ours: r[field], floor: r[`${field}_floor`],
         low: r[field] - r[`${field}_sd`], high: r[field] + r[`${field}_sd`],
-        value: `paper ${r[`paper_${field}`]}, here ${r[field].toFixed(3)} ± ${r[`${field}_sd`].toFixed(3)}`,
         Ours: `${r[field].toFixed(3)} ± ${r[`${field}_sd`].toFixed(3)}`}));
-      const spot = (f, mark) => ({mark: {yOffset: 9, ...mark}, encoding: {x: {field: f, type: 'quantitative'},
+      const spot = (f, yOffset, mark) => ({mark: {yOffset, opacity: 1, ...mark}, encoding: {x: {field: f, type: 'quantitative'},
         tooltip: [tip('label', 'Start'), tip('paper', 'Paper'), tip('Ours', 'Here ± sd'), {field: 'floor', title: 'Noise floor', format: '.3f'}]}});
-      drawing(chart, {title: `${title} (${better})`, height: 60 + 50 * rows.length, make: width => ({
+      drawing(chart, {title: `${title} (${better})`, height: 70 + 48 * rows.length, make: width => ({
         keys: [['diamond', css('ink'), 'paper'], ['dot', colour('blue'), 'here ± sd'], ['tick', colour('grey'), 'noise floor']],
-        spec: lanes(values, {x: {title: title.replace('Corr', 'corr'), scale: {zero: false}}, width, label: 'label', value: null, marks: [
-          {mark: {type: 'rule', yOffset: 9, strokeWidth: 2.5, color: colour('blue')}, encoding: {x: {field: 'low', type: 'quantitative'}, x2: {field: 'high'}}},
-          spot('floor', {type: 'tick', color: colour('grey'), thickness: 3, size: 20, opacity: 1}),
-          spot('ours', {type: 'point', color: colour('blue'), size: 90, opacity: 1}),
-          spot('paper', {type: 'point', shape: 'diamond', filled: false, color: css('ink'), size: 110, strokeWidth: 2, opacity: 1}),
+        ...lanes(values, {x: {title: title.replace('Corr', 'corr'), scale: {zero: false}}, width, label: 'label', marks: below => [
+          {mark: {type: 'rule', yOffset: below, strokeWidth: 2.5, color: colour('blue')}, encoding: {x: {field: 'low', type: 'quantitative'}, x2: {field: 'high'}}},
+          spot('floor', below, {type: 'tick', color: colour('grey'), thickness: 3, size: 20}),
+          spot('ours', below, {type: 'point', color: colour('blue'), size: 90}),
+          spot('paper', below, {type: 'point', shape: 'diamond', filled: false, color: css('ink'), size: 110, strokeWidth: 2}),
         ]}),
       })});
     }
@@ -483,18 +484,23 @@
     {...layer, mark: {...layer.mark, stroke: css('card'), strokeWidth: 5, strokeJoin: 'round', color: css('card')},
       encoding: {...layer.encoding, color: {value: css('card')}}}, layer];
 
-  /// Rows with their name above, so that long names need no room at the side, and a value at the right.
+  /// Rows with their name above, so that long names need no room at the side, and a value: at the right, or below the
+  /// name where there is little width. `marks` puts the marks `below` pixels below the middle of a row.
   function lanes(values, {x, width, label, value, marks}) {
+    const narrow = value && width < 620, below = narrow ? 18 : 9;
     const y = {field: 'i', type: 'ordinal', axis: null, scale: {paddingInner: 0, paddingOuter: 0.1}};
-    const text = (field, more) => haloed({mark: {type: 'text', baseline: 'bottom', yOffset: -2, limit: width - 20, ...more},
-      encoding: {text: {field}, x: {value: more.align === 'left' ? 2 : 'width'}}});
+    const text = (field, right, yOffset, more) => haloed({mark: {type: 'text', baseline: 'bottom', yOffset, align: right ? 'right' : 'left',
+      limit: width - (value && !narrow ? 190 : 12), ...more}, encoding: {text: {field}, x: {value: right ? 'width' : 2}}});
     return {
-      data: {values},
-      encoding: {y, x: {type: 'quantitative', axis: {grid: true, tickCount: Math.max(3, Math.floor(width / 110)), ...x.axis}, title: x.title, scale: x.scale ?? {}}},
-      layer: [
-        {mark: {type: 'rule', yOffset: 9, color: css('line')}, encoding: {x: {value: 0}, x2: {value: 'width'}}},
-        ...marks, ...text(label, {align: 'left'}), ...(value ? text(value, {align: 'right', fontWeight: 600}) : []),
-      ],
+      height: 70 + (narrow ? 62 : 48) * values.length,
+      spec: {
+        data: {values},
+        encoding: {y, x: {type: 'quantitative', axis: {grid: true, tickCount: Math.max(3, Math.floor(width / 110)), ...x.axis}, title: x.title, scale: x.scale ?? {}}},
+        layer: [
+          {mark: {type: 'rule', yOffset: below, color: css('line')}, encoding: {x: {value: 0}, x2: {value: 'width'}}},
+          ...marks(below), ...text(label, false, narrow ? -10 : -2), ...(value ? text(value, !narrow, narrow ? 8 : -2, {fontWeight: 600}) : []),
+        ],
+      },
     };
   }
 
@@ -510,18 +516,18 @@
     const values = rows.map((r, i) => ({...r, i, group: r.group ?? '',
       number: show(r.value) + (r.low === null || r.low === undefined ? '' : share ?
         ` [${(100 * r.low).toFixed(1)}, ${(100 * r.high).toFixed(1)}]` : ` [${three(r.low)}, ${three(r.high)}]`)}));
-    drawing(chart, {height: 70 + 46 * rows.length, make: width => {
+    drawing(chart, {height: 70 + 48 * rows.length, make: width => {
       const c = by_group(groups);
       const of_mark = m => groups.includes(m.group) ? c.scale.range[groups.indexOf(m.group)] : css('muted');
       const tooltip = [tip('label', ' '), tip('number', 'Value, 95 %')];
       return {
         keys: [...group_keys(groups), ...marks.map(m => ['dash', of_mark(m), m.label])],
-        spec: lanes(values, {width, label: 'label', value: 'number', x: {title: share ? '%' : unit,
-          axis: share ? {labelExpr: 'format(100*datum.value, ".3~g")'} : {}, scale: {zero: true}}, marks: [
+        ...lanes(values, {width, label: 'label', value: 'number', x: {title: share ? '%' : unit,
+          axis: share ? {labelExpr: 'format(100*datum.value, ".3~g")'} : {}, scale: {zero: true}}, marks: below => [
           ...marks.map(m => ({data: {values: [m]}, mark: {type: 'rule', strokeDash: [5, 4], strokeWidth: 2, color: of_mark(m)},
             encoding: {x: {field: 'value', type: 'quantitative'}, y: null, tooltip: [tip('label', ' ')]}})),
-          {mark: {type: 'rule', yOffset: 9, strokeWidth: 2.5}, encoding: {x: {field: 'low', type: 'quantitative'}, x2: {field: 'high'}, color: c, tooltip}},
-          {mark: {type: 'point', yOffset: 9, size: 90, opacity: 1}, encoding: {x: {field: 'value', type: 'quantitative'}, color: c, tooltip}},
+          {mark: {type: 'rule', yOffset: below, strokeWidth: 2.5}, encoding: {x: {field: 'low', type: 'quantitative'}, x2: {field: 'high'}, color: c, tooltip}},
+          {mark: {type: 'point', yOffset: below, size: 90, opacity: 1}, encoding: {x: {field: 'value', type: 'quantitative'}, color: c, tooltip}},
         ]}),
       };
     }});
@@ -530,10 +536,10 @@
   kinds.speed = (chart, {rows}) => {
     const groups = groups_of(rows);
     const values = rows.map((r, i) => ({...r, i, group: r.group ?? '', number: seconds_text(r.seconds)}));
-    drawing(chart, {height: 70 + 46 * rows.length, make: width => ({keys: group_keys(groups), spec: lanes(values, {width, label: 'label', value: 'number',
+    drawing(chart, {height: 70 + 48 * rows.length, make: width => ({keys: group_keys(groups), ...lanes(values, {width, label: 'label', value: 'number',
       x: {title: 'time (logarithmic)', scale: {type: 'log'}, axis: {values: [1e-6, 1e-3, 1, 60, 3600, 86400, 31557600],
         labelExpr: '{"0.000001": "1 µs", "0.001": "1 ms", "1": "1 s", "60": "1 min", "3600": "1 h", "86400": "1 day", "31557600": "1 year"}[datum.value]'}},
-      marks: [{mark: {type: 'point', yOffset: 9, size: 100, opacity: 1},
+      marks: below => [{mark: {type: 'point', yOffset: below, size: 100, opacity: 1},
         encoding: {x: {field: 'seconds', type: 'quantitative'}, color: by_group(groups), tooltip: [tip('label', ' '), tip('number', 'Time')]}}]})})});
   };
 

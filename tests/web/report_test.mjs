@@ -10,7 +10,7 @@ if (!report) throw new Error('node report_test.mjs REPORT.html [FOLDER]');
 if (folder) mkdirSync(folder, {recursive: true});
 
 const desktop = {viewport: {width: 1300, height: 900}, colorScheme: 'light'};
-const phone = {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true, colorScheme: 'light'};
+const phone = {viewport: {width: 390, height: 844}, deviceScaleFactor: folder ? 2 : 1, isMobile: true, hasTouch: true, colorScheme: 'light'};
 
 /// Every chart, one after the other, scrolled to and drawn: marks of Vega or a canvas of some size.
 async function see_all_charts(page, shots) {
