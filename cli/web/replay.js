@@ -359,6 +359,7 @@ const gatewalkReplay = (() => {
     // A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width.
     const wanted = 0.2 * w / scale, power = 10 ** Math.floor(Math.log10(wanted));
     const length = power * [5, 2, 1].find((k) => k * power <= wanted);
+    ctx.globalAlpha = 0.85; ctx.fillStyle = c.stage; ctx.fillRect(6, h - 32, length * scale + 12, 28); ctx.globalAlpha = 1;
     ctx.fillStyle = c.muted; ctx.font = `12px ${font}`; ctx.textAlign = 'left'; ctx.textBaseline = 'bottom';
     ctx.fillText(`${length} m`, 12, h - 14);
     ctx.beginPath(); ctx.moveTo(12, h - 10); ctx.lineTo(12 + length * scale, h - 10);
@@ -505,8 +506,8 @@ const gatewalkReplay = (() => {
     });
     legend.append(row('left', swatch('blue', []), 'left beam'), row('right', swatch('red', []), 'right beam'),
       row('propulsion', swatch('orange', [], true), 'propulsion'), row('random', swatch('grey', [], true), 'random force'),
-      row('speed', made('span'), 'speed of the body'),
-      ...(field ? [row('gate', made('span'), 'gate (column, row)')] : []));
+      row('speed', swatch('card', []), 'speed of the body'),
+      ...(field ? [row('gate', swatch('card', []), 'gate (column, row)')] : []));
     root.append(
       made('div', 'gwr-columns', {},
         made('div', '', {}, made('div', 'gwr-status', {}, clock, mode), stageBox, bar,
@@ -524,7 +525,13 @@ const gatewalkReplay = (() => {
       return [ctx, w, height];
     };
     const put = (node, text) => { if (node.textContent !== text) node.textContent = text; };
-    const contactWords = (state) => ['left', 'right'].map((side) => `${side} beam ${kContacts[state.contact[side]]}`).join(', ');
+    // While it plays, words and numbers change at most ten times a second and a hit is named for a moment, so that
+    // they can be read; at rest they are those of the very step.
+    const contactWord = (state, side) => {
+      const hit = run.lastHit[side][state.i];
+      return kContacts[playing && state.contact[side] === 0 && hit >= 0 && state.time - run.t[hit] < 0.1 ? 1 : state.contact[side]];
+    };
+    let toldAt = -Infinity;
 
     function stageHeight() {
       const most = Math.max(320, Math.min(0.72 * window.innerHeight, 680));
@@ -540,13 +547,15 @@ const gatewalkReplay = (() => {
       for (const {keys, canvas} of panels)
         drawChart(...sized(canvas, canvas.clientHeight), colours, font, run, keys, time);
       put(clock, secondsText(time));
-      put(mode, ended ? `ended: ${run.ending}` : contactWords(state));
-      mode.classList.toggle('gwr-ended', ended);
       slider.value = time;
+      if (playing && performance.now() - toldAt < 100) return;
+      toldAt = performance.now();
+      put(mode, ended ? `ended: ${run.ending}` : ['left', 'right'].map((side) => `${side} beam ${contactWord(state, side)}`).join(', '));
+      mode.classList.toggle('gwr-ended', ended);
       if (!playing) slider.setAttribute('aria-valuetext', `${secondsText(time)}, ${mode.textContent}`);
       for (const {keys} of panels) for (const key of keys) put(values[key], joulesText(state[key]));
       for (const side of ['left', 'right'])
-        put(values[side], `${kContacts[state.contact[side]]}, ${fixed(state[side] * 180 / Math.PI, 0)}°`);
+        put(values[side], `${contactWord(state, side)}, ${fixed(state[side] * 180 / Math.PI, 0)}°`);
       put(values.propulsion, `${fixed(run.propulsion_N, 1)} N`);
       put(values.random, `${fixed(state.random, 1)} N`);
       put(values.speed, `${fixed(Math.hypot(state.vx, state.vy), 1)} m/s`);
