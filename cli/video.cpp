@@ -229,8 +229,8 @@ using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
 class Picture {
  public:
-  explicit Picture(const Film& film)
-      : film_(film), run_(film.run),
+  Picture(const Film& film, double speed)
+      : film_(film), run_(film.run), speed_(speed),
         surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, kWidth, kHeight), cairo_surface_destroy),
         cr_(cairo_create(surface_.get()), cairo_destroy) {
     check();
@@ -266,8 +266,9 @@ class Picture {
     } else {
       stage(kArea, state, whole);
     }
-    // Words and numbers change ten times a second, so that they can be read.
-    panel(952, state, time < run_.t.back() ? state_at(run_, std::floor(10.0 * time + 1e-9) / 10.0) : state);
+    // Words and numbers change ten times in a second of the film, so that they can be read.
+    const double word = 0.1 * speed_, start = run_.t.front();
+    panel(952, state, time < run_.t.back() ? state_at(run_, start + word * std::floor((time - start) / word + 1e-9)) : state);
     check();
     cairo_surface_flush(surface_.get());
     return {reinterpret_cast<const char*>(cairo_image_surface_get_data(surface_.get())),
@@ -440,10 +441,11 @@ class Picture {
         cairo_fill_preserve(cr);
         stroke(own, 0.7 * thick);
       }
-      constexpr double kFlash = 0.25;  // s for which a hit stays to be seen
+      // s of the run for which a hit stays to be seen
+      const double flash = 0.25 * std::max(1.0, speed_);
       if (s.last_hit[side] < 0) continue;
       const auto i = static_cast<std::size_t>(s.last_hit[side]);
-      const double grown = (s.time - run_.t[i]) / kFlash;
+      const double grown = (s.time - run_.t[i]) / flash;
       if (grown > 1.0) continue;
       const Segment then = beam_of(film_, run_.gx[i], run_.gy[i], side, side == kLeft ? run_.left[i] : run_.right[i]);
       circle(at(nearest(then, {run_.X[i], run_.Y[i]})), thick * (1.6 + 2.6 * grown));
@@ -492,7 +494,7 @@ class Picture {
     for (const Side side : {kLeft, kRight}) {
       // A hit is named for a moment.
       const int hit = s.last_hit[side];
-      const bool just_hit = hit >= 0 && s.time - run_.t[static_cast<std::size_t>(hit)] < 0.1;
+      const bool just_hit = hit >= 0 && s.time - run_.t[static_cast<std::size_t>(hit)] < 0.1 * speed_;
       const int contact = s.contact[side] == 0 && just_hit ? 1 : s.contact[side];
       row(side == kLeft ? kBlue : kRed, false, side == kLeft ? "left beam" : "right beam",
           std::string(kContactNames[static_cast<std::size_t>(contact)]) + ", " +
@@ -526,6 +528,7 @@ class Picture {
 
   const Film& film_;
   const Run& run_;
+  double speed_;
   Surface surface_;
   Context cr_;
   double arrow_ = 0.0;                 // m per N
@@ -602,7 +605,7 @@ void write_video(const std::string& path, const Json& json, int run, const Video
   const Film film = film_of(json, run);
   require_writable(path);
 
-  Picture picture(film);
+  Picture picture(film, speed);
   Conveyor conveyor;
   Child ffmpeg(ffmpeg_command(film, frames_per_second), conveyor.exit(),
                "ffmpeg was not found; it packs the video (Debian: ffmpeg)");

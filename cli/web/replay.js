@@ -23,7 +23,7 @@ const gatewalkReplay = (() => {
   const kOptionalArrays = ['lost_in_hits_J'];
   const kContacts = ['free', 'hit', 'held'];
   const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
-  const kFlash = 0.25;    // s of the run for which a hit stays to be seen
+  const kFlash = 0.25;    // s of the run for which a hit stays to be seen, longer where the run goes fast
   const kSmooth = 0.75;   // s before and after over which the following camera takes the mean place
   const kWake = 1.5;      // s of the trail drawn strongly
 
@@ -243,7 +243,7 @@ const gatewalkReplay = (() => {
 
   /** Draws the run at a time on a canvas of w x h points with colours c. */
   function drawStage(ctx, w, h, c, font, scene, time) {
-    const {film, run, bounds, follow, arrow} = scene;
+    const {film, run, bounds, follow, arrow, flash} = scene;
     const state = stateAt(run, time), field = film.columns * film.rows > 1;
     const [width, depth] = film.gate_m;
     let scale, cx, cy;
@@ -330,9 +330,9 @@ const gatewalkReplay = (() => {
     }
     for (const side of ['left', 'right']) {
       const i = run.lastHit[side][state.i], age = time - run.t[i];
-      if (i < 0 || age > kFlash) continue;
+      if (i < 0 || age > flash) continue;
       const beam = beamOf(film, run.gx[i], run.gy[i], side, run[side][i]);
-      const [x, y] = nearest(beam, run.X[i], run.Y[i]), grown = age / kFlash;
+      const [x, y] = nearest(beam, run.X[i], run.Y[i]), grown = age / flash;
       ctx.beginPath(); ctx.arc(px(x), py(y), thick * (1.6 + 2.6 * grown), 0, 2 * Math.PI);
       ctx.globalAlpha = 0.9 * (1 - grown); ctx.strokeStyle = side === 'left' ? c.blue : c.red; ctx.lineWidth = 2;
       ctx.stroke(); ctx.globalAlpha = 1;
@@ -529,7 +529,7 @@ const gatewalkReplay = (() => {
     // they can be read; at rest they are those of the very step.
     const contactWord = (state, side) => {
       const hit = run.lastHit[side][state.i];
-      return kContacts[playing && state.contact[side] === 0 && hit >= 0 && state.time - run.t[hit] < 0.1 ? 1 : state.contact[side]];
+      return kContacts[playing && state.contact[side] === 0 && hit >= 0 && state.time - run.t[hit] < 0.1 * Number(speed.value) ? 1 : state.contact[side]];
     };
     let toldAt = -Infinity;
 
@@ -543,7 +543,8 @@ const gatewalkReplay = (() => {
       const state = stateAt(run, time), ended = time >= run.t[run.end];
       const height = stageHeight();
       stage.style.height = `${height}px`;
-      drawStage(...sized(stage, height), colours, font, {film, run, bounds, follow: field && follow.checked, arrow}, time);
+      drawStage(...sized(stage, height), colours, font, {film, run, bounds, follow: field && follow.checked, arrow,
+        flash: kFlash * Math.max(1, Number(speed.value))}, time);
       for (const {keys, canvas} of panels)
         drawChart(...sized(canvas, canvas.clientHeight), colours, font, run, keys, time);
       put(clock, secondsText(time));
