@@ -1,35 +1,18 @@
 // node replay_test.mjs FOLDER: the pages of make_replays as a reader sees them, in Debian's Chromium, without
 // a network.
 import assert from 'node:assert/strict';
-import {createRequire} from 'node:module';
-import path from 'node:path';
-import test, {after, before} from 'node:test';
-import {fileURLToPath} from 'node:url';
+import {join} from 'node:path';
+import test from 'node:test';
+import {browse} from './browser.mjs';
 
-const here = path.dirname(fileURLToPath(import.meta.url));
-const {chromium} = createRequire(path.join(here, '../../cli/web/package.json'))('playwright-core');
-const folder = path.resolve(process.argv[2]);
+const folder = process.argv[2];
 
-let browser;
-before(async () => { browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: ['--no-sandbox']}); });
-after(() => browser.close());
-
-/** Shows a page to `look`; fails on any complaint of the browser and any request for another file. */
-async function seen(name, options, look) {
-  const context = await browser.newContext({viewport: {width: 1280, height: 900}, reducedMotion: 'reduce', ...options});
-  await context.setOffline(true);
-  const page = await context.newPage(), faults = [];
-  const address = `file://${folder}/${name}`;
-  page.on('console', (message) => faults.push(message.text()));
-  page.on('pageerror', (error) => faults.push(error.message));
-  page.on('request', (request) => {
-    if (request.url() !== address && !request.url().startsWith('data:')) faults.push(request.url());
+/// Shows a page to `look`, by default to a reader who wants little motion; no fault may be seen meanwhile.
+const seen = (name, options, look) =>
+  browse(join(folder, name), {viewport: {width: 1280, height: 900}, reducedMotion: 'reduce', ...options}, async (page, faults) => {
+    await look(page);
+    assert.deepEqual(faults, []);
   });
-  await page.goto(address);
-  await look(page);
-  assert.deepEqual(faults, []);
-  await context.close();
-}
 
 const time = (page) => page.locator('.gwr-time').evaluate((slider) => Number(slider.value));
 const end = (page) => page.locator('.gwr-time').evaluate((slider) => Number(slider.max));

@@ -1,0 +1,44 @@
+// A page in Debian's Chromium without any network: what it asks for or complains about is a fault.
+import {createRequire} from 'node:module';
+import {mkdtempSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join, resolve} from 'node:path';
+import {pathToFileURL} from 'node:url';
+
+const {chromium} = createRequire(new URL('../../cli/web/package.json', import.meta.url))('playwright-core');
+
+/// Opens the file `path`; `use(page, faults)` gets the page and a list that faults are added to.
+export async function browse(path, options, use) {
+  const folder = mkdtempSync(join(tmpdir(), 'gatewalk-web-'));
+  const context = await chromium.launchPersistentContext(folder, {
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+      '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+    ...options,
+  });
+  const faults = [];
+  try {
+    await context.route(url => !['file:', 'data:', 'blob:'].includes(url.protocol), route => {
+      faults.push(`asks for ${route.request().url()}`);
+      return route.abort();
+    });
+    await context.setOffline(true);
+    const page = context.pages()[0] ?? await context.newPage();
+    page.on('pageerror', error => faults.push(`exception: ${error.stack ?? error}`));
+    page.on('console', message => {
+      // Chromium's remarks on speed (drawing in software, reading canvases) are no faults.
+      if (['error', 'warning'].includes(message.type()) &&
+          !/GPU stall|GL Driver Message|willReadFrequently/.test(message.text())) {
+        faults.push(`console ${message.type()}: ${message.text()}`);
+      }
+    });
+    page.on('crash', () => faults.push('the page crashed'));
+    await page.goto(pathToFileURL(resolve(path)).href);
+    await use(page, faults);
+  } catch (error) {
+    throw faults.length ? new Error(`${error.message}\nFaults so far:\n${faults.join('\n')}`) : error;
+  } finally {
+    await context.close();
+    rmSync(folder, {recursive: true, force: true});
+  }
+}
