@@ -229,8 +229,8 @@ using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
 class Picture {
  public:
-  explicit Picture(const Film& film)
-      : film_(film), run_(film.run),
+  Picture(const Film& film, double speed)
+      : film_(film), run_(film.run), speed_(speed),
         surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, kWidth, kHeight), cairo_surface_destroy),
         cr_(cairo_create(surface_.get()), cairo_destroy) {
     check();
@@ -266,7 +266,9 @@ class Picture {
     } else {
       stage(kArea, state, whole);
     }
-    panel(952, state);
+    // Words and numbers change ten times in a second of the film, so that they can be read.
+    const double word = 0.1 * speed_, start = run_.t.front();
+    panel(952, state, time < run_.t.back() ? state_at(run_, start + word * std::floor((time - start) / word + 1e-9)) : state);
     check();
     cairo_surface_flush(surface_.get());
     return {reinterpret_cast<const char*>(cairo_image_surface_get_data(surface_.get())),
@@ -439,10 +441,11 @@ class Picture {
         cairo_fill_preserve(cr);
         stroke(own, 0.7 * thick);
       }
-      constexpr double kFlash = 0.25;  // s for which a hit stays to be seen
+      // s of the run for which a hit stays to be seen
+      const double flash = 0.25 * std::max(1.0, speed_);
       if (s.last_hit[side] < 0) continue;
       const auto i = static_cast<std::size_t>(s.last_hit[side]);
-      const double grown = (s.time - run_.t[i]) / kFlash;
+      const double grown = (s.time - run_.t[i]) / flash;
       if (grown > 1.0) continue;
       const Segment then = beam_of(film_, run_.gx[i], run_.gy[i], side, side == kLeft ? run_.left[i] : run_.right[i]);
       circle(at(nearest(then, {run_.X[i], run_.Y[i]})), thick * (1.6 + 2.6 * grown));
@@ -459,18 +462,21 @@ class Picture {
     // A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width.
     const double wanted = 0.2 * w / scale, power = std::pow(10.0, std::floor(std::log10(wanted)));
     const double length = power * (5.0 * power <= wanted ? 5.0 : 2.0 * power <= wanted ? 2.0 : 1.0);
+    cairo_rectangle(cr, box.x0 + 6, box.y1 - 36, length * scale + 16, 32);
+    colour(kStage, 0.85);
+    cairo_fill(cr);
     text(box.x0 + 14, box.y1 - 18, 14, shown(length, length < 1.0 ? 2 : 0) + " m", kMuted);
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
     line({box.x0 + 14, box.y1 - 12}, {box.x0 + 14 + length * scale, box.y1 - 12}, kMuted, 2.0);
     cairo_restore(cr);
   }
 
-  /// Time, contacts, forces and energies, from x on.
-  void panel(double x, const State& s) {
+  /// Time, contacts, forces and energies, from x on: bars of now, words and numbers of `s`.
+  void panel(double x, const State& now, const State& s) {
     constexpr double kRightEdge = kWidth - 32.0;
     const Moment& m = s.moment;
-    text(x, 124, 40, shown(s.time, 2) + " s", kText, true);
-    const bool ended = s.time >= run_.t.back();
+    text(x, 124, 40, shown(now.time, 2) + " s", kText, true);
+    const bool ended = now.time >= run_.t.back();
     if (ended)
       text(x, 154, 17, "ended: " + run_.ending, kText, true, kRightEdge - x);
     else if (film_.is_field())
@@ -485,37 +491,44 @@ class Picture {
       text(kRightEdge, y, 16, value, kText, false, -160);
       y += 27;
     };
-    for (const Side side : {kLeft, kRight})
+    for (const Side side : {kLeft, kRight}) {
+      // A hit is named for a moment.
+      const int hit = s.last_hit[side];
+      const bool just_hit = hit >= 0 && s.time - run_.t[static_cast<std::size_t>(hit)] < 0.1 * speed_;
+      const int contact = s.contact[side] == 0 && just_hit ? 1 : s.contact[side];
       row(side == kLeft ? kBlue : kRed, false, side == kLeft ? "left beam" : "right beam",
-          std::string(kContactNames[static_cast<std::size_t>(s.contact[side])]) + ", " +
+          std::string(kContactNames[static_cast<std::size_t>(contact)]) + ", " +
               shown(s.angle[side] * 180.0 / std::numbers::pi, 0) + "°");
+    }
     row(kOrange, true, "propulsion", shown(run_.propulsion, 1) + " N");
     row(kGrey, true, "random force", shown(run_.random[m.i], 1) + " N");
     text(x + 38, y, 16, "speed", kText);
     text(kRightEdge, y, 16, shown(std::hypot(m.between(run_.vx), m.between(run_.vy)), 1) + " m/s", kText, false, -160);
     y += 48;
 
-    const auto bar = [&](const std::string& name, double joules, double most, Colour c) {
+    const auto bar = [&](const std::string& name, const std::vector<double>& energy, double most, Colour c) {
+      const double joules = now.moment.between(energy);
       text(x, y, 16, name, kText);
-      text(kRightEdge, y, 16, shown(joules, 1) + " J", kText, false, -160);
+      text(kRightEdge, y, 16, shown(m.between(energy), 1) + " J", kText, false, -160);
       fill({x, y + 7, kRightEdge, y + 15}, kLine);
       if (most > 0.0) fill({x, y + 7, x + std::clamp(joules / most, 0.0, 1.0) * (kRightEdge - x), y + 15}, c);
       y += 40;
     };
     text(x, y, 16, "Energy stored now", kText, true);
     y += 28;
-    bar("body, kinetic", m.between(run_.body), stored_, kText);
-    bar("beams, kinetic", m.between(run_.beams), stored_, kSky);
-    bar("beams, elastic", m.between(run_.elastic), stored_, kGreen);
+    bar("body, kinetic", run_.body, stored_, kText);
+    bar("beams, kinetic", run_.beams, stored_, kSky);
+    bar("beams, elastic", run_.elastic, stored_, kGreen);
     y += 10;
     text(x, y, 16, "Put in and lost since the start", kText, true);
     y += 28;
-    bar("work put in", m.between(run_.work), moved_, kOrange);
-    bar("lost", m.between(run_.lost), moved_, kPurple);
+    bar("work put in", run_.work, moved_, kOrange);
+    bar("lost", run_.lost, moved_, kPurple);
   }
 
   const Film& film_;
   const Run& run_;
+  double speed_;
   Surface surface_;
   Context cr_;
   double arrow_ = 0.0;                 // m per N
@@ -592,7 +605,7 @@ void write_video(const std::string& path, const Json& json, int run, const Video
   const Film film = film_of(json, run);
   require_writable(path);
 
-  Picture picture(film);
+  Picture picture(film, speed);
   Conveyor conveyor;
   Child ffmpeg(ffmpeg_command(film, frames_per_second), conveyor.exit(),
                "ffmpeg was not found; it packs the video (Debian: ffmpeg)");

@@ -23,7 +23,7 @@ const gatewalkReplay = (() => {
   const kOptionalArrays = ['lost_in_hits_J'];
   const kContacts = ['free', 'hit', 'held'];
   const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
-  const kFlash = 0.25;    // s of the run for which a hit stays to be seen
+  const kFlash = 0.25;    // s of the run for which a hit stays to be seen, longer where the run goes fast
   const kSmooth = 0.75;   // s before and after over which the following camera takes the mean place
   const kWake = 1.5;      // s of the trail drawn strongly
 
@@ -243,7 +243,7 @@ const gatewalkReplay = (() => {
 
   /** Draws the run at a time on a canvas of w x h points with colours c. */
   function drawStage(ctx, w, h, c, font, scene, time) {
-    const {film, run, bounds, follow, arrow} = scene;
+    const {film, run, bounds, follow, arrow, flash} = scene;
     const state = stateAt(run, time), field = film.columns * film.rows > 1;
     const [width, depth] = film.gate_m;
     let scale, cx, cy;
@@ -330,9 +330,9 @@ const gatewalkReplay = (() => {
     }
     for (const side of ['left', 'right']) {
       const i = run.lastHit[side][state.i], age = time - run.t[i];
-      if (i < 0 || age > kFlash) continue;
+      if (i < 0 || age > flash) continue;
       const beam = beamOf(film, run.gx[i], run.gy[i], side, run[side][i]);
-      const [x, y] = nearest(beam, run.X[i], run.Y[i]), grown = age / kFlash;
+      const [x, y] = nearest(beam, run.X[i], run.Y[i]), grown = age / flash;
       ctx.beginPath(); ctx.arc(px(x), py(y), thick * (1.6 + 2.6 * grown), 0, 2 * Math.PI);
       ctx.globalAlpha = 0.9 * (1 - grown); ctx.strokeStyle = side === 'left' ? c.blue : c.red; ctx.lineWidth = 2;
       ctx.stroke(); ctx.globalAlpha = 1;
@@ -359,6 +359,7 @@ const gatewalkReplay = (() => {
     // A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width.
     const wanted = 0.2 * w / scale, power = 10 ** Math.floor(Math.log10(wanted));
     const length = power * [5, 2, 1].find((k) => k * power <= wanted);
+    ctx.globalAlpha = 0.85; ctx.fillStyle = c.stage; ctx.fillRect(6, h - 32, length * scale + 12, 28); ctx.globalAlpha = 1;
     ctx.fillStyle = c.muted; ctx.font = `12px ${font}`; ctx.textAlign = 'left'; ctx.textBaseline = 'bottom';
     ctx.fillText(`${length} m`, 12, h - 14);
     ctx.beginPath(); ctx.moveTo(12, h - 10); ctx.lineTo(12 + length * scale, h - 10);
@@ -505,8 +506,8 @@ const gatewalkReplay = (() => {
     });
     legend.append(row('left', swatch('blue', []), 'left beam'), row('right', swatch('red', []), 'right beam'),
       row('propulsion', swatch('orange', [], true), 'propulsion'), row('random', swatch('grey', [], true), 'random force'),
-      row('speed', made('span'), 'speed of the body'),
-      ...(field ? [row('gate', made('span'), 'gate (column, row)')] : []));
+      row('speed', swatch('card', []), 'speed of the body'),
+      ...(field ? [row('gate', swatch('card', []), 'gate (column, row)')] : []));
     root.append(
       made('div', 'gwr-columns', {},
         made('div', '', {}, made('div', 'gwr-status', {}, clock, mode), stageBox, bar,
@@ -524,7 +525,13 @@ const gatewalkReplay = (() => {
       return [ctx, w, height];
     };
     const put = (node, text) => { if (node.textContent !== text) node.textContent = text; };
-    const contactWords = (state) => ['left', 'right'].map((side) => `${side} beam ${kContacts[state.contact[side]]}`).join(', ');
+    // While it plays, words and numbers change at most ten times a second and a hit is named for a moment, so that
+    // they can be read; at rest they are those of the very step.
+    const contactWord = (state, side) => {
+      const hit = run.lastHit[side][state.i];
+      return kContacts[playing && state.contact[side] === 0 && hit >= 0 && state.time - run.t[hit] < 0.1 * Number(speed.value) ? 1 : state.contact[side]];
+    };
+    let toldAt = -Infinity;
 
     function stageHeight() {
       const most = Math.max(320, Math.min(0.72 * window.innerHeight, 680));
@@ -536,17 +543,20 @@ const gatewalkReplay = (() => {
       const state = stateAt(run, time), ended = time >= run.t[run.end];
       const height = stageHeight();
       stage.style.height = `${height}px`;
-      drawStage(...sized(stage, height), colours, font, {film, run, bounds, follow: field && follow.checked, arrow}, time);
+      drawStage(...sized(stage, height), colours, font, {film, run, bounds, follow: field && follow.checked, arrow,
+        flash: kFlash * Math.max(1, Number(speed.value))}, time);
       for (const {keys, canvas} of panels)
         drawChart(...sized(canvas, canvas.clientHeight), colours, font, run, keys, time);
       put(clock, secondsText(time));
-      put(mode, ended ? `ended: ${run.ending}` : contactWords(state));
-      mode.classList.toggle('gwr-ended', ended);
       slider.value = time;
+      if (playing && performance.now() - toldAt < 100) return;
+      toldAt = performance.now();
+      put(mode, ended ? `ended: ${run.ending}` : ['left', 'right'].map((side) => `${side} beam ${contactWord(state, side)}`).join(', '));
+      mode.classList.toggle('gwr-ended', ended);
       if (!playing) slider.setAttribute('aria-valuetext', `${secondsText(time)}, ${mode.textContent}`);
       for (const {keys} of panels) for (const key of keys) put(values[key], joulesText(state[key]));
       for (const side of ['left', 'right'])
-        put(values[side], `${kContacts[state.contact[side]]}, ${fixed(state[side] * 180 / Math.PI, 0)}°`);
+        put(values[side], `${contactWord(state, side)}, ${fixed(state[side] * 180 / Math.PI, 0)}°`);
       put(values.propulsion, `${fixed(run.propulsion_N, 1)} N`);
       put(values.random, `${fixed(state.random, 1)} N`);
       put(values.speed, `${fixed(Math.hypot(state.vx, state.vy), 1)} m/s`);

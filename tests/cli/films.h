@@ -1,5 +1,5 @@
 #pragma once
-/// A small film, made by hand: the body goes straight ahead and pushes both beams aside.
+/// Small films, made by hand: the body goes straight ahead and pushes the beams aside.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace gatewalk::cli {
 
-/// `steps` steps of 0.02 s; the body moves 0.5 m in each.
+/// `steps` steps of 0.02 s; the body moves 0.5 m in each, a gate is 60 m deep.
 inline Json small_film(int steps = 50) {
   Json run = {{"label", "trial 1: traversed left after " + std::to_string(steps / 50) + " s"},
               {"ending", "traversed left"},
@@ -17,11 +17,12 @@ inline Json small_film(int steps = 50) {
                            "random_N", "body_J", "beams_J", "elastic_J", "work_J", "lost_J", "lost_in_hits_J"})
     run[name] = Json::array();
   for (int i = 0; i <= steps; ++i) {
-    const double y = 0.5 * i, pushed = std::clamp(0.05 * (y - 15.0), 0.0, 1.2);
+    const int row = i / 120;
+    const double y = 0.5 * i - 60.0 * row, pushed = std::clamp(0.05 * (y - 15.0), 0.0, 1.2);
     const int contact = pushed == 0.0 ? 0 : y < 17.0 ? 1 : 2;
     run["t"].push_back(0.02 * i);
     run["gx"].push_back(0);
-    run["gy"].push_back(0);
+    run["gy"].push_back(row);
     run["x"].push_back(0.0);
     run["y"].push_back(y);
     run["vx"].push_back(0.0);
@@ -32,13 +33,21 @@ inline Json small_film(int steps = 50) {
     run["body_J"].push_back(312.5);
     run["beams_J"].push_back(i % 3);
     run["elastic_J"].push_back(250.0 * pushed * pushed);
-    run["work_J"].push_back(7.0 * y);
-    run["lost_J"].push_back(3.0 * y);
+    run["work_J"].push_back(7.0 * 0.5 * i);
+    run["lost_J"].push_back(3.0 * 0.5 * i);
     run["lost_in_hits_J"].push_back(0.0);
   }
   return {{"title", "A small film"}, {"radius_m", 10.0}, {"beam_m", 25.0}, {"joint_x_m", 25.0},
           {"joint_y_m", 30.0},       {"gate_m", {50.0, 60.0}}, {"columns", 1}, {"rows", 1},
           {"start_column", 0},       {"runs", {run}}};
+}
+
+/// Through three gates of a field of 3 x 3.
+inline Json small_field_film() {
+  Json film = small_film(330);
+  film["title"] = "A small field";
+  film["columns"] = film["rows"] = 3;
+  return film;
 }
 
 }  // namespace gatewalk::cli

@@ -1,0 +1,32 @@
+// make_replays FOLDER: the replay pages that replay_test.mjs looks at.
+
+#include <iostream>
+
+#include "cli/output.h"
+#include "cli/replay.h"
+#include "tests/cli/films.h"
+
+int main(int argc, char** argv) try {
+  using namespace gatewalk::cli;
+  if (argc != 2) throw std::invalid_argument("make_replays FOLDER");
+  const auto write = [&](const char* name, const Json& film) {
+    write_text_atomically(std::string(argv[1]) + "/" + name, replay_page(film));
+  };
+  Json film = small_film(100);
+  film["runs"].push_back(film["runs"][0]);
+  film["runs"][1]["label"] = "trial 2: </script><b>trapped</b>";
+  film["runs"][1]["ending"] = "trapped";
+  write("gate.html", film);
+  write("field.html", small_field_film());
+  Json broken = small_film(5);
+  broken["runs"][0].erase("left");
+  broken["runs"][0]["vy"][2] = nullptr;
+  broken["runs"][0]["contact_right"].push_back(0);
+  write("broken.html", broken);
+  Json unknown = small_film(5);
+  unknown["runs"][0]["heat_J"] = Json::array();
+  write("unknown.html", unknown);
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 1;
+}
