@@ -255,15 +255,23 @@
     Plotly.react(one.box, traces, layout, {displayModeBar: false, scrollZoom: true});
   }
 
-  // The wheel scrolls the page; it zooms a drawing only after a click into it.
-  addEventListener('wheel', event => {
-    const box = event.target.closest?.('.three');
-    if (box && !box.drawing.held) event.stopPropagation();
-  }, {capture: true, passive: true});
-  addEventListener('pointerdown', event => {
-    const box = event.target.closest?.('.three');
-    for (const one of drawings) one.held = one.box === box;
-  }, true);
+  // Wheel and fingers move the page; a drawing in 3D takes them only after a click or a tap into it.
+  const in3d = event => event.target.closest?.('.three')?.drawing;
+  for (const type of ['wheel', 'touchstart', 'touchmove', 'touchend']) {
+    addEventListener(type, event => {
+      const one = in3d(event);
+      if (one && !one.held) event.stopPropagation();
+    }, {capture: true, passive: true});
+  }
+  for (const type of ['pointerdown', 'click']) {
+    addEventListener(type, event => {
+      const hit = in3d(event), asked = type === 'click' || event.pointerType === 'mouse';
+      for (const one of drawings) {
+        one.held = one === hit && (one.held || asked);
+        one.box.classList.toggle('held', one.held);
+      }
+    }, true);
+  }
 
   /// The energy landscape, cut at `ceiling` to be seen; the numbers shown are the true ones.
   function surface({x, y, z}, {ceiling, opacity = 1, scale = false, colours} = {}) {
@@ -283,7 +291,7 @@
   function views(chart, state) {
     choice(chart.controls, 'Seen', [['slanted', 'slanted'], ['above', 'from above'], ['side', 'from the left'], ['front', 'from the start']],
       v => { state.camera = v; renew(chart.drawings); });
-    add(chart.box, 'p', {class: 'remark'}, 'Drag to turn. After a click the wheel zooms; two fingers do so on a phone.');
+    add(chart.box, 'p', {class: 'remark'}, 'Drag to turn; after a click the wheel zooms. On a phone, tap a drawing before you turn it.');
   }
 
   // --- The kinds of charts ------------------------------------------------------------------------
@@ -561,15 +569,14 @@
   };
 
   kinds.replay = (chart, {film}) => {
-    const one = {box: add(chart.plots, 'div', {class: 'replay', style: 'min-height: 480px'}), make: null, stale: true};
-    one.box.drawing = one;
+    const box = add(chart.plots, 'div', {class: 'replay', style: 'min-height: 480px'});
     new IntersectionObserver((entries, self) => {
       if (!entries.some(e => e.isIntersecting)) return;
       self.disconnect();
-      gatewalkReplay(one.box, film);
-      one.box.style.minHeight = '';
-      one.box.dataset.drawn = '';
-    }, {rootMargin: '300px 0px'}).observe(one.box);
+      gatewalkReplay(box, film);
+      box.style.minHeight = '';
+      box.dataset.drawn = '';
+    }, {rootMargin: '300px 0px'}).observe(box);
   };
 
   // --- The page -----------------------------------------------------------------------------------

@@ -50,6 +50,7 @@ await browse(report, desktop, async (page, faults) => {
   assert.ok(claims.rows > 0 && claims.rows === claims.tally, 'the claims table has a row per claim');
   assert.deepEqual(claims.lost, [], 'links within the page lead somewhere');
   await shot(page, 'desktop-top');
+  for (const part of ['#claims', 'nav', '#made-by']) await shot(page.locator(part), `desktop-${part.replace('#', '')}`);
   await see_all_charts(page, 'desktop');
 
   // A number shows where the pointer is.
@@ -75,6 +76,23 @@ await browse(report, desktop, async (page, faults) => {
     await options.nth(1).check({force: true});
     await page.waitForTimeout(500);
     assert.notEqual(await picture(), before, 'the choice of damping changes the chart');
+  }
+
+  // The wheel moves the page, not what is below the pointer, unless that was clicked.
+  const solid = page.locator('.three').first();
+  if (await solid.count() > 0) {
+    const eye = () => solid.evaluate(box => JSON.stringify(box._fullLayout.scene._scene.getCamera().eye));
+    await solid.evaluate(box => box.scrollIntoView({block: 'center', behavior: 'instant'}));
+    await solid.and(page.locator('[data-drawn]')).waitFor({timeout: 15000});
+    const before = await eye(), top = await page.evaluate(() => scrollY);
+    await solid.hover({force: true});
+    await page.mouse.wheel(0, 40);
+    await page.waitForFunction(y => scrollY !== y, top);
+    assert.equal(await eye(), before, 'the wheel leaves the drawing alone');
+    await solid.click({force: true});
+    await page.mouse.wheel(0, 40);
+    await page.waitForTimeout(300);
+    assert.notEqual(await eye(), before, 'after a click the wheel zooms');
   }
 
   // The animation moves by itself and can be moved.
@@ -106,6 +124,7 @@ await browse(report, {...desktop, colorScheme: 'dark'}, async (page, faults) => 
 
 await browse(report, phone, async (page, faults) => {
   await shot(page, 'phone-top');
+  await shot(page.locator('#claims'), 'phone-claims');
   await see_all_charts(page, folder && 'phone');
   const wide = await page.evaluate(() => [...document.querySelectorAll('body *')].filter(e =>
     e.getBoundingClientRect().right > innerWidth + 1 && !e.closest('.scroll, pre, .drawing, .skip, thead')).map(e => e.outerHTML.slice(0, 90)));
