@@ -40,6 +40,19 @@ std::string text(const Json& object, const char* field) {
   return escaped(object.at(field).get<std::string>());
 }
 
+/// The same, with nothing broken apart at a line's end that belongs together: "46.0 % [45.3, 46.7]" between % and [ only.
+std::string values(const Json& object, const char* field) {
+  const auto plain = object.at(field).get<std::string>();
+  std::string out;
+  bool in_brackets = false;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    in_brackets = (in_brackets || plain[i] == '[') && plain[i] != ']';
+    const bool kept = in_brackets || plain.compare(i, 2, " %") == 0;
+    out += plain[i] == ' ' && kept ? "&nbsp;" : escaped(plain.substr(i, 1));
+  }
+  return out;
+}
+
 /// An element that closes itself: <p class="why">...</p> from element("p class=\"why\"", ...).
 std::string element(std::string_view opening, const std::string& inside) {
   const std::string_view name = opening.substr(0, opening.find(' '));
@@ -83,8 +96,8 @@ std::string claim_rows(const Json& claims, const std::map<std::string, std::stri
     const std::string cell = "td role=\"cell\" ";
     rows += element("tr role=\"row\" class=\"" + std::string(v.style) + "\" id=\"claim-" + text(c, "id") + "\"",
                     element(cell + "class=\"claim\"", what) +
-                        element(cell + "data-label=\"Paper\"", "<div>" + text(c, "paper") + "</div>") +
-                        element(cell + "data-label=\"Here\"", "<div>" + text(c, "ours") + "</div>") +
+                        element(cell + "data-label=\"Paper\"", values(c, "paper")) +
+                        element(cell + "data-label=\"Here\"", values(c, "ours")) +
                         element(cell + "data-label=\"Verdict\"", badge(v)) +
                         element(cell + "data-label=\"See\"",
                                 "<a href=\"#" + escaped(see) + "\">" + escaped(heading->second) + "</a>"));

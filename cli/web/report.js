@@ -231,7 +231,7 @@
 
   /// The camera, farther away where there is little width for the axes' names.
   function from(name, width) {
-    const {eye, ...rest} = kCameras[name], far = width < 440 ? 1.1 : 1;
+    const {eye, ...rest} = kCameras[name], far = width < 440 ? 1.2 : 1;
     return {eye: {x: eye.x * far, y: eye.y * far, z: eye.z * far}, up: {x: 0, y: 0, z: 1}, ...rest};
   }
 
