@@ -268,7 +268,8 @@ class Picture {
     }
     // Words and numbers change ten times in a second of the film, so that they can be read.
     const double word = 0.1 * speed_, start = run_.t.front();
-    panel(952, state, time < run_.t.back() ? state_at(run_, start + word * std::floor((time - start) / word + 1e-9)) : state);
+    const double said = start + word * std::floor((time - start) / word + 1e-9);
+    panel(952, state, time < run_.t.back() ? state_at(run_, said) : state);
     check();
     cairo_surface_flush(surface_.get());
     return {reinterpret_cast<const char*>(cairo_image_surface_get_data(surface_.get())),
@@ -375,7 +376,8 @@ class Picture {
     const double x0 = centre.x - 0.5 * w / scale, x1 = centre.x + 0.5 * w / scale;
     const double y0 = centre.y - 0.5 * h / scale, y1 = centre.y + 0.5 * h / scale;
     const int first = std::max(film_.first_column(), static_cast<int>(std::floor(x0 / film_.width - 0.5)));
-    const int last = std::min(film_.first_column() + film_.columns - 1, static_cast<int>(std::ceil(x1 / film_.width + 0.5)));
+    const int last = std::min(film_.first_column() + film_.columns - 1,
+                              static_cast<int>(std::ceil(x1 / film_.width + 0.5)));
     const int low = std::max(0, static_cast<int>(std::floor(y0 / film_.depth - 1.0)));
     const int high = std::min(film_.rows - 1, static_cast<int>(std::ceil(y1 / film_.depth)));
     const double bottom = film_.is_field() ? low * film_.depth : y0;
@@ -503,7 +505,8 @@ class Picture {
     row(kOrange, true, "propulsion", shown(run_.propulsion, 1) + " N");
     row(kGrey, true, "random force", shown(run_.random[m.i], 1) + " N");
     text(x + 38, y, 16, "speed", kText);
-    text(kRightEdge, y, 16, shown(std::hypot(m.between(run_.vx), m.between(run_.vy)), 1) + " m/s", kText, false, -160);
+    const double speed = std::hypot(m.between(run_.vx), m.between(run_.vy));
+    text(kRightEdge, y, 16, shown(speed, 1) + " m/s", kText, false, -160);
     y += 48;
 
     const auto bar = [&](const std::string& name, const std::vector<double>& energy, double most, Colour c) {

@@ -44,6 +44,7 @@ const gatewalkReplay = (() => {
     .gwr-status { display: flex; align-items: baseline; gap: 8px 20px; flex-wrap: wrap; min-height: 34px; }
     .gwr-clock { font-size: 22px; font-weight: 600; font-variant-numeric: tabular-nums; min-width: 92px; }
     .gwr-mode { color: var(--muted); }
+    @container (max-width: 420px) { .gwr-mode { flex-basis: 100%; } }  /* never one line and then two */
     .gwr-ended { color: var(--text); font-weight: 600; }
     canvas { display: block; width: 100%; border-radius: 8px; }
     .gwr-stage { background: var(--stage); cursor: pointer; }
@@ -64,6 +65,7 @@ const gatewalkReplay = (() => {
     .gwr table { border-collapse: collapse; width: 100%; font-size: 14px; margin-bottom: 4px; }
     .gwr th, .gwr td { padding: 1px 0; border: 0; background: none; color: inherit; text-align: left; font-weight: 400; }
     .gwr td { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+    .gwr-blank { display: inline-block; width: 34px; }
     .gwr svg { vertical-align: middle; margin-right: 8px; }
     .gwr-keys { font-size: 13px; color: var(--muted); margin: 6px 0 0; }
     @media (hover: none) { .gwr-keys { display: none; } }
@@ -506,8 +508,8 @@ const gatewalkReplay = (() => {
     });
     legend.append(row('left', swatch('blue', []), 'left beam'), row('right', swatch('red', []), 'right beam'),
       row('propulsion', swatch('orange', [], true), 'propulsion'), row('random', swatch('grey', [], true), 'random force'),
-      row('speed', swatch('card', []), 'speed of the body'),
-      ...(field ? [row('gate', swatch('card', []), 'gate (column, row)')] : []));
+      row('speed', made('span', 'gwr-blank'), 'speed of the body'),
+      ...(field ? [row('gate', made('span', 'gwr-blank'), 'gate (column, row)')] : []));
     root.append(
       made('div', 'gwr-columns', {},
         made('div', '', {}, made('div', 'gwr-status', {}, clock, mode), stageBox, bar,

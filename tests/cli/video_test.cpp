@@ -118,7 +118,8 @@ std::array<double, 3> mean_colour(const std::string& path, double time, const st
 TEST_F(Video, ShowsTheBodyMovingAndTheBeamsInTheirColours) {
   write_video(path("a.mp4"), small_film(), 0);
   // At rest the beams lie across the stage's middle: blue on the left, red on the right.
-  const auto left = mean_colour(path("a.mp4"), 0.0, "60:4:400:327"), right = mean_colour(path("a.mp4"), 0.0, "60:4:500:327");
+  const auto left = mean_colour(path("a.mp4"), 0.0, "60:4:400:327");
+  const auto right = mean_colour(path("a.mp4"), 0.0, "60:4:500:327");
   EXPECT_GT(left[2], left[0] + 80) << "left beam";
   EXPECT_GT(right[0], right[2] + 80) << "right beam";
   // Where the body was at the start there is bare ground at the end.
@@ -165,7 +166,8 @@ TEST_F(Video, RefusesAFilmThatIsIncomplete) {
   film = small_film(5);
   film["runs"][0]["t"][1] = 7.0;
   EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: t goes back in time");
-  for (const int run : {-1, 1}) EXPECT_NE(complaint_of(path("a.mp4"), small_film(5), run).find("film: "), std::string::npos);
+  for (const int run : {-1, 1})
+    EXPECT_NE(complaint_of(path("a.mp4"), small_film(5), run).find("film: "), std::string::npos);
   for (const double speed : {0.0, -1.0, std::nan("")})
     EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.speed = speed}), "a video's speed must be above 0");
   EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.frames_per_second = 0.0}),
