@@ -20,7 +20,7 @@ namespace gatewalk::cli {
 ///   right_share    rows: [{damping, propulsion, random, k_left, right | null, low, high, successes, trials}]
 ///   landscapes     panels: [{name (B is shown from above), title, x, y, z}], ceiling
 ///   barriers       rows: [{k_left, damping, above_start_J, above_basin_J | null, traversed, low, high}]
-///   penetration    t, potential, landscape, landscape_right, x, y, surfaces: [{title, x, y, z}]
+///   penetration    t, potential, landscape, landscape_right, x, y, surfaces: [{title, x, y, z}], ceiling
 ///   trajectories   panels: [{title, x, y, z, left, right: text, runs: [{side: "left" | "right", x, y, e}]}], ceiling
 ///   final_gates    starts: [{label, dynamics, chain: [[share]], a row per i_y from 0, columns about i_x = 0}]
 ///   table4         rows: [{start, corrcoef, rmse, each with paper_.., .._sd, .._floor, .._all; tv, tv_floor}]

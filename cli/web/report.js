@@ -273,17 +273,25 @@
     }, true);
   }
 
-  /// The energy landscape, cut at `ceiling` to be seen; the numbers shown are the true ones.
+  /// The energy landscape, cut at `ceiling` to be seen (the numbers shown are the true ones), with lines every 5 m.
   function surface({x, y, z}, {ceiling, opacity = 1, scale = false, colours} = {}) {
-    const cut = v => v === null ? null : ceiling === undefined ? v : Math.min(v, ceiling);
-    return {
-      type: 'surface', x, y, z: z.map(row => row.map(cut)), text: z.map(row => row.map(v => v === null ? '' : v.toFixed(0))),
+    const cut = v => v === null ? null : Math.min(v, ceiling ?? Infinity);
+    const shown = z.map(row => row.map(cut));
+    const lines = {x: [], y: [], z: []};
+    const line = points => {
+      for (const [i, j] of points) for (const [to, v] of [[lines.x, x[i]], [lines.y, y[j]], [lines.z, shown[j][i]]]) to.push(v);
+      for (const to of Object.values(lines)) to.push(null);
+    };
+    const every5m = places => [...places.keys()].filter(i => Math.floor(places[i] / 5 + 1e-9) !== Math.floor((places[i - 1] ?? -1e9) / 5 + 1e-9));
+    for (const j of every5m(y)) line([...x.keys()].map(i => [i, j]));
+    for (const i of every5m(x)) line([...y.keys()].map(j => [i, j]));
+    return [{
+      type: 'surface', x, y, z: shown, text: z.map(row => row.map(v => v === null ? '' : v.toFixed(0))),
       hovertemplate: 'x %{x:.1f} m, y %{y:.1f} m<br>%{text} J<extra></extra>', opacity, showscale: scale,
       colorbar: {thickness: 12, len: 0.8, title: {text: 'J', side: 'top'}, outlinewidth: 0},
       colorscale: colours ?? 'Viridis', lighting: {ambient: 0.72, diffuse: 0.5, specular: 0.04, roughness: 0.9},
-      contours: {z: {show: true, usecolormap: false, start: 50, end: 5000, size: 50,
-        color: dark ? '#6a727d' : '#9299a2', width: 1}},
-    };
+      contours: Object.fromEntries(['x', 'y', 'z'].map(axis => [axis, {highlight: false}])),
+    }, {type: 'scatter3d', mode: 'lines', ...lines, hoverinfo: 'skip', line: {width: 1, color: colours ? (dark ? '#717a86' : '#a3aab2') : '#8a93a5'}}];
   }
   const faint = () => dark ? [[0, '#2a3038'], [1, '#8b96a3']] : [[0, '#eceae6'], [1, '#9aa1a9']];
 
@@ -341,7 +349,7 @@
     for (const panel of panels) {
       const above = panel.name === 'B';  // the paper's B is A from above
       drawing(chart, {title: `${panel.name}: ${panel.title}`, height: 400, three: true, make: () => ({
-        traces: [surface(panel, {ceiling, scale: above})], camera: above ? 'above' : state.camera, zTitle: 'energy (J)'})});
+        traces: surface(panel, {ceiling, scale: above}), camera: above ? 'above' : state.camera, zTitle: 'energy (J)'})});
     }
   };
 
@@ -408,7 +416,7 @@
       })});
     for (const one of d.surfaces) {
       drawing(chart, {title: one.title, height: 400, three: true, make: () => ({
-        traces: [surface(one, {opacity: 0.82, colours: faint()}), path(d.x, d.y, d.potential, colour('blue'), 'the system')],
+        traces: [...surface(one, {ceiling: d.ceiling, opacity: 0.85, colours: faint()}), path(d.x, d.y, d.potential, colour('blue'), 'the system')],
         camera: state.camera, zTitle: 'energy (J)'})});
     }
   };
@@ -427,7 +435,7 @@
         c, side);
       drawing(chart, {title: panel.title, height: 360, three: true, note: `Traversed left ${panel.left}, right ${panel.right}.`, make: () => ({
         keys: [['line', colour('blue'), 'left'], ['line', colour('orange'), 'right']],
-        traces: [surface(panel, {ceiling, opacity: 0.85, colours: faint()}),
+        traces: [...surface(panel, {ceiling, opacity: 0.85, colours: faint()}),
           ...[of('left', colour('blue')), of('right', colour('orange'))].map(t => ({...t, line: {...t.line, width: 3}}))],
         camera: state.camera, zTitle: 'energy (J)'})});
     }
