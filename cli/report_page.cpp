@@ -162,7 +162,9 @@ std::string section(const Json& s, const Json& claims) {
                  "<noscript><p class=\"remark\">" + text(s, "alt") + "</p></noscript>");
   if (kind == "table4") out += table4(s.at("data"));
   std::string how;
-  if (!commands.empty()) how += element("div class=\"commands\"", commands);
+  const auto n = s.at("commands").size();
+  if (n > 0) commands = element("div class=\"commands\"", commands);
+  how += n > 3 ? element("details", element("summary", std::to_string(n) + " commands") + commands) : commands;
   if (!files.empty()) how += element("p class=\"files\"", "Files: " + files);
   out += element("figcaption", how) + "</figure>\n";
   return element("section id=\"" + escaped(id) + "\"", out);
@@ -230,10 +232,6 @@ std::string report_page(const Json& report) {
                  {"paper", text(report, "paper")},
                  {"css", std::string(carried_file("report.css"))},
                  {"lead", paragraphs(report.at("lead"))},
-                 {"quick", report.at("quick").get<bool>()
-                               ? element("p class=\"remark\"", "A quick run: fewer trials than the full reproduction, so "
-                                                               "the intervals are wider.")
-                               : ""},
                  {"tally", tally_of(claims)},
                  {"claims", claim_rows(claims, headings)},
                  {"contents", contents},

@@ -9,7 +9,7 @@ namespace gatewalk::cli {
 
 /// The page (HTML) for a report. Text, tables and claims are there without JavaScript; charts are drawn by
 /// cli/web/report.js when they come into view. `report` (every field required, numbers plain or null):
-///   title, paper, quick: bool, lead: [paragraph],
+///   title, paper, lead: [paragraph],
 ///   claims: [{id, where, claim, paper, ours, verdict: "reproduced" | "within noise" | "differs", why (may be
 ///     empty), see: a section's id}],
 ///   sections: [{id, heading: "Fig. 8: ...", text: [paragraph], alt, commands: [..], files: [..], chart, data}],

@@ -63,7 +63,7 @@
     list.replaceChildren();
     for (const [symbol, c, label] of entries) {
       const item = add(list, 'li');
-      item.innerHTML = `<svg width="22" height="12" aria-hidden="true">${kSymbols[symbol](c)}</svg>`;
+      if (symbol) item.innerHTML = `<svg width="22" height="12" aria-hidden="true">${kSymbols[symbol](c)}</svg>`;
       item.append(label);
     }
   }
@@ -176,7 +176,7 @@
     return `${three(s * 1e6)} µs`;
   }
 
-  /// Cells with their numbers in them. rows: {x, y, value, text, ...tooltip fields}.
+  /// Cells with their numbers in them. rows: {x, y, value, text, pale (says little), ...tooltip fields}.
   function heat(rows, {x, y, range, domain, bright, tooltip, width, descending = true, size = 13}) {
     const limit = domain[0] + bright.from * (domain[1] - domain[0]);
     return {
@@ -188,10 +188,11 @@
       },
       layer: [
         {mark: {type: 'rect', stroke: css('card'), strokeWidth: width < 420 ? 1 : 2},
-          encoding: {color: {field: 'value', type: 'quantitative', scale: {range, domain, clamp: true}, legend: null}}},
+          encoding: {color: {field: 'value', type: 'quantitative', scale: {range, domain, clamp: true}, legend: null},
+            opacity: {condition: {test: 'datum.pale', value: 0.3}, value: 1}}},
         {mark: {type: 'text', fontSize: size},
           encoding: {text: {field: 'text'},
-            color: {condition: [{test: 'datum.value === null', value: css('ink')}, {test: `datum.value > ${limit}`, value: bright.above}],
+            color: {condition: [{test: 'datum.value === null || datum.pale', value: css('ink')}, {test: `datum.value > ${limit}`, value: bright.above}],
               value: bright.below}}},
       ],
     };
@@ -203,7 +204,7 @@
   function bands(rows, {x, xTitle, by, byTitle, tooltip}) {
     const values = distinct(rows, by), colours = sequence(values.length);
     return {
-      keys: values.map((v, i) => ['line', colours[i], `${byTitle[0]}${v}${byTitle[1]}`]),
+      keys: [[null, null, byTitle], ...values.map((v, i) => ['line', colours[i], `${v} N`])],
       spec: {
         data: {values: rows},
         encoding: {
@@ -231,11 +232,11 @@
 
   /// The camera, farther away where there is little width for the axes' names.
   function from(name, width) {
-    const {eye, ...rest} = kCameras[name], far = width < 440 ? 1.2 : 1;
+    const {eye, ...rest} = kCameras[name], far = width < 440 ? 1.12 : 1;
     return {eye: {x: eye.x * far, y: eye.y * far, z: eye.z * far}, up: {x: 0, y: 0, z: 1}, ...rest};
   }
 
-  function draw3d(one, {traces, camera, zTitle, zRange}, width) {
+  function draw3d(one, {traces, camera}, width) {
     library('plotly-gl3d.min.js');
     const ink = css('ink'), line = css('line'), height = Math.min(one.height, Math.round(0.95 * width));
     one.box.style.minHeight = `${height}px`;
@@ -248,7 +249,7 @@
       hoverlabel: {bgcolor: css('card'), bordercolor: line, font: {color: ink, size: 14}},
       scene: {
         xaxis: axis('x (m)', {nticks: 6, ...(flat ? {tickangle: 0} : {})}), yaxis: axis('y (m)', {nticks: 7}),
-        zaxis: axis(flat ? '' : zTitle, {range: zRange, nticks: 5, showticklabels: !flat}),
+        zaxis: axis(flat || width < 440 ? '' : 'energy (J)', {nticks: 5, showticklabels: !flat, ticksuffix: width < 440 ? ' J' : ''}),
         aspectmode: 'manual', aspectratio: {x: size, y: 1.2 * size, z: 0.6 * size}, camera: from(camera, width), dragmode: 'turntable',
       },
     };
@@ -318,9 +319,9 @@
     drawing(chart, {title: 'Traversed, % of trials', height: 330,
       make: width => ({spec: heat(now(), {x: 'propulsive force (N)', y: 'random force (N)', domain: [0, 1], ...sharesLook(), tooltip, width})})});
     drawing(chart, {title: 'More propulsion', height: 310, make: () => bands(now(), {x: 'propulsion', xTitle: 'propulsive force (N)',
-      by: 'random', byTitle: ['random ', ' N'], tooltip})});
+      by: 'random', byTitle: 'random force', tooltip})});
     drawing(chart, {title: 'More random force', height: 310, make: () => bands(now(), {x: 'random', xTitle: 'random force (N)',
-      by: 'propulsion', byTitle: ['propulsion ', ' N'], tooltip})});
+      by: 'propulsion', byTitle: 'propulsive force', tooltip})});
   };
 
   kinds.right_share = (chart, {rows}) => {
@@ -328,12 +329,13 @@
     const dampings = distinct(rows, 'damping').reverse();
     let damping = dampings[0];
     choice(chart.controls, 'Beam damping', dampings.map(d => [d, `${d} N·m·s/rad`]), v => { damping = v; renew(chart.drawings); });
-    const high = Math.max(0.5, ...rows.map(r => r.right ?? 0));
+    const few = r => r.successes < 10;
+    const high = Math.max(0.5, ...rows.filter(r => !few(r)).map(r => r.right ?? 0));
     for (const propulsion of distinct(rows, 'propulsion')) {
       drawing(chart, {title: `Propulsive force ${propulsion} N: right, % of those that traversed`, height: 330,
-        note: 'Darker: fewer on the right. –: none traversed.',
+        note: 'Darker: fewer on the right. Pale, in brackets: fewer than 10 traversed, so chance decides. –: none traversed.',
         make: width => ({spec: heat(rows.filter(r => r.damping === damping && r.propulsion === propulsion).map(r => ({...r,
-          x: r.k_left, y: r.random, value: r.right, text: r.right === null ? '–' : `${Math.round(100 * r.right)}`,
+          x: r.k_left, y: r.random, value: r.right, pale: few(r), text: r.right === null ? '–' : few(r) ? `(${Math.round(100 * r.right)})` : `${Math.round(100 * r.right)}`,
           Right: r.right === null ? 'none traversed' : `${percent(r.right)} ${interval(r)}`, Of: `${r.successes} of ${r.trials} trials`})),
         {x: 'left beam stiffness (N·m/rad)', y: 'random force (N)', range: ramp('viridis', 0, 1, 9), domain: [0, high],
           bright: {from: 0.6, above: '#111111', below: '#ffffff'}, width,
@@ -349,13 +351,13 @@
     for (const panel of panels) {
       const above = panel.name === 'B';  // the paper's B is A from above
       drawing(chart, {title: `${panel.name}: ${panel.title}`, height: 400, three: true, make: () => ({
-        traces: surface(panel, {ceiling, scale: above}), camera: above ? 'above' : state.camera, zTitle: 'energy (J)'})});
+        traces: surface(panel, {ceiling, scale: above}), camera: above ? 'above' : state.camera})});
     }
   };
 
   kinds.barriers = (chart, {rows}) => {
     let field = 'above_start_J';
-    choice(chart.controls, 'Barrier height above', [['above_start_J', 'the start'], ['above_basin_J', 'the basin before the beams']],
+    choice(chart.controls, 'Barrier above', [['above_start_J', 'the start'], ['above_basin_J', 'the basin before the beams']],
       v => { field = v; renew(chart.drawings); });
     const dampings = distinct(rows, 'damping').reverse();
     drawing(chart, {height: 380, make: width => {
@@ -371,7 +373,7 @@
         spec: {
           data: {values},
           encoding: {
-            x: {field: 'barrier', type: 'quantitative', title: 'height of the lower barrier (J)', axis: {grid: false, tickCount: Math.min(10, Math.floor(width / 60))}, scale: {zero: false, nice: true}},
+            x: {field: 'barrier', type: 'quantitative', title: `highest point of the lowest way, above ${field === 'above_start_J' ? 'the start' : 'the basin'} (J)`, axis: {grid: false, tickCount: Math.min(10, Math.floor(width / 60))}, scale: {zero: false, nice: true}},
             color: {field: 'damping', type: 'ordinal', scale: {domain: dampings, range: colours}, legend: null},
           },
           layer: [
@@ -417,7 +419,7 @@
     for (const one of d.surfaces) {
       drawing(chart, {title: one.title, height: 400, three: true, make: () => ({
         traces: [...surface(one, {ceiling: d.ceiling, opacity: 0.85, colours: faint()}), path(d.x, d.y, d.potential, colour('blue'), 'the system')],
-        camera: state.camera, zTitle: 'energy (J)'})});
+        camera: state.camera})});
     }
   };
 
@@ -436,8 +438,9 @@
       drawing(chart, {title: panel.title, height: 360, three: true, note: `Traversed left ${panel.left}, right ${panel.right}.`, make: () => ({
         keys: [['line', colour('blue'), 'left'], ['line', colour('orange'), 'right']],
         traces: [...surface(panel, {ceiling, opacity: 0.85, colours: faint()}),
-          ...[of('left', colour('blue')), of('right', colour('orange'))].map(t => ({...t, line: {...t.line, width: 3}}))],
-        camera: state.camera, zTitle: 'energy (J)'})});
+          ...[of('left', colour('blue')), of('right', colour('orange'))].map(t => panel.runs.length > 20 ?
+            {...t, opacity: 0.6, line: {...t.line, width: 1.5}} : {...t, line: {...t.line, width: 3}})],
+        camera: state.camera})});
     }
   };
 
@@ -532,6 +535,7 @@
     const values = rows.map((r, i) => ({...r, i, group: r.group ?? '',
       number: show(r.value) + (r.low === null || r.low === undefined ? '' : share ?
         ` [${(100 * r.low).toFixed(1)}, ${(100 * r.high).toFixed(1)}]` : ` [${three(r.low)}, ${three(r.high)}]`)}));
+    if (rows.length > 14) return many_rates(chart, values, groups, marks, share);
     drawing(chart, {height: 70 + 48 * rows.length, make: width => {
       const c = by_group(groups);
       const of_mark = m => groups.includes(m.group) ? c.scale.range[groups.indexOf(m.group)] : css('muted');
@@ -548,6 +552,31 @@
       };
     }});
   };
+
+  /// Too many rows to give each two lines: names at the side, groups below their headings, values to hover for.
+  function many_rates(chart, values, groups, marks, share) {
+    const lines = groups.flatMap((g, i) => [{key: `g${i}|${g}`}, ...values.filter(r => r.group === g).map(r => ({...r, key: `r${r.i}|${r.label}`}))]);
+    drawing(chart, {height: 70 + 22 * lines.length, make: width => ({
+      keys: marks.map(m => ['dash', css('muted'), m.label]),
+      spec: {
+        data: {values: lines},
+        encoding: {
+          y: {field: 'key', type: 'nominal', sort: null, scale: {domain: lines.map(r => r.key)}, axis: {title: null, domain: false, ticks: false, grid: true,
+            labelExpr: "slice(datum.label, indexof(datum.label, '|') + 1)", labelLimit: width / 2, labelPadding: 10,
+            labelFontWeight: {condition: {test: "datum.label[0] == 'g'", value: 'bold'}, value: 'normal'},
+            labelColor: {condition: {test: "datum.label[0] == 'g'", value: css('ink')}, value: css('muted')}}},
+          tooltip: [tip('group', 'Varied'), tip('label', 'Value'), tip('number', 'Share, 95 %')],
+        },
+        layer: [
+          ...marks.map(m => ({data: {values: [m]}, mark: {type: 'rule', strokeDash: [5, 4], strokeWidth: 2},
+            encoding: {x: {field: 'value', type: 'quantitative'}, y: null, tooltip: [tip('label', ' ')]}})),
+          {mark: {type: 'rule', strokeWidth: 2.5, color: colour('blue')}, encoding: {x: {field: 'low', type: 'quantitative', title: share ? '%' : null,
+            axis: {orient: 'bottom', tickCount: 6, ...(share ? {labelExpr: 'format(100*datum.value, ".3~g")'} : {})}}, x2: {field: 'high'}}},
+          {mark: {type: 'point', size: 70, opacity: 1, color: colour('blue')}, encoding: {x: {field: 'value', type: 'quantitative'}}},
+        ],
+      },
+    })});
+  }
 
   kinds.speed = (chart, {rows}) => {
     const groups = groups_of(rows);
