@@ -1,0 +1,89 @@
+#pragma once
+/// Writing and reading NetCDF-4 on an image in memory: HDF5 1.10 crashes at exit after a write that
+/// failed, and files are replaced as a whole. Not part of the installed headers.
+
+#include <netcdf.h>
+#include <netcdf_mem.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace gatewalk::markov::netcdf {
+
+/// Throws std::runtime_error with NetCDF's words unless `rc` is fine.
+inline void check(int rc, const std::string& what) {
+  if (rc != NC_NOERR) throw std::runtime_error(what + ": " + nc_strerror(rc));
+}
+
+class Image {
+ public:
+  Image() = default;
+  ~Image() {
+    if (is_open_) nc_abort(id_);
+  }
+  Image(const Image&) = delete;
+  Image& operator=(const Image&) = delete;
+
+  void create() {
+    constexpr std::size_t kFirstBytes = 1 << 16;
+    check(nc_create_mem("image", NC_NETCDF4, kFirstBytes, &id_), "cannot create");
+    is_open_ = true;
+  }
+  void open(std::vector<char>& image) {
+    check(nc_open_mem("image", NC_NOWRITE, image.size(), image.data(), &id_), "cannot open");
+    is_open_ = true;
+  }
+  [[nodiscard]] std::vector<char> close_image() {
+    is_open_ = false;
+    NC_memio memory{};
+    check(nc_close_memio(id_, &memory), "cannot finish");
+    const char* bytes = static_cast<const char*>(memory.memory);
+    std::vector<char> image(bytes, bytes + memory.size);
+    std::free(memory.memory);
+    return image;
+  }
+  operator int() const { return id_; }
+
+ private:
+  int id_ = -1;
+  bool is_open_ = false;
+};
+
+constexpr nc_type type_of(const std::vector<std::int8_t>&) { return NC_BYTE; }
+constexpr nc_type type_of(const std::vector<std::int32_t>&) { return NC_INT; }
+constexpr nc_type type_of(const std::vector<std::int64_t>&) { return NC_INT64; }
+constexpr nc_type type_of(const std::vector<double>&) { return NC_DOUBLE; }
+
+inline void put_text(int nc, int variable, const std::string& name, const std::string& text) {
+  check(nc_put_att_text(nc, variable, name.c_str(), text.size(), text.data()),
+        "attribute " + name);
+}
+
+inline int define_dimension(int nc, const std::string& name, std::size_t length) {
+  int dimension = -1;
+  // A length of 0 is NC_UNLIMITED, which is how NetCDF holds an empty list.
+  check(nc_def_dim(nc, name.c_str(), length, &dimension), "dimension " + name);
+  return dimension;
+}
+
+/// A compressed, checksummed variable; returns its number.
+template <class T>
+int put_variable(int nc, const std::string& name, int dimension, const std::vector<T>& values,
+                  const std::string& unit, const std::string& meaning) {
+  constexpr int kShuffle = 1, kDeflate = 1, kLevel = 4;
+  int variable = -1;
+  check(nc_def_var(nc, name.c_str(), type_of(values), 1, &dimension, &variable), name);
+  check(nc_def_var_deflate(nc, variable, kShuffle, kDeflate, kLevel), name);
+  check(nc_def_var_fletcher32(nc, variable, NC_FLETCHER32), name);
+  put_text(nc, variable, "units", unit);
+  put_text(nc, variable, "long_name", meaning);
+  const std::size_t first = 0;
+  const std::size_t count = values.size();
+  if (count > 0) check(nc_put_vara(nc, variable, &first, &count, values.data()), name);
+  return variable;
+}
+
+}  // namespace gatewalk::markov::netcdf
