@@ -134,6 +134,14 @@ struct Coupling {
 };
 [[nodiscard]] Coupling coupling(const GateParams& p, const std::array<Touch, 2>& touch);
 
+/// What impulses J (N s) at both contacts do to the kinetic energy (J), from the gap rates u before
+/// them: J.u + J.W J / 2. Equal to -(1 - e^2)/2 u^2 / (1/M + l^2/I) for a single hit.
+[[nodiscard]] inline double energy_gain(const Coupling& w, const std::array<double, 2>& u,
+                                        const std::array<double, 2>& impulse) {
+  const auto [l, r] = impulse;
+  return l * (u[kLeft] + 0.5 * w.left * l) + r * (u[kRight] + 0.5 * w.right * r) + w.cross * (l * r);
+}
+
 /// Solves z >= 0, W z + b >= 0, z.(W z + b) = 0 over the contacts marked `active` (others z = 0).
 /// W is positive definite, so there is exactly one answer; 2 x 2, so it is found by cases.
 [[nodiscard]] std::array<double, 2> push_only(const Coupling& w, const std::array<double, 2>& b,

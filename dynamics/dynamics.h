@@ -10,6 +10,7 @@
 ///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
 ///   ensemble.h     many runs, their outcomes and their health
 ///   state_space.h  Table III: how a body enters a gate, as a number
+///   trace.h        one run in full, step by step
 ///   landscape.h    potential energy Eqs. (14), (15), the lowest way through
 ///   transitions.h  runs -> counts, the matrix of Eq. (16)
 ///   verdict.h      one word for how far a method can be trusted
@@ -28,5 +29,6 @@
 #include "dynamics/runs.h"
 #include "dynamics/stability.h"
 #include "dynamics/state_space.h"
+#include "dynamics/trace.h"
 #include "dynamics/transitions.h"
 #include "dynamics/verdict.h"

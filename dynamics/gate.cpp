@@ -1,6 +1,7 @@
 #include "dynamics/gate.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gatewalk::dynamics {
 namespace {
@@ -22,10 +23,10 @@ Ending ending(const GateParams& p, const GateState& s) {
 }
 
 GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,
-                 RandomForce& force, std::int64_t most_work) {
+                 RandomForce& force, std::int64_t most_work, EnergyLedger::Follow follow) {
   GateState s{start, {}};
   GateRun run;
-  EnergyLedger ledger(p, s);
+  EnergyLedger ledger(p, s, std::move(follow));
   const double nearly_over = p.run.time_limit - 1e-6 * p.run.step;
   while (!outside(p, s.body) && run.seconds < nearly_over) {
     run.cut_short = std::max(run.watch.steps, run.watch.evaluations) > most_work;

@@ -28,8 +28,10 @@ struct GateRun {
 /// side, or time_limit is over. There is no exit at the bottom: propulsion brings the body back.
 /// A run that takes more than `most_work` steps or evaluations is cut short: for studies of methods
 /// that may crawl. It is looked at once per draw of the random force.
+/// `follow` is told of every step of the method.
 [[nodiscard]] GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,
                                RandomForce& force,
-                               std::int64_t most_work = std::numeric_limits<std::int64_t>::max());
+                               std::int64_t most_work = std::numeric_limits<std::int64_t>::max(),
+                               EnergyLedger::Follow follow = {});
 
 }  // namespace gatewalk::dynamics

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <optional>
+#include <string>
 
 #include "dynamics/runs.h"
 #include "lattice/crowd.h"
@@ -12,8 +13,6 @@ namespace gatewalk::lattice {
 namespace {
 
 using namespace dynamics;
-
-enum class Fate : std::uint8_t { trapped, left_field, cut_off, broken };
 
 /// One trial's part of the tally.
 struct Trial {
@@ -53,6 +52,12 @@ std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams&
   return crossing;
 }
 
+RandomForce field_force(const GateParams& p, const BodyState& start, std::uint64_t seed,
+                        std::int64_t trial) {
+  const Stream stream{seed, stream_row(start), static_cast<std::uint64_t>(trial)};
+  return {p.forces, Random(Purpose::field, stream)};
+}
+
 }  // namespace
 
 std::uint64_t stream_row(const BodyState& b) {
@@ -85,13 +90,9 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
                      bool keep_crossings) {
   const auto method = make_method(p);
   validate(p, field);
-  const std::uint64_t row = stream_row(start);
   std::vector<Trial> trials(range.count);
   for (Trial& t : trials) t.column = field.start_column();
-  const auto force_of = [&](std::int64_t i) -> RandomForce {
-    const Stream stream{seed, row, static_cast<std::uint64_t>(range.first + i)};
-    return {p.forces, Random(Purpose::field, stream)};
-  };
+  const auto force_of = [&](std::int64_t i) { return field_force(p, start, seed, range.first + i); };
   if (field.fidelity == Fidelity::active) {
     carry_out_trials(
         p, *method, range.count,
@@ -132,6 +133,28 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
     tally.crossings.insert(tally.crossings.end(), t.crossings.begin(), t.crossings.end());
   }
   return tally;
+}
+
+FieldTrace trace_field(const GateParams& p, const FieldParams& field, const BodyState& start,
+                       std::uint64_t seed, std::int64_t trial) {
+  if (field.fidelity != Fidelity::active)
+    throw InvalidParameter("field.fidelity", "field.fidelity = \"" + std::string(name_of(field.fidelity)) +
+                                                 "\" is not permitted: only \"active\" can be traced");
+  const auto method = make_method(p);
+  validate(p, field);
+  const StateSpace space = StateSpace::paper(p);  // `follow` counts with it; nobody asks here
+  Trial t;
+  t.column = field.start_column();
+  RandomForce force = field_force(p, start, seed, trial);
+  FieldTrace trace;
+  for (BodyState from = start;;) {
+    trace.visits.push_back({t.column, t.row, trace_gate(p, *method, from, force)});
+    const GateRun& run = trace.visits.back().trace.run;
+    if (!follow(t, p, field, space, run, false)) break;
+    from = shifted_into_next(p, run.ending, run.exit);
+  }
+  trace.fate = t.fate;
+  return trace;
 }
 
 }  // namespace gatewalk::lattice

@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "dynamics/ensemble.h"
 #include "dynamics/state_space.h"
+#include "dynamics/trace.h"
 #include "lattice/field.h"
 #include "markov/walk.h"
 
@@ -31,6 +33,14 @@ struct FieldTally {
   FieldTally& operator+=(const FieldTally& other);  // `other` continues this one's trials
 };
 
+/// How a trial through the field ends.
+enum class Fate : std::uint8_t { trapped, left_field, cut_off, broken };
+inline constexpr std::array<std::string_view, 4> kFateNames{"trapped", "left field", "cut off",
+                                                            "not finite"};
+[[nodiscard]] inline std::string_view name_of(Fate f) {
+  return kFateNames[static_cast<std::size_t>(f)];
+}
+
 /// The number that names a start in its trials' streams: other starts, other noise.
 [[nodiscard]] std::uint64_t stream_row(const dynamics::BodyState& start);
 
@@ -45,5 +55,21 @@ struct FieldTally {
                                    const dynamics::BodyState& start,
                                    const dynamics::StateSpace& space, std::uint64_t seed,
                                    dynamics::TrialRange range, bool keep_crossings = false);
+
+/// A trial through the field in full.
+struct FieldTrace {
+  struct Visit {
+    int column = 0, row = 0;
+    dynamics::GateTrace trace;  // in the gate's own frame and time, work and losses from its entry on
+  };
+  std::vector<Visit> visits;
+  Fate fate = Fate::broken;
+};
+
+/// Trial number `trial` of run_field, the same to the last bit. Throws InvalidParameter, also for
+/// another fidelity than `active`.
+[[nodiscard]] FieldTrace trace_field(const dynamics::GateParams& p, const FieldParams& field,
+                                     const dynamics::BodyState& start, std::uint64_t seed,
+                                     std::int64_t trial);
 
 }  // namespace gatewalk::lattice

@@ -185,8 +185,9 @@ double EventMethod::advance(GateState& s, double force_x, double duration, Energ
       put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
     }
     const bool held = s.beams[kLeft].held || s.beams[kRight].held;
-    passed += held ? slide_on(s, force_x, left, watch) : fly_on(s, force_x, left, watch);
-    ledger.step(s, force_x, watch);
+    const double piece = held ? slide_on(s, force_x, left, watch) : fly_on(s, force_x, left, watch);
+    passed += piece;
+    ledger.step(s, force_x, piece, watch);
     watch.motion(p_, s, 0.0);
     if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body)) break;
   }

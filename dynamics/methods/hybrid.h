@@ -102,6 +102,8 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, Watch& wat
     }
     apply_impulses(p, touch, impulse, s);
     watch.impacts += active[kLeft] + active[kRight];
+    watch.hit_loss -= energy_gain(w, u, impulse);
+    for (const Side side : {kLeft, kRight}) watch.impulse[side] += impulse[side];
   }
 }
 

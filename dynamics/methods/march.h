@@ -40,7 +40,7 @@ double march(const GateParams& p, const Spell& spell, GateState& s, double force
       passed = back_to_exit(p, before, s, spell.step);
       s.beams = mixed(before.beams, beams, passed / spell.step);
     }
-    ledger.step(s, force_x, watch, stored(s));
+    ledger.step(s, force_x, passed, watch, stored(s));
     watch.state(p, s, spell.step);
     if (left || !finite) return static_cast<double>(i) * spell.step + passed;
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "dynamics/contact.h"
@@ -24,6 +25,9 @@ struct Watch {
   std::int64_t undefined_contacts = 0;  // contacts for which the method has no formula
   std::int64_t fast_steps = 0;      // steps in which disc or beam moved so far that hits can be missed
   std::int64_t unstable_steps = 0;  // steps longer than the method's stability bound for free beams
+  // For traces; runs in vector lanes leave them out, and penalty, in which contact is no hit, too.
+  std::array<double, 2> impulse{};  // N s, of the hits on each beam, along the contact's normal
+  double hit_loss = 0.0;            // J, that hits took
 
   /// To be called after every step, looks at the state from outside the method; `dt` is the time
   /// between two looks for contact.
@@ -39,17 +43,30 @@ struct Watch {
 /// Energy less the work of propulsion and random force: it may only fall. Follows one run.
 class EnergyLedger {
  public:
-  EnergyLedger(const GateParams& p, const GateState& s) : p_(p), x_(s.body.x), y0_(s.body.y) {
+  /// Told of every step: where it has led, under which random force (N), how long it took (s), and
+  /// what propulsion and random force have done (J) since the run began.
+  struct Step {
+    const GateState& state;
+    double force_x, seconds;
+    double propulsion_work, random_work;
+    const Watch& watch;
+  };
+  using Follow = std::function<void(const Step&)>;
+
+  EnergyLedger(const GateParams& p, const GateState& s, Follow follow = {})
+      : p_(p), x_(s.body.x), y0_(s.body.y), follow_(std::move(follow)) {
     lowest_ = balance(s);
   }
-  /// To be called after every step with the random force that acted during it, and the energy that
-  /// the method keeps outside the state (J, in contact springs).
-  void step(const GateState& s, double force_x, Watch& w, double stored = 0.0) {
+  /// To be called after every step with the random force that acted during it, the seconds it took,
+  /// and the energy that the method keeps outside the state (J, in contact springs).
+  void step(const GateState& s, double force_x, double seconds, Watch& w, double stored = 0.0) {
     random_work_ += force_x * (s.body.x - x_);
     x_ = s.body.x;
     const double now = balance(s) + stored;
     w.energy_created = std::max(w.energy_created, now - lowest_);
     lowest_ = std::min(lowest_, now);
+    if (follow_)
+      follow_({s, force_x, seconds, p_.forces.propulsion * (s.body.y - y0_), random_work_, w});
   }
 
  private:
@@ -58,6 +75,7 @@ class EnergyLedger {
   double x_, y0_;
   double random_work_ = 0.0;
   double lowest_ = 0.0;
+  Follow follow_;
 };
 
 /// Total energy (J): kinetic of body and beams, elastic of the joints (Eq. (14)).

@@ -73,7 +73,12 @@ void MoreauMethod::one_step(GateState& s, double force_x, const Step& step, Watc
     body.vy += (impulse[kLeft] * l.ny + impulse[kRight] * r.ny) / step.mass;
     for (const Side side : {kLeft, kRight}) {
       beams[side].omega -= impulse[side] * touch[side].lever / step.inertia[side];
+      watch.impulse[side] += impulse[side];
       watch.impacts += impulse[side] > 0.0 && touch[side].gap > step.h * before[side];
+    }
+    for (const Side side : {kLeft, kRight}) {
+      if (!active[side]) continue;  // by the midpoint rule an impulse works on the mean of both rates
+      watch.hit_loss -= 0.5 * impulse[side] * (before[side] + gap_rate(touch[side], body, beams[side]));
     }
   }
 

@@ -22,7 +22,7 @@ double PaperMethod::advance(GateState& s, double force_x, double duration, Energ
     collide(s, watch);
     euler(s, force_x, dt, watch);
     watch.unstable_steps += beyond_bound_;
-    ledger.step(s, force_x, watch);
+    ledger.step(s, force_x, dt, watch);
     watch.state(p_, s, dt);
     if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body))
       return static_cast<double>(i) * dt;
@@ -50,6 +50,8 @@ void PaperMethod::collide(GateState& s, Watch& watch) const {
     s.body.vy += impulse * t.ny / p_.body.mass;
     beam.omega -= impulse * t.lever / p_.beams.inertia();
     ++watch.impacts;
+    watch.impulse[side] += impulse;
+    watch.hit_loss -= impulse * (u + 0.5 * impulse * compliance(p_.body.mass, p_.beams.inertia(), t.lever));
     if (impulse < p_.contact.impulse_threshold && t.lever != 0.0) {
       beam.held = true;  // the switch sets the beam's velocity to satisfy Eq. (10) or (12)
       beam.omega = (t.nx * s.body.vx + t.ny * s.body.vy) / t.lever;

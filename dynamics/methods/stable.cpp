@@ -110,7 +110,7 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
       longest = std::max(longest, flows[n].dt);
       unit += units >> n;
     }
-    ledger.step(s, force_x, watch);
+    ledger.step(s, force_x, passed, watch);
     watch.motion(p_, s, longest);
     if (outside(p_, s.body) || !std::isfinite(s.body.vx + s.body.vy))
       return static_cast<double>(i) * spell.step + passed;

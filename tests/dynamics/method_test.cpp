@@ -89,11 +89,11 @@ TEST(EnergyLedger, KnowsTheWorkOfBothForces) {
   Watch w;
   s.body = {4, 3, 0, 0};  // 3 m along x under 5 N, 1 m along y under 8 N: 23 J
   s.body.vx = std::sqrt(2 * 23.0);
-  ledger.step(s, 5.0, w);
+  ledger.step(s, 5.0, 0.02, w);
   EXPECT_NEAR(w.energy_created, 0.0, 8 * kEps * 23);
   s.body.x = 5;
   s.body.vx = std::sqrt(2 * 20.0);  // 1 m back-pushed by 2 N: 21 J were due, 1 J was lost
-  ledger.step(s, -2.0, w);
+  ledger.step(s, -2.0, 0.02, w);
   EXPECT_NEAR(w.energy_created, 0.0, 8 * kEps * 23);
 }
 
@@ -108,7 +108,7 @@ TEST(EnergyLedger, RemembersTheLargestRise) {
   const double balance[] = {9, 6, 8, 7, 5, 5.5}, created[] = {0, 0, 2, 2, 2, 2};
   for (int i = 0; i < 6; ++i) {
     set_energy(balance[i]);
-    ledger.step(s, 0.0, w);
+    ledger.step(s, 0.0, 0.02, w);
     EXPECT_NEAR(w.energy_created, created[i], 16 * kEps * 10) << i;
   }
 }

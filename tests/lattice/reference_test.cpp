@@ -439,5 +439,38 @@ TEST(RunField, ScenesThatCannotBeRunAreRefused) {
   EXPECT_THROW((void)run_field(p, {}, kStart, StateSpace::paper(p), 1, {0, 1}), InvalidParameter);
 }
 
+// A traced trial is the one that was counted: final gate, fate, and every crossing on the way.
+TEST(FieldTrace, IsTheTrialItself) {
+  const GateParams p;
+  const FieldParams field;
+  std::map<Fate, std::int64_t> fates;
+  const FieldTally tally = run(p, field, {0, 40}, 3);
+  for (std::int64_t i = 0; i < 40; ++i) {
+    const FieldTrace t = trace_field(p, field, kStart, 3, i);
+    ++fates[t.fate];
+    EXPECT_EQ(t.visits.back().row * field.columns + t.visits.back().column, tally.final_gate_of_trial[i]);
+    for (std::size_t v = 1; v < t.visits.size(); ++v) {
+      const auto &from = t.visits[v - 1], &to = t.visits[v];
+      EXPECT_EQ(std::abs(from.column - to.column) + to.row - from.row, 1);
+      const BodyState entry = shifted_into_next(p, from.trace.run.ending, from.trace.run.exit);
+      EXPECT_TRUE(test::same_bits(to.trace.samples.front().state.body.x, entry.x));
+      EXPECT_TRUE(test::same_bits(to.trace.samples.front().state.body.vy, entry.vy));
+      EXPECT_EQ(to.trace.samples.front().state.beams[kLeft].theta, 0.0);
+    }
+  }
+  EXPECT_EQ(fates[Fate::trapped], tally.trapped);
+  EXPECT_EQ(fates[Fate::left_field], tally.left_field);
+  EXPECT_EQ(fates[Fate::cut_off], tally.cut_off);
+}
+
+TEST(FieldTrace, OnlyTheActiveGate) {
+  GateParams p;
+  p.run.method = "moreau";
+  p.run.step = 0.004;
+  FieldParams field;
+  field.fidelity = Fidelity::remember;
+  EXPECT_THROW((void)trace_field(p, field, kStart, 1, 0), InvalidParameter);
+}
+
 }  // namespace
 }  // namespace gatewalk::lattice
