@@ -159,10 +159,10 @@ const std::vector<std::string>& Options::overrides() const {
 
 std::string Options::canonical() const { return canonical_; }
 
-void Options::give_out(const Json& json, const std::string& table) const {
+void Options::give_out(const Json& json, const std::string& table, int indent) const {
   const std::string target = text("json");
   if (target != "-" && (target.empty() || talk())) write_text_atomically("-", table);
-  if (!target.empty()) write_text_atomically(target, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (!target.empty()) write_text_atomically(target, json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void add_seed(Options& options) {

@@ -47,6 +47,7 @@ struct Command {
 int run_gate(const std::vector<std::string>& arguments);
 int run_sweep(const std::vector<std::string>& arguments);
 int run_landscape(const std::vector<std::string>& arguments);
+int run_trace(const std::vector<std::string>& arguments);
 int run_build(const std::vector<std::string>& arguments);
 int run_show(const std::vector<std::string>& arguments);
 int run_walk(const std::vector<std::string>& arguments);
@@ -96,7 +97,8 @@ class Options {
 
   /// Prints the result: JSON where --json says, the table on standard output otherwise; with --json
   /// FILE the table too, unless --quiet.
-  void give_out(const Json& json, const std::string& table) const;
+  /// `indent` -1: JSON on one line, for long arrays.
+  void give_out(const Json& json, const std::string& table, int indent = 2) const;
 
  private:
   std::string synopsis_, about_, example_;

@@ -10,10 +10,11 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::array<Command, 13> kCommands{{
+constexpr std::array<Command, 14> kCommands{{
     {"gate", "run one gate many times and count the outcomes", run_gate},
     {"sweep", "the same over a grid of scene keys", run_sweep},
     {"landscape", "potential energy over the gate, the lowest way through", run_landscape},
+    {"trace", "record single runs in full, play them, film them", run_trace},
     {"build", "fill the input-output matrix from single-gate runs", run_build},
     {"show", "show what a matrix file holds", run_show},
     {"walk", "walk the field by drawing from the matrix", run_walk},

@@ -138,9 +138,9 @@
       if (isIntersecting && one.stale) draw(one);
       // Browsers keep only some 8 to 16 drawings in 3D: those out of sight make room.
       if (!isIntersecting && one.three && !one.stale) {
-        Plotly.purge(one.box);
         delete one.box.dataset.drawn;
         one.stale = true;
+        one.plotted.then(() => one.seen || Plotly.purge(one.box));  // not while it is being drawn
       }
     }
   }, {rootMargin: '300px 0px'});
@@ -253,7 +253,7 @@
         aspectmode: 'manual', aspectratio: {x: size, y: 1.2 * size, z: 0.6 * size}, camera: from(camera, width), dragmode: 'turntable',
       },
     };
-    Plotly.react(one.box, traces, layout, {displayModeBar: false, scrollZoom: true});
+    one.plotted = Plotly.react(one.box, traces, layout, {displayModeBar: false, scrollZoom: true});
   }
 
   // Wheel and fingers move the page; a drawing in 3D takes them only after a click or a tap into it.
@@ -333,9 +333,9 @@
     const high = Math.max(0.5, ...rows.filter(r => !few(r)).map(r => r.right ?? 0));
     for (const propulsion of distinct(rows, 'propulsion')) {
       drawing(chart, {title: `Propulsive force ${propulsion} N: right, % of those that traversed`, height: 330,
-        note: 'Darker: fewer on the right. Pale, in brackets: fewer than 10 traversed, so chance decides. –: none traversed.',
+        note: 'Darker: fewer on the right. Pale: fewer than 10 traversed, so chance decides; how many of them on the right. –: none traversed.',
         make: width => ({spec: heat(rows.filter(r => r.damping === damping && r.propulsion === propulsion).map(r => ({...r,
-          x: r.k_left, y: r.random, value: r.right, pale: few(r), text: r.right === null ? '–' : few(r) ? `(${Math.round(100 * r.right)})` : `${Math.round(100 * r.right)}`,
+          x: r.k_left, y: r.random, value: r.right, pale: few(r), text: r.right === null ? '–' : few(r) ? `${Math.round(r.right * r.successes)}/${r.successes}` : `${Math.round(100 * r.right)}`,
           Right: r.right === null ? 'none traversed' : `${percent(r.right)} ${interval(r)}`, Of: `${r.successes} of ${r.trials} trials`})),
         {x: 'left beam stiffness (N·m/rad)', y: 'random force (N)', range: ramp('viridis', 0, 1, 9), domain: [0, high],
           bright: {from: 0.6, above: '#111111', below: '#ffffff'}, width,
@@ -356,8 +356,8 @@
   };
 
   kinds.barriers = (chart, {rows}) => {
-    let field = 'above_start_J';
-    choice(chart.controls, 'Barrier above', [['above_start_J', 'the start'], ['above_basin_J', 'the basin before the beams']],
+    let field = 'above_basin_J';
+    choice(chart.controls, 'Barrier above', [['above_basin_J', 'the basin before the beams'], ['above_start_J', 'the start']],
       v => { field = v; renew(chart.drawings); });
     const dampings = distinct(rows, 'damping').reverse();
     drawing(chart, {height: 380, make: width => {

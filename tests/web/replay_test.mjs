@@ -17,7 +17,7 @@ const seen = (name, options, look) =>
 const time = (page) => page.locator('.gwr-time').evaluate((slider) => Number(slider.value));
 const end = (page) => page.locator('.gwr-time').evaluate((slider) => Number(slider.max));
 const pixels = (page) => page.locator('.gwr-stage').evaluate((canvas) => canvas.toDataURL());
-const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+const overflow = async (page) => (await page.evaluate(() => document.documentElement.scrollWidth)) - page.viewportSize().width;
 
 test('waits for the reader who wants little motion, and plays in real time', () => seen('gate.html', {}, async (page) => {
   await page.waitForTimeout(300);

@@ -22,7 +22,7 @@ async function see_all_charts(page, shots) {
     assert.ok(places.length > 0, `${name}: nothing is drawn`);
     for (const place of places) {
       await place.scrollIntoViewIfNeeded();
-      await place.and(page.locator('[data-drawn]')).waitFor({timeout: 15000});
+      await place.and(page.locator('[data-drawn]')).waitFor({timeout: 60000});
       const seen = await place.evaluate(box => {
         const area = e => e ? e.getBoundingClientRect().width * e.getBoundingClientRect().height : 0;
         const within = box.querySelector('canvas, svg') ? [box] : [...box.querySelectorAll('*'), box].map(e => e.shadowRoot).filter(Boolean);
@@ -83,7 +83,7 @@ await browse(report, desktop, async (page, faults) => {
   if (await solid.count() > 0) {
     const eye = () => solid.evaluate(box => JSON.stringify(box._fullLayout.scene._scene.getCamera().eye));
     await solid.evaluate(box => box.scrollIntoView({block: 'center', behavior: 'instant'}));
-    await solid.and(page.locator('[data-drawn]')).waitFor({timeout: 15000});
+    await solid.and(page.locator('[data-drawn]')).waitFor({timeout: 60000});
     const before = await eye(), top = await page.evaluate(() => scrollY);
     await solid.hover({force: true});
     await page.mouse.wheel(0, 40);

@@ -1,0 +1,141 @@
+#include "cli/auto.h"
+#include "cli/command.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/recording.h"
+#include "cli/replay.h"
+#include "cli/report.h"
+#include "cli/video.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr std::int64_t kMostRuns = 1000;   // kept
+constexpr std::size_t kMostMoments = 2'000'000;  // of all runs together, some 1 GB
+constexpr std::size_t kMostLines = 20;     // of the table
+
+std::string table_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {
+  std::string text = scene_line(scene) + "   trial  ending            seconds  steps   hits" +
+                     (across_field ? "  gates" : "") +
+                     "   work (J)  lost (J)  of it in hits  left over (J)\n";
+  for (std::size_t i = 0; i < runs.size() && i < kMostLines; ++i) {
+    const Recording& r = runs[i];
+    const dynamics::Energies& e = r.moments.back().energy;
+    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -16) + padded(fixed(r.seconds, 2), 9) +
+            padded(std::to_string(r.health.steps), 7) + padded(std::to_string(r.health.impacts), 7) +
+            (across_field ? padded(std::to_string(r.gates), 7) : "") +
+            padded(fixed(e.propulsion_work + e.random_work, 1), 11) + padded(fixed(e.lost, 1), 10) +
+            padded(fixed(e.hit_loss, 1), 15) + padded(fixed(e.mechanical(), 1), 15) + "\n";
+  }
+  if (runs.size() > kMostLines)
+    text += "   ... and " + std::to_string(runs.size() - kMostLines) + " more\n";
+  return text;
+}
+
+/// `only` names one ending, or several by the words they begin with.
+bool fits(const std::string& ending, const std::string& only) {
+  return ending.starts_with(only) && (ending.size() == only.size() || ending[only.size()] == ' ');
+}
+
+}  // namespace
+
+int run_trace(const std::vector<std::string>& arguments) {
+  Options options("trace SCENE [options]",
+                  "Records runs in full: every step of the method with positions, velocities, beams, forces, contacts\n"
+                  "and energies. A trial is the very same one as in `gatewalk gate` (with --field: in `gatewalk lattice`)\n"
+                  "of that seed and number. CSV and NetCDF have all of it; --replay makes a page that plays the runs,\n"
+                  "--video a film of the first one.",
+                  "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' --replay runs.html --csv runs.csv");
+  options.positional("scene", "scene file (TOML)", true);
+  add_seed(options);
+  options.add()("trial", po::value<Count>()->default_value(Count{0}, "0")->value_name("I"), "number of the first trial")(
+      "trials", po::value<Count>()->default_value(Count{1}, "1")->value_name("N"), "record trials I to I + N - 1")(
+      "only", po::value<std::string>()->value_name("ENDING"),
+      "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with --field trapped, 'left field', 'cut off'")(
+      "field", "cross the field, gate after gate, instead of one gate")(
+      "csv", po::value<std::string>()->value_name("FILE"), "write all samples as CSV; - is standard output")(
+      "netcdf", po::value<std::string>()->value_name("FILE"), "write all samples as NetCDF-4")(
+      "replay", po::value<std::string>()->value_name("FILE.html"), "write a page that plays the runs")(
+      "video", po::value<std::string>()->value_name("FILE.mp4"), "write a film of the first run (needs ffmpeg)")(
+      "video-speed", po::value<double>()->default_value(1.0, "1")->value_name("X"), "times as fast as real");
+  if (!options.parse(arguments)) return kFine;
+  std::vector<std::string> files{options.text("scene")};
+  bool to_stdout = false;
+  for (const char* name : {"json", "csv", "netcdf", "replay", "video"}) {
+    const std::string file = options.text(name);
+    if (options.has(name) && file.empty()) throw UsageError(std::string("--") + name + " needs a file name");
+    if (file.empty()) continue;
+    for (const std::string& other : files) require_different(file, other);
+    files.push_back(file);
+    const bool binary = name == std::string("netcdf") || name == std::string("video");
+    if (binary && file == "-") throw UsageError(std::string("--") + name + " cannot go to standard output");
+    if (file == "-" && to_stdout) throw UsageError(std::string("--") + name + " -: only one thing can go to standard output");
+    to_stdout |= file == "-";
+    require_writable(file);
+  }
+  const bool across_field = options.has("field");
+  const std::int64_t first = options.count("trial", 0), trials = options.count("trials");
+  constexpr std::int64_t kLastTrial = 1'000'000'000'000'000;
+  if (first > kLastTrial || trials > kLastTrial) throw UsageError("--trial and --trials: at most " + std::to_string(kLastTrial));
+  const std::string only = options.text("only");
+  if (options.has("only")) {
+    std::string known;
+    bool found = false;
+    for (const std::string& ending : endings(across_field)) {
+      known += (known.empty() ? "" : ", ") + ending;
+      found |= fits(ending, only);
+    }
+    if (!found) throw UsageError("--only '" + only + "': a run ends as one of: " + known);
+  } else if (trials > kMostRuns) {
+    throw UsageError("--trials " + std::to_string(trials) + ": at most " + std::to_string(kMostRuns) +
+                     " runs are recorded; pick some with --only");
+  }
+  const double speed = options.get<double>("video-speed");
+  if (!(speed >= 0.01 && speed <= 100.0)) throw UsageError("--video-speed: must lie in [0.01, 100]");
+
+  Scene scene = read_scene(options.text("scene"), options.overrides());
+  const Json settled = settle_method(options, scene, across_field ? RunsFrom::everywhere : RunsFrom::start);
+  std::vector<Recording> runs;
+  std::size_t moments = 0;
+  dynamics::Health health;
+  run_in_batches("runs", trials, options.talk(), [&](std::int64_t from, std::int64_t n) {
+    for (std::int64_t i = from; i < from + n; ++i) {
+      Recording r = record(scene, options.seed(), first + i, across_field);
+      if (!only.empty() && !fits(r.ending, only)) continue;
+      if (static_cast<std::int64_t>(runs.size()) == kMostRuns)
+        throw UsageError("more than " + std::to_string(kMostRuns) + " runs end so; ask for fewer --trials");
+      moments += r.moments.size();
+      if (moments > kMostMoments)
+        throw UsageError("more than " + std::to_string(kMostMoments) + " steps in all; ask for fewer --trials or a longer run.step_s");
+      health += r.health;
+      runs.push_back(std::move(r));
+    }
+  });
+  if (runs.empty())
+    throw std::runtime_error("none of trials " + std::to_string(first) + " to " + std::to_string(first + trials - 1) +
+                             " ends '" + only + "': nothing was written");
+
+  const bool wanted = options.has("replay") || options.has("video") || options.has("json");
+  Json film = wanted ? film_of(scene, runs, across_field) : Json::object();
+  const Json made_by = manifest(options, scene);
+  if (options.has("csv")) write_text_atomically(options.text("csv"), csv_of(scene, runs));
+  if (options.has("netcdf")) {
+    std::vector<std::pair<std::string, std::string>> about;
+    for (const auto& [key, value] : made_by.items())
+      about.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
+    write_text_atomically(options.text("netcdf"), netcdf_of(scene, runs, across_field, about));
+  }
+  if (options.has("replay")) write_text_atomically(options.text("replay"), replay_page(film));
+  if (options.has("video")) write_video(options.text("video"), film, 0, {.speed = speed, .show_progress = options.talk()});
+  if (options.has("json")) add_details(film, scene, runs);
+  film["recorded"] = runs.size();
+  film["trials"] = trials;
+  if (!settled.is_null()) film["method"] = settled;
+  film["status"] = to_json(health);
+  film["made_by"] = made_by;
+  options.give_out(film, to_stdout ? "" : table_of(scene, runs, across_field) + method_line(settled), -1);
+  if (!health.clean()) warn(complaint(health));
+  return kFine;
+}
+
+}  // namespace gatewalk::cli
