@@ -58,6 +58,7 @@ int run_chart_field(const std::vector<std::string>& arguments);
 int run_chart(const std::vector<std::string>& arguments);
 int run_stability(const std::vector<std::string>& arguments);
 int run_chart_chain(const std::vector<std::string>& arguments);
+int run_reproduce(const std::vector<std::string>& arguments);
 
 /// Options of one command with the shared ones: --threads, --quiet, --json, --help.
 class Options {

@@ -10,7 +10,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::array<Command, 14> kCommands{{
+constexpr std::array<Command, 15> kCommands{{
     {"gate", "run one gate many times and count the outcomes", run_gate},
     {"sweep", "the same over a grid of scene keys", run_sweep},
     {"landscape", "potential energy over the gate, the lowest way through", run_landscape},
@@ -26,6 +26,7 @@ constexpr std::array<Command, 14> kCommands{{
     {"chart-field", "what memory and neighbours change, and what they cost", run_chart_field},
     {"chart-chain", "chart the chain's error against its cost, beside direct simulation",
      run_chart_chain},
+    {"reproduce", "the paper's figures, tables and claims, in one report", run_reproduce},
 }};
 
 void print_help(std::ostream& out) {

@@ -43,15 +43,35 @@ std::size_t terminal_columns() {
 }  // namespace
 
 Progress::Progress(std::string label, std::int64_t total, bool enabled)
-    : label_(std::move(label)),
+    : outer_(innermost_),
+      label_(std::move(label)),
       total_(total),
-      visible_(enabled && total > 0 && ::isatty(STDERR_FILENO) == 1),
+      visible_(enabled && total > 0 && outer_ == nullptr && ::isatty(STDERR_FILENO) == 1),
       start_(Clock::now()),
-      last_drawn_(start_) {}
+      last_drawn_(start_) {
+  innermost_ = this;
+}
 
-Progress::~Progress() { finish(); }
+Progress::~Progress() {
+  finish();
+  innermost_ = outer_;
+}
+
+void Progress::begin_part(std::string label, std::int64_t size) {
+  before_ += part_;
+  part_ = size;
+  label_ = std::move(label);
+  draw(static_cast<double>(before_));
+}
 
 void Progress::update(std::int64_t done) {
+  if (outer_ != nullptr && total_ > 0)
+    outer_->draw(static_cast<double>(outer_->before_) +
+                 static_cast<double>(outer_->part_) * static_cast<double>(done) / static_cast<double>(total_));
+  draw(static_cast<double>(done));
+}
+
+void Progress::draw(double done) {
   if (!visible_) return;
   const auto now = Clock::now();
   if (now - last_drawn_ < kRedraw) return;
@@ -59,11 +79,11 @@ void Progress::update(std::int64_t done) {
   drawn_ = true;
 
   const double elapsed = seconds_between(start_, now);
-  const double rate = static_cast<double>(done) / elapsed;
-  const double left = static_cast<double>(total_ - done) / rate;  // inf while nothing is done
+  const double rate = done / elapsed;
+  const double left = (static_cast<double>(total_) - done) / rate;  // inf while nothing is done
   char figures[48];
   std::snprintf(figures, sizeof figures, " %3d%%  %.3g/s  ",
-                static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_)),
+                static_cast<int>(100.0 * done / static_cast<double>(total_)),
                 rate);
   std::string line =
       label_ + figures + clock_text(elapsed) + " elapsed, " + clock_text(left) + " left";

@@ -9,7 +9,8 @@
 namespace gatewalk::cli {
 
 /// One line on standard error, redrawn in place at most 5 times a second. Draws nothing unless
-/// `enabled` and standard error is a terminal. Not for several threads at once.
+/// `enabled` and standard error is a terminal. Not for several threads at once. One that is made while
+/// another lives is a part of that one and draws nothing itself: commands that run commands.
 class Progress {
  public:
   Progress(std::string label, std::int64_t total, bool enabled);
@@ -18,11 +19,17 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void update(std::int64_t done);
+  /// What is made next counts for `size` of this one's total, under its own name.
+  void begin_part(std::string label, std::int64_t size);
   /// Clears the line, if there is one. The destructor does the same.
   void finish();
 
  private:
   using Clock = std::chrono::steady_clock;
+  void draw(double done);
+  static inline Progress* innermost_ = nullptr;
+  Progress* outer_;
+  std::int64_t before_ = 0, part_ = 0;  // of the total: done before the part, the part
   std::string label_;
   std::int64_t total_;
   bool visible_;

@@ -26,7 +26,7 @@ expect 0 'usage: gatewalk' "$gatewalk" --help
 expect 0 '^gatewalk [0-9]' "$gatewalk" --version
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
-for command in gate build show walk predict lattice validate chart chart-field chart-chain stability; do
+for command in gate build show walk predict lattice validate chart chart-field chart-chain stability trace reproduce; do
   expect 0 'Example:' "$gatewalk" $command --help
   expect 2 'unrecognised option' "$gatewalk" $command --no-such-option
 done
@@ -190,6 +190,72 @@ expect 2 'another body' "$gatewalk" predict m.nc --row 4=other-body.nc
 "$gatewalk" build "$scenes/field.toml" --trials 1 --set beams.joint_x_m=26 -o other-gates.nc --quiet >/dev/null
 expect 2 '52.000 m wide' "$gatewalk" predict m.nc --row 4=other-gates.nc
 expect 2 'inside the gate' "$gatewalk" predict m.nc --start 25,0,15
+# trace: the trials that `gate` counts; CSV, NetCDF and JSON say the same; pages and files are whole.
+expect 0 'traversed left' "$gatewalk" trace "$scenes/soft_left.toml" --trials 12 --seed 1 --csv runs.csv --netcdf runs.nc --json runs.json --replay runs.html
+"$gatewalk" gate "$scenes/soft_left.toml" --trials 12 --seed 1 --json counted.json --quiet
+jq -s '(.[0].runs | map(.ending)) as $e | .[1] | [.traversed_left, .exited_left, .exited_right, .trapped] == ([("traversed left", "exited left", "exited right", "trapped") as $x | $e | map(select(. == $x)) | length])' runs.json counted.json |
+  grep -q true || fail "trace: other endings than gate"
+[ "$(tail -n +2 runs.csv | wc -l)" = "$(jq '[.runs[].t | length] | add' runs.json)" ] || fail "trace: CSV and JSON have other samples"
+head -n 1 runs.csv | grep -q '^trial,time_s,gate_x,gate_y,x_m,y_m,' || fail "trace: other columns: $(head -n 1 runs.csv)"
+ncdump -v row_size runs.nc | tr -d ' \n;}' | grep -q "row_size=$(jq -r '[.runs[].t | length] | join(",")' runs.json)" || fail "trace: NetCDF has other runs"
+ncdump -h runs.nc | grep -q 'contact_left:flag_meanings = "free hit held"' || fail "trace: no meanings of contact codes"
+grep -q 'gatewalkReplay' runs.html || fail "trace: the page has no player"
+"$gatewalk" trace "$scenes/soft_left.toml" --trials 40 --only traversed --json some.json --quiet
+holds '.recorded == (.runs | length) and .trials == 40 and (.runs | map(.ending | startswith("traversed")) | all) and .recorded > 5 and .recorded < 35' some.json
+"$gatewalk" trace "$scenes/soft_left.toml" --trial 7 --json one.json --quiet
+jq -s '.[0].runs[7] == .[1].runs[0]' runs.json one.json | grep -q true || fail "trace: trial 7 alone is another one"
+"$gatewalk" trace "$scenes/field.toml" --field --trials 8 --seed 3 --json crossings.json --quiet
+"$gatewalk" lattice "$scenes/field.toml" --trials 8 --seed 3 --json counted.json --quiet
+jq -s '([.[0].runs[] | select(.ending == "trapped")] | length) == .[1].trapped' crossings.json counted.json | grep -q true || fail "trace --field: other endings than lattice"
+expect 0 '^trial,' "$gatewalk" trace "$scenes/soft_left.toml" --csv -
+expect 2 'a run ends as one of' "$gatewalk" trace "$scenes/soft_left.toml" --only stuck
+expect 1 'none of trials 0 to 4' "$gatewalk" trace "$scenes/single_gate.toml" --trials 5 --only 'traversed right'
+expect 2 'at most 1000 runs' "$gatewalk" trace "$scenes/soft_left.toml" --trials 1001
+expect 2 'the same: x.csv' "$gatewalk" trace "$scenes/soft_left.toml" --csv x.csv --json x.csv
+expect 2 'only "active" can be traced' "$gatewalk" trace "$scenes/field.toml" --field --set run.method=moreau --set field.fidelity=all
+cp "$scenes/soft_left.toml" own.toml
+expect 2 'the same: own.toml' "$gatewalk" trace own.toml --csv own.toml
+cmp -s own.toml "$scenes/soft_left.toml" || fail "trace: overwrote its scene"
+expect 2 'only one thing can go to standard output' "$gatewalk" trace "$scenes/soft_left.toml" --csv - --replay -
+expect 2 'at most 1000000000000000' "$gatewalk" trace "$scenes/soft_left.toml" --trial 9223372036854775807 --trials 2
+"$gatewalk" trace "$scenes/soft_left.toml" --trial 12345678 --csv - | tail -n 1 | grep -q '^12345678,' || fail "trace: a trial's number lost digits"
+expect 2 'cannot go to standard output' "$gatewalk" trace "$scenes/soft_left.toml" --netcdf -
+
+# reproduce: everything is there, each claim has a verdict; what is done is not done again; the page asks nobody.
+"$gatewalk" reproduce -o paper --quick >out.txt 2>&1 &
+pid=$!
+sleep 3
+kill -INT $pid
+wait $pid
+[ $? = 130 ] || fail "reproduce: ctrl-C gives another status"
+[ "$(jq length paper/data/done.json)" -ge 1 ] || fail "reproduce: nothing was done in three seconds"
+expect 0 'reproduced, .* within noise, .* differ' "$gatewalk" reproduce -o paper --quick
+grep -q '^[1-9].* studies are done already' out.txt || fail "reproduce: did not go on where it was"
+expect 0 'studies are done already' "$gatewalk" reproduce -o paper --quick
+head -c 1000 paper/data/fig12.json >half && mv half paper/data/fig12.json
+expect 0 '\[28/28\]  fig12' "$gatewalk" reproduce -o paper --quick
+echo '[1]' >paper/data/done.json
+"$gatewalk" reproduce -o paper --quick --quiet &
+pid=$!
+sleep 1
+expect 1 'another gatewalk reproduce works in it' "$gatewalk" reproduce -o paper --quick
+wait $pid || fail "reproduce: an odd record stopped it"
+jq '.quick = false' paper/report.json >full && cp paper/report.json keep && mv full paper/report.json
+expect 2 'holds a full report' "$gatewalk" reproduce -o paper --quick
+mv keep paper/report.json
+for figure in fig5 fig6 fig8 fig9 fig11 fig12 thirteen_eight barriers table4 speed crossings; do
+  for end in csv svg pdf; do [ -s paper/$figure.$end ] || fail "reproduce: no $figure.$end"; done
+done
+holds '(.claims | length) >= 30 and (.claims | map(.verdict | IN("reproduced", "within noise", "differs")) | all)' paper/report.json
+holds '(.claims | map(.see)) - (.sections | map(.id)) == []' paper/report.json
+holds '[.sections[] | select(.id != "replay") | .commands | length] | min >= 1' paper/report.json
+[ "$(tail -n +2 paper/claims.csv | wc -l)" = "$(jq '.claims | length' paper/report.json)" ] || fail "reproduce: claims.csv has other claims"
+expect 2 'missing -o' "$gatewalk" reproduce
+expect 2 'set has no meaning' "$gatewalk" reproduce -o paper --set forces.random_N=1
+# A command of the report, run where it says.
+(cd paper && eval "$(jq -r '.sections[] | select(.id == "fig9").commands[1]' report.json | sed "s#^gatewalk#$gatewalk#") --quiet --json again.json") || fail "reproduce: a command of the report does not work"
+jq -s '.[0].runs == .[1].runs' paper/again.json paper/data/fig9_300.json | grep -q true || fail "reproduce: a command of the report gives something else"
+
 # Other bins than the paper's: recorded in the file, and every command takes them.
 expect 0 '696 x 697 matrix' "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 2 --seed 1 -o fine.nc
 expect 0 '23 x 24 matrix' "$gatewalk" build "$scenes/field.toml" --trials 5 --bins 0.5 --seed 1 -o coarse.nc
