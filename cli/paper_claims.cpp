@@ -513,8 +513,7 @@ Claim side_entries(const Findings& f) {
 }
 
 Claim side_entries_free() {
-  const std::string name = "scenes/field.toml";
-  const dynamics::GateParams p = gate_of(name.c_str());
+  const dynamics::GateParams p = gate_of("scenes/field.toml");
   std::int64_t entries = 0, touching = 0;
   for (std::int64_t trial = 0; trial < 200; ++trial) {
     const auto trace = lattice::trace_field(p, {}, {0, 0, 0, 15}, 1, trial);

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "cli/report.h"
 #include "cli/web_files.h"
 
 namespace gatewalk::cli {
+
 std::string set(const char* key, double value) {
   Json number = value;
   if (value == std::floor(value)) number = static_cast<std::int64_t>(value);
