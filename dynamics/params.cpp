@@ -87,6 +87,16 @@ std::string ParamInfo::range() const {
 
 std::span<const ParamInfo> gate_param_table() { return kTable; }
 
+Scale scale_of(const GateParams& p) {
+  Scale scale{p.body.radius / 10.0, p.body.mass, 50.0 / p.forces.random_rate};
+  const double force = std::max(p.forces.propulsion, p.forces.random);
+  if (force > 0.0) {
+    const double own = std::sqrt(p.body.mass * p.body.radius / force);  // s
+    scale.time = std::clamp(scale.time, own / 4.0, own * 4.0);
+  }
+  return scale;
+}
+
 double default_step(std::string_view method, double random_rate) {
   const double wanted = method == "stable" || method == "auto" ? Run{}.step : kPaperStep;
   return 1.0 / (random_rate * std::ceil(1.0 / (random_rate * wanted) - 1e-9));

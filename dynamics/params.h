@@ -72,6 +72,23 @@ struct BodyState {
   double vx = 0.0, vy = 0.0;  // m/s
 };
 
+/// The scene's own units, in which every limit of the program that has a unit is a plain number: a
+/// tenth of the radius, the body's mass, fifty holds of the random force. That time is kept within a
+/// factor 4 of sqrt(M R / F), in which the larger of both forces moves the body by half a radius.
+/// 1 m, 1 kg and 1 s, exactly, in the paper's scenes. A scene whose lengths, times and masses are
+/// multiplied by powers of 4 has its units multiplied so, without any other rounding: what it
+/// computes is the same bits but for these factors.
+struct Scale {
+  double length = 1.0;  // m
+  double mass = 1.0;    // kg
+  double time = 1.0;    // s
+  [[nodiscard]] double speed() const { return length / time; }                    // m/s
+  [[nodiscard]] double impulse() const { return mass * length / time; }           // N s
+  [[nodiscard]] double force() const { return mass * length / (time * time); }    // N
+  [[nodiscard]] double energy() const { return mass * length * length / (time * time); }  // J
+};
+[[nodiscard]] Scale scale_of(const GateParams& params);
+
 /// One numeric key of a scene: its public name with unit, where it lives, what is allowed.
 struct ParamInfo {
   std::string_view key;  // "body.mass_kg"
