@@ -1,5 +1,6 @@
 #include "cli/auto.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "cli/interrupt.h"
@@ -36,6 +37,18 @@ void warn_unused(const Scene& scene) {
   unused("run.event_tolerance_m", event, says + (chosen ? "chooses it" : "does not use it"));
 }
 
+/// What the scene leaves out and has been given by its own proportions.
+void tell_derived(const Options& options, const Scene& scene) {
+  std::string all;
+  for (const KeyInfo& k : describe(scene)) {
+    const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" || k.key == "contact.impulse_threshold_Ns";
+    if (k.source != "derived" || methods_own) continue;
+    all += (all.empty() ? "" : ", ") + k.key + " = " + k.value;
+  }
+  if (!all.empty() && options.talk())
+    warn(scene.source + " leaves out keys, which follow from the others by the paper's proportions: " + all);
+}
+
 std::string setting_text(const Json& settled) {
   const bool event = settled["method"] == "event";
   return "method " + settled["method"].get<std::string>() +
@@ -47,6 +60,7 @@ std::string setting_text(const Json& settled) {
 
 Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
   warn_unused(scene);
+  tell_derived(options, scene);
   if (scene.gate.run.method != "auto") return nullptr;
   const double tolerance = scene.gate.run.tolerance;
   const auto starts = pilot_starts(scene, from);
@@ -96,6 +110,14 @@ Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
          Json(tolerance).dump() + "; took the one they were compared with: " +
          setting_text(settled));
   return settled;
+}
+
+void check_step(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
+                dynamics::Health& health) {
+  if (interrupted()) throw Interrupted{};
+  // A twentieth of the work, but enough to see a few per cent.
+  const std::int64_t sample = std::clamp<std::int64_t>(trials / 20, 100, 1000);
+  dynamics::check_step(health, scene.gate, pilot_starts(scene, from), options.seed(), sample);
 }
 
 std::string method_line(const Json& settled) {

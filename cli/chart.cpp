@@ -173,13 +173,13 @@ SceneChart chart_scene(const Options& options, const std::string& path,
   const dynamics::GateParams& gate = chart.scene.gate;
   const auto space = dynamics::StateSpace::paper(gate);
 
-  const auto reference = run_setting(options, chart, dynamics::reference_setting());
+  const auto reference = run_setting(options, chart, dynamics::reference_setting(gate));
   chart.reference_verdict = reference.verdict();
   chart.reference_evaluations = per_run(reference.health.evaluations, reference.health);
   for (const auto& end : reference.trials)
     ++chart.reference_outcomes[static_cast<std::size_t>(end.outcome)];
   chart.own = errors_of(chart, space,
-                        run_setting(options, chart, dynamics::second_reference_setting()), reference);
+                        run_setting(options, chart, dynamics::second_reference_setting(gate)), reference);
 
   chart.independent_setting = dynamics::chart_settings("stable", gate).back();
   bool compared = false;
@@ -314,12 +314,12 @@ Json to_json(const Options& options, const SceneChart& chart) {
   j["timed_trials"] = chart.timed_trials;
   const auto& n = chart.reference_outcomes;
   j["reference"] = {
-      {"setting", name_of(dynamics::reference_setting())},
+      {"setting", name_of(dynamics::reference_setting(chart.scene.gate))},
       {"status", dynamics::name_of(chart.reference_verdict)},
       {"evaluations_per_trial", chart.reference_evaluations},
       {"outcomes", {{"traversed_left", n[0]}, {"traversed_right", n[1]}, {"exited_left", n[2]},
                     {"exited_right", n[3]}, {"trapped", n[4]}, {"not_finite", n[5]}}},
-      {"own_error", {{"against", name_of(dynamics::second_reference_setting())},
+      {"own_error", {{"against", name_of(dynamics::second_reference_setting(chart.scene.gate))},
                      {"errors", to_json(chart.own, chart, true)}}},
       {"another_method", {{"against", name_of(chart.independent_setting)},
                           {"errors", to_json(chart.independent, chart, true)}}}};
@@ -598,10 +598,10 @@ std::string table_of(const SceneChart& chart) {
         << " m, parted " << percent(e.strong.parted_share(), 1.0, 3) << "\n";
   };
   out << chart.label << ": " << chart.trials << " trials per setting, " << chart.timed_trials << " timed\n"
-      << "  reference " << name_of(dynamics::reference_setting()) << " ("
+      << "  reference " << name_of(dynamics::reference_setting(chart.scene.gate)) << " ("
       << dynamics::name_of(chart.reference_verdict) << "): traversed left " << share(0) << ", right " << share(1)
       << ", exited left " << share(2) << ", right " << share(3) << ", trapped " << share(4) << "\n";
-  of_reference(chart.own, dynamics::second_reference_setting());
+  of_reference(chart.own, dynamics::second_reference_setting(chart.scene.gate));
   of_reference(chart.independent, chart.independent_setting);
   out << "  setting                us/trial   steps  outcomes  +-        chance    columns   exit (m)   "
          "parted   status\n";
@@ -662,7 +662,7 @@ std::vector<std::string> chosen_methods(const Options& options) {
 void require_chartable(const std::string& path, const Scene& scene) {
   try {
     (void)dynamics::StateSpace::paper(scene.gate);  // refuses gates too short for their beams
-    for (const Setting& s : {dynamics::reference_setting(), dynamics::second_reference_setting()})
+    for (const Setting& s : {dynamics::reference_setting(scene.gate), dynamics::second_reference_setting(scene.gate)})
       (void)dynamics::make_method(s.applied_to(scene.gate));
   } catch (const dynamics::InvalidParameter& e) {
     throw SceneError(path + ": no reference for a chart: " + e.what());

@@ -39,8 +39,8 @@ std::vector<Variant> variants_of(const Scene& scene) {
   const auto add = [&](Fidelity fidelity, const std::string& method) {
     Scene s = scene;
     s.field.fidelity = fidelity;
-    if (!s.named.contains("run.step_s")) s.gate.run.step = dynamics::default_step(method, s.gate.forces.random_rate);
     s.gate.run.method = method;
+    if (!s.named.contains("run.step_s")) s.gate.run.step = dynamics::default_step(s.gate);
     lattice::validate(s.gate, s.field);
     (void)dynamics::make_method(s.gate);
     all.push_back({std::string(name_of(fidelity)) + " (" + method + ")", s});

@@ -44,6 +44,7 @@ struct Command {
   int (*run)(const std::vector<std::string>& arguments);
 };
 /// Every command, in the order of the help page.
+int run_scene(const std::vector<std::string>& arguments);
 int run_gate(const std::vector<std::string>& arguments);
 int run_sweep(const std::vector<std::string>& arguments);
 int run_landscape(const std::vector<std::string>& arguments);

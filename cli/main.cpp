@@ -10,7 +10,8 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::array<Command, 15> kCommands{{
+constexpr std::array<Command, 16> kCommands{{
+    {"scene", "show every key of a scene, or write a scene of your own", run_scene},
     {"gate", "run one gate many times and count the outcomes", run_gate},
     {"sweep", "the same over a grid of scene keys", run_sweep},
     {"landscape", "potential energy over the gate, the lowest way through", run_landscape},

@@ -18,6 +18,7 @@ Json manifest(const Options& options, const Scene& scene) {
   m["command"] = options.canonical();
   if (options.has("seed")) m["seed"] = options.seed();
   m["scene"] = to_toml(scene);
+  if (!scene.derived.empty()) m["derived"] = scene.derived;  // keys that the scene left out
   return m;
 }
 
@@ -38,6 +39,8 @@ Json to_json(const dynamics::Health& h) {
   j["steps"] = h.steps;
   j["evaluations"] = h.evaluations;
   j["impacts"] = h.impacts;
+  j["trials_with_a_finer_step"] = h.step_trials;
+  j["outcome_error_of_the_step"] = h.step_error;
   return j;
 }
 
@@ -57,6 +60,8 @@ dynamics::Health health_from(const Json& j) {
   h.steps = j.at("steps");
   h.evaluations = j.at("evaluations");
   h.impacts = j.at("impacts");
+  h.step_trials = j.value("trials_with_a_finer_step", std::int64_t{0});  // older files have none
+  h.step_error = j.value("outcome_error_of_the_step", 0.0);
   return h;
 }
 
@@ -78,6 +83,10 @@ std::string complaint(const dynamics::Health& h) {
   if (h.unstable > 0)
     text += " the step is longer than the method's stability bound for these beams in " +
             of_runs(h.unstable) + ": take a smaller run.step_s or another run.method;";
+  if (h.step_matters())
+    text += " with half the step (event: a tenth of the tolerance) at least " + percent(h.step_error, 1.0) +
+            " of the outcomes are others, in " + std::to_string(h.step_trials) +
+            " trials run again: take a smaller run.step_s, or run.method = \"auto\";";
   if (h.undefined_contacts > 0)
     text += " " + std::to_string(h.undefined_contacts) +
             " steps overlapped a joint, for which it has no formula;";
@@ -221,9 +230,10 @@ Json to_json(const dynamics::GateTally& tally) {
 }
 
 std::string scene_line(const Scene& scene) {
-  const auto& [gate, field, start, source, named, sweep] = scene;
+  const auto& gate = scene.gate;
+  const auto& start = scene.start;
   std::ostringstream text;
-  text << source << ": start x " << start.x << ", y " << start.y << " m, v (" << start.vx << ", "
+  text << scene.source << ": start x " << start.x << ", y " << start.y << " m, v (" << start.vx << ", "
        << start.vy << ") m/s; disc " << gate.body.mass << " kg, R " << gate.body.radius << " m; F "
        << gate.forces.propulsion << " N, Rm " << gate.forces.random << " N; beams k "
        << gate.beams.stiffness_left << " / " << gate.beams.stiffness_right << ", d "

@@ -55,6 +55,7 @@ struct SceneKey {
   std::string_view key;
   std::function<Slot(Scene&)> slot;
   std::function<Interval(const Scene&)> permitted;  // may depend on keys that stand before this one
+  std::string_view meaning;
 };
 
 /// Every key of a scene in canonical order: those of GateParams, then field and start.
@@ -66,31 +67,41 @@ const std::vector<SceneKey>& scene_keys() {
     std::vector<SceneKey> all;
     for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
       if (info.key == "run.step_s") {
-        all.push_back({kMethodKey, [](Scene& s) { return Slot(&s.gate.run.method); }, {}});
+        all.push_back({kMethodKey, [](Scene& s) { return Slot(&s.gate.run.method); }, {},
+                       "how time is stepped, see dynamics/methods/method.h"});
       }
       all.push_back({info.key, [&info](Scene& s) { return Slot(&info.ref(s.gate)); },
                      [&info](const Scene&) {
                        return Interval{info.low, info.high, info.low_open};
-                     }});
+                     },
+                     info.meaning});
     }
-    all.push_back(
-        {"field.columns", [](Scene& s) { return Slot(&s.field.columns); }, fixed(1, 2001)});
-    all.push_back({"field.rows", [](Scene& s) { return Slot(&s.field.rows); }, fixed(1, 2001)});
-    all.push_back(
-        {"field.max_gates", [](Scene& s) { return Slot(&s.field.max_gates); }, fixed(0, 1e9)});
-    all.push_back({kFidelityKey, [](Scene& s) { return Slot(&s.field.fidelity); }, {}});
-    all.push_back({"start.x_m", [](Scene& s) { return Slot(&s.start.x); },
-                   [](const Scene& s) {
-                     return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x, true, true};
-                   }});
-    all.push_back({"start.y_m", [](Scene& s) { return Slot(&s.start.y); },
-                   [](const Scene& s) {
-                     return Interval{-1000.0, s.gate.run.traverse_y, false, true};
-                   }});
-    all.push_back(
-        {"start.vx_m_per_s", [](Scene& s) { return Slot(&s.start.vx); }, fixed(-1000, 1000)});
-    all.push_back(
-        {"start.vy_m_per_s", [](Scene& s) { return Slot(&s.start.vy); }, fixed(-1000, 1000)});
+    // Units away from the scene's own: far enough for anybody, near enough to compute with.
+    constexpr double kFar = 1e12;
+    const auto speeds = [](const Scene& s) {
+      const double most = kFar * dynamics::scale_of(s.gate).speed();
+      return Interval{-most, most};
+    };
+    const auto add = [&](std::string_view key, auto slot, std::function<Interval(const Scene&)> permitted,
+                         std::string_view meaning) {
+      all.push_back({key, [slot](Scene& s) { return Slot(slot(s)); }, std::move(permitted), meaning});
+    };
+    add("field.columns", [](Scene& s) { return &s.field.columns; }, fixed(1, 2001), "gates side by side");
+    add("field.rows", [](Scene& s) { return &s.field.rows; }, fixed(1, 2001), "gates one behind the other");
+    add("field.max_gates", [](Scene& s) { return &s.field.max_gates; }, fixed(0, 1e9),
+        "gates a body may visit before it is cut off, 0: no limit");
+    add(kFidelityKey, [](Scene& s) { return &s.field.fidelity; }, {},
+        "which beams act: active (only the gate the body is in), remember, all");
+    add("start.x_m", [](Scene& s) { return &s.start.x; },
+        [](const Scene& s) { return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x, true, true}; },
+        "start, from the gate's middle line");
+    add("start.y_m", [](Scene& s) { return &s.start.y; },
+        [](const Scene& s) {
+          return Interval{-kFar * dynamics::scale_of(s.gate).length, s.gate.run.traverse_y, false, true};
+        },
+        "start, from the gate's entrance");
+    add("start.vx_m_per_s", [](Scene& s) { return &s.start.vx; }, speeds, "lateral velocity at the start");
+    add("start.vy_m_per_s", [](Scene& s) { return &s.start.vy; }, speeds, "forward velocity at the start");
     return all;
   }();
   return keys;
@@ -418,23 +429,13 @@ double distance_to_beams(const Scene& scene) {
                   to_beam(beams.joint_x, beams.joint_x - beams.length));
 }
 
-/// What depends on several keys at once.
-void check_together(const Scene& scene, const Settings& settings) {
+/// Runs a check and blames what it refuses on the line of the key itself, else on that of a key which the
+/// message also names.
+template <class Check>
+void check(const Scene& scene, const Settings& settings, Check checked) {
   try {
-    if (scene.gate.run.method == "auto")
-      dynamics::validate(scene.gate);
-    else
-      (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
-    lattice::validate(scene.gate, scene.field);
-    if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
-      throw dynamics::InvalidParameter(
-          "start.y_m", "start.y_m = " + shortest(scene.start.y)
-                           + " is not permitted: the disc (body.radius_m = "
-                           + shortest(scene.gate.body.radius) + ") would overlap a beam at rest, "
-                           + shortest(distance) + " m from start.x_m = " + shortest(scene.start.x));
-    }
+    checked();
   } catch (const dynamics::InvalidParameter& error) {
-    // Blame the line of the key itself, else that of a key which the message also names.
     std::string origin = scene.source;
     if (const auto own = settings.find(error.key()); own != settings.end()) {
       origin = own->second.origin;
@@ -445,6 +446,35 @@ void check_together(const Scene& scene, const Settings& settings) {
     }
     throw SceneError(origin + ": " + error.what());
   }
+}
+
+/// Settings of the methods, which follow from all the rest unless they are given.
+bool is_methods_own(std::string_view key) {
+  return key == "run.step_s" || key == "run.event_tolerance_m" || key == "contact.impulse_threshold_Ns";
+}
+
+/// What depends on several keys of the gate at once.
+void check_gate(const Scene& scene, const Settings& settings) {
+  check(scene, settings, [&] {
+    if (scene.gate.run.method == "auto")
+      dynamics::validate(scene.gate);
+    else
+      (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
+  });
+}
+
+/// What depends on gate, field and start.
+void check_start(const Scene& scene, const Settings& settings) {
+  check(scene, settings, [&] {
+    lattice::validate(scene.gate, scene.field);
+    if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
+      throw dynamics::InvalidParameter(
+          "start.y_m", "start.y_m = " + shortest(scene.start.y)
+                           + " is not permitted: the disc (body.radius_m = "
+                           + shortest(scene.gate.body.radius) + ") would overlap a beam at rest, "
+                           + shortest(distance) + " m from start.x_m = " + shortest(scene.start.x));
+    }
+  });
 }
 
 std::string read_file(const std::string& path) {
@@ -485,23 +515,49 @@ Scene parse_scene(std::string_view text, std::string name,
   }
   const Origin origin = [&name](std::size_t line) { return name + ":" + std::to_string(line); };
   const toml::table document = parse_toml(text, origin);
-  Settings settings = settings_of(document, origin);
+  const Settings of_file = settings_of(document, origin);
+  Settings settings = of_file;
   std::deque<toml::table> override_documents;
   for (const std::string& given : overrides) apply_override(given, override_documents, settings);
 
   Scene scene;
   scene.source = name;
   scene.sweep = variations_of(document, origin);
-  for (const SceneKey& key : scene_keys()) {
-    const auto it = settings.find(key.key);
-    if (it != settings.end()) assign(key, it->second, scene);
-  }
-  for (const auto& [key, setting] : settings) scene.named.insert(std::string(key));
-  if (!scene.named.contains("run.step_s"))
-    scene.gate.run.step = dynamics::default_step(scene.gate.run.method, scene.gate.forces.random_rate);
-  check_together(scene, settings);
+  for (const auto& [key, setting] : settings) scene.named.emplace(key, setting.origin);
+  const auto of_gate = [](const SceneKey& key) { return table_of(key.key) != "field" && table_of(key.key) != "start"; };
+  const auto assign_gate = [&](const Settings& from) {
+    for (const SceneKey& key : scene_keys())
+      if (const auto it = from.find(key.key); of_gate(key) && it != from.end()) assign(key, it->second, scene);
+  };
+  // What the file leaves out follows from the file: an override changes its own key only, and the settings
+  // of the method.
+  assign_gate(of_file);
+  const auto derive = [&](auto known) {
+    for (const std::string_view key : dynamics::fill_in(scene.gate, scene.start, known)) scene.derived.emplace(key);
+  };
+  derive([&](std::string_view key) { return of_file.contains(key); });
+  assign_gate(settings);
+  derive([&](std::string_view key) { return scene.named.contains(key) || !is_methods_own(key); });
+  std::erase_if(scene.derived, [&](const std::string& key) { return scene.named.contains(key); });
+  check_gate(scene, settings);  // what a start may be depends on it
+  for (const SceneKey& key : scene_keys())
+    if (const auto it = settings.find(key.key); !of_gate(key) && it != settings.end()) assign(key, it->second, scene);
+  check_start(scene, settings);
   return scene;
 }
+
+namespace {
+
+/// The value as TOML has it.
+std::string value_text(const SceneKey& key, Scene& scene) {
+  const Slot slot = key.slot(scene);
+  if (auto* const* string = std::get_if<std::string*>(&slot)) return "\"" + **string + "\"";
+  if (auto* const* integer = std::get_if<int*>(&slot)) return std::to_string(**integer);
+  if (auto* const* fidelity = std::get_if<lattice::Fidelity*>(&slot)) return "\"" + std::string(name_of(**fidelity)) + "\"";
+  return float_text(*std::get<double*>(slot));
+}
+
+}  // namespace
 
 std::string to_toml(const Scene& scene) {
   Scene copy = scene;  // slots point into a mutable scene
@@ -512,20 +568,23 @@ std::string to_toml(const Scene& scene) {
       table = table_of(key.key);
       text += (text.empty() ? "[" : "\n[") + std::string(table) + "]\n";
     }
-    text += std::string(leaf_of(key.key)) + " = ";
-    const Slot slot = key.slot(copy);
-    if (auto* const* string = std::get_if<std::string*>(&slot)) {
-      text += "\"" + **string + "\"";
-    } else if (auto* const* integer = std::get_if<int*>(&slot)) {
-      text += std::to_string(**integer);
-    } else if (auto* const* fidelity = std::get_if<lattice::Fidelity*>(&slot)) {
-      text += "\"" + std::string(name_of(**fidelity)) + "\"";
-    } else {
-      text += float_text(*std::get<double*>(slot));
-    }
-    text += "\n";
+    text += std::string(leaf_of(key.key)) + " = " + value_text(key, copy) + "\n";
   }
   return text;
+}
+
+std::vector<KeyInfo> describe(const Scene& scene) {
+  Scene copy = scene;
+  std::vector<KeyInfo> all;
+  for (const SceneKey& key : scene_keys()) {
+    KeyInfo info{std::string(key.key), value_text(key, copy), unit_of(key.key), {}, std::string(key.meaning), "paper"};
+    if (!info.unit.empty()) info.unit.erase(0, 1);  // the blank before it
+    if (key.permitted) info.range = key.permitted(scene).text();
+    if (const auto given = scene.named.find(key.key); given != scene.named.end()) info.source = given->second;
+    if (scene.derived.contains(key.key)) info.source = "derived";
+    all.push_back(std::move(info));
+  }
+  return all;
 }
 
 std::vector<std::string> physics_differences(const Scene& here, const Scene& there) {

@@ -1,6 +1,7 @@
 #pragma once
 /// The scene file: everything a run depends on, in TOML, every key optional.
 
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -23,7 +24,8 @@ struct Scene {
   lattice::FieldParams field;
   dynamics::BodyState start{0.0, 0.0, 0.0, 15.0};  // m, m, m/s, m/s; in the first gate's frame
   std::string source;                              // the file it came from
-  std::set<std::string, std::less<>> named;        // keys the user gave, the rest are defaults
+  std::map<std::string, std::string, std::less<>> named;  // keys the user gave, and where
+  std::set<std::string, std::less<>> derived;             // keys that follow from those; the rest are the paper's
   std::vector<Variation> sweep;                    // table [sweep], in the order of the file
 };
 
@@ -45,6 +47,16 @@ class SceneError : public std::runtime_error {
 /// The same for text already in memory; `name` stands for the file in messages.
 [[nodiscard]] Scene parse_scene(std::string_view text, std::string name,
                                 const std::vector<std::string>& overrides = {});
+
+/// One key as a reader sees it.
+struct KeyInfo {
+  std::string key, value;  // the value as TOML has it
+  std::string unit;        // "N m/rad", empty for a pure number
+  std::string range, meaning;
+  std::string source;      // "x.toml:12", "--set ...", "derived" or "paper"
+};
+/// Every key of the scene, in the order of to_toml.
+[[nodiscard]] std::vector<KeyInfo> describe(const Scene& scene);
 
 /// Throws SceneError unless `key` is one of a scene; `origin` begins the message.
 void require_key(const std::string& key, const std::string& origin);

@@ -99,21 +99,26 @@ std::vector<Setting> chart_settings(std::string_view method, const GateParams& p
     throw std::invalid_argument("no settings for method '" + std::string(method) + "'");
   std::vector<Setting> settings;
   const auto add = [&](std::string_view key, double value) {
-    const double usual = key == kStep ? default_step(method, p.forces.random_rate)
-                                      : info(key).get(GateParams{});
+    GateParams own = p;
+    own.run.method = method;
+    const double usual = key == kStep ? default_step(own) : default_event_tolerance(p);
     settings.push_back({std::string(method), key, value, std::abs(value - usual) <= 1e-9 * usual});
   };
   if (method == "event")
     for (const double tolerance : {3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4})
-      add(kTolerance, tolerance);
+      add(kTolerance, tolerance * scale_of(p).length);
   else
     for (const double n : {1, 2, 3, 4, 5, 8, 10, 20}) add(kStep, 1.0 / (p.forces.random_rate * n));
   if (method == "moreau") add(kStep, 1.0 / (p.forces.random_rate * 40));  // costs what others do at 4
   return settings;
 }
 
-Setting reference_setting() { return {"event", kTolerance, 1e-7, false}; }
-Setting second_reference_setting() { return {"event", kTolerance, 1e-6, false}; }
+Setting reference_setting(const GateParams& p) {
+  return {"event", kTolerance, 1e-7 * scale_of(p).length, false};
+}
+Setting second_reference_setting(const GateParams& p) {
+  return {"event", kTolerance, 1e-6 * scale_of(p).length, false};
+}
 
 // ---- Trials ----
 
@@ -173,6 +178,41 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
   }
 }
 
+// ---- The step ----
+
+GateParams refined_setting(const GateParams& p) {
+  GateParams finer = p;
+  if (p.run.method == "event")
+    finer.run.event_tolerance = std::max(0.1 * p.run.event_tolerance, 1e-13 * p.body.radius);
+  else
+    finer.run.step *= 0.5;
+  return finer;
+}
+
+TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts) {
+  const auto k = static_cast<std::int64_t>(i), n = static_cast<std::int64_t>(starts);
+  return {trials * k / n, trials * (k + 1) / n - trials * k / n};
+}
+
+double uncertainty_of(const WeakError& e, std::int64_t trials) {
+  return std::sqrt(static_cast<double>(e.changed) + 1.84 * 1.84) / static_cast<double>(trials);
+}
+
+void check_step(Health& health, const GateParams& p, std::span<const BodyState> starts, std::uint64_t seed,
+                std::int64_t trials) {
+  const GateParams finer = refined_setting(p);
+  TrialEnds here, there;
+  std::vector<TrialRange> parts;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    parts.push_back(share_of(trials, i, starts.size()));
+    add_trial_ends(here, p, starts[i], seed, parts.back());
+    add_trial_ends(there, finer, starts[i], seed, parts.back());
+  }
+  const WeakError e = outcome_error(here.trials, there.trials, parts);
+  health.step_trials += trials;
+  health.step_error = std::max(health.step_error, e.total_variation - 2.0 * uncertainty_of(e, trials));
+}
+
 // ---- Errors ----
 
 WeakError outcome_error(std::span<const TrialEnd> run, std::span<const TrialEnd> reference) {
@@ -214,6 +254,8 @@ StrongError strong_error(const GateParams& p, std::span<const TrialEnd> run,
                          std::span<const TrialEnd> reference) {
   require_pairs(run, reference);
   StrongError e;
+  const Scale scale = scale_of(p);
+  const double far = kPartedLength * scale.length, late = kPartedTime * scale.time;
   std::vector<double> position, velocity, time, energy;
   const auto way = [](Outcome o) {  // which beam gave way more is no difference in the ending
     return o == Outcome::traversed_right ? Outcome::traversed_left : o;
@@ -227,7 +269,7 @@ StrongError strong_error(const GateParams& p, std::span<const TrialEnd> run,
     const double dx = std::hypot(a.exit.x - b.exit.x, a.exit.y - b.exit.y);
     const double dt = std::abs(a.seconds - b.seconds);
     if (way(a.outcome) != way(b.outcome) || a.outcome == Outcome::broken ||
-        !(dx <= kPartedMetres && dt <= kPartedSeconds)) {
+        !(dx <= far && dt <= late)) {
       ++e.parted;
       continue;
     }

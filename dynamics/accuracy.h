@@ -35,13 +35,13 @@ struct Setting {
 [[nodiscard]] std::span<const std::string_view> chart_methods();
 
 /// Steps hold/n, n = 1, 2, 3, 4, 5, 8, 10, 20, for the methods with a fixed step, and 40 for `moreau`;
-/// tolerances 0.3 to 1e-4 m for `event`. From coarse to fine. Throws std::invalid_argument for another name.
+/// tolerances 0.3 to 1e-4 units of length (Scale) for `event`. From coarse to fine. Throws std::invalid_argument for another name.
 [[nodiscard]] std::vector<Setting> chart_settings(std::string_view method, const GateParams& p);
 
-/// What everything is compared with, `event` at 1e-7 m, and the same ten times coarser, which
-/// shows how far the first can be trusted.
-[[nodiscard]] Setting reference_setting();
-[[nodiscard]] Setting second_reference_setting();
+/// What everything is compared with, `event` at 1e-7 units of length (Scale), and the same ten times
+/// coarser, which shows how far the first can be trusted.
+[[nodiscard]] Setting reference_setting(const GateParams& p);
+[[nodiscard]] Setting second_reference_setting(const GateParams& p);
 
 // ---- Trials ----
 
@@ -107,9 +107,10 @@ struct WeakError {
 [[nodiscard]] WeakError column_error(std::span<const TrialEnd> run,
                                      std::span<const TrialEnd> reference, const StateSpace& space);
 
-/// A pair of trials has parted when it ends in different ways, more than this apart, or broken.
-inline constexpr double kPartedSeconds = 0.05;
-inline constexpr double kPartedMetres = 1.0;
+/// A pair of trials has parted when it ends in different ways, more than this apart (in units of time
+/// and length, see Scale), or broken.
+inline constexpr double kPartedTime = 0.05;
+inline constexpr double kPartedLength = 1.0;
 
 /// Distances at the exit: medians over the trials that left the gate in one run or both, parted ones
 /// infinitely far, so that a median grows as more of them part. NaN when half or more have parted.
@@ -129,6 +130,27 @@ struct StrongError {
 };
 [[nodiscard]] StrongError strong_error(const GateParams& p, std::span<const TrialEnd> run,
                                        std::span<const TrialEnd> reference);
+
+// ---- The step ----
+
+/// The same method with half the step, or a tenth of the tolerance where it has that (not below rounding).
+[[nodiscard]] GateParams refined_setting(const GateParams& p);
+
+/// Runs `trials` trials, shared out evenly over `starts`, with the scene's setting and with the refined one
+/// under the same noise, and puts into `health` what of their difference in outcomes chance does not
+/// explain: total variation less two standard errors of it. Nothing that a run can show of itself (overlap,
+/// energy) sees a step that is wrong for an elastic or undamped scene. On all threads of the current TBB
+/// arena, the same for any number of them. Throws InvalidParameter.
+void check_step(Health& health, const GateParams& p, std::span<const BodyState> starts, std::uint64_t seed,
+                std::int64_t trials);
+
+/// The trials of start i among `trials` that are shared out evenly.
+[[nodiscard]] TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts);
+/// One standard error of a total variation of paired trials, from above: a trial that changed moves it by
+/// 1/n at most, so all spread it by sqrt(changed)/n at most. (The paired standard error is smaller, and zero
+/// where changes happen to cancel.) Where no trial changed, the share that does may be 1.84/n yet: then none
+/// of n is seen one time in six, as often as one standard error is exceeded.
+[[nodiscard]] double uncertainty_of(const WeakError& e, std::int64_t trials);
 
 /// An error below this many times the reference's own cannot be shown.
 inline constexpr double kReferenceMargin = 10.0;

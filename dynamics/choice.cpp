@@ -18,13 +18,7 @@ struct Candidate {
 };
 constexpr Candidate kCandidates[] = {{"stable", 0.06}, {"moreau", 0.003}, {"event", 0.13}};
 
-/// The trials of start i among `trials`.
-TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts) {
-  const auto k = static_cast<std::int64_t>(i), n = static_cast<std::int64_t>(starts);
-  return {trials * k / n, trials * (k + 1) / n - trials * k / n};
-}
-
-/// Those of every start.
+/// The trials of every start.
 std::vector<TrialRange> shares_of(std::int64_t trials, std::size_t starts) {
   std::vector<TrialRange> parts;
   for (std::size_t i = 0; i < starts; ++i) parts.push_back(share_of(trials, i, starts));
@@ -56,17 +50,9 @@ struct Pilots {
   }
 };
 
-/// One standard error, from above: a trial that changed moves the total variation by 1/n at most,
-/// so all spread it by sqrt(changed)/n at most. (The paired standard error is smaller, and zero
-/// where changes happen to cancel.) Where no trial changed, the share that does may be 1.84/n yet:
-/// then none of n is seen one time in six, as often as one standard error is exceeded.
-double uncertainty_of(const WeakError& e, std::int64_t trials) {
-  return std::sqrt(static_cast<double>(e.changed) + 1.84 * 1.84) / static_cast<double>(trials);
-}
-
 /// Runs the pilot with the first of these that can and does so without faults.
 TrialEnds reference_pilot(const Pilots& pilots, Choice& choice) {
-  const Setting settings[] = {{"event", "run.event_tolerance_m", 1e-5},
+  const Setting settings[] = {{"event", "run.event_tolerance_m", 1e-5 * scale_of(pilots.p).length},
                               {"stable", "run.step_s", 1.0 / (50.0 * pilots.p.forces.random_rate)}};
   std::optional<TrialEnds> ends;
   std::string refusals;

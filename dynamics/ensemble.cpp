@@ -53,6 +53,8 @@ Health& Health::operator+=(const Health& o) {
   worst_penetration = std::max(worst_penetration, o.worst_penetration);
   worst_energy_created = std::max(worst_energy_created, o.worst_energy_created);
   worst_speed = std::max(worst_speed, o.worst_speed);
+  step_trials += o.step_trials;
+  step_error = std::max(step_error, o.step_error);
   return *this;
 }
 

@@ -389,6 +389,7 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
     store(left, spell_left);
     store(or_zero(gone, one), flag);
     for (int i = 0; i < lanes; ++i) {
+      if (std::isinf(spell_left[i])) continue;  // a resting lane has no run that could end
       if (flag[i] == 0.0) {
         runs.go_on(i, after, spell_left[i]);
       } else {

@@ -4,10 +4,12 @@
 /// decisions of the README's "Departures" table.
 
 #include <cmath>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gatewalk::dynamics {
 
@@ -47,7 +49,7 @@ struct Contact {
   double impulse_threshold = 0.04;  // N s, epsilon of Sec. II-B: below it contact is a constraint
 };
 
-inline constexpr double kPaperStep = 0.004;  // s, Sec. II-B
+inline constexpr double kPaperStep = 0.004;  // s, Sec. II-B; units of time (Scale) in other scenes
 
 struct Run {
   std::string method = "stable";  // a name of method_names()
@@ -127,9 +129,28 @@ class InvalidParameter : public std::invalid_argument {
 /// method, and a step that fits a whole number of times into one hold of the random force.
 void validate(const GateParams& params);
 
-/// The step (s) of a scene that names none: what suits the method, 0.02 for `stable` and the paper's
-/// for the others, shortened to fit a whole number of times into one hold of the random force.
-[[nodiscard]] double default_step(std::string_view method, double random_rate);
+/// The step (s) of a scene that names none: what suits params.run.method, 0.02 units of time (Scale)
+/// for `stable` and kPaperStep of them for the others, shortened to fit a whole number of times into
+/// one hold of the random force.
+[[nodiscard]] double default_step(const GateParams& params);
+
+/// The other settings of a scene that names none, in its own units (Scale), as the paper's scenes have
+/// them: contact.impulse_threshold_Ns and run.event_tolerance_m.
+[[nodiscard]] double default_impulse_threshold(const GateParams& params);
+[[nodiscard]] double default_event_tolerance(const GateParams& params);
+
+/// True for a key that a scene gives.
+using IsNamed = std::function<bool(std::string_view key)>;
+
+/// Gives the keys that a scene leaves out the values that follow from those that it names, and returns
+/// these keys. With a body of its own (mass or radius) all that has a unit keeps the
+/// paper's proportions: lengths to the radius, masses to the body's, times by the propulsion or, if that
+/// is not named, by the random force, a stiffness or the rate. Tips meet, both beams are alike, a gate is
+/// twice as long as its joints lie deep, and the time limit is the paper's multiple of what the propulsion
+/// takes from rest through an open gate. A scene without a body of its own has the paper's values;
+/// the impulse threshold, the tolerance and the step of a scene are always its own.
+/// `start` comes with the paper's: its vy follows from the scene too, the rest is zero everywhere.
+std::vector<std::string_view> fill_in(GateParams& params, BodyState& start, const IsNamed& named);
 
 /// Steps in one hold of the random force: 1 / (random_rate * step), a whole number.
 [[nodiscard]] int steps_per_hold(const GateParams& params);

@@ -48,7 +48,7 @@ PointScene scene_of(MapKind kind, std::string_view method, double x, double y) {
   PointScene scene;
   GateParams& p = scene.p;
   p.run.method = method;
-  p.run.step = default_step(method, p.forces.random_rate);
+  p.run.step = default_step(p);
   p.run.time_limit = kSeconds;
   p.forces.propulsion = 8.0;
   p.forces.random = 20.0;

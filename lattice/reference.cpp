@@ -54,16 +54,18 @@ std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams&
 
 RandomForce field_force(const GateParams& p, const BodyState& start, std::uint64_t seed,
                         std::int64_t trial) {
-  const Stream stream{seed, stream_row(start), static_cast<std::uint64_t>(trial)};
+  const Stream stream{seed, stream_row(p, start), static_cast<std::uint64_t>(trial)};
   return {p.forces, Random(Purpose::field, stream)};
 }
 
 }  // namespace
 
-std::uint64_t stream_row(const BodyState& b) {
+std::uint64_t stream_row(const GateParams& p, const BodyState& b) {
   // From the bits of the state; the random generator serves as the hash.
+  const Scale scale = scale_of(p);
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 is 0
-  const r123::Philox4x64::ctr_type state = {{bits(b.x), bits(b.y), bits(b.vx), bits(b.vy)}};
+  const r123::Philox4x64::ctr_type state = {{bits(b.x / scale.length), bits(b.y / scale.length),
+                                             bits(b.vx / scale.speed()), bits(b.vy / scale.speed())}};
   return r123::Philox4x64()(state, {{0, 0}})[0] >> 8;  // the top byte of a key is its purpose
 }
 

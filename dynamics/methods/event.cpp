@@ -94,12 +94,12 @@ struct DormandPrince {
 struct Step {
   GateState end;
   Motion motion;  // at the end: the last stage is the new state's derivative
-  double error;   // largest error estimate, m and m/s, angles weighted
+  double error;   // largest error estimate, m
 };
 
 template <class Pair>
 Step integrated(const GateParams& p, const GateState& s, const Motion& start, double force_x,
-                double h) {
+                double h, double time) {
   std::array<Vector, Pair::kStages> k;
   k[0] = start.rate;
   const Vector y0 = pack(s);
@@ -116,17 +116,18 @@ Step integrated(const GateParams& p, const GateState& s, const Motion& start, do
     motion = Motion(p, state, force_x);
     k[i] = motion.rate;
   }
-  // An angle counts as its tip's way (m), or as the disc's speed of the same energy (m/s).
+  // Errors in m: a speed counts as its way in the scene's unit of time, an angle as its tip's way or
+  // as that of the disc's speed of the same energy.
   const double length = p.beams.length, mass = p.body.mass;
   const double spin = std::max(length, std::sqrt(p.beams.inertia() / mass));
   const Vector weight{1.0,
                       1.0,
-                      std::max(length, std::sqrt(p.beams.stiffness_left / mass)),
-                      std::max(length, std::sqrt(p.beams.stiffness_right / mass)),
-                      1.0,
-                      1.0,
-                      spin,
-                      spin};
+                      std::max(length, time * std::sqrt(p.beams.stiffness_left / mass)),
+                      std::max(length, time * std::sqrt(p.beams.stiffness_right / mass)),
+                      time,
+                      time,
+                      time * spin,
+                      time * spin};
   double worst = 0.0;
   for (int c = 0; c < 8; ++c) {
     double sum = 0.0;
@@ -152,6 +153,9 @@ EventMethod::EventMethod(const GateParams& p)
       touching_(1e-14 * p.body.radius),
       rise_(std::fmax(p.run.event_tolerance, 1e3 * touching_)),
       tolerance_(p.run.event_tolerance),
+      time_(scale_of(p).time),
+      rest_(rest_speed(p)),
+      loose_(tolerance_ > 1e-5 * scale_of(p).length),
       hold_(1.0 / p.forces.random_rate),
       law_(p),
       flow_(law_.over(hold_)) {
@@ -241,7 +245,7 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
     const double u = gap_rate(t, b, beam);
     if (std::isnan(surface[side])) surface[side] = std::fmin(0.0, t.gap);
     const double gap = t.gap - surface[side];
-    if (gap <= touching_ && u < -kRest) {
+    if (gap <= touching_ && u < -rest_) {
       out.hit = true;
       return out;
     }
@@ -267,7 +271,7 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
                             2.0 * (w1 * v + w * (a + w * v)) + 2.0 * w * w1 * far +
                             w * w * closing + L * w * (2.0 * w1 + w * turn);
     // From rest nothing can be proved: a margin lets a body leave.
-    const double room = std::fmax(gap, 0.0) + (u < -kRest ? 0.0 : 2.0 * touching_);
+    const double room = std::fmax(gap, 0.0) + (u < -rest_ ? 0.0 : 2.0 * touching_);
     double safe = 0.0;
     for (double ahead = horizon; ahead > 0.0;) {  // a shorter look ahead has tighter bounds
       const double zero = first_zero(room, u, steepest * ahead - now);
@@ -285,7 +289,7 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
 }
 
 void EventMethod::resolve(GateState& s, double force_x, Watch& watch) const {
-  resolve_hits(p_, s, touching_, watch, [&](Side side, double, double rebound) {
+  resolve_hits(p_, s, touching_, rest_, watch, [&](Side side, double, double rebound) {
     const Touch t = nearest(p_, side, s.body, s.beams[side].theta);
     // What drives it back: all forces, the other contact's too if that one is held.
     double back = free_gap_acceleration(p_, side, t, s, force_x);
@@ -358,13 +362,12 @@ double EventMethod::slide_on(GateState& s, double force_x, double duration, Watc
     h = std::fmin(h, ahead.safe);
   }
 
-  const bool loose = tolerance_ > 1e-5;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    Step step = loose ? integrated<BogackiShampine>(p_, s, start, force_x, h)
-                      : integrated<DormandPrince>(p_, s, start, force_x, h);
-    watch.evaluations += loose ? 3 : 6;
+    Step step = loose_ ? integrated<BogackiShampine>(p_, s, start, force_x, h, time_)
+                       : integrated<DormandPrince>(p_, s, start, force_x, h, time_);
+    watch.evaluations += loose_ ? 3 : 6;
     if (!(step.error <= tolerance_)) {
-      const double order = loose ? BogackiShampine::kOrder : DormandPrince::kOrder;
+      const double order = loose_ ? BogackiShampine::kOrder : DormandPrince::kOrder;
       const double shrink = 0.9 * std::pow(tolerance_ / step.error, 1.0 / order);
       h *= std::clamp(shrink, 0.1, 0.9);
       continue;
@@ -390,7 +393,7 @@ double EventMethod::slide_on(GateState& s, double force_x, double duration, Watc
       const double f0 = start.force[side], f1 = step.motion.force[side];
       if (f1 >= 0.0) continue;
       const double slope = (f0 - f1) / h;
-      if (-f1 <= std::sqrt(2.0 * tolerance_ * slope * p_.body.mass)) {
+      if (-f1 <= std::sqrt(2.0 * (tolerance_ / time_) * slope * p_.body.mass)) {
         keep[side] = false;
       } else {
         release = std::fmin(release, f0 / (f0 - f1));

@@ -13,7 +13,7 @@
 /// its force would start to pull.
 ///
 /// run.step_s and contact.impulse_threshold_Ns have no effect; run.event_tolerance_m sets the error
-/// per step (m, m/s, and beam tips alike).
+/// per step: of places and beam tips, and of velocities times the scene's unit of time.
 
 #include "dynamics/methods/hybrid.h"
 
@@ -50,6 +50,9 @@ class EventMethod final : public Method {
   double touching_;   // m, gaps up to this count as contact
   double rise_;       // m, rebounds lower than this are not flown
   double tolerance_;  // m, error per Runge-Kutta step
+  double time_;       // s, what makes an error in m/s one in m: the scene's unit
+  double rest_;       // m/s, contacts this slow do not close
+  bool loose_;        // the tolerance suits an integrator of low order
   double hold_;       // s, between two changes of the random force
   GateLaw law_;
   GateFlow flow_;     // over a whole hold

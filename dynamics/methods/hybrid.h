@@ -7,7 +7,8 @@
 
 namespace gatewalk::dynamics {
 
-inline constexpr double kRest = 1e-12;  // m/s, a contact this slow does not close
+/// A contact this slow (m/s) does not close.
+[[nodiscard]] inline double rest_speed(const GateParams& p) { return 1e-12 * scale_of(p).speed(); }
 
 /// Contact points of the wanted beams; an unwanted one has no direction and no lever.
 [[nodiscard]] std::array<Touch, 2> touches(const GateParams& p, const GateState& s,
@@ -47,11 +48,11 @@ void fly(const GateParams& p, const GateLaw& law, double dt, double force_x, Gat
 std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool, 2> contacts,
               std::array<Touch, 2> touch);
 
-/// Impact law at every contact that closes (gap up to `touching`, m), both beams together, until
-/// none does. `ends_bouncing(side, impulse, rebound)` says whether a hit of that impulse (N s), which
+/// Impact law at every contact that closes (gap up to `touching`, m, faster than `rest`, m/s), both
+/// beams together, until none does. `ends_bouncing(side, impulse, rebound)` says whether a hit of that impulse (N s), which
 /// leaves with the gap rate `rebound` (m/s), is so weak that the contact is a constraint instead.
 template <class EndsBouncing>
-void resolve_hits(const GateParams& p, GateState& s, double touching, Watch& watch,
+void resolve_hits(const GateParams& p, GateState& s, double touching, double rest, Watch& watch,
                   EndsBouncing ends_bouncing) {
   constexpr int kRounds = 20;      // the last one is plastic
   const auto touch = touches(p, s, {true, true});
@@ -65,14 +66,14 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, Watch& wat
       u[side] = gap_rate(touch[side], s.body, s.beams[side]);
       // Only contacts that close take part. A contact that opens must not be pushed by the other's
       // restitution, that could create energy; if it closes after this round, it takes the next.
-      active[side] = held || (touch[side].gap <= touching && u[side] < -kRest);
+      active[side] = held || (touch[side].gap <= touching && u[side] < -rest);
       const double e = touch[side].kind == ContactKind::tip ? p.contact.tip_restitution
                                                             : p.contact.restitution;
       const bool elastic = !held && round < kRounds - 1;
       rebound[side] = elastic ? -e * u[side] : 0.0;
       b[side] = u[side] - rebound[side];
     }
-    const auto done = [&](Side side) { return !active[side] || u[side] >= -kRest; };
+    const auto done = [&](Side side) { return !active[side] || u[side] >= -rest; };
     if (done(kLeft) && done(kRight)) return;
 
     auto impulse = push_only(w, b, active);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
 constexpr double kMaxTurn = 0.05;         // rad that a held beam may turn in a substep
-constexpr int kMaxHalvings = 10;          // for the fastest beam
+constexpr int kMaxHalvings = 10;          // for the fastest beam, and for the way in a piece
 constexpr int kContactHalvings = 4;       // for a held contact that turns fast or changes its kind
 constexpr int kMaxHits = 50;              // in one substep, then hits end in constraints
 
@@ -75,8 +75,9 @@ double crossing(double dt, double start, double end, bool from_zero, double tole
 
 StableMethod::StableMethod(const GateParams& p)
     : p_(p),
-      threshold_(p.contact.impulse_threshold * p.run.step / kPaperStep),
+      threshold_(p.contact.impulse_threshold * p.run.step / (kPaperStep * scale_of(p).time)),
       touching_(1e-10 * p.body.radius),
+      rest_(rest_speed(p)),
       finest_(kContactHalvings),
       law_(p) {
   refuse_too_fast(p);
@@ -99,23 +100,49 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
   const std::vector<GateFlow>& flows = spell.usual ? flows_ : own;
   for (long i = 0; i < spell.steps; ++i) {
     // Substeps are halves, quarters ... of the step, each begun at a multiple of its own length.
-    double passed = 0.0, longest = 0.0;
-    const int units = 1 << finest_;
+    double passed = 0.0;
+    bool fast = false;
+    constexpr int units = 1 << kMaxHalvings;
     for (int unit = 0; unit < units && !outside(p_, s.body);) {
       int n = halvings(s);
+      while (n < kMaxHalvings && too_far(s, std::ldexp(spell.step, -n))) ++n;
       while (unit % (units >> n) != 0) ++n;
       double time = 0.0;
-      while ((time = substep(s, force_x, flows[n], flows[n + 1], n == finest_, watch)) == 0.0) ++n;
+      for (;; ++n) {
+        const MayHalve may{n < finest_, n < kMaxHalvings};
+        if (n <= finest_) {
+          time = substep(s, force_x, flows[n], flows[n + 1], may, watch);
+        } else {  // seldom: not kept
+          const double piece = std::ldexp(spell.step, -n);
+          time = substep(s, force_x, law_.over(piece), law_.over(0.5 * piece), may, watch);
+        }
+        if (time != 0.0) break;
+      }
+      fast |= n == kMaxHalvings && too_far(s, std::ldexp(spell.step, -n));
       passed += time;
-      longest = std::max(longest, flows[n].dt);
       unit += units >> n;
     }
     ledger.step(s, force_x, passed, watch);
-    watch.motion(p_, s, longest);
+    watch.motion(p_, s, 0.0);
+    watch.fast_steps += fast;
     if (outside(p_, s.body) || !std::isfinite(s.body.vx + s.body.vy))
       return static_cast<double>(i) * spell.step + passed;
   }
   return duration;
+}
+
+bool StableMethod::too_far(const GateState& s, double dt) const {
+  const double most = 0.5 * p_.body.radius;
+  const double disc = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy) * dt;
+  if (disc > most) return true;
+  for (const Side side : {kLeft, kRight}) {
+    const BeamState& beam = s.beams[side];
+    // A beam's energy falls between hits: it never turns faster than this.
+    const double turn = std::sqrt(beam.omega * beam.omega + swing_[side] * beam.theta * beam.theta);
+    const double tip = p_.beams.length * turn * dt;
+    if (disc + tip > most && !out_of_reach(p_, side, s.body, beam.theta, disc + tip)) return true;
+  }
+  return false;
 }
 
 int StableMethod::halvings(const GateState& s) const {
@@ -183,7 +210,9 @@ StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const
 }
 
 double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
-                             const GateFlow& half_flow, bool finest, Watch& watch) const {
+                             const GateFlow& half_flow, MayHalve may_halve, Watch& watch) const {
+  GateState begin;  // before the first hit
+  Watch seen;
   double left = flow.dt;
   for (int hits = 0;; ++hits) {
     GateState end = s;
@@ -205,7 +234,7 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
     }
     watch.evaluations += 2 + 3 * s.beams[kLeft].held + 3 * s.beams[kRight].held;
     // The contact force jumps where a contact changes its kind: only a short piece may cross that.
-    if (hits == 0 && glided.handover && !finest) return 0.0;
+    if (hits == 0 && glided.handover && may_halve.handover) return 0.0;
     const double start = flow.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {
       s = end;
@@ -221,15 +250,24 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
       watch.penetration(p_, s);
       return leaves ? start + span : flow.dt;
     }
+    if (hits == 0 && may_halve.travel) {
+      begin = s;
+      seen = watch;
+    }
     const double when = first_hit(s, force_x, end, span, hit, watch);
     if (outside(p_, s.body)) return start + when;
-    resolve_hits(p_, s, touching_, watch,
+    resolve_hits(p_, s, touching_, rest_, watch,
                  [&](Side, double impulse, double rebound) {
                    // What does not bounce is in contact from now on.
-                   return impulse < threshold_ || rebound <= kRest || hits >= kMaxHits;
+                   return impulse < threshold_ || rebound <= rest_ || hits >= kMaxHits;
                  });
     left -= when;
     if (left <= 1e-15 * flow.dt) return flow.dt;
+    if (may_halve.travel && too_far(s, left)) {
+      s = begin;
+      watch = seen;
+      return 0.0;
+    }
   }
 }
 

@@ -12,8 +12,10 @@
 /// damped beams, for a held beam that turns fast, for a held contact that moves from a beam's side
 /// to its joint or tip.
 ///
-/// The impulse threshold shrinks with the step, epsilon * step / 0.004 s: with a fixed one the
-/// error of a trajectory stops falling.
+/// So is a piece in which disc or beam would move by more than half a radius: no hit is stepped over.
+///
+/// The impulse threshold shrinks with the step: contact.impulse_threshold_Ns is that of the paper's
+/// step (0.004 units of time, see Scale). With a fixed one the error of a trajectory stops falling.
 
 #include <vector>
 
@@ -33,10 +35,17 @@ class StableMethod final : public Method {
  private:
   /// How often a step must be halved for the beams that matter in `s`.
   [[nodiscard]] int halvings(const GateState& s) const;
+  /// True when disc or beam tip may move by more than half a radius in dt; a beam out of the disc's
+  /// reach does not count.
+  [[nodiscard]] bool too_far(const GateState& s, double dt) const;
   /// Returns the time passed: flow.dt, or less when the body has left the gate; 0, and `s` as it
-  /// was, when a piece that is not the `finest` is to be halved.
+  /// was, when a piece is to be halved: at a `handover` of a contact, or after a hit that sends disc or
+  /// beam too far within the rest of the piece and `travel`.
+  struct MayHalve {
+    bool handover, travel;
+  };
   double substep(GateState& s, double force_x, const GateFlow& flow, const GateFlow& half_flow,
-                 bool finest, Watch& watch) const;
+                 MayHalve may_halve, Watch& watch) const;
   struct Glide {
     std::array<Touch, 2> shut;  // where the held contacts are at the end
     bool handover = false;      // one of them changed its kind on the way
@@ -56,6 +65,7 @@ class StableMethod final : public Method {
   const GateParams& p_;
   double threshold_;      // N s
   double touching_;       // m, gaps up to this count as contact at a moment of impact
+  double rest_;           // m/s, contacts this slow do not close
   std::array<double, 2> swing_{};  // 1/s^2, k/I
   std::array<int, 2> halvings_{};  // of a step that each beam needs, 0 unless it is very stiff
   int finest_;                     // halvings that any piece may need

@@ -38,7 +38,7 @@ inline constexpr std::int64_t kTrialsPerRow = 100;
 /// `p` by this method at its own step.
 inline dynamics::GateParams by(dynamics::GateParams p, std::string_view method) {
   p.run.method = method;
-  p.run.step = dynamics::default_step(method, p.forces.random_rate);
+  p.run.step = dynamics::default_step(p);
   return p;
 }
 

@@ -24,7 +24,7 @@ class Trace : public testing::TestWithParam<const char*> {
   GateParams p = [] {
     GateParams study = test::study(10.0);
     study.run.method = GetParam();
-    study.run.step = default_step(GetParam(), study.forces.random_rate);
+    study.run.step = default_step(study);
     if (study.run.method == "penalty") study.run.step = 5e-4;
     return study;
   }();

@@ -110,11 +110,12 @@ TEST(RunField, FieldOfOneGateIsLeftOrKept) {
 }
 
 TEST(StreamRow, NamesAStart) {
+  const GateParams p;
   const BodyState a{0, 0, 0, 15};
-  EXPECT_EQ(stream_row(a), stream_row({-0.0, -0.0, 0, 15}));
-  EXPECT_NE(stream_row(a), stream_row({4, 0, 5, 10}));
-  EXPECT_NE(stream_row(a), stream_row({0, 0, 15, 0}));
-  EXPECT_LT(stream_row(a), std::uint64_t{1} << 56);  // the purpose stands above
+  EXPECT_EQ(stream_row(p, a), stream_row(p, {-0.0, -0.0, 0, 15}));
+  EXPECT_NE(stream_row(p, a), stream_row(p, {4, 0, 5, 10}));
+  EXPECT_NE(stream_row(p, a), stream_row(p, {0, 0, 15, 0}));
+  EXPECT_LT(stream_row(p, a), std::uint64_t{1} << 56);  // the purpose stands above
 }
 
 // Second route: the trial gate by gate with the indices and shifts of MODEL.md written out.
@@ -127,7 +128,7 @@ TEST(RunField, TrialsCanBeReplayedAlone) {
   for (int i = 0; i < 60; ++i) {
     RandomForce force(p.forces,
                       Random(Purpose::field,
-                             {8, stream_row(kStart), static_cast<std::uint64_t>(100 + i)}));
+                             {8, stream_row(p, kStart), static_cast<std::uint64_t>(100 + i)}));
     BodyState body = kStart;
     int ix = 0, iy = 0;
     for (int gates = 1;; ++gates) {
@@ -291,7 +292,7 @@ TEST(Fidelity, ActiveIsGateByGate) {
     const StateSpace space = StateSpace::paper(p);
     FieldTally plain(field);
     for (std::uint64_t trial = 0; trial < 60; ++trial) {
-      RandomForce force(p.forces, Random(Purpose::field, {6, stream_row(kStart), trial}));
+      RandomForce force(p.forces, Random(Purpose::field, {6, stream_row(p, kStart), trial}));
       BodyState body = kStart;
       int column = 4, row = 0;
       for (int gates = 1;; ++gates) {
