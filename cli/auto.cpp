@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "cli/bins.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -13,7 +14,7 @@ namespace {
 std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from) {
   std::vector<dynamics::BodyState> starts{scene.start};
   if (from == RunsFrom::start) return starts;
-  const auto space = dynamics::StateSpace::paper(scene.gate);
+  const auto space = fixed_space(scene);
   for (int i = 0; i < 8; ++i) {
     const dynamics::Cell c = space.cell(i * (space.size() - 1) / 7);
     const auto middle = [](const std::array<double, 2>& edges) { return 0.5 * (edges[0] + edges[1]); };

@@ -221,7 +221,7 @@ Json to_json(const dynamics::GateTally& tally) {
 }
 
 std::string scene_line(const Scene& scene) {
-  const auto& [gate, field, start, source, named, sweep] = scene;
+  const auto& [gate, field, start, source, named, sweep, bins] = scene;
   std::ostringstream text;
   text << source << ": start x " << start.x << ", y " << start.y << " m, v (" << start.vx << ", "
        << start.vy << ") m/s; disc " << gate.body.mass << " kg, R " << gate.body.radius << " m; F "
@@ -251,12 +251,18 @@ std::string padded(const std::string& text, int width) {
   return width > 0 ? space + text : text + space;
 }
 
-std::string text_of(const dynamics::Cell& cell) {
+std::string text_of(const std::array<double, 2>& range) {
   std::ostringstream text;
-  text << dynamics::kBoundaryNames[static_cast<int>(cell.boundary)] << " d [" << cell.d[0] << ", "
-       << cell.d[1] << "] m, vx [" << cell.vx[0] << ", " << cell.vx[1] << "] m/s, vy [" << cell.vy[0]
-       << ", " << cell.vy[1] << "] m/s";
+  if (range[0] == range[1])
+    text << range[0];
+  else
+    text << "[" << range[0] << ", " << range[1] << "]";
   return text.str();
+}
+
+std::string text_of(const dynamics::Cell& cell) {
+  return std::string(dynamics::kBoundaryNames[static_cast<int>(cell.boundary)]) + " d " +
+         text_of(cell.d) + " m, vx " + text_of(cell.vx) + " m/s, vy " + text_of(cell.vy) + " m/s";
 }
 
 double Stopwatch::seconds() const {

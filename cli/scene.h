@@ -1,6 +1,8 @@
 #pragma once
 /// The scene file: everything a run depends on, in TOML, every key optional.
 
+#include <array>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -8,6 +10,7 @@
 #include <vector>
 
 #include "dynamics/params.h"
+#include "dynamics/state_space.h"
 #include "lattice/field.h"
 
 namespace gatewalk::cli {
@@ -18,6 +21,9 @@ struct Variation {
   std::string origin;  // how a message about it begins
 };
 
+/// Bin edges of every boundary, as StateSpace takes them.
+using SceneBins = std::array<dynamics::Bins, dynamics::kBoundaries>;
+
 struct Scene {
   dynamics::GateParams gate;
   lattice::FieldParams field;
@@ -25,6 +31,7 @@ struct Scene {
   std::string source;                              // the file it came from
   std::set<std::string, std::less<>> named;        // keys the user gave, the rest are defaults
   std::vector<Variation> sweep;                    // table [sweep], in the order of the file
+  std::optional<SceneBins> bins;                   // table [bins], the chain's states
 };
 
 /// A scene that cannot be used. what() reads
@@ -53,7 +60,7 @@ void require_key(const std::string& key, const std::string& origin);
 [[nodiscard]] std::string to_toml(const Scene& scene);
 
 /// What differs between two scenes among the keys that shape a transition matrix (all of
-/// GateParams; neither field nor start): "forces.random_N: 40 here, 20 there", empty if nothing.
+/// GateParams and [bins]; neither field nor start): "forces.random_N: 40 here, 20 there", empty if nothing.
 [[nodiscard]] std::vector<std::string> physics_differences(const Scene& here, const Scene& there);
 
 }  // namespace gatewalk::cli

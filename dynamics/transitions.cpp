@@ -60,6 +60,12 @@ std::int64_t runs_per_trial(const StateSpace& space, int row) {
   return row < bins ? 1 : std::max<std::int64_t>(1, bins / 10);
 }
 
+std::int64_t runs_per_trial(const StateSpace& space) {
+  std::int64_t runs = 0;
+  for (int row = 0; row < space.size(); ++row) runs += runs_per_trial(space, row);
+  return runs;
+}
+
 void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,
                 const Entries& entries) {
   if (!entries.empty() && entries.size() != t.rows.size())

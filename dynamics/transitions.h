@@ -47,6 +47,8 @@ using Entries = std::vector<std::vector<Crossing>>;  // (n)
 /// once, and the others a few times in all: so that its sampling weighs no more than theirs, a
 /// point's row gets as many runs as a tenth of the bins, at least 1. A bin's row gets 1.
 [[nodiscard]] std::int64_t runs_per_trial(const StateSpace& space, int row);
+/// The same of all rows together.
+[[nodiscard]] std::int64_t runs_per_trial(const StateSpace& space);
 
 /// Adds trials `range` of every row: starts uniform in the row's bin, or drawn from `entries` in a
 /// row that has any; random force from the stream {seed, row, run}. On all threads of the current

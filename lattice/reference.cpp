@@ -54,7 +54,11 @@ std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams&
 
 RandomForce field_force(const GateParams& p, const BodyState& start, std::uint64_t seed,
                         std::int64_t trial) {
-  const Stream stream{seed, stream_row(start), static_cast<std::uint64_t>(trial)};
+  // In the scene's own units: the same noise whatever units the scene is written in.
+  const Scale unit = scale_of(p);
+  const BodyState own{start.x / unit.length, start.y / unit.length, start.vx / unit.speed(),
+                      start.vy / unit.speed()};
+  const Stream stream{seed, stream_row(own), static_cast<std::uint64_t>(trial)};
   return {p.forces, Random(Purpose::field, stream)};
 }
 

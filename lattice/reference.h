@@ -47,7 +47,7 @@ inline constexpr std::array<std::string_view, 4> kFateNames{"trapped", "left fie
 /// Runs trials `range` through the field. field.fidelity says what a gate is: fresh, with beams at
 /// rest, whenever the body enters (active), or one of many that go on and act beyond their bounds
 /// (remember, all; crowd.h). The random force goes on from gate to gate; its stream is
-/// {seed, stream_row(start), trial} whatever the fidelity. run.time_limit_s counts from the entry
+/// {seed, stream_row(start in the scene's own units), trial} whatever the fidelity. run.time_limit_s counts from the entry
 /// into a gate. `space` only counts what the chain would have clamped; `keep_crossings` keeps
 /// the crossings themselves. On all threads of the current TBB arena, same result for any number of
 /// them. Throws InvalidParameter.
