@@ -17,16 +17,16 @@ int bins_per_axis(double states) {
   return n;
 }
 
-/// The place nearest to `at` where ascending `values` change, so that equal values stay together;
-/// 0 or the end when there is none nearer. In the upper half the mirror image of the lower one's
-/// choice.
-std::size_t between_values(const std::vector<double>& values, std::size_t at, bool upper) {
+/// The place nearest to `at` where ascending `values` change, so that equal values stay together; 0
+/// or the end when there is none nearer. Of two as near: the lower one in the lower half (side < 0),
+/// the upper one in the upper half, and none, 0, in the middle: mirror images have mirrored places.
+std::size_t between_values(const std::vector<double>& values, std::size_t at, int side) {
   const std::size_t n = values.size();
   if (at == 0 || at == n || values[at - 1] != values[at]) return at;
   const auto [low, high] = std::equal_range(values.begin(), values.end(), values[at]);
   const auto below = static_cast<std::size_t>(low - values.begin());
   const auto above = static_cast<std::size_t>(high - values.begin());
-  if (at - below == above - at) return upper ? above : below;
+  if (at - below == above - at) return side < 0 ? below : side > 0 ? above : 0;
   return at - below < above - at ? below : above;
 }
 
@@ -40,9 +40,9 @@ std::vector<double> quantile_edges(std::vector<double> values, int bins,
     return {std::min(range.front(), values.front()), std::max(range.back(), values.front())};
   std::vector<double> edges{values.front()};
   for (int i = 1; i < bins; ++i) {
-    const bool upper = 2 * i > bins;
+    const int side = 2 * i - bins;
     const auto share = [&](int k) { return n * static_cast<std::size_t>(k) / static_cast<std::size_t>(bins); };
-    const std::size_t at = between_values(values, upper ? n - share(bins - i) : share(i), upper);
+    const std::size_t at = between_values(values, side > 0 ? n - share(bins - i) : share(i), side);
     if (at == 0 || at == n) continue;
     const double edge = 0.5 * values[at - 1] + 0.5 * values[at];
     if (edge > edges.back() && edge < values.back()) edges.push_back(edge);

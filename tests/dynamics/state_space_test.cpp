@@ -148,7 +148,7 @@ TEST(StateSpace, ScalesDistancesWithTheGate) {
   EXPECT_EQ(bins[0].d, (Edges{-50, -30, -10, 10, 30, 50}));
   EXPECT_EQ(bins[1].d, (Edges{20, 30, 40}));
   EXPECT_EQ(bins[3].d, (Edges{20, 60}));
-  EXPECT_EQ(bins[0].vx, (Edges{-25, -15, -5, 5, 15, 25}));  // velocities are the table's
+  EXPECT_EQ(bins[0].vx, (Edges{-50, -30, -10, 10, 30, 50}));  // a radius of 20 m: 2 m/s for 1 m/s
 }
 
 // RT and LT begin at joint + R = 40 m: a gate that ends there has no room for them.
