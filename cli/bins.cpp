@@ -169,7 +169,7 @@ std::string states_line(const Json& j) {
 }
 
 void warn_if_poor(const States& s) {
-  if (!s.pilot.health.clean()) warn("the pilot: " + complaint(s.pilot.health));
+  if (!s.entries.empty() && !s.pilot.health.clean()) warn("the pilot: " + complaint(s.pilot.health));
   if (s.pilot.entries.empty())
     warn("no body entered a second gate in " + std::to_string(s.pilot.trials) +
          " pilot trials: bins could not be judged by what bodies do");

@@ -71,7 +71,8 @@ struct States {
 [[nodiscard]] Json to_json(const States& states);
 /// A line of a table about a state space as to_json describes it; empty for null.
 [[nodiscard]] std::string states_line(const Json& states);
-/// Warns when the states resolve too little of what was seen, and of faults in the pilot.
+/// Warns when the states resolve too little of what was seen, and of faults in a pilot that rows start
+/// from.
 void warn_if_poor(const States& states);
 
 }  // namespace gatewalk::cli

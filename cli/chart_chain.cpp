@@ -861,10 +861,10 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
     if (from_pilot) continue;
     // Trials of their own: they follow those of the truth.
     run_in_batches("pilot", pilot_trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
-      const auto pilot = lattice::run_field(scene.gate, scene.field, t.start.body(), fixed_bins, seed,
+      const auto part = lattice::run_field(scene.gate, scene.field, t.start.body(), fixed_bins, seed,
                                             {truth_trials + first, n}, true);
-      seen.insert(seen.end(), pilot.crossings.begin(), pilot.crossings.end());
-      chart.health += pilot.health;
+      seen.insert(seen.end(), part.crossings.begin(), part.crossings.end());
+      chart.health += part.health;
     });
     seen.insert(seen.end(), pilot_trials,
                 {dynamics::Boundary::enter, t.start.d, t.start.vx, t.start.vy});
