@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "cli/bins.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -14,7 +15,7 @@ namespace {
 std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from) {
   std::vector<dynamics::BodyState> starts{scene.start};
   if (from == RunsFrom::start) return starts;
-  const auto space = dynamics::StateSpace::paper(scene.gate);
+  const auto space = fixed_space(scene);
   for (int i = 0; i < 8; ++i) {
     const dynamics::Cell c = space.cell(i * (space.size() - 1) / 7);
     const auto middle = [](const std::array<double, 2>& edges) { return 0.5 * (edges[0] + edges[1]); };
@@ -112,12 +113,12 @@ Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
   return settled;
 }
 
-void check_step(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
-                dynamics::Health& health) {
+void check_outcomes(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
+                    dynamics::Health& health) {
   if (interrupted()) throw Interrupted{};
   // A twentieth of the work, but enough to see a few per cent.
   const std::int64_t sample = std::clamp<std::int64_t>(trials / 20, 100, 1000);
-  dynamics::check_step(health, scene.gate, pilot_starts(scene, from), options.seed(), sample);
+  dynamics::check_outcomes(health, scene.gate, pilot_starts(scene, from), options.seed(), sample);
 }
 
 std::string method_line(const Json& settled) {

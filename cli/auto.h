@@ -14,10 +14,10 @@ enum class RunsFrom { start, everywhere };
 /// and of keys that the user gave though the method does not use them.
 [[nodiscard]] Json settle_method(const Options& options, Scene& scene, RunsFrom from);
 
-/// Runs a sample of `trials` again with half the step, or a tenth of the tolerance, and puts into `health`
-/// what that changes: see dynamics::check_step.
-void check_step(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
-                dynamics::Health& health);
+/// Runs a sample of `trials` again by a better method, and puts into `health` what that changes: see
+/// dynamics::check_outcomes.
+void check_outcomes(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
+                    dynamics::Health& health);
 
 /// "method stable, run.step_s = 0.02: chosen by ..." as a line of a table; empty for null.
 [[nodiscard]] std::string method_line(const Json& settled);

@@ -9,15 +9,16 @@ namespace gatewalk::cli {
 
 int run_build(const std::vector<std::string>& arguments) {
   Options options("build SCENE -o MATRIX.nc [options]",
-                  "Fills the input-output matrix of one gate: for every input state (the 87 of\n"
-                  "Table III, or more with --bins) N short runs, counted by where they come out.",
+                  "Fills the input-output matrix of one gate: for every input state (--bins says which)\n"
+                  "N short runs, counted by where they come out. In the paper's field states are the 87 of\n"
+                  "Table III, in any other they are made from what bodies do in a pilot of the full\n"
+                  "dynamics from the scene's start, which is a state of its own with more runs.",
                   "gatewalk build scenes/field.toml --trials 100 --seed 1 -o matrix.nc");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "runs per input state");
   options.add()("output,o", po::value<std::string>()->value_name("FILE"),
-                "matrix file to write (NetCDF-4)")
-               ("bins", po::value<double>()->default_value(1.0, "1")->value_name("FACTOR"),
-                "bins per axis, as a multiple of Table III's: 2 makes 696 states, 0.5 makes 23");
+                "matrix file to write (NetCDF-4)");
+  add_bins(options);
   if (!options.parse(arguments)) return kFine;
   if (!options.has("output")) throw UsageError("missing -o MATRIX.nc: where to write the matrix");
   if (options.text("output").empty()) throw UsageError("-o needs a file name");
@@ -26,18 +27,23 @@ int run_build(const std::vector<std::string>& arguments) {
   require_writable(options.text("output"));
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
+  const BinsChoice choice = bins_choice(options, scene);
   const Json settled = settle_method(options, scene, RunsFrom::everywhere);
 
-  const double bins = options.get<double>("bins");
+  const Stopwatch pilot_watch;
+  const States states = states_of(options, scene, choice, {scene.start});
+  const double pilot_seconds = pilot_watch.seconds();
+  const Json bins = choice.kind == BinsChoice::Kind::paper ? Json(choice.factor) : Json(choice.name());
   const Stopwatch watch;
-  lattice::MatrixFile file{build_matrix(scene, bins, trials, options.seed(), options.talk()), {}};
+  lattice::MatrixFile file{build_matrix(scene, states, trials, options.seed(), options.talk()), {}};
   const double seconds = watch.seconds();
   const dynamics::Transitions& t = file.transitions;
   file.text = {{"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},
                {"scene", to_toml(scene)},
                {"seed", std::to_string(options.seed())},
                {"trials_per_row", std::to_string(trials)},
-               {"bins", Json(bins).dump()},  // the shortest digits that read back the same
+               {"bins", bins.is_string() ? choice.name() : bins.dump()},  // the shortest digits that read back the same
+               {"state_space", to_json(states).dump()},
                {"program", std::string("gatewalk ") + kVersion},
                {"commit", kCommit},
                {"command", options.canonical()},
@@ -54,6 +60,7 @@ int run_build(const std::vector<std::string>& arguments) {
   json["bins"] = bins;
   json["nonzeros"] = total.nonzeros;
   json["clamped_share"] = total.clamped_share();
+  json["state_space"] = to_json(states);
   if (!settled.is_null()) json["method"] = settled;
   json["status"] = to_json(t.health);
   json["made_by"] = manifest(options, scene);
@@ -63,8 +70,9 @@ int run_build(const std::vector<std::string>& arguments) {
       std::to_string(total.nonzeros) + " nonzeros, " +
       percent(total.clamped_share(), 1.0) +
       " of the crossings clamped into the nearest bin\n";
-  options.give_out(json, table + method_line(settled));
-  remark(options, "built in " + fixed(seconds, 2) + " s");
+  options.give_out(json, table + states_line(json["state_space"]) + method_line(settled));
+  remark(options, "built in " + fixed(seconds, 2) + " s, pilot " + fixed(pilot_seconds, 2) + " s");
+  warn_if_poor(states);
   if (!t.health.clean()) warn(complaint(t.health));
   return kFine;
 }

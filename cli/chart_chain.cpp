@@ -133,11 +133,16 @@ struct Point {
 struct Curve {
   double factor = 1.0;
   dynamics::StateSpace space;
-  bool visited = false;                // rows start as bodies were seen to enter, else uniform
+  bool visited = false;                // charted beside a curve of uniform starts
+  dynamics::Entries entries{};         // where rows start, as bodies were seen to enter; empty: uniform
   double pilot_seconds = 0.0;          // of the full trials that saw them; one thread
   double seconds_per_run = 0.0;        // one thread
   std::vector<std::int64_t> trials{};  // per row, those within the limit
 
+  [[nodiscard]] double seconds_per_trial() const {  // one of every row, one thread
+    return seconds_per_run * static_cast<double>(dynamics::runs_per_trial(space));
+  }
+  [[nodiscard]] const char* row_starts() const { return entries.empty() ? "uniform" : "visited"; }
   [[nodiscard]] std::string name() const {
     return "bins x " + digits(factor) + (visited ? ", visited" : "");
   }
@@ -174,7 +179,7 @@ double seconds_per_item(std::int64_t most, std::int64_t batch, const Work& work,
 Truth begin_truth(const Scene& scene, const PaperStart& start, std::int64_t trials,
                   std::uint64_t seed) {
   Truth t{start, lattice::FieldTally(scene.field), {}, 0.0, {}};
-  const auto space = dynamics::StateSpace::paper(scene.gate);
+  const auto space = fixed_space(scene);
   t.seconds_per_trial = seconds_per_item(trials, 10, [&](std::int64_t first, std::int64_t n) {
     t.tally += lattice::run_field(scene.gate, scene.field, start.body(), space, seed, {first, n});
   });
@@ -183,7 +188,7 @@ Truth begin_truth(const Scene& scene, const PaperStart& start, std::int64_t tria
 
 void finish_truth(Truth& t, const Scene& scene, std::int64_t trials, std::uint64_t seed,
                   Progress& progress, double before, double each) {
-  const auto space = dynamics::StateSpace::paper(scene.gate);
+  const auto space = fixed_space(scene);
   const std::int64_t done = t.tally.trials;
   run_in_batches(progress, before, each, trials - done, [&](std::int64_t first, std::int64_t n) {
     t.tally += lattice::run_field(scene.gate, scene.field, t.start.body(), space, seed,
@@ -205,7 +210,7 @@ double time_gate_runs(const Scene& scene, const dynamics::StateSpace& space, std
                           [&](std::int64_t first, std::int64_t n) {
                             dynamics::add_trials(scratch, scene.gate, seed, {first, n}, entries);
                           }) /
-         space.size();
+         static_cast<double>(dynamics::runs_per_trial(space));
 }
 
 /// Transitions of consecutive ranges of trials, from which those of any longer range between their
@@ -442,7 +447,7 @@ std::string csv_of(const Chart& chart) {
         begin(answer);
         const Curve& curve = chart.curves[p.curve];
         out << digits(curve.factor) << "," << curve.space.size() << ","
-            << (curve.visited ? "visited" : "uniform") << "," << p.trials << "," << p.runs << ","
+            << curve.row_starts() << "," << p.trials << "," << p.runs << ","
             << p.matrices << "," << digits(p.build_seconds) << "," << digits(seconds) << ","
             << digits(p.build_seconds + seconds) << "," << digits(e.total_variation) << ","
             << (exact && p.matrices > 1 ? digits(a.exact_sd) : "") << "," << digits(e.corrcoef) << ","
@@ -476,7 +481,7 @@ Json to_json(const Chart& chart, const Point& p) {
   const Curve& curve = chart.curves[p.curve];
   Json j{{"bins", curve.factor},
          {"states", curve.space.size()},
-         {"row_starts", curve.visited ? "visited" : "uniform"},
+         {"row_starts", curve.row_starts()},
          {"trials_per_row", p.trials},
          {"gate_runs", p.runs},
          {"matrices", p.matrices},
@@ -788,34 +793,48 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
       ("runs-limit", po::value<Count>()->default_value(Count{1'000'000}, "1e6")->value_name("N"),
        "gate runs that one matrix may take")
       ("bins", po::value<std::vector<double>>()->composing()->value_name("FACTOR"),
-       "bins per axis, as a multiple of Table III's (may be repeated; default: 0.5, 1, 2, 4)")
+       "bins per axis, as a multiple of those that build has without --bins (may be repeated; default: 0.5, 1, 2, 4)")
       ("visited", po::value<Count>()->value_name("N"),
        "also chart matrices whose rows start not anywhere in their bins but where N full trials per "
-       "start were seen to enter; these trials count as cost");
+       "start were seen to enter; these trials count as cost. Bins that are made from what is seen always start so, "
+       "by default from 2000 trials per start");
   add_starts(options);
   add_seed(options);
   if (!options.parse(arguments)) return kFine;
   if (options.text("output").empty()) throw UsageError("missing -o DIR: where to write the chart");
   Scene scene = read_scene(options.text("scene"), options.overrides());
-  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
-  const std::vector<PaperStart> starts = starts_of(options);
+  const std::vector<PaperStart> starts = starts_of(options, scene);
   require_inside(starts, scene);
+  const auto bodies = entries_at(starts);
+  const BinsChoice choice = usual_bins(scene);
+  const bool from_pilot = choice.kind == BinsChoice::Kind::automatic;
+  const dynamics::StateSpace fixed_bins = fixed_space(scene);
+  if (!from_pilot) require_inside_bins(starts, scene, fixed_bins);
+  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
   const std::int64_t truth_trials = options.count("truth-trials", 100);
   const std::int64_t runs_limit = options.count("runs-limit");
   const std::uint64_t seed = options.seed();
 
-  const std::int64_t pilot_trials = options.has("visited") ? options.count("visited") : 0;
+  const std::int64_t pilot_trials = options.has("visited") ? options.count("visited") : from_pilot ? kPilotTrials : 0;
 
   Chart chart;
-  const auto paper = dynamics::StateSpace::paper(scene.gate);
-  warn_outside_bins(starts, scene, paper);
-  for (const double factor : factors_of(options)) {
-    Curve curve{factor, dynamics::refined(paper, factor)};
+  const std::vector<double> factors = factors_of(options);
+  const Pilot pilot = from_pilot ? run_pilot(options, scene, bodies, pilot_trials) : Pilot{};
+  chart.health += pilot.health;
+  for (const double factor : factors) {
+    Curve curve{factor, fixed_bins};
+    if (from_pilot) {
+      SeenStates made = seen_states(scene, pilot, factor);
+      curve.space = std::move(made.space);
+      curve.entries = std::move(made.entries);
+    } else {
+      curve.space = dynamics::refined(fixed_bins, factor);
+    }
     for (const std::int64_t trials : kTrialsPerRow)
-      if (trials * curve.space.size() <= runs_limit) curve.trials.push_back(trials);
+      if (trials * dynamics::runs_per_trial(curve.space) <= runs_limit) curve.trials.push_back(trials);
     chart.curves.push_back(std::move(curve));
   }
-  if (pilot_trials > 0)
+  if (pilot_trials > 0 && !from_pilot)
     for (std::size_t c = 0, uniform = chart.curves.size(); c < uniform; ++c) {
       chart.curves.push_back(chart.curves[c]);
       chart.curves.back().visited = true;
@@ -838,26 +857,26 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   std::vector<dynamics::Crossing> seen;
   double pilot_seconds = 0.0;
   for (const Truth& t : chart.truths) {
+    pilot_seconds += t.seconds_per_trial * static_cast<double>(pilot_trials);
+    if (from_pilot) continue;
     // Trials of their own: they follow those of the truth.
     run_in_batches("pilot", pilot_trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
-      const auto pilot = lattice::run_field(scene.gate, scene.field, t.start.body(), paper, seed,
+      const auto part = lattice::run_field(scene.gate, scene.field, t.start.body(), fixed_bins, seed,
                                             {truth_trials + first, n}, true);
-      seen.insert(seen.end(), pilot.crossings.begin(), pilot.crossings.end());
-      chart.health += pilot.health;
+      seen.insert(seen.end(), part.crossings.begin(), part.crossings.end());
+      chart.health += part.health;
     });
     seen.insert(seen.end(), pilot_trials,
                 {dynamics::Boundary::enter, t.start.d, t.start.vx, t.start.vy});
-    pilot_seconds += t.seconds_per_trial * static_cast<double>(pilot_trials);
   }
-  const auto entries_for = [&](const Curve& c) {
-    return c.visited ? dynamics::entries_of(c.space, seen) : dynamics::Entries{};
-  };
+  for (Curve& c : chart.curves)
+    if (c.visited) c.entries = dynamics::entries_of(c.space, seen);
   double work = 0.0;  // ms on one thread
   for (Curve& curve : chart.curves) {
     if (curve.trials.empty()) continue;
-    if (curve.visited) curve.pilot_seconds = pilot_seconds;
-    curve.seconds_per_run = time_gate_runs(scene, curve.space, seed, entries_for(curve));
-    work += 1e3 * curve.seconds_per_run * curve.space.size() * static_cast<double>(curve.trials.back());
+    if (!curve.entries.empty()) curve.pilot_seconds = pilot_seconds;
+    curve.seconds_per_run = time_gate_runs(scene, curve.space, seed, curve.entries);
+    work += 1e3 * curve.seconds_per_trial() * static_cast<double>(curve.trials.back());
   }
   for (const Truth& t : chart.truths)
     work += 1e3 * t.seconds_per_trial * static_cast<double>(truth_trials - t.tally.trials);
@@ -874,13 +893,12 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
     const Curve& curve = chart.curves[c];
     if (curve.trials.empty()) continue;
     Trials all(curve.trials);
-    const dynamics::Entries entries = entries_for(curve);
-    const double each = 1e3 * curve.seconds_per_run * curve.space.size();
+    const double each = 1e3 * curve.seconds_per_trial();
     for (auto from = all.borders().begin(); std::next(from) != all.borders().end(); ++from) {
       dynamics::Transitions t(curve.space);
       const std::int64_t trials = *std::next(from) - *from;
       run_in_batches(progress, done, each, trials, [&](std::int64_t first, std::int64_t n) {
-        dynamics::add_trials(t, scene.gate, seed, {*from + first, n}, entries);
+        dynamics::add_trials(t, scene.gate, seed, {*from + first, n}, curve.entries);
       });
       require_unbroken(t);
       done += each * static_cast<double>(trials);
@@ -907,6 +925,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   json["truth_trials"] = truth_trials;
   json["runs_limit"] = runs_limit;
   json["pilot_trials"] = pilot_trials;
+  json["bins"] = choice.name();
   json["matrices_drawn_anew"] = kResampled;
   json["starts"] = Json::array();
   for (std::size_t s = 0; s < chart.truths.size(); ++s) json["starts"].push_back(to_json(chart, s));
@@ -914,7 +933,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   for (const Curve& c : chart.curves)
     json["curves"].push_back({{"bins", c.factor},
                               {"states", c.space.size()},
-                              {"row_starts", c.visited ? "visited" : "uniform"},
+                              {"row_starts", c.row_starts()},
                               {"one_thread_s_per_gate_run", c.seconds_per_run},
                               {"points", c.trials.size()}});
   json["points"] = Json::array();

@@ -356,7 +356,7 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   if (scene.gate.run.method == "auto")
     throw UsageError("run.method = \"auto\" is not permitted for chart-field, which runs method moreau: "
                      "name a method, and give moreau's step as run.step_s");
-  const std::vector<PaperStart> starts = starts_of(options);
+  const std::vector<PaperStart> starts = starts_of(options, scene);
   require_inside(starts, scene);
   const std::vector<Variant> variants = variants_of(scene);
   (void)dynamics::StateSpace::paper(scene.gate);  // refuses gates too short for their beams

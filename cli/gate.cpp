@@ -22,7 +22,7 @@ int run_gate(const std::vector<std::string>& arguments) {
     tally += dynamics::run_gate_trials(scene.gate, scene.start, options.seed(), {first, n});
   });
 
-  check_step(options, scene, RunsFrom::start, trials, tally.health);
+  check_outcomes(options, scene, RunsFrom::start, trials, tally.health);
 
   Json json = to_json(tally);
   if (!settled.is_null()) json["method"] = settled;

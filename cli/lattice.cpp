@@ -1,4 +1,5 @@
 #include "cli/auto.h"
+#include "cli/bins.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -15,7 +16,7 @@ int run_lattice(const std::vector<std::string>& arguments) {
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
   const Json settled = settle_method(options, scene, RunsFrom::everywhere);
-  const auto space = dynamics::StateSpace::paper(scene.gate);
+  const auto space = fixed_space(scene);
 
   const Stopwatch watch;
   lattice::FieldTally tally(scene.field);
@@ -38,6 +39,7 @@ int run_lattice(const std::vector<std::string>& arguments) {
     entries[std::string(dynamics::kBoundaryNames[b])] = {{"count", tally.entries[b]},
                                                          {"outside_bins", tally.clamped[b]}};
   json["entries_between_gates"] = std::move(entries);
+  json["bins"] = scene.bins ? "scene" : "paper";  // what outside_bins counts by
   if (!settled.is_null()) json["method"] = settled;
   json["status"] = to_json(tally.health);
   json["made_by"] = manifest(options, scene);

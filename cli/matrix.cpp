@@ -12,11 +12,11 @@ void require_unbroken(const dynamics::Transitions& t) {
                              "runs, try method stable or a smaller run.step_s");
 }
 
-dynamics::Transitions build_matrix(const Scene& scene, double bins, std::int64_t trials,
+dynamics::Transitions build_matrix(const Scene& scene, const States& states, std::int64_t trials,
                                    std::uint64_t seed, bool show_progress) {
-  dynamics::Transitions t(dynamics::refined(dynamics::StateSpace::paper(scene.gate), bins));
+  dynamics::Transitions t(states.space);
   run_in_batches("building matrix", trials, show_progress, [&](std::int64_t first, std::int64_t n) {
-    dynamics::add_trials(t, scene.gate, seed, {first, n});
+    dynamics::add_trials(t, scene.gate, seed, {first, n}, states.entries);
   });
   require_unbroken(t);
   return t;
@@ -58,18 +58,35 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
   return {std::move(file), std::move(scene), std::move(status)};
 }
 
+lattice::ChainStart start_in_bins(const dynamics::StateSpace& space, const lattice::FieldParams& field,
+                                  const dynamics::BodyState& body, const std::string& name) {
+  const lattice::ChainStart start = lattice::chain_start(space, field, body);
+  if (!start.beyond) return start;
+  const dynamics::Bins& enter = space.bins()[static_cast<int>(dynamics::Boundary::enter)];
+  const auto range = [](const std::vector<double>& edges) {
+    return std::array<double, 2>{edges.front(), edges.back()};
+  };
+  const std::string bins = text_of(
+      dynamics::Cell{dynamics::Boundary::enter, range(enter.d), range(enter.vx), range(enter.vy)});
+  if (start.clamped)
+    throw UsageError(name + " lies outside the chain's bins, " + bins +
+                     ": take a start inside them, or other bins: gatewalk build --bins auto makes them "
+                     "for the scene's start, a table [bins] in the scene names their edges");
+  warn(name + " lies beyond every entry that the bins were made from, " + bins +
+       "; the prediction is that of the outermost bin. A matrix of a scene with this start suits it");
+  return start;
+}
+
 ReadyStart ready_start(const Options& options, const MatrixAndScene& m,
                        const dynamics::BodyState& body, const std::string& name) {
   const dynamics::StateSpace& space = m.file.transitions.space;
-  const lattice::ChainStart start = lattice::chain_start(space, m.scene.field, body);
+  const lattice::ChainStart start = start_in_bins(space, m.scene.field, body, name);
   const dynamics::Cell cell = space.cell(start.start.input);
   const std::string text = text_of(cell);
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
-    return v == edges[0] || v == edges[1];
+    return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
   };
-  if (start.clamped)
-    warn(name + " lies outside the chain's bins; the prediction is that of the nearest one, " + text);
-  else if (on_edge(cell.d, body.x) || on_edge(cell.vx, body.vx) || on_edge(cell.vy, body.vy))
+  if (on_edge(cell.d, body.x) || on_edge(cell.vx, body.vx) || on_edge(cell.vy, body.vy))
     remark(options, name + " lies on an edge of its bin, " + text +
                         "; its prediction is that of the whole bin");
   return {start, text};

@@ -2,7 +2,7 @@
 /// Matrices as the commands use them: building one in batches, taking one from a file with the scene
 /// it belongs to.
 
-#include "cli/command.h"
+#include "cli/bins.h"
 #include "lattice/gate_chain.h"
 
 namespace gatewalk::cli {
@@ -10,9 +10,9 @@ namespace gatewalk::cli {
 /// Throws std::runtime_error when a run of the matrix broke.
 void require_unbroken(const dynamics::Transitions& t);
 
-/// A matrix of `trials` runs per row of Table III's states, `bins` times as many per axis. Throws
-/// std::runtime_error when a run broke.
-[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, double bins,
+/// A matrix of these states, `trials` runs per row (dynamics::runs_per_trial as many for a single
+/// entry's). Throws std::runtime_error when a run broke.
+[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, const States& states,
                                                  std::int64_t trials, std::uint64_t seed,
                                                  bool show_progress);
 
@@ -30,8 +30,13 @@ struct MatrixAndScene {
                                                    const std::string& scene_path,
                                                    const std::vector<std::string>& overrides);
 
-/// Where the chain starts for a body. Warns when that lies outside the bins, remarks when it lies on an
-/// edge of its bin: then another bin would serve it as well. `name`: "the start".
+/// Throws UsageError when a start lies outside the chain's bins; warns when it lies beyond every entry
+/// that open bins were made from. `name`: "the start".
+lattice::ChainStart start_in_bins(const dynamics::StateSpace& space, const lattice::FieldParams& field,
+                                  const dynamics::BodyState& body, const std::string& name);
+
+/// Where the chain starts for a body, as start_in_bins. Remarks when it lies on an edge of its bin:
+/// then another bin would serve it as well.
 struct ReadyStart {
   lattice::ChainStart start;
   std::string text;  // its bin: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"

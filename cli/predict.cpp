@@ -77,7 +77,7 @@ markov::RowChains chains_of(const Options& options, const MatrixAndScene& base,
                        fixed(a.run.traverse_y, 3) + " m long, those of " + options.text("matrix") + " " +
                        fixed(2.0 * b.beams.joint_x, 3) + " and " + fixed(b.run.traverse_y, 3) +
                        " m: they make no field");
-    if (m.file.transitions.space.bins() != base.file.transitions.space.bins())
+    if (m.file.transitions.space != base.file.transitions.space)
       throw UsageError(name(o) + ": its states are not those of " + options.text("matrix") +
                        " (other bins): what leaves one row could not enter the next");
     const auto [place, is_new] = known.emplace(o.path, static_cast<int>(chains.size()));
@@ -163,7 +163,7 @@ int run_predict(const std::vector<std::string>& arguments) {
   if (solver != "auto" && solver != "propagate" && solver != "march" && solver != "klu")
     throw UsageError("--solver " + solver + ": must be auto, propagate, march or klu");
   require_different(options.text("matrix"), options.text("json"));
-  const std::vector<PaperStart> given = options.has("start") ? starts_of(options) : std::vector<PaperStart>{};
+  const std::vector<PaperStart> given = given_starts(options);
   const std::vector<OtherRows> others = rows_of(options);
   const auto m = read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
   require_inside(given, m.scene);

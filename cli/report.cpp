@@ -39,8 +39,8 @@ Json to_json(const dynamics::Health& h) {
   j["steps"] = h.steps;
   j["evaluations"] = h.evaluations;
   j["impacts"] = h.impacts;
-  j["trials_with_a_finer_step"] = h.step_trials;
-  j["outcome_error_of_the_step"] = h.step_error;
+  j["trials_checked"] = h.checked_trials;  // by a better method
+  j["outcome_error_seen"] = h.outcome_error;
   return j;
 }
 
@@ -60,8 +60,8 @@ dynamics::Health health_from(const Json& j) {
   h.steps = j.at("steps");
   h.evaluations = j.at("evaluations");
   h.impacts = j.at("impacts");
-  h.step_trials = j.value("trials_with_a_finer_step", std::int64_t{0});  // older files have none
-  h.step_error = j.value("outcome_error_of_the_step", 0.0);
+  h.checked_trials = j.value("trials_checked", std::int64_t{0});  // older files have none
+  h.outcome_error = j.value("outcome_error_seen", 0.0);
   return h;
 }
 
@@ -83,10 +83,10 @@ std::string complaint(const dynamics::Health& h) {
   if (h.unstable > 0)
     text += " the step is longer than the method's stability bound for these beams in " +
             of_runs(h.unstable) + ": take a smaller run.step_s or another run.method;";
-  if (h.step_matters())
-    text += " with half the step (event: a tenth of the tolerance) at least " + percent(h.step_error, 1.0) +
-            " of the outcomes are others, in " + std::to_string(h.step_trials) +
-            " trials run again: take a smaller run.step_s, or run.method = \"auto\";";
+  if (h.outcomes_off())
+    text += " a better method gives other outcomes for at least " + percent(h.outcome_error, 1.0) + " of " +
+            std::to_string(h.checked_trials) +
+            " trials that were run again: take a smaller run.step_s, or run.method = \"auto\";";
   if (h.undefined_contacts > 0)
     text += " " + std::to_string(h.undefined_contacts) +
             " steps overlapped a joint, for which it has no formula;";
@@ -261,12 +261,18 @@ std::string padded(const std::string& text, int width) {
   return width > 0 ? space + text : text + space;
 }
 
-std::string text_of(const dynamics::Cell& cell) {
+std::string text_of(const std::array<double, 2>& range) {
   std::ostringstream text;
-  text << dynamics::kBoundaryNames[static_cast<int>(cell.boundary)] << " d [" << cell.d[0] << ", "
-       << cell.d[1] << "] m, vx [" << cell.vx[0] << ", " << cell.vx[1] << "] m/s, vy [" << cell.vy[0]
-       << ", " << cell.vy[1] << "] m/s";
+  if (range[0] == range[1])
+    text << range[0];
+  else
+    text << "[" << range[0] << ", " << range[1] << "]";
   return text.str();
+}
+
+std::string text_of(const dynamics::Cell& cell) {
+  return std::string(dynamics::kBoundaryNames[static_cast<int>(cell.boundary)]) + " d " +
+         text_of(cell.d) + " m, vx " + text_of(cell.vx) + " m/s, vy " + text_of(cell.vy) + " m/s";
 }
 
 double Stopwatch::seconds() const {

@@ -48,6 +48,8 @@ namespace gatewalk::cli {
 
 /// A state's bin: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
 [[nodiscard]] std::string text_of(const dynamics::Cell& cell);
+/// "[-5, 5]", or "15" for a single value.
+[[nodiscard]] std::string text_of(const std::array<double, 2>& range);
 
 /// Seconds since construction.
 class Stopwatch {

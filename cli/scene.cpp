@@ -17,6 +17,7 @@
 #include <utility>
 #include <variant>
 
+#include "cli/scene_bins.h"
 #include "dynamics/methods/method.h"
 
 namespace gatewalk::cli {
@@ -278,7 +279,7 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
     const std::string table_name(table_key.str());
     const std::string table_origin = origin(table_node.source().begin.line);
     const toml::table* table = table_node.as_table();
-    if (table_name == kSweepTable) continue;  // see variations_of
+    if (table_name == kSweepTable || table_name == kBinsTable) continue;  // read apart
     if (!is_table(table_name)) {
       throw SceneError(table_origin + ": unknown "
                        + (table ? "table " + printable(table_name) + "; the closest known table is "
@@ -367,7 +368,7 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
 
   documents.push_back(parse_toml(name + " = " + value, origin));
   const Settings added = settings_of(documents.back(), origin);
-  if (added.empty()) throw SceneError(begin + ": sets no key");
+  if (added.empty() && !documents.back().contains(kBinsTable)) throw SceneError(begin + ": sets no key");
   for (const auto& [key, setting] : added) settings[key] = setting;
 }
 
@@ -543,6 +544,17 @@ Scene parse_scene(std::string_view text, std::string name,
   for (const SceneKey& key : scene_keys())
     if (const auto it = settings.find(key.key); !of_gate(key) && it != settings.end()) assign(key, it->second, scene);
   check_start(scene, settings);
+  auto edges = edges_in(document, origin);
+  for (std::size_t i = 0; i < overrides.size(); ++i)
+    for (GivenEdges& given : edges_in(override_documents[i], [&](std::size_t) {
+           return "--set " + printable(overrides[i]);
+         }))
+      edges.push_back(std::move(given));
+  try {
+    scene.bins = bins_of(scene.gate, edges);
+  } catch (const dynamics::InvalidParameter& error) {
+    throw SceneError(scene.source + ": " + error.what());
+  }
   return scene;
 }
 
@@ -570,6 +582,7 @@ std::string to_toml(const Scene& scene) {
     }
     text += std::string(leaf_of(key.key)) + " = " + value_text(key, copy) + "\n";
   }
+  if (scene.bins) text += "\n" + bins_toml(*scene.bins);
   return text;
 }
 
@@ -604,6 +617,13 @@ std::vector<std::string> physics_differences(const Scene& here, const Scene& the
   }
   if (here.gate.run.method != there.gate.run.method && here.gate.run.method != "auto") {
     add(kMethodKey, here.gate.run.method, there.gate.run.method);
+  }
+  if (here.bins != there.bins) {
+    const auto told = [](const Scene& s) { return s.bins ? "edges of its own" : "none"; };
+    if (here.bins && there.bins)
+      lines.push_back("[bins]: other edges here than there");
+    else
+      add("[bins]", told(here), told(there));
   }
   return lines;
 }

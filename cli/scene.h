@@ -1,7 +1,9 @@
 #pragma once
 /// The scene file: everything a run depends on, in TOML, every key optional.
 
+#include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "dynamics/params.h"
+#include "dynamics/state_space.h"
 #include "lattice/field.h"
 
 namespace gatewalk::cli {
@@ -19,6 +22,9 @@ struct Variation {
   std::string origin;  // how a message about it begins
 };
 
+/// Bin edges of every boundary, as StateSpace takes them.
+using SceneBins = std::array<dynamics::Bins, dynamics::kBoundaries>;
+
 struct Scene {
   dynamics::GateParams gate;
   lattice::FieldParams field;
@@ -27,6 +33,7 @@ struct Scene {
   std::map<std::string, std::string, std::less<>> named;  // keys the user gave, and where
   std::set<std::string, std::less<>> derived;             // keys that follow from those; the rest are the paper's
   std::vector<Variation> sweep;                    // table [sweep], in the order of the file
+  std::optional<SceneBins> bins;                   // table [bins], the chain's states
 };
 
 /// A scene that cannot be used. what() reads
@@ -65,7 +72,7 @@ void require_key(const std::string& key, const std::string& origin);
 [[nodiscard]] std::string to_toml(const Scene& scene);
 
 /// What differs between two scenes among the keys that shape a transition matrix (all of
-/// GateParams; neither field nor start): "forces.random_N: 40 here, 20 there", empty if nothing.
+/// GateParams and [bins]; neither field nor start): "forces.random_N: 40 here, 20 there", empty if nothing.
 [[nodiscard]] std::vector<std::string> physics_differences(const Scene& here, const Scene& there);
 
 }  // namespace gatewalk::cli

@@ -8,12 +8,6 @@ namespace {
 
 using namespace dynamics;
 
-std::string range(const std::array<double, 2>& edges) {
-  std::ostringstream text;
-  text << "[" << edges[0] << ", " << edges[1] << "]";
-  return text.str();
-}
-
 /// Share of a row's trials that came out at each boundary of the next gate, and trapped.
 std::array<double, kBoundaries + 1> outcome_shares(const Transitions& t, int row) {
   std::array<double, kBoundaries + 1> share{};
@@ -71,6 +65,11 @@ int run_show(const std::vector<std::string>& arguments) {
                             {"clamped", t.clamped[row]},
                             {"outputs", std::move(outputs)}});
   }
+  const auto stored = file.text.find("state_space");
+  const Json states = stored == file.text.end() ? Json() : Json::parse(stored->second, nullptr, false);
+  if (states.is_discarded())
+    throw markov::BadFile(options.text("matrix") + ": its record of the state space is damaged");
+  if (!states.is_null()) json["state_space"] = states;
   json["text"] = Json::object();
   for (const auto& [key, value] : file.text) json["text"][key] = value;
 
@@ -88,6 +87,7 @@ int run_show(const std::vector<std::string>& arguments) {
   const auto status = file.text.find("status");
   const std::string faults = faults_recorded(
       status == file.text.end() ? Json() : Json::parse(status->second, nullptr, false));
+  if (!states.is_null()) out << "  " << states_line(states);
   out << "  numerical faults    " << (faults.empty() ? "none seen" : faults) << "\n";
   if (options.has("rows")) {
     out << "\n  in  from d (m)       vx (m/s)    vy (m/s)    trials clamped |   EN    RD    LD    RT    LT  trap (%)\n";
@@ -95,8 +95,8 @@ int run_show(const std::vector<std::string>& arguments) {
       const Cell cell = t.space.cell(row);
       const auto share = outcome_shares(t, row);
       out << padded(std::to_string(row + 1), 4) << "  "
-          << kBoundaryNames[static_cast<int>(cell.boundary)] << " " << padded(range(cell.d), -12)
-          << padded(range(cell.vx), -12) << padded(range(cell.vy), -12)
+          << kBoundaryNames[static_cast<int>(cell.boundary)] << " " << padded(text_of(cell.d), -12)
+          << padded(text_of(cell.vx), -12) << padded(text_of(cell.vy), -12)
           << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
           << " |";
       for (const double s : share) out << padded(fixed(100.0 * s, 1), 6);

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "cli/matrix.h"
 #include "cli/report.h"
-#include "lattice/gate_chain.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -34,12 +34,31 @@ void add_starts(Options& options, const std::string& by_default) {
                 help.c_str());
 }
 
-std::vector<PaperStart> starts_of(const Options& options) {
-  if (!options.has("start")) return kTableIV;
+std::vector<PaperStart> given_starts(const Options& options) {
   std::vector<PaperStart> starts;
+  if (!options.has("start")) return starts;
   for (const auto& text : options.get<std::vector<std::string>>("start"))
     starts.push_back(parse_start(text));
   return starts;
+}
+
+std::vector<PaperStart> starts_of(const Options& options, const Scene& scene) {
+  if (options.has("start")) return given_starts(options);
+  const dynamics::BodyState &own = scene.start, first = kTableIV.front().body();
+  const bool papers = own.x == first.x && own.y == first.y && own.vx == first.vx && own.vy == first.vy;
+  if (papers && papers_field(scene)) return kTableIV;
+  return {{own.x, own.vx, own.vy, {}, {}, own.y}};
+}
+
+std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& starts) {
+  std::vector<dynamics::BodyState> bodies;
+  for (const PaperStart& s : starts) {
+    if (s.y != 0.0)
+      throw UsageError("start.y_m = " + Json(s.y).dump() +
+                       " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
+    bodies.push_back(s.body());
+  }
+  return bodies;
 }
 
 void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
@@ -50,14 +69,10 @@ void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
                        fixed(side, 3) + ", " + fixed(side, 3) + ")");
 }
 
-void warn_outside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
-                       const dynamics::StateSpace& space) {
-  for (const PaperStart& s : starts) {
-    const lattice::ChainStart chain = lattice::chain_start(space, scene.field, s.body());
-    if (chain.clamped)
-      warn("start" + start_text(s) + " lies outside the chain's bins; the chain starts in the " +
-           "nearest one, " + text_of(space.cell(chain.start.input)));
-  }
+void require_inside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
+                         const dynamics::StateSpace& space) {
+  for (const PaperStart& s : starts)
+    (void)start_in_bins(space, scene.field, s.body(), "start" + start_text(s));
 }
 
 std::string start_text(const PaperStart& s) {

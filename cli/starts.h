@@ -10,23 +10,32 @@
 
 namespace gatewalk::cli {
 
-/// d, vx, vy (m, m/s) of a start at y = 0; corrcoef and RMSE as Table IV prints them.
+/// d, vx, vy (m, m/s) of a start, at y = 0 but for a scene's own; corrcoef and RMSE as Table IV prints them.
 struct PaperStart {
   double d = 0.0, vx = 0.0, vy = 0.0;
   std::optional<double> corrcoef, rmse;
+  double y = 0.0;  // m
 
-  [[nodiscard]] dynamics::BodyState body() const { return {d, 0.0, vx, vy}; }
+  [[nodiscard]] dynamics::BodyState body() const { return {d, y, vx, vy}; }
 };
 
 /// Declares --start; `by_default` says where to start without it.
-void add_starts(Options& options, const std::string& by_default = "the four of Table IV");
-/// The starts given, else those of Table IV. Throws UsageError for a malformed one.
-[[nodiscard]] std::vector<PaperStart> starts_of(const Options& options);
+void add_starts(Options& options,
+                const std::string& by_default = "the scene's start; in the paper's field with the paper's start "
+                                                "(0,0,15), the four of Table IV");
+/// The starts given; none without --start. Throws UsageError for a malformed one.
+[[nodiscard]] std::vector<PaperStart> given_starts(const Options& options);
+/// The starts given, else the scene's, or those of Table IV in the paper's field with the paper's
+/// start. Throws UsageError for a malformed one.
+[[nodiscard]] std::vector<PaperStart> starts_of(const Options& options, const Scene& scene);
+/// Their bodies. Throws UsageError when one does not start on the lower edge of its gate: a chain's
+/// states are entries.
+[[nodiscard]] std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& starts);
 /// Throws UsageError unless all of them lie between the sides of the scene's gates.
 void require_inside(const std::vector<PaperStart>& starts, const Scene& scene);
-/// Warns of each start that lies outside the chain's bins: the chain starts in the nearest one.
-void warn_outside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
-                       const dynamics::StateSpace& space);
+/// As start_in_bins for each of them.
+void require_inside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
+                         const dynamics::StateSpace& space);
 /// "  23  -11   16"
 [[nodiscard]] std::string start_text(const PaperStart& start);
 

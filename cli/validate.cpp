@@ -91,7 +91,7 @@ StartReport run_start(const Options& options, const Scene& scene, const dynamics
                       const markov::Sweeper& sweeper, const markov::Walker& walker,
                       const std::deque<markov::Sweeper>& resampled,
                       const PaperStart& start, std::int64_t trials, std::int64_t walks) {
-  const dynamics::BodyState body{start.d, 0.0, start.vx, start.vy};
+  const dynamics::BodyState body = start.body();
   const markov::Field field{scene.field.columns, scene.field.rows};
   const int max_gates = scene.field.max_gates;
   StartReport r{start, lattice::chain_start(space, scene.field, body), lattice::FieldTally(scene.field),
@@ -269,8 +269,8 @@ struct EntryShares {
 
 int run_validate(const std::vector<std::string>& arguments) {
   Options options("validate SCENE [options]",
-                  "Compares the chain with the full dynamics: for the four starts of the paper's\n"
-                  "Table IV, or those given, corrcoef, RMSE and total variation of walks and of the\n"
+                  "Compares the chain with the full dynamics: for the scene's start (in the paper's field\n"
+                  "the four of Table IV), or those given, corrcoef, RMSE and total variation of walks and of the\n"
                   "exact chain, each beside its noise floor and p-values, and the time each takes.",
                   "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.positional("scene", "scene file (TOML)", true);
@@ -284,25 +284,37 @@ int run_validate(const std::vector<std::string>& arguments) {
       ("null-draws", po::value<Count>()->value_name("N"),
        "draws behind each p-value (default: 999 to 9999, by the size of the work)");
   add_starts(options);
+  add_bins(options);
   if (!options.parse(arguments)) return kFine;
   const std::int64_t trials = options.count("trials");
   const std::int64_t walks = options.has("walks") ? options.count("walks") : trials;
-  const std::vector<PaperStart> starts = starts_of(options);
+  std::vector<PaperStart> starts = given_starts(options);
 
   if (options.has("matrix")) {
+    if (options.has("bins"))
+      throw UsageError("--bins has no meaning beside --matrix: that one has its bins already");
     require_different(options.text("matrix"), options.text("json"));
     if (options.has("matrix-trials"))
       throw UsageError("--matrix-trials has no meaning beside --matrix: that one is built already");
   }
   const Stopwatch matrix_watch;
-  Json settled;
+  Json settled, states;
   MatrixAndScene m = [&] {
     if (options.has("matrix"))
       return read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
     Scene scene = read_scene(options.text("scene"), options.overrides());
+    const BinsChoice choice = bins_choice(options, scene);
+    starts = starts_of(options, scene);
+    require_inside(starts, scene);
+    const auto bodies = entries_at(starts);
+    if (choice.kind != BinsChoice::Kind::automatic)
+      require_inside_bins(starts, scene, fixed_space(scene));
+    const std::int64_t matrix_trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
     settled = settle_method(options, scene, RunsFrom::everywhere);
-    auto built = build_matrix(scene, 1.0, options.has("matrix-trials") ? options.count("matrix-trials") : 100,
-                              options.seed(), options.talk());
+    const States made = states_of(options, scene, choice, bodies);
+    states = gatewalk::cli::to_json(made);
+    warn_if_poor(made);
+    auto built = build_matrix(scene, made, matrix_trials, options.seed(), options.talk());
     Json status = gatewalk::cli::to_json(built.health);
     return MatrixAndScene{{std::move(built), {}}, scene, std::move(status)};
   }();
@@ -313,9 +325,18 @@ int run_validate(const std::vector<std::string>& arguments) {
       throw markov::BadFile(options.text("matrix") + ": its record of the chosen method is damaged");
   }
   const Scene& scene = m.scene;
-  require_inside(starts, scene);
   const dynamics::Transitions& t = m.file.transitions;
-  warn_outside_bins(starts, scene, t.space);
+  if (options.has("matrix")) {
+    starts = starts_of(options, scene);
+    require_inside(starts, scene);
+    (void)entries_at(starts);
+    if (const auto stored = m.file.text.find("state_space"); stored != m.file.text.end()) {
+      states = Json::parse(stored->second, nullptr, false);
+      if (states.is_discarded())
+        throw markov::BadFile(options.text("matrix") + ": its record of the state space is damaged");
+    }
+    require_inside_bins(starts, scene, t.space);
+  }
   const markov::Chain chain = lattice::make_chain(t);
   const markov::Sweeper sweeper(chain);
   const markov::Walker walker(chain);
@@ -358,6 +379,7 @@ int run_validate(const std::vector<std::string>& arguments) {
                     {"rows_never_sampled", chain.unsampled_rows()},
                     {"status", m.status},
                     {"seconds", matrix_seconds}};
+  if (!states.is_null()) json["state_space"] = states;
   json["threads"] = threads;
   json["status"] = to_json(health);
   if (!settled.is_null()) json["method"] = settled;
@@ -372,7 +394,7 @@ int run_validate(const std::vector<std::string>& arguments) {
            percent(static_cast<double>(shares.traverse_sides), static_cast<double>(shares.entries)) +
            " through RT or LT" + (papers ? " (paper: fewer than 4 %), " : ", ") +
            percent(static_cast<double>(shares.clamped), static_cast<double>(shares.entries)) +
-           " outside Table III's bins.\n";
+           " outside the bins.\n" + states_line(states);
   if (shares.entries == 0) table += "No trial ever reached a second gate.\n";
   options.give_out(json, table);
   if (!health.clean()) warn(complaint(health));

@@ -178,14 +178,26 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
   }
 }
 
-// ---- The step ----
+// ---- A check by a better method ----
 
-GateParams refined_setting(const GateParams& p) {
+GateParams checking_setting(const GateParams& p) {
   GateParams finer = p;
-  if (p.run.method == "event")
+  if (p.run.method == "event") {
     finer.run.event_tolerance = std::max(0.1 * p.run.event_tolerance, 1e-13 * p.body.radius);
-  else
-    finer.run.step *= 0.5;
+    return finer;
+  }
+  for (const char* method : {p.run.method == "stable" ? "event" : "stable", "event"}) {
+    GateParams better = p;
+    better.run.method = method;
+    better.run.step = default_step(better);
+    better.run.event_tolerance = default_event_tolerance(better);
+    try {
+      (void)make_method(better);
+      return better;
+    } catch (const InvalidParameter&) {
+    }
+  }
+  finer.run.step *= 0.5;
   return finer;
 }
 
@@ -198,19 +210,19 @@ double uncertainty_of(const WeakError& e, std::int64_t trials) {
   return std::sqrt(static_cast<double>(e.changed) + 1.84 * 1.84) / static_cast<double>(trials);
 }
 
-void check_step(Health& health, const GateParams& p, std::span<const BodyState> starts, std::uint64_t seed,
-                std::int64_t trials) {
-  const GateParams finer = refined_setting(p);
+void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
+                    std::uint64_t seed, std::int64_t trials) {
+  const GateParams better = checking_setting(p);
   TrialEnds here, there;
   std::vector<TrialRange> parts;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     parts.push_back(share_of(trials, i, starts.size()));
     add_trial_ends(here, p, starts[i], seed, parts.back());
-    add_trial_ends(there, finer, starts[i], seed, parts.back());
+    add_trial_ends(there, better, starts[i], seed, parts.back());
   }
   const WeakError e = outcome_error(here.trials, there.trials, parts);
-  health.step_trials += trials;
-  health.step_error = std::max(health.step_error, e.total_variation - 2.0 * uncertainty_of(e, trials));
+  health.checked_trials += trials;
+  health.outcome_error = std::max(health.outcome_error, e.total_variation - 2.0 * uncertainty_of(e, trials));
 }
 
 // ---- Errors ----

@@ -131,18 +131,20 @@ struct StrongError {
 [[nodiscard]] StrongError strong_error(const GateParams& p, std::span<const TrialEnd> run,
                                        std::span<const TrialEnd> reference);
 
-// ---- The step ----
+// ---- A check by a better method ----
 
-/// The same method with half the step, or a tenth of the tolerance where it has that (not below rounding).
-[[nodiscard]] GateParams refined_setting(const GateParams& p);
+/// By what a scene's method is checked: `event` at its default for `stable`, `stable` at its default for the
+/// others, each the other where a method does not take the scene; `event` by itself with a tenth of its
+/// tolerance (not below rounding), and so any other by itself with half its step if neither takes the scene.
+[[nodiscard]] GateParams checking_setting(const GateParams& p);
 
-/// Runs `trials` trials, shared out evenly over `starts`, with the scene's setting and with the refined one
+/// Runs `trials` trials, shared out evenly over `starts`, with the scene's setting and with the checking one
 /// under the same noise, and puts into `health` what of their difference in outcomes chance does not
 /// explain: total variation less two standard errors of it. Nothing that a run can show of itself (overlap,
-/// energy) sees a step that is wrong for an elastic or undamped scene. On all threads of the current TBB
-/// arena, the same for any number of them. Throws InvalidParameter.
-void check_step(Health& health, const GateParams& p, std::span<const BodyState> starts, std::uint64_t seed,
-                std::int64_t trials);
+/// energy) sees that a method is wrong for an elastic or undamped scene, and half the step may be as wrong.
+/// On all threads of the current TBB arena, the same for any number of them. Throws InvalidParameter.
+void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
+                    std::uint64_t seed, std::int64_t trials);
 
 /// The trials of start i among `trials` that are shared out evenly.
 [[nodiscard]] TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts);

@@ -9,7 +9,8 @@
 ///   gate.h         one run of one gate
 ///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
 ///   ensemble.h     many runs, their outcomes and their health
-///   state_space.h  Table III: how a body enters a gate, as a number
+///   state_space.h  how a body enters a gate, as a number: Table III or other bins
+///   quantile_bins.h  bins from entries that were seen, and how well bins resolve them
 ///   trace.h        one run in full, step by step
 ///   landscape.h    potential energy Eqs. (14), (15), the lowest way through
 ///   transitions.h  runs -> counts, the matrix of Eq. (16)
@@ -25,6 +26,7 @@
 #include "dynamics/gate.h"
 #include "dynamics/landscape.h"
 #include "dynamics/params.h"
+#include "dynamics/quantile_bins.h"
 #include "dynamics/random.h"
 #include "dynamics/runs.h"
 #include "dynamics/stability.h"

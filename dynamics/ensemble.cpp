@@ -53,8 +53,8 @@ Health& Health::operator+=(const Health& o) {
   worst_penetration = std::max(worst_penetration, o.worst_penetration);
   worst_energy_created = std::max(worst_energy_created, o.worst_energy_created);
   worst_speed = std::max(worst_speed, o.worst_speed);
-  step_trials += o.step_trials;
-  step_error = std::max(step_error, o.step_error);
+  checked_trials += o.checked_trials;
+  outcome_error = std::max(outcome_error, o.outcome_error);
   return *this;
 }
 

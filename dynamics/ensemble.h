@@ -30,8 +30,8 @@ struct TrialRange {
 /// - fast: disc or beam tip moved over half a radius in one step, so hits may have been missed;
 /// - unstable: steps longer than the method's stability bound for free beams were taken;
 /// - broken: the state stopped being finite.
-/// What no single run can show, that the step itself shapes the outcomes, a sample shows that is run
-/// again with a finer setting (accuracy.h): step_error, if somebody looked.
+/// What no single run can show, that the method itself shapes the outcomes, a sample shows that is run
+/// again by a better method (check_outcomes in accuracy.h): outcome_error, if somebody looked.
 struct Health {
   /// Share of the steps in which hits may pile up until they are forced to end; `stable` needs it
   /// about once in a million steps where it is sound.
@@ -51,23 +51,23 @@ struct Health {
   double worst_penetration = 0.0;     // m
   double worst_energy_created = 0.0;  // J
   double worst_speed = 0.0;           // m/s
-  std::int64_t step_trials = 0;  // run again with half the step, or a tenth of the tolerance
-  double step_error = 0.0;       // total variation of their outcomes that chance does not explain
+  std::int64_t checked_trials = 0;  // run again by a better method
+  double outcome_error = 0.0;       // total variation of their outcomes that chance does not explain
 
   void add(const GateParams& p, const GateRun& run);
   Health& operator+=(const Health& other);
   [[nodiscard]] bool piled_up() const {
     return static_cast<double>(forced_holds) > kPermittedHolds * static_cast<double>(steps);
   }
-  /// The outcomes hang on the step by more than this.
-  static constexpr double kPermittedStepError = 0.02;
-  [[nodiscard]] bool step_matters() const { return step_error > kPermittedStepError; }
+  /// Outcomes that are off by more than this are a fault.
+  static constexpr double kPermittedOutcomeError = 0.02;
+  [[nodiscard]] bool outcomes_off() const { return outcome_error > kPermittedOutcomeError; }
   /// No run penetrated, created energy, was too fast for its step, took unstable steps, broke or met
-  /// a contact that its method has no formula for, hits did not pile up, and a finer step was not seen to
+  /// a contact that its method has no formula for, hits did not pile up, and a better method was not seen to
   /// give other outcomes.
   [[nodiscard]] bool clean() const {
     return penetrating == 0 && creating_energy == 0 && fast == 0 && unstable == 0 && broken == 0 &&
-           undefined_contacts == 0 && !piled_up() && !step_matters();
+           undefined_contacts == 0 && !piled_up() && !outcomes_off();
   }
 };
 

@@ -9,9 +9,9 @@ namespace {
 
 int count(const std::vector<double>& edges) { return static_cast<int>(edges.size()) - 1; }
 
-/// Bin of v; outside all bins the nearest one, and `clamped` is set.
-int bin_of(const std::vector<double>& edges, double v, bool& clamped) {
-  if (v < edges.front() || v > edges.back()) clamped = true;
+/// Bin of v; outside all bins the nearest one, and `beyond` is set.
+int bin_of(const std::vector<double>& edges, double v, bool& beyond) {
+  if (v < edges.front() || v > edges.back()) beyond = true;
   const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, v);
   return static_cast<int>(above - edges.begin()) - 1;
 }
@@ -84,7 +84,8 @@ BodyState shifted_into_next(const GateParams& p, Ending ending, BodyState exit) 
   return exit;
 }
 
-StateSpace::StateSpace(std::array<Bins, kBoundaries> bins) : bins_(std::move(bins)) {
+StateSpace::StateSpace(std::array<Bins, kBoundaries> bins, bool open, std::vector<Crossing> points)
+    : bins_(std::move(bins)), open_(open), points_(std::move(points)) {
   for (int b = 0; b < kBoundaries; ++b) {
     const Bins& g = bins_[b];
     for (const auto* edges : {&g.d, &g.vx, &g.vy}) {
@@ -97,6 +98,9 @@ StateSpace::StateSpace(std::array<Bins, kBoundaries> bins) : bins_(std::move(bin
     }
     offset_[b + 1] = offset_[b] + count(g.d) * count(g.vx) * count(g.vy);
   }
+  for (auto c = points_.begin(); c != points_.end(); ++c)
+    if (!std::isfinite(c->d + c->vx + c->vy) || std::find(points_.begin(), c, *c) != c)
+      throw std::invalid_argument("state space: single entries must be finite and different");
 }
 
 StateSpace StateSpace::paper(const GateParams& p) {
@@ -106,34 +110,50 @@ StateSpace StateSpace::paper(const GateParams& p) {
                            "run.traverse_y_m = " + std::to_string(p.run.traverse_y) +
                                " is not permitted for a chain or a field: it must exceed "
                                "beams.joint_y_m + body.radius_m = " + std::to_string(y + r));
-  const std::vector<double> leftward{-30, -20, -10, 0}, rightward{0, 10, 20, 30};
-  const std::vector<double> side_vy{-20, -10, 0, 10, 20, 30};
+  const double unit = scale_of(p).speed();
+  const auto speeds = [unit](std::vector<double> edges) {  // Table III's, in m/s
+    for (double& v : edges) v *= unit;
+    return edges;
+  };
+  const auto leftward = speeds({-30, -20, -10, 0}), rightward = speeds({0, 10, 20, 30});
+  const auto side_vy = speeds({-20, -10, 0, 10, 20, 30});
   const std::vector<double> below{r, (r + y) / 2, y}, above{r, p.run.traverse_y - y};
-  return StateSpace({Bins{{-w, -0.6 * w, -0.2 * w, 0.2 * w, 0.6 * w, w}, {-25, -15, -5, 5, 15, 25}, {10, 20}},
+  return StateSpace({Bins{{-w, -0.6 * w, -0.2 * w, 0.2 * w, 0.6 * w, w},
+                          speeds({-25, -15, -5, 5, 15, 25}), speeds({10, 20})},
                      Bins{below, leftward, side_vy},
                      Bins{below, rightward, side_vy},
-                     Bins{above, {-30, 0}, {-20, 30}},
-                     Bins{above, {0, 30}, {-20, 30}}});
+                     Bins{above, speeds({-30, 0}), speeds({-20, 30})},
+                     Bins{above, speeds({0, 30}), speeds({-20, 30})}});
 }
 
 StateSpace::Index StateSpace::index_of(const Crossing& c) const {
   const int b = static_cast<int>(c.boundary);
   const Bins& g = bins_[b];
   Index index;
-  const int d = bin_of(g.d, c.d, index.clamped);
-  const int vx = bin_of(g.vx, c.vx, index.clamped);
-  const int vy = bin_of(g.vy, c.vy, index.clamped);
+  if (const auto point = std::find(points_.begin(), points_.end(), c); point != points_.end()) {
+    index.state = offset_[kBoundaries] + static_cast<int>(point - points_.begin());
+    return index;
+  }
+  const int d = bin_of(g.d, c.d, index.beyond);
+  const int vx = bin_of(g.vx, c.vx, index.beyond);
+  const int vy = bin_of(g.vy, c.vy, index.beyond);
   index.state = offset_[b] + (d * count(g.vx) + vx) * count(g.vy) + vy;
+  index.clamped = index.beyond && !open_;
   return index;
 }
 
 Boundary StateSpace::boundary(int state) const {
+  if (state >= offset_[kBoundaries]) return points_.at(state - offset_[kBoundaries]).boundary;
   const auto above = std::upper_bound(offset_.begin(), offset_.end(), state);
   return static_cast<Boundary>(above - offset_.begin() - 1);
 }
 
 Cell StateSpace::cell(int state) const {
   const Boundary b = boundary(state);
+  if (state >= offset_[kBoundaries]) {
+    const Crossing& c = points_[state - offset_[kBoundaries]];
+    return {b, {c.d, c.d}, {c.vx, c.vx}, {c.vy, c.vy}};
+  }
   const Bins& g = bins_[static_cast<int>(b)];
   const int in_boundary = state - first(b);
   const int vy = in_boundary % count(g.vy);
@@ -165,7 +185,7 @@ StateSpace refined(const StateSpace& space, double factor) {
     states += static_cast<double>(count(b.d)) * count(b.vx) * count(b.vy);
   }
   if (states > kMostStates) throw too_many_states(factor);
-  return StateSpace(std::move(bins));
+  return StateSpace(std::move(bins), space.open(), space.points());
 }
 
 }  // namespace gatewalk::dynamics

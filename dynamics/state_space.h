@@ -1,5 +1,5 @@
 #pragma once
-/// The discrete states of the chain: how a body enters a gate (Table III), as data.
+/// The discrete states of the chain: how a body enters a gate, as data. Table III's, or others.
 /// A crossing out of one gate is an entry into the next; `index_of` turns it into a state, says so
 /// when it lay outside every bin, and `sample` puts a body back into a state's bin.
 
@@ -33,6 +33,7 @@ struct Move {
 struct Crossing {
   Boundary boundary = Boundary::enter;
   double d = 0.0, vx = 0.0, vy = 0.0;
+  friend bool operator==(const Crossing&, const Crossing&) = default;
 };
 
 /// The entry into the next gate that ends a run. Only for runs that left the gate.
@@ -58,30 +59,40 @@ struct Cell {
 
 class StateSpace {
  public:
-  /// Throws std::invalid_argument unless every boundary has at least one bin and ascending edges.
-  explicit StateSpace(std::array<Bins, kBoundaries> bins);
+  /// States are the bins of every boundary (EN, RD, LD, RT, LT; within each by d, then vx, then vy),
+  /// then `points`: single entries that are states of their own, such as where walks start. Open:
+  /// the outermost bins take what lies beyond them, and their outer edges only say how far entries
+  /// were seen; nothing is clamped. Throws std::invalid_argument unless every boundary has at least
+  /// one bin and ascending edges, and all points are finite and different.
+  explicit StateSpace(std::array<Bins, kBoundaries> bins, bool open = false,
+                      std::vector<Crossing> points = {});
 
-  /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size (they are the
-  /// table's for the paper's gate), velocities are the table's. RT and LT are one state each; their
-  /// bin is what the README's "Departures" says: y from joint + R up, velocities of RD and LD.
+  /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size, velocities the
+  /// scene's own unit of speed: the table's in the paper's scenes. RT and LT are one state each;
+  /// their bin is what the README's "Departures" says: y from joint + R up, velocities of RD and LD.
   /// Throws InvalidParameter when no disc can be ahead of the beams inside the gate.
   static StateSpace paper(const GateParams& p);
 
-  [[nodiscard]] int size() const { return offset_[kBoundaries]; }
+  [[nodiscard]] int size() const {
+    return offset_[kBoundaries] + static_cast<int>(points_.size());
+  }
   /// Column of "trapped", one past the states.
   [[nodiscard]] int trapped() const { return size(); }
   [[nodiscard]] const std::array<Bins, kBoundaries>& bins() const { return bins_; }
+  [[nodiscard]] bool open() const { return open_; }
+  [[nodiscard]] const std::vector<Crossing>& points() const { return points_; }
   [[nodiscard]] int first(Boundary b) const { return offset_[static_cast<int>(b)]; }
 
   struct Index {
     int state = 0;
     bool clamped = false;  // outside every bin of its boundary, put into the nearest
+    bool beyond = false;   // clamped, or in an outermost bin that is open, beyond its outer edge
   };
   [[nodiscard]] Index index_of(const Crossing& c) const;
   [[nodiscard]] Cell cell(int state) const;
   [[nodiscard]] Boundary boundary(int state) const;
 
-  /// Uniform in the state's bin.
+  /// Uniform in the state's bin; a point itself.
   [[nodiscard]] Crossing sample(int state, Random& random) const;
 
   friend bool operator==(const StateSpace&, const StateSpace&) = default;
@@ -89,11 +100,13 @@ class StateSpace {
  private:
   std::array<Bins, kBoundaries> bins_;
   std::array<int, kBoundaries + 1> offset_{};
+  bool open_ = false;
+  std::vector<Crossing> points_;
 };
 
 /// The same ranges in finer (factor > 1) or coarser bins: an axis of n bins gets
 /// max(1, round(n * factor)) equal ones; where that is n again, its edges stay as they are, so
-/// factor 1 is the same space bit for bit. Throws std::invalid_argument unless the factor is finite
+/// factor 1 is the same space bit for bit; open and points stay as they are. Throws std::invalid_argument unless the factor is finite
 /// and > 0 and the result has at most kMostStates states.
 inline constexpr int kMostStates = 1'000'000;
 [[nodiscard]] StateSpace refined(const StateSpace& space, double factor);

@@ -2,6 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "dynamics/runs.h"
@@ -54,6 +55,17 @@ Entries entries_of(const StateSpace& space, const std::vector<Crossing>& seen) {
   return entries;
 }
 
+std::int64_t runs_per_trial(const StateSpace& space, int row) {
+  const std::int64_t bins = space.size() - static_cast<std::int64_t>(space.points().size());
+  return row < bins ? 1 : std::max<std::int64_t>(1, bins / 10);
+}
+
+std::int64_t runs_per_trial(const StateSpace& space) {
+  std::int64_t runs = 0;
+  for (int row = 0; row < space.size(); ++row) runs += runs_per_trial(space, row);
+  return runs;
+}
+
 void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,
                 const Entries& entries) {
   if (!entries.empty() && entries.size() != t.rows.size())
@@ -67,14 +79,22 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
     int column = -1;
     bool clamped = false;
   };
-  std::vector<Outcome> outcomes(static_cast<std::size_t>(t.space.size()) * range.count);
+  std::vector<std::int64_t> first_run{0};  // of each row, among all of these
+  for (int row = 0; row < t.space.size(); ++row)
+    first_run.push_back(first_run.back() + range.count * runs_per_trial(t.space, row));
+  const auto row_of = [&](std::int64_t run) {
+    return static_cast<int>(std::upper_bound(first_run.begin(), first_run.end(), run) -
+                            first_run.begin()) - 1;
+  };
+  std::vector<Outcome> outcomes(static_cast<std::size_t>(first_run.back()));
   tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do
   carry_out_trials(
       p, *method, static_cast<std::int64_t>(outcomes.size()),
       [&](RunSlot& slot) {
-        const auto row = static_cast<int>(slot.trial / range.count);
-        const Stream stream{seed, static_cast<std::uint64_t>(row),
-                            static_cast<std::uint64_t>(range.first + slot.trial % range.count)};
+        const int row = row_of(slot.trial);
+        const std::int64_t run =
+            range.first * runs_per_trial(t.space, row) + slot.trial - first_run[row];
+        const Stream stream{seed, static_cast<std::uint64_t>(row), static_cast<std::uint64_t>(run)};
         Random random(Purpose::row, stream);
         slot.start = entry_state(p, start_of(row, random));
         slot.force = RandomForce(p.forces, random);
@@ -93,8 +113,8 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
 
   for (const Health& part : health) t.health += part;
   for (int row = 0; row < t.space.size(); ++row) {
-    for (std::int64_t i = 0; i < range.count; ++i) {
-      const Outcome& out = outcomes[row * range.count + i];
+    for (std::int64_t i = first_run[row]; i < first_run[row + 1]; ++i) {
+      const Outcome& out = outcomes[static_cast<std::size_t>(i)];
       if (out.column < 0) continue;
       ++t.rows[row][out.column];
       ++t.trials[row];

@@ -43,8 +43,15 @@ struct Transitions {
 using Entries = std::vector<std::vector<Crossing>>;  // (n)
 [[nodiscard]] Entries entries_of(const StateSpace& space, const std::vector<Crossing>& seen);
 
+/// Runs in a row of the space for one trial of it. Every walk that starts in a point passes its row,
+/// once, and the others a few times in all: so that its sampling weighs no more than theirs, a
+/// point's row gets as many runs as a tenth of the bins, at least 1. A bin's row gets 1.
+[[nodiscard]] std::int64_t runs_per_trial(const StateSpace& space, int row);
+/// The same of all rows together.
+[[nodiscard]] std::int64_t runs_per_trial(const StateSpace& space);
+
 /// Adds trials `range` of every row: starts uniform in the row's bin, or drawn from `entries` in a
-/// row that has any; random force from the stream {seed, row, trial}. On all threads of the current
+/// row that has any; random force from the stream {seed, row, run}. On all threads of the current
 /// TBB arena; same counts for any number of them. A broken run is counted in `health` and in no
 /// column; the caller decides.
 void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,

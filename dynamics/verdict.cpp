@@ -11,7 +11,7 @@ Verdict judge(const Health& h, std::int64_t cut_short, double permitted) {
   if (over(h.unstable, runs)) return Verdict::beyond_bound;
   if (over(h.penetrating, runs)) return Verdict::penetration;
   if (over(h.creating_energy, runs)) return Verdict::energy;
-  if (h.step_matters()) return Verdict::step;
+  if (h.outcomes_off()) return Verdict::outcomes;
   if (over(h.fast, runs)) return Verdict::too_fast;
   if (over(h.undefined_contacts, permitted * steps)) return Verdict::no_formula;
   return Verdict::fine;

@@ -15,7 +15,7 @@ enum class Verdict : std::uint8_t {
   missed_hit,    // a hit that should have been was not, or the other way round
   no_formula,    // contacts for which the method has no formula
   too_fast,      // disc or beam moved so far in a step that hits may have been missed
-  step,          // a finer step gives other outcomes
+  outcomes,      // a better method gives other outcomes
   energy,        // energy from nothing
   penetration,   // the disc sank into a beam by more than 1 % of its radius
   beyond_bound,  // steps longer than the method's stability bound for free beams: explains the above
@@ -24,7 +24,7 @@ enum class Verdict : std::uint8_t {
   refused,       // the method does not take the scene: InvalidParameter
 };
 inline constexpr std::array<std::string_view, 11> kVerdictNames{
-    "ok",          "missed hit",   "no formula", "too fast",   "step matters", "energy",
+    "ok",          "missed hit",   "no formula", "too fast",   "outcomes off", "energy",
     "penetration", "beyond bound", "stuck",      "not finite", "refused"};
 [[nodiscard]] inline std::string_view name_of(Verdict v) {
   return kVerdictNames[static_cast<std::size_t>(v)];

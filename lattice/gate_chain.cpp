@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 namespace gatewalk::lattice {
@@ -46,7 +47,7 @@ ChainStart chain_start(const StateSpace& space, const FieldParams& field, const 
         "start.y_m = " + std::to_string(body.y) +
         " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
   const auto index = space.index_of({Boundary::enter, body.x, body.vx, body.vy});
-  return {{field.start_column(), 0, index.state}, index.clamped};
+  return {{field.start_column(), 0, index.state}, index.clamped, index.beyond};
 }
 
 namespace {
@@ -66,6 +67,38 @@ std::string array_name(int boundary, const Axis& axis) {
   return std::string(kBoundaryNames[boundary]) + "_" + axis.name + "_edges";
 }
 
+// Only a space that is open, or has points, has these.
+constexpr const char* kOpen = "outermost_bins_are_open";
+constexpr const char* kPointBoundary = "point_boundary";
+constexpr std::array<double Crossing::*, 3> kPointAxes{&Crossing::d, &Crossing::vx, &Crossing::vy};
+
+std::string point_array(const Axis& axis) { return std::string("point_") + axis.name; }
+
+const std::vector<double>* find_array(const markov::CountsFile& in, const std::string& name) {
+  for (const auto& array : in.arrays)
+    if (array.name == name) return &array.values;
+  return nullptr;
+}
+
+std::vector<Crossing> points_in(const markov::CountsFile& in, const std::string& path) {
+  const std::vector<double>* const boundary = find_array(in, kPointBoundary);
+  if (!boundary) return {};
+  std::vector<Crossing> points(boundary->size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double b = (*boundary)[i];
+    if (!(b >= 0.0 && b < kBoundaries && b == std::floor(b)))
+      throw markov::BadFile(path + ": " + kPointBoundary + " names no boundary");
+    points[i].boundary = static_cast<Boundary>(b);
+  }
+  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+    const std::vector<double>* const values = find_array(in, point_array(kAxes[axis]));
+    if (!values || values->size() != points.size())
+      throw markov::BadFile(path + ": " + point_array(kAxes[axis]) + " does not belong to " + kPointBoundary);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].*kPointAxes[axis] = (*values)[i];
+  }
+  return points;
+}
+
 }  // namespace
 
 void write_matrix(const std::string& path, const MatrixFile& file) {
@@ -82,6 +115,19 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
                                 "; states are numbered EN, RD, LD, RT, LT, within each by d, then "
                                 "vx, then vy",
                             t.space.bins()[b].*axis.edges});
+  if (t.space.open())
+    out.arrays.push_back({kOpen, "1", "the outermost bins take what lies beyond their edges", {1.0}});
+  if (!t.space.points().empty()) {
+    std::vector<double> boundary;
+    for (const Crossing& c : t.space.points()) boundary.push_back(static_cast<double>(c.boundary));
+    const std::string meaning = "entries that are states of their own, numbered after all bins";
+    out.arrays.push_back({kPointBoundary, "1", meaning + ": 0 EN, 1 RD, 2 LD, 3 RT, 4 LT", boundary});
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+      std::vector<double> values;
+      for (const Crossing& c : t.space.points()) values.push_back(c.*kPointAxes[axis]);
+      out.arrays.push_back({point_array(kAxes[axis]), kAxes[axis].unit, meaning, std::move(values)});
+    }
+  }
   out.text = file.text;
   markov::write_counts(path, out);
 }
@@ -98,13 +144,12 @@ MatrixFile read_matrix(const std::string& path) {
   for (int b = 0; b < kBoundaries; ++b) {
     for (const Axis& axis : kAxes) {
       const std::string name = array_name(b, axis);
-      for (const auto& array : in.arrays)
-        if (array.name == name) bins[b].*axis.edges = array.values;
+      if (const auto* values = find_array(in, name)) bins[b].*axis.edges = *values;
       if ((bins[b].*axis.edges).empty()) throw markov::BadFile(path + ": no bin edges " + name);
     }
   }
   try {
-    Transitions t{StateSpace(std::move(bins))};
+    Transitions t{StateSpace(std::move(bins), find_array(in, kOpen) != nullptr, points_in(in, path))};
     if (t.space.size() != in.counts.rows())
       throw markov::BadFile(path + ": bins make " + std::to_string(t.space.size()) +
                             " states, the counts have " + std::to_string(in.counts.rows()) + " rows");

@@ -21,16 +21,16 @@ namespace gatewalk::lattice {
 [[nodiscard]] dynamics::Transitions resampled(const dynamics::Transitions& t, std::uint64_t seed,
                                               std::uint64_t replicate);
 
-/// The chain's start for a body that starts in gate (0, 0): its state, and whether it was clamped.
-/// A body inside the gate (y > 0) has no state of its own: throws std::invalid_argument.
+/// The chain's start for a body that starts in gate (0, 0): its state, and whether it lies outside
+/// the bins as StateSpace::Index says. A body inside the gate (y > 0) has no state of its own: throws std::invalid_argument.
 struct ChainStart {
   markov::Start start;
-  bool clamped = false;
+  bool clamped = false, beyond = false;
 };
 [[nodiscard]] ChainStart chain_start(const dynamics::StateSpace& space, const FieldParams& field,
                                      const dynamics::BodyState& body);
 
-/// A matrix on disk: counts, trials and clamped crossings of every row, the bins, and `text`
+/// A matrix on disk: counts, trials and clamped crossings of every row, the state space, and `text`
 /// (scene, seed, version, command, ...).
 struct MatrixFile {
   dynamics::Transitions transitions;

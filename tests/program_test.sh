@@ -132,15 +132,15 @@ for file in predict free klu; do
 done
 expect 0 '^numerical error of all shares together: at most [0-9.]*e-1[0-9] (0 still walking, rounding [0-9.]*e-1[0-9])$' "$gatewalk" predict m.nc
 # Several starts: an entry each, in order, as each alone; none given: the scene's.
-expect 0 '^start d 4 m, vx 5 m/s, vy 10.5 m/s$' "$gatewalk" predict m.nc --start 0,0,15 --start 4,5,10.5 --start 0,0,-3 --json starts.json
-[ "$(grep -c '^trapped' out.txt)" = 3 ] || fail "predict: not a result per start"
-grep -q 'start d 0 m, vx 0 m/s, vy -3 m/s lies outside the chain' out.txt || fail "predict: a start outside the bins without a word"
+expect 0 '^start d 4 m, vx 5 m/s, vy 10.5 m/s$' "$gatewalk" predict m.nc --start 0,0,15 --start 4,5,10.5 --json starts.json
+[ "$(grep -c '^trapped' out.txt)" = 2 ] || fail "predict: not a result per start"
+expect 2 'start d 0 m, vx 0 m/s, vy -3 m/s lies outside the chain.s bins, EN d \[-25, 25\] m, .*--bins auto .*\[bins\]' "$gatewalk" predict m.nc --start 0,0,15 --start 0,0,-3
 "$gatewalk" predict m.nc --set start.x_m=4 --set start.vx_m_per_s=5 --set start.vy_m_per_s=10.5 --json start.json --quiet
 for k in 0 1; do
   jq -s ".[0].starts[$k] as \$one | .[1] | to_entries | map(select(.key | IN(\"final_gates\", \"trapped\", \"left_field\", \"cut_off\", \"steps\", \"start_state\")) | .value == \$one[.key]) | length == 6 and all" \
     starts.json "$([ $k = 0 ] && echo predict.json || echo start.json)" | grep -q true || fail "predict: start $k is not as alone"
 done
-holds '[.starts[].start_state.clamped] == [false, false, true] and (has("final_gates") | not)' starts.json
+holds '[.starts[].start_state.clamped] == [false, false] and (has("final_gates") | not)' starts.json
 holds '.starts[1].start == {"d_m": 4, "vx_m_per_s": 5, "vy_m_per_s": 10.5}' starts.json
 for solver in march klu propagate; do
   "$gatewalk" predict m.nc --set field.max_gates=0 --solver $solver --start 0,0,15 --start 4,5,10 --json starts-$solver.json --quiet
@@ -273,6 +273,77 @@ done
 "$gatewalk" show m.nc --json m.json --quiet
 jq -s '.[0].rows == .[1].rows' m.json m1.json | grep -q true || fail "--bins 1 is not the paper's matrix"
 for bins in 0 -1 nan 1e9; do expect 2 'bins' "$gatewalk" build "$scenes/field.toml" --bins $bins -o x.nc; done
+
+# States from a pilot: the default of any other field. Twins, in other units, have the same matrix.
+cat >cm.toml <<'END'
+[body]
+mass_kg = 0.25
+radius_m = 0.08
+[beams]
+length_m = 0.17
+mass_kg = 0.01
+stiffness_left_Nm_per_rad = 0.15
+stiffness_right_Nm_per_rad = 0.15
+damping_Nms_per_rad = 0.005
+joint_x_m = 0.23
+joint_y_m = 0.20
+[forces]
+propulsion_N = 0.8
+random_N = 1.0
+random_rate_Hz = 10
+drag_Ns_per_m = 1.0
+[contact]
+impulse_threshold_Ns = 1e-4
+[run]
+traverse_y_m = 0.40
+[start]
+vy_m_per_s = 0.4
+END
+expect 0 'bins from a pilot' "$gatewalk" build cm.toml --trials 2 --seed 3 -o auto.nc --json auto.json --threads 1
+holds '.bins == "auto" and .clamped_share == 0 and .state_space.outermost_bins == "open" and .state_space.row_starts == "visited"' auto.json
+holds '.state_space | .states > 100 and .pilot.trials == 2000 and .pilot.entries > 1000 and .resolution.poor == false and .starts_of_their_own == [{"d_m": 0, "vx_m_per_s": 0, "vy_m_per_s": 0.4}]' auto.json
+holds '.state_space.resolution.unresolved_variance | [.d, .vx, .vy] | all(. > 0 and . < 0.5)' auto.json
+"$gatewalk" build cm.toml --trials 2 --seed 3 -o auto2.nc --quiet --threads 2 >/dev/null
+cmp -s auto.nc auto2.nc || fail "build: bins from a pilot depend on the threads"
+expect 0 'states: .* pilot trials' "$gatewalk" show auto.nc
+"$gatewalk" show auto.nc --json auto-show.json --quiet
+# Where the scene is symmetric, so are its bins: EN's states, by d, then vx, turned about.
+holds '[.rows[] | select(.boundary == "EN") | .vx_m_per_s] | flatten | unique | map(. + 0) | . == (map(-.) | sort)' <(jq '.rows |= .[:-1]' auto-show.json)
+expect 0 '^start: EN d 0 m, vx 0 m/s, vy 0.4 m/s' "$gatewalk" predict auto.nc
+expect 0 'beyond every entry that the bins were made from' "$gatewalk" predict auto.nc --start 0,0,9 --quiet
+# A warning, and the way out, where the bins given do not resolve what bodies do.
+expect 0 'resolve too little.*--bins auto' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-90, 90]" --set "bins.RD_vx_m_per_s=[-90, 0]" --set "bins.LD_vx_m_per_s=[0, 90]" --trials 1 -o own.nc --quiet
+expect 2 'has a table \[bins\]' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-1, 1]" --bins auto -o x.nc
+expect 2 'no meaning beside --matrix' "$gatewalk" validate cm.toml --matrix auto.nc --bins auto
+expect 2 'must be paper, auto' "$gatewalk" build cm.toml --bins many -o x.nc
+# validate without --start: a scene's own start, but for the paper's field with the paper's start.
+"$gatewalk" validate cm.toml --trials 100 --matrix-trials 2 --json own.json --quiet
+holds '(.starts | map(.start.vy_m_per_s)) == [0.4] and .state_space.bins == "auto"' own.json
+"$gatewalk" validate "$scenes/field.toml" --set start.x_m=3 --matrix m.nc --trials 20 --json own.json --quiet
+holds '(.starts | map(.start.d_m)) == [3]' own.json
+# Edges of one's own travel with the matrix, and another scene's are a difference.
+{ cat "$scenes/field.toml"; printf '[bins]\nEN_d_m = [-25, -5, 5, 25]\nEN_vx_m_per_s = [-20, 0, 20]\n'; } >bins.toml
+expect 0 '68 x 69 matrix' "$gatewalk" build bins.toml --trials 2 -o bins.nc --json bins.json
+holds '.bins == "scene" and .state_space.outermost_bins == "closed"' bins.json
+expect 0 '^trapped' "$gatewalk" predict bins.nc bins.toml
+expect 2 '\[bins\]: none here, edges of its own there' "$gatewalk" predict bins.nc "$scenes/field.toml"
+printf '[bins]\nEN_d_m = [5, -5]\n' >bad-bins.toml
+expect 2 'bad-bins.toml:2: bins.EN_d_m' "$gatewalk" build bad-bins.toml -o x.nc
+# A field in other units (lengths x 16, times x 4, masses / 16) has the same counts.
+sed -e 's/^impulse_threshold_Ns.*/impulse_threshold_Ns = 0.01/' -e 's/^mass_kg = 1.0/mass_kg = 0.0625/' -e 's/^mass_kg = 0.1/mass_kg = 0.00625/' \
+  -e 's/^radius_m.*/radius_m = 160/' -e 's/^length_m.*/length_m = 400/' -e 's/^joint_x_m.*/joint_x_m = 400/' -e 's/^joint_y_m.*/joint_y_m = 480/' \
+  -e 's/^traverse_y_m.*/traverse_y_m = 960/' -e 's/^random_rate_Hz.*/random_rate_Hz = 12.5/' -e 's/^drag_Ns_per_m.*/drag_Ns_per_m = 0.0009375/' \
+  -e 's/^propulsion_N.*/propulsion_N = 0.4375/' -e 's/^random_N.*/random_N = 3.125/' -e 's/^vy_m_per_s.*/vy_m_per_s = 60/' \
+  -e 's/^\(stiffness_[a-z]*_Nm_per_rad\).*/\1 = 400/' -e 's/^damping_Nms_per_rad.*/damping_Nms_per_rad = 200/' \
+  -e 's/^time_limit_s.*/time_limit_s = 48.0\nstep_s = 0.08\nevent_tolerance_m = 0.16/' "$scenes/field.toml" >twin.toml
+for bins in paper auto; do
+  "$gatewalk" build "$scenes/field.toml" --set run.method=moreau --set run.step_s=0.01 --bins $bins --trials 2 -o one.nc --quiet >/dev/null 2>&1
+  "$gatewalk" build twin.toml --set run.method=moreau --set run.step_s=0.04 --bins $bins --trials 2 -o two.nc --quiet >/dev/null 2>&1
+  "$gatewalk" show one.nc --json one.json --quiet
+  "$gatewalk" show two.nc --json two.json --quiet
+  jq -s '[.[].rows | map([.trials, .clamped, .outputs])] | .[0] == .[1]' one.json two.json | grep -q true || fail "build --bins $bins: a twin has other counts"
+  jq -s '(.[0].rows | map(.vx_m_per_s | map(. * 4))) == (.[1].rows | map(.vx_m_per_s))' one.json two.json | grep -q true || fail "build --bins $bins: a twin has other bins"
+done
 "$gatewalk" lattice "$scenes/field.toml" --trials 100 --seed 1 --json lattice.json --quiet
 holds '([.final_gates[][]] | add) == 100 and .trapped + .left_field + .cut_off + .not_finite == 100' lattice.json
 "$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=1 --trials 50 --json one.json --quiet
@@ -289,9 +360,11 @@ expect 2 'a file of its own' "$gatewalk" build "$scenes/field.toml" -o -
 expect 2 'run.traverse_y_m' "$gatewalk" lattice "$scenes/field.toml" --set run.traverse_y_m=35
 expect 2 'field.toml.*run.step_s' "$gatewalk" gate "$scenes/field.toml" --set beams.damping_Nms_per_rad=1e12
 # What cannot be taken at face value is said, even under --quiet.
-expect 0 'outside the chain' "$gatewalk" predict m.nc --set start.vy_m_per_s=-5 --quiet
-expect 0 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --start 0,0,-15 --start 0,0,15 --quiet --json out.json
-holds '[.starts[].start.clamped] == [true, false]' out.json
+for command in walk predict; do expect 2 'the start lies outside the chain' "$gatewalk" $command m.nc --set start.vy_m_per_s=-5; done
+expect 2 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --start 0,0,-15 --start 0,0,15
+expect 2 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --trials 20 --start 0,0,-15
+"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --quiet --json out.json
+holds '[.starts[].start.clamped] == [false, false, false, false]' out.json
 holds '[.starts[].verdict | test("total variation of [01]\\.")] | all' out.json
 # The paper's numbers stand beside its own body and beams only.
 expect 0 'fewer than 4' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20

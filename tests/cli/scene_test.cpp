@@ -530,6 +530,47 @@ TEST(Sweep, RefusesWhatIsNoKeyOrNoValue) {
   EXPECT_TRUE(message("sweep = 3").starts_with("bad.toml:1: sweep = 3"));
 }
 
+TEST(SceneBins, AreEdgesOfOnesOwn) {
+  EXPECT_FALSE(parse_scene("", "x.toml").bins);
+  const Scene scene = parse_scene("[bins]\nEN_d_m = [-20, 0, 0.1, 20]\nRD_vy_m_per_s = [-5, 5.5]\n", "x.toml");
+  ASSERT_TRUE(scene.bins);
+  const auto paper = dynamics::StateSpace::paper(scene.gate).bins();
+  EXPECT_EQ((*scene.bins)[0].d, (std::vector<double>{-20, 0, 0.1, 20}));
+  EXPECT_EQ((*scene.bins)[0].vx, paper[0].vx);
+  EXPECT_EQ((*scene.bins)[1].vy, (std::vector<double>{-5, 5.5}));
+  EXPECT_EQ((*scene.bins)[2], paper[2]);
+  EXPECT_EQ(dynamics::StateSpace(*scene.bins).size(), 15 + 6 + 30 + 2);
+
+  const Scene again = parse_scene(to_toml(scene), "again.toml");
+  EXPECT_EQ(again.bins, scene.bins);
+  EXPECT_TRUE(physics_differences(scene, again).empty());
+  EXPECT_EQ(physics_differences(scene, parse_scene("", "y.toml")),
+            std::vector<std::string>{"[bins]: edges of its own here, none there"});
+  const Scene other = parse_scene("[bins]\nEN_d_m = [-20, 20]\n", "z.toml");
+  EXPECT_EQ(physics_differences(other, scene), std::vector<std::string>{"[bins]: other edges here than there"});
+
+  const Scene set = parse_scene("[bins]\nEN_d_m = [-20, 20]", "x.toml", {"bins.EN_d_m=[-9, 1, 9]", "bins.LT_d_m=[0, 30]"});
+  EXPECT_EQ((*set.bins)[0].d, (std::vector<double>{-9, 1, 9}));
+  EXPECT_EQ((*set.bins)[4].d, (std::vector<double>{0, 30}));
+}
+
+TEST(SceneBins, AreRefusedByFileAndLine) {
+  const auto expect = [](const std::string& text, const std::string& part, const std::vector<std::string>& set = {}) {
+    const std::string said = refusal(text, set);
+    EXPECT_TRUE(contains(said, part)) << said;
+  };
+  const std::string begin = "[bins]\nEN_vx_m_per_s = [-1, 1]\n", list = "bad.toml:3: bins.EN_d_m is not permitted: must be two or more numbers";
+  for (const char* value : {"1", "[]", "[1]", "[1, 1]", "[2, 1]", "[0, inf]", "[nan, 1]", "['a', 'b']", "true"})
+    expect(begin + "EN_d_m = " + value, list);
+  expect(begin + "EN_d_m = [-26, 0]", "bad.toml:3: bins.EN_d_m = [-26.0, 0.0] is not permitted: must lie in [-25.0, 25.0] m");
+  expect(begin + "RD_d_m = [-1, 10]", "bad.toml:3: bins.RD_d_m = [-1.0, 10.0] is not permitted: must lie in [0.0, 30.0] m");
+  expect(begin + "RT_d_m = [1, 31]", "must lie in [0.0, 30.0] m");
+  expect(begin + "EN_x_m = [0, 1]", "bad.toml:3: unknown key in [bins]; its keys are EN_d_m, EN_vx_m_per_s,");
+  expect("bins = 3", "bad.toml:1: bins is not permitted: must be a table");
+  expect(begin, "--set bins.EN_d_m=[5, -5]: bins.EN_d_m is not permitted", {"bins.EN_d_m=[5, -5]"});
+  expect(begin + "[run]\ntraverse_y_m = 35", "run.traverse_y_m = 35");
+}
+
 TEST(ToToml, ReadsBackBitForBit) {
   std::mt19937_64 random(7);  // NOLINT: the same numbers every time
   const auto spread = [&](double low_power, double high_power) {

@@ -75,7 +75,7 @@ GateParams by(GateParams p, std::string_view method) {
   return p;
 }
 
-/// Clean as a command says it: the runs' own faults, and the sample with a finer step.
+/// Clean as a command says it: the runs' own faults, and the sample by a better method.
 struct Result {
   TrialEnds ends;
   [[nodiscard]] bool clean() const { return ends.health.clean() && ends.cut_short == 0; }
@@ -85,7 +85,7 @@ std::optional<Result> result(const RandomScene& s, const GateParams& p, std::int
   try {
     Result r;
     add_trial_ends(r.ends, p, s.start, 1, {0, trials});
-    check_step(r.ends.health, p, {&s.start, 1}, 1, std::clamp<std::int64_t>(trials / 20, 100, 1000));
+    check_outcomes(r.ends.health, p, {&s.start, 1}, 1, std::clamp<std::int64_t>(trials / 20, 100, 1000));
     return r;
   } catch (const InvalidParameter&) {
     return {};  // refused, by name

@@ -50,6 +50,63 @@ TEST(StateSpace, HasTheEdgesOfTableIII) {
   EXPECT_EQ(of(Boundary::left_traverse), (Bins{{10, 30}, {0, 30}, {-20, 30}}));
 }
 
+// Distances follow the gate, speeds the scene's own unit: in other units the same bins.
+TEST(StateSpace, TableIIIIsInTheScenesOwnUnits) {
+  const StateSpace space = paper();
+  for (const int power : {-10, -1, 3, 10}) {
+    const double length = std::ldexp(1.0, 2 * power), time = std::ldexp(1.0, 4 - 2 * power),
+                 mass = std::ldexp(1.0, 6), speed = length / time;
+    GateParams p;
+    for (double* x : {&p.body.radius, &p.beams.length, &p.beams.joint_x, &p.beams.joint_y,
+                      &p.run.traverse_y})
+      *x *= length;
+    p.body.mass *= mass;
+    p.forces.random_rate /= time;
+    for (double* f : {&p.forces.propulsion, &p.forces.random}) *f *= mass * length / (time * time);
+    const StateSpace twin = StateSpace::paper(p);
+    for (std::size_t b = 0; b < kBoundaries; ++b) {
+      const auto times = [](Edges edges, double factor) {
+        for (double& e : edges) e *= factor;
+        return edges;
+      };
+      EXPECT_EQ(twin.bins()[b].d, times(space.bins()[b].d, length));
+      EXPECT_EQ(twin.bins()[b].vx, times(space.bins()[b].vx, speed));
+      EXPECT_EQ(twin.bins()[b].vy, times(space.bins()[b].vy, speed));
+    }
+  }
+}
+
+// Open: the outermost bins take everything, and say when it lies beyond their edges.
+TEST(StateSpace, OpenBinsClampNothing) {
+  const StateSpace closed = paper(), open(closed.bins(), true);
+  EXPECT_FALSE(closed == open);
+  EXPECT_TRUE(refined(open, 2.0).open());
+  const Crossing outside{Boundary::enter, 0.0, 60.0, 15.0}, inside{Boundary::enter, 0.0, 20.0, 15.0};
+  EXPECT_TRUE(closed.index_of(outside).clamped && closed.index_of(outside).beyond);
+  EXPECT_FALSE(open.index_of(outside).clamped);
+  EXPECT_TRUE(open.index_of(outside).beyond);
+  EXPECT_FALSE(open.index_of(inside).beyond);
+  EXPECT_EQ(open.index_of(outside).state, closed.index_of(outside).state);
+}
+
+TEST(StateSpace, SingleEntriesAreStatesOfTheirOwn) {
+  const Crossing a{Boundary::enter, 0.0, 0.0, 15.0}, b{Boundary::enter, 4.0, 5.0, 10.0};
+  const StateSpace space(paper().bins(), false, {a, b});
+  EXPECT_EQ(space.size(), 89);
+  EXPECT_EQ(space.trapped(), 89);
+  EXPECT_EQ(space.index_of(a).state, 87);
+  EXPECT_EQ(space.index_of(b).state, 88);
+  EXPECT_EQ(space.index_of({Boundary::enter, 0.0, 0.0, 15.5}).state, 12);
+  EXPECT_EQ(space.index_of({Boundary::enter, -0.0, 0.0, 15.0}).state, 87);
+  EXPECT_EQ(space.boundary(88), Boundary::enter);
+  EXPECT_EQ(space.cell(88).vx, (std::array<double, 2>{5, 5}));
+  Random random(Purpose::row, {1, 2, 3});
+  EXPECT_EQ(space.sample(88, random), b);
+  EXPECT_EQ(refined(space, 2.0).size(), 698);
+  EXPECT_THROW((void)StateSpace(paper().bins(), false, {a, a}), std::invalid_argument);
+  EXPECT_THROW((void)StateSpace(paper().bins(), false, {{Boundary::enter, kInf, 0, 0}}), std::invalid_argument);
+}
+
 // The text fixes an order for nobody but us: d slowest, then vx, then vy.
 TEST(StateSpace, CountsDThenVxThenVy) {
   const StateSpace s = paper();
@@ -91,7 +148,7 @@ TEST(StateSpace, ScalesDistancesWithTheGate) {
   EXPECT_EQ(bins[0].d, (Edges{-50, -30, -10, 10, 30, 50}));
   EXPECT_EQ(bins[1].d, (Edges{20, 30, 40}));
   EXPECT_EQ(bins[3].d, (Edges{20, 60}));
-  EXPECT_EQ(bins[0].vx, (Edges{-25, -15, -5, 5, 15, 25}));  // velocities are the table's
+  EXPECT_EQ(bins[0].vx, (Edges{-50, -30, -10, 10, 30, 50}));  // a radius of 20 m: 2 m/s for 1 m/s
 }
 
 // RT and LT begin at joint + R = 40 m: a gate that ends there has no room for them.

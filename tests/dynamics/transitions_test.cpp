@@ -146,6 +146,38 @@ TEST(Transitions, StartFromTheEntriesOfTheirRow) {
   EXPECT_THROW(add_trials(t, p, 3, {0, 1}, Entries(86)), std::invalid_argument);
 }
 
+// A single entry that is a state: all its runs start there, and it has more of them.
+TEST(Transitions, GiveSingleEntriesMoreRuns) {
+  const GateParams p = field_scene();
+  const Crossing point{Boundary::enter, 0.0, 0.0, 15.0};
+  const StateSpace space(StateSpace::paper(p).bins(), true, {point});
+  ASSERT_EQ(space.size(), 88);
+  EXPECT_EQ(runs_per_trial(space, 0), 1);
+  EXPECT_EQ(runs_per_trial(space, 87), 8);
+  EXPECT_EQ(runs_per_trial(space), 87 + 8);
+  Transitions whole(space), split(space);
+  add_trials(whole, p, 5, {0, 5});
+  for (const TrialRange part : {TrialRange{0, 2}, {2, 3}}) add_trials(split, p, 5, part);
+  expect_same(whole, split);
+  EXPECT_EQ(whole.trials[0], 5);
+  EXPECT_EQ(whole.trials[87], 40);
+  EXPECT_EQ(whole.totals().clamped, 0);
+  const Transitions closed = built(5, {0, 5});  // the bins' rows are those without the point
+  for (int row = 0; row < 87; ++row) EXPECT_EQ(whole.rows[row][88], closed.rows[row].count(87) ? closed.rows[row].at(87) : 0);
+
+  const auto method = make_method(p);
+  std::map<int, std::int64_t> replayed;
+  for (std::uint64_t run = 0; run < 40; ++run) {
+    Random random(Purpose::row, {5, 87, run});
+    (void)space.sample(87, random);
+    RandomForce force(p.forces, random);
+    const GateRun r = run_gate(p, *method, {0, 0, 0, 15}, force);
+    ++replayed[r.ending == Ending::trapped ? space.trapped()
+                                           : space.index_of(crossing_of(p, r.ending, r.exit)).state];
+  }
+  EXPECT_EQ(whole.rows[87], replayed);
+}
+
 TEST(Transitions, PartsAddUpToTheWhole) {
   Transitions sum = built(5, {4, 2});
   sum += built(5, {0, 4});

@@ -208,6 +208,33 @@ TEST_F(MatrixOnDisk, KeepsBinsThatAreNotThePapers) {
   EXPECT_EQ(back.size(), 112);
 }
 
+TEST_F(MatrixOnDisk, KeepsOpenBinsAndSingleEntries) {
+  const std::vector<Crossing> points{{Boundary::enter, 0, 0, 15}, {Boundary::left_traverse, 12, 3.5, -1}};
+  Transitions t{StateSpace(paper().bins(), true, points)};
+  t.rows[88][89] = 7;
+  t.trials[88] = 7;
+  write_matrix(path(), {t, {}});
+  const MatrixFile back = read_matrix(path());
+  EXPECT_EQ(back.transitions.space, t.space);
+  EXPECT_TRUE(back.transitions.space.open());
+  EXPECT_EQ(back.transitions.space.points(), points);
+  EXPECT_EQ(back.transitions.rows, t.rows);
+  const ChainStart s = chain_start(back.transitions.space, {}, {0, 0, 0, 15});
+  EXPECT_EQ(s.start.input, 87);
+  EXPECT_FALSE(s.clamped || s.beyond);
+  const ChainStart far = chain_start(back.transitions.space, {}, {0, 0, 0, 99});
+  EXPECT_TRUE(far.beyond && !far.clamped);
+
+  markov::CountsFile file = markov::read_counts(path());
+  edges(file, "point_boundary")[1] = 5;
+  markov::write_counts(path(), file);
+  EXPECT_THROW((void)read_matrix(path()), markov::BadFile);
+  edges(file, "point_boundary")[1] = 4;
+  edges(file, "point_vx").pop_back();
+  markov::write_counts(path(), file);
+  EXPECT_THROW((void)read_matrix(path()), markov::BadFile);
+}
+
 // Build, write, read, chain, for spaces other than the paper's: the exact prediction is the same
 // before and after, and a distribution.
 TEST_F(MatrixOnDisk, CarriesRefinedSpacesToThePrediction) {

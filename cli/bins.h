@@ -1,0 +1,78 @@
+#pragma once
+/// The states of a scene's chain: Table III's, those of the scene's table [bins], or made from what
+/// bodies do in the full dynamics.
+
+#include <vector>
+
+#include "cli/command.h"
+#include "dynamics/ensemble.h"
+#include "dynamics/quantile_bins.h"
+#include "dynamics/transitions.h"
+
+namespace gatewalk::cli {
+
+/// The field of the paper: its body, beams' length, joints and rate of the random force, and forces
+/// that move the body at the paper's speeds (dynamics::Scale is 1 m, 1 kg, 1 s). Other forces,
+/// stiffness, damping and run keys are studies of the same field.
+[[nodiscard]] bool papers_field(const Scene& scene);
+
+/// Which states a chain has.
+struct BinsChoice {
+  enum class Kind { paper, automatic, scene };
+  Kind kind = Kind::paper;
+  double factor = 1.0;  // bins per axis as a multiple of Table III's, kind paper
+
+  [[nodiscard]] std::string name() const;  // "paper", "auto", "scene"
+};
+
+/// The scene's own table [bins]; else Table III in the paper's field, and auto in any other.
+[[nodiscard]] BinsChoice usual_bins(const Scene& scene);
+/// Declares --bins.
+void add_bins(Options& options);
+/// --bins if given, else usual_bins. Throws UsageError for anything else, and for --bins beside a table [bins].
+[[nodiscard]] BinsChoice bins_choice(const Options& options, const Scene& scene);
+
+/// The scene's table [bins], else Table III in the scene's own units: for counting, no pilot is run.
+[[nodiscard]] dynamics::StateSpace fixed_space(const Scene& scene);
+
+/// What bodies do in the full dynamics (beams at rest on entry, as the chain has it).
+struct Pilot {
+  std::int64_t trials = 0;
+  std::vector<dynamics::Crossing> starts;   // those on the lower edge of the gate; different
+  std::vector<dynamics::Crossing> entries;  // between gates, in the order of the trials
+  dynamics::Health health;
+};
+/// `trials` from each start. Their noise is theirs alone: no other command runs these trials.
+[[nodiscard]] Pilot run_pilot(const Options& options, const Scene& scene,
+                              const std::vector<dynamics::BodyState>& starts, std::int64_t trials);
+/// Trials per start that bins are made of.
+inline constexpr std::int64_t kPilotTrials = 2000;
+
+/// States of about `scale` times as many bins per axis as usual, from a pilot; and where its rows
+/// start: entries seen, with their mirror images where the gate is symmetric.
+struct SeenStates {
+  dynamics::StateSpace space;
+  dynamics::Entries entries;
+};
+[[nodiscard]] SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale = 1.0);
+
+/// The states of a scene's chain, and how well they resolve what its bodies do.
+struct States {
+  BinsChoice choice;
+  dynamics::StateSpace space;
+  dynamics::Entries entries;  // where rows start; empty: uniform in the bins
+  Pilot pilot;
+  dynamics::Resolution resolution;  // of the pilot's entries
+};
+/// The states that `choice` says for walks from `starts`. Throws InvalidParameter as
+/// StateSpace::paper.
+[[nodiscard]] States states_of(const Options& options, const Scene& scene, const BinsChoice& choice,
+                               const std::vector<dynamics::BodyState>& starts);
+[[nodiscard]] Json to_json(const States& states);
+/// A line of a table about a state space as to_json describes it; empty for null.
+[[nodiscard]] std::string states_line(const Json& states);
+/// Warns when the states resolve too little of what was seen, and of faults in a pilot that rows start
+/// from.
+void warn_if_poor(const States& states);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,152 @@
+#include "dynamics/quantile_bins.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace gatewalk::dynamics {
+namespace {
+
+using Axis = double Crossing::*;
+constexpr std::array<Axis, 3> kAxes{&Crossing::d, &Crossing::vx, &Crossing::vy};
+
+/// Bins per axis whose product is nearest to `states`.
+int bins_per_axis(double states) {
+  int n = 1;
+  while (0.5 * n * n * n + 0.5 * (n + 1) * (n + 1) * (n + 1) <= states) ++n;
+  return n;
+}
+
+/// The place nearest to `at` where ascending `values` change, so that equal values stay together; 0
+/// or the end when there is none nearer. Of two as near: the lower one in the lower half (side < 0),
+/// the upper one in the upper half, and none, 0, in the middle: mirror images have mirrored places.
+std::size_t between_values(const std::vector<double>& values, std::size_t at, int side) {
+  const std::size_t n = values.size();
+  if (at == 0 || at == n || values[at - 1] != values[at]) return at;
+  const auto [low, high] = std::equal_range(values.begin(), values.end(), values[at]);
+  const auto below = static_cast<std::size_t>(low - values.begin());
+  const auto above = static_cast<std::size_t>(high - values.begin());
+  if (at - below == above - at) return side < 0 ? below : side > 0 ? above : 0;
+  return at - below < above - at ? below : above;
+}
+
+/// Edges of `bins` bins at the quantiles of `values` (not empty), the outermost at their extremes;
+/// those of `range` where all values are the same.
+std::vector<double> quantile_edges(std::vector<double> values, int bins,
+                                   const std::vector<double>& range) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  if (values.front() == values.back())
+    return {std::min(range.front(), values.front()), std::max(range.back(), values.front())};
+  std::vector<double> edges{values.front()};
+  for (int i = 1; i < bins; ++i) {
+    const int side = 2 * i - bins;
+    const auto share = [&](int k) { return n * static_cast<std::size_t>(k) / static_cast<std::size_t>(bins); };
+    const std::size_t at = between_values(values, side > 0 ? n - share(bins - i) : share(i), side);
+    if (at == 0 || at == n) continue;
+    const double edge = 0.5 * values[at - 1] + 0.5 * values[at];
+    if (edge > edges.back() && edge < values.back()) edges.push_back(edge);
+  }
+  edges.push_back(values.back());
+  return edges;
+}
+
+}  // namespace
+
+bool symmetric(const GateParams& p) {
+  return p.beams.stiffness_left == p.beams.stiffness_right;
+}
+
+Crossing mirrored(const Crossing& c) {
+  Crossing m{c.boundary, c.d, -c.vx, c.vy};
+  switch (c.boundary) {
+    case Boundary::enter: m.d = -c.d; break;
+    case Boundary::right_deflect: m.boundary = Boundary::left_deflect; break;
+    case Boundary::left_deflect: m.boundary = Boundary::right_deflect; break;
+    case Boundary::right_traverse: m.boundary = Boundary::left_traverse; break;
+    case Boundary::left_traverse: m.boundary = Boundary::right_traverse; break;
+  }
+  return m;
+}
+
+void add_mirror_images(std::vector<Crossing>& entries) {
+  const std::size_t n = entries.size();
+  entries.reserve(2 * n);
+  for (std::size_t i = 0; i < n; ++i) entries.push_back(mirrored(entries[i]));
+}
+
+StateSpace quantile_space(const GateParams& p, const std::vector<Crossing>& seen, int states,
+                          const std::vector<Crossing>& points) {
+  if (states < 1 || states > kMostStates)
+    throw std::invalid_argument("bins: " + std::to_string(states) + " states are not permitted: must lie in [1, " +
+                                std::to_string(kMostStates) + "]");
+  const auto entries = static_cast<std::int64_t>(seen.size());
+  const std::int64_t wanted = std::min<std::int64_t>(states, entries / kEntriesPerState);
+  std::array<std::vector<Crossing>, kBoundaries> at;
+  for (const Crossing& c : seen) at[static_cast<std::size_t>(c.boundary)].push_back(c);
+  std::array<Bins, kBoundaries> bins = StateSpace::paper(p).bins();
+  for (int b = 0; b < kBoundaries; ++b) {
+    const auto here = static_cast<double>(at[b].size());
+    const int n = bins_per_axis(static_cast<double>(wanted) * here / static_cast<double>(std::max<std::int64_t>(1, entries)));
+    const std::array<std::vector<double>*, 3> edges{&bins[b].d, &bins[b].vx, &bins[b].vy};
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+      std::vector<double>& e = *edges[axis];
+      if (at[b].empty()) {
+        e = {e.front(), e.back()};
+        continue;
+      }
+      std::vector<double> values;
+      for (const Crossing& c : at[b]) values.push_back(c.*kAxes[axis]);
+      e = quantile_edges(std::move(values), n, e);
+    }
+  }
+  return StateSpace(std::move(bins), true, points);
+}
+
+bool Resolution::poor() const {
+  if (entries == 0) return false;
+  constexpr double kMostOutside = 0.5, kMostUnresolved = 0.9;
+  return static_cast<double>(clamped) > kMostOutside * static_cast<double>(entries) ||
+         *std::max_element(unresolved.begin(), unresolved.end()) > kMostUnresolved;
+}
+
+Resolution resolution_of(const StateSpace& space, const std::vector<Crossing>& seen) {
+  struct Group {  // sums over its entries
+    std::int64_t n = 0;
+    std::array<double, 3> mean{}, squares{};  // squares: of the deviations from the mean (Welford)
+    void add(const Crossing& c) {
+      ++n;
+      for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+        const double x = c.*kAxes[axis], before = x - mean[axis];
+        mean[axis] += before / static_cast<double>(n);
+        squares[axis] += before * (x - mean[axis]);
+      }
+    }
+  };
+  Resolution r;
+  std::vector<Group> of_state(space.size()), of_boundary(kBoundaries);
+  for (const Crossing& c : seen) {
+    const StateSpace::Index index = space.index_of(c);
+    r.clamped += index.clamped;
+    of_state[index.state].add(c);
+    of_boundary[static_cast<std::size_t>(c.boundary)].add(c);
+  }
+  r.entries = static_cast<std::int64_t>(seen.size());
+  std::sort(of_state.begin(), of_state.end(), [](const Group& a, const Group& b) { return a.n > b.n; });
+  std::int64_t held = 0;
+  for (const Group& g : of_state) {
+    if (g.n == 0) break;
+    if (10 * held < 9 * r.entries) ++r.states_of_90;
+    held += g.n;
+    ++r.states_entered;
+  }
+  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+    double within = 0.0, all = 0.0;
+    for (const Group& g : of_state) within += g.squares[axis];
+    for (const Group& g : of_boundary) all += g.squares[axis];
+    r.unresolved[axis] = all > 0.0 ? within / all : 0.0;
+  }
+  return r;
+}
+
+}  // namespace gatewalk::dynamics
