@@ -1,7 +1,6 @@
 #include "cli/auto.h"
 #include "cli/command.h"
 #include "cli/matrix.h"
-#include "cli/output.h"
 #include "cli/report.h"
 #include "cli/version.h"
 
@@ -14,16 +13,11 @@ int run_build(const std::vector<std::string>& arguments) {
                   "gatewalk build scenes/field.toml --trials 100 --seed 1 -o matrix.nc");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "runs per input state");
-  options.add()("output,o", po::value<std::string>()->value_name("FILE"),
-                "matrix file to write (NetCDF-4)")
-               ("bins", po::value<double>()->default_value(1.0, "1")->value_name("FACTOR"),
+  add_strict(options);
+  options.main_output_file("MATRIX.nc", "matrix file to write (NetCDF-4)", Options::Content::binary);
+  options.add()("bins", po::value<double>()->default_value(1.0, "1")->value_name("FACTOR"),
                 "bins per axis, as a multiple of Table III's: 2 makes 696 states, 0.5 makes 23");
   if (!options.parse(arguments)) return kFine;
-  if (!options.has("output")) throw UsageError("missing -o MATRIX.nc: where to write the matrix");
-  if (options.text("output").empty()) throw UsageError("-o needs a file name");
-  if (options.text("output") == "-") throw UsageError("-o -: a matrix needs a file of its own");
-  require_different(options.text("output"), options.text("json"));
-  require_writable(options.text("output"));
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
   const Json settled = settle_method(options, scene, RunsFrom::everywhere);
@@ -66,7 +60,7 @@ int run_build(const std::vector<std::string>& arguments) {
   options.give_out(json, table + method_line(settled));
   remark(options, "built in " + fixed(seconds, 2) + " s");
   if (!t.health.clean()) warn(complaint(t.health));
-  return kFine;
+  return exit_status(options, t.health.clean());
 }
 
 }  // namespace gatewalk::cli

@@ -46,6 +46,9 @@ class SceneError : public std::runtime_error {
 [[nodiscard]] Scene parse_scene(std::string_view text, std::string name,
                                 const std::vector<std::string>& overrides = {});
 
+/// The keys that the override `given` sets, however it is spelled. Throws SceneError.
+[[nodiscard]] std::vector<std::string> keys_set_by(const std::string& given);
+
 /// Throws SceneError unless `key` is one of a scene; `origin` begins the message.
 void require_key(const std::string& key, const std::string& origin);
 
