@@ -269,7 +269,8 @@ int run_sweep(const std::vector<std::string>& arguments) {
     options.give_out(json, table_of(scene, axes, points));
   }
   if (!health.clean()) warn(complaint(health));
-  return kFine;
+  return exit_status(options, std::all_of(points.begin(), points.end(),
+                                          [](const Point& p) { return p.tally.health.clean(); }));
 }
 
 }  // namespace gatewalk::cli

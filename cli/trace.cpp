@@ -12,7 +12,7 @@ namespace gatewalk::cli {
 namespace {
 
 constexpr std::int64_t kMostRuns = 1000;   // kept
-constexpr std::size_t kMostMoments = 2'000'000;  // of all runs together, some 1 GB
+constexpr std::size_t kMostMoments = 500'000;  // of all runs together: with every output some 1 GB
 constexpr std::size_t kMostLines = 20;     // of the table
 
 std::string table_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {

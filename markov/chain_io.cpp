@@ -443,8 +443,8 @@ std::size_t place_of_checksum(const InputFile& file) {
       ++marks;
     }
   }
-  if (marks == 0 || place + kNoChecksum.size() > file.size()) refuse_no_checksum();
   if (marks > 1) refuse_second_checksum();
+  if (marks == 0 || place + kNoChecksum.size() > file.size()) refuse_no_checksum();
   return place;
 }
 
