@@ -628,11 +628,11 @@ for set in 'forces.random_N=1' ' forces.random_N = 1' 'forces . random_N=1' 'for
 done
 
 # Modes of files stay; a new file follows the umask. Pipes and devices are written into.
-(umask 027; "$gatewalk" gate "$scenes/single_gate.toml" --trials 5 --json mode.json --quiet; "$gatewalk" build "$scenes/single_gate.toml" --trials 1 -o mode.nc --quiet)
+(umask 027; "$gatewalk" gate "$scenes/single_gate.toml" --trials 5 --json mode.json --quiet; "$gatewalk" build "$scenes/single_gate.toml" --trials 1 -o mode.nc --quiet >/dev/null)
 [ "$(stat -c %a mode.json mode.nc | xargs)" = '640 640' ] || fail "modes of new files: $(stat -c %a mode.json mode.nc | xargs)"
 chmod 600 mode.json mode.nc
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 5 --json mode.json --quiet
-"$gatewalk" build "$scenes/single_gate.toml" --trials 1 -o mode.nc --quiet
+"$gatewalk" build "$scenes/single_gate.toml" --trials 1 -o mode.nc --quiet >/dev/null
 [ "$(stat -c %a mode.json mode.nc | xargs)" = '600 600' ] || fail "modes of replaced files: $(stat -c %a mode.json mode.nc | xargs)"
 mkfifo pipe
 timeout 20 cat pipe >piped.json &
