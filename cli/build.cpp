@@ -1,7 +1,6 @@
 #include "cli/auto.h"
 #include "cli/command.h"
 #include "cli/matrix.h"
-#include "cli/output.h"
 #include "cli/report.h"
 #include "cli/version.h"
 
@@ -16,15 +15,10 @@ int run_build(const std::vector<std::string>& arguments) {
                   "gatewalk build scenes/field.toml --trials 100 --seed 1 -o matrix.nc");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "runs per input state");
-  options.add()("output,o", po::value<std::string>()->value_name("FILE"),
-                "matrix file to write (NetCDF-4)");
+  add_strict(options);
+  options.main_output_file("MATRIX.nc", "matrix file to write (NetCDF-4)", Options::Content::binary);
   add_bins(options);
   if (!options.parse(arguments)) return kFine;
-  if (!options.has("output")) throw UsageError("missing -o MATRIX.nc: where to write the matrix");
-  if (options.text("output").empty()) throw UsageError("-o needs a file name");
-  if (options.text("output") == "-") throw UsageError("-o -: a matrix needs a file of its own");
-  require_different(options.text("output"), options.text("json"));
-  require_writable(options.text("output"));
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
   const BinsChoice choice = bins_choice(options, scene);
@@ -74,7 +68,7 @@ int run_build(const std::vector<std::string>& arguments) {
   remark(options, "built in " + fixed(seconds, 2) + " s, pilot " + fixed(pilot_seconds, 2) + " s");
   warn_if_poor(states);
   if (!t.health.clean()) warn(complaint(t.health));
-  return kFine;
+  return exit_status(options, t.health.clean());
 }
 
 }  // namespace gatewalk::cli

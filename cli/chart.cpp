@@ -658,6 +658,8 @@ std::vector<std::string> chosen_methods(const Options& options) {
   return methods;
 }
 
+constexpr std::int64_t kMostTrials = 10'000'000;  // the ends of four settings at a time are in memory: 2 GB
+
 /// A mistake is said before long work, not after it.
 void require_chartable(const std::string& path, const Scene& scene) {
   try {
@@ -679,18 +681,19 @@ int run_chart(const std::vector<std::string>& arguments) {
                   "ten minutes; --trials 2000 --repeats 3 gives a first look in one.",
                   "gatewalk chart scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
   options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");
+  constexpr std::array kFiles{"chart.csv", "chart.json", "chart.svg"};
+  options.output_folder("folder to write to", {kFiles.begin(), kFiles.end()});
   options.add()
-      ("output,o", po::value<std::string>()->value_name("DIR"), "folder to write to")
       ("trials", po::value<Count>()->default_value(Count{100'000}, "1e5")->value_name("N"),
        "trials per setting")
       ("repeats", po::value<Count>()->default_value(Count{10}, "10")->value_name("N"),
        "rounds of timing, after one that warms up")
       ("methods", po::value<std::string>()->value_name("A,B,..."), "methods to chart (default: all)");
   add_seed(options);
+  add_strict(options);
   if (!options.parse(arguments)) return kFine;
-  if (options.text("output").empty()) throw UsageError("missing -o DIR: where to write the chart");
   const std::vector<std::string> methods = chosen_methods(options);
-  (void)options.count("trials");
+  (void)options.count("trials", 1, kMostTrials);
   const std::int64_t rounds = options.count("repeats");
   const auto& paths = options.get<std::vector<std::string>>("scene");
   std::set<std::string> labels;
@@ -701,10 +704,7 @@ int run_chart(const std::vector<std::string>& arguments) {
   }
   const std::string folder = options.text("output");
   const auto file = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
-  constexpr std::array kFiles{"chart.csv", "chart.json", "chart.svg"};
-  for (const char* name : kFiles) require_different(file(name), options.text("json"));
   require_folder(folder);
-  for (const char* name : kFiles) require_writable(file(name));
 
   std::vector<SceneChart> charts;
   Json json;
@@ -718,7 +718,7 @@ int run_chart(const std::vector<std::string>& arguments) {
       table += (table.empty() ? "" : "\n") + table_of(charts.back());
       std::filesystem::remove(file("chart.svg"));  // an old figure shall not stand beside new numbers
       write_text_atomically(file("chart.csv"), csv_of(charts));
-      write_text_atomically(file("chart.json"), json.dump(2) + "\n");
+      write_text_atomically(file("chart.json"), text_of(json) + "\n");
     }
   } catch (const Interrupted&) {
     if (charts.empty()) throw;
@@ -738,7 +738,9 @@ int run_chart(const std::vector<std::string>& arguments) {
     if (chart.reference_verdict != Verdict::fine)
       warn(chart.label + ": the reference itself shows faults: " +
            std::string(dynamics::name_of(chart.reference_verdict)));
-  return kFine;
+  return exit_status(options, std::all_of(charts.begin(), charts.end(), [](const SceneChart& chart) {
+                       return chart.reference_verdict == Verdict::fine;
+                     }));
 }
 
 }  // namespace gatewalk::cli

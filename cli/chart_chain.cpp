@@ -777,6 +777,8 @@ std::vector<double> factors_of(const Options& options) {
   return factors;
 }
 
+constexpr std::int64_t kMostPilotTrials = 1'000'000;  // per start; what all of them saw is in memory
+
 }  // namespace
 
 int run_chart_chain(const std::vector<std::string>& arguments) {
@@ -786,8 +788,8 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
                   "same cost. Writes chain.csv, chain.json and chain.svg into DIR.",
                   "gatewalk chart-chain scenes/field.toml -o results/chain --truth-trials 1e5");
   options.positional("scene", "scene file (TOML)", true);
+  options.output_folder("folder to write to, made if missing", {"chain.csv", "chain.json", "chain.svg"});
   options.add()
-      ("output,o", po::value<std::string>()->value_name("DIR"), "folder to write to, made if missing")
       ("truth-trials", po::value<Count>()->default_value(Count{100'000}, "1e5")->value_name("N"),
        "trials of the full dynamics per start, against which errors are taken")
       ("runs-limit", po::value<Count>()->default_value(Count{1'000'000}, "1e6")->value_name("N"),
@@ -800,8 +802,8 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
        "by default from 2000 trials per start");
   add_starts(options);
   add_seed(options);
+  add_strict(options);
   if (!options.parse(arguments)) return kFine;
-  if (options.text("output").empty()) throw UsageError("missing -o DIR: where to write the chart");
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::vector<PaperStart> starts = starts_of(options, scene);
   require_inside(starts, scene);
@@ -815,7 +817,8 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   const std::int64_t runs_limit = options.count("runs-limit");
   const std::uint64_t seed = options.seed();
 
-  const std::int64_t pilot_trials = options.has("visited") ? options.count("visited") : from_pilot ? kPilotTrials : 0;
+  const std::int64_t pilot_trials =
+      options.has("visited") ? options.count("visited", 1, kMostPilotTrials) : from_pilot ? kPilotTrials : 0;
 
   Chart chart;
   const std::vector<double> factors = factors_of(options);
@@ -845,10 +848,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
                      std::to_string(kTrialsPerRow.front()) + " trials a row of any of these bins");
   const std::string folder = options.text("output");
   const auto file = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
-  constexpr std::array<const char*, 3> kFiles{"chain.csv", "chain.json", "chain.svg"};
-  for (const char* name : kFiles) require_different(file(name), options.text("json"));
   require_folder(folder);
-  for (const char* name : kFiles) require_writable(file(name));
 
   // Costs first, on one thread: they say how long the rest will take.
   remark(options, "measuring the cost of a trial and of a gate run");
@@ -943,11 +943,11 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   json["made_by"] = manifest(options, scene);
   std::filesystem::remove(file("chain.svg"));  // an old figure shall not stand beside new numbers
   write_text_atomically(file("chain.csv"), csv_of(chart));
-  write_text_atomically(file("chain.json"), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_text_atomically(file("chain.json"), text_of(json) + "\n");
   options.give_out(json, table_of(chart, runs_limit));
   draw(file("chain.svg"), chart);
   if (!chart.health.clean()) warn(complaint(chart.health));
-  return kFine;
+  return exit_status(options, chart.health.clean());
 }
 
 }  // namespace gatewalk::cli

@@ -345,13 +345,12 @@ int run_chart_field(const std::vector<std::string>& arguments) {
       "results/fidelity");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "trials per start and fidelity");
-  options.add()("output,o", po::value<std::string>()->value_name("DIR"),
-                "folder to write to; made if missing");
+  options.output_folder("folder to write to; made if missing",
+                        {"fidelity.csv", "fidelity.json", "fidelity.svg"});
   add_starts(options);
+  add_strict(options);
   if (!options.parse(arguments)) return kFine;
-  if (!options.has("output")) throw UsageError("missing -o DIR: where to write the chart");
   const std::string folder = options.text("output");
-  if (folder.empty() || folder == "-") throw UsageError("-o needs the name of a folder");
   Scene scene = read_scene(options.text("scene"), options.overrides());
   if (scene.gate.run.method == "auto")
     throw UsageError("run.method = \"auto\" is not permitted for chart-field, which runs method moreau: "
@@ -366,10 +365,7 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   };
   const std::string csv_path = path("fidelity.csv"), json_path = path("fidelity.json"),
                     svg_path = path("fidelity.svg");
-  for (const std::string& p : {csv_path, json_path, svg_path})
-    require_different(p, options.text("json"));
   require_folder(folder);
-  for (const std::string& p : {csv_path, json_path, svg_path}) require_writable(p);
 
   const std::int64_t trials = options.count("trials");
   std::vector<StartRuns> reports;
@@ -390,7 +386,7 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   json["made_by"] = manifest(options, scene);
   std::filesystem::remove(svg_path);  // an old figure shall not stand beside new numbers
   write_text_atomically(csv_path, csv_of(reports, variants));
-  write_text_atomically(json_path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_text_atomically(json_path, text_of(json) + "\n");
   options.give_out(json, table_of(reports, variants, trials, threads));
   for (std::size_t v = 0; v < variants.size(); ++v)
     if (!health[v].clean())
@@ -402,7 +398,8 @@ int run_chart_field(const std::vector<std::string>& arguments) {
     throw std::runtime_error("no figure: " + std::string(e.what()) + "; " + csv_path + " and " +
                              json_path + " are written");
   }
-  return kFine;
+  return exit_status(options, std::all_of(health.begin(), health.end(),
+                                          [](const dynamics::Health& h) { return h.clean(); }));
 }
 
 }  // namespace gatewalk::cli

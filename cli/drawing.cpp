@@ -1,13 +1,9 @@
 #include "cli/drawing.h"
 
-#include <unistd.h>
-
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <thread>
 
 #include "cli/figure.h"
@@ -56,14 +52,6 @@ void draw_svg(const std::string& path, int width, int height, const std::string&
   write_text_atomically(path, drawn("set terminal svg size " + std::to_string(width) + "," +
                                     std::to_string(height) +
                                     " font 'sans,12' background '#ffffff' enhanced\n" + commands + "\n"));
-}
-
-void require_folder(const std::string& name) {
-  std::error_code error;
-  std::filesystem::create_directories(name, error);
-  if (error) throw std::runtime_error(name + ": cannot be made: " + error.message());
-  if (::access(name.c_str(), W_OK | X_OK) != 0)
-    throw std::runtime_error(name + ": cannot be written to");
 }
 
 std::string machine() {

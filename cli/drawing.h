@@ -28,10 +28,6 @@ struct Look {
 /// Runs `commands` into the SVG file `path`, which is replaced as a whole or left as it was.
 void draw_svg(const std::string& path, int width, int height, const std::string& commands);
 
-/// The folder for a command's files, made if need be. Throws std::runtime_error when `name` is no
-/// folder that can be written to.
-void require_folder(const std::string& name);
-
 /// "AMD EPYC, 2 cores": what times were measured on.
 [[nodiscard]] std::string machine();
 

@@ -12,6 +12,7 @@ int run_gate(const std::vector<std::string>& arguments) {
                   "--trials 1000 --json -");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "runs of the gate");
+  add_strict(options);
   if (!options.parse(arguments)) return kFine;
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
@@ -46,7 +47,7 @@ int run_gate(const std::vector<std::string>& arguments) {
   if (tally.broken > 0) table += line("not finite", tally.broken);
   options.give_out(json, table + method_line(settled));
   if (!tally.health.clean()) warn(complaint(tally.health));
-  return kFine;
+  return exit_status(options, tally.health.clean());
 }
 
 }  // namespace gatewalk::cli

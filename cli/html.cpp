@@ -20,7 +20,7 @@ std::string escaped(std::string_view text) {
 
 std::string script_json(const Json& json) {
   std::string out;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+  for (const char c : text_of(json, -1)) {
     if (c == '<') out += "\\u003c";
     else out += c;
   }

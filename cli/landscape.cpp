@@ -96,27 +96,27 @@ int run_landscape(const std::vector<std::string>& arguments) {
                   "energy of the start and above the basin on the way. Writes landscape.csv, landscape.json, landscape.svg.",
                   "gatewalk landscape scenes/single_gate.toml -o landscape --trials 1000");
   options.positional("scene", "scene file (TOML)", true);
-  options.add()("output,o", po::value<std::string>()->value_name("DIR"), "folder to write to")(
-      "spacing", po::value<double>()->default_value(0.5, "0.5")->value_name("M"), "of the grid, in m; the paper's is 0.5")(
+  options.output_folder("folder to write to", {"landscape.csv", "landscape.json", "landscape.svg"});
+  options.add()("spacing", po::value<double>()->default_value(0.5, "0.5")->value_name("M"), "of the grid, in m; the paper's is 0.5")(
       "beam", po::value<std::string>()->default_value("both")->value_name("WHICH"),
       "beams that resist: both, left or right (the other swings free: Fig. 6C)")(
       "trials", po::value<Count>()->default_value(Count{0}, "0")->value_name("N"),
       "also run the gate N times: who passes, beside who should");
   add_seed(options);
+  add_strict(options);
   if (!options.parse(arguments)) return kFine;
   const std::string folder = options.text("output");
-  if (folder.empty()) throw UsageError("missing -o: gatewalk landscape SCENE -o DIR");
   const double spacing = options.get<double>("spacing");
   const auto beams = beams_of(options.get<std::string>("beam"));
   const std::int64_t trials = options.count("trials", 0);
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const double low = std::min(0.0, scene.start.y);
-  const double least = (scene.gate.run.traverse_y - low) / 2000;
+  // At most 2000 points along each side of the gate.
+  const double least = std::max(scene.gate.run.traverse_y - low, 2.0 * scene.gate.beams.joint_x) / 2000;
   if (!(spacing >= least && spacing <= scene.gate.beams.joint_x))
     throw UsageError("--spacing " + digits(spacing) + ": must lie in [" + digits(least) + ", " +
                      digits(scene.gate.beams.joint_x) + "] m");
   require_folder(folder);
-  for (const char* file : {"/landscape.csv", "/landscape.json", "/landscape.svg"}) require_writable(folder + file);
 
   // On the grid that is asked for and on a finer one: the pass may lie between grid points.
   struct Level {
@@ -139,6 +139,7 @@ int run_landscape(const std::vector<std::string>& arguments) {
   const Level& fine = levels.back();
   const double moving = kinetic(scene);
 
+  bool clean = true;
   Json json;
   json["spacing_m"] = spacing;
   json["beams"] = options.get<std::string>("beam");
@@ -180,18 +181,19 @@ int run_landscape(const std::vector<std::string>& arguments) {
     const auto [from, to] = share_interval(tally.traversed(), tally.trials);
     table += "measured: " + percent(static_cast<double>(tally.traversed()), static_cast<double>(trials)) + " of " +
              std::to_string(trials) + " trials traverse, 95 % [" + fixed(100.0 * from, 1) + ", " + fixed(100.0 * to, 1) + "]\n";
-    if (!tally.health.clean()) warn(complaint(tally.health));
+    clean = tally.health.clean();
+    if (!clean) warn(complaint(tally.health));
   }
   json["made_by"] = manifest(options, scene);
   write_text_atomically(folder + "/landscape.csv", csv_of(l));
-  write_text_atomically(folder + "/landscape.json", json.dump(2) + "\n");
+  write_text_atomically(folder + "/landscape.json", text_of(json) + "\n");
   // Beside the joints the beams' energy leaves every scale; what matters lies lower.
   double ceiling = 0.0;
   for (const double k : {scene.gate.beams.stiffness_left, scene.gate.beams.stiffness_right})
     ceiling = std::max(ceiling, 0.5 * k * 2.0);
   draw(folder + "/landscape.svg", l, fine.downhill() ? fine.from_start : fine.from_basin, 1.2 * ceiling + scene.gate.forces.propulsion * 20.0);
   options.give_out(json, table);
-  return kFine;
+  return exit_status(options, clean);
 }
 
 }  // namespace gatewalk::cli

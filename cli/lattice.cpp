@@ -12,6 +12,7 @@ int run_lattice(const std::vector<std::string>& arguments) {
                   "gatewalk lattice scenes/field.toml --trials 10000 --seed 1 --json lattice.json");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "trials through the field");
+  add_strict(options);
   if (!options.parse(arguments)) return kFine;
   Scene scene = read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
@@ -59,7 +60,7 @@ int run_lattice(const std::vector<std::string>& arguments) {
   options.give_out(json, table + method_line(settled));
   remark(options, fixed(watch.seconds(), 2) + " s");
   if (!tally.health.clean()) warn(complaint(tally.health));
-  return kFine;
+  return exit_status(options, tally.health.clean());
 }
 
 }  // namespace gatewalk::cli

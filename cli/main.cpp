@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <array>
 #include <exception>
 #include <iostream>
 
 #include "cli/command.h"
+#include "cli/edit_distance.h"
 #include "cli/interrupt.h"
 #include "cli/version.h"
 #include "markov/chain_io.h"
@@ -36,14 +38,36 @@ void print_help(std::ostream& out) {
          "usage: gatewalk COMMAND [arguments] [options]\n\n";
   for (const Command& c : kCommands)
     out << "  " << c.name << std::string(13 - std::string(c.name).size(), ' ') << c.summary << "\n";
-  out << "\ngatewalk COMMAND --help explains a command and gives an example.\n"
-         "exit status: 0 fine, 1 failure, 2 wrong use or input, 130 stopped by ctrl-C\n";
+  out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an example.\n"
+         "exit status: 0 fine, 1 failure (with --strict also a result whose status is not clean),\n"
+         "2 wrong use or input, 130 stopped by ctrl-C, SIGTERM or SIGHUP\n";
+}
+
+/// The command of that name; without one says so, and which may be meant.
+const Command* find_command(const std::string& name) {
+  const auto named = std::find_if(kCommands.begin(), kCommands.end(), [&](const Command& c) { return name == c.name; });
+  if (named != kCommands.end()) return &*named;
+  const auto distance = [&](const Command& c) { return edit_distance(name.substr(0, 100), c.name); };
+  const auto nearest = std::min_element(kCommands.begin(), kCommands.end(), [&](const Command& a, const Command& b) {
+    return distance(a) < distance(b);
+  });
+  std::cerr << "gatewalk: no command '" << name << "'";
+  // At most every third letter is wrong.
+  if (const std::size_t wrong = distance(*nearest); 3 * wrong <= std::max(name.size(), std::size_t{3}) + 1)
+    std::cerr << "; did you mean " << nearest->name << "?";
+  std::cerr << "\n\n";
+  print_help(std::cerr);
+  return nullptr;
 }
 
 int run(const std::vector<std::string>& words) {
   if (words.empty()) {
     print_help(std::cerr);
     return kWrongUse;
+  }
+  if (words[0] == "help" && words.size() == 2 && words[1] != "help" && words[1] != "--help") {
+    const Command* const command = find_command(words[1]);
+    return command ? command->run({"--help"}) : kWrongUse;
   }
   if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
     print_help(std::cout);
@@ -53,11 +77,8 @@ int run(const std::vector<std::string>& words) {
     std::cout << "gatewalk " << kVersion << " (" << kCommit << ")\n";
     return std::cout.flush() ? kFine : kFailure;
   }
-  for (const Command& c : kCommands)
-    if (words[0] == c.name) return c.run({words.begin() + 1, words.end()});
-  std::cerr << "gatewalk: no command '" << words[0] << "'\n\n";
-  print_help(std::cerr);
-  return kWrongUse;
+  const Command* const command = find_command(words[0]);
+  return command ? command->run({words.begin() + 1, words.end()}) : kWrongUse;
 }
 
 }  // namespace

@@ -67,7 +67,6 @@ markov::RowChains chains_of(const Options& options, const MatrixAndScene& base,
     for (int row = o.first; row <= o.last; ++row)
       if (chain_of_row[static_cast<std::size_t>(row)] != 0)
         throw UsageError(name(o) + ": row " + std::to_string(row) + " is given twice");
-    require_different(o.path, options.text("json"));
     const MatrixAndScene m = read_matrix_and_scene(o.path, "", {});
     const dynamics::GateParams &a = m.scene.gate, &b = base.scene.gate;
     if (a.body.mass != b.body.mass || a.body.radius != b.body.radius)
@@ -158,11 +157,12 @@ int run_predict(const std::vector<std::string>& arguments) {
   options.add()("solver", po::value<std::string>()->default_value("auto")->value_name("NAME"),
                 "propagate: step by step; for field.max_gates = 0 also march: row by row, and klu: one "
                 "sparse solve; auto: march without limit, else propagate");
+  add_strict(options);
+  options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
   if (!options.parse(arguments)) return kFine;
   const std::string& solver = options.get<std::string>("solver");
   if (solver != "auto" && solver != "propagate" && solver != "march" && solver != "klu")
     throw UsageError("--solver " + solver + ": must be auto, propagate, march or klu");
-  require_different(options.text("matrix"), options.text("json"));
   const std::vector<PaperStart> given = given_starts(options);
   const std::vector<OtherRows> others = rows_of(options);
   const auto m = read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
@@ -208,7 +208,7 @@ int run_predict(const std::vector<std::string>& arguments) {
   json["made_by"] = manifest(options, m.scene);
   options.give_out(json, table);
   remark(options, fixed(1e3 * seconds, 3) + " ms");
-  return kFine;
+  return exit_status(options, faults_recorded(m.status).empty());
 }
 
 }  // namespace gatewalk::cli

@@ -166,11 +166,12 @@ Json values_of(const GateParams& p, const Recording& r, const std::function<doub
 
 }  // namespace
 
-Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, bool across_field) {
+Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, bool across_field,
+                 std::size_t most_moments) {
   Recording r;
   r.trial = trial;
   if (across_field) {
-    const lattice::FieldTrace t = lattice::trace_field(scene.gate, scene.field, scene.start, seed, trial);
+    const lattice::FieldTrace t = lattice::trace_field(scene.gate, scene.field, scene.start, seed, trial, most_moments);
     for (const auto& visit : t.visits) {
       append(r, visit.trace, visit.column - scene.field.start_column(), visit.row);
       r.health.add(scene.gate, visit.trace.run);
@@ -180,7 +181,7 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
   } else {
     const auto method = dynamics::make_method(scene.gate);
     dynamics::RandomForce force = dynamics::gate_force(scene.gate, seed, trial);
-    const auto t = dynamics::trace_gate(scene.gate, *method, scene.start, force);
+    const auto t = dynamics::trace_gate(scene.gate, *method, scene.start, force, most_moments);
     append(r, t, 0, 0);
     r.health.add(scene.gate, t.run);
     r.ending = ending_of(scene.gate, t.run);

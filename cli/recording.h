@@ -2,6 +2,7 @@
 /// A traced run, of one gate or through the field, as numbers in columns: what CSV, NetCDF, JSON and
 /// the animation all show.
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,10 @@ struct Recording {
   dynamics::Health health;
 };
 
-/// Trial `trial` of `gate` (across_field: of `lattice`), the same to the last bit.
-[[nodiscard]] Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial,
-                               bool across_field);
+/// Trial `trial` of `gate` (across_field: of `lattice`), the same to the last bit. Throws
+/// dynamics::TraceTooLong when it has more moments.
+[[nodiscard]] Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, bool across_field,
+                               std::size_t most_moments = std::numeric_limits<std::size_t>::max());
 
 /// Every ending that a recording may have.
 [[nodiscard]] std::vector<std::string> endings(bool across_field);

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <sstream>
 
 #include "cli/command.h"
@@ -74,6 +75,24 @@ std::string today() {
   return text;
 }
 
+/// Throws UsageError when a scene in the working folder, called `folder`, would be replaced that is
+/// neither what the program carries nor what an earlier report was made with.
+void require_no_scene_of_ones_own(const std::string& folder) {
+  const Json old = read_json("report.json");
+  const Json made_by = old.is_object() ? old.value("made_by", Json()) : Json();
+  const Json scenes = made_by.is_object() ? made_by.value("scenes", Json()) : Json();
+  for (const char* name : kScenes) {
+    std::ifstream in(name, std::ios::binary);
+    if (!in) continue;
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    bool known = text == carried_file(name);
+    if (scenes.is_array())
+      for (const Json& s : scenes) known |= s.is_object() && s.value("name", Json()) == name && s.value("text", Json()) == text;
+    if (!known)
+      throw UsageError("-o " + folder + ": its " + name + " is not the paper's and would be replaced; choose another folder");
+  }
+}
+
 /// Nobody else works in this folder while it lives.
 class Claim {
  public:
@@ -124,7 +143,7 @@ double carry_out(const std::vector<Study>& studies, bool talk, Findings& f) {
     const Study& s = *study;
     if (interrupted()) throw Interrupted{};
     progress.begin_part(s.name, s.cost);
-    if (done.erase(s.name) > 0) write_text_atomically(kDone, done.dump(2) + "\n");
+    if (done.erase(s.name) > 0) write_text_atomically(kDone, text_of(done) + "\n");
     const std::string file = "data/" + s.name + ".json";
     std::vector<std::string> arguments = s.arguments;
     arguments.insert(arguments.end(), {"--quiet", "--json", file});
@@ -142,7 +161,7 @@ double carry_out(const std::vector<Study>& studies, bool talk, Findings& f) {
     done[s.name] = record_of(s);
     if (!remarks.empty()) done[s.name]["remarks"] = remarks;
     done[s.name]["seconds"] = watch.seconds();
-    write_text_atomically(kDone, done.dump(2) + "\n");
+    write_text_atomically(kDone, text_of(done) + "\n");
     progress.finish();
     if (talk)
       std::cout << padded("[" + std::to_string(++number) + "/" + std::to_string(studies.size()) + "]", 8) << "  " << padded(s.name, -18)
@@ -180,11 +199,10 @@ int run_reproduce(const std::vector<std::string>& arguments) {
                   "report.html, that needs no network. A run that was stopped goes on where it was when started again.",
                   "gatewalk reproduce -o paper --quick");
   options.without_scene("the studies have scenes of their own, written to DIR/scenes");
-  options.add()("output,o", po::value<std::string>()->value_name("DIR"), "folder to write to")(
-      "quick", "fewer trials: half a minute on two cores instead of four");
+  options.output_folder("folder to write to", {"report.html", "report.json", "claims.csv"});
+  options.add()("quick", "fewer trials: half a minute on two cores instead of four");
   if (!options.parse(arguments)) return kFine;
   const std::string folder = options.text("output");
-  if (folder.empty()) throw UsageError("missing -o: gatewalk reproduce -o DIR");
   if (options.has("json") && options.text("json") != "-")
     throw UsageError("--json takes only - here: DIR/report.json is written anyway");
   const bool quick = options.has("quick");
@@ -197,6 +215,7 @@ int run_reproduce(const std::vector<std::string>& arguments) {
   const Claim claim(folder);
   if (const Json old = read_json("report.json"); quick && old.is_object() && old.value("quick", Json()) == false)
     throw UsageError(folder + " holds a full report, which --quick would replace; choose another folder");
+  require_no_scene_of_ones_own(folder);
   const std::vector<Study> studies = paper_studies(quick);
   Json scenes = Json::array();
   for (const char* scene : kScenes) {
@@ -226,7 +245,7 @@ int run_reproduce(const std::vector<std::string>& arguments) {
     report["made_by"] = {{"program", std::string("gatewalk ") + kVersion + " (" + kCommit + ")"}, {"command", std::string("gatewalk reproduce") + (quick ? " --quick" : "")},
                          {"seed", 1}, {"machine", machine()}, {"seconds", seconds}, {"date", today()}, {"scenes", scenes}};
     write_text_atomically("claims.csv", claims_csv(report["claims"]));
-    write_text_atomically("report.json", report.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+    write_text_atomically("report.json", text_of(report, -1) + "\n");
     write_text_atomically("report.html", report_page(report));
     if (options.has("json"))
       options.give_out(report, "", -1);

@@ -13,11 +13,11 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <utility>
 #include <variant>
 
 #include "cli/scene_bins.h"
+#include "cli/edit_distance.h"
 #include "dynamics/methods/method.h"
 
 namespace gatewalk::cli {
@@ -187,20 +187,6 @@ std::string_view trimmed(std::string_view s) {
   const std::size_t first = s.find_first_not_of(kBlank);
   return first == s.npos ? std::string_view{}
                          : s.substr(first, s.find_last_not_of(kBlank) - first + 1);
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
 }
 
 /// The table whose name is nearest to `name`.
@@ -491,6 +477,15 @@ std::string read_file(const std::string& path) {
 }
 
 }  // namespace
+
+std::vector<std::string> keys_set_by(const std::string& given) {
+  std::deque<toml::table> documents;
+  Settings settings;
+  apply_override(given, documents, settings);
+  std::vector<std::string> keys;
+  for (const auto& [key, setting] : settings) keys.push_back(key);
+  return keys;
+}
 
 void require_key(const std::string& key, const std::string& origin) {
   if (find_key(key)) return;

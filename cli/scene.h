@@ -64,6 +64,8 @@ struct KeyInfo {
 };
 /// Every key of the scene, in the order of to_toml.
 [[nodiscard]] std::vector<KeyInfo> describe(const Scene& scene);
+/// The keys that the override `given` sets, however it is spelled. Throws SceneError.
+[[nodiscard]] std::vector<std::string> keys_set_by(const std::string& given);
 
 /// Throws SceneError unless `key` is one of a scene; `origin` begins the message.
 void require_key(const std::string& key, const std::string& origin);

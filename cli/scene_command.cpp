@@ -63,13 +63,11 @@ int run_scene(const std::vector<std::string>& arguments) {
                   "gatewalk scene --new --set body.mass_kg=0.25 --set body.radius_m=0.08 "
                   "--set forces.propulsion_N=0.8 -o robot.toml");
   options.positional("scene", "scene file (TOML)", false);
-  options.add()
-      ("new", "write the scene as a commented TOML file, to edit")
-      ("output,o", po::value<std::string>()->value_name("FILE"), "with --new: the file (default: standard output)");
+  options.add()("new", "write the scene as a commented TOML file, to edit");
+  options.output_file("output", "FILE", "with --new: the file to write (default: standard output)");
   if (!options.parse(arguments)) return kFine;
   if (options.has("output") && !options.has("new")) throw UsageError("--output has no meaning without --new");
   const std::string file = options.text("output");
-  if (!file.empty()) require_writable(file);
   const Scene scene = options.has("scene") ? read_scene(options.text("scene"), options.overrides())
                                            : parse_scene(as_text(options.overrides()), "--set");
   const std::vector<KeyInfo> keys = describe(scene);

@@ -246,6 +246,8 @@ std::string table_of(const std::vector<FinishedMap>& maps) {
   return out.str();
 }
 
+std::string figure_name(const StabilityMap& map) { return std::string(map.name) + ".svg"; }
+
 }  // namespace
 
 int run_stability(const std::vector<std::string>& arguments) {
@@ -255,12 +257,15 @@ int run_stability(const std::vector<std::string>& arguments) {
                   "stability.json and a figure per map. The maps have scenes of their own; for a scene of\n"
                   "yours there are gatewalk chart and run.method = \"auto\".",
                   "gatewalk stability -o results/stability --quick");
-  options.add()("output,o", po::value<std::string>()->value_name("DIR"), "folder to write to")
-      ("quick", "coarser maps");
+  std::vector<std::string> written{"stability.csv", "stability.json"};
+  for (int kind = 0; kind < dynamics::kMapKinds; ++kind)
+    written.push_back(figure_name(dynamics::stability_map(static_cast<dynamics::MapKind>(kind),
+                                                          dynamics::chart_methods().front(), true)));
+  options.output_folder("folder to write to", written);
+  options.add()("quick", "coarser maps");
   add_seed(options);
   options.without_scene("the maps have scenes of their own");
   if (!options.parse(arguments)) return kFine;
-  if (options.text("output").empty()) throw UsageError("missing -o DIR: where to write the maps");
   const std::string folder = options.text("output");
   const auto file = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
   std::vector<StabilityMap> planned;
@@ -269,13 +274,9 @@ int run_stability(const std::vector<std::string>& arguments) {
     for (const auto method : dynamics::chart_methods())
       planned.push_back(dynamics::stability_map(static_cast<dynamics::MapKind>(kind), method,
                                                 options.has("quick")));
-    figures.push_back(file(std::string(planned.back().name) + ".svg"));
+    figures.push_back(file(figure_name(planned.back())));
   }
-  std::vector<std::string> files = figures;
-  for (const char* name : {"stability.csv", "stability.json"}) files.push_back(file(name));
-  for (const std::string& name : files) require_different(name, options.text("json"));
   require_folder(folder);
-  for (const std::string& name : files) require_writable(name);
 
   std::vector<FinishedMap> maps;
   for (const StabilityMap& map : planned) maps.push_back(run_map(options, map));
@@ -291,7 +292,7 @@ int run_stability(const std::vector<std::string>& arguments) {
   // Old figures shall not stand beside new numbers.
   for (const std::string& figure : figures) std::filesystem::remove(figure);
   write_text_atomically(file("stability.csv"), csv_of(maps));
-  write_text_atomically(file("stability.json"), json.dump(2) + "\n");
+  write_text_atomically(file("stability.json"), text_of(json) + "\n");
   const std::size_t methods = dynamics::chart_methods().size();
   for (std::size_t kind = 0; kind < figures.size(); ++kind) {
     std::vector<const FinishedMap*> panels;

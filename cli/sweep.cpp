@@ -204,24 +204,23 @@ int run_sweep(const std::vector<std::string>& arguments) {
                   "--vary forces.random_N=0,10,20 --trials 1000 --csv sweep.csv");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "runs of the gate at each point");
+  add_strict(options);
   options.add()("vary", po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUES"),
-                "a key and its values, e.g. forces.random_N=0:10:40 or run.method=stable,paper (may be repeated)")(
-      "csv", po::value<std::string>()->value_name("FILE"), "write the grid as CSV; - is standard output");
+                "a key and its values, e.g. forces.random_N=0:10:40 or run.method=stable,paper (may be repeated)");
+  options.output_file("csv", "FILE", "write the grid as CSV; - is standard output");
   if (!options.parse(arguments)) return kFine;
   const std::string csv = options.text("csv");
-  require_different(csv, options.text("json"));
-  if (csv == "-" && options.text("json") == "-") throw UsageError("--csv - and --json - would be mixed up");
-  if (!csv.empty()) require_writable(csv);
   const std::int64_t trials = options.count("trials");
   const std::string text = scene_text(options.text("scene"));
   const Scene scene = parse_scene(text, options.text("scene"), options.overrides());
   const std::vector<Axis> axes =
       axes_of(scene.sweep, options.has("vary") ? options.get<std::vector<std::string>>("vary")
                                                : std::vector<std::string>());
-  for (const Axis& axis : axes)
-    for (const std::string& set : options.overrides())
-      if (set.substr(0, set.find('=')) == axis.key)
-        throw UsageError("--set " + set + " has no effect: " + axis.key + " is varied; --vary " + set + " fixes it");
+  for (const std::string& set : options.overrides())
+    for (const std::string& key : keys_set_by(set))
+      for (const Axis& axis : axes)
+        if (key == axis.key)
+          throw UsageError("--set " + set + " has no effect: " + key + " is varied; --vary " + key + "=VALUE fixes it");
   std::vector<Point> points = grid_of(options, text, axes);
 
   constexpr std::int64_t kEach = 1000;  // of the progress line
@@ -270,7 +269,8 @@ int run_sweep(const std::vector<std::string>& arguments) {
     options.give_out(json, table_of(scene, axes, points));
   }
   if (!health.clean()) warn(complaint(health));
-  return kFine;
+  return exit_status(options, std::all_of(points.begin(), points.end(),
+                                          [](const Point& p) { return p.tally.health.clean(); }));
 }
 
 }  // namespace gatewalk::cli

@@ -1,5 +1,6 @@
 #include "cli/auto.h"
 #include "cli/command.h"
+#include "cli/interrupt.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
@@ -11,7 +12,7 @@ namespace gatewalk::cli {
 namespace {
 
 constexpr std::int64_t kMostRuns = 1000;   // kept
-constexpr std::size_t kMostMoments = 2'000'000;  // of all runs together, some 1 GB
+constexpr std::size_t kMostMoments = 500'000;  // of all runs together: with every output some 1 GB
 constexpr std::size_t kMostLines = 20;     // of the table
 
 std::string table_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {
@@ -48,35 +49,21 @@ int run_trace(const std::vector<std::string>& arguments) {
                   "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' --replay runs.html --csv runs.csv");
   options.positional("scene", "scene file (TOML)", true);
   add_seed(options);
+  add_strict(options);
   options.add()("trial", po::value<Count>()->default_value(Count{0}, "0")->value_name("I"), "number of the first trial")(
       "trials", po::value<Count>()->default_value(Count{1}, "1")->value_name("N"), "record trials I to I + N - 1")(
       "only", po::value<std::string>()->value_name("ENDING"),
       "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with --field trapped, 'left field', 'cut off'")(
-      "field", "cross the field, gate after gate, instead of one gate")(
-      "csv", po::value<std::string>()->value_name("FILE"), "write all samples as CSV; - is standard output")(
-      "netcdf", po::value<std::string>()->value_name("FILE"), "write all samples as NetCDF-4")(
-      "replay", po::value<std::string>()->value_name("FILE.html"), "write a page that plays the runs")(
-      "video", po::value<std::string>()->value_name("FILE.mp4"), "write a film of the first run (needs ffmpeg)")(
-      "video-speed", po::value<double>()->default_value(1.0, "1")->value_name("X"), "times as fast as real");
+      "field", "cross the field, gate after gate, instead of one gate");
+  options.output_file("csv", "FILE", "write all samples as CSV; - is standard output");
+  options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
+  options.output_file("replay", "FILE.html", "write a page that plays the runs");
+  options.output_file("video", "FILE.mp4", "write a film of the first run (needs ffmpeg)", Options::Content::binary);
+  options.add()("video-speed", po::value<double>()->default_value(1.0, "1")->value_name("X"), "times as fast as real");
   if (!options.parse(arguments)) return kFine;
-  std::vector<std::string> files{options.text("scene")};
-  bool to_stdout = false;
-  for (const char* name : {"json", "csv", "netcdf", "replay", "video"}) {
-    const std::string file = options.text(name);
-    if (options.has(name) && file.empty()) throw UsageError(std::string("--") + name + " needs a file name");
-    if (file.empty()) continue;
-    for (const std::string& other : files) require_different(file, other);
-    files.push_back(file);
-    const bool binary = name == std::string("netcdf") || name == std::string("video");
-    if (binary && file == "-") throw UsageError(std::string("--") + name + " cannot go to standard output");
-    if (file == "-" && to_stdout) throw UsageError(std::string("--") + name + " -: only one thing can go to standard output");
-    to_stdout |= file == "-";
-    require_writable(file);
-  }
+  const bool to_stdout = options.text("csv") == "-" || options.text("replay") == "-";
   const bool across_field = options.has("field");
   const std::int64_t first = options.count("trial", 0), trials = options.count("trials");
-  constexpr std::int64_t kLastTrial = 1'000'000'000'000'000;
-  if (first > kLastTrial || trials > kLastTrial) throw UsageError("--trial and --trials: at most " + std::to_string(kLastTrial));
   const std::string only = options.text("only");
   if (options.has("only")) {
     std::string known;
@@ -98,15 +85,26 @@ int run_trace(const std::vector<std::string>& arguments) {
   std::vector<Recording> runs;
   std::size_t moments = 0;
   dynamics::Health health;
+  const auto too_long = [&](const std::string& what) {
+    return UsageError(what + " more than " + std::to_string(kMostMoments) + " steps, the most that are recorded; "
+                      "give a longer run.step_s or a shorter run.time_limit_s" +
+                      (across_field ? ", or fewer gates by field.max_gates" : ""));
+  };
   run_in_batches("runs", trials, options.talk(), [&](std::int64_t from, std::int64_t n) {
     for (std::int64_t i = from; i < from + n; ++i) {
-      Recording r = record(scene, options.seed(), first + i, across_field);
+      if (interrupted()) throw Interrupted{};
+      Recording r;
+      try {
+        r = record(scene, options.seed(), first + i, across_field, kMostMoments);
+      } catch (const dynamics::TraceTooLong&) {
+        throw too_long("trial " + std::to_string(first + i) + " alone has");
+      }
       if (!only.empty() && !fits(r.ending, only)) continue;
       if (static_cast<std::int64_t>(runs.size()) == kMostRuns)
         throw UsageError("more than " + std::to_string(kMostRuns) + " runs end so; ask for fewer --trials");
       moments += r.moments.size();
       if (moments > kMostMoments)
-        throw UsageError("more than " + std::to_string(kMostMoments) + " steps in all; ask for fewer --trials or a longer run.step_s");
+        throw too_long("trials " + std::to_string(first) + " to " + std::to_string(first + i) + " have together");
       health += r.health;
       runs.push_back(std::move(r));
     }
@@ -122,7 +120,7 @@ int run_trace(const std::vector<std::string>& arguments) {
   if (options.has("netcdf")) {
     std::vector<std::pair<std::string, std::string>> about;
     for (const auto& [key, value] : made_by.items())
-      about.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
+      about.emplace_back(key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
     write_text_atomically(options.text("netcdf"), netcdf_of(scene, runs, across_field, about));
   }
   if (options.has("replay")) write_text_atomically(options.text("replay"), replay_page(film));
@@ -135,7 +133,7 @@ int run_trace(const std::vector<std::string>& arguments) {
   film["made_by"] = made_by;
   options.give_out(film, to_stdout ? "" : table_of(scene, runs, across_field) + method_line(settled), -1);
   if (!health.clean()) warn(complaint(health));
-  return kFine;
+  return exit_status(options, health.clean());
 }
 
 }  // namespace gatewalk::cli

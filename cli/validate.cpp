@@ -275,9 +275,9 @@ int run_validate(const std::vector<std::string>& arguments) {
                   "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "trials of the full dynamics per start");
+  add_strict(options);
+  options.input_file("matrix", "matrix to validate; without it one is built from the scene");
   options.add()
-      ("matrix", po::value<std::string>()->value_name("FILE"),
-       "matrix to validate; without it one is built from the scene")
       ("matrix-trials", po::value<Count>()->value_name("N"),
        "runs per input state of the matrix that is built (default: 100)")
       ("walks", po::value<Count>()->value_name("N"), "walks per start (default: as many as trials)")
@@ -293,7 +293,6 @@ int run_validate(const std::vector<std::string>& arguments) {
   if (options.has("matrix")) {
     if (options.has("bins"))
       throw UsageError("--bins has no meaning beside --matrix: that one has its bins already");
-    require_different(options.text("matrix"), options.text("json"));
     if (options.has("matrix-trials"))
       throw UsageError("--matrix-trials has no meaning beside --matrix: that one is built already");
   }
@@ -398,7 +397,7 @@ int run_validate(const std::vector<std::string>& arguments) {
   if (shares.entries == 0) table += "No trial ever reached a second gate.\n";
   options.give_out(json, table);
   if (!health.clean()) warn(complaint(health));
-  return kFine;
+  return exit_status(options, health.clean());
 }
 
 }  // namespace gatewalk::cli

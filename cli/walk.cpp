@@ -14,19 +14,19 @@ int run_walk(const std::vector<std::string>& arguments) {
   options.add()("walks", po::value<Count>()->default_value(Count{100}, "100")->value_name("N"),
                 "number of walks");
   add_seed(options);
+  add_strict(options);
   if (!options.parse(arguments)) return kFine;
-  require_different(options.text("matrix"), options.text("json"));
   const auto m = read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
-  const auto [chain, start, start_text] = ready_chain(options, m);
+  const ReadyChain ready = ready_chain(options, m);
   const std::int64_t walks = options.count("walks");
   const markov::Field field{m.scene.field.columns, m.scene.field.rows};
 
   const Stopwatch watch;
-  const markov::Walker walker(chain);
+  const markov::Walker walker(ready.chain);
   markov::WalkTally tally;
   tally.final_cells = markov::CellCounts::Zero(field.rows, field.columns);
   run_in_batches("walks", walks, options.talk(), [&](std::int64_t first, std::int64_t n) {
-    tally += walker.walk(field, start.start, m.scene.field.max_gates, options.seed(), {first, n});
+    tally += walker.walk(field, ready.start.start, m.scene.field.max_gates, options.seed(), {first, n});
   });
   const double seconds = watch.seconds();
 
@@ -38,8 +38,8 @@ int run_walk(const std::vector<std::string>& arguments) {
   json["cut_off"] = tally.cut_off;
   json["never_sampled"] = tally.unsampled;
   json["gates_visited"] = tally.steps;
-  json["start_state"] = {{"input", start.start.input + 1}, {"bin", start_text},
-                         {"clamped", start.clamped}};
+  json["start_state"] = {{"input", ready.start.start.input + 1}, {"bin", ready.start_text},
+                         {"clamped", ready.start.clamped}};
   json["matrix_status"] = m.status;
   json["made_by"] = manifest(options, m.scene);
 
@@ -48,13 +48,13 @@ int run_walk(const std::vector<std::string>& arguments) {
                       std::to_string(tally.walks) + ": trapped " +
                       percent(static_cast<double>(tally.trapped), n, 2) + ", left the field " +
                       percent(static_cast<double>(tally.left_field), n, 2) + ", cut off " +
-                      percent(static_cast<double>(tally.cut_off), n, 2) + "\nstart: " + start_text + "\n";
+                      percent(static_cast<double>(tally.cut_off), n, 2) + "\nstart: " + ready.start_text + "\n";
   if (tally.unsampled > 0)
     table += "reached a row that was never sampled: " +
              percent(static_cast<double>(tally.unsampled), n, 4) + "\n";
   options.give_out(json, table);
   remark(options, fixed(seconds, 3) + " s, " + fixed(n / seconds / 1e6, 2) + " million walks a second");
-  return kFine;
+  return exit_status(options, faults_recorded(m.status).empty());
 }
 
 }  // namespace gatewalk::cli

@@ -1,5 +1,7 @@
 #include "dynamics/trace.h"
 
+#include <string>
+
 namespace gatewalk::dynamics {
 namespace {
 
@@ -22,12 +24,14 @@ TraceSample seen(const GateParams& p, const GateState& s) {
 }  // namespace
 
 GateTrace trace_gate(const GateParams& p, const Method& method, const BodyState& start,
-                     RandomForce& force) {
+                     RandomForce& force, std::size_t most_samples) {
   GateTrace trace;
   trace.samples.push_back(seen(p, {start, {}}));
   const double at_start = trace.samples.front().energy.mechanical();
   Watch before;
   const auto follow = [&](const EnergyLedger::Step& step) {
+    if (trace.samples.size() >= most_samples)
+      throw TraceTooLong("a trace has more than " + std::to_string(most_samples) + " samples");
     const TraceSample& last = trace.samples.back();
     TraceSample t = seen(p, step.state);
     t.time = last.time + step.seconds;

@@ -2,6 +2,9 @@
 /// One run in full: every step of the method, with the forces and energies behind it.
 
 #include <array>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "dynamics/gate.h"
@@ -50,9 +53,17 @@ struct GateTrace {
   std::vector<TraceSample> samples;
 };
 
+/// A trace has more samples than were allowed for.
+class TraceTooLong : public std::length_error {
+ public:
+  using std::length_error::length_error;
+};
+
 /// run_gate, the same to the last bit, with everything that it passes over. Of contacts in method
 /// `penalty`, which are springs, it only has beam_force; their energy counts as lost while it is in them.
+/// Throws TraceTooLong instead of the sample after the `most_samples`-th.
 [[nodiscard]] GateTrace trace_gate(const GateParams& p, const Method& method, const BodyState& start,
-                                   RandomForce& force);
+                                   RandomForce& force,
+                                   std::size_t most_samples = std::numeric_limits<std::size_t>::max());
 
 }  // namespace gatewalk::dynamics

@@ -138,7 +138,7 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
 }
 
 FieldTrace trace_field(const GateParams& p, const FieldParams& field, const BodyState& start,
-                       std::uint64_t seed, std::int64_t trial) {
+                       std::uint64_t seed, std::int64_t trial, std::size_t most_samples) {
   if (field.fidelity != Fidelity::active)
     throw InvalidParameter("field.fidelity", "field.fidelity = \"" + std::string(name_of(field.fidelity)) +
                                                  "\" is not permitted: only \"active\" can be traced");
@@ -150,7 +150,8 @@ FieldTrace trace_field(const GateParams& p, const FieldParams& field, const Body
   RandomForce force = field_force(p, start, seed, trial);
   FieldTrace trace;
   for (BodyState from = start;;) {
-    trace.visits.push_back({t.column, t.row, trace_gate(p, *method, from, force)});
+    trace.visits.push_back({t.column, t.row, trace_gate(p, *method, from, force, most_samples)});
+    most_samples -= trace.visits.back().trace.samples.size();
     const GateRun& run = trace.visits.back().trace.run;
     if (!follow(t, p, field, space, run, false)) break;
     from = shifted_into_next(p, run.ending, run.exit);

@@ -68,9 +68,10 @@ struct FieldTrace {
 };
 
 /// Trial number `trial` of run_field, the same to the last bit. Throws InvalidParameter, also for
-/// another fidelity than `active`.
+/// another fidelity than `active`, and TraceTooLong when all visits together have more samples.
 [[nodiscard]] FieldTrace trace_field(const dynamics::GateParams& p, const FieldParams& field,
                                      const dynamics::BodyState& start, std::uint64_t seed,
-                                     std::int64_t trial);
+                                     std::int64_t trial,
+                                     std::size_t most_samples = std::numeric_limits<std::size_t>::max());
 
 }  // namespace gatewalk::lattice

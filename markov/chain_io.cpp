@@ -16,6 +16,7 @@
 #include <string_view>
 #include <utility>
 
+#include "markov/file.h"
 #include "markov/netcdf_image.h"
 
 namespace gatewalk::markov {
@@ -29,6 +30,8 @@ const std::set<std::string> kOwnVariables = {"count_row", "count_column",    "co
                                              "trials",    "clamped",         "exit_next_input",
                                              "exit_di_x", "exit_di_y",       "input_state",
                                              "nonzero",   "output_state"};
+// A matrix of 10 000 states and 10^8 nonzeros has fewer.
+constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 const std::set<std::string> kOwnAttributes = {"format", "format_version", "checksum"};
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
@@ -111,9 +114,9 @@ void check_content(const CountsFile& file) {
 constexpr std::string_view kChecksumMark = "crc64-xz:";
 constexpr std::string_view kNoChecksum = "0000000000000000";
 
-std::string crc64_hex(const std::vector<char>& bytes) {
-  boost::crc_optimal<64, 0x42F0E1EBA9EA3693, ~0ULL, ~0ULL, true, true> crc;
-  crc.process_bytes(bytes.data(), bytes.size());
+using Crc64 = boost::crc_optimal<64, 0x42F0E1EBA9EA3693, ~0ULL, ~0ULL, true, true>;
+
+std::string hex(const Crc64& crc) {
   std::string text;
   for (int shift = 60; shift >= 0; shift -= 4) {
     text += "0123456789abcdef"[(crc.checksum() >> shift) & 15];
@@ -121,20 +124,25 @@ std::string crc64_hex(const std::vector<char>& bytes) {
   return text;
 }
 
-// Puts `digits` where the checksum stands in the image and returns what stood there.
-std::string exchange_checksum(std::vector<char>& image, std::string_view digits) {
+[[noreturn]] void refuse_no_checksum() {
+  throw std::runtime_error("holds no checksum: truncated, or not written by this program");
+}
+
+[[noreturn]] void refuse_second_checksum() {
+  throw std::runtime_error("holds \"" + std::string(kChecksumMark) + "\" more than once");
+}
+
+// Puts the checksum of an image, which has zeros in its place, there.
+void seal(std::vector<char>& image) {
   const std::string_view bytes(image.data(), image.size());
   const std::size_t mark = bytes.find(kChecksumMark);
   const std::size_t at = mark + kChecksumMark.size();
-  if (mark == bytes.npos || at + digits.size() > bytes.size()) {
-    throw std::runtime_error("holds no checksum: truncated, or not written by this program");
-  }
-  if (bytes.find(kChecksumMark, at) != bytes.npos) {
-    throw std::runtime_error("holds \"" + std::string(kChecksumMark) + "\" more than once");
-  }
-  const std::string old(bytes.substr(at, digits.size()));
+  if (mark == bytes.npos || at + kNoChecksum.size() > bytes.size()) refuse_no_checksum();
+  if (bytes.find(kChecksumMark, at) != bytes.npos) refuse_second_checksum();
+  Crc64 crc;
+  crc.process_bytes(image.data(), image.size());
+  const std::string digits = hex(crc);
   std::copy(digits.begin(), digits.end(), image.begin() + static_cast<std::ptrdiff_t>(at));
-  return old;
 }
 
 // The counts and exits as columns of numbers, the way they lie in the file.
@@ -185,8 +193,7 @@ std::vector<char> encode(const CountsFile& file) {
     put_variable(nc, array.name, length, array.values, array.unit, array.meaning);
   }
   std::vector<char> image = nc.close_image();
-  exchange_checksum(image, kNoChecksum);
-  exchange_checksum(image, crc64_hex(image));
+  seal(image);
   return image;
 }
 
@@ -367,98 +374,118 @@ class Reader {
   throw std::runtime_error(what + ": " + std::strerror(errno));
 }
 
-class Descriptor {
+// A regular file that is open for reading. Directories, pipes and devices are refused before they are
+// opened (a pipe would block), and what no matrix can be before it is read.
+class InputFile {
  public:
-  Descriptor(const std::string& path, int flags, const std::string& what) {
-    fd_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
-    if (fd_ < 0) fail(what);
+  explicit InputFile(const std::string& path) {
+    struct stat info {};
+    if (::stat(path.c_str(), &info) != 0) fail("cannot open");
+    if (!S_ISREG(info.st_mode)) throw std::runtime_error("not a regular file");
+    fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd_ < 0) fail("cannot open");
+    size_ = static_cast<std::size_t>(info.st_size);
   }
-  ~Descriptor() {
+  ~InputFile() {
     if (fd_ >= 0) ::close(fd_);
   }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
 
-  operator int() const { return fd_; }
-  void close(const std::string& what) {
-    if (::close(std::exchange(fd_, -1)) != 0) fail(what);
+  [[nodiscard]] std::size_t size() const { return size_; }
+  // Fills `bytes` from `offset` on, as far as the file goes.
+  void read(std::size_t offset, std::vector<char>& bytes) const {
+    bytes.resize(std::min(bytes.size(), size_ - std::min(size_, offset)));
+    for (std::size_t done = 0; done < bytes.size();) {
+      const ssize_t got = ::pread(fd_, bytes.data() + done, bytes.size() - done,
+                                  static_cast<off_t>(offset + done));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail("cannot read");
+      if (got == 0) throw std::runtime_error("became shorter while it was read");
+      done += static_cast<std::size_t>(got);
+    }
   }
 
  private:
   int fd_ = -1;
+  std::size_t size_ = 0;
 };
 
-// Refuses directories, pipes and devices before they are opened for reading (a pipe would block).
-std::vector<char> read_bytes(const std::string& path) {
-  struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) fail("cannot open");
-  if (!S_ISREG(info.st_mode)) throw std::runtime_error("not a regular file");
-  const Descriptor file(path, O_RDONLY, "cannot open");
-  std::vector<char> bytes(static_cast<std::size_t>(info.st_size));
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t got = ::read(file, bytes.data() + done, bytes.size() - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail("cannot read");
-    if (got == 0) throw std::runtime_error("became shorter while it was read");
-    done += static_cast<std::size_t>(got);
-  }
-  return bytes;
+void check_size(std::size_t bytes) {
+  if (bytes > kMostFileBytes)
+    throw std::runtime_error("has " + std::to_string(bytes) + " bytes, more than the " +
+                             std::to_string(kMostFileBytes) + " that a matrix may have");
 }
 
-class RemoveOnFailure {
- public:
-  explicit RemoveOnFailure(std::string path) : path_(std::move(path)) {}
-  ~RemoveOnFailure() {
-    if (!path_.empty()) ::unlink(path_.c_str());
-  }
-  RemoveOnFailure(const RemoveOnFailure&) = delete;
-  RemoveOnFailure& operator=(const RemoveOnFailure&) = delete;
-  void keep() { path_.clear(); }
+// What begins as a NetCDF-4 file and is no larger than a matrix may be.
+void check_kind(const InputFile& file) {
+  constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n";
+  std::vector<char> begin(kHdf5Magic.size());
+  file.read(0, begin);
+  if (std::string_view(begin.data(), begin.size()) != kHdf5Magic)
+    throw std::runtime_error("not a NetCDF-4 file");
+  check_size(file.size());
+}
 
- private:
-  std::string path_;
-};
+constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes
 
-void replace_file(const std::string& path, const std::vector<char>& bytes) {
-  struct stat info {};
-  if (::lstat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) {
-    throw std::runtime_error("exists and is not a regular file");
+// Where the digits of the checksum stand. Like the checksum, found piece by piece: a large file of
+// another kind never is in memory.
+std::size_t place_of_checksum(const InputFile& file) {
+  std::size_t place = 0, marks = 0;
+  std::vector<char> piece;
+  for (std::size_t begin = 0; begin < file.size(); begin += kPiece) {
+    piece.resize(kPiece + kChecksumMark.size() - 1);  // a mark may lie across two pieces
+    file.read(begin, piece);
+    const std::string_view bytes(piece.data(), piece.size());
+    for (std::size_t at = 0; (at = bytes.find(kChecksumMark, at)) != bytes.npos; ++at) {
+      place = begin + at + kChecksumMark.size();
+      ++marks;
+    }
   }
-  const std::string temporary = path + ".tmp-" + std::to_string(::getpid());
-  const auto slash = path.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  if (marks > 1) refuse_second_checksum();
+  if (marks == 0 || place + kNoChecksum.size() > file.size()) refuse_no_checksum();
+  return place;
+}
 
-  Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW,
-                  "cannot create " + temporary);
-  RemoveOnFailure leftover(temporary);
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t put = ::write(file, bytes.data() + done, bytes.size() - done);
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) fail("cannot write " + temporary);
-    done += static_cast<std::size_t>(put);
+bool has_its_checksum(const InputFile& file) {
+  const std::size_t place = place_of_checksum(file);
+  std::vector<char> digits(kNoChecksum.size());
+  file.read(place, digits);
+  Crc64 crc;
+  std::vector<char> piece;
+  for (std::size_t begin = 0; begin < file.size(); begin += kPiece) {
+    piece.resize(kPiece);
+    file.read(begin, piece);
+    for (std::size_t i = 0; i < kNoChecksum.size(); ++i)
+      if (const std::size_t at = place + i; at >= begin && at < begin + piece.size())
+        piece[at - begin] = kNoChecksum[i];
+    crc.process_bytes(piece.data(), piece.size());
   }
-  if (::fsync(file) != 0) fail("cannot sync " + temporary);
-  file.close("cannot close " + temporary);
-  if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot rename " + temporary);
-  leftover.keep();
-  // The new file is complete under its name; this makes the name itself survive a power cut. Some
-  // file systems cannot sync a folder and say EINVAL.
-  const Descriptor directory(folder, O_RDONLY | O_DIRECTORY, "written, but cannot open " + folder);
-  if (::fsync(directory) != 0 && errno != EINVAL) fail("written, but cannot sync " + folder);
+  return hex(crc) == std::string_view(digits.data(), digits.size());
+}
+
+std::vector<char> image_of(const InputFile& file) {
+  check_size(file.size());
+  std::vector<char> image(file.size());
+  file.read(0, image);
+  return image;
 }
 
 }  // namespace
 
 void write_counts(const std::string& path, const CountsFile& file) {
+  std::vector<char> image;
   try {
     check_content(file);
-    replace_file(path, encode(file));
+    image = encode(file);
+    check_size(image.size());
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(path + ": " + error.what());
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(path + ": " + error.what());
   }
+  replace_file(path, {image.data(), image.size()});
 }
 
 std::string diagnose_counts(const std::string& path) {
@@ -471,7 +498,7 @@ std::string diagnose_counts(const std::string& path) {
     ::alarm(kPatience);
     std::string verdict = "yet its content adds up: another program may have rewritten it";
     try {
-      std::vector<char> image = read_bytes(path);
+      std::vector<char> image = image_of(InputFile(path));
       [[maybe_unused]] const CountsFile file = Reader(image).read();
     } catch (const std::exception& error) {
       verdict = error.what();
@@ -494,19 +521,16 @@ std::string diagnose_counts(const std::string& path) {
 }
 
 CountsFile read_counts(const std::string& path) {
-  constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n";
   const auto bad = [&path](const std::exception& error) {
     return BadFile(path + ": " + error.what());
   };
   try {
-    std::vector<char> image = read_bytes(path);
-    if (!std::string_view(image.data(), image.size()).starts_with(kHdf5Magic)) {
-      throw std::runtime_error("not a NetCDF-4 file");
-    }
-    const std::string expected = exchange_checksum(image, kNoChecksum);
-    if (crc64_hex(image) != expected) {
+    const InputFile opened(path);
+    check_kind(opened);
+    if (!has_its_checksum(opened)) {
       throw BadChecksum(path + ": checksum does not match: damaged or altered since it was written");
     }
+    std::vector<char> image = image_of(opened);
     return Reader(image).read();
   } catch (const BadChecksum&) {
     throw;

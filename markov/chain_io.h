@@ -49,14 +49,15 @@ class BadChecksum : public BadFile {
   using BadFile::BadFile;
 };
 
-/// Writes to a temporary name beside `path`, syncs, renames. Content that does not add up throws
+/// Replaces the file at `path` (replace_file). Content that does not add up throws
 /// std::invalid_argument, a failure std::runtime_error, both naming the file and the reason; an old
 /// file at `path` stays as it was. (Only when the last act fails, syncing the folder, the new file
-/// is in place already.) Devices, pipes, folders and links are not written to.
+/// is in place already.)
 void write_counts(const std::string& path, const CountsFile& file);
 
 /// Throws BadFile when anything is missing, truncated or does not add up, BadChecksum when it was
-/// altered.
+/// altered. The checksum is taken in constant memory, before the file is read; one above 1 GiB is
+/// refused.
 [[nodiscard]] CountsFile read_counts(const std::string& path);
 
 /// What is wrong with a file of a bad checksum, for people: "row 12 (counted from 1): counts add up

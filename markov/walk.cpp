@@ -47,7 +47,7 @@ constexpr Word cell_at(int column, int row) {
   return (static_cast<Word>(row) << 32) + static_cast<Word>(column);
 }
 
-struct Rules {
+struct WalkRules {
   const Word* keep;    // (slots)
   const Word* moves;   // (slots x 2)
   Word corner;         // the last cell
@@ -122,7 +122,7 @@ HWY_INLINE V look_up(const Word* table, V index) {
 }
 
 /// Block `block` of every walk's Philox4x64-10 (Salmon et al. 2011).
-void fill_words(const Rules& rules, Word block, Pool& pool) {
+void fill_words(const WalkRules& rules, Word block, Pool& pool) {
   constexpr Word kMultiplier[] = {0xd2e7470ee14c6c93, 0xca5a826395121157};
   constexpr Word kBump[] = {0x9e3779b97f4a7c15, 0xbb67ae8584caa73b};
   const D d;
@@ -151,7 +151,7 @@ void fill_words(const Rules& rules, Word block, Pool& pool) {
 }
 
 /// Every walk draws a move from the row that its last one led to (Walker::pick).
-void draw_moves(const Rules& rules, const Word* words, Pool& pool) {
+void draw_moves(const WalkRules& rules, const Word* words, Pool& pool) {
   const D d;
   for (int i = 0; i < pool.walking; i += lanes()) {
     const V last = hn::Load(d, pool.on.move + i), word = hn::Load(d, words + i);
@@ -168,7 +168,7 @@ void draw_moves(const Rules& rules, const Word* words, Pool& pool) {
 
 /// Every walk moves or ends, the last time all do. Who walks on closes up to the front, with the words
 /// from the `next_word`-th on.
-void carry_out_moves(const Rules& rules, int next_word, bool last_time, Pool& pool) {
+void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool& pool) {
   const D d;
   const V nibbles = hn::ShiftLeft<2>(hn::Iota(d, 0));
   int walking = 0, first_ended = pool.first_ended, i = 0;
@@ -398,7 +398,7 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
 
 void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last,
                            WalkTally& tally) const {
-  const Rules rules{keep_.data(), moves_.data(), cell_at(job.field.columns - 1, job.field.rows - 1),
+  const WalkRules rules{keep_.data(), moves_.data(), cell_at(job.field.columns - 1, job.field.rows - 1),
                     {job.seed, kWalkStream}, static_cast<Word>(job.start.input)};
   const Word start_move = packed({job.start.input, 0, 0});
   const Word start_cell = cell_at(job.start.column, job.start.row);

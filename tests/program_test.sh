@@ -182,7 +182,7 @@ expect 2 'rows of this field are 0 to 8' "$gatewalk" predict m.nc --row 4-9=stif
 expect 2 'lower row comes first' "$gatewalk" predict m.nc --row 6-4=stiff.nc
 expect 2 'row 6 is given twice' "$gatewalk" predict m.nc --row 4-6=stiff.nc --row 6-8=copy.nc
 expect 2 'nosuch.nc' "$gatewalk" predict m.nc --row 4=nosuch.nc
-expect 2 'the same: copy.nc' "$gatewalk" predict m.nc --row 4=copy.nc --json copy.nc
+expect 2 'are the same file' "$gatewalk" predict m.nc --row 4=copy.nc --json copy.nc
 "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 0.5 -o other-bins.nc --quiet >/dev/null
 expect 2 'other bins' "$gatewalk" predict m.nc --row 4=other-bins.nc
 "$gatewalk" build "$scenes/field.toml" --trials 1 --set body.mass_kg=2 -o other-body.nc --quiet >/dev/null
@@ -211,13 +211,13 @@ expect 0 '^trial,' "$gatewalk" trace "$scenes/soft_left.toml" --csv -
 expect 2 'a run ends as one of' "$gatewalk" trace "$scenes/soft_left.toml" --only stuck
 expect 1 'none of trials 0 to 4' "$gatewalk" trace "$scenes/single_gate.toml" --trials 5 --only 'traversed right'
 expect 2 'at most 1000 runs' "$gatewalk" trace "$scenes/soft_left.toml" --trials 1001
-expect 2 'the same: x.csv' "$gatewalk" trace "$scenes/soft_left.toml" --csv x.csv --json x.csv
+expect 2 'are the same file' "$gatewalk" trace "$scenes/soft_left.toml" --csv x.csv --json x.csv
 expect 2 'only "active" can be traced' "$gatewalk" trace "$scenes/field.toml" --field --set run.method=moreau --set field.fidelity=all
 cp "$scenes/soft_left.toml" own.toml
-expect 2 'the same: own.toml' "$gatewalk" trace own.toml --csv own.toml
+expect 2 'are the same file' "$gatewalk" trace own.toml --csv own.toml
 cmp -s own.toml "$scenes/soft_left.toml" || fail "trace: overwrote its scene"
 expect 2 'only one thing can go to standard output' "$gatewalk" trace "$scenes/soft_left.toml" --csv - --replay -
-expect 2 'at most 1000000000000000' "$gatewalk" trace "$scenes/soft_left.toml" --trial 9223372036854775807 --trials 2
+expect 2 'trial: .9223372036854775807. is out of range: at most 1e15' "$gatewalk" trace "$scenes/soft_left.toml" --trial 9223372036854775807 --trials 2
 "$gatewalk" trace "$scenes/soft_left.toml" --trial 12345678 --csv - | tail -n 1 | grep -q '^12345678,' || fail "trace: a trial's number lost digits"
 expect 2 'cannot go to standard output' "$gatewalk" trace "$scenes/soft_left.toml" --netcdf -
 
@@ -353,8 +353,8 @@ expect 0 '^trapped' "$gatewalk" predict m.nc "$scenes/field.toml" --set run.tole
 expect 2 'forces.random_N' "$gatewalk" walk m.nc "$scenes/field.toml" --set forces.random_N=12
 expect 2 'max_gates' "$gatewalk" predict m.nc --solver klu
 expect 2 'is a matrix' "$gatewalk" gate m.nc
-expect 2 'the same' "$gatewalk" build "$scenes/field.toml" -o x.nc --json ./x.nc
-expect 2 'the same' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --json m.nc
+expect 2 'are the same file' "$gatewalk" build "$scenes/field.toml" -o x.nc --json ./x.nc
+expect 2 'are the same file' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --json m.nc
 expect 2 'no meaning' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --matrix-trials 5
 expect 2 'a file of its own' "$gatewalk" build "$scenes/field.toml" -o -
 expect 2 'run.traverse_y_m' "$gatewalk" lattice "$scenes/field.toml" --set run.traverse_y_m=35
@@ -388,7 +388,7 @@ expect 2 'field.fidelity = "all" is not permitted with run.method = "stable"' "$
 expect 2 'one of "active", "remember", "all"' "$gatewalk" lattice "$scenes/field.toml" --set field.fidelity=most
 expect 2 'missing -o' "$gatewalk" chart-field "$scenes/field.toml"
 expect 2 'three numbers' "$gatewalk" chart-field "$scenes/field.toml" -o chart --start 1,2
-expect 1 'cannot be made' "$gatewalk" chart-field "$scenes/field.toml" -o m.nc/chart
+expect 2 'cannot be made' "$gatewalk" chart-field "$scenes/field.toml" -o m.nc/chart
 "$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=all --trials 50 --json all.json --quiet 2>/dev/null
 holds '([.final_gates[][]] | add) == 50 and .trapped + .left_field + .cut_off + .not_finite == 50' all.json
 expect 2 'run.method = "auto" is not permitted.*run.step_s' "$gatewalk" chart-field "$scenes/field.toml" --set run.method=auto -o no-chart
@@ -398,7 +398,7 @@ expect 0 '^Start 4, 5, 10: 20 trials cannot tell' "$gatewalk" chart-field "$scen
 holds '.starts[0].runs | map(.fidelity) == ["active", "remember", "all", "active"]' new/chart/fidelity.json
 holds '.starts[0].runs | all(([.final_gates[][]] | add) == 20 and (.fates | add | . - 1 | fabs) < 1e-12 and .seconds_per_trial > 0)' new/chart/fidelity.json
 holds '.made_by.seed == 1 and (.made_by.scene | length) > 0 and (.machine | test("cores"))' new/chart/fidelity.json
-expect 2 'the same: new/chart/fidelity.csv' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --json ./new/chart/fidelity.csv
+expect 2 'are the same file' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --json ./new/chart/fidelity.csv
 grep -q '</svg>' new/chart/fidelity.svg || fail "chart-field: no figure"
 "$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=remember --set start.x_m=4 \
   --set start.vx_m_per_s=5 --set start.vy_m_per_s=10 --trials 20 --json remember.json --quiet 2>/dev/null
@@ -460,9 +460,9 @@ expect 2 "runs-limit" "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x -
 expect 2 'must be at least 100' "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --truth-trials 99
 expect 2 'the same factor twice' chart -o charts/x --bins 1
 expect 2 'inside the gate' chart -o charts/x --start 25,0,15
-expect 2 'the same: charts/a/chain.csv' chart -o charts/a --json charts/../charts/a/chain.csv
+expect 2 'are the same file' chart -o charts/a --json charts/../charts/a/chain.csv
 [ -e charts/x ] && fail "chart-chain: wrong use made a folder"
-expect 1 'm.nc' chart -o m.nc
+expect 2 'm.nc' chart -o m.nc
 
 # Damaged and missing files; output that cannot be written leaves the old file.
 head -c 5000 m.nc >cut.nc
@@ -471,8 +471,8 @@ expect 2 'cut.nc' "$gatewalk" show cut.nc
 ncdump m.nc | sed -E '/^ count = /s/= ([0-9]+)/= 77/' >altered.cdl && ncgen -4 -o altered.nc altered.cdl
 expect 2 'row 1 .*add up to' "$gatewalk" predict altered.nc
 expect 2 'nosuch.nc' "$gatewalk" walk nosuch.nc
-expect 1 'no/such/dir' "$gatewalk" gate "$scenes/single_gate.toml" --trials 10 --json no/such/dir/x.json
-expect 1 'm.nc' "$gatewalk" build "$scenes/field.toml" --trials 1 -o no-dir/m.nc
+expect 2 'json: no/such/dir/x.json: cannot be written' "$gatewalk" gate "$scenes/single_gate.toml" --trials 10 --json no/such/dir/x.json
+expect 2 'no-dir/m.nc: cannot be written' "$gatewalk" build "$scenes/field.toml" --trials 1 -o no-dir/m.nc
 ls | grep -q tmp && fail "temporary files stayed behind: $(ls)"
 
 # chart: a line per scene, method and setting; wrong use is said before any work.
@@ -513,9 +513,9 @@ expect 2 'stands there twice' "$gatewalk" chart "$scenes/field.toml" -o charts -
 expect 2 'two scenes are called field' "$gatewalk" chart "$scenes/field.toml" "$scenes/field.toml" -o charts
 expect 2 'at least 1' "$gatewalk" chart "$scenes/field.toml" -o charts --trials 0
 expect 2 'nosuch.toml' "$gatewalk" chart "$scenes/field.toml" nosuch.toml -o charts
-expect 1 'gate.json' "$gatewalk" chart "$scenes/field.toml" -o gate.json --trials 1
+expect 2 'gate.json' "$gatewalk" chart "$scenes/field.toml" -o gate.json --trials 1
 for name in csv json svg; do
-  expect 2 'the same' "$gatewalk" chart "$scenes/field.toml" -o charts --trials 1 --json charts/../charts/chart.$name
+  expect 2 'are the same file' "$gatewalk" chart "$scenes/field.toml" -o charts --trials 1 --json charts/../charts/chart.$name
 done
 # A scene that the reference method refuses is named before the first trial of the others.
 sed -E 's/^stiffness_left_Nm_per_rad.*/stiffness_left_Nm_per_rad = 1e12/; s/^method = .*/method = "paper"/' \
@@ -574,10 +574,10 @@ holds '[.maps[] | select(.method == "stable" and .map == "restitution_threshold"
 [ "$(ls maps/*.svg | wc -l)" = 5 ] || fail "stability: $(ls maps)"
 expect 2 'missing -o' "$gatewalk" stability
 for name in stability.csv stability.json lever_speed.svg; do
-  expect 2 'the same' timeout 20 "$gatewalk" stability -o maps --quick --json maps/$name
+  expect 2 'are the same file' timeout 20 "$gatewalk" stability -o maps --quick --json maps/$name
 done
 mkdir -p blocked/grazing_speed.svg
-expect 1 'grazing_speed.svg' "$gatewalk" stability -o blocked --quick  # before any work
+expect 2 'grazing_speed.svg' "$gatewalk" stability -o blocked --quick  # before any work
 [ "$(ls blocked)" = grazing_speed.svg ] || fail "stability: wrote $(ls blocked) though a figure has no place"
 expect 2 'no meaning' "$gatewalk" stability -o maps --set forces.random_N=1
 
@@ -603,6 +603,182 @@ for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
   grep -q "stopped before the end" out.txt || fail "ctrl-C without a word: $command"
   [ "$before" = "$(cat gate.json m.nc lattice.json $(find charts -type f | sort) | cksum)" ] || fail "ctrl-C changed a file: $command"
 done
+
+# No output may be an input, under whatever name: refused before any work, the input as it was.
+mkdir -p safe/folder
+cp "$scenes/single_gate.toml" safe/own.toml
+cp m.nc safe/m.nc
+cp m.nc safe/other.nc
+cd safe || exit 1
+ln -s own.toml soft.toml
+ln own.toml hard.toml
+ln -s ../safe link
+cp own.toml landscape.csv; cp own.toml chart.json; cp own.toml fidelity.svg; cp own.toml chain.csv
+inputs() { cat own.toml m.nc other.nc landscape.csv chart.json fidelity.svg chain.csv | cksum; }
+untouched=$(inputs)
+destroyers=0
+destroys() {
+  destroyers=$((destroyers + 1))
+  expect 2 'are the same file: an output needs a file of its own' "$@"
+  [ "$(inputs)" = "$untouched" ] || { fail "an input was destroyed: $*"; untouched=$(inputs); }
+}
+destroys "$gatewalk" gate own.toml --json own.toml
+destroys "$gatewalk" gate own.toml --json ./own.toml
+destroys "$gatewalk" gate own.toml --json "$PWD/own.toml"
+destroys "$gatewalk" gate own.toml --json folder/../own.toml
+destroys "$gatewalk" gate own.toml --json link/own.toml
+destroys "$gatewalk" gate own.toml --json soft.toml
+destroys "$gatewalk" gate own.toml --json hard.toml
+destroys "$gatewalk" gate soft.toml --json own.toml
+destroys "$gatewalk" gate /dev/stdin --json own.toml <own.toml
+destroys "$gatewalk" sweep own.toml --vary forces.random_N=1 --csv own.toml
+destroys "$gatewalk" sweep own.toml --vary forces.random_N=1 --json own.toml --csv x.csv
+destroys "$gatewalk" trace own.toml --csv own.toml
+destroys "$gatewalk" trace own.toml --netcdf own.toml
+destroys "$gatewalk" trace own.toml --replay own.toml
+destroys "$gatewalk" trace own.toml --video own.toml
+destroys "$gatewalk" trace own.toml --json own.toml
+destroys "$gatewalk" build own.toml -o own.toml
+destroys "$gatewalk" build own.toml -o x.nc --json own.toml
+destroys "$gatewalk" show m.nc --json m.nc
+destroys "$gatewalk" walk m.nc --json m.nc
+destroys "$gatewalk" walk m.nc own.toml --json own.toml
+destroys "$gatewalk" predict m.nc --json m.nc
+destroys "$gatewalk" predict m.nc own.toml --json own.toml
+destroys "$gatewalk" predict m.nc --row 4=other.nc --json other.nc
+destroys "$gatewalk" lattice own.toml --json own.toml
+destroys "$gatewalk" validate own.toml --json own.toml
+destroys "$gatewalk" validate own.toml --matrix m.nc --json m.nc
+destroys "$gatewalk" landscape landscape.csv -o .
+destroys "$gatewalk" landscape own.toml -o folder --json own.toml
+destroys "$gatewalk" chart own.toml chart.json -o .
+destroys "$gatewalk" chart own.toml m.nc -o folder --json own.toml
+destroys "$gatewalk" chart-field fidelity.svg -o .
+destroys "$gatewalk" chart-chain chain.csv -o "$PWD"
+# Nor may two outputs be one, nor standard output another file of the command.
+destroys "$gatewalk" trace own.toml --csv folder/new --json link/folder/new
+destroys "$gatewalk" landscape own.toml -o folder --json folder/landscape.json
+destroys "$gatewalk" build own.toml -o link/new.nc --json new.nc
+[ $destroyers -ge 20 ] || fail "only $destroyers commands were tried"
+"$gatewalk" gate own.toml >>own.toml 2>err.txt
+[ $? = 2 ] && grep -q 'standard output are the same file' err.txt || fail "appended a table to the scene: $(cat err.txt)"
+"$gatewalk" gate own.toml --json table.txt >table.txt 2>err.txt
+[ $? = 2 ] && grep -q 'standard output and --json table.txt are the same file' err.txt || fail "two outputs in one file: $(cat err.txt)"
+rm -f table.txt err.txt out.txt
+[ "$(inputs)" = "$untouched" ] || fail "an input was destroyed"
+[ "$(ls folder | wc -l)" = 0 ] || fail "refused commands left $(ls folder)"
+mkdir -p folder/scenes && echo '# my own' >folder/scenes/field.toml
+expect 2 'would be replaced; choose another folder' "$gatewalk" reproduce -o folder --quick
+[ "$(cat folder/scenes/field.toml)" = '# my own' ] || fail "reproduce replaced a scene of the user's own"
+cd ..
+
+# What cannot be written or is out of range is said before the work, naming the option.
+long=$(printf 'n%.0s' $(seq 256))
+quick() { expect 2 "$1" timeout 20 "$gatewalk" "${@:2}"; }
+quick 'json: .*File name too long' gate "$scenes/field.toml" --trials 1e9 --json "$long"
+quick 'csv: .*No such file or directory' trace "$scenes/field.toml" --field --trials 1000 --csv none/x.csv
+quick 'o: .*cannot be made' landscape "$scenes/field.toml" --trials 1e9 -o "new/$long"
+quick 'o: .*is no folder' chart "$scenes/field.toml" -o m.nc/charts
+quick 'csv needs a file name' sweep "$scenes/fig8.toml" --trials 1e9 --csv ''
+quick 'matrix needs a file name' validate "$scenes/field.toml" --trials 1e9 --matrix ''
+quick 'o needs a file name' build "$scenes/field.toml" --trials 1e9 -o ''
+quick 'o needs the name of a folder' stability -o ''
+quick 'o --: looks like an option, so the value of -o is missing' build "$scenes/field.toml" --trials 1e9 -o --
+quick 'json --output: looks like an option' gate "$scenes/field.toml" --trials 1e9 --json --output
+quick 'json -x: looks like an option' gate "$scenes/field.toml" --trials 1e9 --json -x
+quick "trials: '1e18' is out of range: at most 1e15" gate "$scenes/field.toml" --trials 1e18
+quick "trials: '1000000000000000001' is out of range: at most 1e15" gate "$scenes/field.toml" --trials 1000000000000000001
+quick "walks: '1e999' is out of range" walk m.nc --walks 1e999
+quick "trials: 'nan' is not a whole number" gate "$scenes/field.toml" --trials nan
+quick "seed: '1e3' is not a seed" gate "$scenes/field.toml" --seed 1e3
+quick 'at most 10000000' chart "$scenes/field.toml" -o charts --trials 1e9
+quick 'visited 1000000000: .* at most 1000000' chart-chain "$scenes/field.toml" -o charts --visited 1e9
+quick 'trial 0 alone has more than .* run.step_s or a shorter run.time_limit_s' trace "$scenes/field.toml" --set run.step_s=1e-7 --csv x.csv
+quick 'more than 100000 values' sweep "$scenes/field.toml" --vary forces.random_N=0:1e-6:10
+quick 'must lie in' landscape "$scenes/field.toml" -o land --set beams.joint_x_m=900 --spacing 0.1
+for set in 'forces.random_N=1' ' forces.random_N = 1' 'forces . random_N=1' 'forces."random_N"=1' '"forces".random_N=1'; do
+  quick 'has no effect: forces.random_N is varied' sweep "$scenes/field.toml" --vary forces.random_N=1,2 --set "$set"
+done
+
+# Modes of files stay; a new file follows the umask. Pipes and devices are written into.
+(umask 027; "$gatewalk" gate "$scenes/single_gate.toml" --trials 5 --json mode.json --quiet; "$gatewalk" build "$scenes/single_gate.toml" --trials 1 -o mode.nc --quiet >/dev/null)
+[ "$(stat -c %a mode.json mode.nc | xargs)" = '640 640' ] || fail "modes of new files: $(stat -c %a mode.json mode.nc | xargs)"
+chmod 600 mode.json mode.nc
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 5 --json mode.json --quiet
+"$gatewalk" build "$scenes/single_gate.toml" --trials 1 -o mode.nc --quiet >/dev/null
+[ "$(stat -c %a mode.json mode.nc | xargs)" = '600 600' ] || fail "modes of replaced files: $(stat -c %a mode.json mode.nc | xargs)"
+mkfifo pipe
+timeout 20 cat pipe >piped.json &
+reader=$!
+timeout 20 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json pipe --quiet || fail "a named pipe"
+wait $reader
+cmp -s piped.json gate.json || fail "another result through a named pipe"
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --quiet --json >(cat >substituted.json) || fail "a process substitution"
+for _ in 1 2 3 4 5 6 7 8 9 10; do cmp -s substituted.json gate.json && break; sleep 0.1; done
+cmp -s substituted.json gate.json || fail "another result through a process substitution"
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json /dev/stdout | cmp -s - gate.json || fail "/dev/stdout is not standard output"
+expect 0 'trapped' "$gatewalk" gate "$scenes/single_gate.toml" --trials 5 --json /dev/null
+expect 2 'cannot go to standard output' "$gatewalk" build "$scenes/single_gate.toml" -o /dev/stdout
+expect 1 'No space left on device' "$gatewalk" gate "$scenes/single_gate.toml" --trials 5 --json /dev/full
+
+# A large file of another kind is refused at once and in little memory.
+truncate -s 3G zeros.nc
+(printf '\211HDF\r\n\032\n'; head -c 100 /dev/zero) >large.nc && truncate -s 3G large.nc
+expect 2 'zeros.nc: not a NetCDF-4 file' bash -c "ulimit -v 2000000; $gatewalk show zeros.nc"
+expect 2 'large.nc: has 3221225472 bytes, more than' bash -c "ulimit -v 2000000; $gatewalk show large.nc"
+rm zeros.nc large.nc
+
+# --strict: status 1 for a result that is not clean, which is written all the same.
+expect 1 'strict: .* the exit status is 1; the result is written' "$gatewalk" gate "$scenes/single_gate.toml" --set run.method=paper --trials 200 --json strict.json --quiet --strict
+cmp -s strict.json paper.json || fail "--strict: another result"
+expect 0 'traversed' "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --strict
+expect 1 'strict' "$gatewalk" sweep "$scenes/single_gate.toml" --trials 50 --vary run.method=stable,paper --strict
+expect 1 'strict' "$gatewalk" lattice "$scenes/field.toml" --set run.method=paper --trials 50 --strict
+expect 1 'strict' "$gatewalk" build "$scenes/field.toml" --set run.method=paper --trials 5 -o strict.nc --strict
+cmp -s strict.nc paper.nc || fail "--strict: another matrix"
+expect 1 'strict' "$gatewalk" predict paper.nc --strict
+expect 1 'strict' "$gatewalk" walk paper.nc --strict
+expect 0 'trapped' "$gatewalk" predict m.nc --strict
+
+# Help of a command, and the command that was meant.
+"$gatewalk" build --help >help.txt
+"$gatewalk" help build | cmp -s - help.txt || fail "help build is not build --help"
+expect 0 'usage: gatewalk' "$gatewalk" help
+expect 0 'exit status: 0 fine, 1 failure (with --strict' "$gatewalk" --help
+expect 2 'did you mean build?' "$gatewalk" biuld
+expect 2 'did you mean predict?' "$gatewalk" help predictt
+expect 2 'did you mean chart-field?' "$gatewalk" chart_field
+"$gatewalk" fly 2>&1 | grep -q 'did you mean' && fail "fly is no misspelled command"
+
+# Names that are no UTF-8 stop no command.
+odd=$(printf 'odd\377')
+cp "$scenes/single_gate.toml" "$odd.toml"
+expect 0 'traversed' "$gatewalk" gate "$odd.toml" --trials 5 --json odd.json
+expect 0 '' "$gatewalk" trace "$odd.toml" --json odd.json --replay odd.html --netcdf odd.nc --csv odd.csv
+expect 0 '' "$gatewalk" landscape "$odd.toml" -o "$odd" --trials 5
+expect 0 '' "$gatewalk" build "$odd.toml" --trials 1 -o "$odd.nc" --json odd.json
+expect 0 '' "$gatewalk" show "$odd.nc" --json odd.json
+expect 0 '' "$gatewalk" predict "$odd.nc" --row "0=$odd.nc" --json odd.json
+expect 0 '' "$gatewalk" chart "$odd.toml" -o odd-chart --trials 5 --repeats 1 --methods stable --quiet
+jq -e . odd.json odd-chart/chart.json "$odd/landscape.json" >/dev/null || fail "a name that is no UTF-8 breaks the JSON"
+
+# SIGHUP ends like ctrl-C; a signal that was ignored at the start stays ignored.
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 1e9 --json gate.json >out.txt 2>&1 &
+pid=$!
+sleep 1
+kill -HUP $pid
+wait $pid
+[ $? = 130 ] && grep -q 'stopped before the end' out.txt || fail "SIGHUP: $(cat out.txt)"
+(trap '' INT HUP; exec "$gatewalk" gate "$scenes/single_gate.toml" --trials 1e9 --json gate.json >out.txt 2>&1) &
+pid=$!
+sleep 1
+kill -INT $pid; kill -HUP $pid; kill -INT $pid
+sleep 1.5
+kill -0 $pid 2>/dev/null || fail "an ignored signal ended the program"
+kill -TERM $pid
+wait $pid
+[ $? = 130 ] || fail "SIGTERM beside ignored signals"
+ls -A | grep -q '^\.gatewalk-' && fail "temporary files stayed behind: $(ls -A)"
 
 [ $failures = 0 ] || exit 1
 echo "all fine"

@@ -12,7 +12,7 @@ namespace {
 // Each in a child process: a flag that is set stays set.
 
 TEST(InterruptDeathTest, FirstSignalIsOnlyNoted) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     EXPECT_EXIT(
         {
           install_interrupt_handler();
@@ -36,8 +36,8 @@ TEST(InterruptDeathTest, WorkWithoutASafePointEndsWithinTwoSeconds) {
 }
 
 TEST(InterruptDeathTest, SecondSignalEndsAtOnce) {
-  for (const int first : {SIGINT, SIGTERM}) {
-    for (const int second : {SIGINT, SIGTERM}) {
+  for (const int first : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int second : {SIGINT, SIGTERM, SIGHUP}) {
       EXPECT_EXIT(
           {
             install_interrupt_handler();
@@ -47,6 +47,20 @@ TEST(InterruptDeathTest, SecondSignalEndsAtOnce) {
           },
           testing::ExitedWithCode(130), "");
     }
+  }
+}
+
+TEST(InterruptDeathTest, AnInheritedIgnoredSignalStaysIgnored) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    EXPECT_EXIT(
+        {
+          std::signal(signal, SIG_IGN);
+          install_interrupt_handler();
+          std::raise(signal);
+          std::raise(signal);
+          std::_Exit(interrupted() ? 1 : 7);
+        },
+        testing::ExitedWithCode(7), "");
   }
 }
 

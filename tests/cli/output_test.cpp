@@ -13,15 +13,20 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include "cli/interrupt.h"
 
 // These stand in front of the C library's in this test program: the k-th call can be made to fail.
 namespace {
 struct Faults {
   int fsync = 0, rename = 0;  // 0: none, k: the k-th from now
+  std::function<void()> at_fsync;  // what happens before a sync
 } faults;
 
 bool strikes(int& countdown, int error) {
@@ -32,6 +37,7 @@ bool strikes(int& countdown, int error) {
 }  // namespace
 
 extern "C" int fsync(int fd) {
+  if (faults.at_fsync) faults.at_fsync();
   return strikes(faults.fsync, EIO) ? -1 : static_cast<int>(::syscall(SYS_fsync, fd));
 }
 
@@ -169,9 +175,9 @@ TEST_F(Output, AReaderOfTheOldFileKeepsTheOldText) {
 
 TEST_F(Output, RefusesTargetsThatAreNoRegularFile) {
   fs::create_directory(path("folder"));
-  fs::create_symlink("/dev/full", path("link"));
   fs::create_symlink("nowhere", path("dangling"));
-  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  std::ofstream(path("regular")) << "old";
+  fs::create_symlink("regular", path("link"));
   const auto before = names();
   EXPECT_EQ(refusal(path("folder"), "x"), path("folder") + ": cannot be written: is a directory");
   EXPECT_NE(refusal(path("folder/"), "x").find("is a directory"), std::string::npos);
@@ -179,11 +185,74 @@ TEST_F(Output, RefusesTargetsThatAreNoRegularFile) {
       refusal(path("link"), "x").find(path("link") + ": cannot be written: is a symbolic link"),
       std::string::npos);
   EXPECT_NE(refusal(path("dangling"), "x").find("is a symbolic link"), std::string::npos);
-  EXPECT_EQ(refusal(path("pipe"), "x"),
-            path("pipe") + ": cannot be written: is not a regular file");
-  EXPECT_EQ(refusal("/dev/full", "x"), "/dev/full: cannot be written: is not a regular file");
   EXPECT_EQ(refusal("", "x"), "\"\": cannot be written: the name is empty");
   EXPECT_EQ(names(), before);
+  EXPECT_EQ(read(path("regular")), "old");
+}
+
+TEST_F(Output, WritesIntoAPipe) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  fs::create_symlink("pipe", path("link"));  // as /dev/fd/63 of a shell's >(command) is one
+  const std::string text(200'000, 'x');      // more than a pipe holds
+  for (const char* name : {"pipe", "link"}) {
+    std::string seen;
+    std::thread reader([&] { seen = read(path("pipe")); });
+    EXPECT_EQ(refusal(path(name), text), "(written)");
+    reader.join();
+    EXPECT_TRUE(seen == text) << name;
+    EXPECT_EQ(names(), (std::vector<std::string>{"link", "pipe"}));
+  }
+}
+
+TEST_F(Output, WritesIntoADevice) {
+  EXPECT_EQ(refusal("/dev/null", "x"), "(written)");
+  EXPECT_EQ(refusal("/dev/full", "x"), "/dev/full: cannot be written: No space left on device");
+}
+
+TEST_F(Output, SaysBeforehandWhatCannotBeWritten) {
+  const auto complaint = [](const std::string& name) {
+    try {
+      require_writable(name);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("(fine)");
+  };
+  std::ofstream(path("a")) << "old";
+  fs::create_directory(path("folder"));
+  EXPECT_EQ(complaint(path("a")), "(fine)");
+  EXPECT_EQ(complaint(path("new")), "(fine)");
+  EXPECT_EQ(complaint("-"), "(fine)");
+  EXPECT_EQ(complaint("/dev/null"), "(fine)");
+  EXPECT_EQ(complaint(path("folder")), path("folder") + ": cannot be written: is a directory");
+  EXPECT_NE(complaint(path("missing/a")).find("No such file"), std::string::npos);
+  EXPECT_NE(complaint(path("a/b")).find("Not a directory"), std::string::npos);
+  EXPECT_NE(complaint(path(std::string(256, 'n'))).find("File name too long"), std::string::npos);
+  std::string deep = folder_.string();
+  while (deep.size() < 5000) deep += "/deep";
+  EXPECT_NE(complaint(deep).find("File name too long"), std::string::npos);
+  EXPECT_NE(complaint("/proc/gatewalk").find("/proc/gatewalk: cannot be written"), std::string::npos);
+  EXPECT_EQ(names(), (std::vector<std::string>{"a", "folder"}));  // nothing stays behind
+}
+
+TEST_F(Output, AFolderIsPossibleWhereItCanBeMade) {
+  const auto complaint = [](const std::string& name) {
+    try {
+      require_possible_folder(name);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("(fine)");
+  };
+  std::ofstream(path("file")) << "old";
+  EXPECT_EQ(complaint(folder_.string()), "(fine)");
+  EXPECT_EQ(complaint(path("a/b/c/")), "(fine)");
+  EXPECT_EQ(complaint("relative"), "(fine)");
+  EXPECT_NE(complaint(path("file")).find("is no folder"), std::string::npos);
+  EXPECT_NE(complaint(path("file/a/b")).find("cannot be made"), std::string::npos);
+  EXPECT_NE(complaint(path("a/" + std::string(256, 'n') + "/b")).find("cannot be made"), std::string::npos);
+  EXPECT_NE(complaint("").find("empty"), std::string::npos);
+  EXPECT_EQ(names(), std::vector<std::string>{"file"});  // and none was made
 }
 
 TEST_F(Output, NamesAFolderThatIsMissing) {
@@ -252,6 +321,47 @@ TEST_F(Output, AFolderThatCannotBeSyncedIsNoSilentSuccess) {
   EXPECT_EQ(refusal(path("a"), "new"),
             path("a") + ": is written, but its folder could not be synced: Input/output error");
   EXPECT_EQ(read(path("a")), "new");
+  EXPECT_EQ(names(), std::vector<std::string>{"a"});
+}
+
+// ---- Signals in the middle of a write, in a child process
+
+using UnfinishedDeathTest = Output;
+
+TEST_F(UnfinishedDeathTest, AnEndByASignalLeavesTheOldFileAlone) {
+  std::ofstream(path("a")) << "old";
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    EXPECT_EXIT(
+        {
+          install_interrupt_handler();
+          faults.at_fsync = [&] {
+            if (names().size() != 2) std::_Exit(1);  // the temporary file is there
+            std::raise(signal);
+            std::raise(signal);
+          };
+          write_text_atomically(path("a"), "new");
+          std::_Exit(2);
+        },
+        testing::ExitedWithCode(130), "");
+    EXPECT_EQ(read(path("a")), "old");
+    EXPECT_EQ(names(), std::vector<std::string>{"a"});
+  }
+}
+
+TEST_F(UnfinishedDeathTest, AWriteThatTakesTooLongAfterASignalLeavesTheOldFileAlone) {
+  std::ofstream(path("a")) << "old";
+  EXPECT_EXIT(
+      {
+        install_interrupt_handler();
+        faults.at_fsync = [] {
+          std::raise(SIGTERM);
+          for (int i = 0; i < 60; ++i) ::usleep(50'000);
+        };
+        write_text_atomically(path("a"), "new");
+        std::_Exit(2);
+      },
+      testing::ExitedWithCode(130), "every file is whole");
+  EXPECT_EQ(read(path("a")), "old");
   EXPECT_EQ(names(), std::vector<std::string>{"a"});
 }
 

@@ -57,11 +57,13 @@ Eigen::VectorXd by_enumeration(const Problem& p) {
       b[i] = p.b[in[i]];
       for (Eigen::Index j = 0; j < m; ++j) w(i, j) = p.w(in[i], in[j]);
     }
-    const Eigen::FullPivLU<Eigen::MatrixXd> lu(w);
-    if (m > 0 && !lu.isInvertible()) continue;
     Eigen::VectorXd z = Eigen::VectorXd::Zero(n);
-    const Eigen::VectorXd part = m > 0 ? Eigen::VectorXd(lu.solve(-b)) : Eigen::VectorXd();
-    for (Eigen::Index i = 0; i < m; ++i) z[in[i]] = part[i];
+    if (m > 0) {  // of an empty matrix there is no decomposition
+      const Eigen::FullPivLU<Eigen::MatrixXd> lu(w);
+      if (!lu.isInvertible()) continue;
+      const Eigen::VectorXd part = lu.solve(-b);
+      for (Eigen::Index i = 0; i < m; ++i) z[in[i]] = part[i];
+    }
     const Eigen::VectorXd after = p.w * z + p.b;
     if (z.minCoeff() >= 0.0 && after.minCoeff() >= -1e-9 * scale) return z;
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <netcdf.h>
 #include <netcdf_mem.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -17,6 +18,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <thread>
 
 #include "chains.h"
 
@@ -558,17 +560,81 @@ TEST_F(ChainIo, NeverWritesOverWhatIsNoRegularFile) {
       EXPECT_NE(what.find(part), std::string::npos) << what;
     }
   };
-  refused("/dev/full", "not a regular file");
-  refused(fs::path(path()).parent_path().string(), "not a regular file");
+  refused("/dev/full", "No space left on device");
+  refused(fs::path(path()).parent_path().string(), "is a directory");
   refused(path("no/such/folder.nc"), "No such file or directory");
   put_bytes(path("file"), "x");
   refused(path("file/counts.nc"), "Not a directory");
   fs::create_symlink("file", path("link"));
-  refused(path("link"), "not a regular file");
-  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
-  refused(path("pipe"), "not a regular file");
+  refused(path("link"), "is a symbolic link");
   EXPECT_EQ(bytes_of(path("file")), "x");
-  EXPECT_EQ(files(), 3);
+  EXPECT_EQ(files(), 2);
+}
+
+TEST_F(ChainIo, WritesIntoAPipe) {
+  write_counts(path(), example());
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  std::string seen;
+  std::thread reader([&] { seen = bytes_of(path("pipe")); });
+  write_counts(path("pipe"), example());
+  reader.join();
+  EXPECT_TRUE(seen == bytes_of(path()));
+  EXPECT_EQ(files(), 2);
+}
+
+TEST_F(ChainIo, KeepsTheModeOfTheFileItReplaces) {
+  const auto mode = [&] { return static_cast<unsigned>(fs::status(path()).permissions()); };
+  const mode_t before = ::umask(027);
+  write_counts(path(), example());
+  ::umask(before);
+  EXPECT_EQ(mode(), 0640u);
+  ASSERT_EQ(::chmod(path().c_str(), 0600), 0);
+  write_counts(path(), example());
+  EXPECT_EQ(mode(), 0600u);
+}
+
+TEST_F(ChainIo, TakesANameAsLongAsAFileCanHave) {
+  write_counts(path(std::string(255, 'n')), example());
+  EXPECT_TRUE(same(read_counts(path(std::string(255, 'n'))), example()));
+}
+
+// Sparse files: were they read into memory, the limit below would stop the program.
+TEST_F(ChainIo, RefusesALargeFileInConstantMemory) {
+  const std::string begin = "\x89HDF\r\n\x1a\n";
+  put_bytes(path("zeros"), "");
+  fs::resize_file(path("zeros"), 3'000'000'000);
+  put_bytes(path("large"), begin);
+  fs::resize_file(path("large"), 3'000'000'000);
+  put_bytes(path("other"), begin);
+  fs::resize_file(path("other"), 500'000'000);
+  put_bytes(path("damaged"), begin + "crc64-xz:0123456789abcdef");
+  fs::resize_file(path("damaged"), 500'000'000);
+  const auto resident = [] {
+    rusage usage = {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;  // KB
+  };
+  const long before = resident();
+  expect_complaint(path("zeros"), "not a NetCDF-4 file");
+  expect_complaint(path("large"), "more than the 1073741824");
+  expect_complaint(path("other"), "holds no checksum");
+  expect_complaint(path("damaged"), "checksum does not match");
+  EXPECT_LT(resident() - before, 20'000);
+}
+
+// A mark that lies across two of the pieces that are read, and a second one far behind the first.
+TEST_F(ChainIo, FindsTheChecksumWhereverItStands) {
+  const std::string begin = "\x89HDF\r\n\x1a\n";
+  for (int shift = 0; shift < 12; ++shift) {
+    std::string bytes = begin;
+    bytes.resize(static_cast<std::size_t>(65536 - shift), 'x');
+    bytes += "crc64-xz:0000000000000000" + std::string(70'000, 'y');
+    put_bytes(path(), sealed(bytes));
+    const std::string what = complaint(path());
+    EXPECT_EQ(what.find("checksum"), std::string::npos) << what;  // only its content is refused
+    put_bytes(path(), sealed(bytes) + "crc64-xz:");
+    expect_complaint(path(), "more than once");
+  }
 }
 
 }  // namespace
