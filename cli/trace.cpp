@@ -1,7 +1,11 @@
+#include <optional>
+
 #include "cli/auto.h"
 #include "cli/command.h"
+#include "cli/drawing.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/quantity.h"
 #include "cli/recording.h"
 #include "cli/replay.h"
 #include "cli/report.h"
@@ -15,17 +19,17 @@ constexpr std::size_t kMostMoments = 2'000'000;  // of all runs together, some 1
 constexpr std::size_t kMostLines = 20;     // of the table
 
 std::string table_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {
-  std::string text = scene_line(scene) + "   trial  ending            seconds  steps   hits" +
-                     (across_field ? "  gates" : "") +
-                     "   work (J)  lost (J)  of it in hits  left over (J)\n";
+  std::string text = scene_line(scene) + "   trial  ending                time  steps   hits" +
+                     (across_field ? "  gates" : "") + "        work        lost  of it in hits   left over\n";
+  const auto joules = [](double energy) { return quantity(energy, "J"); };
   for (std::size_t i = 0; i < runs.size() && i < kMostLines; ++i) {
     const Recording& r = runs[i];
     const dynamics::Energies& e = r.moments.back().energy;
-    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -16) + padded(fixed(r.seconds, 2), 9) +
+    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -16) + padded(quantity(r.seconds, "s"), 10) +
             padded(std::to_string(r.health.steps), 7) + padded(std::to_string(r.health.impacts), 7) +
             (across_field ? padded(std::to_string(r.gates), 7) : "") +
-            padded(fixed(e.propulsion_work + e.random_work, 1), 11) + padded(fixed(e.lost, 1), 10) +
-            padded(fixed(e.hit_loss, 1), 15) + padded(fixed(e.mechanical(), 1), 15) + "\n";
+            padded(joules(e.propulsion_work + e.random_work), 12) + padded(joules(e.lost), 12) +
+            padded(joules(e.hit_loss), 15) + padded(joules(e.mechanical()), 12) + "\n";
   }
   if (runs.size() > kMostLines)
     text += "   ... and " + std::to_string(runs.size() - kMostLines) + " more\n";
@@ -57,7 +61,8 @@ int run_trace(const std::vector<std::string>& arguments) {
       "netcdf", po::value<std::string>()->value_name("FILE"), "write all samples as NetCDF-4")(
       "replay", po::value<std::string>()->value_name("FILE.html"), "write a page that plays the runs")(
       "video", po::value<std::string>()->value_name("FILE.mp4"), "write a film of the first run (needs ffmpeg)")(
-      "video-speed", po::value<double>()->default_value(1.0, "1")->value_name("X"), "times as fast as real");
+      "video-speed", po::value<double>()->value_name("X"),
+      "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
   if (!options.parse(arguments)) return kFine;
   std::vector<std::string> files{options.text("scene")};
   bool to_stdout = false;
@@ -90,10 +95,14 @@ int run_trace(const std::vector<std::string>& arguments) {
     throw UsageError("--trials " + std::to_string(trials) + ": at most " + std::to_string(kMostRuns) +
                      " runs are recorded; pick some with --only");
   }
-  const double speed = options.get<double>("video-speed");
-  if (!(speed >= 0.01 && speed <= 100.0)) throw UsageError("--video-speed: must lie in [0.01, 100]");
-
   Scene scene = read_scene(options.text("scene"), options.overrides());
+  std::optional<double> speed;
+  if (options.has("video-speed")) {
+    speed = options.get<double>("video-speed");
+    const double pace = dynamics::scale_of(scene.gate).time;
+    if (!(*speed >= 0.01 * pace && *speed <= 100.0 * pace))
+      throw UsageError("--video-speed: must lie in [" + digits(0.01 * pace) + ", " + digits(100.0 * pace) + "]");
+  }
   const Json settled = settle_method(options, scene, across_field ? RunsFrom::everywhere : RunsFrom::start);
   std::vector<Recording> runs;
   std::size_t moments = 0;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "dynamics/landscape.h"
+#include "tests/cli/films.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -105,6 +106,52 @@ TEST(Recording, FilmHasTheForceThatComes) {
   add_details(film, s, runs);
   EXPECT_EQ(film["runs"][0]["landscape_J"].size(), moments.size());
   EXPECT_EQ(film["runs"][0]["hits"], runs[0].health.impacts);
+}
+
+/// The scene in other units: each of its keys times what its unit is made of.
+Scene in_other_units(const Scene& s, double length, double mass, double time) {
+  const double force = mass * length / (time * time);
+  Scene other = s;
+  other.gate.body = {s.gate.body.mass * mass, s.gate.body.radius * length};
+  dynamics::Beams& beams = other.gate.beams;
+  for (double* const x : {&beams.length, &beams.joint_x, &beams.joint_y}) *x *= length;
+  beams.mass *= mass;
+  for (double* const k : {&beams.stiffness_left, &beams.stiffness_right}) *k *= force * length;
+  beams.damping *= force * length * time;
+  dynamics::Forces& forces = other.gate.forces;
+  forces = {forces.propulsion * force, forces.random * force, forces.random_rate / time, forces.drag * mass / time};
+  other.gate.contact.impulse_threshold *= force * time;
+  dynamics::Run& run = other.gate.run;
+  for (double* const t : {&run.step, &run.time_limit}) *t *= time;
+  for (double* const x : {&run.traverse_y, &run.event_tolerance}) *x *= length;
+  other.start = {s.start.x * length, s.start.y * length, s.start.vx * length / time, s.start.vy * length / time};
+  return other;
+}
+
+/// A film without what is said in words, which name numbers with their units.
+Json without_words(Json film) {
+  film.erase("title");
+  for (Json& run : film["runs"]) run.erase("label");
+  return film;
+}
+
+// In other units a film has the same numbers times these, to the last bit; other numbers do not.
+TEST(Recording, FilmOfASceneInOtherUnits) {
+  for (const auto& [s, across] : {std::pair{scene("x_m = 1.5\n"), false}, {parse_scene("", "field.toml"), true}}) {
+    const std::vector<Recording> runs{record(s, 3, 1, across), record(s, 3, 2, across)};
+    const Json film = film_of(s, runs, across);
+    for (const auto& [l, m, t] : {Powers{-4, 0, 0}, {0, 4, 0}, {0, 0, -2}, {-2, -3, 1}, {2, 1, 2}}) {
+      const Scene other = in_other_units(s, power(l), power(m), power(t));
+      const std::vector<Recording> others{record(other, 3, 1, across), record(other, 3, 2, across)};
+      EXPECT_TRUE(without_words(film_of(other, others, across)) == without_words(twin(film, power(l), power(m), power(t))))
+          << "4^" << l << " 4^" << m << " 4^" << t;
+    }
+    const Scene smaller = in_other_units(s, 0.008, 1.0, 1.0);  // no power of 4: the same within seven digits
+    const Json there = film_of(smaller, {record(smaller, 3, 1, across)}, across), here = twin(film, 0.008, 1.0, 1.0);
+    ASSERT_EQ(there["runs"][0]["x"].size(), here["runs"][0]["x"].size());
+    for (std::size_t i = 0; i < here["runs"][0]["x"].size(); ++i)
+      EXPECT_NEAR(there["runs"][0]["x"][i].get<double>(), here["runs"][0]["x"][i].get<double>(), 1e-5 * 0.08);
+  }
 }
 
 }  // namespace
