@@ -622,7 +622,7 @@ const gatewalkReplay = (() => {
       for (const {keys, canvas} of panels)
         drawChart(...sized(canvas, canvas.clientHeight), colours, font, run, keys, film.scale, time);
       put(clock, text.seconds(time));
-      slider.value = time;
+      slider.value = time / unit;
       if (playing && performance.now() - toldAt < 100) return;
       toldAt = performance.now();
       put(mode, ended ? `ended: ${run.ending}` : ['left', 'right'].map((side) => `${side} beam ${contactWord(state, side)}`).join(', '));
@@ -667,7 +667,7 @@ const gatewalkReplay = (() => {
     function choose(index) {
       run = runs[index];
       time = run.t[0];
-      slider.min = run.t[0]; slider.max = run.t[run.end];
+      slider.min = run.t[0] / unit; slider.max = run.t[run.end] / unit;  // a slider keeps few digits of small numbers
       put(words, told(run, film));
       stage.setAttribute('aria-label', `Animation of the body among the beams. ${told(run, film)}`);
       panels.forEach(({canvas, title, head, keys}) => {
@@ -696,7 +696,7 @@ const gatewalkReplay = (() => {
 
     play.addEventListener('click', toggle);
     stage.addEventListener('click', toggle);
-    slider.addEventListener('input', () => { if (playing) pause(); seek(Number(slider.value)); });
+    slider.addEventListener('input', () => { if (playing) pause(); seek(Number(slider.value) * unit); });
     chooser.addEventListener('change', () => { if (playing) pause(); choose(Number(chooser.value)); });
     follow.addEventListener('change', show);
     root.addEventListener('keydown', key);

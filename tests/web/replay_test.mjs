@@ -14,6 +14,7 @@ const seen = (name, options, look) =>
     assert.deepEqual(faults, []);
   });
 
+// In the scene's own units of time: seconds, but for the twins.
 const time = (page) => page.locator('.gwr-time').evaluate((slider) => Number(slider.value));
 const end = (page) => page.locator('.gwr-time').evaluate((slider) => Number(slider.max));
 const pixels = (page) => page.locator('.gwr-stage').evaluate((canvas) => canvas.toDataURL());
@@ -185,7 +186,7 @@ for (const kind of ['gate', 'field'])
     await seen(`${kind === 'gate' ? 'gate-one' : kind}.html`, {}, async (page) => { paper = await look(page); });
     assert.equal(new Set(paper.pictures).size, paper.pictures.length, 'it moves');
     assert.ok(paper.lines.length > 1000);
-    for (let twin = 0; twin < 7; ++twin)
+    for (const twin of [2, 3, 4, 5])
       await seen(`${kind}-twin-${twin}.html`, {}, async (page) => assert.deepEqual(await look(page), paper, `twin ${twin}`));
   });
 
