@@ -167,6 +167,9 @@ int run_landscape(const std::vector<std::string>& arguments) {
   json["passes"] = Json::array();
   std::string table = scene_line(scene) +
                       padded("", -22) + "    pass at x           y   above the start   above the basin   basin at x           y\n";
+  const dynamics::Scale scale = dynamics::scale_of(scene.gate);
+  const auto place = [&](double x) { return reading(x, "m", 0.01 * scale.length); };
+  const auto energy = [&](double e) { return reading(e, "J", 0.01 * scale.energy()); };
   for (const Level& level : levels) {
     const auto& [x, y] = level.from_basin.way.front();
     json["passes"].push_back({{"grid_m", level.spacing},
@@ -179,11 +182,11 @@ int run_landscape(const std::vector<std::string>& arguments) {
       table += "  no basin on the way: downhill to the far boundary\n";
       continue;
     }
-    table += padded(quantity(level.from_basin.x, "m"), 13) + padded(quantity(level.from_basin.y, "m"), 12) +
-             padded(quantity(level.above_start(), "J"), 18) + padded(quantity(level.from_basin.barrier(), "J"), 18) +
-             padded(quantity(x, "m"), 13) + padded(quantity(y, "m"), 12) + "\n";
+    table += padded(place(level.from_basin.x), 13) + padded(place(level.from_basin.y), 12) +
+             padded(energy(level.above_start()), 18) + padded(energy(level.from_basin.barrier()), 18) +
+             padded(place(x), 13) + padded(place(y), 12) + "\n";
   }
-  table += "Between grid points the pass may lie lower: hence the finer grid.\nThe start has " + quantity(moving, "J") +
+  table += "Between grid points the pass may lie lower: hence the finer grid.\nThe start has " + energy(moving) +
            " of kinetic energy: " +
            (fine.above_start() > moving
                 ? "too little for the pass without work of the random force.\n"

@@ -69,9 +69,10 @@ std::string quantity(double x, const std::string& unit, int significant) {
 std::string reading(double x, const std::string& unit, double step) {
   if (!std::isfinite(x)) return "-";
   const double power = std::round(std::log10(step)), last = std::pow(10.0, power), typical = 100.0 * last;
-  Sized shown = power >= -3.0 && power <= 0.0 ? Sized{1.0, unit} : largest_within(unit, typical);
+  const bool plain = power >= -4.0 && power <= 0.0;
+  Sized shown = plain ? Sized{1.0, unit} : largest_within(unit, typical);
   std::string behind = " " + shown.name;
-  if (const double steps = typical / shown.size; steps < 0.09 || steps >= 1e3) {  // beyond all prefixes
+  if (const double size = typical / shown.size; !plain && (size < 0.9 || size > 999.0)) {  // beyond all prefixes
     const int exponent = 3 * static_cast<int>(std::floor((power + 2.0) / 3.0));
     shown.size = std::pow(10.0, exponent);
     behind = "e" + std::to_string(exponent) + " " + unit;
@@ -84,5 +85,7 @@ std::string reading(double x, const std::string& unit, double step) {
   }
   return text + behind;
 }
+
+double step_of(double least, double most) { return std::max(least, 1e-5 * most); }
 
 }  // namespace gatewalk::cli

@@ -25,4 +25,7 @@ struct Sized {
 /// nearest to it. What is not zero and less than that reads "<0.1 J" or ">-0.1 J".
 [[nodiscard]] std::string reading(double x, const std::string& unit, double step);
 
+/// What counts among numbers up to `most`: `least`, but no more than five digits of the largest.
+[[nodiscard]] double step_of(double least, double most);
+
 }  // namespace gatewalk::cli

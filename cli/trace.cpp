@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "cli/auto.h"
@@ -21,11 +23,21 @@ constexpr std::size_t kMostLines = 20;     // of the table
 std::string table_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {
   std::string text = scene_line(scene) + "   trial  ending                time  steps   hits" +
                      (across_field ? "  gates" : "") + "        work        lost  of it in hits   left over\n";
-  const auto joules = [](double energy) { return quantity(energy, "J"); };
+  // One unit for all lines, so that they can be compared.
+  const dynamics::Scale scale = dynamics::scale_of(scene.gate);
+  double longest = 0.0, most = 0.0;
+  for (const Recording& r : runs) {
+    const dynamics::Energies& e = r.moments.back().energy;
+    longest = std::max(longest, r.seconds);
+    for (const double energy : {e.propulsion_work + e.random_work, e.lost, e.hit_loss, e.mechanical()})
+      most = std::max(most, std::abs(energy));
+  }
+  const auto seconds = [&](double time) { return reading(time, "s", step_of(0.01 * scale.time, longest)); };
+  const auto joules = [&](double energy) { return reading(energy, "J", step_of(0.1 * scale.energy(), most)); };
   for (std::size_t i = 0; i < runs.size() && i < kMostLines; ++i) {
     const Recording& r = runs[i];
     const dynamics::Energies& e = r.moments.back().energy;
-    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -16) + padded(quantity(r.seconds, "s"), 10) +
+    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -16) + padded(seconds(r.seconds), 10) +
             padded(std::to_string(r.health.steps), 7) + padded(std::to_string(r.health.impacts), 7) +
             (across_field ? padded(std::to_string(r.gates), 7) : "") +
             padded(joules(e.propulsion_work + e.random_work), 12) + padded(joules(e.lost), 12) +

@@ -528,9 +528,10 @@ class Picture {
     y += 48;
 
     const auto bar = [&](const std::string& name, const std::vector<double>& energy, double most, Colour c) {
+      const double step = step_of(0.1 * unit_.energy(), most);
       const double joules = now.moment.between(energy);
       text(x, y, 16, name, kText);
-      text(kRightEdge, y, 16, shown(reading(m.between(energy), "J", 0.1 * unit_.energy())), kText, false, -160);
+      text(kRightEdge, y, 16, shown(reading(m.between(energy), "J", step)), kText, false, -160);
       fill({x, y + 7, kRightEdge, y + 15}, kLine);
       if (most > 0.0) fill({x, y + 7, x + std::clamp(joules / most, 0.0, 1.0) * (kRightEdge - x), y + 15}, c);
       y += 40;

@@ -258,17 +258,22 @@ const gatewalkReplay = (() => {
     return `${minus(String(Number((rounded / size).toPrecision(significant))))} ${name}`;
   }
 
-  /** One of many numbers of a kind, all with one unit and the same decimals; `step` is what counts. As in cli/quantity.h. */
-  function reading(x, unit, step) {
+  /** The unit and the decimals of many numbers of a kind, of which `step` is what counts: as cli/quantity.h says. */
+  function readingUnit(unit, step) {
     const power = Math.round(Math.log10(step)), last = 10 ** power, typical = 100 * last;
-    let [size, name] = power >= -3 && power <= 0 ? [1, unit] : largestWithin(unit, typical);
+    const plain = power >= -4 && power <= 0;
+    let [size, name] = plain ? [1, unit] : largestWithin(unit, typical);
     name = ` ${name}`;
-    if (typical / size < 0.09 || typical / size >= 1e3) {  // beyond all prefixes
+    if (!plain && (typical / size < 0.9 || typical / size > 999)) {  // beyond all prefixes
       const exponent = 3 * Math.floor((power + 2) / 3);
       size = 10 ** exponent;
       name = `e${exponent} ${unit}`;
     }
-    const decimals = Math.max(0, Math.round(Math.log10(size / last)));
+    return {size, name, decimals: Math.max(0, Math.round(Math.log10(size / last)))};
+  }
+
+  /** One of them. What is not zero is not shown as zero: "<0.1 J". */
+  function reading(x, {size, name, decimals}) {
     let text = (x / size).toFixed(decimals);
     if (Number(text) === 0) {
       const least = (10 ** -decimals).toFixed(decimals);
@@ -277,25 +282,30 @@ const gatewalkReplay = (() => {
     return minus(text) + name;
   }
 
-  /** Readings of a scene: a hundredth of its unit of time, a tenth of its other units. */
-  function readingsOf({length_m: length, mass_kg: mass, time_s: time}) {
+  /** What a scene's readings are in: a hundredth of its unit of time counts, a tenth of its other units. */
+  function unitsOf({length_m: length, mass_kg: mass, time_s: time}, runs) {
     const force = mass * length / (time * time);
+    const joules = (keys) => {
+      const most = Math.max(...runs.flatMap((run) => keys.filter((key) => run[key]).map((key) => largest(run[key]))));
+      return readingUnit('J', Math.max(0.1 * force * length, 1e-5 * most));
+    };
     return {
-      seconds: (t) => reading(t, 's', 0.01 * time),
-      joules: (e) => reading(e, 'J', 0.1 * force * length),
-      newtons: (f) => reading(f, 'N', 0.1 * force),
-      speed: (v) => reading(v, 'm/s', 0.1 * length / time),
+      time: readingUnit('s', 0.01 * time),
+      force: readingUnit('N', 0.1 * force),
+      speed: readingUnit('m/s', 0.1 * length / time),
+      energies: kPanels.map(({keys}) => joules(keys)),
     };
   }
+  const largest = (values) => values.reduce((a, b) => Math.max(a, b), 0);
 
   /** How a run went, for somebody who does not see it. */
-  function told(run, film) {
-    const {joules} = readingsOf(film.scale);
-    const largest = (values) => Math.round(values.reduce((a, b) => Math.max(a, b), 0) * 180 / Math.PI);
+  function told(run, film, units) {
+    const degrees = (angles) => Math.round(largest(angles) * 180 / Math.PI);
+    const joules = (energy) => reading(energy, units.energies[1]);
     const gates = new Set(run.gx.map((gx, i) => `${gx} ${run.gy[i]}`)).size;
     const where = film.columns * film.rows > 1
       ? `It was in ${gates} of ${film.columns} x ${film.rows} gates, at last in column ${whole(run.gx[run.end])}, row ${run.gy[run.end]}.`
-      : `The left beam was deflected by up to ${largest(run.left)} degrees, the right one by up to ${largest(run.right)} degrees.`;
+      : `The left beam was deflected by up to ${degrees(run.left)} degrees, the right one by up to ${degrees(run.right)} degrees.`;
     const work = run.work_J[run.end], lost = run.lost_J[run.end];
     return `${run.label}${run.label.includes(run.ending) ? '' : `: ${run.ending}`}. ${where} ` +
       `Propulsion and random force put in ${joules(work)}; ${joules(lost)} were lost.`;
@@ -447,7 +457,7 @@ const gatewalkReplay = (() => {
   }
 
   /** Energies over time; what is still to come is faint. */
-  function drawChart(ctx, w, h, c, font, run, keys, scale, time) {
+  function drawChart(ctx, w, h, c, font, run, keys, scale, unitOfEnergy, time) {
     const t0 = run.t[0], t1 = run.t[run.end], span = t1 - t0 || scale.time_s;
     const [low, high] = energyRange(run, keys, scale);
     const x = (t) => kLeft + (w - kLeft - kRight) * (t - t0) / span;
@@ -455,7 +465,7 @@ const gatewalkReplay = (() => {
     ctx.clearRect(0, 0, w, h);
     ctx.font = `12px ${font}`; ctx.fillStyle = c.muted; ctx.strokeStyle = c.line; ctx.lineWidth = 1;
     ctx.textAlign = 'right'; ctx.textBaseline = 'middle';
-    const [joules] = readableUnit('J', high);
+    const joules = unitOfEnergy.size;
     const step = joules * tickStep((high - low) / joules, 3);
     for (let k = Math.ceil(low / step); k * step <= high; ++k) {
       const at = Math.round(y(k * step)) + 0.5;
@@ -537,7 +547,7 @@ const gatewalkReplay = (() => {
 
     const runs = film.runs.map((run) => prepared(run, film));
     const field = film.columns * film.rows > 1;
-    const bounds = boundsOf(film, runs), unit = film.scale.time_s, text = readingsOf(film.scale);
+    const bounds = boundsOf(film, runs), unit = film.scale.time_s, units = unitsOf(film.scale, runs);
     const calm = window.matchMedia('(prefers-reduced-motion: reduce)');
     let run = runs[0], time = run.t[0], playing = false, last = 0, colours = {}, font = 'sans-serif', frame = 0;
 
@@ -570,13 +580,13 @@ const gatewalkReplay = (() => {
       values[key] = made('td');
       return made('tr', '', {}, made('th', '', {scope: 'row'}, icon, name), values[key]);
     };
-    const panels = kPanels.map(({title, keys}) => {
+    const panels = kPanels.map(({title, keys}, i) => {
       const shown = keys.filter((key) => runs.every((r) => r[key]));
       const canvas = made('canvas', 'gwr-chart', {role: 'img'});
       const table = made('table', '', {}, ...shown.map((key) =>
         row(key, swatch(kSeries[key].colour, kSeries[key].dash), kSeries[key].name)));
-      const head = made('h3');
-      return {keys: shown, canvas, title, head, box: made('section', 'gwr-panel', {'aria-label': title}, head, table, canvas)};
+      return {keys: shown, canvas, title, unit: units.energies[i], box: made('section', 'gwr-panel', {'aria-label': title},
+        made('h3', '', {}, `${title}, ${units.energies[i].name.trim()}`), table, canvas)};
     });
     legend.append(row('left', swatch('blue', []), 'left beam'), row('right', swatch('red', []), 'right beam'),
       row('propulsion', swatch('orange', [], true), 'propulsion'), row('random', swatch('grey', [], true), 'random force'),
@@ -585,7 +595,7 @@ const gatewalkReplay = (() => {
     root.append(
       made('div', 'gwr-columns', {},
         made('div', '', {}, made('div', 'gwr-status', {}, clock, mode), stageBox, bar,
-          made('p', 'gwr-keys', {}, 'Keys: space plays and pauses, arrows step, page up and down move by ' + `${quantity(unit, 's')}, home and end.`)),
+          made('p', 'gwr-keys', {}, 'Keys: space plays and pauses, arrows step, page up and down move by ' + `${quantity(unit, 's', 3)}, home and end.`)),
         made('div', '', {}, made('section', 'gwr-panel', {'aria-label': 'Beams and forces'}, legend), ...panels.map((p) => p.box))),
       words, said);
 
@@ -619,21 +629,21 @@ const gatewalkReplay = (() => {
       stage.style.height = `${height}px`;
       drawStage(...sized(stage, height), colours, font, {film, run, bounds, follow: field && follow.checked, arrow,
         flash: kFlash * Math.max(1, Number(speed.value)) * unit}, time);
-      for (const {keys, canvas} of panels)
-        drawChart(...sized(canvas, canvas.clientHeight), colours, font, run, keys, film.scale, time);
-      put(clock, text.seconds(time));
+      for (const {keys, canvas, unit: joules} of panels)
+        drawChart(...sized(canvas, canvas.clientHeight), colours, font, run, keys, film.scale, joules, time);
+      put(clock, reading(time, units.time));
       slider.value = time / unit;
       if (playing && performance.now() - toldAt < 100) return;
       toldAt = performance.now();
       put(mode, ended ? `ended: ${run.ending}` : ['left', 'right'].map((side) => `${side} beam ${contactWord(state, side)}`).join(', '));
       mode.classList.toggle('gwr-ended', ended);
-      if (!playing) slider.setAttribute('aria-valuetext', `${text.seconds(time)}, ${mode.textContent}`);
-      for (const {keys} of panels) for (const key of keys) put(values[key], text.joules(state[key]));
+      if (!playing) slider.setAttribute('aria-valuetext', `${reading(time, units.time)}, ${mode.textContent}`);
+      for (const {keys, unit: joules} of panels) for (const key of keys) put(values[key], reading(state[key], joules));
       for (const side of ['left', 'right'])
         put(values[side], `${contactWord(state, side)}, ${whole(state[side] * 180 / Math.PI)}°`);
-      put(values.propulsion, text.newtons(run.propulsion_N));
-      put(values.random, text.newtons(state.random));
-      put(values.speed, text.speed(Math.hypot(state.vx, state.vy)));
+      put(values.propulsion, reading(run.propulsion_N, units.force));
+      put(values.random, reading(state.random, units.force));
+      put(values.speed, reading(Math.hypot(state.vx, state.vy), units.speed));
       if (field) put(values.gate, `${whole(state.gx)}, ${state.gy}`);
     }
 
@@ -668,13 +678,10 @@ const gatewalkReplay = (() => {
       run = runs[index];
       time = run.t[0];
       slider.min = run.t[0] / unit; slider.max = run.t[run.end] / unit;  // a slider keeps few digits of small numbers
-      put(words, told(run, film));
-      stage.setAttribute('aria-label', `Animation of the body among the beams. ${told(run, film)}`);
-      panels.forEach(({canvas, title, head, keys}) => {
-        put(head, `${title}, ${readableUnit('J', energyRange(run, keys, film.scale)[1])[1]}`);
-        canvas.setAttribute('aria-label', `${title} over time. At the end: ` +
-          keys.map((key) => `${kSeries[key].name} ${text.joules(run[key][run.end])}`).join(', '));
-      });
+      put(words, told(run, film, units));
+      stage.setAttribute('aria-label', `Animation of the body among the beams. ${told(run, film, units)}`);
+      panels.forEach(({canvas, title, unit: joules, keys}) => canvas.setAttribute('aria-label', `${title} over time. At the end: ` +
+        keys.map((key) => `${kSeries[key].name} ${reading(run[key][run.end], joules)}`).join(', ')));
       show();
     }
 

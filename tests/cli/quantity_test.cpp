@@ -66,6 +66,8 @@ TEST(Reading, HasOneUnitAndTheSameDecimals) {
   EXPECT_EQ(reading(4.0, "s", 0.01), "4.00 s");
   EXPECT_EQ(reading(0.02012, "J", 5e-6), "20.12 mJ");
   EXPECT_EQ(reading(0.8, "N", 6.25e-4), "0.800 N");
+  EXPECT_EQ(reading(4.72223, "J", step_of(5e-6, 4.7)), "4.7222 J");
+  EXPECT_EQ(reading(3124.26, "J", step_of(0.1, 3125.0)), "3124.3 J");
   EXPECT_EQ(reading(1.25e-6, "s", 0.9e-8), "1.25 µs");
   EXPECT_EQ(reading(2.0 * 86400.0, "s", 1e4), "2.0 d");
   EXPECT_EQ(reading(312.5e-30, "J", 0.1e-30), "312.5e-30 J");
