@@ -9,7 +9,7 @@
 namespace gatewalk::cli {
 
 struct VideoOptions {
-  std::optional<double> speed;     // seconds of the run in a second of the film; else the scene's unit of time
+  std::optional<double> speed = std::nullopt;  // seconds of the run in a second of the film; none: the unit of time
   double frames_per_second = 50.0;
   bool show_progress = false;
   bool labels = true;              // words, numbers and the rule; without them scenes alike look the same

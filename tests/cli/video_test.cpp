@@ -13,6 +13,7 @@
 #include <fstream>
 #include <iterator>
 #include <thread>
+#include <vector>
 
 #include "cli/child.h"
 #include "cli/interrupt.h"
@@ -139,19 +140,17 @@ std::size_t differing(const std::string& a, const std::string& b) {
 TEST_F(Video, ASceneInOtherUnitsLooksTheSame) {
   for (const Json& film : {small_film(100), small_field_film()}) {
     const double end = film["runs"][0]["t"].back();
-    // Before, at and after a hit, held, and in another gate.
-    for (const double part : {0.0, 0.1, 0.31, 0.34, 0.62, 1.0}) {
+    std::vector<Json> twins;
+    for (const auto& [l, m, t] : kTwins) twins.push_back(twin(film, power(l), power(m), power(t)));
+    for (const double part : {0.0, 0.34, 0.62}) {  // before a hit, just after it, and later
       const VideoOptions bare{.labels = false};
       const std::string paper = video_frame(film, 0, part * end, bare);
       ASSERT_EQ(paper.size(), 1280u * 720u * 4u);
       EXPECT_GT(differing(paper, video_frame(film, 0, part * end)), 1000u) << "labels are seen";
-      EXPECT_GT(differing(paper, video_frame(film, 0, (part < 0.5 ? part + 0.05 : part - 0.05) * end, bare)), 1000u)
-          << "it moves";
-      for (const auto& [l, m, t] : kTwins) {
-        const Json other = twin(film, power(l), power(m), power(t));
-        EXPECT_EQ(differing(paper, video_frame(other, 0, part * end * power(t), bare)), 0u)
-            << "4^" << l << " 4^" << m << " 4^" << t << " at " << part;
-      }
+      EXPECT_GT(differing(paper, video_frame(film, 0, (part + 0.05) * end, bare)), 1000u) << "it moves";
+      for (std::size_t i = 0; i < twins.size(); ++i)
+        EXPECT_EQ(differing(paper, video_frame(twins[i], 0, part * end * power(kTwins[i].time), bare)), 0u)
+            << "twin " << i << " at " << part;
     }
   }
 }
