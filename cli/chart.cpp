@@ -12,6 +12,7 @@
 #include "cli/interrupt.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/quantity.h"
 #include "cli/report.h"
 #include "dynamics/accuracy.h"
 #include "dynamics/runs.h"
@@ -542,7 +543,7 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
         entry(p.setting.method, "pt " + std::to_string(look.marker) + " ps 0.8 lc rgb '" + look.colour + "'",
               0.085);
       }
-      entry("usual (paper: its 0.004 s)", "pt 6 ps 1.8 lc rgb 'black'", 0.21);
+      entry("usual: the method's default", "pt 6 ps 1.8 lc rgb 'black'", 0.21);
       entry("less: below what the reference or chance can show", "pt 10 ps 1.1 lc rgb '#444444'", 0.3);
       out << "set label " << label++ << " "
           << literal("x fails: E energy from nothing, P disc sinks into a beam, F too fast for its steps, "
@@ -594,8 +595,8 @@ std::string table_of(const SceneChart& chart) {
   };
   const auto of_reference = [&](const Errors& e, const Setting& against) {
     out << "  against " << padded(name_of(against), -20) << " outcomes " << digits(e.outcomes.total_variation)
-        << ", columns " << digits(e.columns.total_variation) << ", exit " << digits(e.strong.position)
-        << " m, parted " << percent(e.strong.parted_share(), 1.0, 3) << "\n";
+        << ", columns " << digits(e.columns.total_variation) << ", exit " << quantity(e.strong.position, "m")
+        << ", parted " << percent(e.strong.parted_share(), 1.0, 3) << "\n";
   };
   out << chart.label << ": " << chart.trials << " trials per setting, " << chart.timed_trials << " timed\n"
       << "  reference " << name_of(dynamics::reference_setting(chart.scene.gate)) << " ("
@@ -727,7 +728,7 @@ int run_chart(const std::vector<std::string>& arguments) {
          std::to_string(charts.size()) + " of " + std::to_string(paths.size()) + " scenes that were finished");
     return kStopped;
   }
-  options.give_out(json, table + "\n* usual: the defaults, 0.004 s for paper. us/trial: least of " + std::to_string(rounds) +
+  options.give_out(json, table + "\n* usual: the method's default. us/trial: least of " + std::to_string(rounds) +
                              " rounds on one thread, " + machine() +
                              "\noutcomes, columns: total variation from the reference, of the outcomes and of the crossing"
                              "\nstates; +-: its standard error; chance: what chance alone would show; <: not told from no error."

@@ -15,9 +15,10 @@
 #include "cli/matrix.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/quantity.h"
 #include "cli/report.h"
-#include "markov/sweep.h"
 #include "cli/starts.h"
+#include "markov/sweep.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -71,8 +72,9 @@ struct Truth {
   Error floor;                     // what a perfect prediction would show, by the noise of `p`
 
   [[nodiscard]] std::string name() const {
-    return "start d = " + fixed(start.d, 0) + " m, v = (" + fixed(start.vx, 0) + ", " +
-           fixed(start.vy, 0) + ") m/s";
+    const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
+    return "start d = " + quantity(start.d, "m") + ", v = (" + digits(start.vx / speed.size) + ", " +
+           digits(start.vy / speed.size) + ") " + speed.name;
   }
   /// Direct simulation's n trials differ from these N as nN/(n + N) trials do from an exact truth,
   /// by 1/n + 1/N: told from the same noisy truth as the chain's errors are.

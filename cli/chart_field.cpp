@@ -11,6 +11,7 @@
 #include "cli/figure.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/quantity.h"
 #include "cli/report.h"
 #include "cli/starts.h"
 
@@ -152,7 +153,7 @@ std::string sentence(const StartRuns& r) {
 
 /// "0.02 s (moreau)"
 std::string step_text(const Variant& v) {
-  return digits(v.scene.gate.run.step) + " s (" + v.scene.gate.run.method + ")";
+  return quantity(v.scene.gate.run.step, "s", 7) + " (" + v.scene.gate.run.method + ")";
 }
 
 std::string table_of(const std::vector<StartRuns>& starts, const std::vector<Variant>& variants,
@@ -390,8 +391,8 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   options.give_out(json, table_of(reports, variants, trials, threads));
   for (std::size_t v = 0; v < variants.size(); ++v)
     if (!health[v].clean())
-      warn(variants[v].label + ", step " + digits(variants[v].scene.gate.run.step) +
-           " s: " + complaint(health[v]));
+      warn(variants[v].label + ", step " + quantity(variants[v].scene.gate.run.step, "s", 7) +
+           ": " + complaint(health[v]));
   try {
     write_text_atomically(svg_path, drawn(script_of(reports, variants, trials, threads)));
   } catch (const std::runtime_error& e) {

@@ -1,5 +1,6 @@
 #include "dynamics/landscape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -8,6 +9,7 @@
 #include "cli/drawing.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/quantity.h"
 #include "cli/report.h"
 
 namespace gatewalk::cli {
@@ -16,6 +18,7 @@ namespace {
 using dynamics::Landscape;
 using dynamics::Pass;
 
+constexpr double kSpacing = 0.5;  // in the scene's unit of length: the paper's grid
 constexpr double kFiner = 10.0;  // the pass is looked for on a grid so much finer too
 
 dynamics::BeamsThatPush beams_of(const std::string& name) {
@@ -47,43 +50,59 @@ std::string csv_of(const Landscape& l) {
   return out.str();
 }
 
+/// 1, 2 or 5 times a power of ten that cuts `span` into about `parts`.
+double tic_step(double span, double parts) {
+  const double wanted = span / parts, power = std::pow(10.0, std::floor(std::log10(wanted)));
+  double best = power;
+  for (const double k : {2.0, 5.0, 10.0})
+    if (std::abs(k * power - wanted) < std::abs(best - wanted)) best = k * power;
+  return best;
+}
+
 /// The paper's Fig. 5: elastic energy as a surface and from above, with the propulsion as a surface, and,
 /// from above, the lowest way through.
 void draw(const std::string& path, const Landscape& l, const Pass& pass, double ceiling) {
   std::ostringstream rows, way, out;
-  const auto capped = [ceiling](double e) { return digits(std::min(e, ceiling)); };
+  const Sized metre = readable_unit("m", std::max(l.x.back(), l.y.back() - l.y.front()));
+  const Sized joule = readable_unit("J", ceiling);
+  const auto length = [&](double x) { return digits(x / metre.size); };
+  const auto energy = [&](double e) { return digits(std::min(e, ceiling) / joule.size); };
   // No more points than can be seen.
   const std::size_t stride = std::max<std::size_t>(1, std::max(l.x.size(), l.y.size()) / 150);
   for (std::size_t i = 0; i < l.y.size(); i += stride) {
     for (std::size_t j = 0; j < l.x.size(); j += stride)
-      rows << digits(l.x[j]) << ' ' << digits(l.y[i]) << ' ' << capped(l.elastic(i, j)) << ' '
-           << capped(l.total(i, j)) << '\n';
+      rows << length(l.x[j]) << ' ' << length(l.y[i]) << ' ' << energy(l.elastic(i, j)) << ' '
+           << energy(l.total(i, j)) << '\n';
     rows << '\n';
   }
-  for (const auto& [x, y] : pass.way) way << digits(x) << ' ' << digits(y) << '\n';
-  const auto surface = [](const char* title, int column, const char* origin) {
+  for (const auto& [x, y] : pass.way) way << length(x) << ' ' << length(y) << '\n';
+  const double wide = (l.x.back() - l.x.front()) / metre.size, deep = (l.y.back() - l.y.front()) / metre.size;
+  const auto surface = [&](const char* title, int column, const char* origin) {
     return std::string("unset colorbox\nset size noratio\nset size 0.52,0.52\nset origin ") + origin +
            "\nset lmargin 6\nset rmargin 2\nset tmargin 2\nset bmargin 2\nset view 58,330,0.95\nset title '" + title +
-           "'\nset ytics 20\nsplot $grid using 1:2:" + std::to_string(column) + " with pm3d\n";
+           "'\nset ytics " + digits(tic_step(deep, 3.0)) + "\nsplot $grid using 1:2:" + std::to_string(column) +
+           " with pm3d\n";
   };
-  const auto from_above = [](const char* title, const char* origin) {
+  const auto from_above = [&](const char* title, const char* origin) {
     return std::string("set colorbox\nset size 0.48,0.5\nset size ratio -1\nset origin ") + origin +
-           "\nset lmargin 8\nset rmargin 10\nset tmargin 2\nset bmargin 4\nset title '" + title + "'\nset ytics 10\n";
+           "\nset lmargin 8\nset rmargin 10\nset tmargin 2\nset bmargin 4\nset title '" + title + "'\nset ytics " +
+           digits(tic_step(deep, 6.0)) + "\n";
   };
   out << data_block("$grid", rows.str()) << data_block("$way", way.str())
-      << "set multiplot\nset xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'J'\nset pm3d\nunset key\n"
-         "set xrange [" << digits(l.x.front()) << ":" << digits(l.x.back()) << "]\nset yrange [" << digits(l.y.front())
-      << ":" << digits(l.y.back()) << "]\nset cbrange [0:" << digits(ceiling) << "]\nset zrange [0:" << digits(ceiling) << "]\n"
+      << "set multiplot\nset xlabel 'x (" << metre.name << ")'\nset ylabel 'y (" << metre.name << ")'\nset cblabel '"
+      << joule.name << "'\nset pm3d\nunset key\n"
+         "set xrange [" << length(l.x.front()) << ":" << length(l.x.back()) << "]\nset yrange [" << length(l.y.front())
+      << ":" << length(l.y.back()) << "]\nset cbrange [0:" << energy(ceiling) << "]\nset zrange [0:" << energy(ceiling) << "]\n"
          "set palette defined (0 '#30123b', 1 '#4145ab', 2 '#4675ed', 3 '#39a2fc', 4 '#1bcfd4', 5 '#24eca6', "
          "6 '#61fc6c', 7 '#a4fc3b', 8 '#d1e834', 9 '#f3c63a', 10 '#fe9b2d', 11 '#f36315', 12 '#d93806', 13 '#7a0403')\n"
-         "set xyplane 0\nset xtics 10\n"
+         "set xyplane 0\nset xtics " << digits(tic_step(wide, 5.0)) << "\n"
       << surface("elastic energy, Eq. (14)", 3, "0.0,0.49")
       << from_above("the same from above", "0.52,0.5") << "plot $grid using 1:2:3 with image\n"
       << surface("with the propulsion, Eq. (15)", 4, "0.0,-0.01")
       << from_above("lowest way through (white), its highest point", "0.52,0.0")
       << "plot $grid using 1:2:4 with image, $way using 1:2 with lines lw 2 lc rgb '#ffffff', '-' using 1:2 with "
          "points pt 7 ps 1 lc rgb '#ff00ff'\n"
-      << digits(pass.x) << ' ' << digits(pass.y) << "\ne\nunset multiplot\n";
+      << length(pass.x) << ' ' << length(pass.y) << "\ne\nunset multiplot\n";
   draw_svg(path, 1100, 950, out.str());
 }
 
@@ -97,7 +116,9 @@ int run_landscape(const std::vector<std::string>& arguments) {
                   "gatewalk landscape scenes/single_gate.toml -o landscape --trials 1000");
   options.positional("scene", "scene file (TOML)", true);
   options.output_folder("folder to write to", {"landscape.csv", "landscape.json", "landscape.svg"});
-  options.add()("spacing", po::value<double>()->default_value(0.5, "0.5")->value_name("M"), "of the grid, in m; the paper's is 0.5")(
+  options.add()(
+      "spacing", po::value<double>()->value_name("M"),
+      "of the grid, in m (default: a twentieth of body.radius_m, as in the paper)")(
       "beam", po::value<std::string>()->default_value("both")->value_name("WHICH"),
       "beams that resist: both, left or right (the other swings free: Fig. 6C)")(
       "trials", po::value<Count>()->default_value(Count{0}, "0")->value_name("N"),
@@ -106,16 +127,18 @@ int run_landscape(const std::vector<std::string>& arguments) {
   add_strict(options);
   if (!options.parse(arguments)) return kFine;
   const std::string folder = options.text("output");
-  const double spacing = options.get<double>("spacing");
   const auto beams = beams_of(options.get<std::string>("beam"));
   const std::int64_t trials = options.count("trials", 0);
   Scene scene = read_scene(options.text("scene"), options.overrides());
+  const double unit = dynamics::scale_of(scene.gate).length;
   const double low = std::min(0.0, scene.start.y);
   // At most 2000 points along each side of the gate.
-  const double least = std::max(scene.gate.run.traverse_y - low, 2.0 * scene.gate.beams.joint_x) / 2000;
-  if (!(spacing >= least && spacing <= scene.gate.beams.joint_x))
-    throw UsageError("--spacing " + digits(spacing) + ": must lie in [" + digits(least) + ", " +
-                     digits(scene.gate.beams.joint_x) + "] m");
+  const double most = scene.gate.beams.joint_x;
+  const double least = std::max(scene.gate.run.traverse_y - low, 2.0 * most) / 2000;
+  const double spacing = options.has("spacing") ? options.get<double>("spacing")
+                                                : std::clamp(kSpacing * unit, least, std::max(least, most));
+  if (!(spacing >= least && spacing <= most))
+    throw UsageError("--spacing " + digits(spacing) + ": must lie in [" + digits(least) + ", " + digits(most) + "] m");
   require_folder(folder);
 
   // On the grid that is asked for and on a finer one: the pass may lie between grid points.
@@ -146,7 +169,10 @@ int run_landscape(const std::vector<std::string>& arguments) {
   json["start_kinetic_energy_J"] = moving;
   json["passes"] = Json::array();
   std::string table = scene_line(scene) +
-                      padded("", -22) + "pass at x (m)  y (m)   above the start (J)   above the basin (J)  basin at x (m)  y (m)\n";
+                      padded("", -22) + "    pass at x           y   above the start   above the basin   basin at x           y\n";
+  const dynamics::Scale scale = dynamics::scale_of(scene.gate);
+  const auto place = [&](double x) { return reading(x, "m", 0.01 * scale.length); };
+  const auto energy = [&](double e) { return reading(e, "J", 0.01 * scale.energy()); };
   for (const Level& level : levels) {
     const auto& [x, y] = level.from_basin.way.front();
     json["passes"].push_back({{"grid_m", level.spacing},
@@ -154,17 +180,17 @@ int run_landscape(const std::vector<std::string>& arguments) {
                               {"from_basin", json_of(level.from_basin)},
                               {"basin_m", level.from_basin.way.front()},
                               {"above_start_J", level.above_start()}});
-    table += padded("grid " + digits(level.spacing) + " m", -22);
+    table += padded("grid " + quantity(level.spacing, "m"), -22);
     if (level.downhill()) {
       table += "  no basin on the way: downhill to the far boundary\n";
       continue;
     }
-    table += padded(fixed(level.from_basin.x, 2), 13) + padded(fixed(level.from_basin.y, 2), 7) +
-             padded(fixed(level.above_start(), 2), 22) + padded(fixed(level.from_basin.barrier(), 2), 22) +
-             padded(fixed(x, 2), 16) + padded(fixed(y, 2), 7) + "\n";
+    table += padded(place(level.from_basin.x), 13) + padded(place(level.from_basin.y), 12) +
+             padded(energy(level.above_start()), 18) + padded(energy(level.from_basin.barrier()), 18) +
+             padded(place(x), 13) + padded(place(y), 12) + "\n";
   }
-  table += "Between grid points the pass may lie lower: hence the finer grid.\nThe start has " + fixed(moving, 2) +
-           " J of kinetic energy: " +
+  table += "Between grid points the pass may lie lower: hence the finer grid.\nThe start has " + energy(moving) +
+           " of kinetic energy: " +
            (fine.above_start() > moving
                 ? "too little for the pass without work of the random force.\n"
                 : "as energies go enough, but hits and dampers take theirs: a body that comes to rest in a basin must "
@@ -191,7 +217,7 @@ int run_landscape(const std::vector<std::string>& arguments) {
   double ceiling = 0.0;
   for (const double k : {scene.gate.beams.stiffness_left, scene.gate.beams.stiffness_right})
     ceiling = std::max(ceiling, 0.5 * k * 2.0);
-  draw(folder + "/landscape.svg", l, fine.downhill() ? fine.from_start : fine.from_basin, 1.2 * ceiling + scene.gate.forces.propulsion * 20.0);
+  draw(folder + "/landscape.svg", l, fine.downhill() ? fine.from_start : fine.from_basin, 1.2 * ceiling + scene.gate.forces.propulsion * (20.0 * unit));
   options.give_out(json, table);
   return exit_status(options, clean);
 }

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "cli/drawing.h"
-#include "cli/report.h"
+#include "cli/quantity.h"
 #include "dynamics/landscape.h"
 #include "markov/netcdf_image.h"
 
@@ -157,10 +157,28 @@ void append(Recording& r, const dynamics::GateTrace& trace, int i_x, int i_y) {
     r.moments.push_back({i_x, i_y, clock + s.time, s, together(before, s.energy)});
 }
 
-/// One column of one run; seven digits are more than a picture shows, and short in a file.
-Json values_of(const GateParams& p, const Recording& r, const std::function<double(const Line&)>& value) {
+/// The scene's own unit of what a column holds.
+double own_unit(const dynamics::Scale& scale, std::string_view unit) {
+  if (unit == "m") return scale.length;
+  if (unit == "s") return scale.time;
+  if (unit == "m s-1") return scale.speed();
+  if (unit == "N") return scale.force();
+  if (unit == "J") return scale.energy();
+  return 1.0;  // codes and angles
+}
+
+/// The sum of some columns of one run, an entry for each moment. Seven digits of what it is in the scene's
+/// own unit are more than a picture shows; rounded so, a scene in other units has the same film.
+Json values_of(const GateParams& p, const Recording& r, const std::vector<const char*>& names) {
+  std::vector<const Column*> parts;
+  for (const char* name : names) parts.push_back(&column(name));
+  const double own = own_unit(dynamics::scale_of(p), parts.front()->unit);
   Json values = Json::array();
-  for (const Moment& m : r.moments) values.push_back(std::strtod(digits(value({p, m, r.trial})).c_str(), nullptr));
+  for (const Moment& m : r.moments) {
+    double sum = 0.0;
+    for (const Column* part : parts) sum += part->value({p, m, r.trial});
+    values.push_back(std::strtod(digits(sum / own).c_str(), nullptr) * own);
+  }
   return values;
 }
 
@@ -278,8 +296,10 @@ std::string netcdf_of(const Scene& scene, const std::vector<Recording>& runs, bo
 Json film_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {
   const GateParams& p = scene.gate;
   Json film;
-  film["title"] = scene.source + ": F " + digits(p.forces.propulsion) + " N, Rm " + digits(p.forces.random) + " N, k " + digits(p.beams.stiffness_left) +
+  film["title"] = scene.source + ": F " + quantity(p.forces.propulsion, "N", 7) + ", Rm " + quantity(p.forces.random, "N", 7) + ", k " + digits(p.beams.stiffness_left) +
                   " / " + digits(p.beams.stiffness_right) + ", d " + digits(p.beams.damping) + ", " + p.run.method;
+  const dynamics::Scale scale = dynamics::scale_of(p);
+  film["scale"] = {{"length_m", scale.length}, {"mass_kg", scale.mass}, {"time_s", scale.time}};
   film["radius_m"] = p.body.radius;
   film["beam_m"] = p.beams.length;
   film["joint_x_m"] = p.beams.joint_x;
@@ -289,35 +309,32 @@ Json film_of(const Scene& scene, const std::vector<Recording>& runs, bool across
   film["rows"] = across_field ? scene.field.rows : 1;
   film["start_column"] = across_field ? scene.field.start_column() : 0;
   film["runs"] = Json::array();
-  const auto sum = [](const char* a, const char* b) {
-    return [x = column(a).value, y = column(b).value](const Line& l) { return x(l) + y(l); };
-  };
-  const std::vector<std::pair<const char*, std::function<double(const Line&)>>> arrays{
-      {"t", column("time_s").value},
-      {"gx", column("gate_x").value},
-      {"gy", column("gate_y").value},
-      {"x", column("x_m").value},
-      {"y", column("y_m").value},
-      {"vx", column("vx_m_per_s").value},
-      {"vy", column("vy_m_per_s").value},
-      {"left", column("theta_left_rad").value},
-      {"right", column("theta_right_rad").value},
-      {"contact_left", column("contact_left").value},
-      {"contact_right", column("contact_right").value},
-      {"random_N", column("random_N").value},
-      {"body_J", column("kinetic_body_J").value},
-      {"beams_J", column("kinetic_beams_J").value},
-      {"elastic_J", sum("elastic_left_J", "elastic_right_J")},
-      {"work_J", sum("propulsion_work_J", "random_work_J")},
-      {"lost_J", column("lost_J").value},
-      {"lost_in_hits_J", column("hit_loss_J").value}};
+  const std::vector<std::pair<const char*, std::vector<const char*>>> arrays{
+      {"t", {"time_s"}},
+      {"gx", {"gate_x"}},
+      {"gy", {"gate_y"}},
+      {"x", {"x_m"}},
+      {"y", {"y_m"}},
+      {"vx", {"vx_m_per_s"}},
+      {"vy", {"vy_m_per_s"}},
+      {"left", {"theta_left_rad"}},
+      {"right", {"theta_right_rad"}},
+      {"contact_left", {"contact_left"}},
+      {"contact_right", {"contact_right"}},
+      {"random_N", {"random_N"}},
+      {"body_J", {"kinetic_body_J"}},
+      {"beams_J", {"kinetic_beams_J"}},
+      {"elastic_J", {"elastic_left_J", "elastic_right_J"}},
+      {"work_J", {"propulsion_work_J", "random_work_J"}},
+      {"lost_J", {"lost_J"}},
+      {"lost_in_hits_J", {"hit_loss_J"}}};
   for (const Recording& r : runs) {
     Json run;
-    run["label"] = "trial " + std::to_string(r.trial) + ": " + r.ending + " after " + fixed(r.seconds, 2) + " s" +
+    run["label"] = "trial " + std::to_string(r.trial) + ": " + r.ending + " after " + reading(r.seconds, "s", 0.01 * scale.time) +
                    (across_field ? ", " + std::to_string(r.gates) + (r.gates == 1 ? " gate" : " gates") : "");
     run["ending"] = r.ending;
     run["propulsion_N"] = p.forces.propulsion;
-    for (const auto& [name, value] : arrays) run[name] = values_of(p, r, value);
+    for (const auto& [name, parts] : arrays) run[name] = values_of(p, r, parts);
     // A film's forces hold until its next entry, a sample's acted before it.
     Json& random = run["random_N"];
     random.erase(0);
@@ -333,7 +350,7 @@ void add_details(Json& film, const Scene& scene, const std::vector<Recording>& r
     run["trial"] = runs[i].trial;
     run["hits"] = runs[i].health.impacts;
     for (const char* name : {"potential_J", "elastic_left_J", "elastic_right_J", "landscape_J", "landscape_left_J", "landscape_right_J"})
-      run[name] = values_of(scene.gate, runs[i], column(name).value);
+      run[name] = values_of(scene.gate, runs[i], {name});
   }
 }
 

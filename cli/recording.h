@@ -44,7 +44,7 @@ struct Recording {
 [[nodiscard]] std::string netcdf_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field,
                                     const std::vector<std::pair<std::string, std::string>>& about);
 
-/// The runs as a film (replay.h), with seven digits.
+/// The runs as a film (replay.h), with seven digits in the scene's own units.
 [[nodiscard]] Json film_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field);
 /// Adds to each run of a film of `runs`: trial, hits, and the arrays potential_J, elastic_left_J,
 /// elastic_right_J, landscape_J, landscape_left_J, landscape_right_J (null where there is no way to stand).

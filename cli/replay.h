@@ -3,6 +3,8 @@
 ///
 /// A film is JSON:
 ///   {"title": text, "radius_m", "beam_m", "joint_x_m", "joint_y_m": of the body and the beams,
+///    "scale": {"length_m", "mass_kg", "time_s"}: the scene's own units (dynamics::Scale), in which all that is
+///    drawn and timed is a plain number; at normal speed one such unit of time takes a second,
 ///    "gate_m": [width, depth], "columns", "rows": the field's gates (1 x 1: a gate alone), "start_column",
 ///    "runs": [run, ...]}
 /// A run is {"label": text, "ending": text, "propulsion_N": number} and arrays with an entry for each step:

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "cli/quantity.h"
 #include "cli/version.h"
 
 namespace gatewalk::cli {
@@ -73,10 +74,10 @@ std::string complaint(const dynamics::Health& h) {
   std::string text = "the method showed faults:";
   if (h.penetrating > 0)
     text += " the disc sank into a beam in " + of_runs(h.penetrating) + " (worst " +
-            fixed(h.worst_penetration, 2) + " m);";
+            quantity(h.worst_penetration, "m") + ");";
   if (h.creating_energy > 0)
     text += " energy appeared from nothing in " + of_runs(h.creating_energy) + " (worst " +
-            fixed(h.worst_energy_created, 1) + " J);";
+            quantity(h.worst_energy_created, "J") + ");";
   if (h.fast > 0)
     text += " disc or beam moved over half a radius in one step in " + of_runs(h.fast) +
             ", hits may have been missed: take a smaller run.step_s;";
@@ -232,17 +233,22 @@ Json to_json(const dynamics::GateTally& tally) {
 std::string scene_line(const Scene& scene) {
   const auto& gate = scene.gate;
   const auto& start = scene.start;
-  std::ostringstream text;
-  text << scene.source << ": start x " << start.x << ", y " << start.y << " m, v (" << start.vx << ", "
-       << start.vy << ") m/s; disc " << gate.body.mass << " kg, R " << gate.body.radius << " m; F "
-       << gate.forces.propulsion << " N, Rm " << gate.forces.random << " N; beams k "
-       << gate.beams.stiffness_left << " / " << gate.beams.stiffness_right << ", d "
-       << gate.beams.damping << "; " << gate.run.method;
-  if (gate.run.method == "event")
-    text << " " << gate.run.event_tolerance << " m\n";
-  else
-    text << " " << gate.run.step << " s\n";
-  return text.str();
+  const auto number = [](double x) {
+    std::ostringstream text;
+    text << x;
+    return text.str();
+  };
+  // Two numbers with one unit, that of the larger.
+  const Sized place = readable_unit("m", std::max(std::abs(start.x), std::abs(start.y)));
+  const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
+  return scene.source + ": start x " + number(start.x / place.size) + ", y " + number(start.y / place.size) + " " +
+         place.name + ", v (" + number(start.vx / speed.size) + ", " + number(start.vy / speed.size) + ") " +
+         speed.name + "; disc " + quantity(gate.body.mass, "kg", 6) + ", R " + quantity(gate.body.radius, "m", 6) +
+         "; F " + quantity(gate.forces.propulsion, "N", 6) + ", Rm " + quantity(gate.forces.random, "N", 6) +
+         "; beams k " + number(gate.beams.stiffness_left) + " / " + number(gate.beams.stiffness_right) + ", d " +
+         number(gate.beams.damping) + "; " + gate.run.method + " " +
+         (gate.run.method == "event" ? quantity(gate.run.event_tolerance, "m", 6) : quantity(gate.run.step, "s", 6)) +
+         "\n";
 }
 
 std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
@@ -256,8 +262,11 @@ std::string csv_text(const std::string& text) {
 
 std::string padded(const std::string& text, int width) {
   const auto wanted = static_cast<std::size_t>(std::abs(width));
-  if (text.size() >= wanted) return text;
-  const std::string space(wanted - text.size(), ' ');
+  // A character of UTF-8 is as wide as its first byte alone.
+  const auto size = static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  if (size >= wanted) return text;
+  const std::string space(wanted - size, ' ');
   return width > 0 ? space + text : text + space;
 }
 

@@ -1,8 +1,14 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "cli/auto.h"
 #include "cli/command.h"
 #include "cli/interrupt.h"
+#include "cli/drawing.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/quantity.h"
 #include "cli/recording.h"
 #include "cli/replay.h"
 #include "cli/report.h"
@@ -16,17 +22,27 @@ constexpr std::size_t kMostMoments = 500'000;  // of all runs together: with eve
 constexpr std::size_t kMostLines = 20;     // of the table
 
 std::string table_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {
-  std::string text = scene_line(scene) + "   trial  ending            seconds  steps   hits" +
-                     (across_field ? "  gates" : "") +
-                     "   work (J)  lost (J)  of it in hits  left over (J)\n";
+  std::string text = scene_line(scene) + "   trial  ending                time  steps   hits" +
+                     (across_field ? "  gates" : "") + "        work        lost  of it in hits   left over\n";
+  // One unit for all lines, so that they can be compared.
+  const dynamics::Scale scale = dynamics::scale_of(scene.gate);
+  double longest = 0.0, most = 0.0;
+  for (const Recording& r : runs) {
+    const dynamics::Energies& e = r.moments.back().energy;
+    longest = std::max(longest, r.seconds);
+    for (const double energy : {e.propulsion_work + e.random_work, e.lost, e.hit_loss, e.mechanical()})
+      most = std::max(most, std::abs(energy));
+  }
+  const auto seconds = [&](double time) { return reading(time, "s", step_of(0.01 * scale.time, longest)); };
+  const auto joules = [&](double energy) { return reading(energy, "J", step_of(0.1 * scale.energy(), most)); };
   for (std::size_t i = 0; i < runs.size() && i < kMostLines; ++i) {
     const Recording& r = runs[i];
     const dynamics::Energies& e = r.moments.back().energy;
-    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -16) + padded(fixed(r.seconds, 2), 9) +
+    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -16) + padded(seconds(r.seconds), 10) +
             padded(std::to_string(r.health.steps), 7) + padded(std::to_string(r.health.impacts), 7) +
             (across_field ? padded(std::to_string(r.gates), 7) : "") +
-            padded(fixed(e.propulsion_work + e.random_work, 1), 11) + padded(fixed(e.lost, 1), 10) +
-            padded(fixed(e.hit_loss, 1), 15) + padded(fixed(e.mechanical(), 1), 15) + "\n";
+            padded(joules(e.propulsion_work + e.random_work), 12) + padded(joules(e.lost), 12) +
+            padded(joules(e.hit_loss), 15) + padded(joules(e.mechanical()), 12) + "\n";
   }
   if (runs.size() > kMostLines)
     text += "   ... and " + std::to_string(runs.size() - kMostLines) + " more\n";
@@ -59,7 +75,8 @@ int run_trace(const std::vector<std::string>& arguments) {
   options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
   options.output_file("replay", "FILE.html", "write a page that plays the runs");
   options.output_file("video", "FILE.mp4", "write a film of the first run (needs ffmpeg)", Options::Content::binary);
-  options.add()("video-speed", po::value<double>()->default_value(1.0, "1")->value_name("X"), "times as fast as real");
+  options.add()("video-speed", po::value<double>()->value_name("X"),
+                "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
   if (!options.parse(arguments)) return kFine;
   const bool to_stdout = options.text("csv") == "-" || options.text("replay") == "-";
   const bool across_field = options.has("field");
@@ -77,10 +94,14 @@ int run_trace(const std::vector<std::string>& arguments) {
     throw UsageError("--trials " + std::to_string(trials) + ": at most " + std::to_string(kMostRuns) +
                      " runs are recorded; pick some with --only");
   }
-  const double speed = options.get<double>("video-speed");
-  if (!(speed >= 0.01 && speed <= 100.0)) throw UsageError("--video-speed: must lie in [0.01, 100]");
-
   Scene scene = read_scene(options.text("scene"), options.overrides());
+  std::optional<double> speed;
+  if (options.has("video-speed")) {
+    speed = options.get<double>("video-speed");
+    const double pace = dynamics::scale_of(scene.gate).time;
+    if (!(*speed >= 0.01 * pace && *speed <= 100.0 * pace))
+      throw UsageError("--video-speed: must lie in [" + digits(0.01 * pace) + ", " + digits(100.0 * pace) + "]");
+  }
   const Json settled = settle_method(options, scene, across_field ? RunsFrom::everywhere : RunsFrom::start);
   std::vector<Recording> runs;
   std::size_t moments = 0;

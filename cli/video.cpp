@@ -21,7 +21,8 @@
 #include "cli/interrupt.h"
 #include "cli/output.h"
 #include "cli/progress.h"
-#include "cli/report.h"
+#include "cli/quantity.h"
+#include "dynamics/params.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -39,6 +40,7 @@ struct Run {
 
 struct Film {
   std::string title;
+  dynamics::Scale scale;
   double radius, beam, joint_x, joint_y, width, depth;  // m
   int columns, rows;
   Run run;
@@ -59,6 +61,8 @@ Film film_of(const Json& json, int index) {
   Film film{};
   try {
     film.title = json.at("title");
+    const Json& scale = json.at("scale");
+    film.scale = {scale.at("length_m"), scale.at("mass_kg"), scale.at("time_s")};
     film.radius = json.at("radius_m");
     film.beam = json.at("beam_m");
     film.joint_x = json.at("joint_x_m");
@@ -90,6 +94,8 @@ Film film_of(const Json& json, int index) {
   }
   for (const double length : {film.radius, film.beam, film.width, film.depth})
     if (!(length > 0.0)) wrong("a length is not above 0");
+  for (const double unit : {film.scale.length, film.scale.mass, film.scale.time})
+    if (!(unit > 0.0)) wrong("a unit of its scale is not above 0");
   if (film.columns < 1 || film.rows < 1) wrong("a field without gates");
   Run& run = film.run;
   if (!std::is_sorted(run.t.begin(), run.t.end())) wrong("t goes back in time");
@@ -181,11 +187,12 @@ State state_at(const Run& run, double time) {
 }
 
 /// The body's mean place around a time: what a calm camera looks at.
-Point calm_place(const Run& run, double time) {
-  constexpr double kReach = 0.75;  // s before and after
-  const double reach = std::min({kReach, time - run.t.front(), run.t.back() - time});
+Point calm_place(const Film& film, double time) {
+  const Run& run = film.run;
+  const double most = 0.75 * film.scale.time;  // before and after
+  const double reach = std::min({most, time - run.t.front(), run.t.back() - time});
   const Moment now = moment_at(run, time);
-  if (!(reach > 1e-6)) return {now.between(run.X), now.between(run.Y)};
+  if (!(reach > 1e-6 * film.scale.time)) return {now.between(run.X), now.between(run.Y)};
   const auto up_to = [&](const std::vector<double>& sums, const std::vector<double>& values, double at) {
     const Moment m = moment_at(run, at);
     return sums[m.i] + 0.5 * (at - run.t[m.i]) * (values[m.i] + m.between(values));
@@ -213,12 +220,13 @@ constexpr Colour kText = rgb(0x1b1f24), kMuted = rgb(0x59626d), kLine = rgb(0xd5
                  kGrey = rgb(0x7b858f), kGreen = rgb(0x00805c), kSky = rgb(0x2b8fc9), kPurple = rgb(0xa8447f),
                  kDisc = rgb(0xdfe4ea), kEdge = rgb(0x2c333b);
 
-/// A number for the picture: with a true minus sign, and none before zero.
-std::string shown(double x, int digits) {
-  const std::string text = fixed(x, digits);
-  if (text[0] != '-') return text;
-  return (text.find_first_not_of("-0.") == text.npos ? "" : "−") + text.substr(1);
+/// A text for the picture: with a true minus sign.
+std::string shown(std::string text) {
+  if (const std::size_t minus = text.starts_with('>') ? 1 : 0; text[minus] == '-') text.replace(minus, 1, "−");
+  return text;
 }
+
+std::string whole(double x) { return shown(std::to_string(std::lround(x))); }
 
 struct Box {
   double x0, y0, x1, y1;
@@ -229,8 +237,9 @@ using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
 class Picture {
  public:
-  Picture(const Film& film, double speed)
-      : film_(film), run_(film.run), speed_(speed),
+  /// `pace`: units of the scene's time in a second of the film.
+  Picture(const Film& film, double pace, bool labels)
+      : film_(film), run_(film.run), unit_(film.scale), pace_(pace), labels_(labels),
         surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, kWidth, kHeight), cairo_surface_destroy),
         cr_(cairo_create(surface_.get()), cairo_destroy) {
     check();
@@ -239,7 +248,8 @@ class Picture {
     const auto few = draws.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(draws.size() - 1));
     std::nth_element(draws.begin(), few, draws.end());
     // The larger of propulsion and of what few draws exceed spans two radii.
-    arrow_ = 2.0 * film.radius / std::max({*few, std::abs(run_.propulsion), 1e-9});
+    if (const double strong = std::max(*few, std::abs(run_.propulsion)); strong > 0.0)
+      arrow_ = 2.0 * film.radius / strong;
     for (std::size_t i = 0; i < run_.t.size(); ++i) {
       stored_ = std::max({stored_, run_.body[i], run_.beams[i], run_.elastic[i]});
       moved_ = std::max({moved_, run_.work[i], run_.lost[i]});
@@ -259,7 +269,7 @@ class Picture {
       const double fit = (kArea.y1 - kArea.y0) * (whole.x1 - whole.x0) / (whole.y1 - whole.y0);
       const double middle = kArea.x0 + std::clamp(fit, 120.0, 440.0);
       stage({kArea.x0, kArea.y0, middle, kArea.y1}, state, whole);
-      const Point centre = calm_place(run_, time);
+      const Point centre = calm_place(film_, time);
       const double half_x = 1.15 * film_.width, half_y = 0.95 * film_.depth;
       stage({middle + 16, kArea.y0, kArea.x1, kArea.y1}, state,
             {centre.x - half_x, centre.y - half_y, centre.x + half_x, centre.y + half_y});
@@ -267,7 +277,7 @@ class Picture {
       stage(kArea, state, whole);
     }
     // Words and numbers change ten times in a second of the film, so that they can be read.
-    const double word = 0.1 * speed_, start = run_.t.front();
+    const double word = 0.1 * pace_ * unit_.time, start = run_.t.front();
     const double said = start + word * std::floor((time - start) / word + 1e-9);
     panel(952, state, time < run_.t.back() ? state_at(run_, said) : state);
     check();
@@ -325,6 +335,7 @@ class Picture {
   }
   /// Text from x on, or up to x for a width below 0; what is wider than `width` loses its end.
   void text(double x, double y, double size, std::string words, Colour c, bool bold = false, double width = 1e9) {
+    if (!labels_) return;
     cairo_select_font_face(cr_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                            bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cr_.get(), size);
@@ -343,16 +354,16 @@ class Picture {
 
   /// The field, or one gate with all places that the run visits.
   [[nodiscard]] Box bounds() const {
-    constexpr double kMargin = 3.0;  // m
+    const double margin = 3.0 * unit_.length;
     if (film_.is_field())
-      return {(film_.first_column() - 0.5) * film_.width - kMargin, -film_.radius - kMargin,
-              (film_.first_column() + film_.columns - 0.5) * film_.width + kMargin,
-              film_.rows * film_.depth + film_.radius + kMargin};
+      return {(film_.first_column() - 0.5) * film_.width - margin, -film_.radius - margin,
+              (film_.first_column() + film_.columns - 0.5) * film_.width + margin,
+              film_.rows * film_.depth + film_.radius + margin};
     const auto [left, right] = std::minmax_element(run_.X.begin(), run_.X.end());
     const auto [low, high] = std::minmax_element(run_.Y.begin(), run_.Y.end());
-    const double half = std::max({film_.joint_x, -*left + film_.radius, *right + film_.radius}) + kMargin;
-    return {-half, std::min(0.0, *low - film_.radius) - kMargin, half,
-            std::max(film_.joint_y + film_.beam, *high + film_.radius) + kMargin};
+    const double half = std::max({film_.joint_x, -*left + film_.radius, *right + film_.radius}) + margin;
+    return {-half, std::min(0.0, *low - film_.radius) - margin, half,
+            std::max(film_.joint_y + film_.beam, *high + film_.radius) + margin};
   }
 
   /// The body among the beams in a part of the picture, which shows at least the part `seen` (m) of the world.
@@ -364,7 +375,7 @@ class Picture {
     const auto at = [&](Point p) -> Point {
       return {0.5 * (box.x0 + box.x1) + (p.x - centre.x) * scale, 0.5 * (box.y0 + box.y1) - (p.y - centre.y) * scale};
     };
-    const double thick = std::clamp(0.9 * scale, 1.5, 5.0);
+    const double thick = std::clamp(0.9 * unit_.length * scale, 1.5, 5.0);
     cairo_save(cr);
     fill(box, kStage);
     cairo_rectangle(cr, box.x0, box.y0, w, h);
@@ -419,14 +430,14 @@ class Picture {
       cairo_line_to(cr, now.x, now.y);
       stroke(kText, width, 0.5);
     };
-    constexpr double kWake = 1.5;  // s of the trail drawn strongly
+    const double wake = 1.5 * unit_.time;  // of the trail is drawn strongly
     trail(0, 1.6);
-    trail(moment_at(run_, s.time - kWake).i, 2.2);
+    trail(moment_at(run_, s.time - wake).i, 2.2);
 
     circle(at(s.body), film_.radius * scale);
     colour(kDisc, 0.88);
     cairo_fill_preserve(cr);
-    stroke(kEdge, std::clamp(0.4 * scale, 1.2, 2.0));
+    stroke(kEdge, std::clamp(0.4 * unit_.length * scale, 1.2, 2.0));
 
     // The gate's beams, with what touches.
     for (const Side side : {kLeft, kRight}) {
@@ -443,8 +454,8 @@ class Picture {
         cairo_fill_preserve(cr);
         stroke(own, 0.7 * thick);
       }
-      // s of the run for which a hit stays to be seen
-      const double flash = 0.25 * std::max(1.0, speed_);
+      // time of the run for which a hit stays to be seen
+      const double flash = 0.25 * std::max(1.0, pace_) * unit_.time;
       if (s.last_hit[side] < 0) continue;
       const auto i = static_cast<std::size_t>(s.last_hit[side]);
       const double grown = (s.time - run_.t[i]) / flash;
@@ -461,29 +472,36 @@ class Picture {
     colour(kEdge);
     cairo_fill(cr);
 
-    // A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width.
+    if (labels_) rule(box, scale);
+    cairo_restore(cr);
+  }
+
+  /// A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width at `scale` points a metre.
+  void rule(const Box& box, double scale) {
+    cairo_t* const cr = cr_.get();
+    const double w = box.x1 - box.x0;
     const double wanted = 0.2 * w / scale, power = std::pow(10.0, std::floor(std::log10(wanted)));
     const double length = power * (5.0 * power <= wanted ? 5.0 : 2.0 * power <= wanted ? 2.0 : 1.0);
     cairo_rectangle(cr, box.x0 + 6, box.y1 - 36, length * scale + 16, 32);
     colour(kStage, 0.85);
     cairo_fill(cr);
-    text(box.x0 + 14, box.y1 - 18, 14, shown(length, length < 1.0 ? 2 : 0) + " m", kMuted);
+    text(box.x0 + 14, box.y1 - 18, 14, quantity(length, "m"), kMuted);
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
     line({box.x0 + 14, box.y1 - 12}, {box.x0 + 14 + length * scale, box.y1 - 12}, kMuted, 2.0);
-    cairo_restore(cr);
   }
 
   /// Time, contacts, forces and energies, from x on: bars of now, words and numbers of `s`.
   void panel(double x, const State& now, const State& s) {
     constexpr double kRightEdge = kWidth - 32.0;
     const Moment& m = s.moment;
-    text(x, 124, 40, shown(now.time, 2) + " s", kText, true);
+    text(x, 124, 40, shown(reading(now.time, "s", 0.01 * unit_.time)), kText, true);
     const bool ended = now.time >= run_.t.back();
     if (ended)
       text(x, 154, 17, "ended: " + run_.ending, kText, true, kRightEdge - x);
     else if (film_.is_field())
-      text(x, 154, 17, "gate: column " + shown(s.gx, 0) + ", row " + shown(s.gy, 0), kMuted);
+      text(x, 154, 17, "gate: column " + whole(s.gx) + ", row " + whole(s.gy), kMuted);
     double y = 196;
+    const auto force = [&](double newton) { return shown(reading(newton, "N", 0.1 * unit_.force())); };
     const auto row = [&](Colour c, bool is_arrow, const std::string& name, const std::string& value) {
       if (is_arrow)
         arrow({x, y - 5}, {x + 26, y - 5}, c, 4.0);
@@ -496,23 +514,24 @@ class Picture {
     for (const Side side : {kLeft, kRight}) {
       // A hit is named for a moment.
       const int hit = s.last_hit[side];
-      const bool just_hit = hit >= 0 && s.time - run_.t[static_cast<std::size_t>(hit)] < 0.1 * speed_;
+      const bool just_hit = hit >= 0 && s.time - run_.t[static_cast<std::size_t>(hit)] < 0.1 * pace_ * unit_.time;
       const int contact = s.contact[side] == 0 && just_hit ? 1 : s.contact[side];
       row(side == kLeft ? kBlue : kRed, false, side == kLeft ? "left beam" : "right beam",
           std::string(kContactNames[static_cast<std::size_t>(contact)]) + ", " +
-              shown(s.angle[side] * 180.0 / std::numbers::pi, 0) + "°");
+              whole(s.angle[side] * 180.0 / std::numbers::pi) + "°");
     }
-    row(kOrange, true, "propulsion", shown(run_.propulsion, 1) + " N");
-    row(kGrey, true, "random force", shown(run_.random[m.i], 1) + " N");
+    row(kOrange, true, "propulsion", force(run_.propulsion));
+    row(kGrey, true, "random force", force(run_.random[m.i]));
     text(x + 38, y, 16, "speed", kText);
     const double speed = std::hypot(m.between(run_.vx), m.between(run_.vy));
-    text(kRightEdge, y, 16, shown(speed, 1) + " m/s", kText, false, -160);
+    text(kRightEdge, y, 16, reading(speed, "m/s", 0.1 * unit_.speed()), kText, false, -160);
     y += 48;
 
     const auto bar = [&](const std::string& name, const std::vector<double>& energy, double most, Colour c) {
+      const double step = step_of(0.1 * unit_.energy(), most);
       const double joules = now.moment.between(energy);
       text(x, y, 16, name, kText);
-      text(kRightEdge, y, 16, shown(m.between(energy), 1) + " J", kText, false, -160);
+      text(kRightEdge, y, 16, shown(reading(m.between(energy), "J", step)), kText, false, -160);
       fill({x, y + 7, kRightEdge, y + 15}, kLine);
       if (most > 0.0) fill({x, y + 7, x + std::clamp(joules / most, 0.0, 1.0) * (kRightEdge - x), y + 15}, c);
       y += 40;
@@ -531,7 +550,9 @@ class Picture {
 
   const Film& film_;
   const Run& run_;
-  double speed_;
+  const dynamics::Scale unit_;
+  double pace_;
+  bool labels_;
   Surface surface_;
   Context cr_;
   double arrow_ = 0.0;                 // m per N
@@ -599,26 +620,43 @@ std::vector<std::string> ffmpeg_command(const Film& film, double frames_per_seco
 
 }  // namespace
 
-void write_video(const std::string& path, const Json& json, int run, const VideoOptions& options) {
-  const auto [speed, frames_per_second, show_progress] = options;
-  if (!(speed > 0.0) || !std::isfinite(speed)) throw std::invalid_argument("a video's speed must be above 0");
-  if (!(frames_per_second >= 1.0 && frames_per_second <= 240.0))
+namespace {
+
+/// The film and how fast it goes. Throws std::invalid_argument.
+std::pair<Film, double> film_and_pace(const Json& json, int run, const VideoOptions& options) {
+  if (options.speed && (!(*options.speed > 0.0) || !std::isfinite(*options.speed)))
+    throw std::invalid_argument("a video's speed must be above 0");
+  if (!(options.frames_per_second >= 1.0 && options.frames_per_second <= 240.0))
     throw std::invalid_argument("a video has 1 to 240 frames a second");
   if (run < 0) throw std::invalid_argument("film: no run " + std::to_string(run));
-  const Film film = film_of(json, run);
+  Film film = film_of(json, run);
+  const double pace = options.speed ? *options.speed / film.scale.time : 1.0;
+  return {std::move(film), pace};
+}
+
+}  // namespace
+
+std::string video_frame(const Json& json, int run, double time, const VideoOptions& options) {
+  const auto [film, pace] = film_and_pace(json, run, options);
+  return std::string(Picture(film, pace, options.labels).draw(std::clamp(time, film.run.t.front(), film.run.t.back())));
+}
+
+void write_video(const std::string& path, const Json& json, int run, const VideoOptions& options) {
+  const auto [film, pace] = film_and_pace(json, run, options);
+  const double frames_per_second = options.frames_per_second;
   require_writable(path);
 
-  Picture picture(film, speed);
+  Picture picture(film, pace, options.labels);
   Conveyor conveyor;
   Child ffmpeg(ffmpeg_command(film, frames_per_second), conveyor.exit(),
                "ffmpeg was not found; it packs the video (Debian: ffmpeg)");
   conveyor.close_exit();
 
-  const double start = film.run.t.front(), end = film.run.t.back(), step = speed / frames_per_second;
+  const double start = film.run.t.front(), end = film.run.t.back(), step = pace * film.scale.time / frames_per_second;
   const auto frames = static_cast<std::int64_t>(std::ceil((end - start) / step - 1e-9)) + 1 +
                       static_cast<std::int64_t>(frames_per_second);  // the last one stands
   bool reads = true;
-  run_in_batches("video, frames", frames, show_progress, [&](std::int64_t first, std::int64_t count) {
+  run_in_batches("video, frames", frames, options.show_progress, [&](std::int64_t first, std::int64_t count) {
     for (std::int64_t k = first; k < first + count && reads; ++k)
       reads = conveyor.send(picture.draw(std::min(end, start + static_cast<double>(k) * step)));
   });

@@ -13,19 +13,20 @@ const gatewalkReplay = (() => {
     lost_in_hits_J: {name: 'of it in hits', colour: 'purple', dash: [2, 3]},
   };
   const kPanels = [
-    {title: 'Energy stored now, J', keys: ['body_J', 'beams_J', 'elastic_J']},
-    {title: 'Put in and lost since the start, J', keys: ['work_J', 'lost_J', 'lost_in_hits_J']},
+    {title: 'Energy stored now', keys: ['body_J', 'beams_J', 'elastic_J']},
+    {title: 'Put in and lost since the start', keys: ['work_J', 'lost_J', 'lost_in_hits_J']},
   ];
-  const kFilmKeys = ['title', 'radius_m', 'beam_m', 'joint_x_m', 'joint_y_m', 'gate_m', 'columns', 'rows',
+  const kFilmKeys = ['title', 'scale', 'radius_m', 'beam_m', 'joint_x_m', 'joint_y_m', 'gate_m', 'columns', 'rows',
     'start_column', 'runs'];
   const kArrays = ['t', 'gx', 'gy', 'x', 'y', 'vx', 'vy', 'left', 'right', 'contact_left', 'contact_right',
     'random_N', 'body_J', 'beams_J', 'elastic_J', 'work_J', 'lost_J'];
   const kOptionalArrays = ['lost_in_hits_J'];
   const kContacts = ['free', 'hit', 'held'];
-  const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
-  const kFlash = 0.25;    // s of the run for which a hit stays to be seen, longer where the run goes fast
-  const kSmooth = 0.75;   // s before and after over which the following camera takes the mean place
-  const kWake = 1.5;      // s of the trail drawn strongly
+  // In the scene's own units of time:
+  const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];  // a second
+  const kFlash = 0.25;    // for which a hit stays to be seen, longer where the run goes fast
+  const kSmooth = 0.75;   // before and after over which the following camera takes the mean place
+  const kWake = 1.5;      // of the trail drawn strongly
 
   const kStyle = `
     :host { display: block; }
@@ -83,11 +84,15 @@ const gatewalkReplay = (() => {
     const number = (name, value, low) => {
       if (!Number.isFinite(value) || value < low) faults.push(`${name} is not a number of at least ${low}`);
     };
+    const positive = (name, value) => {
+      if (!Number.isFinite(value) || !(value > 0)) faults.push(`${name} is not a number above 0`);
+    };
     if (typeof film.title !== 'string') faults.push('title is missing');
-    for (const name of ['radius_m', 'beam_m']) number(name, film[name], 1e-9);
+    for (const name of ['length_m', 'mass_kg', 'time_s']) positive(`scale.${name}`, film.scale?.[name]);
+    for (const name of ['radius_m', 'beam_m']) positive(name, film[name]);
     for (const name of ['joint_x_m', 'joint_y_m']) number(name, film[name], 0);
     if (!Array.isArray(film.gate_m) || film.gate_m.length !== 2) faults.push('gate_m is not [width, depth]');
-    else film.gate_m.forEach((side) => number('gate_m', side, 1e-9));
+    else film.gate_m.forEach((side) => positive('gate_m', side));
     for (const name of ['columns', 'rows']) {
       number(name, film[name], 1);
       if (!Number.isInteger(film[name])) faults.push(`${name} is not a whole number`);
@@ -178,8 +183,9 @@ const gatewalkReplay = (() => {
   }
 
   /** The body's mean place around a time: what a calm camera looks at. */
-  function calmPlace(run, time) {
-    const low = Math.max(run.t[0], time - kSmooth), high = Math.min(run.t[run.end], time + kSmooth);
+  function calmPlace(run, time, scale) {
+    const smooth = kSmooth * scale.time_s;
+    const low = Math.max(run.t[0], time - smooth), high = Math.min(run.t[run.end], time + smooth);
     const reach = Math.min(time - low, high - time);  // the same before and after, so that the ends are not cut off
     const upTo = (sums, values, at) => {
       const i = indexAt(run.t, at), j = Math.min(i + 1, run.end), step = run.t[j] - run.t[i], h = at - run.t[i];
@@ -187,7 +193,7 @@ const gatewalkReplay = (() => {
     };
     const mean = (sums, values) =>
       (upTo(sums, values, time + reach) - upTo(sums, values, time - reach)) / (2 * reach);
-    if (!(reach > 1e-6)) { const s = stateAt(run, time); return [s.X, s.Y]; }
+    if (!(reach > 1e-6 * scale.time_s)) { const s = stateAt(run, time); return [s.X, s.Y]; }
     return [mean(run.sumX, run.X), mean(run.sumY, run.Y)];
   }
 
@@ -206,7 +212,7 @@ const gatewalkReplay = (() => {
 
   /** What the camera sees of the whole: the field, or one gate with all places that the runs visit. */
   function boundsOf(film, runs) {
-    const [width, depth] = film.gate_m, margin = 3;
+    const [width, depth] = film.gate_m, margin = 3 * film.scale.length_m;
     if (film.columns * film.rows > 1) {
       const first = -Math.floor(film.columns / 2);
       return {x0: (first - 0.5) * width - margin, x1: (first + film.columns - 0.5) * width + margin,
@@ -224,21 +230,85 @@ const gatewalkReplay = (() => {
 
   // ---- Words
 
-  /** A number with its digits, a true minus sign, and no minus before zero. */
-  const fixed = (x, digits) => x.toFixed(digits).replace(/^-(?=[0.]*$)/, '').replace('-', '\u2212');
-  const secondsText = (t) => `${fixed(t, 2)} s`;
-  const joulesText = (e) => `${fixed(e, 1)} J`;
+  /** A number's text with a true minus sign. */
+  const minus = (text) => text.replace(/^(>?)-/, '$1\u2212');
+  /** A whole number with a true minus sign, and no minus before zero. */
+  const whole = (x) => minus(String(Math.round(x) || 0));
+
+  /** What a unit can be shown as, from small to large: [how much it is, its name]. */
+  function sizesOf(unit) {
+    const sizes = [...'afpnµm'].map((prefix, i) => [10 ** (3 * i - 18), prefix + unit]);
+    sizes.push([1, unit]);
+    if (unit === 's') sizes.push([60, 'min'], [3600, 'h'], [86400, 'd']);
+    else [...'kMGTPE'].forEach((prefix, i) => sizes.push([10 ** (3 * i + 3), prefix + unit]));
+    return sizes;
+  }
+  const largestWithin = (unit, most) => sizesOf(unit).findLast(([size]) => size <= most * (1 + 1e-9)) ?? [1, unit];
+
+  /** The unit in which numbers up to `most` are short, as cli/quantity.h says. */
+  function readableUnit(unit, most) {
+    if (most === 0 || (most >= 0.01 && most < 1e4)) return [1, unit];
+    const found = largestWithin(unit, most);
+    return most / found[0] < 1e4 ? found : [1, unit];
+  }
+
+  /** "15 m", "20.12 mJ": a number with so many significant digits at most. */
+  function quantity(x, unit, significant = 4) {
+    const rounded = Number(x.toPrecision(significant)), [size, name] = readableUnit(unit, Math.abs(rounded));
+    return `${minus(String(Number((rounded / size).toPrecision(significant))))} ${name}`;
+  }
+
+  /** The unit and the decimals of many numbers of a kind, of which `step` is what counts: as cli/quantity.h says. */
+  function readingUnit(unit, step) {
+    const power = Math.round(Math.log10(step)), last = 10 ** power, typical = 100 * last;
+    const plain = power >= -4 && power <= 0;
+    let [size, name] = plain ? [1, unit] : largestWithin(unit, typical);
+    name = ` ${name}`;
+    if (!plain && (typical / size < 0.9 || typical / size > 999)) {  // beyond all prefixes
+      const exponent = 3 * Math.floor((power + 2) / 3);
+      size = 10 ** exponent;
+      name = `e${exponent} ${unit}`;
+    }
+    return {size, name, decimals: Math.max(0, Math.round(Math.log10(size / last)))};
+  }
+
+  /** One of them. What is not zero is not shown as zero: "<0.1 J". */
+  function reading(x, {size, name, decimals}) {
+    let text = (x / size).toFixed(decimals);
+    if (Number(text) === 0) {
+      const least = (10 ** -decimals).toFixed(decimals);
+      text = x > 0 ? `<${least}` : x < 0 ? `>-${least}` : (0).toFixed(decimals);
+    }
+    return minus(text) + name;
+  }
+
+  /** What a scene's readings are in: a hundredth of its unit of time counts, a tenth of its other units. */
+  function unitsOf({length_m: length, mass_kg: mass, time_s: time}, runs) {
+    const force = mass * length / (time * time);
+    const joules = (keys) => {
+      const most = Math.max(...runs.flatMap((run) => keys.filter((key) => run[key]).map((key) => largest(run[key]))));
+      return readingUnit('J', Math.max(0.1 * force * length, 1e-5 * most));
+    };
+    return {
+      time: readingUnit('s', 0.01 * time),
+      force: readingUnit('N', 0.1 * force),
+      speed: readingUnit('m/s', 0.1 * length / time),
+      energies: kPanels.map(({keys}) => joules(keys)),
+    };
+  }
+  const largest = (values) => values.reduce((a, b) => Math.max(a, b), 0);
 
   /** How a run went, for somebody who does not see it. */
-  function told(run, film) {
-    const largest = (values) => Math.round(values.reduce((a, b) => Math.max(a, b), 0) * 180 / Math.PI);
+  function told(run, film, units) {
+    const degrees = (angles) => Math.round(largest(angles) * 180 / Math.PI);
+    const joules = (energy) => reading(energy, units.energies[1]);
     const gates = new Set(run.gx.map((gx, i) => `${gx} ${run.gy[i]}`)).size;
     const where = film.columns * film.rows > 1
-      ? `It was in ${gates} of ${film.columns} x ${film.rows} gates, at last in column ${fixed(run.gx[run.end], 0)}, row ${run.gy[run.end]}.`
-      : `The left beam was deflected by up to ${largest(run.left)} degrees, the right one by up to ${largest(run.right)} degrees.`;
+      ? `It was in ${gates} of ${film.columns} x ${film.rows} gates, at last in column ${whole(run.gx[run.end])}, row ${run.gy[run.end]}.`
+      : `The left beam was deflected by up to ${degrees(run.left)} degrees, the right one by up to ${degrees(run.right)} degrees.`;
     const work = run.work_J[run.end], lost = run.lost_J[run.end];
     return `${run.label}${run.label.includes(run.ending) ? '' : `: ${run.ending}`}. ${where} ` +
-      `Propulsion and random force put in ${joulesText(work)}; ${joulesText(lost)} were lost.`;
+      `Propulsion and random force put in ${joules(work)}; ${joules(lost)} were lost.`;
   }
 
   // ---- The picture
@@ -251,13 +321,14 @@ const gatewalkReplay = (() => {
     let scale, cx, cy;
     if (follow) {
       scale = Math.min(w / (2.3 * width), h / (1.9 * depth));
-      [cx, cy] = calmPlace(run, time);
+      [cx, cy] = calmPlace(run, time, film.scale);
     } else {
       scale = Math.min(w / (bounds.x1 - bounds.x0), h / (bounds.y1 - bounds.y0));
       cx = 0.5 * (bounds.x0 + bounds.x1); cy = 0.5 * (bounds.y0 + bounds.y1);
     }
     const px = (x) => 0.5 * w + (x - cx) * scale, py = (y) => 0.5 * h - (y - cy) * scale;
-    const thick = Math.max(1.5, Math.min(5, 0.9 * scale));
+    const unit = film.scale.length_m * scale;  // points
+    const thick = Math.max(1.5, Math.min(5, 0.9 * unit));
     const line = (points, colour, width_, dash = []) => {
       ctx.beginPath();
       points.forEach(([x, y], k) => (k ? ctx.lineTo(px(x), py(y)) : ctx.moveTo(px(x), py(y))));
@@ -309,13 +380,13 @@ const gatewalkReplay = (() => {
     ctx.beginPath(); ctx.arc(px(run.X[0]), py(run.Y[0]), 3.5, 0, 2 * Math.PI);
     ctx.strokeStyle = c.muted; ctx.lineWidth = 1.5; ctx.stroke();
     trail(0, c.text, 1.6, 0.5);
-    trail(indexAt(run.t, time - kWake), c.text, 2.2, 0.5);
+    trail(indexAt(run.t, time - kWake * film.scale.time_s), c.text, 2.2, 0.5);
 
     // The body.
     const r = film.radius_m * scale;
     ctx.beginPath(); ctx.arc(px(state.X), py(state.Y), r, 0, 2 * Math.PI);
     ctx.globalAlpha = 0.88; ctx.fillStyle = c.disc; ctx.fill(); ctx.globalAlpha = 1;
-    ctx.strokeStyle = c.edge; ctx.lineWidth = Math.max(1.2, Math.min(2, 0.4 * scale)); ctx.stroke();
+    ctx.strokeStyle = c.edge; ctx.lineWidth = Math.max(1.2, Math.min(2, 0.4 * unit)); ctx.stroke();
 
     // Its gate's beams, with what touches.
     for (const side of ['left', 'right']) {
@@ -363,7 +434,7 @@ const gatewalkReplay = (() => {
     const length = power * [5, 2, 1].find((k) => k * power <= wanted);
     ctx.globalAlpha = 0.85; ctx.fillStyle = c.stage; ctx.fillRect(6, h - 32, length * scale + 12, 28); ctx.globalAlpha = 1;
     ctx.fillStyle = c.muted; ctx.font = `12px ${font}`; ctx.textAlign = 'left'; ctx.textBaseline = 'bottom';
-    ctx.fillText(`${length} m`, 12, h - 14);
+    ctx.fillText(quantity(length, 'm'), 12, h - 14);
     ctx.beginPath(); ctx.moveTo(12, h - 10); ctx.lineTo(12 + length * scale, h - 10);
     ctx.strokeStyle = c.muted; ctx.lineWidth = 2; ctx.lineCap = 'butt'; ctx.stroke();
   }
@@ -376,26 +447,36 @@ const gatewalkReplay = (() => {
 
   const kLeft = 46, kRight = 8, kTop = 6, kBottom = 24;  // the chart's frame, in points
 
-  /** Energies over time; what is still to come is faint. */
-  function drawChart(ctx, w, h, c, font, run, keys, time) {
-    const t0 = run.t[0], t1 = run.t[run.end], span = t1 - t0 || 1;
-    let low = 0, high = 1e-9;
+  /** The energies' range (J): from zero or below to the largest, and never nothing. */
+  function energyRange(run, keys, scale) {
+    let low = 0, high = 0;
     for (const key of keys) for (const e of run[key]) { if (e > high) high = e; if (e < low) low = e; }
+    if (high > low) return [low, high];
+    const {length_m: length, mass_kg: mass, time_s: time} = scale;
+    return [low, low + mass * length * length / (time * time)];
+  }
+
+  /** Energies over time; what is still to come is faint. */
+  function drawChart(ctx, w, h, c, font, run, keys, scale, unitOfEnergy, time) {
+    const t0 = run.t[0], t1 = run.t[run.end], span = t1 - t0 || scale.time_s;
+    const [low, high] = energyRange(run, keys, scale);
     const x = (t) => kLeft + (w - kLeft - kRight) * (t - t0) / span;
     const y = (e) => h - kBottom - (h - kTop - kBottom) * (e - low) / (high - low);
     ctx.clearRect(0, 0, w, h);
     ctx.font = `12px ${font}`; ctx.fillStyle = c.muted; ctx.strokeStyle = c.line; ctx.lineWidth = 1;
     ctx.textAlign = 'right'; ctx.textBaseline = 'middle';
-    const step = tickStep(high - low, 3);
+    const joules = unitOfEnergy.size;
+    const step = joules * tickStep((high - low) / joules, 3);
     for (let k = Math.ceil(low / step); k * step <= high; ++k) {
       const at = Math.round(y(k * step)) + 0.5;
       ctx.beginPath(); ctx.moveTo(kLeft, at); ctx.lineTo(w - kRight, at); ctx.stroke();
-      ctx.fillText(String(Number((k * step).toPrecision(6))), kLeft - 6, at);
+      ctx.fillText(minus(String(Number((k * step / joules).toPrecision(6)))), kLeft - 6, at);
     }
     ctx.textBaseline = 'top';
-    const seconds = tickStep(span, Math.max(2, Math.floor((w - kLeft) / 60)));
-    for (let k = Math.ceil(t0 / seconds - 1e-9); k * seconds <= t1 + 1e-9; ++k) {
-      const text = `${Number((k * seconds).toPrecision(6))} s`, at = x(k * seconds);
+    const [unit, name] = readableUnit('s', Math.max(Math.abs(t0), Math.abs(t1)));
+    const seconds = unit * tickStep(span / unit, Math.max(2, Math.floor((w - kLeft) / 60)));
+    for (let k = Math.ceil(t0 / seconds - 1e-9); k * seconds <= t1 + 1e-9 * seconds; ++k) {
+      const text = `${minus(String(Number((k * seconds / unit).toPrecision(6))))} ${name}`, at = x(k * seconds);
       ctx.textAlign = at + 0.5 * ctx.measureText(text).width > w ? 'right' : 'center';
       ctx.fillText(text, ctx.textAlign === 'right' ? w - 1 : at, h - kBottom + 8);
     }
@@ -466,14 +547,14 @@ const gatewalkReplay = (() => {
 
     const runs = film.runs.map((run) => prepared(run, film));
     const field = film.columns * film.rows > 1;
-    const bounds = boundsOf(film, runs);
+    const bounds = boundsOf(film, runs), unit = film.scale.time_s, units = unitsOf(film.scale, runs);
     const calm = window.matchMedia('(prefers-reduced-motion: reduce)');
     let run = runs[0], time = run.t[0], playing = false, last = 0, colours = {}, font = 'sans-serif', frame = 0;
 
     // The arrows' scale is one for all runs: the larger of propulsion and of what few draws exceed spans two radii.
     const draws = runs.flatMap((r) => r.random_N.map(Math.abs)).sort((a, b) => a - b);
-    const strong = Math.max(draws[Math.floor(0.95 * (draws.length - 1))], ...runs.map((r) => Math.abs(r.propulsion_N)), 1e-9);
-    const arrow = 2 * film.radius_m / strong;
+    const strong = Math.max(draws[Math.floor(0.95 * (draws.length - 1))], ...runs.map((r) => Math.abs(r.propulsion_N)));
+    const arrow = strong > 0 ? 2 * film.radius_m / strong : 0;
 
     // Controls
     const chooser = made('select', '', {}, ...runs.map((r, i) => made('option', '', {value: i}, r.label)));
@@ -483,7 +564,8 @@ const gatewalkReplay = (() => {
     const stageBox = made('div', '', {}, stage);
     const play = made('button', 'gwr-play', {type: 'button'}, 'Play');
     const slider = made('input', 'gwr-time', {type: 'range', step: 'any', 'aria-label': 'Time in the run'});
-    const speed = made('select', '', {}, ...kSpeeds.map((s) => made('option', '', {value: s}, `${s}×`)));
+    const speed = made('select', '', {title: 'times as fast as real'},
+      ...kSpeeds.map((s) => made('option', '', {value: s}, `${Number((s * unit).toPrecision(3))}×`)));
     speed.value = '1';
     const follow = made('input', '', {type: 'checkbox', role: 'switch'});
     const bar = made('div', 'gwr-bar', {}, play, slider, made('label', '', {}, 'Speed', speed));
@@ -498,13 +580,13 @@ const gatewalkReplay = (() => {
       values[key] = made('td');
       return made('tr', '', {}, made('th', '', {scope: 'row'}, icon, name), values[key]);
     };
-    const panels = kPanels.map(({title, keys}) => {
+    const panels = kPanels.map(({title, keys}, i) => {
       const shown = keys.filter((key) => runs.every((r) => r[key]));
       const canvas = made('canvas', 'gwr-chart', {role: 'img'});
       const table = made('table', '', {}, ...shown.map((key) =>
         row(key, swatch(kSeries[key].colour, kSeries[key].dash), kSeries[key].name)));
-      return {keys: shown, canvas, title, box: made('section', 'gwr-panel', {'aria-label': title},
-        made('h3', '', {}, title), table, canvas)};
+      return {keys: shown, canvas, title, unit: units.energies[i], box: made('section', 'gwr-panel', {'aria-label': title},
+        made('h3', '', {}, `${title}, ${units.energies[i].name.trim()}`), table, canvas)};
     });
     legend.append(row('left', swatch('blue', []), 'left beam'), row('right', swatch('red', []), 'right beam'),
       row('propulsion', swatch('orange', [], true), 'propulsion'), row('random', swatch('grey', [], true), 'random force'),
@@ -513,7 +595,7 @@ const gatewalkReplay = (() => {
     root.append(
       made('div', 'gwr-columns', {},
         made('div', '', {}, made('div', 'gwr-status', {}, clock, mode), stageBox, bar,
-          made('p', 'gwr-keys', {}, 'Keys: space plays and pauses, arrows step, page up and down move by 1 s, home and end.')),
+          made('p', 'gwr-keys', {}, 'Keys: space plays and pauses, arrows step, page up and down move by ' + `${quantity(unit, 's', 3)}, home and end.`)),
         made('div', '', {}, made('section', 'gwr-panel', {'aria-label': 'Beams and forces'}, legend), ...panels.map((p) => p.box))),
       words, said);
 
@@ -531,7 +613,7 @@ const gatewalkReplay = (() => {
     // they can be read; at rest they are those of the very step.
     const contactWord = (state, side) => {
       const hit = run.lastHit[side][state.i];
-      return kContacts[playing && state.contact[side] === 0 && hit >= 0 && state.time - run.t[hit] < 0.1 * Number(speed.value) ? 1 : state.contact[side]];
+      return kContacts[playing && state.contact[side] === 0 && hit >= 0 && state.time - run.t[hit] < 0.1 * Number(speed.value) * unit ? 1 : state.contact[side]];
     };
     let toldAt = -Infinity;
 
@@ -546,28 +628,28 @@ const gatewalkReplay = (() => {
       const height = stageHeight();
       stage.style.height = `${height}px`;
       drawStage(...sized(stage, height), colours, font, {film, run, bounds, follow: field && follow.checked, arrow,
-        flash: kFlash * Math.max(1, Number(speed.value))}, time);
-      for (const {keys, canvas} of panels)
-        drawChart(...sized(canvas, canvas.clientHeight), colours, font, run, keys, time);
-      put(clock, secondsText(time));
-      slider.value = time;
+        flash: kFlash * Math.max(1, Number(speed.value)) * unit}, time);
+      for (const {keys, canvas, unit: joules} of panels)
+        drawChart(...sized(canvas, canvas.clientHeight), colours, font, run, keys, film.scale, joules, time);
+      put(clock, reading(time, units.time));
+      slider.value = time / unit;
       if (playing && performance.now() - toldAt < 100) return;
       toldAt = performance.now();
       put(mode, ended ? `ended: ${run.ending}` : ['left', 'right'].map((side) => `${side} beam ${contactWord(state, side)}`).join(', '));
       mode.classList.toggle('gwr-ended', ended);
-      if (!playing) slider.setAttribute('aria-valuetext', `${secondsText(time)}, ${mode.textContent}`);
-      for (const {keys} of panels) for (const key of keys) put(values[key], joulesText(state[key]));
+      if (!playing) slider.setAttribute('aria-valuetext', `${reading(time, units.time)}, ${mode.textContent}`);
+      for (const {keys, unit: joules} of panels) for (const key of keys) put(values[key], reading(state[key], joules));
       for (const side of ['left', 'right'])
-        put(values[side], `${contactWord(state, side)}, ${fixed(state[side] * 180 / Math.PI, 0)}°`);
-      put(values.propulsion, `${fixed(run.propulsion_N, 1)} N`);
-      put(values.random, `${fixed(state.random, 1)} N`);
-      put(values.speed, `${fixed(Math.hypot(state.vx, state.vy), 1)} m/s`);
-      if (field) put(values.gate, `${fixed(state.gx, 0)}, ${state.gy}`);
+        put(values[side], `${contactWord(state, side)}, ${whole(state[side] * 180 / Math.PI)}°`);
+      put(values.propulsion, reading(run.propulsion_N, units.force));
+      put(values.random, reading(state.random, units.force));
+      put(values.speed, reading(Math.hypot(state.vx, state.vy), units.speed));
+      if (field) put(values.gate, `${whole(state.gx)}, ${state.gy}`);
     }
 
     function tick(now) {
       // A page that was hidden goes on where it was, and does not leap.
-      time = Math.min(run.t[run.end], time + Math.min(0.1, Math.max(0, now - last) / 1000) * Number(speed.value));
+      time = Math.min(run.t[run.end], time + Math.min(0.1, Math.max(0, now - last) / 1000) * Number(speed.value) * unit);
       last = now;
       if (time >= run.t[run.end]) { pause(); put(said, `Ended: ${run.ending}`); return; }
       show();
@@ -595,11 +677,11 @@ const gatewalkReplay = (() => {
     function choose(index) {
       run = runs[index];
       time = run.t[0];
-      slider.min = run.t[0]; slider.max = run.t[run.end];
-      put(words, told(run, film));
-      stage.setAttribute('aria-label', `Animation of the body among the beams. ${told(run, film)}`);
-      panels.forEach(({canvas, title, keys}) => canvas.setAttribute('aria-label', `${title} over time. At the end: ` +
-        keys.map((key) => `${kSeries[key].name} ${joulesText(run[key][run.end])}`).join(', ')));
+      slider.min = run.t[0] / unit; slider.max = run.t[run.end] / unit;  // a slider keeps few digits of small numbers
+      put(words, told(run, film, units));
+      stage.setAttribute('aria-label', `Animation of the body among the beams. ${told(run, film, units)}`);
+      panels.forEach(({canvas, title, unit: joules, keys}) => canvas.setAttribute('aria-label', `${title} over time. At the end: ` +
+        keys.map((key) => `${kSeries[key].name} ${reading(run[key][run.end], joules)}`).join(', ')));
       show();
     }
 
@@ -611,7 +693,7 @@ const gatewalkReplay = (() => {
       const i = indexAt(run.t, time);
       const jumps = {ArrowRight: run.t[Math.min(i + 1, run.end)],
         ArrowLeft: time > run.t[i] ? run.t[i] : run.t[Math.max(i - 1, 0)],
-        PageUp: time + 1, PageDown: time - 1, Home: run.t[0], End: run.t[run.end]};
+        PageUp: time + unit, PageDown: time - unit, Home: run.t[0], End: run.t[run.end]};
       if (event.key === ' ' && tag !== 'BUTTON' && at.type !== 'checkbox') toggle();
       else if (event.key in jumps) { if (playing) pause(); seek(jumps[event.key]); }
       else return false;
@@ -621,7 +703,7 @@ const gatewalkReplay = (() => {
 
     play.addEventListener('click', toggle);
     stage.addEventListener('click', toggle);
-    slider.addEventListener('input', () => { if (playing) pause(); seek(Number(slider.value)); });
+    slider.addEventListener('input', () => { if (playing) pause(); seek(Number(slider.value) * unit); });
     chooser.addEventListener('change', () => { if (playing) pause(); choose(Number(chooser.value)); });
     follow.addEventListener('change', show);
     root.addEventListener('keydown', key);

@@ -37,7 +37,7 @@ inline Json small_film(int steps = 50) {
     run["lost_J"].push_back(3.0 * 0.5 * i);
     run["lost_in_hits_J"].push_back(0.0);
   }
-  return {{"title", "A small film"}, {"radius_m", 10.0}, {"beam_m", 25.0}, {"joint_x_m", 25.0},
+  return {{"title", "A small film"}, {"scale", {{"length_m", 1.0}, {"mass_kg", 1.0}, {"time_s", 1.0}}}, {"radius_m", 10.0}, {"beam_m", 25.0}, {"joint_x_m", 25.0},
           {"joint_y_m", 30.0},       {"gate_m", {50.0, 60.0}}, {"columns", 1}, {"rows", 1},
           {"start_column", 0},       {"runs", {run}}};
 }
@@ -49,5 +49,39 @@ inline Json small_field_film() {
   film["columns"] = film["rows"] = 3;
   return film;
 }
+
+/// The same film of a scene with other units: all lengths, masses and times times these.
+inline Json twin(Json film, double length, double mass, double time) {
+  const double speed = length / time, force = mass * speed / time, energy = force * length;
+  const auto multiply = [](Json& values, double factor) {
+    for (Json& value : values)
+      if (value.is_number()) value = value.get<double>() * factor;
+  };
+  const auto at = [&](Json& object, const char* name, double factor) {
+    object[name] = object.at(name).get<double>() * factor;
+  };
+  at(film["scale"], "length_m", length);
+  at(film["scale"], "mass_kg", mass);
+  at(film["scale"], "time_s", time);
+  for (const char* name : {"radius_m", "beam_m", "joint_x_m", "joint_y_m"}) at(film, name, length);
+  multiply(film["gate_m"], length);
+  for (Json& run : film["runs"]) {
+    at(run, "propulsion_N", force);
+    multiply(run["t"], time);
+    multiply(run["random_N"], force);
+    for (const char* name : {"x", "y"}) multiply(run[name], length);
+    for (const char* name : {"vx", "vy"}) multiply(run[name], speed);
+    for (const auto& [name, values] : run.items())
+      if (name.ends_with("_J")) multiply(values, energy);
+  }
+  return film;
+}
+
+/// Powers of 4 for lengths, masses and times: whatever is multiplied by them keeps its digits.
+struct Powers {
+  int length, mass, time;
+};
+inline constexpr Powers kTwins[] = {{-5, 0, 0}, {0, 5, 0}, {0, 0, -5}, {-10, -10, -10}, {10, 10, 10}, {10, -10, 4}, {-3, 7, 10}};
+inline double power(int exponent) { return std::ldexp(1.0, 2 * exponent); }
 
 }  // namespace gatewalk::cli

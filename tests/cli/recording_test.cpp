@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 
 #include "dynamics/landscape.h"
+#include "tests/cli/films.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -105,6 +107,104 @@ TEST(Recording, FilmHasTheForceThatComes) {
   add_details(film, s, runs);
   EXPECT_EQ(film["runs"][0]["landscape_J"].size(), moments.size());
   EXPECT_EQ(film["runs"][0]["hits"], runs[0].health.impacts);
+}
+
+/// The scene in other units: each of its keys times what its unit is made of.
+Scene in_other_units(const Scene& s, double length, double mass, double time) {
+  const double force = mass * length / (time * time);
+  Scene other = s;
+  other.gate.body = {s.gate.body.mass * mass, s.gate.body.radius * length};
+  dynamics::Beams& beams = other.gate.beams;
+  for (double* const x : {&beams.length, &beams.joint_x, &beams.joint_y}) *x *= length;
+  beams.mass *= mass;
+  for (double* const k : {&beams.stiffness_left, &beams.stiffness_right}) *k *= force * length;
+  beams.damping *= force * length * time;
+  dynamics::Forces& forces = other.gate.forces;
+  forces = {forces.propulsion * force, forces.random * force, forces.random_rate / time, forces.drag * mass / time};
+  other.gate.contact.impulse_threshold *= force * time;
+  dynamics::Run& run = other.gate.run;
+  for (double* const t : {&run.step, &run.time_limit}) *t *= time;
+  for (double* const x : {&run.traverse_y, &run.event_tolerance}) *x *= length;
+  other.start = {s.start.x * length, s.start.y * length, s.start.vx * length / time, s.start.vy * length / time};
+  return other;
+}
+
+/// What a recording is in other units.
+Recording in_other_units(Recording r, double length, double mass, double time) {
+  const double speed = length / time, force = mass * speed / time, joule = force * length;
+  const auto scale = [&](dynamics::Energies& e) {
+    for (double* const x : {&e.body, &e.beams[0], &e.beams[1], &e.elastic[0], &e.elastic[1], &e.propulsion_work,
+                            &e.random_work, &e.hit_loss, &e.lost})
+      *x *= joule;
+  };
+  r.seconds *= time;
+  for (Moment& m : r.moments) {
+    m.time *= time;
+    m.sample.time *= time;
+    auto& [body, beams] = m.sample.state;
+    body = {body.x * length, body.y * length, body.vx * speed, body.vy * speed};
+    m.sample.random_force *= force;
+    for (std::size_t i = 0; i < 2; ++i) {
+      beams[i].omega /= time;
+      m.sample.beam_force[i] *= force;
+      m.sample.impulse[i] *= force * time;
+      m.sample.gap[i] *= length;
+    }
+    scale(m.sample.energy);
+    scale(m.energy);
+  }
+  return r;
+}
+
+/// A film without what is said in words, which name numbers with their units.
+Json without_words(Json film) {
+  film.erase("title");
+  for (Json& run : film["runs"]) run.erase("label");
+  return film;
+}
+
+// In other units a film has the same numbers times these, to the last bit; the CSV has its seven digits.
+TEST(Recording, InOtherUnitsHasTheSameNumbers) {
+  for (const auto& [s, across] : {std::pair{scene("x_m = 1.5\n"), false}, {parse_scene("", "field.toml"), true}}) {
+    const std::vector<Recording> runs{record(s, 3, 1, across), record(s, 3, 2, across)};
+    Json film = film_of(s, runs, across);
+    add_details(film, s, runs);
+    const auto lines = table(csv_of(s, runs));
+    for (const auto& [l, m, t] : kTwins) {
+      const double length = power(l), mass = power(m), time = power(t), force = mass * length / (time * time);
+      const Scene other = in_other_units(s, length, mass, time);
+      std::vector<Recording> others;
+      for (const Recording& run : runs) others.push_back(in_other_units(run, length, mass, time));
+      Json there = film_of(other, others, across);
+      add_details(there, other, others);
+      EXPECT_TRUE(without_words(there) == without_words(twin(film, length, mass, time))) << l << " " << m << " " << t;
+
+      const auto other_lines = table(csv_of(other, others));
+      ASSERT_EQ(other_lines.size(), lines.size());
+      std::size_t compared = 0;
+      for (std::size_t row = 1; row < lines.size(); row += 7)
+        for (std::size_t c = 0; c < lines[0].size(); ++c) {
+          const std::string& name = lines[0][c];
+          const double factor = name.ends_with("_J")           ? force * length
+                                : name.ends_with("_N")         ? force
+                                : name.ends_with("_Ns")        ? force * time
+                                : name.ends_with("_m_per_s")   ? length / time
+                                : name.ends_with("_rad_per_s") ? 1.0 / time
+                                : name.ends_with("_m")         ? length
+                                : name.ends_with("time_s")     ? time
+                                                               : 0.0;
+          if (factor == 0.0) {
+            EXPECT_EQ(other_lines[row][c], lines[row][c]) << name;
+            continue;
+          }
+          const double here = std::stod(lines[row][c]) * factor;
+          ++compared;
+          if (!std::isfinite(here)) continue;
+          EXPECT_NEAR(std::strtod(other_lines[row][c].c_str(), nullptr), here, 1.1e-6 * std::abs(here)) << name;
+        }
+      EXPECT_GT(compared, 1000u);
+    }
+  }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <iterator>
 #include <thread>
+#include <vector>
 
 #include "cli/child.h"
 #include "cli/interrupt.h"
@@ -127,6 +128,42 @@ TEST_F(Video, ShowsTheBodyMovingAndTheBeamsInTheirColours) {
   EXPECT_GT(mean_colour(path("a.mp4"), 1.5, start)[0], mean_colour(path("a.mp4"), 0.0, start)[0] + 5);
 }
 
+/// How many bytes of two pictures differ.
+std::size_t differing(const std::string& a, const std::string& b) {
+  EXPECT_EQ(a.size(), b.size());
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) n += a[i] != b[i];
+  return n;
+}
+
+// In other units the same pictures, point by point, but for words and numbers.
+TEST_F(Video, ASceneInOtherUnitsLooksTheSame) {
+  for (const Json& film : {small_film(100), small_field_film()}) {
+    const double end = film["runs"][0]["t"].back();
+    std::vector<Json> twins;
+    for (const auto& [l, m, t] : kTwins) twins.push_back(twin(film, power(l), power(m), power(t)));
+    for (const double part : {0.0, 0.34, 0.62}) {  // before a hit, just after it, and later
+      const VideoOptions bare{.labels = false};
+      const std::string paper = video_frame(film, 0, part * end, bare);
+      ASSERT_EQ(paper.size(), 1280u * 720u * 4u);
+      EXPECT_GT(differing(paper, video_frame(film, 0, part * end)), 1000u) << "labels are seen";
+      EXPECT_GT(differing(paper, video_frame(film, 0, (part + 0.05) * end, bare)), 1000u) << "it moves";
+      for (std::size_t i = 0; i < twins.size(); ++i)
+        EXPECT_EQ(differing(paper, video_frame(twins[i], 0, part * end * power(kTwins[i].time), bare)), 0u)
+            << "twin " << i << " at " << part;
+    }
+  }
+}
+
+// Unless told otherwise a film takes as long as in the scene's own units; told so, as it is told.
+TEST_F(Video, PaceIsTheScenes) {
+  const Json film = twin(small_film(), 1.0, 1.0, power(-5));
+  write_video(path("a.mp4"), film, 0);
+  EXPECT_EQ(number(probed(path("a.mp4")), "nb_read_frames"), 101);
+  write_video(path("b.mp4"), film, 0, {.speed = 0.5 * power(-5)});
+  EXPECT_EQ(number(probed(path("b.mp4")), "nb_read_frames"), 151);
+}
+
 TEST_F(Video, MissingFfmpegIsSaidAndLeavesNothing) {
   ::setenv("PATH", "/nonexistent", 1);
   EXPECT_EQ(complaint_of(path("a.mp4")), "ffmpeg was not found; it packs the video (Debian: ffmpeg)");
@@ -163,6 +200,9 @@ TEST_F(Video, RefusesAFilmThatIsIncomplete) {
   film = small_film(5);
   film["runs"][0]["contact_left"][3] = 4;
   EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: a contact is none of 0, 1, 2");
+  film = small_film(5);
+  film["scale"]["time_s"] = 0.0;
+  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: a unit of its scale is not above 0");
   film = small_film(5);
   film["runs"][0]["t"][1] = 7.0;
   EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: t goes back in time");

@@ -13,11 +13,19 @@ int main(int argc, char** argv) try {
     write_text_atomically(std::string(argv[1]) + "/" + name, replay_page(film));
   };
   Json film = small_film(100);
+  write("gate-one.html", film);
   film["runs"].push_back(film["runs"][0]);
   film["runs"][1]["label"] = "trial 2: </script><b>trapped</b>";
   film["runs"][1]["ending"] = "trapped";
   write("gate.html", film);
   write("field.html", small_field_film());
+  int number = 0;
+  for (const auto& [length, mass, time] : kTwins) {
+    const auto name = [&](const char* of) { return of + std::to_string(number) + ".html"; };
+    write(name("gate-twin-").c_str(), twin(small_film(100), power(length), power(mass), power(time)));
+    write(name("field-twin-").c_str(), twin(small_field_film(), power(length), power(mass), power(time)));
+    ++number;
+  }
   Json broken = small_film(5);
   broken["runs"][0].erase("left");
   broken["runs"][0]["vy"][2] = nullptr;

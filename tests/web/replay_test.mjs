@@ -14,6 +14,7 @@ const seen = (name, options, look) =>
     assert.deepEqual(faults, []);
   });
 
+// In the scene's own units of time: seconds, but for the twins.
 const time = (page) => page.locator('.gwr-time').evaluate((slider) => Number(slider.value));
 const end = (page) => page.locator('.gwr-time').evaluate((slider) => Number(slider.max));
 const pixels = (page) => page.locator('.gwr-stage').evaluate((canvas) => canvas.toDataURL());
@@ -154,6 +155,52 @@ test('several on one page keep their own time', () => seen('gate.html', {}, asyn
   const times = await page.locator('.gwr-time').evaluateAll((sliders) => sliders.map((slider) => Number(slider.value)));
   assert.deepEqual(times, [0, 1.5]);
 }));
+
+/// The stage above its rule, the lines of the energies between the frame's ends, and how far the clock has come: what
+/// a scene looks like whatever its units are.
+const look = (page) => page.evaluate(async () => {
+  const root = document.querySelector('#replay > div').shadowRoot, charts = new Set(root.querySelectorAll('.gwr-chart'));
+  const slider = root.querySelector('.gwr-time'), lines = [], lineTo = CanvasRenderingContext2D.prototype.lineTo;
+  CanvasRenderingContext2D.prototype.lineTo = function (x, y) {
+    if (charts.has(this.canvas) && x !== this.canvas.clientWidth - 8) lines.push(x, y);
+    lineTo.call(this, x, y);
+  };
+  const pictures = [];
+  for (const part of [0, 0.1, 0.31, 0.62, 1])
+    for (const follow of root.querySelector('[role=switch]') ? [false, true] : [false]) {
+      slider.value = Number(slider.max) * part;
+      slider.dispatchEvent(new Event('input'));
+      if (root.querySelector('[role=switch]')?.checked !== follow) root.querySelector('[role=switch]')?.click();
+      const stage = root.querySelector('.gwr-stage');
+      const data = stage.getContext('2d').getImageData(0, 0, stage.width, stage.height - 34).data;
+      const hash = await crypto.subtle.digest('SHA-256', data);
+      pictures.push([...new Uint8Array(hash)].map((byte) => byte.toString(16).padStart(2, '0')).join(''));
+    }
+  CanvasRenderingContext2D.prototype.lineTo = lineTo;
+  return {pictures, lines};
+});
+
+for (const kind of ['gate', 'field'])
+  test(`a ${kind} in other units looks the same`, async () => {
+    let paper;
+    await seen(`${kind === 'gate' ? 'gate-one' : kind}.html`, {}, async (page) => { paper = await look(page); });
+    assert.equal(new Set(paper.pictures).size, paper.pictures.length, 'it moves');
+    assert.ok(paper.lines.length > 1000);
+    for (const twin of [2, 3, 4, 5])
+      await seen(`${kind}-twin-${twin}.html`, {}, async (page) => assert.deepEqual(await look(page), paper, `twin ${twin}`));
+  });
+
+test('a scene in other units takes as long to play, and says its time in units that fit', () =>
+  seen('gate-twin-2.html', {reducedMotion: 'no-preference'}, async (page) => {  // times x 4^-5
+    const started = Date.now();
+    await page.locator('.gwr-ended').waitFor();
+    const passed = Date.now() - started;
+    assert.ok(passed >= 1500 && passed < 10000, `${passed} ms`);
+    assert.equal(await page.locator('.gwr-clock').textContent(), '1.95 ms');
+    assert.match(await page.locator('.gwr-keys').textContent(), /move by 977 µs/);
+    assert.equal(await page.getByLabel('Speed').locator('option').nth(3).textContent(), '0.000977×');
+    for (const words of await page.locator('td').allTextContents()) assert.doesNotMatch(words, /^.?0(\.0*)? (J|N|m\/s)$/);
+  }));
 
 test('a film that is incomplete says what is wrong', () => seen('broken.html', {}, async (page) => {
   const words = await page.getByRole('alert').textContent();
