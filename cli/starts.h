@@ -27,7 +27,12 @@ void require_inside(const std::vector<PaperStart>& starts, const Scene& scene);
 /// Warns of each start that lies outside the chain's bins: the chain starts in the nearest one.
 void warn_outside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
                        const dynamics::StateSpace& space);
-/// "  23  -11   16"
+/// "  23  -11   16": columns as wide as the numbers of all starts need, every digit of them.
+struct StartTexts {
+  std::string header;              // "   d   vx   vy"
+  std::vector<std::string> texts;  // (starts)
+  explicit StartTexts(const std::vector<PaperStart>& starts);
+};
 [[nodiscard]] std::string start_text(const PaperStart& start);
 
 }  // namespace gatewalk::cli
