@@ -223,8 +223,13 @@ EndingShares::EndingShares(const markov::FinalDistribution& prediction, const la
                            int max_gates)
     : EndingShares(prediction.endings) {
   if (noise.replicates() == 0) return;
-  for (std::size_t e = 0; e < markov::kEndings; ++e)
-    interval[e] = share_interval(share[e], noise.equivalent_walks(static_cast<markov::Ending>(e)));
+  constexpr double kRounding = 1e-12;
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    interval[e] = noise.interval_95(static_cast<markov::Ending>(e));
+    // Where no resampled matrix shows a spread: what the runs of the row that all walks begin in can rule out.
+    if (interval[e][1] - interval[e][0] <= kRounding)
+      interval[e] = share_interval(std::clamp(share[e], 0.0, 1.0), static_cast<double>(noise.runs()));
+  }
   if (max_gates == 0) interval[static_cast<std::size_t>(markov::Ending::cut_off)] = {0.0, 0.0};
 }
 

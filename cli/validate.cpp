@@ -1,6 +1,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -253,6 +254,7 @@ Json to_json(const lattice::Judgement& j, std::int64_t resampled) {
                    {"chi_squared", j.chi_squared.p_adjusted}};
   for (const EndingName& e : kEndingNames)
     adjusted["endings"][e.key] = j.endings[static_cast<std::size_t>(e.ending)].p_adjusted;
+  adjusted["endings"]["never_sampled"] = j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted;
   return {{"differs", j.differs()},
           {"p", j.p},
           {"level", lattice::Judgement::kLevel},
@@ -324,30 +326,33 @@ std::string table_of(const std::vector<StartReport>& reports, bool papers, std::
   for (const StartReport& r : reports) starts.push_back(r.start);
   const StartTexts labels(starts);
   std::ostringstream out;
-  // Each cell as wide as the widest: "17.61 [16.87, 18.37]*".
-  std::size_t width = 0;
+  // Each column as wide as its widest cell: "17.61 [16.87, 18.37]*".
+  std::array<std::size_t, kEndingNames.size()> width{};
   const auto cell = [](const StartReport& r, const EndingShares& shares, const EndingName& e) {
     const auto at = static_cast<std::size_t>(e.ending);
     const bool marked = &shares == &r.exact_endings && r.judgement.differs(e.ending);
     return with_interval(shares.share[at], shares.interval[at]) + (marked ? "*" : " ");
   };
   for (const StartReport& r : reports)
-    for (const EndingName& e : kEndingNames)
-      width = std::max({width, cell(r, r.dynamics_endings, e).size(), cell(r, r.exact_endings, e).size()});
-  const auto column = [&](const std::string& text) { return "  " + padded(text, static_cast<int>(width)); };
+    for (std::size_t e = 0; e < width.size(); ++e)
+      width[e] = std::max({width[e], cell(r, r.dynamics_endings, kEndingNames[e]).size(),
+                           cell(r, r.exact_endings, kEndingNames[e]).size()});
+  const auto line = [&](const auto& text_of) {
+    std::string text;
+    for (std::size_t e = 0; e < width.size(); ++e)
+      text += "  " + padded(text_of(kEndingNames[e]), static_cast<int>(width[e]));
+    return text;
+  };
   out << "Endings, % of " << trials << " trials of the full dynamics and by the exact chain, with 95 % intervals: chance in the\n"
          "trials, in the sampling of the matrix. p: how often chance in both together would make any ending\n"
          "or the final gates look as different; *: this ending differs.\n\n"
       << labels.header << "  |         ";
-  for (const EndingName& e : kEndingNames) out << column(std::string(e.name) + " ");
-  out << "       p\n";
+  out << line([](const EndingName& e) { return std::string(e.name) + " "; }) << "       p\n";
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const StartReport& r = reports[k];
-    out << labels.texts[k] << "  | dynamics";
-    for (const EndingName& e : kEndingNames) out << column(cell(r, r.dynamics_endings, e));
-    out << "\n" << labels.texts[k] << "  | chain   ";
-    for (const EndingName& e : kEndingNames) out << column(cell(r, r.exact_endings, e));
-    out << padded(p_text(r.judgement.p), 8) << "\n";
+    out << labels.texts[k] << "  | dynamics" << line([&](const EndingName& e) { return cell(r, r.dynamics_endings, e); })
+        << "\n" << labels.texts[k] << "  | chain   " << line([&](const EndingName& e) { return cell(r, r.exact_endings, e); })
+        << padded(p_text(r.judgement.p), 8) << "\n";
   }
   out << "\n";
   for (std::size_t k = 0; k < reports.size(); ++k)

@@ -46,26 +46,22 @@ std::int64_t affordable_replicates(const markov::Field& field, int max_cells, st
 }
 
 MatrixNoise::MatrixNoise(const FinalDistribution& prediction, std::int64_t runs)
-    : prediction_(prediction), runs_(static_cast<double>(runs)) {}
+    : prediction_(prediction), runs_(runs) {}
 
 void MatrixNoise::add(const FinalDistribution& replicate) {
-  for (std::size_t e = 0; e < markov::kEndings; ++e) {
-    const double difference = replicate.endings[e] - prediction_.endings[e];
-    squares_[e] += difference * difference;
-  }
+  endings_.push_back(replicate.endings);
   distances_.push_back(0.5 * (replicate.final_cells - prediction_.final_cells).abs().sum());
 }
 
-double MatrixNoise::sd(markov::Ending e) const {
-  return std::sqrt(squares_[static_cast<std::size_t>(e)] / static_cast<double>(replicates()));
-}
-
-double MatrixNoise::equivalent_walks(markov::Ending e) const {
-  constexpr double kMost = 1e15;
-  const double share = prediction_.endings[static_cast<std::size_t>(e)], spread = sd(e);
-  const double walks = share * (1.0 - share) / (spread * spread);
-  // Rounding alone shows as a spread of some 1e-16.
-  return spread > 1e-14 && walks > 0.0 ? std::min(walks, kMost) : runs_;
+std::array<double, 2> MatrixNoise::interval_95(markov::Ending e) const {
+  const auto at = static_cast<std::size_t>(e);
+  std::vector<double> shares;
+  for (const auto& endings : endings_) shares.push_back(endings[at]);
+  std::sort(shares.begin(), shares.end());
+  const std::size_t beyond = (shares.size() + 1) / 40;  // 2.5 % on either side
+  const std::size_t low = beyond > 0 ? beyond - 1 : 0;
+  return {std::min(shares[low], prediction_.endings[at]),
+          std::max(shares[shares.size() - 1 - low], prediction_.endings[at])};
 }
 
 double MatrixNoise::mean_total_variation() const {

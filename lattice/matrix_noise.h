@@ -37,11 +37,10 @@ class MatrixNoise {
   void add(const markov::FinalDistribution& replicate);
 
   [[nodiscard]] std::int64_t replicates() const { return static_cast<std::int64_t>(distances_.size()); }
-  /// Root mean square of what replicates differ from the prediction by, in the share of an ending.
-  [[nodiscard]] double sd(markov::Ending e) const;
-  /// So many independent walks would give that spread. Where replicates show none, `runs`: all walks
-  /// share the first row.
-  [[nodiscard]] double equivalent_walks(markov::Ending e) const;
+  [[nodiscard]] std::int64_t runs() const { return runs_; }
+  /// Between what lie the shares of this ending in the middle 95 % of the replicates, and the prediction's
+  /// own. Needs a replicate at least. No spread at all says only that no run of the matrix shows any.
+  [[nodiscard]] std::array<double, 2> interval_95(markov::Ending e) const;
   /// Total variation of the final cells between replicates and the prediction (NaN without replicates).
   [[nodiscard]] double mean_total_variation() const;
   [[nodiscard]] double sd_total_variation() const;
@@ -49,8 +48,8 @@ class MatrixNoise {
 
  private:
   const markov::FinalDistribution& prediction_;
-  double runs_;
-  std::array<double, markov::kEndings> squares_{};
+  std::int64_t runs_;
+  std::vector<std::array<double, markov::kEndings>> endings_;  // (replicates) by Ending
   std::vector<double> distances_;
 };
 
