@@ -31,6 +31,7 @@ int run_build(const std::vector<std::string>& arguments) {
   const Stopwatch watch;
   lattice::MatrixFile file{build_matrix(scene, states, trials, options.seed(), options.talk()), {}};
   const double seconds = watch.seconds();
+  check_outcomes(options, scene, RunsFrom::everywhere, file.transitions.totals().runs, file.transitions.health);
   const dynamics::Transitions& t = file.transitions;
   file.text = {{"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},
                {"scene", to_toml(scene)},

@@ -23,10 +23,17 @@ int run_lattice(const std::vector<std::string>& arguments) {
   lattice::FieldTally tally(scene.field);
   run_in_batches("field trials", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
     tally += lattice::run_field(scene.gate, scene.field, scene.start, space, options.seed(), {first, n});
+    tally.final_gate_of_trial.clear();  // asked for by nobody
   });
+  check_outcomes(options, scene, RunsFrom::everywhere, trials, tally.health);
 
   Json json;
+  const EndingShares shares(tally.endings, tally.trials);
+  json["endings"] = endings(tally.endings);
+  json["endings_95"] = endings_95(shares);
   json["final_gates"] = grid(tally.final_gates);
+  json["trapped_gates"] = grid(tally.trapped_gates);
+  json["departed_gates"] = grid(tally.departed_gates);
   json["trials"] = tally.trials;
   json["trapped"] = tally.trapped;
   json["left_field"] = tally.left_field;
@@ -46,15 +53,9 @@ int run_lattice(const std::vector<std::string>& arguments) {
   json["made_by"] = manifest(options, scene);
 
   const auto n = static_cast<double>(tally.trials);
-  const auto share = [&](std::int64_t part) {
-    const auto [low, high] = share_interval(part, tally.trials);
-    return percent(static_cast<double>(part), n, 2) + " [" + fixed(100.0 * low, 2) + ", " +
-           fixed(100.0 * high, 2) + "]";
-  };
-  std::string table = scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) + "trials " +
-                      std::to_string(tally.trials) + ": trapped " + share(tally.trapped) +
-                      ", left the field " + share(tally.left_field) + ", cut off " +
-                      share(tally.cut_off) + " (95 % intervals)\n";
+  std::string table = endings_text(shares, "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
+                      scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) + "left the field " +
+                      percent(static_cast<double>(tally.left_field), n, 2) + "\n";
   if (tally.broken > 0)
     table += "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
   options.give_out(json, table + method_line(settled));

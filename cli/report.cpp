@@ -212,6 +212,79 @@ std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
           part == whole ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
 }
 
+std::array<double, 2> share_interval(double share, double equivalent_trials) {
+  const double n = equivalent_trials * share, others = equivalent_trials * std::max(0.0, 1.0 - share);
+  return {n == 0.0 ? 0.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.025),
+          others == 0.0 ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
+}
+
+EndingShares::EndingShares(const std::array<double, markov::kEndings>& shares) : share(shares) {
+  interval.fill({std::nan(""), std::nan("")});
+}
+
+EndingShares::EndingShares(const std::array<std::int64_t, markov::kEndings>& counts, std::int64_t trials) {
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    share[e] = static_cast<double>(counts[e]) / static_cast<double>(trials);
+    interval[e] = share_interval(counts[e], trials);
+  }
+}
+
+EndingShares::EndingShares(const markov::FinalDistribution& prediction, const lattice::MatrixNoise& noise,
+                           int max_gates)
+    : EndingShares(prediction.endings) {
+  if (noise.replicates() == 0) return;
+  constexpr double kRounding = 1e-12;
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    interval[e] = noise.interval_95(static_cast<markov::Ending>(e));
+    // Where no resampled matrix shows a spread: what the runs of the row that all walks begin in can rule out.
+    if (interval[e][1] - interval[e][0] <= kRounding)
+      interval[e] = share_interval(std::clamp(share[e], 0.0, 1.0), static_cast<double>(noise.runs()));
+  }
+  if (max_gates == 0) interval[static_cast<std::size_t>(markov::Ending::cut_off)] = {0.0, 0.0};
+}
+
+namespace {
+
+template <class Values>
+Json by_name(const Values& values) {
+  Json j;
+  for (const EndingName& e : kEndingNames) j[e.key] = values[static_cast<std::size_t>(e.ending)];
+  return j;
+}
+
+/// A share in % with two decimals, or two digits if that would be 0.
+std::string percents(double share) {
+  if (!(share > 0.0 && share < 5e-5)) return fixed(100.0 * share, 2);
+  std::ostringstream text;
+  text.precision(2);
+  text << 100.0 * share;
+  return text.str();
+}
+
+}  // namespace
+
+Json endings(const std::array<std::int64_t, markov::kEndings>& counts) { return by_name(counts); }
+Json endings(const std::array<double, markov::kEndings>& shares) { return by_name(shares); }
+Json endings_95(const EndingShares& shares) { return by_name(shares.interval); }
+
+std::string with_interval(double share, const std::array<double, 2>& interval) {
+  if (std::isnan(interval[0])) return percents(share);
+  return percents(share) + " [" + percents(interval[0]) + ", " + percents(interval[1]) + "]";
+}
+
+std::string endings_text(const EndingShares& shares, const std::string& of) {
+  std::string text;
+  for (const EndingName& e : kEndingNames) {
+    const auto at = static_cast<std::size_t>(e.ending);
+    text += padded(e.name, -11) + padded(percents(shares.share[at]), 7) + " %";
+    if (!std::isnan(shares.interval[at][0]))
+      text += "  [" + percents(shares.interval[at][0]) + ", " + percents(shares.interval[at][1]) + "]";
+    if (at == static_cast<std::size_t>(kEndingNames.front().ending)) text += "  " + of;
+    text += "\n";
+  }
+  return text;
+}
+
 Json to_json(const dynamics::GateTally& tally) {
   Json json;
   json["trials"] = tally.trials;

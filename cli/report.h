@@ -37,6 +37,41 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string percent(double part, double whole, int digits = 1);
 /// What share of all trials a count of some stands for, with 95 %: Jeffreys' interval.
 [[nodiscard]] std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole);
+/// The same for a share that varies as that of so many independent trials would.
+[[nodiscard]] std::array<double, 2> share_interval(double share, double equivalent_trials);
+
+/// How trials through the field ended: shares of all, with 95 % intervals (NaN: none), by markov::Ending.
+struct EndingShares {
+  std::array<double, markov::kEndings> share{};
+  std::array<std::array<double, 2>, markov::kEndings> interval;
+
+  /// Without intervals.
+  explicit EndingShares(const std::array<double, markov::kEndings>& shares);
+  /// Jeffreys' intervals of these counts.
+  EndingShares(const std::array<std::int64_t, markov::kEndings>& counts, std::int64_t trials);
+  /// A prediction's, with what the sampling of its matrix makes. Without a limit of gates nothing is cut off.
+  EndingShares(const markov::FinalDistribution& prediction, const lattice::MatrixNoise& noise, int max_gates);
+};
+/// The five that a gate chain has, with their names in JSON and in tables. (It has no way out backwards;
+/// states never sampled are told apart.)
+struct EndingName {
+  markov::Ending ending;
+  const char *key, *name;
+};
+inline constexpr std::array<EndingName, 5> kEndingNames{{{markov::Ending::far_edge, "crossed", "crossed"},
+                                                         {markov::Ending::left_edge, "left_side", "left side"},
+                                                         {markov::Ending::right_edge, "right_side", "right side"},
+                                                         {markov::Ending::trapped, "trapped", "trapped"},
+                                                         {markov::Ending::cut_off, "cut_off", "cut off"}}};
+/// {"crossed": ..., "left_side": ..., ...}: counts, shares, or [low, high] (null: no interval).
+[[nodiscard]] Json endings(const std::array<std::int64_t, markov::kEndings>& counts);
+[[nodiscard]] Json endings(const std::array<double, markov::kEndings>& shares);
+[[nodiscard]] Json endings_95(const EndingShares& shares);
+/// A line each: "crossed      0.02 %  [0.00, 0.05]"; `of` ends the first one.
+[[nodiscard]] std::string endings_text(const EndingShares& shares, const std::string& of);
+/// "17.61 [16.87, 18.37]", in %; "17.61" without an interval.
+[[nodiscard]] std::string with_interval(double share, const std::array<double, 2>& interval);
+
 /// What is run, in one line: start, body, forces, beams, method.
 [[nodiscard]] std::string scene_line(const Scene& scene);
 /// A p-value with 3 decimals, or "<0.001".

@@ -1,5 +1,7 @@
 #include "cli/starts.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -75,8 +77,28 @@ void require_inside_bins(const std::vector<PaperStart>& starts, const Scene& sce
     (void)start_in_bins(space, scene.field, s.body(), "start" + start_text(s));
 }
 
-std::string start_text(const PaperStart& s) {
-  return padded(fixed(s.d, 0), 4) + padded(fixed(s.vx, 0), 5) + padded(fixed(s.vy, 0), 5);
+StartTexts::StartTexts(const std::vector<PaperStart>& starts) : texts(starts.size()) {
+  struct Column {
+    const char* name;
+    double PaperStart::*value;
+    int width;  // at least
+  };
+  for (const auto& [name, value, least] : {Column{"d", &PaperStart::d, 4}, Column{"vx", &PaperStart::vx, 5},
+                                           Column{"vy", &PaperStart::vy, 5}}) {
+    std::vector<std::string> numbers;
+    int width = least;
+    for (const PaperStart& s : starts) {
+      char digits[32];
+      const auto end = std::to_chars(digits, digits + sizeof digits, s.*value + 0.0).ptr;  // -0 is 0
+      numbers.emplace_back(digits, end);
+      const int gap = least > 4 ? 2 : 1;
+      width = std::max(width, static_cast<int>(numbers.back().size()) + gap);
+    }
+    header += padded(name, width);
+    for (std::size_t k = 0; k < starts.size(); ++k) texts[k] += padded(numbers[k], width);
+  }
 }
+
+std::string start_text(const PaperStart& s) { return StartTexts({s}).texts.front(); }
 
 }  // namespace gatewalk::cli

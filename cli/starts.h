@@ -36,7 +36,12 @@ void require_inside(const std::vector<PaperStart>& starts, const Scene& scene);
 /// As start_in_bins for each of them.
 void require_inside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
                          const dynamics::StateSpace& space);
-/// "  23  -11   16"
+/// "  23  -11   16": columns as wide as the numbers of all starts need, every digit of them.
+struct StartTexts {
+  std::string header;              // "   d   vx   vy"
+  std::vector<std::string> texts;  // (starts)
+  explicit StartTexts(const std::vector<PaperStart>& starts);
+};
 [[nodiscard]] std::string start_text(const PaperStart& start);
 
 }  // namespace gatewalk::cli

@@ -24,14 +24,18 @@ int run_walk(const std::vector<std::string>& arguments) {
   const Stopwatch watch;
   const markov::Walker walker(ready.chain);
   markov::WalkTally tally;
-  tally.final_cells = markov::CellCounts::Zero(field.rows, field.columns);
   run_in_batches("walks", walks, options.talk(), [&](std::int64_t first, std::int64_t n) {
     tally += walker.walk(field, ready.start.start, m.scene.field.max_gates, options.seed(), {first, n});
   });
   const double seconds = watch.seconds();
 
   Json json;
+  const EndingShares shares(tally.endings, tally.walks);
+  json["endings"] = endings(tally.endings);
+  json["endings_95"] = endings_95(shares);
   json["final_gates"] = grid(tally.final_cells);
+  json["trapped_gates"] = grid(tally.trapped_cells);
+  json["departed_gates"] = grid(tally.departed_cells);
   json["walks"] = tally.walks;
   json["trapped"] = tally.trapped;
   json["left_field"] = tally.left_field;
@@ -44,11 +48,9 @@ int run_walk(const std::vector<std::string>& arguments) {
   json["made_by"] = manifest(options, m.scene);
 
   const auto n = static_cast<double>(tally.walks);
-  std::string table = map_of(tally.final_cells.cast<double>() / n) + "walks " +
-                      std::to_string(tally.walks) + ": trapped " +
-                      percent(static_cast<double>(tally.trapped), n, 2) + ", left the field " +
-                      percent(static_cast<double>(tally.left_field), n, 2) + ", cut off " +
-                      percent(static_cast<double>(tally.cut_off), n, 2) + "\nstart: " + ready.start_text + "\n";
+  std::string table = endings_text(shares, "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
+                      map_of(tally.final_cells.cast<double>() / n) + "left the field " +
+                      percent(static_cast<double>(tally.left_field), n, 2) + "\nstart: " + ready.start_text + "\n";
   if (tally.unsampled > 0)
     table += "reached a row that was never sampled: " +
              percent(static_cast<double>(tally.unsampled), n, 4) + "\n";

@@ -7,10 +7,12 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "dynamics/random.h"
+#include "lattice/draws.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -19,7 +21,7 @@ using dynamics::Purpose;
 using dynamics::Random;
 
 /// Rows of the streams of Purpose::comparison: one for each use, so that no two share their draws.
-enum Use : std::uint64_t { kDeals = 0, kExactDraws = 1, kSamples = 2, kSwaps = 3 };
+enum Use : std::uint64_t { kDeals = 0, kExactDraws = 1, kSamples = 2, kSwaps = 3, kPooledDraws = 4, kJudgements = 5 };
 
 void require_same_shape(Eigen::Index rows_a, Eigen::Index cols_a, Eigen::Index rows_b,
                         Eigen::Index cols_b) {
@@ -106,6 +108,15 @@ Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
   return s;
 }
 
+/// Mean, and what 95 % of the values do not exceed.
+std::pair<double, double> mean_and_95(std::vector<double> values) {
+  const auto n = std::ssize(values);
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n);
+  const auto at_95 = values.begin() + (95 * n + 99) / 100 - 1;
+  std::nth_element(values.begin(), at_95, values.end());
+  return {mean, *at_95};
+}
+
 /// p-values and the null's total variation over `null_draws` calls of draw(k), in any order.
 template <class Draw>
 void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draws, Draw draw) {
@@ -126,10 +137,7 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   c.null_draws = null_draws;
   std::vector<double> tv;
   for (const Statistics& s : null) tv.push_back(s.total_variation);
-  c.floor_total_variation = std::accumulate(tv.begin(), tv.end(), 0.0) / static_cast<double>(null_draws);
-  const auto at_95 = tv.begin() + (95 * null_draws + 99) / 100 - 1;
-  std::nth_element(tv.begin(), at_95, tv.end());
-  c.floor_total_variation_95 = *at_95;
+  std::tie(c.floor_total_variation, c.floor_total_variation_95) = mean_and_95(tv);
 }
 
 /// `n` draws from shares whose running sums are `cumulative`, as counts.
@@ -142,6 +150,16 @@ Eigen::VectorXd drawn_counts(const std::vector<double>& cumulative, std::int64_t
     counts[place - cumulative.begin()] += 1.0;
   }
   return counts;
+}
+
+/// Shares of `n` draws from other shares, as a few binomials.
+Eigen::VectorXd drawn_shares(const Eigen::VectorXd& p, std::int64_t n, Random& random) {
+  std::vector<std::int64_t> counts(static_cast<std::size_t>(p.size()));
+  multinomial(n, {p.data(), counts.size()}, counts, random);
+  Eigen::VectorXd drawn(p.size());
+  for (Eigen::Index i = 0; i < p.size(); ++i)
+    drawn[i] = static_cast<double>(counts[static_cast<std::size_t>(i)]) / static_cast<double>(n);
+  return drawn;
 }
 
 CellProbabilities shares(const CellCounts& counts) {
@@ -250,13 +268,20 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   const Support support = affordable_support_of(pooled);
   const Eigen::VectorXd expected = on_support(pooled, support);
   const double rare = rare_share(expected, std::min(n, m));
+  const Statistics seen =
+      statistics(on_support(a, support), on_support(b, support), expected, rare, support);
+  if (n + m > kMostDealt) {
+    fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
+      Random random(Purpose::comparison, {seed, kPooledDraws, static_cast<std::uint64_t>(k)});
+      const Eigen::VectorXd of_a = drawn_shares(expected, n, random);
+      return statistics(of_a, drawn_shares(expected, m, random), expected, rare, support);
+    });
+    return c;
+  }
   std::vector<std::int32_t> trials;  // every pooled trial, as its place in the support
   trials.reserve(n + m);
   for (std::size_t i = 0; i < support.gates.size(); ++i)
     trials.insert(trials.end(), pooled_counts.data()[support.gates[i]], static_cast<std::int32_t>(i));
-
-  const Statistics seen =
-      statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kDeals, static_cast<std::uint64_t>(k)});
     // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
@@ -345,10 +370,132 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kExactDraws, static_cast<std::uint64_t>(k)});
+    if (n > kMostDealt) return statistics(drawn_shares(expected, n, random), expected, expected, rare, support);
     return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected,
                       expected, rare, support);
   });
   return c;
+}
+
+namespace {
+
+/// What a trial can come to: an ending in a gate.
+struct Outcome {
+  Eigen::Index place;  // of the gate in the support
+  std::size_t ending;
+};
+
+constexpr std::size_t kGateTests = 3;
+using Tests = std::array<double, kGateTests + markov::kEndings>;  // statistics, as Judgement lists them
+
+/// For each statistic, in how many of all rows of `all` it is at least as large as in row k; NaN counts
+/// as the least.
+std::vector<std::array<std::int64_t, std::tuple_size_v<Tests>>> ranks(const std::vector<Tests>& all) {
+  std::vector<std::array<std::int64_t, std::tuple_size_v<Tests>>> rank(all.size());
+  std::vector<double> sorted(all.size());
+  for (std::size_t t = 0; t < std::tuple_size_v<Tests>; ++t) {
+    const auto value = [&](const Tests& x) { return std::isnan(x[t]) ? -1.0 : x[t]; };
+    std::transform(all.begin(), all.end(), sorted.begin(), value);
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t k = 0; k < all.size(); ++k)  // equal results of different rounding count as equal
+      rank[k][t] = sorted.end() - std::lower_bound(sorted.begin(), sorted.end(),
+                                                   value(all[k]) - 1e-12 * std::abs(value(all[k])));
+  }
+  return rank;
+}
+
+}  // namespace
+
+Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
+                const std::vector<markov::FinalDistribution>& replicates, std::int64_t null_draws,
+                std::uint64_t seed) {
+  const CellProbabilities& base = prediction.final_cells;
+  require_same_shape(seen.final_gates.rows(), seen.final_gates.cols(), base.rows(), base.cols());
+  if (null_draws < 1 || replicates.empty())
+    throw std::invalid_argument("judge: needs draws and a resampled matrix at least");
+  for (const auto& r : replicates)
+    require_same_shape(r.final_cells.rows(), r.final_cells.cols(), base.rows(), base.cols());
+  const CellProbabilities sample = shares(seen.final_gates);
+  const std::int64_t n = seen.final_gates.sum();
+  const auto trials = static_cast<double>(n);
+
+  CellProbabilities reached = sample + base;
+  for (const auto& r : replicates) reached += r.final_cells;
+  const Support support = affordable_support_of(reached);
+  const Eigen::VectorXd expected = on_support(base, support);
+  const double rare = rare_share(expected, n);
+  std::vector<Outcome> outcomes;
+  std::vector<double> weights;
+  auto mixed = prediction.mixed_cells.begin();
+  for (Eigen::Index i = 0; i < expected.size(); ++i) {
+    while (mixed != prediction.mixed_cells.end() && mixed->cell < support.gates[i]) ++mixed;
+    if (mixed == prediction.mixed_cells.end() || mixed->cell != support.gates[i]) {
+      outcomes.push_back({i, static_cast<std::size_t>(markov::Ending::trapped)});
+      weights.push_back(expected[i]);
+      continue;
+    }
+    for (std::size_t e = 0; e < markov::kEndings; ++e) {
+      if (!(mixed->by_ending[e] > 0.0)) continue;
+      outcomes.push_back({i, e});
+      weights.push_back(mixed->by_ending[e]);
+    }
+  }
+
+  const auto tests = [&](const Eigen::VectorXd& gates, const std::array<double, markov::kEndings>& endings,
+                         const markov::FinalDistribution& against) {
+    const Statistics s = statistics(gates, on_support(against.final_cells, support), expected, rare, support);
+    Tests t{s.total_variation, s.energy, s.chi_squared};
+    for (std::size_t e = 0; e < markov::kEndings; ++e)
+      t[kGateTests + e] = std::abs(endings[e] - against.endings[e]);
+    return t;
+  };
+  std::vector<Tests> all(static_cast<std::size_t>(null_draws) + 1);  // the null's, then what was seen
+  std::array<double, markov::kEndings> ended{};
+  for (std::size_t e = 0; e < markov::kEndings; ++e) ended[e] = static_cast<double>(seen.endings[e]) / trials;
+  all.back() = tests(on_support(sample, support), ended, prediction);
+  tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) {
+    Random random(Purpose::comparison, {seed, kJudgements, static_cast<std::uint64_t>(k)});
+    std::vector<std::int64_t> counts(weights.size());
+    multinomial(n, weights, counts, random);
+    Eigen::VectorXd gates = Eigen::VectorXd::Zero(expected.size());
+    std::array<double, markov::kEndings> endings{};
+    for (std::size_t o = 0; o < outcomes.size(); ++o) {
+      const double share = static_cast<double>(counts[o]) / trials;
+      gates[outcomes[o].place] += share;
+      endings[outcomes[o].ending] += share;
+    }
+    all[static_cast<std::size_t>(k)] =
+        tests(gates, endings, replicates[static_cast<std::size_t>(k) % replicates.size()]);
+  });
+
+  std::vector<double> tv;
+  for (std::size_t k = 0; k + 1 < all.size(); ++k) tv.push_back(all[k][0]);
+  const auto [mean_tv, tv_at_95] = mean_and_95(tv);
+  const auto rank = ranks(all);
+  std::vector<std::int64_t> least;  // rank of each row, over its statistics
+  for (const auto& r : rank) least.push_back(*std::min_element(r.begin(), r.end()));
+  std::sort(least.begin(), least.end());
+  const auto of_all = static_cast<double>(all.size());
+  Judgement j;
+  j.null_draws = null_draws;
+  j.chance_total_variation = mean_tv;
+  j.chance_total_variation_95 = tv_at_95;
+  const auto fill = [&](Judgement::Test& test, std::size_t t) {
+    test.seen = all.back()[t];
+    if (std::isnan(test.seen)) {
+      test.p = test.p_adjusted = test.seen;
+      return;
+    }
+    test.p = static_cast<double>(rank.back()[t]) / of_all;
+    test.p_adjusted = static_cast<double>(
+        std::upper_bound(least.begin(), least.end(), rank.back()[t]) - least.begin()) / of_all;
+    j.p = std::min(j.p, test.p_adjusted);
+  };
+  fill(j.total_variation, 0);
+  fill(j.energy, 1);
+  fill(j.chi_squared, 2);
+  for (std::size_t e = 0; e < markov::kEndings; ++e) fill(j.endings[e], kGateTests + e);
+  return j;
 }
 
 }  // namespace gatewalk::lattice

@@ -2,6 +2,7 @@
 /// How alike two distributions of the final gate are, and how alike they could be at all.
 /// corrcoef and RMSE as in Sec. III-C, over all gates of the field, RMSE in trials per 100.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -61,7 +62,10 @@ struct Comparison {
   std::int64_t null_draws = 0;
 };
 
-/// Two samples: permutation test, the pooled trials dealt out anew `null_draws` times.
+/// Two samples: permutation test, the pooled trials dealt out anew `null_draws` times. Of more than
+/// kMostDealt trials together both are drawn from the pooled shares instead, which hardly differs there
+/// and takes no memory for trials.
+inline constexpr std::int64_t kMostDealt = std::int64_t{1} << 22;
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellCounts& other,
                                  std::int64_t null_draws, std::uint64_t seed);
 
@@ -76,5 +80,43 @@ struct Comparison {
 /// A sample against an exact distribution: `null_draws` samples drawn from the latter.
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
                                  std::int64_t null_draws, std::uint64_t seed);
+
+/// How trials of the full dynamics ended: where, and how.
+struct SeenEndings {
+  CellCounts final_gates;                               // (rows x columns), all trials
+  std::array<std::int64_t, markov::kEndings> endings{}; // by Ending
+};
+
+/// One test of "the chain is right": do trials of the dynamics differ from the chain's prediction by more
+/// than chance in the trials and in the matrix together makes? Draw k of the null takes as many trials
+/// from the prediction, and sets them against what a resampled matrix predicts.
+struct Judgement {
+  /// Of one statistic: what was seen, how often the null reaches it, and that p-value adjusted for
+  /// looking at all of them (single-step minP of Westfall and Young, from the same draws): how often the
+  /// null makes any of the p-values as small. At least 1 / (null_draws + 1).
+  struct Test {
+    double seen = 0.0, p = 1.0, p_adjusted = 1.0;
+  };
+  static constexpr double kLevel = 0.05;
+
+  Test total_variation, energy, chi_squared;   // of the final gates; energy NaN above kMostEnergyGates
+  std::array<Test, markov::kEndings> endings;  // |difference of the shares|, by Ending
+  double p = 1.0;                              // of all together: the smallest adjusted one
+  double chance_total_variation = 0.0;         // mean over the null draws
+  double chance_total_variation_95 = 0.0;      // 95 % of them have no more
+  std::int64_t null_draws = 0;
+
+  /// The verdict; it agrees with every adjusted p-value.
+  [[nodiscard]] bool differs() const { return p <= kLevel; }
+  [[nodiscard]] bool differs(markov::Ending e) const {
+    return endings[static_cast<std::size_t>(e)].p_adjusted <= kLevel;
+  }
+};
+
+/// `replicates`: predictions from resampled matrices (matrix_noise.h), used in turn; at least one.
+/// Throws std::invalid_argument for fields of different sizes, no trials or no draws.
+[[nodiscard]] Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
+                              const std::vector<markov::FinalDistribution>& replicates,
+                              std::int64_t null_draws, std::uint64_t seed);
 
 }  // namespace gatewalk::lattice

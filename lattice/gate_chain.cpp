@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
+
+#include "lattice/draws.h"
 
 namespace gatewalk::lattice {
 
@@ -24,19 +27,19 @@ markov::Chain make_chain(const Transitions& t) {
 
 Transitions resampled(const Transitions& t, std::uint64_t seed, std::uint64_t replicate) {
   Transitions drawn(t.space);
+  std::vector<double> weights;
+  std::vector<std::int64_t> counts;
   for (int row = 0; row < t.space.size(); ++row) {
-    std::vector<std::int64_t> upto;  // cumulative counts
-    std::vector<int> column;
-    for (const auto& [output, n] : t.rows[row]) {
-      upto.push_back((upto.empty() ? 0 : upto.back()) + n);
-      column.push_back(output);
-    }
-    Random random(Purpose::resampling, {seed, static_cast<std::uint64_t>(row), replicate});
-    for (std::int64_t i = 0; i < t.trials[row]; ++i) {
-      const auto at = std::upper_bound(upto.begin(), upto.end(), random.below(upto.back()));
-      ++drawn.rows[row][column[at - upto.begin()]];
-    }
     drawn.trials[row] = t.trials[row];
+    if (t.rows[row].empty()) continue;
+    weights.clear();
+    for (const auto& [output, n] : t.rows[row]) weights.push_back(static_cast<double>(n));
+    counts.resize(weights.size());
+    Random random(Purpose::resampling, {seed, static_cast<std::uint64_t>(row), replicate});
+    multinomial(t.trials[row], weights, counts, random);
+    auto count = counts.begin();
+    for (const auto& [output, n] : t.rows[row])
+      if (const std::int64_t k = *count++; k > 0) drawn.rows[row].emplace_hint(drawn.rows[row].end(), output, k);
   }
   return drawn;
 }

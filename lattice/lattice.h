@@ -6,9 +6,13 @@
 ///   reference.h   the full dynamics through the field, gate by gate
 ///   gate_chain.h  counts + state space -> markov::Chain, and the matrix file
 ///   compare.h     corrcoef, RMSE, total variation, noise floors, p-values
+///   matrix_noise.h  what the sampling of a matrix does to its predictions
+///   draws.h       binomial and multinomial counts
 
 #include "lattice/compare.h"
 #include "lattice/crowd.h"
+#include "lattice/draws.h"
 #include "lattice/field.h"
 #include "lattice/gate_chain.h"
+#include "lattice/matrix_noise.h"
 #include "lattice/reference.h"

@@ -17,6 +17,7 @@ using namespace dynamics;
 /// One trial's part of the tally.
 struct Trial {
   Fate fate = Fate::broken;
+  markov::Ending edge{};  // over which it left the field, if it did
   std::int32_t column = 0, row = 0;
   int gates = 0;  // visited
   std::array<std::int32_t, kBoundaries> entries{}, clamped{};
@@ -38,6 +39,7 @@ std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams&
   const Move move = move_into(crossing.boundary);
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
     t.fate = Fate::left_field;
+    t.edge = markov::edge_before({field.columns, field.rows}, t.column + move.di_x, t.row + move.di_y);
     return {};
   }
   if (t.gates == field.max_gates) {
@@ -76,6 +78,9 @@ FieldTally& FieldTally::operator+=(const FieldTally& o) {
   left_field += o.left_field;
   cut_off += o.cut_off;
   broken += o.broken;
+  for (std::size_t e = 0; e < endings.size(); ++e) endings[e] += o.endings[e];
+  trapped_gates += o.trapped_gates;
+  departed_gates += o.departed_gates;
   for (int b = 0; b < kBoundaries; ++b) {
     entries[b] += o.entries[b];
     clamped[b] += o.clamped[b];
@@ -123,6 +128,12 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
   for (const Trial& t : trials) {
     ++tally.final_gates(t.row, t.column);
     tally.final_gate_of_trial.push_back(t.row * field.columns + t.column);
+    tally.trapped_gates(t.row, t.column) += t.fate == Fate::trapped;
+    tally.departed_gates(t.row, t.column) += t.fate == Fate::left_field;
+    if (t.fate != Fate::broken)
+      ++tally.endings[static_cast<std::size_t>(t.fate == Fate::left_field ? t.edge
+                                               : t.fate == Fate::trapped  ? markov::Ending::trapped
+                                                                          : markov::Ending::cut_off)];
     tally.trapped += t.fate == Fate::trapped;
     tally.left_field += t.fate == Fate::left_field;
     tally.cut_off += t.fate == Fate::cut_off;

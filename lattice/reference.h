@@ -22,6 +22,9 @@ struct FieldTally {
   std::int64_t left_field = 0;
   std::int64_t cut_off = 0;        // max_gates gates visited, would have gone on
   std::int64_t broken = 0;         // a run in it stopped being finite
+  /// The same by markov::Ending, of which no trial is `unsampled`; the four edges: left_field.
+  std::array<std::int64_t, markov::kEndings> endings{};
+  markov::CellCounts trapped_gates, departed_gates;  // of final_gates: trapped there; left the field from there
   std::array<std::int64_t, dynamics::kBoundaries> entries{};  // crossings between gates, by boundary
   std::array<std::int64_t, dynamics::kBoundaries> clamped{};  // of these, outside every bin
   dynamics::Health health;                                    // over all gate runs
@@ -29,7 +32,8 @@ struct FieldTally {
   std::vector<dynamics::Crossing> crossings;                  // between gates, if kept, trial order
 
   explicit FieldTally(const FieldParams& f)
-      : final_gates(markov::CellCounts::Zero(f.rows, f.columns)) {}
+      : final_gates(markov::CellCounts::Zero(f.rows, f.columns)),
+        trapped_gates(final_gates), departed_gates(final_gates) {}
   FieldTally& operator+=(const FieldTally& other);  // `other` continues this one's trials
 };
 

@@ -236,6 +236,20 @@ void validate(const RowChains& rows, const Field& field, const Start& start, int
                                 " rows, the field has " + std::to_string(field.rows));
 }
 
+CellProbabilities trapped_cells(const FinalDistribution& d) {
+  CellProbabilities cells = d.final_cells;
+  for (const CellEndings& c : d.mixed_cells)
+    cells.data()[c.cell] = c.by_ending[static_cast<std::size_t>(Ending::trapped)];
+  return cells;
+}
+
+CellProbabilities departed_cells(const FinalDistribution& d) {
+  CellProbabilities cells = CellProbabilities::Zero(d.final_cells.rows(), d.final_cells.cols());
+  for (const CellEndings& c : d.mixed_cells)
+    for (const Ending edge : kEdges) cells.data()[c.cell] += c.by_ending[static_cast<std::size_t>(edge)];
+  return cells;
+}
+
 FinalDistribution propagate(const RowChains& rows, const Field& field, const Start& start,
                             int max_cells, double tolerance, int max_steps_without_limit) {
   validate(rows, field, start, max_cells);
@@ -262,7 +276,7 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
     now.activate(start_cell);
     now.at(start_cell)[start.input] = walking;
   } else {
-    ends.add(ends.unsampled, start_cell, walking);
+    ends.add(Ending::unsampled, start_cell, walking);
     walking = 0.0;
   }
 
@@ -288,7 +302,7 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
 
       double trapped = 0.0;
       for (const int o : stencil.trapped) trapped += mass_of(o);
-      ends.add(ends.trapped, cell, trapped);
+      ends.add(Ending::trapped, cell, trapped);
 
       for (const Neighbour& n : stencil.neighbours) {
         double moves = 0.0;
@@ -296,9 +310,9 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
         if (moves == 0.0) continue;
         const std::int64_t target = neighbour_cell(field, column, row, n.di_x, n.di_y);
         if (target < 0) {
-          ends.add(ends.left_field, cell, moves);
+          ends.depart(cell, column + n.di_x, row + n.di_y, moves);
         } else if (is_last) {
-          ends.add(ends.cut_off, cell, moves);
+          ends.add(Ending::cut_off, cell, moves);
         } else {
           const Chain& there = rows.at(target / field.columns);
           double* const entering = next.at(target);
@@ -310,7 +324,7 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
               entering[link.input] += m;
               walks_on += m;
             } else {
-              ends.add(ends.unsampled, target, m);
+              ends.add(Ending::unsampled, target, m);
             }
           }
         }
@@ -351,7 +365,7 @@ FinalDistribution solve_absorption(const RowChains& rows, const Field& field, co
   Ends ends(field);
   const std::int64_t n_in = rows.at(0).inputs();
   if (!rows.at(start.row).is_sampled(start.input)) {
-    ends.add(ends.unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
+    ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
     return ends.result();
   }
   Transient t = reachable(rows, field, start);
@@ -368,15 +382,15 @@ FinalDistribution solve_absorption(const RowChains& rows, const Field& field, co
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
       const double mass = draws[s] * it.value();
       if (exit.next_input == Exit::kTrapped) {
-        ends.add(ends.trapped, cell, mass);
+        ends.add(Ending::trapped, cell, mass);
         continue;
       }
       const std::int64_t next = neighbour_cell(field, cell % field.columns, cell / field.columns,
                                                exit.di_x, exit.di_y);
       if (next < 0) {
-        ends.add(ends.left_field, cell, mass);
+        ends.depart(cell, cell % field.columns + exit.di_x, cell / field.columns + exit.di_y, mass);
       } else if (!rows.at(next / field.columns).is_sampled(exit.next_input)) {
-        ends.add(ends.unsampled, next, mass);
+        ends.add(Ending::unsampled, next, mass);
       }
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// The exact distribution of the final cell: what infinitely many walks would give.
 
+#include <array>
 #include <vector>
 
 #include "markov/chain.h"
@@ -26,6 +27,12 @@ struct RowChains {
 /// As validate() of chain.h; there must be as many rows as the field has.
 void validate(const RowChains& rows, const Field& field, const Start& start, int max_cells);
 
+/// What ended in one cell.
+struct CellEndings {
+  std::int64_t cell = 0;                        // row * columns + column
+  std::array<double, kEndings> by_ending{};     // by Ending
+};
+
 /// final_cells.sum() + remainder == 1 and trapped + left_field + cut_off + unsampled + remainder
 /// == 1, both within 1e-12 as long as mean_steps times what a row's sum lacks from 1 (counts: some
 /// 1e-16) stays below that: nothing is normalised.
@@ -35,6 +42,11 @@ struct FinalDistribution {
   double left_field = 0.0;
   double cut_off = 0.0;     // visited max_cells cells and would have gone on
   double unsampled = 0.0;   // entered a state whose row was never sampled
+  /// The same by Ending; its four edges together are left_field.
+  std::array<double, kEndings> endings{};
+  /// Cells in which walks ended otherwise than trapped, in ascending order. In all others, all of
+  /// final_cells was trapped.
+  std::vector<CellEndings> mixed_cells;
   /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for. As
   /// that would end at most once, it bounds the errors of all cells together, and of each number above.
   double remainder = 0.0;
@@ -44,6 +56,10 @@ struct FinalDistribution {
   double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; without the remainder's
   int steps = 0;            // propagation steps done (0 for a solve)
 };
+
+/// Shares of all walks that were trapped in each cell; that left the field from it (rows x columns).
+[[nodiscard]] CellProbabilities trapped_cells(const FinalDistribution& d);
+[[nodiscard]] CellProbabilities departed_cells(const FinalDistribution& d);
 
 /// Forward propagation, Eq. (16) applied once per cell. With a limit: exact after `max_cells`
 /// steps, fewer if nobody walks any more. Without (0): steps until at most `tolerance` still walks

@@ -69,7 +69,7 @@ struct Walks {
     const std::int64_t cell = std::int64_t{start.row} * field.columns + start.column;
     over = is_last;
     if (!chain.is_sampled(start.input)) {
-      ends.add(ends.unsampled, cell, 1.0);
+      ends.add(Ending::unsampled, cell, 1.0);
       over = true;
       return;
     }
@@ -77,11 +77,11 @@ struct Walks {
     for (Probabilities::InnerIterator it(chain.matrix(), start.input); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
       if (exit.next_input == Exit::kTrapped) {
-        ends.add(ends.trapped, cell, it.value());
+        ends.add(Ending::trapped, cell, it.value());
       } else if (neighbour_cell(field, start.column, start.row, exit.di_x, exit.di_y) < 0) {
-        ends.add(ends.left_field, cell, it.value());
+        ends.depart(cell, std::int64_t{start.column} + exit.di_x, std::int64_t{start.row} + exit.di_y, it.value());
       } else if (is_last) {
-        ends.add(ends.cut_off, cell, it.value());
+        ends.add(Ending::cut_off, cell, it.value());
       } else {
         enter(std::int64_t{start.column} + exit.di_x, std::int64_t{start.row} + exit.di_y,
               exit.next_input, it.value());
@@ -95,17 +95,17 @@ struct Walks {
              std::int64_t row, bool is_last, const double* tally, std::ptrdiff_t stride) {
     const std::int64_t cell = row * field.columns + column;
     const double trapped = tally[kTrapped * stride], unsampled = tally[kUnsampled * stride];
-    if (trapped != 0.0) ends.add(ends.trapped, cell, trapped);
-    if (unsampled != 0.0) ends.add(ends.unsampled, cell, unsampled);
+    if (trapped != 0.0) ends.add(Ending::trapped, cell, trapped);
+    if (unsampled != 0.0) ends.add(Ending::unsampled, cell, unsampled);
     double drawn = trapped;
     for (std::size_t m = 0; m < moves.size(); ++m) {
       const double moved = tally[(kMoved + static_cast<std::ptrdiff_t>(m)) * stride];
       if (moved == 0.0) continue;
       drawn += moved;
       if (neighbour_cell(field, column, row, moves[m].di_x, moves[m].di_y) < 0) {
-        ends.add(ends.left_field, cell, moved);
+        ends.depart(cell, column + moves[m].di_x, row + moves[m].di_y, moved);
       } else if (is_last) {
-        ends.add(ends.cut_off, cell, moved);
+        ends.add(Ending::cut_off, cell, moved);
       }
     }
     draws += drawn;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -52,6 +53,11 @@ struct WalkRules {
   const Word* moves;   // (slots x 2)
   Word corner;         // the last cell
   Word key[2], input;  // of the stream
+};
+
+/// How many walks of a pool ended so; all others left over the left edge.
+struct PoolEndings {
+  std::int64_t trapped, far_edge, right_edge, near_edge, cut_off, unsampled;
 };
 
 constexpr int kMostLanes = 8;
@@ -213,6 +219,38 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
   pool.first_ended = first_ended;
 }
 
+/// Counts how those in `ended` ended. A number below 0, and a last column or row less one beyond it,
+/// have their top bit set.
+void count_endings(const WalkRules& rules, const Pool& pool, PoolEndings& counts) {
+  const D d;
+  const V last_column = low_half(all(rules.corner)), last_row = high_half(all(rules.corner));
+  V trapped = hn::Zero(d), far = trapped, right = trapped, near = trapped, cut_off = trapped, unsampled = trapped;
+  for (int i = pool.first_ended; i < Pool::kRoom; i += lanes()) {
+    const auto there = hn::FirstN(d, static_cast<std::size_t>(Pool::kRoom - i));
+    // Behind the last walk: a move that is no ending at all, from the first cell to itself.
+    const V move = hn::IfThenElse(there, hn::LoadU(d, pool.ended.move + i), all(kStay));
+    const V cell = hn::IfThenElseZero(there, hn::LoadU(d, pool.ended.cell + i));
+    const V column = hn::Sub(hn::Add(low_half(cell), hn::And(move, all(0x3ff))), all(kReach));
+    const V row = hn::Sub(hn::Add(high_half(cell), hn::And(high_half(move), all(0x3ff))), all(kReach));
+    const V above = hn::ShiftRight<63>(hn::Sub(last_row, row)), below = hn::ShiftRight<63>(row);
+    far = hn::Add(far, above);
+    near = hn::Add(near, below);
+    right = hn::Add(right, hn::AndNot(hn::Or(above, below), hn::ShiftRight<63>(hn::Sub(last_column, column))));
+    const auto add = [&](V& sum, Word ending) HWY_ATTR {
+      sum = hn::Sub(sum, hn::VecFromMask(d, hn::Eq(move, all(ending))));
+    };
+    add(trapped, kTrapped);
+    add(cut_off, kCutOff);
+    add(unsampled, kUnsampled);
+  }
+  const auto sum = [&](V v) HWY_ATTR {
+    alignas(64) Word of_lane[kMostLanes];
+    hn::Store(v, d, of_lane);
+    return static_cast<std::int64_t>(std::accumulate(of_lane, of_lane + lanes(), Word{0}));
+  };
+  counts = {sum(trapped), sum(far), sum(right), sum(near), sum(cut_off), sum(unsampled)};
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace gatewalk::markov
 HWY_AFTER_NAMESPACE();
@@ -222,6 +260,7 @@ namespace gatewalk::markov {
 HWY_EXPORT(fill_words);
 HWY_EXPORT(draw_moves);
 HWY_EXPORT(carry_out_moves);
+HWY_EXPORT(count_endings);
 
 namespace {
 
@@ -234,18 +273,23 @@ constexpr int kCellsWithoutLimit = 1'000'000;
 WalkTally& WalkTally::operator+=(const WalkTally& other) {
   if (final_cells.size() == 0) {
     final_cells = other.final_cells;
+    trapped_cells = other.trapped_cells;
+    departed_cells = other.departed_cells;
   } else if (other.final_cells.size() != 0) {
     if (final_cells.rows() != other.final_cells.rows() ||
         final_cells.cols() != other.final_cells.cols()) {
       throw std::invalid_argument("tallies of different fields cannot be added");
     }
     final_cells += other.final_cells;
+    trapped_cells += other.trapped_cells;
+    departed_cells += other.departed_cells;
   }
   walks += other.walks;
   trapped += other.trapped;
   left_field += other.left_field;
   cut_off += other.cut_off;
   unsampled += other.unsampled;
+  for (std::size_t e = 0; e < kEndings; ++e) endings[e] += other.endings[e];
   steps += other.steps;
   return *this;
 }
@@ -345,24 +389,51 @@ struct Walker::Job {
   WalkRange range;
   std::int32_t* final_cell_of_walk;  // may be null
 
-  void count(std::int64_t column, std::int64_t row, std::int64_t number, WalkTally& tally) const {
-    const std::int64_t cell = row * field.columns + column;
-    ++tally.final_cells.data()[cell];
-    if (final_cell_of_walk)
-      final_cell_of_walk[number - range.first] = static_cast<std::int32_t>(cell);
+  [[nodiscard]] std::int64_t cells() const { return std::int64_t{field.columns} * field.rows; }
+};
+
+/// What one thread has counted.
+struct Walker::Counters {
+  static constexpr std::int64_t kTrappedThere = 0, kDepartedThere = 1, kOthers = 2, kKinds = 3;
+  std::vector<std::int64_t> by_cell;  // (kKinds x cells)
+  std::array<std::int64_t, kEndings> endings{};
+  std::int64_t steps = 0;
+
+  explicit Counters(std::int64_t cells) : by_cell(static_cast<std::size_t>(kKinds * cells)) {}
+
+  void count(const Job& job, std::int64_t kind, std::int64_t column, std::int64_t row, std::int64_t number) {
+    const std::int64_t cell = row * job.field.columns + column;
+    ++by_cell[static_cast<std::size_t>(kind * job.cells() + cell)];
+    if (job.final_cell_of_walk)
+      job.final_cell_of_walk[number - job.range.first] = static_cast<std::int32_t>(cell);
+  }
+  [[nodiscard]] std::int64_t& at(Ending e) { return endings[static_cast<std::size_t>(e)]; }
+
+  void add_to(WalkTally& tally) const {
+    const std::int64_t cells = tally.final_cells.size();
+    const auto of = [&](std::int64_t kind) {
+      return Eigen::Map<const CellCounts>(by_cell.data() + kind * cells, tally.final_cells.rows(),
+                                          tally.final_cells.cols());
+    };
+    tally.final_cells += of(kTrappedThere) + of(kDepartedThere) + of(kOthers);
+    tally.trapped_cells += of(kTrappedThere);
+    tally.departed_cells += of(kDepartedThere);
+    for (std::size_t e = 0; e < kEndings; ++e) tally.endings[e] += endings[e];
+    tally.steps += steps;
   }
 };
 
 void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
-                          WalkTally& tally) const {
+                          Counters& counters) const {
   for (std::int64_t number = first; number < last; ++number) {
     std::int64_t column = job.start.column;
     std::int64_t row = job.start.row;
+    std::int64_t kind = Counters::kOthers;
     int input = job.start.input;
     r123::Philox4x64::ctr_type words;
     for (Word drawn = 0;; ++drawn) {
       if (!chain_.is_sampled(input)) {
-        ++tally.unsampled;
+        ++counters.at(Ending::unsampled);
         break;
       }
       if (drawn % 4 == 0) {
@@ -370,34 +441,36 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
             {{drawn / 4, static_cast<Word>(number), static_cast<Word>(job.start.input), 0}},
             {{job.seed, kWalkStream}});
       }
-      ++tally.steps;
+      ++counters.steps;
       const int output = pick(input, words[static_cast<std::size_t>(drawn % 4)]);
       const Exit& exit = chain_.exits()[static_cast<std::size_t>(output)];
       if (exit.next_input == Exit::kTrapped) {
-        ++tally.trapped;
+        ++counters.at(Ending::trapped);
+        kind = Counters::kTrappedThere;
         break;
       }
       const std::int64_t next_column = column + exit.di_x;
       const std::int64_t next_row = row + exit.di_y;
       if (next_column < 0 || next_column >= job.field.columns || next_row < 0 ||
           next_row >= job.field.rows) {
-        ++tally.left_field;
+        ++counters.at(edge_before(job.field, next_column, next_row));
+        kind = Counters::kDepartedThere;
         break;
       }
       if (drawn + 1 == static_cast<Word>(job.limit)) {
-        ++tally.cut_off;
+        ++counters.at(Ending::cut_off);
         break;
       }
       column = next_column;
       row = next_row;
       input = exit.next_input;
     }
-    job.count(column, row, number, tally);
+    counters.count(job, kind, column, row, number);
   }
 }
 
 void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last,
-                           WalkTally& tally) const {
+                           Counters& counters) const {
   const WalkRules rules{keep_.data(), moves_.data(), cell_at(job.field.columns - 1, job.field.rows - 1),
                     {job.seed, kWalkStream}, static_cast<Word>(job.start.input)};
   const Word start_move = packed({job.start.input, 0, 0});
@@ -414,27 +487,31 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
     pool.walking = walks;
     pool.first_ended = Pool::kRoom;
     for (int drawn = 0; pool.walking > 0; ++drawn) {
-      tally.steps += pool.walking;
+      counters.steps += pool.walking;
       const int word = drawn % 4;
       if (word == 0) HWY_DYNAMIC_DISPATCH(fill_words)(rules, static_cast<Word>(drawn / 4), pool);
       HWY_DYNAMIC_DISPATCH(draw_moves)(rules, pool.words[word], pool);
       HWY_DYNAMIC_DISPATCH(carry_out_moves)(rules, word + 1, drawn + 1 == job.limit, pool);
     }
 
-    std::int64_t trapped = 0, cut_off = 0, unsampled = 0;
     for (int i = pool.first_ended; i < Pool::kRoom; ++i) {
       const Word cell = pool.ended.cell[i], move = pool.ended.move[i];
-      trapped += move == kTrapped;
-      cut_off += move == kCutOff;
-      unsampled += move == kUnsampled;
-      job.count(static_cast<std::int64_t>(cell & 0xffffffff), static_cast<std::int64_t>(cell >> 32),
-                static_cast<std::int64_t>(pool.ended.number[i]), tally);
+      static_assert(Counters::kTrappedThere == 0 && Counters::kDepartedThere == 1 && Counters::kOthers == 2);
+      const auto kind = static_cast<std::int64_t>(move != kTrapped) << (move >> 63);  // without a jump
+      counters.count(job, kind, static_cast<std::int64_t>(cell & 0xffffffff),
+                     static_cast<std::int64_t>(cell >> 32), static_cast<std::int64_t>(pool.ended.number[i]));
     }
-    tally.trapped += trapped;
-    tally.cut_off += cut_off;
-    tally.unsampled += unsampled;
-    tally.left_field += walks - trapped - cut_off - unsampled;
-    tally.steps -= unsampled;  // there is nothing to draw from
+    PoolEndings ended;
+    HWY_DYNAMIC_DISPATCH(count_endings)(rules, pool, ended);
+    counters.at(Ending::trapped) += ended.trapped;
+    counters.at(Ending::far_edge) += ended.far_edge;
+    counters.at(Ending::right_edge) += ended.right_edge;
+    counters.at(Ending::near_edge) += ended.near_edge;
+    counters.at(Ending::cut_off) += ended.cut_off;
+    counters.at(Ending::unsampled) += ended.unsampled;
+    counters.at(Ending::left_edge) += walks - ended.trapped - ended.far_edge - ended.right_edge -
+                                      ended.near_edge - ended.cut_off - ended.unsampled;
+    counters.steps -= ended.unsampled;  // there is nothing to draw from
   }
 }
 
@@ -451,21 +528,27 @@ WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int
   const Job job{field, start, max_cells == 0 ? kCellsWithoutLimit : max_cells, seed, range,
                 final_cell_of_walk ? final_cell_of_walk->data() : nullptr};
 
-  WalkTally total;
-  total.final_cells = CellCounts::Zero(field.rows, field.columns);
-  tbb::enumerable_thread_specific<WalkTally> tallies(total);
+  tbb::enumerable_thread_specific<Counters> counters(job.cells());
   const std::int64_t pools = range.count / kPool + (range.count % kPool > 0);
   tbb::parallel_for(
       tbb::blocked_range<std::int64_t>(0, pools), [&](const tbb::blocked_range<std::int64_t>& part) {
         const std::int64_t first = range.first + part.begin() * kPool;
         const std::int64_t last = range.first + (part.end() < pools ? part.end() * kPool : range.count);
         if (in_lanes)
-          walk_in_lanes(job, first, last, tallies.local());
+          walk_in_lanes(job, first, last, counters.local());
         else
-          walk_plainly(job, first, last, tallies.local());
+          walk_plainly(job, first, last, counters.local());
       });
-  for (const WalkTally& tally : tallies) total += tally;
+  WalkTally total;
+  for (CellCounts* cells : {&total.final_cells, &total.trapped_cells, &total.departed_cells})
+    *cells = CellCounts::Zero(field.rows, field.columns);
+  for (const Counters& of_thread : counters) of_thread.add_to(total);
+  const auto ended = [&](Ending e) { return total.endings[static_cast<std::size_t>(e)]; };
   total.walks = range.count;
+  total.trapped = ended(Ending::trapped);
+  total.cut_off = ended(Ending::cut_off);
+  total.unsampled = ended(Ending::unsampled);
+  for (const Ending edge : kEdges) total.left_field += ended(edge);
   return total;
 }
 

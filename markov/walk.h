@@ -2,6 +2,7 @@
 /// Monte Carlo walks: what the paper's "Markov Chain Monte Carlo" pseudo-code does, per cell one
 /// draw from the row of Eq. (16)'s matrix.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct WalkTally {
   std::int64_t left_field = 0;  // moved out of the field
   std::int64_t cut_off = 0;     // max_cells cells visited, would have gone on
   std::int64_t unsampled = 0;   // entered a state whose row was never sampled
+  std::array<std::int64_t, kEndings> endings{};  // the same by Ending; the four edges: left_field
+  CellCounts trapped_cells, departed_cells;      // of final_cells: trapped there; left the field from there
   std::int64_t steps = 0;       // draws over all walks
   /// Throws std::invalid_argument if both have cells, of different fields.
   WalkTally& operator+=(const WalkTally& other);
@@ -65,11 +68,12 @@ class Walker {
 
  private:
   struct Job;
+  struct Counters;
   [[nodiscard]] WalkTally run(bool in_lanes, const Field& field, const Start& start, int max_cells,
                               std::uint64_t seed, WalkRange range,
                               std::vector<std::int32_t>* final_cell_of_walk) const;
-  void walk_plainly(const Job& job, std::int64_t first, std::int64_t last, WalkTally& tally) const;
-  void walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last, WalkTally& tally) const;
+  void walk_plainly(const Job& job, std::int64_t first, std::int64_t last, Counters& counters) const;
+  void walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last, Counters& counters) const;
   [[nodiscard]] std::int32_t pick(int row, std::uint64_t word) const;
   [[nodiscard]] std::uint64_t packed(const Exit& exit) const;
 

@@ -29,6 +29,9 @@ void expect_same(const FieldTally& a, const FieldTally& b) {
   EXPECT_EQ(a.left_field, b.left_field);
   EXPECT_EQ(a.cut_off, b.cut_off);
   EXPECT_EQ(a.broken, b.broken);
+  EXPECT_EQ(a.endings, b.endings);
+  EXPECT_TRUE((a.trapped_gates == b.trapped_gates).all());
+  EXPECT_TRUE((a.departed_gates == b.departed_gates).all());
   EXPECT_EQ(a.entries, b.entries);
   EXPECT_EQ(a.clamped, b.clamped);
   EXPECT_EQ(a.final_gate_of_trial, b.final_gate_of_trial);
@@ -43,6 +46,19 @@ void expect_adds_up(const FieldTally& t, const FieldParams& field) {
   EXPECT_EQ(t.final_gates.cols(), field.columns);
   EXPECT_EQ(t.final_gates.sum(), t.trials);
   EXPECT_EQ(t.trapped + t.left_field + t.cut_off + t.broken, t.trials);
+  const auto of = [&](markov::Ending e) { return t.endings[static_cast<std::size_t>(e)]; };
+  EXPECT_EQ(of(markov::Ending::trapped), t.trapped);
+  EXPECT_EQ(of(markov::Ending::far_edge) + of(markov::Ending::left_edge) + of(markov::Ending::right_edge),
+            t.left_field);
+  EXPECT_EQ(of(markov::Ending::cut_off), t.cut_off);
+  EXPECT_EQ(of(markov::Ending::near_edge) + of(markov::Ending::unsampled), 0);
+  EXPECT_EQ(t.trapped_gates.sum(), t.trapped);
+  EXPECT_EQ(t.departed_gates.sum(), t.left_field);
+  EXPECT_TRUE((t.trapped_gates + t.departed_gates <= t.final_gates).all());
+  // Nobody leaves over a side but from its column, or over the far edge but from the last row.
+  if (field.rows > 2 && field.columns > 2) {
+    EXPECT_EQ(t.departed_gates.block(0, 1, field.rows - 1, field.columns - 2).sum(), 0);
+  }
   EXPECT_EQ(static_cast<std::int64_t>(t.final_gate_of_trial.size()), t.trials);
   markov::CellCounts again = markov::CellCounts::Zero(field.rows, field.columns);
   for (const std::int32_t gate : t.final_gate_of_trial)
@@ -295,15 +311,22 @@ TEST(Fidelity, ActiveIsGateByGate) {
       RandomForce force(p.forces, Random(Purpose::field, {6, stream_row(p, kStart), trial}));
       BodyState body = kStart;
       int column = 4, row = 0;
+      auto why = markov::Ending::trapped;  // no run breaks here
       for (int gates = 1;; ++gates) {
         const GateRun r = run_gate(p, *method, body, force);
         plain.health.add(p, r);
         plain.broken += r.ending == Ending::broken;
         plain.trapped += r.ending == Ending::trapped;
+        if (r.ending == Ending::trapped) ++plain.trapped_gates(row, column);
         if (r.ending == Ending::trapped || r.ending == Ending::broken) break;
         const Crossing crossing = crossing_of(p, r.ending, r.exit);
         const Move move = move_into(crossing.boundary);
         const bool leaves = !field.contains(column + move.di_x, row + move.di_y);
+        if (leaves) why = row + move.di_y > 8      ? markov::Ending::far_edge
+                          : column + move.di_x < 0 ? markov::Ending::left_edge
+                                                   : markov::Ending::right_edge;
+        if (!leaves && gates == 13) why = markov::Ending::cut_off;
+        if (leaves) ++plain.departed_gates(row, column);
         plain.left_field += leaves;
         plain.cut_off += !leaves && gates == 13;
         if (leaves || gates == 13) break;
@@ -314,6 +337,7 @@ TEST(Fidelity, ActiveIsGateByGate) {
         body = shifted_into_next(p, r.ending, r.exit);
       }
       ++plain.trials;
+      ++plain.endings[static_cast<std::size_t>(why)];
       ++plain.final_gates(row, column);
       plain.final_gate_of_trial.push_back(row * 9 + column);
     }

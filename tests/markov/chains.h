@@ -1,6 +1,8 @@
 #pragma once
 /// Chains that several tests walk on.
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cstdint>
 #include <map>
@@ -91,21 +93,52 @@ inline Chain nearly_closed(double escape) {
 inline constexpr Field kNineByNine{9, 9};
 inline constexpr Start kBottomCentre{4, 0, 12};
 
+/// The same endings, in all and cell by cell, within `bound` each.
+inline void expect_same_endings(const FinalDistribution& a, const FinalDistribution& b, double bound) {
+  for (std::size_t e = 0; e < kEndings; ++e) EXPECT_NEAR(a.endings[e], b.endings[e], bound) << "ending " << e;
+  EXPECT_LE((trapped_cells(a) - trapped_cells(b)).abs().maxCoeff(), bound);
+  EXPECT_LE((departed_cells(a) - departed_cells(b)).abs().maxCoeff(), bound);
+}
+
+/// Endings add up to the numbers that were there before them, and so do the cells'.
+inline void expect_endings_add_up(const FinalDistribution& d) {
+  constexpr double kFewEps = 1e-14;
+  const auto of = [&](Ending e) { return d.endings[static_cast<std::size_t>(e)]; };
+  EXPECT_EQ(of(Ending::trapped), d.trapped);
+  EXPECT_EQ(of(Ending::cut_off), d.cut_off);
+  EXPECT_EQ(of(Ending::unsampled), d.unsampled);
+  double left = 0.0;
+  for (const Ending edge : kEdges) left += of(edge);
+  EXPECT_NEAR(left, d.left_field, kFewEps);
+  EXPECT_NEAR(trapped_cells(d).sum(), d.trapped, kFewEps);
+  EXPECT_NEAR(departed_cells(d).sum(), d.left_field, kFewEps);
+  std::int64_t before = -1;
+  for (const CellEndings& c : d.mixed_cells) {
+    EXPECT_GT(c.cell, before);
+    before = c.cell;
+    double mass = 0.0;
+    for (const double part : c.by_ending) mass += part;
+    EXPECT_NEAR(mass, d.final_cells.data()[c.cell], kFewEps);
+  }
+}
+
 /// The rule of a step as walk.h words it: no boxes, no sparse rows, and digits to spare.
 inline FinalDistribution propagate_plainly(const Chain& chain, const Field& field, const Start& start,
                                     int max_cells) {
   using State = std::array<int, 3>;             // column, row, input
   const Eigen::MatrixXd p = chain.matrix();     // (n_in x n_out)
-  long double trapped = 0, left_field = 0, cut_off = 0, unsampled = 0, draws = 0;
-  std::map<std::array<int, 2>, long double> final_cells;
+  long double draws = 0;
+  std::map<std::array<int, 2>, std::array<long double, kEndings>> final_cells;  // by Ending
+  const auto end = [&](Ending why, int column, int row, long double mass) {
+    final_cells[{row, column}][static_cast<std::size_t>(why)] += mass;
+  };
   std::map<State, long double> walking = {{{start.column, start.row, start.input}, 1.0L}};
   for (int visited = 1; !walking.empty(); ++visited) {
     std::map<State, long double> next;
     for (const auto& [state, mass] : walking) {
       const auto [column, row, input] = state;
       if (p.row(input).sum() == 0.0) {
-        unsampled += mass;
-        final_cells[{row, column}] += mass;
+        end(Ending::unsampled, column, row, mass);
         continue;
       }
       draws += mass;
@@ -116,29 +149,40 @@ inline FinalDistribution propagate_plainly(const Chain& chain, const Field& fiel
         const int c = column + exit.di_x;
         const int r = row + exit.di_y;
         const bool is_inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
-        long double* const end = exit.next_input == Exit::kTrapped ? &trapped
-                                 : !is_inside                      ? &left_field
-                                 : visited == max_cells            ? &cut_off
-                                                                   : nullptr;
-        if (end) {
-          *end += m;
-          final_cells[{row, column}] += m;
-        } else {
+        if (exit.next_input == Exit::kTrapped)
+          end(Ending::trapped, column, row, m);
+        else if (!is_inside)
+          end(r >= field.rows ? Ending::far_edge
+              : r < 0         ? Ending::near_edge
+              : c < 0         ? Ending::left_edge
+                              : Ending::right_edge, column, row, m);
+        else if (visited == max_cells)
+          end(Ending::cut_off, column, row, m);
+        else
           next[{c, r, exit.next_input}] += m;
-        }
       }
     }
     walking = std::move(next);
   }
   FinalDistribution d;
   d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
-  for (const auto& [cell, mass] : final_cells) {
+  std::array<long double, kEndings> all{};
+  for (const auto& [cell, parts] : final_cells) {
+    CellEndings here{std::int64_t{cell[0]} * field.columns + cell[1], {}};
+    long double mass = 0;
+    for (std::size_t e = 0; e < kEndings; ++e) {
+      here.by_ending[e] = static_cast<double>(parts[e]);
+      all[e] += parts[e];
+      mass += parts[e];
+    }
     d.final_cells(cell[0], cell[1]) = static_cast<double>(mass);
+    if (mass > parts[0]) d.mixed_cells.push_back(here);
   }
-  d.trapped = static_cast<double>(trapped);
-  d.left_field = static_cast<double>(left_field);
-  d.cut_off = static_cast<double>(cut_off);
-  d.unsampled = static_cast<double>(unsampled);
+  for (std::size_t e = 0; e < kEndings; ++e) d.endings[e] = static_cast<double>(all[e]);
+  d.trapped = d.endings[static_cast<std::size_t>(Ending::trapped)];
+  d.cut_off = d.endings[static_cast<std::size_t>(Ending::cut_off)];
+  d.unsampled = d.endings[static_cast<std::size_t>(Ending::unsampled)];
+  for (const Ending edge : kEdges) d.left_field += d.endings[static_cast<std::size_t>(edge)];
   d.mean_steps = static_cast<double>(draws);
   return d;
 }

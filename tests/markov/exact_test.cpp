@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "chains.h"
+#include "markov/sweep.h"
 #include "markov/walk.h"
 
 namespace gatewalk::markov {
@@ -34,6 +35,7 @@ void expect_whole(const FinalDistribution& d) {
   EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0, 1e-12);
   EXPECT_NEAR(ends(d) + d.remainder, 1.0, 1e-12);
   EXPECT_GE(d.final_cells.minCoeff(), 0.0);
+  test::expect_endings_add_up(d);
 }
 
 void expect_near(const FinalDistribution& a, const FinalDistribution& b, double bound) {
@@ -215,6 +217,54 @@ TEST(Exact, WhereAStepEnds) {
   }
   EXPECT_EQ(propagate(chain, field, {1, 0, 1}, 5).mean_steps, 0.0);
   EXPECT_EQ(propagate(chain, field, {1, 0, 1}, 5).steps, 0);
+}
+
+// Up 1/2, left and right 1/8, trapped 1/4, from the middle of the first row of 3 x 3 cells. A row that is
+// entered by (x, y, x) is visited m = (y + x/4) 32/31 times in its middle and x + m/8 at each side.
+TEST(Exact, EndingsOfThreeByThreeAreFractions) {
+  const Chain chain = Chain::from_probabilities(
+      matrix(1, 4, {{0, 0, 0.5}, {0, 1, 0.125}, {0, 2, 0.125}, {0, 3, 0.25}}),
+      {{0, 0, 1}, {0, -1, 0}, {0, 1, 0}, {}});
+  const Field field{3, 3};
+  const Start start{1, 0, 0};
+  const Sweeper sweeper(chain);
+  const auto expect = [&](const FinalDistribution& d, double far, double side, double trapped, double cut,
+                          double bound) {
+    const std::array<double, kEndings> wanted{trapped, far, side, side, 0.0, cut, 0.0};
+    for (std::size_t e = 0; e < kEndings; ++e) EXPECT_NEAR(d.endings[e], wanted[e], bound) << "ending " << e;
+    expect_whole(d);
+  };
+  const auto expect_all = [&](int max_cells, double far, double side, double trapped, double cut) {
+    constexpr double kBound = 1e-12;  // what may still walk
+    expect(propagate_plainly(chain, field, start, max_cells == 0 ? 100 : max_cells), far, side, trapped, cut, kBound);
+    expect(propagate(chain, field, start, max_cells), far, side, trapped, cut, kBound);
+    expect(sweeper.propagate(field, start, max_cells), far, side, trapped, cut, kBound);
+    expect(sweeper.predict(field, start, max_cells), far, side, trapped, cut, kBound);
+    for (const bool plainly : {false, true}) {
+      constexpr std::int64_t kWalks = 100'000;
+      const Walker walker(chain);
+      const WalkTally t = plainly ? walker.walk_plainly(field, start, max_cells, 5, {0, kWalks})
+                                  : walker.walk(field, start, max_cells, 6, {0, kWalks});
+      const std::array<double, kEndings> shares{trapped, far, side, side, 0.0, cut, 0.0};
+      for (std::size_t e = 0; e < kEndings; ++e) expect_binomial(t.endings[e], kWalks, shares[e]);
+    }
+  };
+  const double whole = 29791.0;
+  expect_all(0, 7584 / whole, 2729 / (2 * whole), 19478 / whole, 0.0);
+  expect(solve_absorption(chain, field, start), 7584 / whole, 2729 / (2 * whole), 19478 / whole, 0.0, 1e-14);
+  for (const auto method : {Sweeper::RowMethod::elimination, Sweeper::RowMethod::sums})
+    expect(sweeper.march(field, start, 1e-14, method), 7584 / whole, 2729 / (2 * whole), 19478 / whole, 0.0, 1e-13);
+  expect_all(2, 0.0, 1 / 64.0, 7 / 16.0, 17 / 32.0);
+  // Who leaves is last seen at the edges: over the far one from row 2, over the sides from columns 0, 2.
+  const FinalDistribution d = propagate(chain, field, start, 0);
+  const CellProbabilities departed = departed_cells(d), trapped = trapped_cells(d);
+  EXPECT_EQ(departed(0, 1), 0.0);
+  EXPECT_EQ(departed(1, 1), 0.0);
+  EXPECT_NEAR(departed(2, 1), 0.5 * 8960 / whole, 1e-13);
+  EXPECT_NEAR(departed(0, 0), 4 / 31.0 / 8, 1e-13);
+  EXPECT_NEAR(departed(2, 2), (0.5 + 0.125) * 3104 / whole, 1e-13);
+  EXPECT_NEAR(trapped(0, 1), 8 / 31.0, 1e-13);
+  EXPECT_NEAR(trapped(1, 0), 32 / 961.0, 1e-13);
 }
 
 // ---- Second routes on chains of the paper's shape ----

@@ -29,12 +29,14 @@ void expect_near(const FinalDistribution& a, const FinalDistribution& b, double 
   EXPECT_NEAR(a.left_field, b.left_field, bound);
   EXPECT_NEAR(a.cut_off, b.cut_off, bound);
   EXPECT_NEAR(a.unsampled, b.unsampled, bound);
+  test::expect_same_endings(a, b, bound);
 }
 
 void expect_whole(const FinalDistribution& d) {
   EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0, 1e-12);
   EXPECT_NEAR(d.trapped + d.left_field + d.cut_off + d.unsampled + d.remainder, 1.0, 1e-12);
   EXPECT_GE(d.final_cells.minCoeff(), 0.0);
+  test::expect_endings_add_up(d);
 }
 
 bool same_bits(const FinalDistribution& a, const FinalDistribution& b) {
@@ -43,7 +45,11 @@ bool same_bits(const FinalDistribution& a, const FinalDistribution& b) {
          std::memcmp(a.final_cells.data(), b.final_cells.data(), bytes) == 0 &&
          a.trapped == b.trapped && a.left_field == b.left_field && a.cut_off == b.cut_off &&
          a.unsampled == b.unsampled && a.remainder == b.remainder && a.mean_steps == b.mean_steps &&
-         a.rounding == b.rounding && a.steps == b.steps;
+         a.rounding == b.rounding && a.steps == b.steps && a.endings == b.endings &&
+         std::equal(a.mixed_cells.begin(), a.mixed_cells.end(), b.mixed_cells.begin(), b.mixed_cells.end(),
+                    [](const CellEndings& x, const CellEndings& y) {
+                      return x.cell == y.cell && x.by_ending == y.by_ending;
+                    });
 }
 
 /// Exits of the paper's kind: left, right and up only.

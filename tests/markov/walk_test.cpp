@@ -31,7 +31,8 @@ constexpr std::uint64_t kLongSeed = 0xfedcba98'76543210;
 bool same(const WalkTally& a, const WalkTally& b) {
   return (a.final_cells == b.final_cells).all() && a.walks == b.walks && a.trapped == b.trapped &&
          a.left_field == b.left_field && a.cut_off == b.cut_off && a.unsampled == b.unsampled &&
-         a.steps == b.steps;
+         a.steps == b.steps && a.endings == b.endings && (a.trapped_cells == b.trapped_cells).all() &&
+         (a.departed_cells == b.departed_cells).all();
 }
 
 struct Walked {
@@ -216,13 +217,16 @@ TEST(Walk, IsTheDocumentedStream) {
     const WalkTally tally =
         walker.walk(kNineByNine, kBottomCentre, max_cells, kSeed, range, &final_cell);
     WalkTally replay;
-    replay.final_cells = CellCounts::Zero(9, 9);
+    for (CellCounts* cells : {&replay.final_cells, &replay.trapped_cells, &replay.departed_cells})
+      *cells = CellCounts::Zero(9, 9);
     replay.walks = range.count;
     for (std::int64_t w = range.first; w < range.first + range.count; ++w) {
       int column = kBottomCentre.column, row = kBottomCentre.row, input = kBottomCentre.input;
+      Ending why{};
       for (int draw = 0;; ++draw) {
         if (!chain.is_sampled(input)) {
           ++replay.unsampled;
+          why = Ending::unsampled;
           break;
         }
         const auto words = philox({{static_cast<std::uint64_t>(draw / 4),
@@ -235,20 +239,28 @@ TEST(Walk, IsTheDocumentedStream) {
         const int next_column = column + exit.di_x, next_row = row + exit.di_y;
         if (exit.next_input == Exit::kTrapped) {
           ++replay.trapped;
+          why = Ending::trapped;
+          ++replay.trapped_cells(row, column);
           break;
         }
         if (next_column < 0 || next_column > 8 || next_row < 0 || next_row > 8) {
           ++replay.left_field;
+          why = next_row > 8   ? Ending::far_edge
+                : next_row < 0 ? Ending::near_edge
+                : next_column < 0 ? Ending::left_edge : Ending::right_edge;
+          ++replay.departed_cells(row, column);
           break;
         }
         if (draw + 1 == max_cells) {
           ++replay.cut_off;
+          why = Ending::cut_off;
           break;
         }
         column = next_column;
         row = next_row;
         input = exit.next_input;
       }
+      ++replay.endings[static_cast<std::size_t>(why)];
       ++replay.final_cells(row, column);
       EXPECT_EQ(final_cell[static_cast<std::size_t>(w - range.first)], row * 9 + column);
     }

@@ -1,0 +1,86 @@
+#include "lattice/matrix_noise.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "lattice/gate_chain.h"
+#include "markov/sweep.h"
+
+namespace gatewalk::lattice {
+
+using markov::FinalDistribution;
+
+std::vector<std::vector<FinalDistribution>> replicate_predictions(
+    const FieldMatrices& rows, const markov::Field& field, const std::vector<markov::Start>& starts,
+    int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count) {
+  std::vector<std::vector<FinalDistribution>> found(starts.size(),
+                                                    std::vector<FinalDistribution>(static_cast<std::size_t>(count)));
+  tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t k) {
+    std::vector<markov::Chain> chains;
+    for (std::size_t m = 0; m < rows.matrices.size(); ++m) {
+      // Another matrix of the same replicate takes another stream.
+      const std::uint64_t replicate = static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
+      chains.push_back(make_chain(resampled(*rows.matrices[m], seed, replicate)));
+    }
+    const markov::Sweeper sweeper(markov::RowChains(std::move(chains), rows.matrix_of_row));
+    std::vector<FinalDistribution> of_starts = sweeper.predict_all(field, starts, max_cells);
+    for (std::size_t s = 0; s < starts.size(); ++s)
+      found[s][static_cast<std::size_t>(k)] = std::move(of_starts[s]);
+  });
+  return found;
+}
+
+std::int64_t affordable_replicates(const markov::Field& field, int max_cells, std::int64_t most) {
+  // Measured: some 40 ns a cell without limit, and a cell and step with one.
+  constexpr double kCellSteps = 1e8;
+  constexpr std::int64_t kTooFew = 50;
+  const double steps = std::max(1, max_cells);
+  const double cells = std::min(static_cast<double>(field.columns) * field.rows,
+                                max_cells > 0 ? 2.0 * steps * steps : std::numeric_limits<double>::infinity());
+  const double replicates = std::min(static_cast<double>(most), kCellSteps / (cells * steps));
+  return replicates < kTooFew ? 0 : static_cast<std::int64_t>(replicates);
+}
+
+MatrixNoise::MatrixNoise(const FinalDistribution& prediction, std::int64_t runs)
+    : prediction_(prediction), runs_(runs) {}
+
+void MatrixNoise::add(const FinalDistribution& replicate) {
+  endings_.push_back(replicate.endings);
+  distances_.push_back(0.5 * (replicate.final_cells - prediction_.final_cells).abs().sum());
+}
+
+std::array<double, 2> MatrixNoise::interval_95(markov::Ending e) const {
+  const auto at = static_cast<std::size_t>(e);
+  std::vector<double> shares;
+  for (const auto& endings : endings_) shares.push_back(endings[at]);
+  std::sort(shares.begin(), shares.end());
+  const std::size_t beyond = (shares.size() + 1) / 40;  // 2.5 % on either side
+  const std::size_t low = beyond > 0 ? beyond - 1 : 0;
+  return {std::min(shares[low], prediction_.endings[at]),
+          std::max(shares[shares.size() - 1 - low], prediction_.endings[at])};
+}
+
+double MatrixNoise::mean_total_variation() const {
+  return std::accumulate(distances_.begin(), distances_.end(), 0.0) / static_cast<double>(replicates());
+}
+
+double MatrixNoise::sd_total_variation() const {
+  const double mean = mean_total_variation();
+  double squares = 0.0;
+  for (const double d : distances_) squares += (d - mean) * (d - mean);
+  return std::sqrt(squares / static_cast<double>(replicates() - 1));
+}
+
+double MatrixNoise::total_variation_95() const {
+  if (distances_.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> sorted = distances_;
+  const auto at = sorted.begin() + (95 * replicates() + 99) / 100 - 1;
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return *at;
+}
+
+}  // namespace gatewalk::lattice

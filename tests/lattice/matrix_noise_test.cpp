@@ -1,0 +1,286 @@
+// What the sampling of a matrix does: intervals that cover, and one test of trials and matrix together.
+#include "lattice/matrix_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "lattice/compare.h"
+#include "lattice/draws.h"
+#include "lattice/gate_chain.h"
+#include "markov/sweep.h"
+#include "tests/support/threads.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Purpose;
+using dynamics::Random;
+using dynamics::StateSpace;
+using dynamics::Transitions;
+using markov::Ending;
+using markov::FinalDistribution;
+
+constexpr markov::Field kField{5, 4};
+constexpr int kMaxGates = 8;
+constexpr markov::Start kStart{2, 0, 0};
+
+/// One state per boundary: EN, RD, LD, RT, LT; and trapped.
+StateSpace five_states() { return dynamics::refined(StateSpace::paper({}), 0.01); }
+
+/// The true chain, in thousandths, row by row.
+constexpr std::array<std::array<double, 6>, 5> kTruth{{{250, 150, 200, 30, 20, 350},
+                                                       {300, 100, 150, 10, 40, 400},
+                                                       {200, 200, 150, 20, 30, 400},
+                                                       {350, 100, 100, 50, 50, 350},
+                                                       {450, 50, 100, 20, 80, 300}}};
+
+Transitions truth() {
+  Transitions t(five_states());
+  for (int row = 0; row < 5; ++row) {
+    for (int j = 0; j < 6; ++j) t.rows[row][j] = static_cast<std::int64_t>(kTruth[row][j]);
+    t.trials[row] = 1000;
+  }
+  return t;
+}
+
+/// A matrix of `trials` runs a row of the true chain.
+Transitions simulated(std::int64_t trials, std::uint64_t number) {
+  Transitions t(five_states());
+  for (int row = 0; row < 5; ++row) {
+    Random random(Purpose::row, {99, static_cast<std::uint64_t>(row), number});
+    std::array<std::int64_t, 6> counts{};
+    multinomial(trials, kTruth[row], counts, random);
+    for (int j = 0; j < 6; ++j)
+      if (counts[j] > 0) t.rows[row][j] = counts[j];
+    t.trials[row] = trials;
+  }
+  return t;
+}
+
+FieldMatrices all_rows(const Transitions& t) { return {{&t}, std::vector<int>(kField.rows)}; }
+
+FinalDistribution predicted(const Transitions& t) {
+  return markov::Sweeper(make_chain(t)).predict(kField, kStart, kMaxGates);
+}
+
+std::vector<FinalDistribution> replicates(const Transitions& t, std::uint64_t seed, std::int64_t count) {
+  return replicate_predictions(all_rows(t), kField, {kStart}, kMaxGates, seed, 0, count).front();
+}
+
+constexpr std::array<Ending, 5> kAll{Ending::far_edge, Ending::left_edge, Ending::right_edge, Ending::trapped,
+                                     Ending::cut_off};
+
+// 400 matrices of 100 runs a row: of each ending, 92 to 98 % of the intervals hold the truth (95 % and a
+// standard error of 1.1 %).
+TEST(MatrixNoise, IntervalsCoverTheTruth) {
+  constexpr int kMatrices = 400;
+  const FinalDistribution right = predicted(truth());
+  std::array<int, 5> covered{};
+  for (int i = 0; i < kMatrices; ++i) {
+    const Transitions t = simulated(100, static_cast<std::uint64_t>(i));
+    const FinalDistribution p = predicted(t);
+    MatrixNoise noise(p, 100);
+    for (const FinalDistribution& r : replicates(t, 5, 200)) noise.add(r);
+    for (std::size_t k = 0; k < kAll.size(); ++k) {
+      const auto e = static_cast<std::size_t>(kAll[k]);
+      const auto [low, high] = noise.interval_95(kAll[k]);
+      covered[k] += low <= right.endings[e] && right.endings[e] <= high;
+    }
+  }
+  for (std::size_t k = 0; k < kAll.size(); ++k) {
+    EXPECT_GE(covered[k], 0.92 * kMatrices) << "ending " << static_cast<int>(kAll[k]);
+    EXPECT_LE(covered[k], 0.98 * kMatrices) << "ending " << static_cast<int>(kAll[k]);
+  }
+}
+
+// The spread is that of matrices really drawn anew.
+TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
+  const Transitions t = truth();
+  const FinalDistribution p = predicted(t);
+  MatrixNoise noise(p, 1000), drawn(p, 1000);
+  const auto sd = [&](const std::vector<FinalDistribution>& all, Ending e) {
+    double squares = 0.0;
+    for (const FinalDistribution& f : all)
+      squares += std::pow(f.endings[static_cast<std::size_t>(e)] - p.endings[static_cast<std::size_t>(e)], 2);
+    return std::sqrt(squares / static_cast<double>(all.size()));
+  };
+  const auto made = replicates(t, 5, 400);
+  std::vector<FinalDistribution> others;
+  for (std::uint64_t i = 0; i < 400; ++i) others.push_back(predicted(simulated(1000, 1000 + i)));
+  for (std::size_t i = 0; i < 400; ++i) {
+    noise.add(made[i]);
+    drawn.add(others[i]);
+  }
+  // Two estimates of a standard deviation from 400: 5 standard errors of their ratio.
+  for (const Ending e : kAll) EXPECT_NEAR(sd(made, e) / sd(others, e), 1.0, 5 * std::sqrt(1.0 / 400));
+  EXPECT_NEAR(noise.mean_total_variation() / drawn.mean_total_variation(), 1.0, 0.1);
+  EXPECT_GT(noise.total_variation_95(), noise.mean_total_variation());
+  EXPECT_EQ(noise.replicates(), 400);
+  EXPECT_EQ(noise.runs(), 1000);
+  for (const Ending e : kAll) {
+    const auto [low, high] = noise.interval_95(e);
+    EXPECT_LT(low, p.endings[static_cast<std::size_t>(e)]);
+    EXPECT_GT(high, p.endings[static_cast<std::size_t>(e)]);
+  }
+  EXPECT_EQ(noise.interval_95(Ending::unsampled), (std::array<double, 2>{0.0, 0.0}));
+}
+
+TEST(Replicates, SameBitsForAnyThreadsAndAnySplit) {
+  const Transitions t = simulated(50, 3), other = simulated(50, 4);
+  FieldMatrices rows{{&t, &other}, {0, 1, 1, 0}};
+  const std::vector<markov::Start> starts{kStart, {1, 2, 3}};
+  const auto on = [&](int threads, std::int64_t first, std::int64_t count) {
+    return test::on_threads(threads, [&] {
+      return replicate_predictions(rows, kField, starts, kMaxGates, 8, first, count);
+    });
+  };
+  const auto whole = on(1, 0, 10), again = on(3, 0, 10), part = on(2, 4, 3);
+  for (std::size_t s = 0; s < starts.size(); ++s) {
+    for (std::size_t k = 0; k < 10; ++k) EXPECT_TRUE((whole[s][k].final_cells == again[s][k].final_cells).all());
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[s][4 + k].endings, part[s][k].endings);
+    EXPECT_NE(whole[s][0].endings, whole[s][1].endings);
+  }
+  // A second matrix has draws of its own, though it may hold the same counts.
+  rows = {{&t, &t}, {0, 1, 1, 0}};
+  EXPECT_NE(replicate_predictions(rows, kField, {kStart}, kMaxGates, 8, 0, 1)[0][0].endings,
+            replicate_predictions(all_rows(t), kField, {kStart}, kMaxGates, 8, 0, 1)[0][0].endings);
+}
+
+TEST(Replicates, FewerInLargeFields) {
+  EXPECT_EQ(affordable_replicates({9, 9}, 13, 200), 200);
+  EXPECT_EQ(affordable_replicates({9, 9}, 0, 999), 999);
+  EXPECT_EQ(affordable_replicates({301, 301}, 0, 200), 200);
+  EXPECT_EQ(affordable_replicates({1001, 1001}, 0, 200), 99);
+  EXPECT_EQ(affordable_replicates({1001, 1001}, 1446, 200), 0);
+  EXPECT_EQ(affordable_replicates({9, 9}, 13, 49), 0);  // too few to say anything
+}
+
+// ---- One test of trials and matrix ----
+
+/// `trials` of the true chain, in full.
+SeenEndings trials_of(const FinalDistribution& p, std::int64_t trials, std::uint64_t number) {
+  std::vector<double> weights;
+  std::vector<std::pair<std::int64_t, std::size_t>> what;
+  std::vector<bool> is_mixed(static_cast<std::size_t>(p.final_cells.size()));
+  for (const markov::CellEndings& c : p.mixed_cells) {
+    is_mixed[static_cast<std::size_t>(c.cell)] = true;
+    for (std::size_t e = 0; e < markov::kEndings; ++e) {
+      weights.push_back(c.by_ending[e]);
+      what.emplace_back(c.cell, e);
+    }
+  }
+  for (std::int64_t cell = 0; cell < p.final_cells.size(); ++cell) {
+    if (is_mixed[static_cast<std::size_t>(cell)]) continue;
+    weights.push_back(p.final_cells.data()[cell]);
+    what.emplace_back(cell, 0);
+  }
+  std::vector<std::int64_t> counts(weights.size());
+  Random random(Purpose::field, {77, 0, number});
+  multinomial(trials, weights, counts, random);
+  SeenEndings seen{CellCounts::Zero(p.final_cells.rows(), p.final_cells.cols()), {}};
+  for (std::size_t i = 0; i < what.size(); ++i) {
+    seen.final_gates.data()[what[i].first] += counts[i];
+    seen.endings[what[i].second] += counts[i];
+  }
+  return seen;
+}
+
+// Under the null - the dynamics is the chain, the matrix a sample of it - the p-value of all together is
+// uniform, whether chance lies in the trials, in the matrix or in both: 400 repeats each, at most 9 % below
+// 0.05. The bootstrap of a matrix is exact only for many runs a row: with 100, where matrix noise rules,
+// p-values in the middle are too small by up to 0.1 here (Kolmogorov's 1 % point is 0.08). Each statistic's
+// own, too.
+TEST(Judge, PValuesAreUniformUnderTheNull) {
+  struct Case {
+    std::int64_t runs, trials;
+  };
+  constexpr int kRepeats = 400, kDraws = 399, kMatrices = 133;  // each matrix serves three draws
+  const FinalDistribution right = predicted(truth());
+  for (const auto& [runs, trials] : {Case{100, 100}, {100, 10'000}, {1000, 500}}) {
+    SCOPED_TRACE(testing::Message() << runs << " runs a row, " << trials << " trials");
+    std::vector<double> all, tv, energy, crossed;
+    for (int i = 0; i < kRepeats; ++i) {
+      const auto number = static_cast<std::uint64_t>(i);
+      const Transitions t = simulated(runs, 5000 + number);
+      const Judgement j = judge(trials_of(right, trials, number), predicted(t), replicates(t, number, kMatrices),
+                                kDraws, number);
+      all.push_back(j.p);
+      tv.push_back(j.total_variation.p);
+      energy.push_back(j.energy.p);
+      crossed.push_back(j.endings[static_cast<std::size_t>(Ending::far_edge)].p);
+    }
+    const std::array<std::pair<const char*, std::vector<double>*>, 4> sets{
+        {{"all", &all}, {"total variation", &tv}, {"energy", &energy}, {"crossed", &crossed}}};
+    for (const auto& [name, p] : sets) {
+      SCOPED_TRACE(name);
+      std::sort(p->begin(), p->end());
+      double excess = 0.0;  // of small p-values
+      for (int i = 0; i < kRepeats; ++i) excess = std::max(excess, (i + 1.0) / kRepeats - (*p)[i]);
+      constexpr double kBootstrap = 0.03;
+      EXPECT_LT(excess, 1.63 / std::sqrt(kRepeats) + 1.0 / kDraws + kBootstrap);
+      EXPECT_LE(std::count_if(p->begin(), p->end(), [](double x) { return x <= 0.05; }), 0.09 * kRepeats);
+    }
+    EXPECT_GE(std::count_if(all.begin(), all.end(), [](double x) { return x <= 0.05; }), 0.02 * kRepeats);
+  }
+}
+
+// Trials of a chain whose walks cross more often: seen, and by which ending; not seen with too coarse a matrix.
+TEST(Judge, NamesTheEndingThatDiffers) {
+  Transitions other = truth();
+  for (int row = 0; row < 5; ++row) {
+    other.rows[row][0] += 60;  // up
+    other.rows[row][5] -= 60;  // trapped
+  }
+  const SeenEndings seen = trials_of(predicted(other), 20'000, 1);
+  const Transitions fine = simulated(100'000, 1), coarse = simulated(20, 1);
+  const Judgement j = judge(seen, predicted(fine), replicates(fine, 1, 199), 199, 1);
+  EXPECT_TRUE(j.differs());
+  EXPECT_TRUE(j.differs(Ending::far_edge));
+  EXPECT_TRUE(j.differs(Ending::trapped));
+  EXPECT_FALSE(j.differs(Ending::unsampled));
+  EXPECT_EQ(j.total_variation.p, 1.0 / 200);
+  EXPECT_GT(j.total_variation.seen, j.chance_total_variation_95);
+  EXPECT_GT(j.chance_total_variation_95, j.chance_total_variation);
+  const Judgement with_coarse = judge(seen, predicted(coarse), replicates(coarse, 1, 199), 199, 1);
+  EXPECT_GT(with_coarse.chance_total_variation, 5 * j.chance_total_variation);
+  EXPECT_GT(with_coarse.p, j.p);
+}
+
+// No verdict without an adjusted p-value that says so, and none against one.
+TEST(Judge, IsTheSmallestAdjustedPValue) {
+  const FinalDistribution right = predicted(truth());
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const Transitions t = simulated(200, 9000 + i);
+    const Judgement j = judge(trials_of(right, 400, 100 + i), predicted(t), replicates(t, i, 60), 99, i);
+    double least = std::min({j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted});
+    for (const auto& e : j.endings) {
+      EXPECT_GE(e.p_adjusted, e.p);
+      least = std::min(least, e.p_adjusted);
+    }
+    EXPECT_EQ(j.p, least);
+    EXPECT_EQ(j.differs(), j.p <= 0.05);
+  }
+}
+
+TEST(Judge, SameBitsForAnyThreadsAndRefusals) {
+  const Transitions t = simulated(50, 3);
+  const FinalDistribution p = predicted(t);
+  const auto others = replicates(t, 2, 20);
+  const SeenEndings seen = trials_of(p, 300, 3);
+  const auto on = [&](int threads) { return test::on_threads(threads, [&] { return judge(seen, p, others, 99, 4); }); };
+  const Judgement a = on(1), b = on(3);
+  EXPECT_EQ(a.p, b.p);
+  EXPECT_EQ(a.energy.p, b.energy.p);
+  EXPECT_EQ(a.chance_total_variation, b.chance_total_variation);
+  EXPECT_THROW((void)judge(seen, p, others, 0, 4), std::invalid_argument);
+  EXPECT_THROW((void)judge(seen, p, {}, 9, 4), std::invalid_argument);
+  EXPECT_THROW((void)judge({CellCounts::Zero(4, 5), {}}, p, others, 9, 4), std::invalid_argument);
+  EXPECT_THROW((void)judge({CellCounts::Ones(5, 4), {}}, p, others, 9, 4), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
