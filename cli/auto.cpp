@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 
 #include "cli/bins.h"
 #include "cli/interrupt.h"
@@ -44,7 +45,9 @@ void tell_derived(const Options& options, const Scene& scene) {
   for (const KeyInfo& k : describe(scene)) {
     const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" || k.key == "contact.impulse_threshold_Ns";
     if (k.source != "derived" || methods_own) continue;
-    all += (all.empty() ? "" : ", ") + k.key + " = " + k.value;
+    std::ostringstream value;  // six digits will do; gatewalk scene shows all
+    value << std::stod(k.value);
+    all += (all.empty() ? "" : ", ") + k.key + " = " + value.str();
   }
   if (!all.empty() && options.talk())
     warn(scene.source + " leaves out keys, which follow from the others by the paper's proportions: " + all);

@@ -212,7 +212,7 @@ std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
           part == whole ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
 }
 
-std::array<double, 2> share_interval(double share, double equivalent_trials) {
+std::array<double, 2> interval_of_share(double share, double equivalent_trials) {
   const double n = equivalent_trials * share, others = equivalent_trials * std::max(0.0, 1.0 - share);
   return {n == 0.0 ? 0.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.025),
           others == 0.0 ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
@@ -238,7 +238,7 @@ EndingShares::EndingShares(const markov::FinalDistribution& prediction, const la
     interval[e] = noise.interval_95(static_cast<markov::Ending>(e));
     // Where no resampled matrix shows a spread: what the runs of the row that all walks begin in can rule out.
     if (interval[e][1] - interval[e][0] <= kRounding)
-      interval[e] = share_interval(std::clamp(share[e], 0.0, 1.0), static_cast<double>(noise.runs()));
+      interval[e] = interval_of_share(std::clamp(share[e], 0.0, 1.0), static_cast<double>(noise.runs()));
   }
   if (max_gates == 0) interval[static_cast<std::size_t>(markov::Ending::cut_off)] = {0.0, 0.0};
 }

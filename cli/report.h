@@ -38,7 +38,7 @@ namespace gatewalk::cli {
 /// What share of all trials a count of some stands for, with 95 %: Jeffreys' interval.
 [[nodiscard]] std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole);
 /// The same for a share that varies as that of so many independent trials would.
-[[nodiscard]] std::array<double, 2> share_interval(double share, double equivalent_trials);
+[[nodiscard]] std::array<double, 2> interval_of_share(double share, double equivalent_trials);
 
 /// How trials through the field ended: shares of all, with 95 % intervals (NaN: none), by markov::Ending.
 struct EndingShares {

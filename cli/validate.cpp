@@ -379,15 +379,15 @@ std::string table_of(const std::vector<StartReport>& reports, bool papers, std::
       << labels.header << "  | against         corrcoef  floor    RMSE   floor      TV   floor  matrix  chance\n";
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const StartReport& r = reports[k];
-    const auto line = [&](const std::string& name, const lattice::Comparison& c, const std::string& chance) {
+    const auto compared = [&](const std::string& name, const lattice::Comparison& c, const std::string& chance) {
       out << labels.texts[k] << "  | " << padded(name, -15) << padded(fixed(c.corrcoef, 4), 9)
           << padded(fixed(c.floor.corrcoef, 4), 8) << padded(fixed(c.rmse_per_100, 3), 8)
           << padded(fixed(c.floor.rmse_per_100, 3), 8) << padded(fixed(c.total_variation, 3), 8)
           << padded(fixed(c.floor_total_variation, 3), 8) << padded(fixed(r.matrix_noise_mean, 3), 8)
           << padded(chance, 8) << "\n";
     };
-    line("exact chain", r.exact_against, fixed(r.judgement.chance_total_variation, 3));
-    line(std::to_string(walks) + " walks", r.walks_against, "-");
+    compared("exact chain", r.exact_against, fixed(r.judgement.chance_total_variation, 3));
+    compared(std::to_string(walks) + " walks", r.walks_against, "-");
   }
   out << "\nSeconds: " << trials << " trials and " << walks << " walks on " << threads
       << (threads == 1 ? " thread" : " threads") << ", one exact prediction on one.\n"

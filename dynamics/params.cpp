@@ -12,8 +12,9 @@ using P = GateParams;
 
 // Any unit will do, as long as nothing that is computed overflows: see require_computable.
 constexpr double kHuge = 1e100;
-// The same for values in the scene's own units.
-constexpr double kFar = 1e12;
+// The same for the scene's own units, and for values in these.
+constexpr double kHugeUnit = 1e60;
+constexpr double kFar = 1e18;
 
 // key, place, lowest, highest, lowest itself not permitted, meaning
 constexpr ParamInfo kTable[] = {
@@ -89,10 +90,10 @@ const ParamInfo& info(std::string_view key) {
 void require_computable(const GateParams& p) {
   const Scale u = scale_of(p);
   for (const double unit : {u.length, u.mass, u.time, u.speed(), u.force(), u.impulse(), u.energy()})
-    if (!(unit >= 1.0 / kHuge && unit <= kHuge))
+    if (!(unit >= 1.0 / kHugeUnit && unit <= kHugeUnit))
       refuse("body.mass_kg", text(p.body.mass),
              "with body.radius_m = " + text(p.body.radius) + " and the forces given, the scene's units of length, "
-             "mass, time, force or energy leave [1e-100, 1e+100]");
+             "mass, time, force or energy leave [1e-60, 1e+60]");
   struct Measured {
     std::string_view key;
     double unit;

@@ -50,7 +50,7 @@ TEST(Endings, AreNamedWithTheirIntervals) {
   EXPECT_EQ(intervals["trapped"][0], share_interval(700, 1000)[0]);
   EXPECT_LT(intervals["crossed"][0].get<double>(), 0.001);
   EXPECT_GT(intervals["crossed"][1].get<double>(), 0.001);
-  for (const int k : {0, 1}) EXPECT_NEAR(share_interval(0.7, 1000.0)[k], share_interval(700, 1000)[k], 1e-12);
+  for (const int k : {0, 1}) EXPECT_NEAR(interval_of_share(0.7, 1000.0)[k], share_interval(700, 1000)[k], 1e-12);
   const std::string text = endings_text(shares, "of 1000 trials");
   EXPECT_EQ(text.substr(0, text.find('\n')), "crossed       0.10 %  [0.01, 0.47]  of 1000 trials");
   EXPECT_NE(text.find("\nleft side    12.00 %  [10.09, 14.12]\n"), std::string::npos) << text;

@@ -180,7 +180,7 @@ TEST(Choice, SaysWhenTheReferenceItselfIsFaulty) {
   GateParams p;
   p.beams.stiffness_left = p.beams.stiffness_right = 1e11;
   p.run.time_limit = 0.02;
-  const BodyState fast{0, 0, 0, 1e6};
+  const BodyState fast{0, 0, 0, 1e10};
   const Choice c = choose(p, fast);
   EXPECT_FALSE(c.met);
   EXPECT_EQ(c.reference.method, "stable");

@@ -146,6 +146,23 @@ TEST(Validate, EntranceAndExitLieClearOfTheBeams) {
   EXPECT_EQ(refusal(params), "");
 }
 
+// Reciprocals of mass and inertia, and what is computed from them, must stay numbers.
+TEST(Validate, RefusesWhatCannotBeComputed) {
+  const auto refused = [](auto set) {
+    GateParams params;
+    set(params);
+    return refusal(params) != "";
+  };
+  EXPECT_TRUE(refused([](GateParams& p) { p.body.mass = 5e-324; }));
+  EXPECT_TRUE(refused([](GateParams& p) { p.beams.mass = 5e-324; }));
+  EXPECT_TRUE(refused([](GateParams& p) { p.beams.length = 1e-170; }));
+  EXPECT_TRUE(refused([](GateParams& p) { p.beams.stiffness_left = 1e99; }));
+  EXPECT_TRUE(refused([](GateParams& p) { p.run.event_tolerance = 2.0; }));  // over a tenth of the radius
+  EXPECT_TRUE(refused([](GateParams& p) { p.run.event_tolerance = 1e-14; }));
+  EXPECT_FALSE(refused([](GateParams& p) { p.beams.stiffness_left = 1e12; }));
+  EXPECT_FALSE(refused([](GateParams& p) { p.beams.mass = 1e-12; }));
+}
+
 TEST(StepsPerHold, CountsStepsOfOneDraw) {
   GateParams params;
   EXPECT_EQ(steps_per_hold(params), 1);
