@@ -49,8 +49,15 @@ void tell_derived(const Options& options, const Scene& scene) {
     value << std::stod(k.value);
     all += (all.empty() ? "" : ", ") + k.key + " = " + value.str();
   }
-  if (!all.empty() && options.talk())
-    warn(scene.source + " leaves out keys, which follow from the others by the paper's proportions: " + all);
+  std::string text;
+  if (scene.named.empty())
+    text = scene.source + " names no key: this is the paper's scene, 1 kg and 10 m in radius";
+  else if (!all.empty())
+    text = scene.source + " leaves out keys, which follow from the others by the paper's proportions: " + all;
+  static std::string told;  // a sweep settles many scenes
+  if (text.empty() || text == told || !options.talk()) return;
+  told = text;
+  warn(text);
 }
 
 std::string setting_text(const Json& settled) {
@@ -119,8 +126,8 @@ Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
 void check_outcomes(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
                     dynamics::Health& health) {
   if (interrupted()) throw Interrupted{};
-  // A twentieth of the work, but enough to see a few per cent.
-  const std::int64_t sample = std::clamp<std::int64_t>(trials / 20, 100, 1000);
+  // Enough to see a few per cent, but no multiple of the work that was asked for.
+  const std::int64_t sample = std::clamp<std::int64_t>(trials / 5, std::min<std::int64_t>(trials, 100), 1000);
   dynamics::check_outcomes(health, scene.gate, pilot_starts(scene, from), options.seed(), sample);
 }
 

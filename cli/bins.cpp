@@ -27,12 +27,13 @@ Json to_json(const Crossing& c) {
 bool papers_field(const Scene& scene) {
   const GateParams paper;
   const GateParams& p = scene.gate;
-  const Scale scale = scale_of(p);
-  return scale.length == 1.0 && scale.mass == 1.0 && scale.time == 1.0 &&
-         p.body.mass == paper.body.mass && p.body.radius == paper.body.radius &&
-         p.beams.length == paper.beams.length && p.beams.joint_x == paper.beams.joint_x &&
-         p.beams.joint_y == paper.beams.joint_y &&
-         p.forces.random_rate == paper.forces.random_rate;
+  const Scale unit = scale_of(p);
+  // To rounding, which no other scene meets by chance.
+  const auto is = [](double own, double papers) { return std::abs(own - papers) <= 1e-12 * papers; };
+  return is(p.beams.length / unit.length, paper.beams.length) &&
+         is(p.beams.joint_x / unit.length, paper.beams.joint_x) &&
+         is(p.beams.joint_y / unit.length, paper.beams.joint_y) &&
+         is(p.forces.random_rate * unit.time, paper.forces.random_rate);
 }
 
 std::string BinsChoice::name() const {
@@ -41,7 +42,9 @@ std::string BinsChoice::name() const {
 
 BinsChoice usual_bins(const Scene& scene) {
   using Kind = BinsChoice::Kind;
-  return {scene.bins ? Kind::scene : papers_field(scene) ? Kind::paper : Kind::automatic};
+  BinsChoice choice{scene.bins ? Kind::scene : papers_field(scene) ? Kind::paper : Kind::automatic};
+  choice.by_default = true;
+  return choice;
 }
 
 void add_bins(Options& options) {
@@ -124,6 +127,10 @@ States states_of(const Options& options, const Scene& scene, const BinsChoice& c
     seen.space = refined(StateSpace::paper(scene.gate), choice.factor);
   }
   const Resolution resolution = resolution_of(seen.space, pilot.entries);
+  if (choice.by_default && choice.kind == Kind::paper && resolution.poor()) {
+    warn("Table III's bins do not resolve how bodies move in this scene; takes --bins auto");
+    return states_of(options, scene, {Kind::automatic}, starts);
+  }
   return {choice, std::move(seen.space), std::move(seen.entries), std::move(pilot), resolution};
 }
 

@@ -11,16 +11,17 @@
 
 namespace gatewalk::cli {
 
-/// The field of the paper: its body, beams' length, joints and rate of the random force, and forces
-/// that move the body at the paper's speeds (dynamics::Scale is 1 m, 1 kg, 1 s). Other forces,
-/// stiffness, damping and run keys are studies of the same field.
+/// The field of the paper, in whatever units: its proportions of body, beams' length, joints and rate of
+/// the random force, and forces that move the body at the paper's speeds (the rate is 50 per unit of
+/// dynamics::Scale's time). Other forces, stiffness, damping and run keys are studies of the same field.
 [[nodiscard]] bool papers_field(const Scene& scene);
 
 /// Which states a chain has.
 struct BinsChoice {
   enum class Kind { paper, automatic, scene };
   Kind kind = Kind::paper;
-  double factor = 1.0;  // bins per axis as a multiple of Table III's, kind paper
+  double factor = 1.0;      // bins per axis as a multiple of Table III's, kind paper
+  bool by_default = false;  // nobody asked for it: auto takes its place where it does not resolve the scene
 
   [[nodiscard]] std::string name() const;  // "paper", "auto", "scene"
 };

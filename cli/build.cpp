@@ -27,7 +27,7 @@ int run_build(const std::vector<std::string>& arguments) {
   const Stopwatch pilot_watch;
   const States states = states_of(options, scene, choice, {scene.start});
   const double pilot_seconds = pilot_watch.seconds();
-  const Json bins = choice.kind == BinsChoice::Kind::paper ? Json(choice.factor) : Json(choice.name());
+  const Json bins = states.choice.kind == BinsChoice::Kind::paper ? Json(states.choice.factor) : Json(states.choice.name());
   const Stopwatch watch;
   lattice::MatrixFile file{build_matrix(scene, states, trials, options.seed(), options.talk()), {}};
   const double seconds = watch.seconds();
@@ -37,7 +37,7 @@ int run_build(const std::vector<std::string>& arguments) {
                {"scene", to_toml(scene)},
                {"seed", std::to_string(options.seed())},
                {"trials_per_row", std::to_string(trials)},
-               {"bins", bins.is_string() ? choice.name() : bins.dump()},  // the shortest digits that read back the same
+               {"bins", bins.is_string() ? states.choice.name() : bins.dump()},  // the shortest digits that read back the same
                {"state_space", to_json(states).dump()},
                {"program", std::string("gatewalk ") + kVersion},
                {"commit", kCommit},

@@ -260,7 +260,7 @@ void Options::check_files() {
 bool Options::parse(const std::vector<std::string>& arguments) {
   (no_scene_.empty() ? own_ : hidden_).add_options()
       ("set", po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUE"),
-       "override a key of the scene, e.g. forces.random_N=20 (may be repeated)");
+       "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what the file leaves out stays as it follows from the file");
   po::options_description all;
   all.add(own_).add(shared_).add(hidden_);
   using namespace po::command_line_style;

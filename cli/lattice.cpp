@@ -54,12 +54,14 @@ int run_lattice(const std::vector<std::string>& arguments) {
 
   const auto n = static_cast<double>(tally.trials);
   std::string table = endings_text(shares, "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
-                      scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) + "left the field " +
+                      limits_text(scene) + scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) +
+                      map_of_trapped(tally.trapped_gates.cast<double>() / n) + "left the field " +
                       percent(static_cast<double>(tally.left_field), n, 2) + "\n";
   if (tally.broken > 0)
     table += "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
   options.give_out(json, table + method_line(settled));
   remark(options, fixed(watch.seconds(), 2) + " s");
+  warn_if_too_few_gates(scene);
   if (!tally.health.clean()) warn(complaint(tally.health));
   return exit_status(options, tally.health.clean());
 }

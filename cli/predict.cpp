@@ -186,20 +186,21 @@ std::string title_of(const PaperStart& s) {
   return title.str();
 }
 
-std::string table_of(const FinalDistribution& f, const EndingShares& shares, const ReadyStart& start) {
+std::string table_of(const FinalDistribution& f, const EndingShares& shares, const ReadyStart& start, const Scene& scene) {
   const bool intervals = !std::isnan(shares.interval.front().front());
   std::string table =
       endings_text(shares, intervals ? "of all walks, 95 % intervals for the sampling of the matrix"
                                      : "of all walks; no intervals: the field is too large for many predictions, "
                                        "or a resampled matrix failed") +
-      map_of(f.final_cells) + "left the field " + percent(f.left_field, 1.0, 2) + "\nstart: " + start.text + "\n";
+      limits_text(scene) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) + "left the field " + percent(f.left_field, 1.0, 2) + "\nstart: " + start.text + "\n";
   if (f.unsampled > 0.0)
     table += "reaches a row that was never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)
     table += "still walking when the sum was stopped: " + percent(f.remainder, 1.0, 6) + "\n";
   std::ostringstream bound;
   bound.precision(2);
-  bound << "The chain's own error (bins, memory) is not in the intervals: gatewalk validate measures it.\n"
+  bound << "The chain's own error (bins, memory, and with bins from a pilot where its rows start) is not in the intervals:\n"
+        << "gatewalk validate measures it.\n"
         << "Rounding and walks not finished, which are not the error of the prediction: at most "
         << f.remainder + f.rounding << " in all shares together\n";
   return table + bound.str();
@@ -258,7 +259,7 @@ int run_predict(const std::vector<std::string>& arguments) {
   const auto shares_of = [&](std::size_t k) { return EndingShares(found[k], noise[k], max_gates); };
   if (given.empty()) {
     add_to(json, found.front(), shares_of(0), noise.front());
-    table = table_of(found.front(), shares_of(0), starts.front());
+    table = table_of(found.front(), shares_of(0), starts.front(), m.scene);
   }
   for (std::size_t k = 0; k < given.size(); ++k) {
     Json one;
@@ -266,7 +267,7 @@ int run_predict(const std::vector<std::string>& arguments) {
     add_to(one, found[k], shares_of(k), noise[k]);
     one["start_state"] = start_state(starts[k]);
     json["starts"].push_back(std::move(one));
-    table += (k > 0 ? "\n" : "") + title_of(given[k]) + "\n" + table_of(found[k], shares_of(k), starts[k]);
+    table += (k > 0 ? "\n" : "") + title_of(given[k]) + "\n" + table_of(found[k], shares_of(k), starts[k], m.scene);
   }
   for (const OtherRows& o : others)
     table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " + o.path + "\n";
@@ -276,6 +277,7 @@ int run_predict(const std::vector<std::string>& arguments) {
   if (!other_rows.is_null()) json["rows"] = other_rows;
   json["made_by"] = manifest(options, m.scene);
   options.give_out(json, table);
+  warn_if_too_few_gates(m.scene);
   remark(options, fixed(1e3 * seconds, 3) + " ms");
   return exit_status(options, faults_recorded(m.status).empty());
 }

@@ -156,11 +156,11 @@ Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
 
 }  // namespace
 
-std::string map_of(const markov::CellProbabilities& shares) {
+std::string map_of(const markov::CellProbabilities& shares, const std::string& what) {
   const Span rows = span_of(shares.rowwise().sum(), 40);
   Span columns = span_of(shares.colwise().sum().transpose(), 15);
   const Eigen::Index half = shares.cols() / 2;
-  std::string text = "final gate, % of trials (i_y upwards, i_x to the right";
+  std::string text = what + ", % of trials (i_y upwards, i_x to the right";
   if (rows.block > 1 || columns.block > 1) {
     // The start's column in the middle of a block, so that left and right can be compared.
     columns.block |= 1;
@@ -283,6 +283,26 @@ std::string endings_text(const EndingShares& shares, const std::string& of) {
     text += "\n";
   }
   return text;
+}
+
+std::string limits_text(const Scene& scene) {
+  std::string text = "(trapped: still in a gate after " + quantity(scene.gate.run.time_limit, "s");
+  if (scene.field.max_gates > 0)
+    text += "; cut off: would go on from gate number " + std::to_string(scene.field.max_gates) +
+            ", the limit field.max_gates, 0 for none";
+  return text + ")\n";
+}
+
+void warn_if_too_few_gates(const Scene& scene) {
+  if (scene.field.max_gates > 0 && scene.field.max_gates < scene.field.rows)
+    warn("nobody can cross: field.max_gates = " + std::to_string(scene.field.max_gates) +
+         " is less than field.rows = " + std::to_string(scene.field.rows));
+}
+
+std::string map_of_trapped(const markov::CellProbabilities& shares) {
+  constexpr Eigen::Index kMost = 15;
+  if (shares.rows() > kMost || shares.cols() > kMost || shares.sum() == 0.0) return "";
+  return map_of(shares, "of these trapped");
 }
 
 Json to_json(const dynamics::GateTally& tally) {

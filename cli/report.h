@@ -29,7 +29,9 @@ namespace gatewalk::cli {
 
 /// The field seen from above, farthest row on top, in percent. Of fields too large to print: where all
 /// but next to nothing lies, in blocks if need be.
-[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares);
+[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares, const std::string& what = "final gate");
+/// The map of the trapped, below the first one; empty for fields too large to print and where none is.
+[[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares);
 
 /// Fixed-point text of x with `digits` decimals; "-" for a value that is not a number.
 [[nodiscard]] std::string fixed(double x, int digits);
@@ -69,6 +71,10 @@ inline constexpr std::array<EndingName, 5> kEndingNames{{{markov::Ending::far_ed
 [[nodiscard]] Json endings_95(const EndingShares& shares);
 /// A line each: "crossed      0.02 %  [0.00, 0.05]"; `of` ends the first one.
 [[nodiscard]] std::string endings_text(const EndingShares& shares, const std::string& of);
+/// What two of the endings mean in this scene, below them.
+[[nodiscard]] std::string limits_text(const Scene& scene);
+/// Warns when no body can cross the field within the gates it may visit.
+void warn_if_too_few_gates(const Scene& scene);
 /// "17.61 [16.87, 18.37]", in %; "17.61" without an interval.
 [[nodiscard]] std::string with_interval(double share, const std::array<double, 2>& interval);
 

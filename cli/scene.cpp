@@ -202,6 +202,9 @@ std::string_view closest_table(std::string_view name) {
 /// The key nearest to `name`, by its whole length or by the part behind the table's name.
 std::string_view closest_key(std::string_view name) {
   name = name.substr(0, kLongestCompared);
+  // The unit is easily forgotten.
+  for (const SceneKey& k : scene_keys())
+    if (!leaf_of(name).empty() && table_of(k.key) == table_of(name) && leaf_of(k.key).starts_with(leaf_of(name))) return k.key;
   const auto distance = [&](const SceneKey& k) {
     return std::min(edit_distance(name, k.key), 1 + edit_distance(leaf_of(name), leaf_of(k.key)));
   };
@@ -521,19 +524,26 @@ Scene parse_scene(std::string_view text, std::string name,
   scene.sweep = variations_of(document, origin);
   for (const auto& [key, setting] : settings) scene.named.emplace(key, setting.origin);
   const auto of_gate = [](const SceneKey& key) { return table_of(key.key) != "field" && table_of(key.key) != "start"; };
-  const auto assign_gate = [&](const Settings& from) {
-    for (const SceneKey& key : scene_keys())
-      if (const auto it = from.find(key.key); of_gate(key) && it != from.end()) assign(key, it->second, scene);
-  };
   // What the file leaves out follows from the file: an override changes its own key only, and the settings
-  // of the method.
-  assign_gate(of_file);
+  // of the method. It may mend a value that the file should not have.
+  for (const SceneKey& key : scene_keys()) {
+    const auto it = of_file.find(key.key);
+    if (!of_gate(key) || it == of_file.end()) continue;
+    try {
+      assign(key, it->second, scene);
+    } catch (const SceneError&) {
+      if (settings.at(std::string(key.key)).origin == it->second.origin) throw;
+    }
+  }
   const auto derive = [&](auto known) {
     for (const std::string_view key : dynamics::fill_in(scene.gate, scene.start, known)) scene.derived.emplace(key);
   };
-  derive([&](std::string_view key) { return of_file.contains(key); });
-  assign_gate(settings);
-  derive([&](std::string_view key) { return scene.named.contains(key) || !is_methods_own(key); });
+  check(scene, settings, [&] { derive([&](std::string_view key) { return of_file.contains(key); }); });
+  for (const SceneKey& key : scene_keys())
+    if (const auto it = settings.find(key.key); of_gate(key) && it != settings.end()) assign(key, it->second, scene);
+  check(scene, settings, [&] {
+    derive([&](std::string_view key) { return scene.named.contains(key) || !is_methods_own(key); });
+  });
   std::erase_if(scene.derived, [&](const std::string& key) { return scene.named.contains(key); });
   check_gate(scene, settings);  // what a start may be depends on it
   for (const SceneKey& key : scene_keys())

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include "cli/command.h"
 #include "cli/output.h"
 #include "cli/report.h"
+#include "cli/scene_bins.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -30,17 +32,18 @@ std::string table_of(const std::vector<KeyInfo>& keys) {
 std::string commented(const std::vector<KeyInfo>& keys) {
   std::string text =
       "# A scene for gatewalk: one body, one gate with two beams, a field of such gates. Units are in the keys.\n"
-      "# Keys may be left out: what has a unit then follows from body.mass_kg, body.radius_m and\n"
-      "# forces.propulsion_N by the paper's proportions. gatewalk scene FILE shows every value and its source.\n";
+      "# A key that is left out, as behind #, follows from the others by the paper's proportions: from body.radius_m,\n"
+      "# body.mass_kg and forces.propulsion_N. gatewalk scene FILE shows every value and its source.\n";
   std::string table;
   std::size_t width = 0;
   const auto leaf = [](const KeyInfo& k) { return k.key.substr(k.key.find('.') + 1); };
-  for (const KeyInfo& k : keys) width = std::max(width, leaf(k).size() + k.value.size() + 3);
+  for (const KeyInfo& k : keys) width = std::max(width, leaf(k).size() + k.value.size() + 5);
   for (const KeyInfo& k : keys) {
     if (const std::string own = k.key.substr(0, k.key.find('.')); own != table) text += "\n[" + (table = own) + "]\n";
-    text += padded(leaf(k) + " = " + k.value, -static_cast<int>(width)) + "  # " + k.meaning;
+    const bool follows = k.source == "derived";
+    text += padded((follows ? "# " : "") + leaf(k) + " = " + k.value, -static_cast<int>(width)) + "  # " + k.meaning;
     if (!k.range.empty()) text += ", in " + k.range + (k.unit.empty() ? "" : " " + k.unit);
-    if (k.source == "derived" || k.source == "paper") text += "; " + k.source;
+    if (follows || k.source == "paper") text += "; " + k.source;
     text += "\n";
   }
   return text;
@@ -49,7 +52,12 @@ std::string commented(const std::vector<KeyInfo>& keys) {
 /// Overrides as lines of a file: without a file they are the scene, and the rest follows from them.
 std::string as_text(const std::vector<std::string>& overrides) {
   std::string text;
-  for (const std::string& given : overrides) text += given + "\n";
+  for (const std::string& given : overrides) {
+    const std::size_t value = given.find('=') + 1;
+    const bool bare = (given.starts_with("run.method") || given.starts_with("field.fidelity")) && value > 0 &&
+                      given.find_first_of("\"'") == given.npos;
+    text += bare ? given.substr(0, value) + "\"" + given.substr(value) + "\"\n" : given + "\n";
+  }
   return text;
 }
 
@@ -68,11 +76,18 @@ int run_scene(const std::vector<std::string>& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (options.has("output") && !options.has("new")) throw UsageError("--output has no meaning without --new");
   const std::string file = options.text("output");
+  if (!file.empty() && file != "-" && std::filesystem::is_regular_file(file))
+    throw UsageError("--output " + file + ": is there already, and may hold a scene of yours; name another file");
   const Scene scene = options.has("scene") ? read_scene(options.text("scene"), options.overrides())
                                            : parse_scene(as_text(options.overrides()), "--set");
   const std::vector<KeyInfo> keys = describe(scene);
   if (options.has("new")) {
-    write_text_atomically(file.empty() ? "-" : file, commented(keys));
+    if (options.has("json")) throw UsageError("--json has no meaning beside --new");
+    std::string text = commented(keys);
+    if (scene.bins) text += "\n" + bins_toml(*scene.bins);
+    if (!scene.sweep.empty()) text += "\n[sweep]\n";
+    for (const Variation& v : scene.sweep) text += "\"" + v.key + "\" = \"" + v.values + "\"\n";
+    write_text_atomically(file.empty() ? "-" : file, text);
     return kFine;
   }
   Json json;

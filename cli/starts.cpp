@@ -11,10 +11,20 @@
 namespace gatewalk::cli {
 namespace {
 
-const std::vector<PaperStart> kTableIV{{0, 0, 15, 0.914, 1.018},
-                                       {23, -11, 16, 0.9097, 1.133},
-                                       {4, 5, 10, 0.8929, 1.252},
-                                       {-17, 13, 12, 0.9026, 0.9813}};
+/// Table IV's starts, in the scene's own units.
+std::vector<PaperStart> table_iv(const dynamics::GateParams& p) {
+  std::vector<PaperStart> starts{{0, 0, 15, 0.914, 1.018},
+                                 {23, -11, 16, 0.9097, 1.133},
+                                 {4, 5, 10, 0.8929, 1.252},
+                                 {-17, 13, 12, 0.9026, 0.9813}};
+  const dynamics::Scale unit = dynamics::scale_of(p);
+  for (PaperStart& s : starts) {
+    s.d *= unit.length;
+    s.vx *= unit.speed();
+    s.vy *= unit.speed();
+  }
+  return starts;
+}
 
 PaperStart parse_start(const std::string& text) {
   std::istringstream in(text);
@@ -46,9 +56,10 @@ std::vector<PaperStart> given_starts(const Options& options) {
 
 std::vector<PaperStart> starts_of(const Options& options, const Scene& scene) {
   if (options.has("start")) return given_starts(options);
-  const dynamics::BodyState &own = scene.start, first = kTableIV.front().body();
-  const bool papers = own.x == first.x && own.y == first.y && own.vx == first.vx && own.vy == first.vy;
-  if (papers && papers_field(scene)) return kTableIV;
+  const std::vector<PaperStart> papers = table_iv(scene.gate);
+  const dynamics::BodyState &own = scene.start, first = papers.front().body();
+  const bool the_papers = own.x == 0.0 && own.y == 0.0 && own.vx == 0.0 && std::abs(own.vy - first.vy) <= 1e-12 * first.vy;
+  if (the_papers && papers_field(scene)) return papers;
   return {{own.x, own.vx, own.vy, {}, {}, own.y}};
 }
 
@@ -67,8 +78,8 @@ void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
   const double side = scene.gate.beams.joint_x;
   for (const PaperStart& s : starts)
     if (!(std::abs(s.d) < side))
-      throw UsageError("--start: d = " + fixed(s.d, 3) + " m must lie inside the gate, (-" +
-                       fixed(side, 3) + ", " + fixed(side, 3) + ")");
+      throw UsageError("--start: d = " + Json(s.d).dump() + " m must lie inside the gate, (-" +
+                       Json(side).dump() + ", " + Json(side).dump() + ")");
 }
 
 void require_inside_bins(const std::vector<PaperStart>& starts, const Scene& scene,

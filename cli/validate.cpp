@@ -475,6 +475,11 @@ int run_validate(const std::vector<std::string>& arguments) {
       throw markov::BadFile(options.text("matrix") + ": its record of the chosen method is damaged");
   }
   const Scene& scene = m.scene;
+  // Some 50 predictions of every gate are kept.
+  constexpr std::int64_t kMostGates = 100'000;
+  if (std::int64_t{scene.field.columns} * scene.field.rows > kMostGates)
+    throw UsageError("validate compares fields of up to " + std::to_string(kMostGates) + " gates; field.columns = " +
+                     std::to_string(scene.field.columns) + " and field.rows = " + std::to_string(scene.field.rows));
   const dynamics::Transitions& t = m.file.transitions;
   if (options.has("matrix")) {
     starts = starts_of(options, scene);

@@ -49,12 +49,16 @@ int run_walk(const std::vector<std::string>& arguments) {
 
   const auto n = static_cast<double>(tally.walks);
   std::string table = endings_text(shares, "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
-                      map_of(tally.final_cells.cast<double>() / n) + "left the field " +
-                      percent(static_cast<double>(tally.left_field), n, 2) + "\nstart: " + ready.start_text + "\n";
+                      limits_text(m.scene) + map_of(tally.final_cells.cast<double>() / n) +
+                      map_of_trapped(tally.trapped_cells.cast<double>() / n) + "left the field " +
+                      percent(static_cast<double>(tally.left_field), n, 2) + "\nstart: " + ready.start_text +
+                      "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has, the chain's own "
+                      "error (bins, memory) gatewalk validate measures.\n";
   if (tally.unsampled > 0)
     table += "reached a row that was never sampled: " +
              percent(static_cast<double>(tally.unsampled), n, 4) + "\n";
   options.give_out(json, table);
+  warn_if_too_few_gates(m.scene);
   remark(options, fixed(seconds, 3) + " s, " + fixed(n / seconds / 1e6, 2) + " million walks a second");
   return exit_status(options, faults_recorded(m.status).empty());
 }

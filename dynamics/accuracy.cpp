@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "dynamics/runs.h"
@@ -122,18 +123,17 @@ Setting second_reference_setting(const GateParams& p) {
 
 // ---- Trials ----
 
-TrialEnd end_of(const GateParams& p, const StateSpace& space, const GateRun& run) {
+namespace {
+
+TrialEnd end_without_column(const GateRun& run) {
   TrialEnd end;
   end.exit = run.exit;
   end.seconds = run.seconds;
-  end.column = space.trapped() + 1;
   if (run.cut_short || run.ending == Ending::broken) return end;
   if (run.ending == Ending::trapped) {
     end.outcome = Outcome::trapped;
-    end.column = space.trapped();
     return end;
   }
-  end.column = space.index_of(crossing_of(p, run.ending, run.exit)).state;
   if (run.ending == Ending::exited_left)
     end.outcome = Outcome::exited_left;
   else if (run.ending == Ending::exited_right)
@@ -145,12 +145,24 @@ TrialEnd end_of(const GateParams& p, const StateSpace& space, const GateRun& run
   return end;
 }
 
+}  // namespace
+
+TrialEnd end_of(const GateParams& p, const StateSpace& space, const GateRun& run) {
+  TrialEnd end = end_without_column(run);
+  end.column = end.outcome == Outcome::broken    ? space.trapped() + 1
+               : end.outcome == Outcome::trapped ? space.trapped()
+                                                 : space.index_of(crossing_of(p, run.ending, run.exit)).state;
+  return end;
+}
+
 Verdict TrialEnds::verdict() const { return judge(health, cut_short, kPermittedFaults); }
 
 void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start,
                     std::uint64_t seed, TrialRange range) {
   const auto method = make_method(p);
-  const StateSpace space = StateSpace::paper(p);
+  // Without room ahead of the beams there is no next gate, and no column.
+  std::optional<StateSpace> space;
+  if (p.run.traverse_y > p.beams.joint_y + p.body.radius) space = StateSpace::paper(p);
   const std::size_t before = ends.trials.size();
   ends.trials.resize(before + static_cast<std::size_t>(range.count));
   struct Faults {
@@ -168,7 +180,7 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
         Faults& f = faults.local();
         f.health.add(p, run);
         f.cut_short += run.cut_short;
-        ends.trials[before + static_cast<std::size_t>(slot.trial)] = end_of(p, space, run);
+        ends.trials[before + static_cast<std::size_t>(slot.trial)] = space ? end_of(p, *space, run) : end_without_column(run);
         return false;
       },
       kMostWork);

@@ -85,15 +85,20 @@ const ParamInfo& info(std::string_view key) {
                        [key](const ParamInfo& i) { return i.key == key; });
 }
 
-/// Refuses units so large or small, and values so many units away, that products of some of them could
-/// overflow or vanish.
-void require_computable(const GateParams& p) {
+/// These refuse units so large or small, and values so many units away, that products of some of them
+/// could overflow or vanish.
+void require_units(const GateParams& p) {
   const Scale u = scale_of(p);
   for (const double unit : {u.length, u.mass, u.time, u.speed(), u.force(), u.impulse(), u.energy()})
     if (!(unit >= 1.0 / kHugeUnit && unit <= kHugeUnit))
       refuse("body.mass_kg", text(p.body.mass),
              "with body.radius_m = " + text(p.body.radius) + " and the forces given, the scene's units of length, "
              "mass, time, force or energy leave [1e-60, 1e+60]");
+}
+
+void require_computable(const GateParams& p) {
+  require_units(p);
+  const Scale u = scale_of(p);
   struct Measured {
     std::string_view key;
     double unit;
@@ -121,7 +126,7 @@ void require_computable(const GateParams& p) {
   }
   // A tenth of a radius is no tolerance any more; rounding is no tolerance yet.
   const double least = 1e-14 * p.body.radius, most = 0.1 * p.body.radius, given = p.run.event_tolerance;
-  if (!(given >= least && given <= most))
+  if (p.run.method == "event" && !(given >= least && given <= most))
     refuse("run.event_tolerance_m", text(given), "must lie in [" + text(least, 6) + ", " + text(most, 6) +
                                                      "], 1e-14 to 0.1 of body.radius_m");
 }
@@ -151,7 +156,11 @@ double default_step(const GateParams& p) {
 }
 
 double default_impulse_threshold(const GateParams& p) {
-  return Contact{}.impulse_threshold * scale_of(p).impulse();
+  const Scale scale = scale_of(p);
+  // What presses a body onto a beam; the random force does so for a hold only.
+  const double force = std::max(p.forces.propulsion, 0.1 * p.forces.random);
+  const double usual = Contact{}.impulse_threshold * scale.impulse();
+  return force > 0.0 ? std::min(usual, 3.0 * force * (kPaperStep * scale.time)) : usual;
 }
 
 double default_event_tolerance(const GateParams& p) {
@@ -221,6 +230,8 @@ std::vector<std::string_view> fill_in(GateParams& p, BodyState& start, const IsN
          paper.run.time_limit * (p.forces.propulsion > 0.0 ? opening_time(p) / opening_time(paper) : u.time));
     fill("start.vy_m_per_s", start.vy, start.vy * u.speed());
   }
+  if (!own_body && named("beams.joint_y_m")) fill("run.traverse_y_m", p.run.traverse_y, 2.0 * p.beams.joint_y);
+  require_units(p);
   fill("contact.impulse_threshold_Ns", p.contact.impulse_threshold, default_impulse_threshold(p));
   fill("run.event_tolerance_m", p.run.event_tolerance, default_event_tolerance(p));
   fill("run.step_s", p.run.step, default_step(p));

@@ -135,7 +135,8 @@ void validate(const GateParams& params);
 [[nodiscard]] double default_step(const GateParams& params);
 
 /// The other settings of a scene that names none, in its own units (Scale), as the paper's scenes have
-/// them: contact.impulse_threshold_Ns and run.event_tolerance_m.
+/// them: contact.impulse_threshold_Ns, but not more than three times what the propulsion (or a tenth of the
+/// random force) does in the paper's step; and run.event_tolerance_m.
 [[nodiscard]] double default_impulse_threshold(const GateParams& params);
 [[nodiscard]] double default_event_tolerance(const GateParams& params);
 

@@ -85,7 +85,8 @@ StableMethod::StableMethod(const GateParams& p)
   for (const Side side : {kLeft, kRight}) {
     // The explicit contact force must follow both of a held beam's rates.
     swing_[side] = p.beams.stiffness(side) / inertia;
-    const double rate = std::max(std::sqrt(swing_[side]), p.beams.damping / inertia);
+    swing_root_[side] = std::sqrt(swing_[side]);
+    const double rate = std::max(swing_root_[side], p.beams.damping / inertia);
     halvings_[side] = halvings_for(p.run.step * rate, kMaxPhase, kMaxHalvings);
     finest_ = std::max(finest_, halvings_[side]);
   }
@@ -133,6 +134,11 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
 
 bool StableMethod::too_far(const GateState& s, double dt) const {
   const double most = 0.5 * p_.body.radius;
+  // Nearly always far from it: no root.
+  double turns = 0.0;
+  for (const Side side : {kLeft, kRight})
+    turns = std::max(turns, std::abs(s.beams[side].omega) + swing_root_[side] * std::abs(s.beams[side].theta));
+  if ((std::abs(s.body.vx) + std::abs(s.body.vy) + p_.beams.length * turns) * dt <= most) return false;
   const double disc = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy) * dt;
   if (disc > most) return true;
   for (const Side side : {kLeft, kRight}) {

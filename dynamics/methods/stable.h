@@ -66,7 +66,8 @@ class StableMethod final : public Method {
   double threshold_;      // N s
   double touching_;       // m, gaps up to this count as contact at a moment of impact
   double rest_;           // m/s, contacts this slow do not close
-  std::array<double, 2> swing_{};  // 1/s^2, k/I
+  std::array<double, 2> swing_{};       // 1/s^2, k/I
+  std::array<double, 2> swing_root_{};  // 1/s
   std::array<int, 2> halvings_{};  // of a step that each beam needs, 0 unless it is very stiff
   int finest_;                     // halvings that any piece may need
   GateLaw law_;

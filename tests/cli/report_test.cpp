@@ -53,7 +53,7 @@ TEST(Endings, AreNamedWithTheirIntervals) {
   for (const int k : {0, 1}) EXPECT_NEAR(interval_of_share(0.7, 1000.0)[k], share_interval(700, 1000)[k], 1e-12);
   const std::string text = endings_text(shares, "of 1000 trials");
   EXPECT_EQ(text.substr(0, text.find('\n')), "crossed       0.10 %  [0.01, 0.47]  of 1000 trials");
-  EXPECT_NE(text.find("\nleft side    12.00 %  [10.09, 14.12]\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nleft side    12.00 %  [10.10, 14.12]\n"), std::string::npos) << text;
   // Without intervals, and shares that two decimals would hide.
   EXPECT_EQ(endings_text(EndingShares({0.5, 1.23e-7, 0, 0, 0, 0, 0}), "x").substr(0, 23), "crossed    1.2e-05 %  x");
   EXPECT_TRUE(endings_95(EndingShares({0.5, 0.5, 0, 0, 0, 0, 0}))["crossed"][0].is_number_float());

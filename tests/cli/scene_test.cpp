@@ -108,10 +108,10 @@ TEST(Scene, TheStepSuitsTheMethodUnlessItIsNamed) {
   EXPECT_EQ(step("run.step_s = 0.01", {"run.method=paper"}), 0.01);
   EXPECT_EQ(step("", {"run.method=paper", "run.step_s=0.02"}), 0.02);
   // Fitted into the hold.
-  EXPECT_EQ(step("forces.random_rate_Hz = 30"), 1.0 / 60);
-  EXPECT_EQ(step("forces.random_rate_Hz = 5"), 0.02);
+  EXPECT_EQ(step("forces.random_rate_Hz = 30"), 1.0 / 30);  // the unit of time is 5/3 s
+  EXPECT_EQ(step("forces.random_rate_Hz = 5"), 0.04);       // 2 s, what the forces allow
   EXPECT_EQ(step("forces.random_rate_Hz = 1000"), 0.001);
-  EXPECT_EQ(step("forces.random_rate_Hz = 30", {"run.method=paper"}), 1.0 / 270);
+  EXPECT_EQ(step("forces.random_rate_Hz = 30", {"run.method=paper"}), 1.0 / 150);
 }
 
 TEST(Scene, EmptyFileIsTheDefaultScene) {
@@ -349,29 +349,30 @@ const Malformed kMalformed[] = {
      "must lie in [0, 1e+100] N"},
     {"Infinite", "[forces]\nrandom_N = +inf\n", 2, "forces.random_N = inf ",
      "must lie in [0, 1e+100] N"},
-    {"NoMass", "[body]\nmass_kg = 0\n", 2, "body.mass_kg = 0 ", "must lie in (0, 1e+06] kg"},
-    {"HugeInteger", "[body]\nmass_kg = 9223372036854775807\n", 2,
-     "body.mass_kg = 9223372036854775807", "(0, 1e+06] kg"},
+    {"NoMass", "[body]\nmass_kg = 0\n", 2, "body.mass_kg = 0 ", "must lie in (0, 1e+100] kg"},
+    {"HugeInteger", "[run]\nstep_s = 9223372036854775807\n", 2, "run.step_s = 9223372036854775808",
+     "must fit"},
+    {"Vanishing", "[body]\nmass_kg = 5e-324\n", 2, "body.mass_kg = 5e-324", "leave [1e-60, 1e+60]"},
     {"Stiffness", "[beams]\nstiffness_left_Nm_per_rad = -1\n", 2, "beams.stiffness_left_Nm_per_rad",
-     "[0, 1e+12] N m/rad"},
+     "[0, 1e+100] N m/rad"},
     {"Damping", "[beams]\ndamping_Nms_per_rad = -1\n", 2, "beams.damping_Nms_per_rad",
-     "[0, 1e+12] N m s/rad"},
-    {"Drag", "[forces]\ndrag_Ns_per_m = -1\n", 2, "forces.drag_Ns_per_m", "[0, 1e+12] N s/m"},
-    {"Rate", "[forces]\nrandom_rate_Hz = 0\n", 2, "forces.random_rate_Hz", "(0, 1e+06] Hz"},
+     "[0, 1e+100] N m s/rad"},
+    {"Drag", "[forces]\ndrag_Ns_per_m = -1\n", 2, "forces.drag_Ns_per_m", "[0, 1e+100] N s/m"},
+    {"Rate", "[forces]\nrandom_rate_Hz = 0\n", 2, "forces.random_rate_Hz", "(0, 1e+100] Hz"},
     {"Restitution", "[contact]\nrestitution = 1.1\n", 2, "contact.restitution = 1.1",
      "must lie in [0, 1]"},
     {"Threshold", "[contact]\nimpulse_threshold_Ns = -1\n", 2, "contact.impulse_threshold_Ns",
      "[0, 1e+100] N s"},
-    {"Step", "[run]\nstep_s = 2\n", 2, "run.step_s = 2 ", "must lie in (0, 1] s"},
+    {"Step", "[run]\nstep_s = 2\n", 2, "run.step_s = 2 ", "must fit"},
     {"NoColumns", "[field]\ncolumns = 0\n", 2, "field.columns = 0 ", "must lie in [1, 2001]"},
     {"IntOverflow", "[field]\ncolumns = 4294967297\n", 2, "field.columns = 4294967297",
      "must lie in [1, 2001]"},
     {"NegativeGates", "[field]\nmax_gates = -1\n", 2, "field.max_gates = -1",
      "must lie in [0, 1e+09]"},
-    {"Speed", "[start]\nvx_m_per_s = -1000.5\n", 2, "start.vx_m_per_s",
-     "must lie in [-1000, 1000] m/s"},
+    {"Speed", "[start]\nvx_m_per_s = -1e30\n", 2, "start.vx_m_per_s",
+     "must lie in [-1e+12, 1e+12] m/s"},
     {"StartBeside", "[start]\nx_m = 25\n", 2, "start.x_m = 25 ", "must lie in (-25, 25) m"},
-    {"StartBeyond", "[start]\ny_m = 60\n", 2, "start.y_m = 60 ", "must lie in [-1000, 60) m"},
+    {"StartBeyond", "[start]\ny_m = 60\n", 2, "start.y_m = 60 ", "must lie in [-1e+12, 60) m"},
 
     // Several keys at once
     {"StartBesideNarrowGate", "[start]\nx_m = 15\n[beams]\njoint_x_m = 14\n", 2, "start.x_m = 15 ",
@@ -386,7 +387,7 @@ const Malformed kMalformed[] = {
     {"RateDoesNotFit", "[run]\nstep_s = 0.02\n[forces]\nrandom_rate_Hz = 30\n", 2,
      "run.step_s = 0.02 ", "forces.random_rate_Hz = 30"},
     {"TooManySteps", "[run]\nstep_s = 1e-10\n", 2, "run.time_limit_s = 12 ", "run.step_s = 1e-10"},
-    {"BigBody", "[body]\nradius_m = 30\n", 2, "body.radius_m = 30 ", "beams.joint_y_m = 30"},
+    {"BigBody", "[body]\nradius_m = 30\n[beams]\njoint_y_m = 30\n", 2, "body.radius_m = 30 ", "beams.joint_y_m = 30"},
     {"LowJoint", "[beams]\njoint_y_m = 9\n", 2, "body.radius_m = 10 ", "beams.joint_y_m = 9"},
     {"LowExit", "[run]\ntraverse_y_m = 30\n", 2, "run.traverse_y_m = 30 ", "beams.joint_y_m = 30"},
 };
@@ -586,7 +587,7 @@ TEST(ToToml, ReadsBackBitForBit) {
       const bool tied = info.key.starts_with("run.") || info.key.find("joint") != info.key.npos
                         || info.key == "body.radius_m" || info.key == "forces.random_rate_Hz"
                         || (trial % 2 == 0 && info.key.starts_with("beams."));  // stable has limits
-      if (!tied) info.ref(scene.gate) = spread(-320.0, std::log10(info.high));
+      if (!tied) info.ref(scene.gate) = spread(-5.0, std::min(5.0, std::log10(info.high)));
     }
     scene.gate.run.step = 0.02 / static_cast<double>(1 + random() % 50);
     scene.field = {1 + trial, 2 + trial, trial};

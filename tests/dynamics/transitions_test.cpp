@@ -216,9 +216,14 @@ TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
   p.beams = {.length = 1e-3, .mass = 0.1, .stiffness_left = 0.0, .stiffness_right = 0.0,
              .damping = 0.0};
   p.body.radius = 1e-3;
+  // Its own units are as small; the speeds are those of the paper's scene.
+  auto bins = StateSpace::paper(p).bins();
+  for (Bins& b : bins)
+    for (auto* edges : {&b.vx, &b.vy})
+      for (double& edge : *edges) edge /= scale_of(p).speed();
   int predicted = 0;
   for (std::int64_t trial = 0; trial < 10; ++trial) {
-    Transitions t(StateSpace::paper(p));
+    Transitions t{StateSpace(bins)};
     add_trials(t, p, 1, {trial, 1});
     for (int row = 0; row < t.space.size(); ++row) {
       Random random(Purpose::row, {1, static_cast<std::uint64_t>(row),

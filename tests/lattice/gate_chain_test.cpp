@@ -79,6 +79,14 @@ TEST(GateChain, HasTheSharesOfTheCounts) {
 
 TEST(Resampled, KeepsTrialsAndVariesAsAMultinomial) {
   const Transitions t = made_up();
+  // One run more in each row, that ends as any of all rows.
+  std::map<int, double> all;
+  double runs = 0.0;
+  for (const auto& row : t.rows)
+    for (const auto& [column, n] : row) {
+      all[column] += static_cast<double>(n);
+      runs += static_cast<double>(n);
+    }
   constexpr int kReplicates = 2000;
   std::vector<std::map<int, double>> sum(t.space.size()), squares(t.space.size());
   for (int k = 0; k < kReplicates; ++k) {
@@ -87,7 +95,8 @@ TEST(Resampled, KeepsTrialsAndVariesAsAMultinomial) {
     for (int row = 0; row < t.space.size(); ++row) {
       std::int64_t total = 0;
       for (const auto& [column, n] : drawn.rows[row]) {
-        ASSERT_TRUE(t.rows[row].contains(column));  // nothing out of nothing
+        ASSERT_TRUE(all.contains(column));  // nothing out of nothing
+        ASSERT_FALSE(t.rows[row].empty());
         total += n;
         sum[row][column] += static_cast<double>(n);
         squares[row][column] += static_cast<double>(n) * static_cast<double>(n);
@@ -97,7 +106,8 @@ TEST(Resampled, KeepsTrialsAndVariesAsAMultinomial) {
   }
   for (int row = 0; row < t.space.size(); ++row) {
     for (const auto& [column, n] : t.rows[row]) {
-      const auto mean = static_cast<double>(n), trials = static_cast<double>(t.trials[row]);
+      const auto trials = static_cast<double>(t.trials[row]);
+      const double mean = (static_cast<double>(n) + all[column] / runs) * trials / (trials + 1.0);
       const double variance = mean * (1 - mean / trials);
       // Five standard errors, for some 100 entries.
       EXPECT_NEAR(sum[row][column] / kReplicates, mean, 5 * std::sqrt(variance / kReplicates) + 1e-12);
@@ -107,6 +117,16 @@ TEST(Resampled, KeepsTrialsAndVariesAsAMultinomial) {
       EXPECT_NEAR(seen / variance, 1.0, 5 * std::sqrt(2.5 / kReplicates));
     }
   }
+}
+
+// A row that never saw an output can yet have it: as often as one run in all would.
+TEST(Resampled, KnowsThatNotSeenIsNotImpossible) {
+  Transitions t = made_up();
+  t.rows[0] = {{3, 100}};
+  t.trials[0] = 100;
+  int seen = 0;
+  for (std::uint64_t k = 0; k < 500; ++k) seen += resampled(t, 1, k).rows[0].size() > 1;
+  EXPECT_GT(seen, 200);
 }
 
 TEST(Resampled, IsNamedBySeedAndReplicate) {
