@@ -29,6 +29,7 @@ constexpr std::array<const char*, dynamics::kVerdictNames.size()> kColours{
     "#fff3b0",  // missed hit
     "#c9d3ea",  // no formula
     "#fdbe85",  // too fast
+    "#f781bf",  // outcomes off
     "#e6550d",  // energy
     "#9e79bd",  // penetration
     "#7f1d1d",  // beyond bound
@@ -36,6 +37,7 @@ constexpr std::array<const char*, dynamics::kVerdictNames.size()> kColours{
     "#111111",  // not finite
     "#9a9a9a",  // refused
 };
+static_assert(kColours.back() != nullptr, "one colour per verdict");
 
 struct FinishedMap {
   StabilityMap map;

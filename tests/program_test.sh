@@ -254,11 +254,11 @@ expect 2 'cannot go to standard output' "$gatewalk" trace "$scenes/soft_left.tom
 # reproduce: everything is there, each claim has a verdict; what is done is not done again; the page asks nobody.
 "$gatewalk" reproduce -o paper --quick >out.txt 2>&1 &
 pid=$!
-sleep 3
+for _ in $(seq 120); do [ "$(jq length paper/data/done.json 2>/dev/null || echo 0)" -ge 1 ] && break; sleep 0.5; done
 kill -TERM $pid
 wait $pid
-[ $? = 130 ] || fail "reproduce: ctrl-C gives another status"
-[ "$(jq length paper/data/done.json)" -ge 1 ] || fail "reproduce: nothing was done in three seconds"
+[ $? = 130 ] || fail "reproduce: SIGTERM gives another status"
+[ "$(jq length paper/data/done.json)" -ge 1 ] || fail "reproduce: nothing was done in a minute"
 expect 0 'reproduced, .* within noise, .* differ' "$gatewalk" reproduce -o paper --quick
 grep -q '^[1-9].* studies are done already' out.txt || fail "reproduce: did not go on where it was"
 expect 0 'studies are done already' "$gatewalk" reproduce -o paper --quick
@@ -405,7 +405,7 @@ expect 0 'run.event_tolerance_m has no effect' "$gatewalk" gate "$scenes/field.t
 "$gatewalk" build "$scenes/field.toml" --set run.method=paper --trials 5 -o paper.nc --quiet >/dev/null 2>&1
 expect 0 'paper.nc: the method showed faults: .* of [0-9]* gate runs' "$gatewalk" walk paper.nc --quiet --json paper-walk.json
 holds '.matrix_status.clean == false' paper-walk.json
-expect 0 'hits may have been missed' "$gatewalk" gate "$scenes/field.toml" --set body.radius_m=0.01 --set start.x_m=-12 --trials 1 --quiet
+expect 0 'hits may have been missed' "$gatewalk" gate "$scenes/field.toml" --set body.radius_m=0.01 --set start.x_m=-12 --trials 1 --quiet --set run.method=moreau
 # A start and a seed have their own noise, the same in every command.
 "$gatewalk" lattice "$scenes/field.toml" --trials 200 --seed 5 --json start.json --quiet
 "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --seed 5 --start 4,5,10 --start 0,0,15 --json starts.json --quiet
@@ -490,9 +490,9 @@ holds '[.starts[] | (.endings.dynamics | add) == 300 and (.endings.walks | add) 
 holds '[.starts[].trials_and_matrix | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .differs == (.p <= .level) and .null_draws >= 999 and .resampled_matrices == 999] | all' ends-validate.json
 holds '[.starts[] | (.verdict | test("differs")) == .trials_and_matrix.differs] | all' ends-validate.json
 # Beyond what is sensible: refused by name, with the range, before any work.
-for value in 0 1e15; do expect 2 "null-draws.*must lie in \[1, 100000\]" "$gatewalk" validate "$scenes/field.toml" --null-draws $value --matrix-trials 1e12; done
-expect 2 'walks.*must lie in' "$gatewalk" validate "$scenes/field.toml" --walks 0 --matrix-trials 1e12
-expect 2 'trials.*must lie in' "$gatewalk" validate "$scenes/field.toml" --trials 2000000000000000 --matrix-trials 1e12
+for value in 0 1e15; do expect 2 "null-draws.*at least 1 and at most 100000" "$gatewalk" validate "$scenes/field.toml" --null-draws $value --matrix-trials 1e12; done
+expect 2 'walks 0: must be at least 1' "$gatewalk" validate "$scenes/field.toml" --walks 0 --matrix-trials 1e12
+expect 2 'trials.*at most 1e15' "$gatewalk" validate "$scenes/field.toml" --trials 2000000000000000 --matrix-trials 1e12
 expect 2 'inside the gate' "$gatewalk" validate "$scenes/field.toml" --start 25,0,15 --matrix-trials 1e12
 # Walks take no memory each: a million and twenty million the same.
 peak() {
@@ -608,8 +608,7 @@ expect 2 'rigid.toml: no reference' timeout 20 "$gatewalk" chart "$scenes/field.
   --vary run.method=stable,moreau --csv sweep.csv --json sweep.json --quiet 2>/dev/null || fail "sweep"
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 60 --seed 5 --set forces.propulsion_N=8.5 --json point.json --quiet
 holds '[.points[].at["forces.propulsion_N"]] == [8, 8, 8.5, 8.5, 9, 9]' sweep.json
-[ "$(jq -cS '.points[2] | del(.at)' sweep.json)" = "$(jq -cS 'del(.made_by)' point.json)" ] ||
-  [ "$(jq -cS '.points[2] | del(.at, .intervals_95.right_of_traversed)' sweep.json)" = "$(jq -cS 'del(.made_by)' point.json)" ] ||
+[ "$(jq -cS '.points[2] | del(.at, .intervals_95.right_of_traversed, .status.trials_checked)' sweep.json)" = "$(jq -cS 'del(.made_by, .status.trials_checked)' point.json)" ] ||
   fail "sweep: a point is not what gate gives"
 [ "$(wc -l <sweep.csv)" = 7 ] || fail "sweep: $(wc -l <sweep.csv) lines"
 [ "$(head -n 1 sweep.csv | cut -d, -f1,2,3)" = "forces.propulsion_N,run.method,method" ] || fail "sweep: $(head -n 1 sweep.csv)"
@@ -685,7 +684,7 @@ for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "lattice $scenes/field.toml --trials 1e9 --json lattice.json" \
                "chart-field $scenes/field.toml --trials 1e9 -o new/chart" \
                "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9" \
-               "chart $scenes/field.toml --trials 1e9 -o charts"; do
+               "chart $scenes/field.toml --trials 1e7 -o charts"; do
   before=$(cat gate.json m.nc lattice.json $(find charts -type f | sort) | cksum)
   # shellcheck disable=SC2086
   "$gatewalk" $command >out.txt 2>&1 &
