@@ -849,7 +849,7 @@ expect 2 'did you mean chart-field?' "$gatewalk" chart_field
 
 # Names that are no UTF-8 stop no command.
 odd=$(printf 'odd\377')
-cp "$scenes/single_gate.toml" "$odd.toml"
+cp "$scenes/field.toml" "$odd.toml"
 expect 0 'traversed' "$gatewalk" gate "$odd.toml" --trials 5 --json odd.json
 expect 0 '' "$gatewalk" trace "$odd.toml" --json odd.json --replay odd.html --netcdf odd.nc --csv odd.csv
 expect 0 '' "$gatewalk" landscape "$odd.toml" -o "$odd" --trials 5
