@@ -95,8 +95,8 @@ std::optional<Result> result(const RandomScene& s, const GateParams& p, std::int
 // `stable` against `event`, both at what a scene gets that says nothing. A scene in which they seem to differ
 // is looked at with more trials: few of them cannot tell 0.005.
 TEST(RandomScenes, StableAndEventAgreeWhereBothSayClean) {
-  const int scenes = usual_or_full(60, 10'000);
-  const std::int64_t few = 100, many = 4000;
+  const int scenes = usual_or_full(25, 10'000);
+  const std::int64_t few = 100, many = 2000;
   int both = 0, refused = 0, said = 0;
   double worst = 0.0;
   for (int n = 0; n < scenes; ++n) {
@@ -137,7 +137,7 @@ TEST(RandomScenes, StableAndEventAgreeWhereBothSayClean) {
 
 // The other methods: what is off says so. `moreau` at its default step may be off by some per cent (README).
 TEST(RandomScenes, WhatIsOffSaysSo) {
-  const int scenes = usual_or_full(40, 10'000);
+  const int scenes = usual_or_full(15, 10'000);
   int clean = 0, off = 0, said = 0;
   double worst = 0.0;
   for (int n = 0; n < scenes; ++n) {
