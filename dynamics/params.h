@@ -148,7 +148,8 @@ using IsNamed = std::function<bool(std::string_view key)>;
 /// paper's proportions: lengths to the radius, masses to the body's, times by the propulsion or, if that
 /// is not named, by the random force, a stiffness or the rate. Tips meet, both beams are alike, a gate is
 /// twice as long as its joints lie deep, and the time limit is the paper's multiple of what the propulsion
-/// takes from rest through an open gate. A scene without a body of its own has the paper's values;
+/// takes from rest through an open gate. A scene without a body of its own has the paper's values,
+/// but a gate as long as its joints ask for;
 /// the impulse threshold, the tolerance and the step of a scene are always its own.
 /// `start` comes with the paper's: its vy follows from the scene too, the rest is zero everywhere.
 std::vector<std::string_view> fill_in(GateParams& params, BodyState& start, const IsNamed& named);
