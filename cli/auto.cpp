@@ -126,9 +126,8 @@ Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
 void check_outcomes(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
                     dynamics::Health& health) {
   if (interrupted()) throw Interrupted{};
-  // Enough to see a few per cent, but no multiple of the work that was asked for.
-  const std::int64_t sample = std::clamp<std::int64_t>(trials / 5, std::min<std::int64_t>(trials, 100), 1000);
-  dynamics::check_outcomes(health, scene.gate, pilot_starts(scene, from), options.seed(), sample);
+  dynamics::check_outcomes(health, scene.gate, pilot_starts(scene, from), options.seed(),
+                           dynamics::check_sample(trials));
 }
 
 std::string method_line(const Json& settled) {

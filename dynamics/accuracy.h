@@ -7,6 +7,7 @@
 /// - strong: how far single trials are off. Two hits may be microseconds apart and which comes first
 ///   decides the branch: a trial that took another one has parted, which counts as infinitely far.
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -137,6 +138,11 @@ struct StrongError {
 /// others, each the other where a method does not take the scene; `event` by itself with a tenth of its
 /// tolerance (not below rounding), and so any other by itself with half its step if neither takes the scene.
 [[nodiscard]] GateParams checking_setting(const GateParams& p);
+
+/// How many of `trials` to check: enough to see a few per cent, but no multiple of the work asked for.
+[[nodiscard]] inline std::int64_t check_sample(std::int64_t trials) {
+  return std::clamp<std::int64_t>(trials / 5, std::min<std::int64_t>(trials, 100), 1000);
+}
 
 /// Runs `trials` trials, shared out evenly over `starts`, with the scene's setting and with the checking one
 /// under the same noise, and puts into `health` what of their difference in outcomes chance does not

@@ -83,6 +83,22 @@ BeamFlow BeamLaw::over(double dt) const {
   return f;
 }
 
+double BeamLaw::swing(BeamState beam, double dt) const {
+  // omega(t) = e^(-at) (omega cos(wt) - pull sin(wt)/w) with w^2 = k - a^2 is zero where
+  // tan(wt)/w = omega/pull; tanh for w^2 < 0.
+  const double a = d_ / 2, pull = k_ * beam.theta + a * beam.omega;
+  const double w2 = k_ - a * a, w = std::sqrt(std::abs(w2));
+  const double ratio = beam.omega / pull;
+  double when;
+  if (w2 > 0.0)
+    when = std::atan2(w * std::abs(beam.omega), std::copysign(pull, pull * beam.omega)) / w;
+  else
+    when = w > 0.0 ? std::atanh(w * ratio) / w : ratio;
+  if (!(when > 0.0 && when < dt)) return 0.0;
+  over(when).apply(beam, 0.0);
+  return std::abs(beam.theta);
+}
+
 namespace {
 
 BeamLaw beam_law(const GateParams& p, Side side) {

@@ -136,7 +136,8 @@ void validate(const GateParams& params);
 
 /// The other settings of a scene that names none, in its own units (Scale), as the paper's scenes have
 /// them: contact.impulse_threshold_Ns, but not more than three times what the propulsion (or a tenth of the
-/// random force) does in the paper's step; and run.event_tolerance_m.
+/// random force) does in the paper's step; and run.event_tolerance_m, smaller by the same factor where that
+/// holds the threshold down: errors add up over a slow way, and count for more beside a small speed.
 [[nodiscard]] double default_impulse_threshold(const GateParams& params);
 [[nodiscard]] double default_event_tolerance(const GateParams& params);
 

@@ -189,8 +189,11 @@ double EventMethod::advance(GateState& s, double force_x, double duration, Energ
       put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
     }
     const bool held = s.beams[kLeft].held || s.beams[kRight].held;
+    const GateState before = s;
     const double piece = held ? slide_on(s, force_x, left, watch) : fly_on(s, force_x, left, watch);
     passed += piece;
+    for (const Side side : {kLeft, kRight})
+      watch.max_theta[side] = std::fmax(watch.max_theta[side], swing(side, before, s, piece));
     ledger.step(s, force_x, piece, watch);
     watch.motion(p_, s, 0.0);
     if (!std::isfinite(s.body.vx + s.body.vy) || outside(p_, s.body)) break;
@@ -206,6 +209,12 @@ GateState EventMethod::flown(const GateState& s, double force_x, double dt) cons
   else
     fly(p_, law_, dt, force_x, g);
   return g;
+}
+
+double EventMethod::swing(Side side, const GateState& before, const GateState& s, double dt) const {
+  const double from = before.beams[side].omega, to = s.beams[side].omega;
+  if (!before.beams[side].held) return law_.beams[side].swing(before.beams[side], dt);
+  return from * to < 0.0 ? std::abs(interpolated(before, s, dt, dt * from / (from - to)).beams[side].theta) : 0.0;
 }
 
 EventMethod::Outlook EventMethod::look_ahead(const GateState& s,

@@ -44,6 +44,8 @@ class EventMethod final : public Method {
                                    double force_x, const Push& push, double horizon,
                                    Watch& watch) const;
   void resolve(GateState& s, double force_x, Watch& watch) const;
+  /// |theta| (rad) of a beam where it turned between the two states `dt` apart, 0 if it did not.
+  [[nodiscard]] double swing(Side side, const GateState& before, const GateState& s, double dt) const;
   [[nodiscard]] GateState flown(const GateState& s, double force_x, double dt) const;
 
   const GateParams& p_;

@@ -109,6 +109,8 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
       while (n < kMaxHalvings && too_far(s, std::ldexp(spell.step, -n))) ++n;
       while (unit % (units >> n) != 0) ++n;
       double time = 0.0;
+      const auto beams = s.beams;
+      const std::int64_t impacts = watch.impacts;
       for (;; ++n) {
         const MayHalve may{n < finest_, n < kMaxHalvings};
         if (n <= finest_) {
@@ -119,6 +121,10 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
         }
         if (time != 0.0) break;
       }
+      // A light beam may swing out and back in a piece.
+      for (const Side side : {kLeft, kRight})
+        if (halvings_[side] > 0 && !beams[side].held && watch.impacts == impacts)
+          watch.max_theta[side] = std::max(watch.max_theta[side], law_.beams[side].swing(beams[side], time));
       fast |= n == kMaxHalvings && too_far(s, std::ldexp(spell.step, -n));
       passed += time;
       unit += units >> n;

@@ -302,5 +302,43 @@ TEST(GateFlow, GivesEachBeamItsOwnSpring) {
   EXPECT_EQ(flow.body.decay, BodyFlow(0.03, 0.1).decay);
 }
 
+// Where the beam first turns: against the closed form looked at in small steps.
+TEST(BeamLaw, SwingIsTheLargestDeflectionOnTheWay) {
+  Draw draw(8);
+  int turned = 0;
+  for (const Oscillator& o : oscillators()) {
+    const BeamLaw law(o.k, o.d);
+    const double rate = std::sqrt(o.k) + o.d + 1e-3;
+    for (int i = 0; i < 8; ++i) {
+      const BeamState start{draw.uniform(-1.0, 1.0), draw.uniform(-3.0, 3.0) * rate};
+      const double dt = draw.uniform(0.1, 6.0) / rate;
+      constexpr int kLooks = 2000;
+      double seen = 0.0;  // in between
+      BeamState end = start;
+      for (int n = 1; n <= kLooks; ++n) {
+        end = start;
+        law.over(dt * n / kLooks).apply(end, 0.0);
+        seen = std::max(seen, std::abs(end.theta));
+      }
+      const double swing = law.swing(start, dt);
+      turned += swing > 0.0;
+      // Within one look the deflection changes by (rate dt / looks)^2 at most of itself about its maximum.
+      EXPECT_NEAR(std::max({swing, std::abs(start.theta), std::abs(end.theta)}),
+                  std::max(seen, std::abs(start.theta)), 1e-4)
+          << o.k << ' ' << o.d << ' ' << start.theta << ' ' << start.omega << ' ' << dt;
+      if (start.omega * end.omega < 0.0) { EXPECT_GT(swing, 0.0); }
+    }
+  }
+  EXPECT_GT(turned, 50);
+}
+
+TEST(BeamLaw, SwingFromRestAndWithoutForces) {
+  EXPECT_EQ(BeamLaw(0.0, 0.0).swing({0.3, 2.0}, 10.0), 0.0);  // goes on for ever
+  EXPECT_EQ(BeamLaw(0.0, 1.0).swing({0.3, 2.0}, 10.0), 0.0);  // slows, never turns
+  EXPECT_EQ(BeamLaw(4.0, 0.0).swing({0.0, 0.0}, 10.0), 0.0);
+  EXPECT_NEAR(BeamLaw(4.0, 0.0).swing({0.0, -3.0}, 10.0), 1.5, 1e-15);  // energy: omega^2 = k theta^2
+  EXPECT_LE(BeamLaw(4.0, 1.0).swing({0.5, 0.0}, 10.0), 0.5);
+}
+
 }  // namespace
 }  // namespace gatewalk::dynamics
