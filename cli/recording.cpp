@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
+#include <optional>
+#include <stdexcept>
 
 #include "cli/drawing.h"
 #include "cli/quantity.h"
@@ -134,6 +136,20 @@ std::string ending_of(const GateParams& p, const dynamics::GateRun& run) {
   return t.trapped ? "trapped" : "not finite";
 }
 
+std::string field_ending(std::optional<markov::Ending> ending) {
+  if (!ending) return "not finite";
+  switch (*ending) {
+    case markov::Ending::trapped: return "trapped";
+    case markov::Ending::far_edge: return "crossed";
+    case markov::Ending::left_edge: return "left field left side";
+    case markov::Ending::right_edge: return "left field right side";
+    case markov::Ending::near_edge: return "left field near side";
+    case markov::Ending::cut_off: return "cut off";
+    case markov::Ending::unsampled: break;  // of walks only
+  }
+  throw std::logic_error("the dynamics samples no matrix");
+}
+
 /// Energies of the trial when those of this gate are `now`, and what was done before it is `before`.
 dynamics::Energies together(const dynamics::Energies& before, dynamics::Energies now) {
   now.propulsion_work += before.propulsion_work;
@@ -195,7 +211,7 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
       r.health.add(scene.gate, visit.trace.run);
     }
     r.gates = static_cast<int>(t.visits.size());
-    r.ending = name_of(t.fate);
+    r.ending = field_ending(t.ending);
   } else {
     const auto method = dynamics::make_method(scene.gate);
     dynamics::RandomForce force = dynamics::gate_force(scene.gate, seed, trial);
@@ -211,7 +227,12 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
 std::vector<std::string> endings(bool across_field) {
   if (!across_field)
     return {"traversed left", "traversed right", "traversed evenly", "exited left", "exited right", "trapped", "not finite"};
-  return {lattice::kFateNames.begin(), lattice::kFateNames.end()};
+  std::vector<std::string> names;
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    if (const auto ending = static_cast<markov::Ending>(e); ending != markov::Ending::unsampled)
+      names.push_back(field_ending(ending));
+  names.push_back(field_ending({}));
+  return names;
 }
 
 std::string csv_of(const Scene& scene, const std::vector<Recording>& runs) {

@@ -21,7 +21,7 @@ struct Moment {
 
 struct Recording {
   std::int64_t trial = 0;
-  std::string ending;  // "traversed left", "left field", ...
+  std::string ending;  // "traversed left", "crossed", ...
   double seconds = 0.0;
   int gates = 1;       // visited
   std::vector<Moment> moments;

@@ -234,6 +234,7 @@ int run_sweep(const std::vector<std::string>& arguments) {
                    [&](std::int64_t first, std::int64_t n) {
                      p.tally += dynamics::run_gate_trials(p.scene.gate, p.scene.start, options.seed(), {first, n});
                    });
+    check_outcomes(options, p.scene, RunsFrom::start, trials, p.tally.health);
     health += p.tally.health;
   }
   progress.finish();

@@ -20,9 +20,14 @@ namespace {
 constexpr std::int64_t kMostRuns = 1000;   // kept
 constexpr std::size_t kMostMoments = 500'000;  // of all runs together: with every output some 1 GB
 constexpr std::size_t kMostLines = 20;     // of the table
+constexpr std::int64_t kCheckedAs = 500;   // trials: the few that are recorded would show nothing of a method
 
 std::string table_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {
-  std::string text = scene_line(scene) + "   trial  ending                time  steps   hits" +
+  const std::size_t shown = std::min(runs.size(), kMostLines);
+  std::size_t longest_ending = 14;
+  for (std::size_t i = 0; i < shown; ++i) longest_ending = std::max(longest_ending, runs[i].ending.size());
+  const int ending_width = static_cast<int>(longest_ending) + 2;
+  std::string text = scene_line(scene) + "   trial  " + padded("ending", -ending_width) + "      time  steps   hits" +
                      (across_field ? "  gates" : "") + "        work        lost  of it in hits   left over\n";
   // One unit for all lines, so that they can be compared.
   const dynamics::Scale scale = dynamics::scale_of(scene.gate);
@@ -35,10 +40,10 @@ std::string table_of(const Scene& scene, const std::vector<Recording>& runs, boo
   }
   const auto seconds = [&](double time) { return reading(time, "s", step_of(0.01 * scale.time, longest)); };
   const auto joules = [&](double energy) { return reading(energy, "J", step_of(0.1 * scale.energy(), most)); };
-  for (std::size_t i = 0; i < runs.size() && i < kMostLines; ++i) {
+  for (std::size_t i = 0; i < shown; ++i) {
     const Recording& r = runs[i];
     const dynamics::Energies& e = r.moments.back().energy;
-    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -16) + padded(seconds(r.seconds), 10) +
+    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -ending_width) + padded(seconds(r.seconds), 10) +
             padded(std::to_string(r.health.steps), 7) + padded(std::to_string(r.health.impacts), 7) +
             (across_field ? padded(std::to_string(r.gates), 7) : "") +
             padded(joules(e.propulsion_work + e.random_work), 12) + padded(joules(e.lost), 12) +
@@ -49,8 +54,9 @@ std::string table_of(const Scene& scene, const std::vector<Recording>& runs, boo
   return text;
 }
 
-/// `only` names one ending, or several by the words they begin with.
+/// `only` names one ending, or several by the words they begin with. Who has crossed has left the field too.
 bool fits(const std::string& ending, const std::string& only) {
+  if (only == "left field" && ending == "crossed") return true;
   return ending.starts_with(only) && (ending.size() == only.size() || ending[only.size()] == ' ');
 }
 
@@ -69,7 +75,7 @@ int run_trace(const std::vector<std::string>& arguments) {
   options.add()("trial", po::value<Count>()->default_value(Count{0}, "0")->value_name("I"), "number of the first trial")(
       "trials", po::value<Count>()->default_value(Count{1}, "1")->value_name("N"), "record trials I to I + N - 1")(
       "only", po::value<std::string>()->value_name("ENDING"),
-      "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with --field trapped, 'left field', 'cut off'")(
+      "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with --field crossed, 'left field' (over any side), trapped, 'cut off'")(
       "field", "cross the field, gate after gate, instead of one gate");
   options.output_file("csv", "FILE", "write all samples as CSV; - is standard output");
   options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
@@ -133,6 +139,9 @@ int run_trace(const std::vector<std::string>& arguments) {
   if (runs.empty())
     throw std::runtime_error("none of trials " + std::to_string(first) + " to " + std::to_string(first + trials - 1) +
                              " ends '" + only + "': nothing was written");
+
+  check_outcomes(options, scene, across_field ? RunsFrom::everywhere : RunsFrom::start,
+                 std::max(trials, kCheckedAs), health);
 
   const bool wanted = options.has("replay") || options.has("video") || options.has("json");
   Json film = wanted ? film_of(scene, runs, across_field) : Json::object();

@@ -16,8 +16,7 @@ using namespace dynamics;
 
 /// One trial's part of the tally.
 struct Trial {
-  Fate fate = Fate::broken;
-  markov::Ending edge{};  // over which it left the field, if it did
+  std::optional<markov::Ending> ending;  // none: a run stopped being finite
   std::int32_t column = 0, row = 0;
   int gates = 0;  // visited
   std::array<std::int32_t, kBoundaries> entries{}, clamped{};
@@ -32,18 +31,17 @@ std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams&
   t.health.add(p, run);
   ++t.gates;
   if (run.ending == Ending::broken || run.ending == Ending::trapped) {
-    t.fate = run.ending == Ending::broken ? Fate::broken : Fate::trapped;
+    if (run.ending == Ending::trapped) t.ending = markov::Ending::trapped;
     return {};
   }
   const Crossing crossing = crossing_of(p, run.ending, run.exit);
   const Move move = move_into(crossing.boundary);
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
-    t.fate = Fate::left_field;
-    t.edge = markov::edge_before({field.columns, field.rows}, t.column + move.di_x, t.row + move.di_y);
+    t.ending = markov::edge_before({field.columns, field.rows}, t.column + move.di_x, t.row + move.di_y);
     return {};
   }
   if (t.gates == field.max_gates) {
-    t.fate = Fate::cut_off;
+    t.ending = markov::Ending::cut_off;
     return {};
   }
   if (keep_crossings) t.crossings.push_back(crossing);
@@ -128,16 +126,15 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
   for (const Trial& t : trials) {
     ++tally.final_gates(t.row, t.column);
     tally.final_gate_of_trial.push_back(t.row * field.columns + t.column);
-    tally.trapped_gates(t.row, t.column) += t.fate == Fate::trapped;
-    tally.departed_gates(t.row, t.column) += t.fate == Fate::left_field;
-    if (t.fate != Fate::broken)
-      ++tally.endings[static_cast<std::size_t>(t.fate == Fate::left_field ? t.edge
-                                               : t.fate == Fate::trapped  ? markov::Ending::trapped
-                                                                          : markov::Ending::cut_off)];
-    tally.trapped += t.fate == Fate::trapped;
-    tally.left_field += t.fate == Fate::left_field;
-    tally.cut_off += t.fate == Fate::cut_off;
-    tally.broken += t.fate == Fate::broken;
+    const bool trapped = t.ending == markov::Ending::trapped, cut_off = t.ending == markov::Ending::cut_off;
+    const bool departed = t.ending && !trapped && !cut_off;
+    tally.trapped_gates(t.row, t.column) += trapped;
+    tally.departed_gates(t.row, t.column) += departed;
+    if (t.ending) ++tally.endings[static_cast<std::size_t>(*t.ending)];
+    tally.trapped += trapped;
+    tally.left_field += departed;
+    tally.cut_off += cut_off;
+    tally.broken += !t.ending;
     for (int b = 0; b < kBoundaries; ++b) {
       tally.entries[b] += t.entries[b];
       tally.clamped[b] += t.clamped[b];
@@ -167,7 +164,7 @@ FieldTrace trace_field(const GateParams& p, const FieldParams& field, const Body
     if (!follow(t, p, field, space, run, false)) break;
     from = shifted_into_next(p, run.ending, run.exit);
   }
-  trace.fate = t.fate;
+  trace.ending = t.ending;
   return trace;
 }
 

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
+#include <optional>
 #include <vector>
 
 #include "dynamics/ensemble.h"
@@ -37,14 +37,6 @@ struct FieldTally {
   FieldTally& operator+=(const FieldTally& other);  // `other` continues this one's trials
 };
 
-/// How a trial through the field ends.
-enum class Fate : std::uint8_t { trapped, left_field, cut_off, broken };
-inline constexpr std::array<std::string_view, 4> kFateNames{"trapped", "left field", "cut off",
-                                                            "not finite"};
-[[nodiscard]] inline std::string_view name_of(Fate f) {
-  return kFateNames[static_cast<std::size_t>(f)];
-}
-
 /// The number that names a start in its trials' streams: other starts, other noise. From the start in
 /// the scene's own units (Scale), so that a rescaled scene has the same noise.
 [[nodiscard]] std::uint64_t stream_row(const dynamics::GateParams& p, const dynamics::BodyState& start);
@@ -68,7 +60,7 @@ struct FieldTrace {
     dynamics::GateTrace trace;  // in the gate's own frame and time, work and losses from its entry on
   };
   std::vector<Visit> visits;
-  Fate fate = Fate::broken;
+  std::optional<markov::Ending> ending;  // none: a run stopped being finite
 };
 
 /// Trial number `trial` of run_field, the same to the last bit. Throws InvalidParameter, also for

@@ -464,15 +464,15 @@ TEST(RunField, ScenesThatCannotBeRunAreRefused) {
   EXPECT_THROW((void)run_field(p, {}, kStart, StateSpace::paper(p), 1, {0, 1}), InvalidParameter);
 }
 
-// A traced trial is the one that was counted: final gate, fate, and every crossing on the way.
+// A traced trial is the one that was counted: final gate, ending, and every crossing on the way.
 TEST(FieldTrace, IsTheTrialItself) {
   const GateParams p;
   const FieldParams field;
-  std::map<Fate, std::int64_t> fates;
+  std::map<std::optional<markov::Ending>, std::int64_t> endings;
   const FieldTally tally = run(p, field, {0, 40}, 3);
   for (std::int64_t i = 0; i < 40; ++i) {
     const FieldTrace t = trace_field(p, field, kStart, 3, i);
-    ++fates[t.fate];
+    ++endings[t.ending];
     EXPECT_EQ(t.visits.back().row * field.columns + t.visits.back().column, tally.final_gate_of_trial[i]);
     for (std::size_t v = 1; v < t.visits.size(); ++v) {
       const auto &from = t.visits[v - 1], &to = t.visits[v];
@@ -483,9 +483,11 @@ TEST(FieldTrace, IsTheTrialItself) {
       EXPECT_EQ(to.trace.samples.front().state.beams[kLeft].theta, 0.0);
     }
   }
-  EXPECT_EQ(fates[Fate::trapped], tally.trapped);
-  EXPECT_EQ(fates[Fate::left_field], tally.left_field);
-  EXPECT_EQ(fates[Fate::cut_off], tally.cut_off);
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    SCOPED_TRACE(e);
+    EXPECT_EQ(endings[static_cast<markov::Ending>(e)], tally.endings[e]);
+  }
+  EXPECT_EQ(endings[std::nullopt], tally.broken);
 }
 
 TEST(FieldTrace, OnlyTheActiveGate) {
