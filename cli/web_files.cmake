@@ -50,5 +50,7 @@ gatewalk_carried_files:
   .section .note.GNU-stack, "", %progbits
 ]])
   set_source_files_properties(${assembly} PROPERTIES OBJECT_DEPENDS "${paths}")
+  set_source_files_properties(${assembly} PROPERTIES COMPILE_OPTIONS
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-unused-command-line-argument>)
   target_sources(${target} PRIVATE ${assembly})
 endfunction()

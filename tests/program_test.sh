@@ -140,6 +140,10 @@ expect 1 'a better method gives other outcomes for at least' "$gatewalk" gate el
 holds '.status.clean == false and .status.outcome_error_seen > 0.3 and .exited_right < 150' elastic.json
 "$gatewalk" gate elastic.toml --set run.method=stable --set run.step_s=0.02 --trials 200 --strict --json elastic.json --quiet
 holds '.exited_right == 200 and .status.clean' elastic.json
+expect 1 'a better method gives other outcomes for at least' "$gatewalk" sweep elastic.toml --vary run.method=moreau,stable --set run.step_s=0.004 --trials 100 --strict --json elastic.json --quiet
+holds '.points | map(.status.clean) == [false, true]' elastic.json
+expect 1 'a better method gives other outcomes for at least' "$gatewalk" trace elastic.toml --strict --json elastic.json --quiet
+expect 1 'a better method gives other outcomes for at least' "$gatewalk" landscape elastic.toml --trials 100 -o passes --strict --quiet
 
 # build, show, walk, predict, lattice.
 expect 0 '87 x 88 matrix' "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o m.nc
@@ -236,7 +240,13 @@ holds '.recorded == (.runs | length) and .trials == 40 and (.runs | map(.ending 
 jq -s '.[0].runs[7] == .[1].runs[0]' runs.json one.json | grep -q true || fail "trace: trial 7 alone is another one"
 "$gatewalk" trace "$scenes/field.toml" --field --trials 8 --seed 3 --json crossings.json --quiet
 "$gatewalk" lattice "$scenes/field.toml" --trials 8 --seed 3 --json counted.json --quiet
-jq -s '([.[0].runs[] | select(.ending == "trapped")] | length) == .[1].trapped' crossings.json counted.json | grep -q true || fail "trace --field: other endings than lattice"
+jq -s '(.[0].runs | map(.ending)) as $e | .[1].endings | [.crossed, .left_side, .right_side, .trapped, .cut_off] ==
+  ([("crossed", "left field left side", "left field right side", "trapped", "cut off") as $x | $e | map(select(. == $x)) | length])' \
+  crossings.json counted.json | grep -q true || fail "trace --field: other endings than lattice"
+"$gatewalk" trace "$scenes/field.toml" --set field.rows=2 --field --trials 40 --seed 3 --only 'left field' --json some.json --quiet
+"$gatewalk" trace "$scenes/field.toml" --set field.rows=2 --field --trials 40 --seed 3 --only crossed --json crossed.json --quiet
+jq -s '(.[0].runs | map(select(.ending == "crossed"))) == .[1].runs and .[0].recorded > .[1].recorded' some.json crossed.json | grep -q true ||
+  fail "trace --only: who crossed left the field"
 expect 0 '^trial,' "$gatewalk" trace "$scenes/soft_left.toml" --csv -
 expect 2 'a run ends as one of' "$gatewalk" trace "$scenes/soft_left.toml" --only stuck
 expect 1 'none of trials 0 to 4' "$gatewalk" trace "$scenes/single_gate.toml" --trials 5 --only 'traversed right'

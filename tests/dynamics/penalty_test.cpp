@@ -281,7 +281,8 @@ TEST(Limits, PenaltyKeepsTheEnergyOfFreeRodsInTheLimit) {
     double mean = 0.0;
     std::int64_t impacts = 0;
     for (int i = 0; i < 100; ++i) {
-      GateState s = at_rest(draw.uniform(-20, 20), 0.0, draw.uniform(-5, 5), draw.uniform(5, 20));
+      const double vy = draw.uniform(5, 20), vx = draw.uniform(-5, 5), x = draw.uniform(-20, 20);
+      GateState s = at_rest(x, 0.0, vx, vy);
       Ride ride(p, s);
       const double before = energy(p, s);
       ride.go(4.0);
