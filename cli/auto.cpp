@@ -19,9 +19,11 @@ std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from)
   const auto space = fixed_space(scene);
   for (int i = 0; i < 8; ++i) {
     const dynamics::Cell c = space.cell(i * (space.size() - 1) / 7);
-    const auto middle = [](const std::array<double, 2>& edges) { return 0.5 * (edges[0] + edges[1]); };
-    starts.push_back(dynamics::entry_state(
-        scene.gate, {c.boundary, middle(c.d), middle(c.vx), middle(c.vy)}));
+    const auto middle = [](const std::array<double, 2>& edges) {
+      return 0.5 * (edges[0] + edges[1]);
+    };
+    starts.push_back(
+        dynamics::entry_state(scene.gate, {c.boundary, middle(c.d), middle(c.vx), middle(c.vy)}));
   }
   return starts;
 }
@@ -32,7 +34,8 @@ void warn_unused(const Scene& scene) {
   const auto unused = [&](const char* key, bool used, const std::string& why) {
     if (!used && scene.named.contains(key)) warn(std::string(key) + " has no effect: " + why);
   };
-  if (!scene.sweep.empty()) warn("the table [sweep] of " + scene.source + " has no effect here: gatewalk sweep runs it");
+  if (!scene.sweep.empty())
+    warn("the table [sweep] of " + scene.source + " has no effect here: gatewalk sweep runs it");
   const std::string says = "run.method = \"" + method + "\" ";
   const bool chosen = method == "auto", event = method == "event";
   unused("run.step_s", !chosen && !event, says + (chosen ? "chooses it" : "has no step"));
@@ -43,7 +46,8 @@ void warn_unused(const Scene& scene) {
 void tell_derived(const Options& options, const Scene& scene) {
   std::string all;
   for (const KeyInfo& k : describe(scene)) {
-    const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" || k.key == "contact.impulse_threshold_Ns";
+    const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" ||
+                             k.key == "contact.impulse_threshold_Ns";
     if (k.source != "derived" || methods_own) continue;
     std::ostringstream value;  // six digits will do; gatewalk scene shows all
     value << std::stod(k.value);
@@ -53,7 +57,8 @@ void tell_derived(const Options& options, const Scene& scene) {
   if (scene.named.empty())
     text = scene.source + " names no key: this is the paper's scene, 1 kg and 10 m in radius";
   else if (!all.empty())
-    text = scene.source + " leaves out keys, which follow from the others by the paper's proportions: " + all;
+    text = scene.source +
+           " leaves out keys, which follow from the others by the paper's proportions: " + all;
   static std::string told;  // a sweep settles many scenes
   if (text.empty() || text == told || !options.talk()) return;
   told = text;
@@ -118,8 +123,8 @@ Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
          "), nothing can be compared with it; took it all the same: " + setting_text(settled));
   else if (!choice.met)
     warn("run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance = " +
-         Json(tolerance).dump() + "; took the one they were compared with: " +
-         setting_text(settled));
+         Json(tolerance).dump() +
+         "; took the one they were compared with: " + setting_text(settled));
   return settled;
 }
 
@@ -132,8 +137,8 @@ void check_outcomes(const Options& options, const Scene& scene, RunsFrom from, s
 
 std::string method_line(const Json& settled) {
   if (settled.is_null()) return "";
-  std::string text = setting_text(settled) + ": chosen on " + settled["pilot_trials"].dump() +
-                     " pilot trials";
+  std::string text =
+      setting_text(settled) + ": chosen on " + settled["pilot_trials"].dump() + " pilot trials";
   if (settled["met"].get<bool>()) {
     const Json& last = settled["tried"].back();
     text += ", outcomes off by " + fixed(last["outcome_total_variation"].get<double>(), 4) +

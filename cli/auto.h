@@ -10,12 +10,12 @@ namespace gatewalk::cli {
 enum class RunsFrom { start, everywhere };
 
 /// Replaces "auto" in the scene by the method and setting that a pilot chooses. Returns what was
-/// tried, for the result; null when the scene names its method. Warns when nothing met the tolerance,
-/// and of keys that the user gave though the method does not use them.
+/// tried, for the result; null when the scene names its method. Warns when nothing met the
+/// tolerance, and of keys that the user gave though the method does not use them.
 [[nodiscard]] Json settle_method(const Options& options, Scene& scene, RunsFrom from);
 
-/// Runs a sample of `trials` again by a better method, and puts into `health` what that changes: see
-/// dynamics::check_outcomes.
+/// Runs a sample of `trials` again by a better method, and puts into `health` what that changes:
+/// see dynamics::check_outcomes.
 void check_outcomes(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
                     dynamics::Health& health);
 

@@ -11,17 +11,19 @@
 
 namespace gatewalk::cli {
 
-/// The field of the paper, in whatever units: its proportions of body, beams' length, joints and rate of
-/// the random force, and forces that move the body at the paper's speeds (the rate is 50 per unit of
-/// dynamics::Scale's time). Other forces, stiffness, damping and run keys are studies of the same field.
+/// The field of the paper, in whatever units: its proportions of body, beams' length, joints and
+/// rate of the random force, and forces that move the body at the paper's speeds (the rate is 50
+/// per unit of dynamics::Scale's time). Other forces, stiffness, damping and run keys are studies
+/// of the same field.
 [[nodiscard]] bool papers_field(const Scene& scene);
 
 /// Which states a chain has.
 struct BinsChoice {
   enum class Kind { paper, automatic, scene };
   Kind kind = Kind::paper;
-  double factor = 1.0;      // bins per axis as a multiple of Table III's, kind paper
-  bool by_default = false;  // nobody asked for it: auto takes its place where it does not resolve the scene
+  double factor = 1.0;  // bins per axis as a multiple of Table III's, kind paper
+  bool by_default =
+      false;  // nobody asked for it: auto takes its place where it does not resolve the scene
 
   [[nodiscard]] std::string name() const;  // "paper", "auto", "scene"
 };
@@ -30,10 +32,12 @@ struct BinsChoice {
 [[nodiscard]] BinsChoice usual_bins(const Scene& scene);
 /// Declares --bins.
 void add_bins(Options& options);
-/// --bins if given, else usual_bins. Throws UsageError for anything else, and for --bins beside a table [bins].
+/// --bins if given, else usual_bins. Throws UsageError for anything else, and for --bins beside a
+/// table [bins].
 [[nodiscard]] BinsChoice bins_choice(const Options& options, const Scene& scene);
 
-/// The scene's table [bins], else Table III in the scene's own units: for counting, no pilot is run.
+/// The scene's table [bins], else Table III in the scene's own units: for counting, no pilot is
+/// run.
 [[nodiscard]] dynamics::StateSpace fixed_space(const Scene& scene);
 
 /// What bodies do in the full dynamics (beams at rest on entry, as the chain has it).
@@ -72,8 +76,8 @@ struct States {
 [[nodiscard]] Json to_json(const States& states);
 /// A line of a table about a state space as to_json describes it; empty for null.
 [[nodiscard]] std::string states_line(const Json& states);
-/// Warns when the states resolve too little of what was seen, and of faults in a pilot that rows start
-/// from.
+/// Warns when the states resolve too little of what was seen, and of faults in a pilot that rows
+/// start from.
 void warn_if_poor(const States& states);
 
 }  // namespace gatewalk::cli

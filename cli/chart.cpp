@@ -26,7 +26,7 @@ using dynamics::Verdict;
 using dynamics::WeakError;
 
 constexpr double kSamePlace = 1e-9;    // of R: what is nearer is rounding, or the same bits
-constexpr double kChances = 2.0;        // times what chance would show: what stands out from it
+constexpr double kChances = 2.0;       // times what chance would show: what stands out from it
 constexpr double kTimedSeconds = 0.1;  // of the usual setting: the trials that are timed
 
 struct Errors {
@@ -51,11 +51,11 @@ struct SceneChart {
   Scene scene;
   std::int64_t trials = 0, timed_trials = 0;
   Verdict reference_verdict = Verdict::fine;
-  double reference_evaluations = 0.0;      // per trial
+  double reference_evaluations = 0.0;  // per trial
   std::vector<std::int64_t> reference_outcomes = std::vector<std::int64_t>(dynamics::kOutcomes, 0);
-  Errors own;                              // of the reference: against the one ten times coarser
-  Setting independent_setting;             // another method
-  Errors independent;                      // the reference against it
+  Errors own;                   // of the reference: against the one ten times coarser
+  Setting independent_setting;  // another method
+  Errors independent;           // the reference against it
   std::vector<Point> points;
 
   // What cannot be told from the reference's own error.
@@ -145,7 +145,8 @@ void time_settings(const Options& options, SceneChart& chart, std::int64_t round
   constexpr double kForEver = std::numeric_limits<double>::infinity();
   const Point* pace = nullptr;  // `stable` as scenes get it, or whatever ran
   for (const Point& point : chart.points)
-    if (point.ran() && (pace == nullptr || (point.setting.usual && point.setting.method == "stable")))
+    if (point.ran() &&
+        (pace == nullptr || (point.setting.usual && point.setting.method == "stable")))
       pace = &point;
   if (pace == nullptr) return;
   chart.timed_trials =
@@ -179,8 +180,9 @@ SceneChart chart_scene(const Options& options, const std::string& path,
   chart.reference_evaluations = per_run(reference.health.evaluations, reference.health);
   for (const auto& end : reference.trials)
     ++chart.reference_outcomes[static_cast<std::size_t>(end.outcome)];
-  chart.own = errors_of(chart, space,
-                        run_setting(options, chart, dynamics::second_reference_setting(gate)), reference);
+  chart.own =
+      errors_of(chart, space, run_setting(options, chart, dynamics::second_reference_setting(gate)),
+                reference);
 
   chart.independent_setting = dynamics::chart_settings("stable", gate).back();
   bool compared = false;
@@ -232,11 +234,13 @@ std::string csv_of(const std::vector<SceneChart>& charts) {
   std::ostringstream out;
   out << "scene,method,key,value,default,status,trials,microseconds_min,microseconds_median,"
          "steps_per_trial,evaluations_per_trial,outcome_tv,outcome_tv_se,outcome_tv_chance,"
-         "outcome_tv_below,outcomes_changed,column_tv,column_tv_se,column_tv_chance,column_tv_below,"
+         "outcome_tv_below,outcomes_changed,column_tv,column_tv_se,column_tv_chance,column_tv_"
+         "below,"
          "trials_compared,parted_share,position_median_m,position_median_below_m,"
          "velocity_median_m_per_s,time_median_s,energy_median_J,runs_not_finite,runs_cut_short,"
          "runs_penetrating,runs_creating_energy,"
-         "runs_too_fast,runs_beyond_bound,contacts_without_formula,forced_holds,worst_penetration_m,"
+         "runs_too_fast,runs_beyond_bound,contacts_without_formula,forced_holds,worst_penetration_"
+         "m,"
          "worst_energy_created_J,reason\n";
   const auto number = [](double x) { return std::isfinite(x) ? digits(x) : std::string(); };
   for (const SceneChart& chart : charts) {
@@ -262,13 +266,14 @@ std::string csv_of(const std::vector<SceneChart>& charts) {
       weak(columns, chart.column_bound(p.errors));
       out << strong.compared << ',' << number(strong.parted_share()) << ',';
       const Shown position = shown(strong.position, chart.position_limit());
-      out << number(position.value) << ',' << (position.below ? number(chart.position_limit()) : "");
+      out << number(position.value) << ','
+          << (position.below ? number(chart.position_limit()) : "");
       for (const auto what : {&StrongError::velocity, &StrongError::time, &StrongError::energy})
         out << ',' << number(shown(strong.*what, chart.strong_limit(what)).value);
       out << ',' << h.broken << ',' << p.cut_short << ',' << h.penetrating << ','
-          << h.creating_energy << ',' << h.fast << ',' << h.unstable << ','
-          << h.undefined_contacts << ',' << h.forced_holds << ',' << number(h.worst_penetration)
-          << ',' << number(h.worst_energy_created) << ",\n";
+          << h.creating_energy << ',' << h.fast << ',' << h.unstable << ',' << h.undefined_contacts
+          << ',' << h.forced_holds << ',' << number(h.worst_penetration) << ','
+          << number(h.worst_energy_created) << ",\n";
     }
   }
   return out.str();
@@ -314,16 +319,22 @@ Json to_json(const Options& options, const SceneChart& chart) {
   j["trials"] = chart.trials;
   j["timed_trials"] = chart.timed_trials;
   const auto& n = chart.reference_outcomes;
-  j["reference"] = {
-      {"setting", name_of(dynamics::reference_setting(chart.scene.gate))},
-      {"status", dynamics::name_of(chart.reference_verdict)},
-      {"evaluations_per_trial", chart.reference_evaluations},
-      {"outcomes", {{"traversed_left", n[0]}, {"traversed_right", n[1]}, {"exited_left", n[2]},
-                    {"exited_right", n[3]}, {"trapped", n[4]}, {"not_finite", n[5]}}},
-      {"own_error", {{"against", name_of(dynamics::second_reference_setting(chart.scene.gate))},
-                     {"errors", to_json(chart.own, chart, true)}}},
-      {"another_method", {{"against", name_of(chart.independent_setting)},
-                          {"errors", to_json(chart.independent, chart, true)}}}};
+  j["reference"] = {{"setting", name_of(dynamics::reference_setting(chart.scene.gate))},
+                    {"status", dynamics::name_of(chart.reference_verdict)},
+                    {"evaluations_per_trial", chart.reference_evaluations},
+                    {"outcomes",
+                     {{"traversed_left", n[0]},
+                      {"traversed_right", n[1]},
+                      {"exited_left", n[2]},
+                      {"exited_right", n[3]},
+                      {"trapped", n[4]},
+                      {"not_finite", n[5]}}},
+                    {"own_error",
+                     {{"against", name_of(dynamics::second_reference_setting(chart.scene.gate))},
+                      {"errors", to_json(chart.own, chart, true)}}},
+                    {"another_method",
+                     {{"against", name_of(chart.independent_setting)},
+                      {"errors", to_json(chart.independent, chart, true)}}}};
   j["settings"] = Json::array();
   for (const Point& p : chart.points) {
     Json s;
@@ -354,14 +365,22 @@ Json to_json(const Options& options, const SceneChart& chart) {
 
 char letter_of(Verdict v) {
   switch (v) {
-    case Verdict::penetration: return 'P';
-    case Verdict::energy: return 'E';
-    case Verdict::too_fast: return 'F';
-    case Verdict::beyond_bound: return 'B';
-    case Verdict::no_formula: return 'N';
-    case Verdict::stuck: return 'S';
-    case Verdict::not_finite: return 'X';
-    default: return '?';
+    case Verdict::penetration:
+      return 'P';
+    case Verdict::energy:
+      return 'E';
+    case Verdict::too_fast:
+      return 'F';
+    case Verdict::beyond_bound:
+      return 'B';
+    case Verdict::no_formula:
+      return 'N';
+    case Verdict::stuck:
+      return 'S';
+    case Verdict::not_finite:
+      return 'X';
+    default:
+      return '?';
   }
 }
 
@@ -406,7 +425,8 @@ struct Drawn {
 };
 
 /// One panel: least time per trial against error. What is below its bound is drawn there, as less
-/// than that; `limit` is the bound that the reference sets to all. `tag` makes names of data blocks.
+/// than that; `limit` is the bound that the reference sets to all. `tag` makes names of data
+/// blocks.
 template <class Value>
 std::string panel(const SceneChart& chart, const std::string& tag, const std::string& title,
                   const std::string& label, double limit, double own, Value value) {
@@ -472,8 +492,8 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
     if (!failed.empty()) {
       const std::string name = block("failed", failed);
       element(name + " using 1:2 with points pt 2 ps 0.8 lw 1.8" + colour);
-      element(name + " using 1:2:3 with labels font ',8' offset 0.7,0.5 tc rgb '" +
-              look.colour + "'");
+      element(name + " using 1:2:3 with labels font ',8' offset 0.7,0.5 tc rgb '" + look.colour +
+              "'");
     }
     if (!usual.empty())
       element(block("usual", usual) + " using 1:2 with points pt 6 ps 1.8 lw 1.2 lc rgb 'black'");
@@ -492,17 +512,19 @@ std::string panel(const SceneChart& chart, const std::string& tag, const std::st
   std::ostringstream out;
   const std::vector<std::string> lines = strip(without);
   out << blocks.str() << "unset label\nset title " << literal(chart.label + ": " + title)
-      << " offset 0," << 0.3 + 0.8 * static_cast<double>(lines.size()) << "\nset ylabel " << literal(label) << "\n";
+      << " offset 0," << 0.3 + 0.8 * static_cast<double>(lines.size()) << "\nset ylabel "
+      << literal(label) << "\n";
   for (std::size_t i = 0; i < lines.size(); ++i)
     out << "set label " << 11 + i << " " << literal(lines[i]) << " at graph 0, graph "
-        << 1.03 + 0.045 * static_cast<double>(lines.size() - 1 - i) << " font ',8' tc rgb '#444444'\n";
+        << 1.03 + 0.045 * static_cast<double>(lines.size() - 1 - i)
+        << " font ',8' tc rgb '#444444'\n";
   if (limit > 0.0 && slowest > 0.0)
-    out << "set label 10 'below: not told from the reference' at graph 0.99, first " << digits(limit)
-        << " right offset 0,-0.6 font ',8' tc rgb '#666666'\n";
+    out << "set label 10 'below: not told from the reference' at graph 0.99, first "
+        << digits(limit) << " right offset 0,-0.6 font ',8' tc rgb '#666666'\n";
   if (slowest > 0.0)
-    out << "set xrange [" << digits(quickest / 1.5) << ":" << digits(slowest * 1.5) << "]\nset xtics nomirror ("
-        << tics_1_2_5(quickest / 1.5, slowest * 1.5) << ")\nset yrange ["
-        << digits(lowest / 2.5) << ":" << digits(highest * 2.0) << "]\n";
+    out << "set xrange [" << digits(quickest / 1.5) << ":" << digits(slowest * 1.5)
+        << "]\nset xtics nomirror (" << tics_1_2_5(quickest / 1.5, slowest * 1.5)
+        << ")\nset yrange [" << digits(lowest / 2.5) << ":" << digits(highest * 2.0) << "]\n";
   out << plot.str() << "\n";
   return out.str();
 }
@@ -514,7 +536,8 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
   std::ostringstream out;
   out << "set multiplot\nset format y '10^{%L}'\nset xtics nomirror\n"
          "set ytics nomirror\nset border 3\n"
-         "set grid lc rgb '#eeeeee' lt 1\nunset key\nset xlabel 'least time per trial (µs)' offset 0,0.3\n"
+         "set grid lc rgb '#eeeeee' lt 1\nunset key\nset xlabel 'least time per trial (µs)' offset "
+         "0,0.3\n"
          "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n";
   for (int row = 0; row < rows; ++row) {
     const SceneChart& chart = charts[static_cast<std::size_t>(row)];
@@ -532,23 +555,27 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
       const double y = 1.0 - 16.0 / height;
       int label = 10;
       const auto entry = [&](const std::string& text, const std::string& point, double width) {
-        out << "set label " << label++ << " " << literal(text) << " at screen " << x << ", screen " << y
-            << " left point " << point << " offset 1,0\n";
+        out << "set label " << label++ << " " << literal(text) << " at screen " << x << ", screen "
+            << y << " left point " << point << " offset 1,0\n";
         x += width;
       };
       std::set<std::string> drawn;
       for (const Point& p : chart.points) {
         if (!drawn.insert(p.setting.method).second) continue;
         const Look look = look_of(p.setting.method);
-        entry(p.setting.method, "pt " + std::to_string(look.marker) + " ps 0.8 lc rgb '" + look.colour + "'",
-              0.085);
+        entry(p.setting.method,
+              "pt " + std::to_string(look.marker) + " ps 0.8 lc rgb '" + look.colour + "'", 0.085);
       }
       entry("usual: the method's default", "pt 6 ps 1.8 lc rgb 'black'", 0.21);
-      entry("less: below what the reference or chance can show", "pt 10 ps 1.1 lc rgb '#444444'", 0.3);
+      entry("less: below what the reference or chance can show", "pt 10 ps 1.1 lc rgb '#444444'",
+            0.3);
       out << "set label " << label++ << " "
-          << literal("x fails: E energy from nothing, P disc sinks into a beam, F too fast for its steps, "
-                    "S stuck, N contact without a formula, B beyond the stability bound, X not finite. "
-                    "Bars: 2 standard errors.")
+          << literal(
+                 "x fails: E energy from nothing, P disc sinks into a beam, F too fast for its "
+                 "steps, "
+                 "S stuck, N contact without a formula, B beyond the stability bound, X not "
+                 "finite. "
+                 "Bars: 2 standard errors.")
           << " at screen 0.016, screen " << 1.0 - 40.0 / height << " font ',10'\n"
           << "plot [0:1] [0:1] NaN\nunset label\nset border 3\nset xtics nomirror\n"
              "set ytics nomirror\nset xlabel 'least time per trial (µs)' offset 0,0.3\n"
@@ -559,8 +586,7 @@ void draw(const std::string& path, const std::vector<SceneChart>& charts) {
     out << panel(chart, tag + "weak", "distribution of outcomes", "total variation",
                  chart.outcome_limit(), chart.own.outcomes.total_variation, [&](const Point& p) {
                    const WeakError& e = p.errors.outcomes;
-                   return Drawn{e.total_variation, e.standard_error,
-                                chart.outcome_bound(p.errors)};
+                   return Drawn{e.total_variation, e.standard_error, chart.outcome_bound(p.errors)};
                  });
     place(0.575, 0.985);
     out << panel(chart, tag + "strong", "where a trial ends, median", "distance (m)",
@@ -583,8 +609,11 @@ std::string advice(const SceneChart& chart) {
     if (p.verdict != Verdict::fine || !(most <= tolerance)) continue;
     if (best == nullptr || least(p.microseconds) < least(best->microseconds)) best = &p;
   }
-  const std::string text = "  cheapest setting without faults, outcomes within " + digits(tolerance) + ": ";
-  return text + (best == nullptr ? "none shown; more --trials may show one" : name_of(best->setting)) + "\n";
+  const std::string text =
+      "  cheapest setting without faults, outcomes within " + digits(tolerance) + ": ";
+  return text +
+         (best == nullptr ? "none shown; more --trials may show one" : name_of(best->setting)) +
+         "\n";
 }
 
 std::string table_of(const SceneChart& chart) {
@@ -594,17 +623,21 @@ std::string table_of(const SceneChart& chart) {
     return percent(static_cast<double>(n[i]), static_cast<double>(chart.trials));
   };
   const auto of_reference = [&](const Errors& e, const Setting& against) {
-    out << "  against " << padded(name_of(against), -20) << " outcomes " << digits(e.outcomes.total_variation)
-        << ", columns " << digits(e.columns.total_variation) << ", exit " << quantity(e.strong.position, "m")
-        << ", parted " << percent(e.strong.parted_share(), 1.0, 3) << "\n";
+    out << "  against " << padded(name_of(against), -20) << " outcomes "
+        << digits(e.outcomes.total_variation) << ", columns " << digits(e.columns.total_variation)
+        << ", exit " << quantity(e.strong.position, "m") << ", parted "
+        << percent(e.strong.parted_share(), 1.0, 3) << "\n";
   };
-  out << chart.label << ": " << chart.trials << " trials per setting, " << chart.timed_trials << " timed\n"
+  out << chart.label << ": " << chart.trials << " trials per setting, " << chart.timed_trials
+      << " timed\n"
       << "  reference " << name_of(dynamics::reference_setting(chart.scene.gate)) << " ("
-      << dynamics::name_of(chart.reference_verdict) << "): traversed left " << share(0) << ", right " << share(1)
-      << ", exited left " << share(2) << ", right " << share(3) << ", trapped " << share(4) << "\n";
+      << dynamics::name_of(chart.reference_verdict) << "): traversed left " << share(0)
+      << ", right " << share(1) << ", exited left " << share(2) << ", right " << share(3)
+      << ", trapped " << share(4) << "\n";
   of_reference(chart.own, dynamics::second_reference_setting(chart.scene.gate));
   of_reference(chart.independent, chart.independent_setting);
-  out << "  setting                us/trial   steps  outcomes  +-        chance    columns   exit (m)   "
+  out << "  setting                us/trial   steps  outcomes  +-        chance    columns   exit "
+         "(m)   "
          "parted   status\n";
   for (const Point& p : chart.points) {
     out << (p.setting.usual ? "* " : "  ") << padded(name_of(p.setting), -20);
@@ -623,13 +656,15 @@ std::string table_of(const SceneChart& chart) {
     };
     const auto& e = p.errors;
     const bool below = e.outcomes.total_variation < chart.outcome_bound(e);
-    out << padded(fixed(least(p.microseconds), 1), 11) << padded(fixed(per_run(p.health.steps, p.health), 0), 8)
-        << "  " << padded(text(e.outcomes.total_variation, chart.outcome_bound(e)), -10)
+    out << padded(fixed(least(p.microseconds), 1), 11)
+        << padded(fixed(per_run(p.health.steps, p.health), 0), 8) << "  "
+        << padded(text(e.outcomes.total_variation, chart.outcome_bound(e)), -10)
         << padded(below ? "" : text(e.outcomes.standard_error, 0.0), -10)
         << padded(text(e.outcomes.chance, 0.0), -10)
         << padded(text(e.columns.total_variation, chart.column_bound(e)), -10)
         << padded(text(e.strong.position, chart.position_limit()), -11)
-        << padded(percent(e.strong.parted_share(), 1.0, 2), 8) << "  " << dynamics::name_of(p.verdict) << "\n";
+        << padded(percent(e.strong.parted_share(), 1.0, 2), 8) << "  "
+        << dynamics::name_of(p.verdict) << "\n";
   }
   out << advice(chart);
   return out.str();
@@ -659,13 +694,15 @@ std::vector<std::string> chosen_methods(const Options& options) {
   return methods;
 }
 
-constexpr std::int64_t kMostTrials = 10'000'000;  // the ends of four settings at a time are in memory: 2 GB
+constexpr std::int64_t kMostTrials =
+    10'000'000;  // the ends of four settings at a time are in memory: 2 GB
 
 /// A mistake is said before long work, not after it.
 void require_chartable(const std::string& path, const Scene& scene) {
   try {
     (void)dynamics::StateSpace::paper(scene.gate);  // refuses gates too short for their beams
-    for (const Setting& s : {dynamics::reference_setting(scene.gate), dynamics::second_reference_setting(scene.gate)})
+    for (const Setting& s :
+         {dynamics::reference_setting(scene.gate), dynamics::second_reference_setting(scene.gate)})
       (void)dynamics::make_method(s.applied_to(scene.gate));
   } catch (const dynamics::InvalidParameter& e) {
     throw SceneError(path + ": no reference for a chart: " + e.what());
@@ -675,21 +712,22 @@ void require_chartable(const std::string& path, const Scene& scene) {
 }  // namespace
 
 int run_chart(const std::vector<std::string>& arguments) {
-  Options options("chart SCENE... -o DIR [options]",
-                  "Charts the methods' speed against their accuracy, each over its own settings: time per\n"
-                  "trial on one thread, and error against a reference under the same noise. Writes chart.csv\n"
-                  "and chart.json, again after each scene, and chart.svg. With 1e5 trials a scene takes some\n"
-                  "ten minutes; --trials 2000 --repeats 3 gives a first look in one.",
-                  "gatewalk chart scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
+  Options options(
+      "chart SCENE... -o DIR [options]",
+      "Charts the methods' speed against their accuracy, each over its own settings: time per\n"
+      "trial on one thread, and error against a reference under the same noise. Writes chart.csv\n"
+      "and chart.json, again after each scene, and chart.svg. With 1e5 trials a scene takes some\n"
+      "ten minutes; --trials 2000 --repeats 3 gives a first look in one.",
+      "gatewalk chart scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
   options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");
   constexpr std::array kFiles{"chart.csv", "chart.json", "chart.svg"};
   options.output_folder("folder to write to", {kFiles.begin(), kFiles.end()});
-  options.add()
-      ("trials", po::value<Count>()->default_value(Count{100'000}, "1e5")->value_name("N"),
-       "trials per setting")
-      ("repeats", po::value<Count>()->default_value(Count{10}, "10")->value_name("N"),
-       "rounds of timing, after one that warms up")
-      ("methods", po::value<std::string>()->value_name("A,B,..."), "methods to chart (default: all)");
+  options.add()("trials", po::value<Count>()->default_value(Count{100'000}, "1e5")->value_name("N"),
+                "trials per setting")(
+      "repeats", po::value<Count>()->default_value(Count{10}, "10")->value_name("N"),
+      "rounds of timing, after one that warms up")("methods",
+                                                   po::value<std::string>()->value_name("A,B,..."),
+                                                   "methods to chart (default: all)");
   add_seed(options);
   add_strict(options);
   if (!options.parse(arguments)) return kFine;
@@ -704,7 +742,9 @@ int run_chart(const std::vector<std::string>& arguments) {
       throw UsageError("two scenes are called " + std::filesystem::path(path).stem().string());
   }
   const std::string folder = options.text("output");
-  const auto file = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
+  const auto file = [&](const char* name) {
+    return (std::filesystem::path(folder) / name).string();
+  };
   require_folder(folder);
 
   std::vector<SceneChart> charts;
@@ -717,7 +757,8 @@ int run_chart(const std::vector<std::string>& arguments) {
       charts.push_back(chart_scene(options, path, methods, rounds));
       json["scenes"].push_back(to_json(options, charts.back()));
       table += (table.empty() ? "" : "\n") + table_of(charts.back());
-      std::filesystem::remove(file("chart.svg"));  // an old figure shall not stand beside new numbers
+      std::filesystem::remove(
+          file("chart.svg"));  // an old figure shall not stand beside new numbers
       write_text_atomically(file("chart.csv"), csv_of(charts));
       write_text_atomically(file("chart.json"), text_of(json) + "\n");
     }
@@ -725,21 +766,26 @@ int run_chart(const std::vector<std::string>& arguments) {
     if (charts.empty()) throw;
     draw(file("chart.svg"), charts);
     warn("stopped before the end; " + file("chart.csv") + ", chart.json and chart.svg hold the " +
-         std::to_string(charts.size()) + " of " + std::to_string(paths.size()) + " scenes that were finished");
+         std::to_string(charts.size()) + " of " + std::to_string(paths.size()) +
+         " scenes that were finished");
     return kStopped;
   }
-  options.give_out(json, table + "\n* usual: the method's default. us/trial: least of " + std::to_string(rounds) +
-                             " rounds on one thread, " + machine() +
-                             "\noutcomes, columns: total variation from the reference, of the outcomes and of the crossing"
-                             "\nstates; +-: its standard error; chance: what chance alone would show; <: not told from no error."
-                             "\nexit (m): median distance at the exit; parted: share of exits that took another course, these count"
+  options.give_out(json, table + "\n* usual: the method's default. us/trial: least of " +
+                             std::to_string(rounds) + " rounds on one thread, " + machine() +
+                             "\noutcomes, columns: total variation from the reference, of the "
+                             "outcomes and of the crossing"
+                             "\nstates; +-: its standard error; chance: what chance alone would "
+                             "show; <: not told from no error."
+                             "\nexit (m): median distance at the exit; parted: share of exits that "
+                             "took another course, these count"
                              "\nas infinitely far. status: ok, or the worst fault seen.\n");
   draw(file("chart.svg"), charts);
   for (const SceneChart& chart : charts)
     if (chart.reference_verdict != Verdict::fine)
       warn(chart.label + ": the reference itself shows faults: " +
            std::string(dynamics::name_of(chart.reference_verdict)));
-  return exit_status(options, std::all_of(charts.begin(), charts.end(), [](const SceneChart& chart) {
+  return exit_status(options,
+                     std::all_of(charts.begin(), charts.end(), [](const SceneChart& chart) {
                        return chart.reference_verdict == Verdict::fine;
                      }));
 }

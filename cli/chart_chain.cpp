@@ -29,9 +29,9 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::array<std::int64_t, 10> kTrialsPerRow{10,  20,   50,   100,  200,
                                                      500, 1000, 2000, 5000, 10'000};
 constexpr std::array<std::int64_t, 2> kWalks{10'000, 1'000'000};
-constexpr std::int64_t kMostMatrices = 8;  // per point, of different trials
-constexpr std::int64_t kResampled = 8;     // per point, drawn anew from these
-constexpr double kTimingSeconds = 0.5;       // work that a cost per run is measured on
+constexpr std::int64_t kMostMatrices = 8;         // per point, of different trials
+constexpr std::int64_t kResampled = 8;            // per point, drawn anew from these
+constexpr double kTimingSeconds = 0.5;            // work that a cost per run is measured on
 constexpr std::int64_t kDirectDraws = 5'000'000;  // trials drawn per point of direct simulation
 
 double cpu_seconds() {
@@ -73,8 +73,8 @@ struct Truth {
 
   [[nodiscard]] std::string name() const {
     const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
-    return "start d = " + quantity(start.d, "m") + ", v = (" + digits(start.vx / speed.size) + ", " +
-           digits(start.vy / speed.size) + ") " + speed.name;
+    return "start d = " + quantity(start.d, "m") + ", v = (" + digits(start.vx / speed.size) +
+           ", " + digits(start.vy / speed.size) + ") " + speed.name;
   }
   /// Direct simulation's n trials differ from these N as nN/(n + N) trials do from an exact truth,
   /// by 1/n + 1/N: told from the same noisy truth as the chain's errors are.
@@ -135,10 +135,10 @@ struct Point {
 struct Curve {
   double factor = 1.0;
   dynamics::StateSpace space;
-  bool visited = false;                // charted beside a curve of uniform starts
-  dynamics::Entries entries{};         // where rows start, as bodies were seen to enter; empty: uniform
-  double pilot_seconds = 0.0;          // of the full trials that saw them; one thread
-  double seconds_per_run = 0.0;        // one thread
+  bool visited = false;          // charted beside a curve of uniform starts
+  dynamics::Entries entries{};   // where rows start, as bodies were seen to enter; empty: uniform
+  double pilot_seconds = 0.0;    // of the full trials that saw them; one thread
+  double seconds_per_run = 0.0;  // one thread
   std::vector<std::int64_t> trials{};  // per row, those within the limit
 
   [[nodiscard]] double seconds_per_trial() const {  // one of every row, one thread
@@ -193,16 +193,18 @@ void finish_truth(Truth& t, const Scene& scene, std::int64_t trials, std::uint64
   const auto space = fixed_space(scene);
   const std::int64_t done = t.tally.trials;
   run_in_batches(progress, before, each, trials - done, [&](std::int64_t first, std::int64_t n) {
-    t.tally += lattice::run_field(scene.gate, scene.field, t.start.body(), space, seed,
-                                  {done + first, n});
+    t.tally +=
+        lattice::run_field(scene.gate, scene.field, t.start.body(), space, seed, {done + first, n});
   });
   if (t.tally.broken > 0)
-    throw std::runtime_error(std::to_string(t.tally.broken) + " trials of the full dynamics stopped "
+    throw std::runtime_error(std::to_string(t.tally.broken) +
+                             " trials of the full dynamics stopped "
                              "being finite numbers: they are no truth to compare with");
   t.p = shares(t.tally.final_gates);
-  t.floor = {lattice::expected_total_variation(t.p, trials),
-             lattice::noise_floor(lattice::concentration(t.tally.final_gates), t.p.size(), trials, 0)
-                 .corrcoef};
+  t.floor = {
+      lattice::expected_total_variation(t.p, trials),
+      lattice::noise_floor(lattice::concentration(t.tally.final_gates), t.p.size(), trials, 0)
+          .corrcoef};
 }
 
 double time_gate_runs(const Scene& scene, const dynamics::StateSpace& space, std::uint64_t seed,
@@ -289,9 +291,10 @@ Point point_of(const Scene& scene, const Chart& chart, std::size_t place,
       exact = f.final_cells;
       for (std::size_t w = 0; w < kWalks.size(); ++w) {
         markov::WalkTally walked;
-        a.walk_seconds[w] = tables + one_thread_seconds([&] {
-          walked = walker->walk(field, starts[s], max_gates, seed, {0, kWalks[w]});
-        });
+        a.walk_seconds[w] =
+            tables + one_thread_seconds([&] {
+              walked = walker->walk(field, starts[s], max_gates, seed, {0, kWalks[w]});
+            });
         a.walks[w] = error_of(shares(walked.final_cells), truths[s].p);
       }
     }
@@ -306,8 +309,8 @@ Point point_of(const Scene& scene, const Chart& chart, std::size_t place,
     const markov::Sweeper other(
         lattice::make_chain(lattice::resampled(matrices[of], seed, static_cast<std::uint64_t>(k))));
     for (std::size_t s = 0; s < truths.size(); ++s)
-      moved[s][k] = lattice::total_variation(
-          other.predict(field, starts[s], max_gates).final_cells, said[of][s].exact);
+      moved[s][k] = lattice::total_variation(other.predict(field, starts[s], max_gates).final_cells,
+                                             said[of][s].exact);
   });
   if (interrupted()) throw Interrupted{};
 
@@ -371,8 +374,11 @@ std::vector<Direct> direct_simulation(const Truth& truth, double low, double hig
       errors[k] = error_of(
           shares(lattice::sampled(truth.p, n, seed, static_cast<std::uint64_t>(k))), truth.p);
     });
-    Direct d{trials, seconds, {}, {lattice::expected_total_variation(truth.p, n),
-                                   lattice::noise_floor(concentration, truth.p.size(), n, 0).corrcoef}};
+    Direct d{trials,
+             seconds,
+             {},
+             {lattice::expected_total_variation(truth.p, n),
+              lattice::noise_floor(concentration, truth.p.size(), n, 0).corrcoef}};
     for (const Error& e : errors) {
       d.drawn.total_variation += e.total_variation / static_cast<double>(draws);
       d.drawn.corrcoef += e.corrcoef / static_cast<double>(draws);
@@ -390,7 +396,8 @@ struct Summary {
   std::size_t cheapest = 0;  // cheapest within kWithin of it
   double pays_from = kInf;   // s, the first cost at which no direct simulation is as good
   double pays_until = 0.0;   // s, from here on direct simulation is better than any point
-  double starts_to_pay = kInf;  // predictions for which `cheapest` costs less than direct simulation
+  double starts_to_pay =
+      kInf;  // predictions for which `cheapest` costs less than direct simulation
   std::optional<std::size_t> best_visited;  // smallest error with rows started as bodies enter
 };
 constexpr double kWithin = 1.5;
@@ -431,14 +438,18 @@ std::string seconds_text(double s) { return fixed(s, s < 1 ? 3 : s < 100 ? 1 : 0
 
 std::string csv_of(const Chart& chart) {
   std::ostringstream out;
-  out << "d_m,vx_m_per_s,vy_m_per_s,answer,bins,states,row_starts,trials,gate_runs,matrices,build_s,answer_s,"
-         "total_s,total_variation,total_variation_sd,corrcoef,sampling_total_variation,bins_total_variation,"
-         "formula_total_variation,formula_corrcoef,truth_floor_total_variation,truth_floor_corrcoef,"
+  out << "d_m,vx_m_per_s,vy_m_per_s,answer,bins,states,row_starts,trials,gate_runs,matrices,build_"
+         "s,answer_s,"
+         "total_s,total_variation,total_variation_sd,corrcoef,sampling_total_variation,bins_total_"
+         "variation,"
+         "formula_total_variation,formula_corrcoef,truth_floor_total_variation,truth_floor_"
+         "corrcoef,"
          "clamped_share,rows_never_sampled,never_sampled_share\n";
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     const Truth& truth = chart.truths[s];
     const auto begin = [&](const std::string& answer) {
-      for (const double x : {truth.start.d, truth.start.vx, truth.start.vy}) out << digits(x) << ",";
+      for (const double x : {truth.start.d, truth.start.vx, truth.start.vy})
+        out << digits(x) << ",";
       out << answer << ",";
     };
     const std::string floors =
@@ -448,14 +459,14 @@ std::string csv_of(const Chart& chart) {
       const auto line = [&](const std::string& answer, double seconds, const Error& e, bool exact) {
         begin(answer);
         const Curve& curve = chart.curves[p.curve];
-        out << digits(curve.factor) << "," << curve.space.size() << ","
-            << curve.row_starts() << "," << p.trials << "," << p.runs << ","
-            << p.matrices << "," << digits(p.build_seconds) << "," << digits(seconds) << ","
-            << digits(p.build_seconds + seconds) << "," << digits(e.total_variation) << ","
-            << (exact && p.matrices > 1 ? digits(a.exact_sd) : "") << "," << digits(e.corrcoef) << ","
-            << (exact ? digits(a.sampling) + "," + digits(a.bins) : std::string(",")) << ",,,"
-            << floors << "," << digits(p.clamped_share) << "," << digits(p.rows_never_sampled) << ","
-            << digits(a.never_sampled) << "\n";
+        out << digits(curve.factor) << "," << curve.space.size() << "," << curve.row_starts() << ","
+            << p.trials << "," << p.runs << "," << p.matrices << "," << digits(p.build_seconds)
+            << "," << digits(seconds) << "," << digits(p.build_seconds + seconds) << ","
+            << digits(e.total_variation) << ","
+            << (exact && p.matrices > 1 ? digits(a.exact_sd) : "") << "," << digits(e.corrcoef)
+            << "," << (exact ? digits(a.sampling) + "," + digits(a.bins) : std::string(","))
+            << ",,," << floors << "," << digits(p.clamped_share) << ","
+            << digits(p.rows_never_sampled) << "," << digits(a.never_sampled) << "\n";
       };
       line("exact", a.exact_seconds, a.exact, true);
       for (std::size_t w = 0; w < kWalks.size(); ++w)
@@ -529,7 +540,9 @@ Json to_json(const Chart& chart, std::size_t s) {
                                       {"formula", to_json(d.formula)}});
   const auto place = [&](std::size_t i) {
     const Point& p = chart.points[i];
-    return Json{{"bins", chart.curves[p.curve].factor}, {"trials_per_row", p.trials}, {"seconds", p.seconds(s)},
+    return Json{{"bins", chart.curves[p.curve].factor},
+                {"trials_per_row", p.trials},
+                {"seconds", p.seconds(s)},
                 {"total_variation", p.error(s)}};
   };
   j["summary"] = {{"best", place(summary.best)},
@@ -550,8 +563,9 @@ std::string words_of(const Chart& chart, std::size_t s) {
            seconds_text(p.seconds(s)) + " s";
   };
   const Point &best = chart.points[summary.best], &cheapest = chart.points[summary.cheapest];
-  std::string text = "The chain's best error is TV " + fixed(best.error(s), 3) + " (" + place(best) +
-                     "; the truth's noise: " + fixed(truth.floor.total_variation, 3) + "); ";
+  std::string text = "The chain's best error is TV " + fixed(best.error(s), 3) + " (" +
+                     place(best) + "; the truth's noise: " + fixed(truth.floor.total_variation, 3) +
+                     "); ";
   text += summary.cheapest == summary.best
               ? "nothing cheaper comes within 1.5 times of it.\n"
               : "the cheapest within 1.5 times of it is TV " + fixed(cheapest.error(s), 3) + " (" +
@@ -605,9 +619,8 @@ std::string table_of(const Chart& chart, std::int64_t runs_limit) {
         out << "\n";
       };
       const auto point = [&](std::size_t curve, std::int64_t trials) {
-        return std::find_if(chart.points.begin(), chart.points.end(), [&](const Point& p) {
-          return p.curve == curve && p.trials == trials;
-        });
+        return std::find_if(chart.points.begin(), chart.points.end(),
+                            [&](const Point& p) { return p.curve == curve && p.trials == trials; });
       };
       out << "\n";
       row("trials/row", [&](std::size_t c) {
@@ -617,16 +630,19 @@ std::string table_of(const Chart& chart, std::int64_t runs_limit) {
       for (const std::int64_t trials : kTrialsPerRow) {
         bool any = false;
         for (std::size_t c = first; c < beyond; ++c) any |= point(c, trials) != chart.points.end();
-        if (any) row(std::to_string(trials), [&](std::size_t c) -> std::string {
-          const auto at = point(c, trials);
-          if (at == chart.points.end()) return "";
-          const double seconds = at->seconds(s);
-          const auto direct =
-              std::max<std::int64_t>(1, std::llround(seconds / truth.seconds_per_trial));
-          return padded(seconds_text(seconds), 8) + padded(fixed(at->error(s), 3), 10) +
-                 padded(fixed(lattice::expected_total_variation(
-                                  truth.p, truth.as_against_exact(direct)), 3), 8);
-        });
+        if (any)
+          row(std::to_string(trials), [&](std::size_t c) -> std::string {
+            const auto at = point(c, trials);
+            if (at == chart.points.end()) return "";
+            const double seconds = at->seconds(s);
+            const auto direct =
+                std::max<std::int64_t>(1, std::llround(seconds / truth.seconds_per_trial));
+            return padded(seconds_text(seconds), 8) + padded(fixed(at->error(s), 3), 10) +
+                   padded(fixed(lattice::expected_total_variation(truth.p,
+                                                                  truth.as_against_exact(direct)),
+                                3),
+                          8);
+          });
       }
       for (const auto part : {&Answer::sampling, &Answer::bins})
         row(part == &Answer::sampling ? "sampling" : "bins", [&](std::size_t c) -> std::string {
@@ -637,20 +653,23 @@ std::string table_of(const Chart& chart, std::int64_t runs_limit) {
     }
     out << "\n" << words_of(chart, s);
   }
-  out << "\nSampling, bins: the parts of the last line's TV that come from the matrix's trials and from its\n"
-         "states. Seconds: CPU time of one thread, one matrix and one prediction. TV: against the full trials,\n"
+  out << "\nSampling, bins: the parts of the last line's TV that come from the matrix's trials and "
+         "from its\n"
+         "states. Seconds: CPU time of one thread, one matrix and one prediction. TV: against the "
+         "full trials,\n"
          "whose noise both share; the chain's a mean over up to 8 matrices of different trials.\n";
   for (const Curve& c : chart.curves)
     if (c.trials.empty())
-      out << c.name() << ": no point, " << c.space.size() << " rows of "
-          << kTrialsPerRow.front() << " trials exceed --runs-limit " << runs_limit << ".\n";
+      out << c.name() << ": no point, " << c.space.size() << " rows of " << kTrialsPerRow.front()
+          << " trials exceed --runs-limit " << runs_limit << ".\n";
   return out.str();
 }
 
 // ---- Figure ----
 
 /// Coarse to fine (Okabe and Ito's colours).
-constexpr std::array<const char*, 5> kColours{"#e69f00", "#d55e00", "#009e73", "#0072b2", "#cc79a7"};
+constexpr std::array<const char*, 5> kColours{"#e69f00", "#d55e00", "#009e73", "#0072b2",
+                                              "#cc79a7"};
 
 void draw(const std::string& path, const Chart& chart) {
   std::ostringstream out;
@@ -684,7 +703,8 @@ void draw(const std::string& path, const Chart& chart) {
     out << data_block("$direct_" + of, rows);
   }
   // A figure with a power of ten on its axis, or it has no number there.
-  least_seconds = std::min(0.7 * least_seconds, std::pow(10.0, std::floor(std::log10(1.4 * most_seconds))));
+  least_seconds =
+      std::min(0.7 * least_seconds, std::pow(10.0, std::floor(std::log10(1.4 * most_seconds))));
 
   const int panels = static_cast<int>(chart.truths.size());
   constexpr int kLeft = 95, kPanel = 310, kGap = 14, kPanelHeight = 300, kTop = 35, kKeyRow = 20;
@@ -711,10 +731,12 @@ void draw(const std::string& path, const Chart& chart) {
   };
   const std::string kDirect = " with lines lc rgb '#000000' lw 2";
   const std::string kNoise = " with lines lc rgb '#888888' lw 1.5 dt 3";
-  const std::string kChain = " with linespoints pt 7 ps 0.5 lw 2", kSampling = " with lines lw 1.2 dt 2";
+  const std::string kChain = " with linespoints pt 7 ps 0.5 lw 2",
+                    kSampling = " with lines lw 1.2 dt 2";
   const std::string kVisited = " with linespoints pt 6 ps 0.6 lw 1.2";
   const auto plot = [&](const std::vector<std::string>& items) {
-    for (std::size_t i = 0; i < items.size(); ++i) out << (i == 0 ? "plot " : ", \\\n  ") << items[i];
+    for (std::size_t i = 0; i < items.size(); ++i)
+      out << (i == 0 ? "plot " : ", \\\n  ") << items[i];
     out << "\n";
   };
   out << "set multiplot\nset logscale xy\nset grid lc rgb '#dddddd' lt 1\nunset key\n"
@@ -723,8 +745,8 @@ void draw(const std::string& path, const Chart& chart) {
     const std::string of = std::to_string(s);
     const Error& floor = chart.truths[s].floor;
     const auto panel = [&](int column, double noise) {
-      std::vector<std::string> items{digits(noise) + kNoise,
-                                     "$direct_" + of + " using 1:" + std::to_string(column) + kDirect};
+      std::vector<std::string> items{
+          digits(noise) + kNoise, "$direct_" + of + " using 1:" + std::to_string(column) + kDirect};
       for (std::size_t c = 0; c < chart.curves.size(); ++c) {
         if (chart.curves[c].trials.empty()) continue;
         const std::string data = "$chain_" + std::to_string(c) + "_" + of + " using 1:";
@@ -755,7 +777,8 @@ void draw(const std::string& path, const Chart& chart) {
       << "set key center center horizontal maxcols " << key_columns << " Left reverse samplen 3\n";
   std::vector<std::string> key{
       "NaN" + kNoise + " title " +
-          literal("the truth's noise (" + std::to_string(chart.truths[0].tally.trials) + " trials)"),
+          literal("the truth's noise (" + std::to_string(chart.truths[0].tally.trials) +
+                  " trials)"),
       "NaN" + kDirect + " title 'direct simulation'"};
   for (std::size_t c = 0; c < chart.curves.size(); ++c)
     if (!chart.curves[c].trials.empty() && !chart.curves[c].visited)
@@ -779,29 +802,34 @@ std::vector<double> factors_of(const Options& options) {
   return factors;
 }
 
-constexpr std::int64_t kMostPilotTrials = 1'000'000;  // per start; what all of them saw is in memory
+constexpr std::int64_t kMostPilotTrials =
+    1'000'000;  // per start; what all of them saw is in memory
 
 }  // namespace
 
 int run_chart_chain(const std::vector<std::string>& arguments) {
-  Options options("chart-chain SCENE -o DIR [options]",
-                  "Charts the chain's error against its cost: matrices of coarser and finer bins and of\n"
-                  "10 to 10000 trials a row, against the full dynamics, beside direct simulation at the\n"
-                  "same cost. Writes chain.csv, chain.json and chain.svg into DIR.",
-                  "gatewalk chart-chain scenes/field.toml -o results/chain --truth-trials 1e5");
+  Options options(
+      "chart-chain SCENE -o DIR [options]",
+      "Charts the chain's error against its cost: matrices of coarser and finer bins and of\n"
+      "10 to 10000 trials a row, against the full dynamics, beside direct simulation at the\n"
+      "same cost. Writes chain.csv, chain.json and chain.svg into DIR.",
+      "gatewalk chart-chain scenes/field.toml -o results/chain --truth-trials 1e5");
   options.positional("scene", "scene file (TOML)", true);
-  options.output_folder("folder to write to, made if missing", {"chain.csv", "chain.json", "chain.svg"});
-  options.add()
-      ("truth-trials", po::value<Count>()->default_value(Count{100'000}, "1e5")->value_name("N"),
-       "trials of the full dynamics per start, against which errors are taken")
-      ("runs-limit", po::value<Count>()->default_value(Count{1'000'000}, "1e6")->value_name("N"),
-       "gate runs that one matrix may take")
-      ("bins", po::value<std::vector<double>>()->composing()->value_name("FACTOR"),
-       "bins per axis, as a multiple of those that build has without --bins (may be repeated; default: 0.5, 1, 2, 4)")
-      ("visited", po::value<Count>()->value_name("N"),
-       "also chart matrices whose rows start not anywhere in their bins but where N full trials per "
-       "start were seen to enter; these trials count as cost. Bins that are made from what is seen always start so, "
-       "by default from 2000 trials per start");
+  options.output_folder("folder to write to, made if missing",
+                        {"chain.csv", "chain.json", "chain.svg"});
+  options.add()("truth-trials",
+                po::value<Count>()->default_value(Count{100'000}, "1e5")->value_name("N"),
+                "trials of the full dynamics per start, against which errors are taken")(
+      "runs-limit", po::value<Count>()->default_value(Count{1'000'000}, "1e6")->value_name("N"),
+      "gate runs that one matrix may take")(
+      "bins", po::value<std::vector<double>>()->composing()->value_name("FACTOR"),
+      "bins per axis, as a multiple of those that build has without --bins (may be repeated; "
+      "default: 0.5, 1, 2, 4)")(
+      "visited", po::value<Count>()->value_name("N"),
+      "also chart matrices whose rows start not anywhere in their bins but where N full trials per "
+      "start were seen to enter; these trials count as cost. Bins that are made from what is seen "
+      "always start so, "
+      "by default from 2000 trials per start");
   add_starts(options);
   add_seed(options);
   add_strict(options);
@@ -819,8 +847,10 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   const std::int64_t runs_limit = options.count("runs-limit");
   const std::uint64_t seed = options.seed();
 
-  const std::int64_t pilot_trials =
-      options.has("visited") ? options.count("visited", 1, kMostPilotTrials) : from_pilot ? kPilotTrials : 0;
+  const std::int64_t pilot_trials = options.has("visited")
+                                        ? options.count("visited", 1, kMostPilotTrials)
+                                    : from_pilot ? kPilotTrials
+                                                 : 0;
 
   Chart chart;
   const std::vector<double> factors = factors_of(options);
@@ -836,7 +866,8 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
       curve.space = dynamics::refined(fixed_bins, factor);
     }
     for (const std::int64_t trials : kTrialsPerRow)
-      if (trials * dynamics::runs_per_trial(curve.space) <= runs_limit) curve.trials.push_back(trials);
+      if (trials * dynamics::runs_per_trial(curve.space) <= runs_limit)
+        curve.trials.push_back(trials);
     chart.curves.push_back(std::move(curve));
   }
   if (pilot_trials > 0 && !from_pilot)
@@ -849,7 +880,9 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
     throw UsageError("--runs-limit " + std::to_string(runs_limit) + ": too few for " +
                      std::to_string(kTrialsPerRow.front()) + " trials a row of any of these bins");
   const std::string folder = options.text("output");
-  const auto file = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
+  const auto file = [&](const char* name) {
+    return (std::filesystem::path(folder) / name).string();
+  };
   require_folder(folder);
 
   // Costs first, on one thread: they say how long the rest will take.
@@ -863,8 +896,8 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
     if (from_pilot) continue;
     // Trials of their own: they follow those of the truth.
     run_in_batches("pilot", pilot_trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
-      const auto part = lattice::run_field(scene.gate, scene.field, t.start.body(), fixed_bins, seed,
-                                            {truth_trials + first, n}, true);
+      const auto part = lattice::run_field(scene.gate, scene.field, t.start.body(), fixed_bins,
+                                           seed, {truth_trials + first, n}, true);
       seen.insert(seen.end(), part.crossings.begin(), part.crossings.end());
       chart.health += part.health;
     });
@@ -908,8 +941,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
       all.add(std::move(t));
     }
     for (const std::int64_t trials : curve.trials)
-      chart.points.push_back(
-          point_of(scene, chart, c, all.matrices(trials), trials, seed));
+      chart.points.push_back(point_of(scene, chart, c, all.matrices(trials), trials, seed));
   }
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     double low = kInf, high = 0.0;

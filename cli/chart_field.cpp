@@ -21,10 +21,10 @@ namespace {
 using gatewalk::cli::to_json;
 using lattice::Fidelity;
 
-/// `active` is enough while the total variation that it costs is no more than this: what is asked of
-/// a good chain.
+/// `active` is enough while the total variation that it costs is no more than this: what is asked
+/// of a good chain.
 constexpr double kBound = 0.03;
-constexpr std::int64_t kRepeats = 5;   // of each timing, the least counts
+constexpr std::int64_t kRepeats = 5;  // of each timing, the least counts
 constexpr std::int64_t kTimedTrials = 64;
 constexpr std::int64_t kTimedAtOnce = 16;
 
@@ -139,7 +139,8 @@ Finding finding(const StartRuns& r) { return std::max(finding(r.runs[1]), findin
 std::string sentence(const StartRuns& r) {
   const auto about = [](const char* name, const Run& run) {
     return std::string(name) + " has TV " + fixed(run.apart.total_variation, 4) + " +- " +
-           fixed(uncertainty(run), 4) + " where chance makes " + fixed(run.in_pairs.floor_total_variation, 4) + " (p " +
+           fixed(uncertainty(run), 4) + " where chance makes " +
+           fixed(run.in_pairs.floor_total_variation, 4) + " (p " +
            p_text(run.in_pairs.p_total_variation) + ")";
   };
   const std::string words[] = {
@@ -162,8 +163,10 @@ std::string table_of(const std::vector<StartRuns>& starts, const std::vector<Var
   out << trials << " trials per start and line, the same noise in all of them; step "
       << step_text(variants.front()) << ", " << step_text(variants.back()) << ".\n"
       << "Against the first line: share of trials that end in another gate; total variation (TV),\n"
-         "what chance gives between independent samples (floor) and between samples that share their\n"
-         "noise (pairs), with p-values; corrcoef and RMSE (trials per 100). ms: wall clock per trial, "
+         "what chance gives between independent samples (floor) and between samples that share "
+         "their\n"
+         "noise (pairs), with p-values; corrcoef and RMSE (trials per 100). ms: wall clock per "
+         "trial, "
       << threads << (threads == 1 ? " thread" : " threads") << ",\nleast of " << kRepeats
       << " interleaved repeats.\n\n"
       << "   d   vx   vy  | fidelity (method)      ms  trapped    left     cut | changed      TV   "
@@ -189,7 +192,8 @@ std::string table_of(const std::vector<StartRuns>& starts, const std::vector<Var
       }
       out << "\n";
     }
-  out << "\nActive is enough where TV is at most " << kBound << " with its uncertainty (+-) added, and\n"
+  out << "\nActive is enough where TV is at most " << kBound
+      << " with its uncertainty (+-) added, and\n"
       << "not enough where it is more with that taken off: what chance makes of pairs 95 times in\n"
       << "100, and 3 trials of " << trials << " that may yet show what none did.\n";
   for (const StartRuns& r : starts) out << sentence(r) << "\n";
@@ -200,7 +204,8 @@ std::string csv_of(const std::vector<StartRuns>& starts, const std::vector<Varia
   std::string csv =
       "d_m,vx_m_per_s,vy_m_per_s,fidelity,method,step_s,trials,seconds_per_trial,trapped_share,"
       "left_field_share,cut_off_share,broken_share,changed_share,total_variation,"
-      "total_variation_uncertainty,total_variation_floor,total_variation_floor_pairs,p_total_variation,p_total_variation_pairs,"
+      "total_variation_uncertainty,total_variation_floor,total_variation_floor_pairs,p_total_"
+      "variation,p_total_variation_pairs,"
       "p_energy,p_energy_pairs,corrcoef,corrcoef_floor,rmse_per_100,rmse_per_100_floor,clean\n";
   for (const StartRuns& r : starts)
     for (std::size_t v = 0; v < variants.size(); ++v) {
@@ -216,9 +221,9 @@ std::string csv_of(const std::vector<StartRuns>& starts, const std::vector<Varia
         number(static_cast<double>(k) / n);
       const lattice::Comparison &a = run.apart, &p = run.in_pairs;
       for (const double x :
-           {run.changed, a.total_variation, uncertainty(run), a.floor_total_variation, p.floor_total_variation,
-            a.p_total_variation, p.p_total_variation, a.p_energy, p.p_energy, a.corrcoef,
-            a.floor.corrcoef, a.rmse_per_100, a.floor.rmse_per_100})
+           {run.changed, a.total_variation, uncertainty(run), a.floor_total_variation,
+            p.floor_total_variation, a.p_total_variation, p.p_total_variation, a.p_energy,
+            p.p_energy, a.corrcoef, a.floor.corrcoef, a.rmse_per_100, a.floor.rmse_per_100})
         number(v == 0 ? std::nan("") : x);
       csv += t.health.clean() ? "true\n" : "false\n";
     }
@@ -274,7 +279,8 @@ std::string script_of(const std::vector<StartRuns>& starts, const std::vector<Va
     << ",760 font 'sans,13' background '#ffffff' enhanced\n"
     << "$d << EOD\n";
   for (const StartRuns& r : starts) {
-    s << "\"" << digits(r.start.d) << ", " << digits(r.start.vx) << ", " << digits(r.start.vy) << "\"";
+    s << "\"" << digits(r.start.d) << ", " << digits(r.start.vx) << ", " << digits(r.start.vy)
+      << "\"";
     for (const Run& run : r.runs) s << " " << digits(1e3 * run.seconds_per_trial);
     for (std::size_t v = 1; v < variants.size(); ++v)
       s << " " << digits(r.runs[v].apart.total_variation) << " "
@@ -340,8 +346,10 @@ int run_chart_field(const std::vector<std::string>& arguments) {
       "remember, and beams of neighbouring gates, change in the final gates, and what do they\n"
       "cost? Method moreau at the scene's run.step_s, which the text names; run.method and\n"
       "field.fidelity of the scene are not used. Also the default method, to show what another\n"
-      "integrator changes. Long steps let moreau sink into beams: a warning says so, and a smaller\n"
-      "run.step_s helps. Writes fidelity.csv, fidelity.json and, with gnuplot, fidelity.svg into DIR.",
+      "integrator changes. Long steps let moreau sink into beams: a warning says so, and a "
+      "smaller\n"
+      "run.step_s helps. Writes fidelity.csv, fidelity.json and, with gnuplot, fidelity.svg into "
+      "DIR.",
       "gatewalk chart-field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o "
       "results/fidelity");
   options.positional("scene", "scene file (TOML)", true);
@@ -354,8 +362,9 @@ int run_chart_field(const std::vector<std::string>& arguments) {
   const std::string folder = options.text("output");
   Scene scene = read_scene(options.text("scene"), options.overrides());
   if (scene.gate.run.method == "auto")
-    throw UsageError("run.method = \"auto\" is not permitted for chart-field, which runs method moreau: "
-                     "name a method, and give moreau's step as run.step_s");
+    throw UsageError(
+        "run.method = \"auto\" is not permitted for chart-field, which runs method moreau: "
+        "name a method, and give moreau's step as run.step_s");
   const std::vector<PaperStart> starts = starts_of(options, scene);
   require_inside(starts, scene);
   const std::vector<Variant> variants = variants_of(scene);

@@ -35,7 +35,8 @@ Child::Child(std::vector<std::string> arguments, int in, const std::string& miss
   words.push_back(nullptr);
 
   posix_spawn_file_actions_t files;
-  if (const int error = ::posix_spawn_file_actions_init(&files); error != 0) fail("no memory", error);
+  if (const int error = ::posix_spawn_file_actions_init(&files); error != 0)
+    fail("no memory", error);
   posix_spawnattr_t attributes;
   if (const int error = ::posix_spawnattr_init(&attributes); error != 0) {
     ::posix_spawn_file_actions_destroy(&files);
@@ -45,7 +46,8 @@ Child::Child(std::vector<std::string> arguments, int in, const std::string& miss
   const int wanted[] = {in, ::fileno(out_.get()), ::fileno(errors_.get())};
   for (int target = 0; target < 3 && error == 0; ++target)
     error = ::posix_spawn_file_actions_adddup2(&files, wanted[target], target);
-  if (error == 0) error = ::posix_spawnp(&id_, words[0], &files, &attributes, words.data(), environ);
+  if (error == 0)
+    error = ::posix_spawnp(&id_, words[0], &files, &attributes, words.data(), environ);
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&files);
   if (error != 0) id_ = 0;  // not said to be left alone

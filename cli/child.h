@@ -17,8 +17,8 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 [[nodiscard]] File scratch_file();
 
 /// A program that runs beside this one, without a shell and in a process group of its own, so that
-/// ctrl-C ends it only through us. It reads `in`; what it writes and what it complains of go to files
-/// without names. One that still runs at the end of the object's life is killed.
+/// ctrl-C ends it only through us. It reads `in`; what it writes and what it complains of go to
+/// files without names. One that still runs at the end of the object's life is killed.
 class Child {
  public:
   /// arguments[0] is looked up in PATH; `missing` is what to say when it is not there. Throws
@@ -29,8 +29,8 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   [[nodiscard]] bool runs();
-  /// Waits for its end: what it has written to standard output. Throws std::runtime_error with its own
-  /// words when it failed.
+  /// Waits for its end: what it has written to standard output. Throws std::runtime_error with its
+  /// own words when it failed.
   [[nodiscard]] std::string output();
 
  private:

@@ -31,8 +31,8 @@ std::string upper_case(std::string name) {
   return name;
 }
 
-/// A regular file by what no other one has, whatever its names. None for what cannot be lost: pipes,
-/// devices, nothing at all.
+/// A regular file by what no other one has, whatever its names. None for what cannot be lost:
+/// pipes, devices, nothing at all.
 using FileId = std::pair<dev_t, ino_t>;
 std::optional<FileId> id_of(int rc, const struct stat& found) {
   if (rc != 0 || !S_ISREG(found.st_mode)) return {};
@@ -59,8 +59,8 @@ void validate(boost::any& v, const std::vector<std::string>& values, Count*, int
   double number = 0.0;
   const auto real = std::from_chars(text.data(), end, number);
   const bool is_tiny = text.find("e-") != text.npos || text.find("E-") != text.npos;
-  const bool is_large = std::abs(number) > kMost ||
-                        (real.ec == std::errc::result_out_of_range && !is_tiny);
+  const bool is_large =
+      std::abs(number) > kMost || (real.ec == std::errc::result_out_of_range && !is_tiny);
   if (real.ptr != end || (real.ec != std::errc() && !is_large) || std::isnan(number) ||
       (!is_large && number != std::floor(number)))
     throw po::error_with_option_name("%canonical_option%: '" + text +
@@ -83,15 +83,15 @@ void validate(boost::any& v, const std::vector<std::string>& values, Seed*, int)
 }
 
 Options::Options(std::string synopsis, std::string about, std::string example)
-    : synopsis_(std::move(synopsis)), about_(std::move(about)), example_(std::move(example)),
+    : synopsis_(std::move(synopsis)),
+      about_(std::move(about)),
+      example_(std::move(example)),
       own_("Options") {
-  shared_.add_options()
-      ("json", po::value<std::string>()->value_name("FILE"),
-       "write the result as JSON; - is standard output")
-      ("threads", po::value<int>()->default_value(0)->value_name("N"),
-       "threads to use, 0: all; never changes a result")
-      ("quiet", "no progress, no remarks, no table when there is JSON")
-      ("help,h", "this page");
+  shared_.add_options()("json", po::value<std::string>()->value_name("FILE"),
+                        "write the result as JSON; - is standard output")(
+      "threads", po::value<int>()->default_value(0)->value_name("N"),
+      "threads to use, 0: all; never changes a result")(
+      "quiet", "no progress, no remarks, no table when there is JSON")("help,h", "this page");
 }
 
 void Options::positional(const std::string& name, const std::string& help, bool required) {
@@ -118,8 +118,8 @@ void Options::reads(const std::string& name,
   reads_.emplace_back(name, std::move(file_in));
 }
 
-void Options::output_file(const std::string& name, const std::string& file,
-                          const std::string& help, Content content) {
+void Options::output_file(const std::string& name, const std::string& file, const std::string& help,
+                          Content content) {
   const std::string declared = name == "output" ? "output,o" : name;
   own_.add_options()(declared.c_str(), po::value<std::string>()->value_name(file), help.c_str());
   output_files_.push_back({name, content});
@@ -140,7 +140,8 @@ void Options::output_folder(const std::string& help, std::vector<std::string> fi
 struct Options::NamedFile {
   std::string name, path;
 
-  NamedFile(std::string shown_as, std::string file) : name(std::move(shown_as)), path(std::move(file)) {
+  NamedFile(std::string shown_as, std::string file)
+      : name(std::move(shown_as)), path(std::move(file)) {
     struct stat found = {};
     id = path == "-" ? id_of(::fstat(STDOUT_FILENO, &found), found)
                      : id_of(::stat(path.c_str(), &found), found);
@@ -149,7 +150,8 @@ struct Options::NamedFile {
     place = std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
   }
 
-  /// By identity, so that links and other spellings do not hide it; by place where there is none yet.
+  /// By identity, so that links and other spellings do not hide it; by place where there is none
+  /// yet.
   [[nodiscard]] bool is_same(const NamedFile& other) const {
     if (id || other.id) return id == other.id;
     return !place.empty() && place == other.place;
@@ -175,7 +177,9 @@ std::vector<Options::NamedFile> Options::inputs() const {
   for (const auto& [name, help] : positional_help_)
     each(name, [&, &name = name](const std::string& path) { add(upper_case(name), path); });
   for (const auto& [name, file_in] : reads_)
-    each(name, [&, &name = name, &file_in = file_in](const std::string& value) { add(shown(name), file_in(value)); });
+    each(name, [&, &name = name, &file_in = file_in](const std::string& value) {
+      add(shown(name), file_in(value));
+    });
   return files;
 }
 
@@ -188,8 +192,9 @@ void Options::refuse_forgotten_values(const std::vector<po::option>& given) cons
                                        [&](const Output& o) { return o.name == name; });
     for (const std::string& value : option.value)
       if (value.starts_with("--") || (is_output && value.size() > 1 && value[0] == '-'))
-        throw UsageError(shown(name) + " " + value + ": looks like an option, so the value of " + shown(name) +
-                         " is missing" + (is_output ? "; write ./" + value + " for a file of that name" : ""));
+        throw UsageError(shown(name) + " " + value + ": looks like an option, so the value of " +
+                         shown(name) + " is missing" +
+                         (is_output ? "; write ./" + value + " for a file of that name" : ""));
   }
 }
 
@@ -215,12 +220,14 @@ void Options::check_files() {
     if (output.content == Content::binary)
       throw UsageError(option + " cannot go to standard output: it needs a file of its own");
     if (!takes_stdout.empty())
-      throw UsageError(takes_stdout + " - and " + option + " -: only one thing can go to standard output");
+      throw UsageError(takes_stdout + " - and " + option +
+                       " -: only one thing can go to standard output");
     takes_stdout = option;
   }
   const bool has_folder = !needs_output_.empty() && needs_output_ == "DIR";
   const std::string folder = has_folder ? text("output") : "";
-  if (has_folder && (folder.empty() || folder == "-")) throw UsageError("-o needs the name of a folder");
+  if (has_folder && (folder.empty() || folder == "-"))
+    throw UsageError("-o needs the name of a folder");
   for (const std::string& file : folder_files_) {
     const std::string path = (std::filesystem::path(folder) / file).string();
     outputs.emplace_back(path + " (in the folder of -o)", path);
@@ -228,7 +235,8 @@ void Options::check_files() {
 
   const auto refuse_same = [](const NamedFile& a, const NamedFile& b) {
     if (a.is_same(b))
-      throw UsageError(a.name + " and " + b.name + " are the same file: an output needs a file of its own");
+      throw UsageError(a.name + " and " + b.name +
+                       " are the same file: an output needs a file of its own");
   };
   std::vector<NamedFile> others = inputs();
   others.emplace_back("standard output", "-");
@@ -258,16 +266,19 @@ void Options::check_files() {
 }
 
 bool Options::parse(const std::vector<std::string>& arguments) {
-  (no_scene_.empty() ? own_ : hidden_).add_options()
-      ("set", po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUE"),
-       "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what the file leaves out stays as it follows from the file");
+  (no_scene_.empty() ? own_ : hidden_)
+      .add_options()("set",
+                     po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUE"),
+                     "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what "
+                     "the file leaves out stays as it follows from the file");
   po::options_description all;
   all.add(own_).add(shared_).add(hidden_);
   using namespace po::command_line_style;
   const int style = unix_style & ~allow_guessing;  // an abbreviation is a typing error
   po::parsed_options parsed(&all);
   try {
-    parsed = po::command_line_parser(arguments).options(all).positional(positions_).style(style).run();
+    parsed =
+        po::command_line_parser(arguments).options(all).positional(positions_).style(style).run();
     po::store(parsed, values_);
     po::notify(values_);
   } catch (const po::error& e) {
@@ -278,8 +289,9 @@ bool Options::parse(const std::vector<std::string>& arguments) {
     std::cout << "gatewalk " << synopsis_ << "\n\n" << about_ << "\n\n";
     for (const auto& [name, help] : positional_help_) {
       const std::string argument = upper_case(name);
-      std::cout << "  " << argument << std::string(24 - std::min<std::size_t>(22, argument.size()), ' ')
-                << help << "\n";
+      std::cout << "  " << argument
+                << std::string(24 - std::min<std::size_t>(22, argument.size()), ' ') << help
+                << "\n";
     }
     std::cout << "\n" << own_ << "\n" << shared_ << "\nExample:\n  " << example_ << "\n";
     if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
@@ -343,12 +355,14 @@ void add_trials_and_seed(Options& options, const char* trials_help) {
 }
 
 void add_strict(Options& options) {
-  options.add()("strict", "exit status 1 when the result's status is not clean; it is written all the same");
+  options.add()("strict",
+                "exit status 1 when the result's status is not clean; it is written all the same");
 }
 
 int exit_status(const Options& options, bool clean) {
   if (clean || !options.has("strict")) return kFine;
-  warn("--strict: the result's status is not clean, so the exit status is 1; the result is written");
+  warn(
+      "--strict: the result's status is not clean, so the exit status is 1; the result is written");
   return kFailure;
 }
 

@@ -64,8 +64,8 @@ int run_chart_chain(const std::vector<std::string>& arguments);
 int run_reproduce(const std::vector<std::string>& arguments);
 
 /// Options of one command with the shared ones: --threads, --quiet, --json, --help. They know which
-/// files are read and which are written: parse() refuses an output that is an input or another output,
-/// and one that cannot be written, before any work.
+/// files are read and which are written: parse() refuses an output that is an input or another
+/// output, and one that cannot be written, before any work.
 class Options {
  public:
   /// `synopsis` e.g. "gate SCENE [options]"; `about` and `example` complete the help page.
@@ -81,8 +81,8 @@ class Options {
   void input_file(const std::string& name, const std::string& help);
   /// A value of the declared option --name makes the command read the file `file_in(value)`.
   void reads(const std::string& name, std::function<std::string(const std::string&)> file_in);
-  /// Declares --name, a file that is written; `shown` is FILE or FILE.html, ... Only one output may go to
-  /// standard output (-), and none that is binary.
+  /// Declares --name, a file that is written; `shown` is FILE or FILE.html, ... Only one output may
+  /// go to standard output (-), and none that is binary.
   enum class Content { text, binary };
   void output_file(const std::string& name, const std::string& shown, const std::string& help,
                    Content content = Content::text);
@@ -90,11 +90,12 @@ class Options {
   void main_output_file(const std::string& shown, const std::string& help, Content content);
   /// Declares -o, --output, which must be given: a folder, in which `files` are written.
   void output_folder(const std::string& help, std::vector<std::string> files);
-  /// There is no scene to override keys of: --set is refused with `reason`, and not on the help page.
+  /// There is no scene to override keys of: --set is refused with `reason`, and not on the help
+  /// page.
   void without_scene(const std::string& reason) { no_scene_ = reason; }
 
-  /// Reads the arguments and looks at every file they name. False when --help was asked for and printed.
-  /// Throws UsageError.
+  /// Reads the arguments and looks at every file they name. False when --help was asked for and
+  /// printed. Throws UsageError.
   [[nodiscard]] bool parse(const std::vector<std::string>& arguments);
 
   [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }

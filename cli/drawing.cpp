@@ -49,9 +49,9 @@ Look look_of(std::string_view method) {
 }
 
 void draw_svg(const std::string& path, int width, int height, const std::string& commands) {
-  write_text_atomically(path, drawn("set terminal svg size " + std::to_string(width) + "," +
-                                    std::to_string(height) +
-                                    " font 'sans,12' background '#ffffff' enhanced\n" + commands + "\n"));
+  write_text_atomically(
+      path, drawn("set terminal svg size " + std::to_string(width) + "," + std::to_string(height) +
+                  " font 'sans,12' background '#ffffff' enhanced\n" + commands + "\n"));
 }
 
 std::string machine() {

@@ -36,11 +36,10 @@ int run_gate(const std::vector<std::string>& arguments) {
            padded(percent(static_cast<double>(n), static_cast<double>(tally.trials), 2), 11) +
            "   [" + fixed(100.0 * low, 2) + ", " + fixed(100.0 * high, 2) + "]\n";
   };
-  std::string table = scene_line(scene) + padded("trials", -18) +
-                      padded(std::to_string(tally.trials), 10) + "   share     95 % interval\n" +
-                      line("traversed", tally.traversed()) +
-                      line("  left beam", tally.traversed_left) +
-                      line("  right beam", tally.traversed_right);
+  std::string table =
+      scene_line(scene) + padded("trials", -18) + padded(std::to_string(tally.trials), 10) +
+      "   share     95 % interval\n" + line("traversed", tally.traversed()) +
+      line("  left beam", tally.traversed_left) + line("  right beam", tally.traversed_right);
   if (tally.traversed_even > 0) table += line("  both evenly", tally.traversed_even);
   table += line("exited left", tally.exited_left) + line("exited right", tally.exited_right) +
            line("trapped", tally.trapped);

@@ -16,8 +16,8 @@ namespace gatewalk::cli {
 /// JSON as it stands in a <script>: nothing in it can end the element.
 [[nodiscard]] std::string script_json(const Json& json);
 
-/// `page` with each {{name}} replaced; what is put in is not looked at again. Throws std::logic_error for
-/// a name without a part.
+/// `page` with each {{name}} replaced; what is put in is not looked at again. Throws
+/// std::logic_error for a name without a part.
 [[nodiscard]] std::string filled(std::string_view page,
                                  const std::map<std::string, std::string, std::less<>>& parts);
 

@@ -24,7 +24,8 @@ void on_signal(int) {
 void on_alarm(int) {
   // Only async-signal-safe calls here.
   markov::remove_unfinished_file();
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kCutShortText, sizeof kCutShortText - 1);
+  [[maybe_unused]] const auto written =
+      ::write(STDERR_FILENO, kCutShortText, sizeof kCutShortText - 1);
   ::_exit(130);
 }
 

@@ -19,7 +19,7 @@ using dynamics::Landscape;
 using dynamics::Pass;
 
 constexpr double kSpacing = 0.5;  // in the scene's unit of length: the paper's grid
-constexpr double kFiner = 10.0;  // the pass is looked for on a grid so much finer too
+constexpr double kFiner = 10.0;   // the pass is looked for on a grid so much finer too
 
 dynamics::BeamsThatPush beams_of(const std::string& name) {
   if (name != "both" && name != "left" && name != "right")
@@ -59,8 +59,8 @@ double tic_step(double span, double parts) {
   return best;
 }
 
-/// The paper's Fig. 5: elastic energy as a surface and from above, with the propulsion as a surface, and,
-/// from above, the lowest way through.
+/// The paper's Fig. 5: elastic energy as a surface and from above, with the propulsion as a
+/// surface, and, from above, the lowest way through.
 void draw(const std::string& path, const Landscape& l, const Pass& pass, double ceiling) {
   std::ostringstream rows, way, out;
   const Sized metre = readable_unit("m", std::max(l.x.back(), l.y.back() - l.y.front()));
@@ -76,31 +76,42 @@ void draw(const std::string& path, const Landscape& l, const Pass& pass, double 
     rows << '\n';
   }
   for (const auto& [x, y] : pass.way) way << length(x) << ' ' << length(y) << '\n';
-  const double wide = (l.x.back() - l.x.front()) / metre.size, deep = (l.y.back() - l.y.front()) / metre.size;
+  const double wide = (l.x.back() - l.x.front()) / metre.size,
+               deep = (l.y.back() - l.y.front()) / metre.size;
   const auto surface = [&](const char* title, int column, const char* origin) {
-    return std::string("unset colorbox\nset size noratio\nset size 0.52,0.52\nset origin ") + origin +
-           "\nset lmargin 6\nset rmargin 2\nset tmargin 2\nset bmargin 2\nset view 58,330,0.95\nset title '" + title +
-           "'\nset ytics " + digits(tic_step(deep, 3.0)) + "\nsplot $grid using 1:2:" + std::to_string(column) +
-           " with pm3d\n";
+    return std::string("unset colorbox\nset size noratio\nset size 0.52,0.52\nset origin ") +
+           origin +
+           "\nset lmargin 6\nset rmargin 2\nset tmargin 2\nset bmargin 2\nset view "
+           "58,330,0.95\nset title '" +
+           title + "'\nset ytics " + digits(tic_step(deep, 3.0)) +
+           "\nsplot $grid using 1:2:" + std::to_string(column) + " with pm3d\n";
   };
   const auto from_above = [&](const char* title, const char* origin) {
     return std::string("set colorbox\nset size 0.48,0.5\nset size ratio -1\nset origin ") + origin +
-           "\nset lmargin 8\nset rmargin 10\nset tmargin 2\nset bmargin 4\nset title '" + title + "'\nset ytics " +
-           digits(tic_step(deep, 6.0)) + "\n";
+           "\nset lmargin 8\nset rmargin 10\nset tmargin 2\nset bmargin 4\nset title '" + title +
+           "'\nset ytics " + digits(tic_step(deep, 6.0)) + "\n";
   };
   out << data_block("$grid", rows.str()) << data_block("$way", way.str())
-      << "set multiplot\nset xlabel 'x (" << metre.name << ")'\nset ylabel 'y (" << metre.name << ")'\nset cblabel '"
-      << joule.name << "'\nset pm3d\nunset key\n"
-         "set xrange [" << length(l.x.front()) << ":" << length(l.x.back()) << "]\nset yrange [" << length(l.y.front())
-      << ":" << length(l.y.back()) << "]\nset cbrange [0:" << energy(ceiling) << "]\nset zrange [0:" << energy(ceiling) << "]\n"
-         "set palette defined (0 '#30123b', 1 '#4145ab', 2 '#4675ed', 3 '#39a2fc', 4 '#1bcfd4', 5 '#24eca6', "
-         "6 '#61fc6c', 7 '#a4fc3b', 8 '#d1e834', 9 '#f3c63a', 10 '#fe9b2d', 11 '#f36315', 12 '#d93806', 13 '#7a0403')\n"
-         "set xyplane 0\nset xtics " << digits(tic_step(wide, 5.0)) << "\n"
+      << "set multiplot\nset xlabel 'x (" << metre.name << ")'\nset ylabel 'y (" << metre.name
+      << ")'\nset cblabel '" << joule.name
+      << "'\nset pm3d\nunset key\n"
+         "set xrange ["
+      << length(l.x.front()) << ":" << length(l.x.back()) << "]\nset yrange ["
+      << length(l.y.front()) << ":" << length(l.y.back()) << "]\nset cbrange [0:" << energy(ceiling)
+      << "]\nset zrange [0:" << energy(ceiling)
+      << "]\n"
+         "set palette defined (0 '#30123b', 1 '#4145ab', 2 '#4675ed', 3 '#39a2fc', 4 '#1bcfd4', 5 "
+         "'#24eca6', "
+         "6 '#61fc6c', 7 '#a4fc3b', 8 '#d1e834', 9 '#f3c63a', 10 '#fe9b2d', 11 '#f36315', 12 "
+         "'#d93806', 13 '#7a0403')\n"
+         "set xyplane 0\nset xtics "
+      << digits(tic_step(wide, 5.0)) << "\n"
       << surface("elastic energy, Eq. (14)", 3, "0.0,0.49")
       << from_above("the same from above", "0.52,0.5") << "plot $grid using 1:2:3 with image\n"
       << surface("with the propulsion, Eq. (15)", 4, "0.0,-0.01")
       << from_above("lowest way through (white), its highest point", "0.52,0.0")
-      << "plot $grid using 1:2:4 with image, $way using 1:2 with lines lw 2 lc rgb '#ffffff', '-' using 1:2 with "
+      << "plot $grid using 1:2:4 with image, $way using 1:2 with lines lw 2 lc rgb '#ffffff', '-' "
+         "using 1:2 with "
          "points pt 7 ps 1 lc rgb '#ff00ff'\n"
       << length(pass.x) << ' ' << length(pass.y) << "\ne\nunset multiplot\n";
   draw_svg(path, 1100, 950, out.str());
@@ -110,15 +121,17 @@ void draw(const std::string& path, const Landscape& l, const Pass& pass, double 
 
 int run_landscape(const std::vector<std::string>& arguments) {
   Options options("landscape SCENE -o DIR [options]",
-                  "The potential energy of body and beams over the gate, Eqs. (14) and (15) of the paper, with beams\n"
-                  "deflected forward; the way through whose highest point is lowest, and how far that lies above the\n"
-                  "energy of the start and above the basin on the way. Writes landscape.csv, landscape.json, landscape.svg.",
+                  "The potential energy of body and beams over the gate, Eqs. (14) and (15) of the "
+                  "paper, with beams\n"
+                  "deflected forward; the way through whose highest point is lowest, and how far "
+                  "that lies above the\n"
+                  "energy of the start and above the basin on the way. Writes landscape.csv, "
+                  "landscape.json, landscape.svg.",
                   "gatewalk landscape scenes/single_gate.toml -o landscape --trials 1000");
   options.positional("scene", "scene file (TOML)", true);
   options.output_folder("folder to write to", {"landscape.csv", "landscape.json", "landscape.svg"});
-  options.add()(
-      "spacing", po::value<double>()->value_name("M"),
-      "of the grid, in m (default: a twentieth of body.radius_m, as in the paper)")(
+  options.add()("spacing", po::value<double>()->value_name("M"),
+                "of the grid, in m (default: a twentieth of body.radius_m, as in the paper)")(
       "beam", po::value<std::string>()->default_value("both")->value_name("WHICH"),
       "beams that resist: both, left or right (the other swings free: Fig. 6C)")(
       "trials", po::value<Count>()->default_value(Count{0}, "0")->value_name("N"),
@@ -135,10 +148,12 @@ int run_landscape(const std::vector<std::string>& arguments) {
   // At most 2000 points along each side of the gate.
   const double most = scene.gate.beams.joint_x;
   const double least = std::max(scene.gate.run.traverse_y - low, 2.0 * most) / 2000;
-  const double spacing = options.has("spacing") ? options.get<double>("spacing")
-                                                : std::clamp(kSpacing * unit, least, std::max(least, most));
+  const double spacing = options.has("spacing")
+                             ? options.get<double>("spacing")
+                             : std::clamp(kSpacing * unit, least, std::max(least, most));
   if (!(spacing >= least && spacing <= most))
-    throw UsageError("--spacing " + digits(spacing) + ": must lie in [" + digits(least) + ", " + digits(most) + "] m");
+    throw UsageError("--spacing " + digits(spacing) + ": must lie in [" + digits(least) + ", " +
+                     digits(most) + "] m");
   require_folder(folder);
 
   // On the grid that is asked for and on a finer one: the pass may lie between grid points.
@@ -168,8 +183,9 @@ int run_landscape(const std::vector<std::string>& arguments) {
   json["beams"] = options.get<std::string>("beam");
   json["start_kinetic_energy_J"] = moving;
   json["passes"] = Json::array();
-  std::string table = scene_line(scene) +
-                      padded("", -22) + "    pass at x           y   above the start   above the basin   basin at x           y\n";
+  std::string table =
+      scene_line(scene) + padded("", -22) +
+      "    pass at x           y   above the start   above the basin   basin at x           y\n";
   const dynamics::Scale scale = dynamics::scale_of(scene.gate);
   const auto place = [&](double x) { return reading(x, "m", 0.01 * scale.length); };
   const auto energy = [&](double e) { return reading(e, "J", 0.01 * scale.energy()); };
@@ -186,15 +202,17 @@ int run_landscape(const std::vector<std::string>& arguments) {
       continue;
     }
     table += padded(place(level.from_basin.x), 13) + padded(place(level.from_basin.y), 12) +
-             padded(energy(level.above_start()), 18) + padded(energy(level.from_basin.barrier()), 18) +
-             padded(place(x), 13) + padded(place(y), 12) + "\n";
+             padded(energy(level.above_start()), 18) +
+             padded(energy(level.from_basin.barrier()), 18) + padded(place(x), 13) +
+             padded(place(y), 12) + "\n";
   }
-  table += "Between grid points the pass may lie lower: hence the finer grid.\nThe start has " + energy(moving) +
-           " of kinetic energy: " +
-           (fine.above_start() > moving
-                ? "too little for the pass without work of the random force.\n"
-                : "as energies go enough, but hits and dampers take theirs: a body that comes to rest in a basin must "
-                  "climb out of it.\n");
+  table +=
+      "Between grid points the pass may lie lower: hence the finer grid.\nThe start has " +
+      energy(moving) + " of kinetic energy: " +
+      (fine.above_start() > moving ? "too little for the pass without work of the random force.\n"
+                                   : "as energies go enough, but hits and dampers take theirs: a "
+                                     "body that comes to rest in a basin must "
+                                     "climb out of it.\n");
   if (trials > 0) {
     const Json settled = settle_method(options, scene, RunsFrom::start);
     dynamics::GateTally tally;
@@ -206,8 +224,10 @@ int run_landscape(const std::vector<std::string>& arguments) {
     if (!settled.is_null()) json["measured"]["method"] = settled;
     json["measured"]["status"] = to_json(tally.health);
     const auto [from, to] = share_interval(tally.traversed(), tally.trials);
-    table += "measured: " + percent(static_cast<double>(tally.traversed()), static_cast<double>(trials)) + " of " +
-             std::to_string(trials) + " trials traverse, 95 % [" + fixed(100.0 * from, 1) + ", " + fixed(100.0 * to, 1) + "]\n";
+    table += "measured: " +
+             percent(static_cast<double>(tally.traversed()), static_cast<double>(trials)) + " of " +
+             std::to_string(trials) + " trials traverse, 95 % [" + fixed(100.0 * from, 1) + ", " +
+             fixed(100.0 * to, 1) + "]\n";
     clean = tally.health.clean();
     if (!clean) warn(complaint(tally.health));
   }
@@ -218,7 +238,8 @@ int run_landscape(const std::vector<std::string>& arguments) {
   double ceiling = 0.0;
   for (const double k : {scene.gate.beams.stiffness_left, scene.gate.beams.stiffness_right})
     ceiling = std::max(ceiling, 0.5 * k * 2.0);
-  draw(folder + "/landscape.svg", l, fine.downhill() ? fine.from_start : fine.from_basin, 1.2 * ceiling + scene.gate.forces.propulsion * (20.0 * unit));
+  draw(folder + "/landscape.svg", l, fine.downhill() ? fine.from_start : fine.from_basin,
+       1.2 * ceiling + scene.gate.forces.propulsion * (20.0 * unit));
   options.give_out(json, table);
   return exit_status(options, clean);
 }

@@ -7,9 +7,10 @@
 namespace gatewalk::cli {
 
 int run_lattice(const std::vector<std::string>& arguments) {
-  Options options("lattice SCENE [options]",
-                  "Runs the full dynamics through the field, gate by gate, and counts the final gates.",
-                  "gatewalk lattice scenes/field.toml --trials 10000 --seed 1 --json lattice.json");
+  Options options(
+      "lattice SCENE [options]",
+      "Runs the full dynamics through the field, gate by gate, and counts the final gates.",
+      "gatewalk lattice scenes/field.toml --trials 10000 --seed 1 --json lattice.json");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "trials through the field");
   add_strict(options);
@@ -22,7 +23,8 @@ int run_lattice(const std::vector<std::string>& arguments) {
   const Stopwatch watch;
   lattice::FieldTally tally(scene.field);
   run_in_batches("field trials", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
-    tally += lattice::run_field(scene.gate, scene.field, scene.start, space, options.seed(), {first, n});
+    tally +=
+        lattice::run_field(scene.gate, scene.field, scene.start, space, options.seed(), {first, n});
     tally.final_gate_of_trial.clear();  // asked for by nobody
   });
   check_outcomes(options, scene, RunsFrom::everywhere, trials, tally.health);
@@ -53,12 +55,14 @@ int run_lattice(const std::vector<std::string>& arguments) {
   json["made_by"] = manifest(options, scene);
 
   const auto n = static_cast<double>(tally.trials);
-  std::string table = endings_text(shares, "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
-                      limits_text(scene) + scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) +
-                      map_of_trapped(tally.trapped_gates.cast<double>() / n) + "left the field " +
-                      percent(static_cast<double>(tally.left_field), n, 2) + "\n";
+  std::string table =
+      endings_text(shares, "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
+      limits_text(scene) + scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) +
+      map_of_trapped(tally.trapped_gates.cast<double>() / n) + "left the field " +
+      percent(static_cast<double>(tally.left_field), n, 2) + "\n";
   if (tally.broken > 0)
-    table += "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
+    table +=
+        "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
   options.give_out(json, table + method_line(settled));
   remark(options, fixed(watch.seconds(), 2) + " s");
   warn_if_too_few_gates(scene);

@@ -38,22 +38,27 @@ void print_help(std::ostream& out) {
          "usage: gatewalk COMMAND [arguments] [options]\n\n";
   for (const Command& c : kCommands)
     out << "  " << c.name << std::string(13 - std::string(c.name).size(), ' ') << c.summary << "\n";
-  out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an example.\n"
+  out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an "
+         "example.\n"
          "exit status: 0 fine, 1 failure (with --strict also a result whose status is not clean),\n"
          "2 wrong use or input, 130 stopped by ctrl-C, SIGTERM or SIGHUP\n";
 }
 
 /// The command of that name; without one says so, and which may be meant.
 const Command* find_command(const std::string& name) {
-  const auto named = std::find_if(kCommands.begin(), kCommands.end(), [&](const Command& c) { return name == c.name; });
+  const auto named = std::find_if(kCommands.begin(), kCommands.end(),
+                                  [&](const Command& c) { return name == c.name; });
   if (named != kCommands.end()) return &*named;
-  const auto distance = [&](const Command& c) { return edit_distance(name.substr(0, 100), c.name); };
-  const auto nearest = std::min_element(kCommands.begin(), kCommands.end(), [&](const Command& a, const Command& b) {
-    return distance(a) < distance(b);
-  });
+  const auto distance = [&](const Command& c) {
+    return edit_distance(name.substr(0, 100), c.name);
+  };
+  const auto nearest = std::min_element(
+      kCommands.begin(), kCommands.end(),
+      [&](const Command& a, const Command& b) { return distance(a) < distance(b); });
   std::cerr << "gatewalk: no command '" << name << "'";
   // At most every third letter is wrong.
-  if (const std::size_t wrong = distance(*nearest); 3 * wrong <= std::max(name.size(), std::size_t{3}) + 1)
+  if (const std::size_t wrong = distance(*nearest);
+      3 * wrong <= std::max(name.size(), std::size_t{3}) + 1)
     std::cerr << "; did you mean " << nearest->name << "?";
   std::cerr << "\n\n";
   print_help(std::cerr);

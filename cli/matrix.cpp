@@ -47,8 +47,9 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
   if (!differences.empty()) {
     std::string text = "the scene is not the one that " + matrix_path + " was built with:";
     for (const auto& line : differences) text += "\n  " + line;
-    throw UsageError(text + "\n(here: the scene given; there: the matrix). Build a matrix for this "
-                            "scene, or give the matrix alone to use its own scene.");
+    throw UsageError(text +
+                     "\n(here: the scene given; there: the matrix). Build a matrix for this "
+                     "scene, or give the matrix alone to use its own scene.");
   }
   scene.gate = built_with.gate;  // the same, or the method that "auto" was settled to
   const auto text = file.text.find("status");
@@ -58,7 +59,8 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
   return {std::move(file), std::move(scene), std::move(status)};
 }
 
-lattice::ChainStart start_in_bins(const dynamics::StateSpace& space, const lattice::FieldParams& field,
+lattice::ChainStart start_in_bins(const dynamics::StateSpace& space,
+                                  const lattice::FieldParams& field,
                                   const dynamics::BodyState& body, const std::string& name) {
   const lattice::ChainStart start = lattice::chain_start(space, field, body);
   if (!start.beyond) return start;
@@ -69,11 +71,13 @@ lattice::ChainStart start_in_bins(const dynamics::StateSpace& space, const latti
   const std::string bins = text_of(
       dynamics::Cell{dynamics::Boundary::enter, range(enter.d), range(enter.vx), range(enter.vy)});
   if (start.clamped)
-    throw UsageError(name + " lies outside the chain's bins, " + bins +
-                     ": take a start inside them, or other bins: gatewalk build --bins auto makes them "
-                     "for the scene's start, a table [bins] in the scene names their edges");
+    throw UsageError(
+        name + " lies outside the chain's bins, " + bins +
+        ": take a start inside them, or other bins: gatewalk build --bins auto makes them "
+        "for the scene's start, a table [bins] in the scene names their edges");
   warn(name + " lies beyond every entry that the bins were made from, " + bins +
-       "; the prediction is that of the outermost bin. A matrix of a scene with this start suits it");
+       "; the prediction is that of the outermost bin. A matrix of a scene with this start suits "
+       "it");
   return start;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Matrices as the commands use them: building one in batches, taking one from a file with the scene
-/// it belongs to.
+/// Matrices as the commands use them: building one in batches, taking one from a file with the
+/// scene it belongs to.
 
 #include "cli/bins.h"
 #include "lattice/gate_chain.h"
@@ -30,9 +30,10 @@ struct MatrixAndScene {
                                                    const std::string& scene_path,
                                                    const std::vector<std::string>& overrides);
 
-/// Throws UsageError when a start lies outside the chain's bins; warns when it lies beyond every entry
-/// that open bins were made from. `name`: "the start".
-lattice::ChainStart start_in_bins(const dynamics::StateSpace& space, const lattice::FieldParams& field,
+/// Throws UsageError when a start lies outside the chain's bins; warns when it lies beyond every
+/// entry that open bins were made from. `name`: "the start".
+lattice::ChainStart start_in_bins(const dynamics::StateSpace& space,
+                                  const lattice::FieldParams& field,
                                   const dynamics::BodyState& body, const std::string& name);
 
 /// Where the chain starts for a body, as start_in_bins. Remarks when it lies on an edge of its bin:

@@ -22,7 +22,8 @@ void write_to_stdout(std::string_view text) {
   errno = EIO;  // stands when std::cout had failed before
   // Flush first: what was printed before comes before.
   if (!std::cout.flush() || std::fflush(stdout) != 0 || !markov::write_all(STDOUT_FILENO, text))
-    throw std::runtime_error(std::string("standard output: cannot be written: ") + std::strerror(errno));
+    throw std::runtime_error(std::string("standard output: cannot be written: ") +
+                             std::strerror(errno));
 }
 
 }  // namespace

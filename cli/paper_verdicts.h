@@ -8,7 +8,8 @@
 namespace gatewalk::cli {
 
 inline constexpr char kReproduced[] = "reproduced";
-inline constexpr char kWithinNoise[] = "within noise";  // the paper's 100 trials, or ours, cannot tell
+inline constexpr char kWithinNoise[] =
+    "within noise";  // the paper's 100 trials, or ours, cannot tell
 inline constexpr char kDiffers[] = "differs";
 inline constexpr std::int64_t kPaperTrials = 100;
 /// A statement without a number, such as "never falls", is reproduced only by so many trials.
@@ -23,30 +24,35 @@ struct Share {
 /// "46.3 % [45.6, 47.0]"
 [[nodiscard]] std::string percent_text(const Share& s);
 
-/// A number that the paper counted in 100 trials: reproduced when all of our interval lies within that
-/// of the paper's count, differs when they do not meet.
+/// A number that the paper counted in 100 trials: reproduced when all of our interval lies within
+/// that of the paper's count, differs when they do not meet.
 [[nodiscard]] std::string against(std::int64_t paper_count, const Share& ours);
 
 /// b lies above a beyond chance: their 95 % intervals do not meet.
 [[nodiscard]] bool rises(const Share& a, const Share& b);
 [[nodiscard]] inline bool falls(const Share& a, const Share& b) { return rises(b, a); }
 
-/// Whether the paper would see the difference (two standard errors), if each share is one of its 100
-/// trials, or of those that are `counted` of them (shares of all trials).
-[[nodiscard]] bool seen_with_100(const Share& a, const Share& b, double counted_a = 1.0, double counted_b = 1.0);
+/// Whether the paper would see the difference (two standard errors), if each share is one of its
+/// 100 trials, or of those that are `counted` of them (shares of all trials).
+[[nodiscard]] bool seen_with_100(const Share& a, const Share& b, double counted_a = 1.0,
+                                 double counted_b = 1.0);
 
-/// Of many comparisons some come out beyond chance by chance: two intervals of 95 % that do not meet are
-/// one in a few hundred where nothing differs.
-[[nodiscard]] inline bool more_than_chance(int found, int compared) { return found > 0.02 * compared; }
+/// Of many comparisons some come out beyond chance by chance: two intervals of 95 % that do not
+/// meet are one in a few hundred where nothing differs.
+[[nodiscard]] inline bool more_than_chance(int found, int compared) {
+  return found > 0.02 * compared;
+}
 
 /// Several series along one axis, on which the paper says that they rise.
 class Trend {
  public:
   /// `counted`: what share of all trials each share is of; empty: of all.
-  void add(const std::vector<double>& axis, const std::vector<Share>& s, const std::vector<double>& counted = {});
-  /// Differs when a series ends beyond chance below its start, and, on enough trials, when none ends above
-  /// it or the paper would see more steps down than chance makes. Reproduced, on enough trials, when most end
-  /// above their start and no step goes down beyond chance (or the paper allows that: `wiggles`).
+  void add(const std::vector<double>& axis, const std::vector<Share>& s,
+           const std::vector<double>& counted = {});
+  /// Differs when a series ends beyond chance below its start, and, on enough trials, when none
+  /// ends above it or the paper would see more steps down than chance makes. Reproduced, on enough
+  /// trials, when most end above their start and no step goes down beyond chance (or the paper
+  /// allows that: `wiggles`).
   [[nodiscard]] std::string verdict(bool wiggles = false) const;
 
   int series = 0, up = 0, down = 0;  // from end to end, beyond chance

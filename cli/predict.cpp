@@ -23,7 +23,8 @@ struct OtherRows {
 
 OtherRows parse_rows(const std::string& text) {
   const auto wrong = [&] {
-    return UsageError("--row " + text + ": must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc");
+    return UsageError("--row " + text +
+                      ": must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc");
   };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size()) throw wrong();
@@ -47,7 +48,8 @@ OtherRows parse_rows(const std::string& text) {
 std::vector<OtherRows> rows_of(const Options& options) {
   std::vector<OtherRows> all;
   if (!options.has("row")) return all;
-  for (const auto& text : options.get<std::vector<std::string>>("row")) all.push_back(parse_rows(text));
+  for (const auto& text : options.get<std::vector<std::string>>("row"))
+    all.push_back(parse_rows(text));
   return all;
 }
 
@@ -58,10 +60,10 @@ struct FieldRows {
   markov::RowChains chains;
 };
 
-/// Matrix and chain of each row. Throws UsageError when rows lie outside the field or are given twice, or have
-/// another body, gates of another size or other bins than the base.
+/// Matrix and chain of each row. Throws UsageError when rows lie outside the field or are given
+/// twice, or have another body, gates of another size or other bins than the base.
 FieldRows rows_of_field(const Options& options, const MatrixAndScene& base,
-                            const std::vector<OtherRows>& others, Json& told) {
+                        const std::vector<OtherRows>& others, Json& told) {
   const auto name = [](const OtherRows& o) {
     return "--row " + std::to_string(o.first) +
            (o.last == o.first ? "" : "-" + std::to_string(o.last)) + "=" + o.path;
@@ -83,10 +85,10 @@ FieldRows rows_of_field(const Options& options, const MatrixAndScene& base,
     if (a.body.mass != b.body.mass || a.body.radius != b.body.radius)
       throw UsageError(name(o) + ": it was built with another body than " + options.text("matrix"));
     if (a.beams.joint_x != b.beams.joint_x || a.run.traverse_y != b.run.traverse_y)
-      throw UsageError(name(o) + ": its gates are " + fixed(2.0 * a.beams.joint_x, 3) + " m wide and " +
-                       fixed(a.run.traverse_y, 3) + " m long, those of " + options.text("matrix") + " " +
-                       fixed(2.0 * b.beams.joint_x, 3) + " and " + fixed(b.run.traverse_y, 3) +
-                       " m: they make no field");
+      throw UsageError(name(o) + ": its gates are " + fixed(2.0 * a.beams.joint_x, 3) +
+                       " m wide and " + fixed(a.run.traverse_y, 3) + " m long, those of " +
+                       options.text("matrix") + " " + fixed(2.0 * b.beams.joint_x, 3) + " and " +
+                       fixed(b.run.traverse_y, 3) + " m: they make no field");
     if (m.file.transitions.space != base.file.transitions.space)
       throw UsageError(name(o) + ": its states are not those of " + options.text("matrix") +
                        " (other bins): what leaves one row could not enter the next");
@@ -96,11 +98,15 @@ FieldRows rows_of_field(const Options& options, const MatrixAndScene& base,
       matrices.push_back(std::move(m.file.transitions));
     }
     std::fill(chain_of_row.begin() + o.first, chain_of_row.begin() + o.last + 1, place->second);
-    told.push_back({{"first", o.first}, {"last", o.last}, {"matrix", o.path},
-                    {"matrix_status", m.status}, {"scene", to_toml(m.scene)}});
+    told.push_back({{"first", o.first},
+                    {"last", o.last},
+                    {"matrix", o.path},
+                    {"matrix_status", m.status},
+                    {"scene", to_toml(m.scene)}});
   }
   lattice::FieldMatrices all{{&base.file.transitions}, chain_of_row};
-  for (const dynamics::Transitions& t : matrices) all.matrices.push_back(&t);  // a deque's stay in place
+  for (const dynamics::Transitions& t : matrices)
+    all.matrices.push_back(&t);  // a deque's stay in place
   return {std::move(matrices), std::move(all), {std::move(chains), std::move(chain_of_row)}};
 }
 
@@ -118,19 +124,22 @@ std::vector<FinalDistribution> solve(const markov::RowChains& rows, const std::s
                                  : sweeper.predict_all(field, starts, max_gates);
 }
 
-/// What the sampling of the matrices does to each start's prediction; no replicates in fields that are too
-/// large for many predictions, and none at all, with a warning, if one of them cannot be made.
+/// What the sampling of the matrices does to each start's prediction; no replicates in fields that
+/// are too large for many predictions, and none at all, with a warning, if one of them cannot be
+/// made.
 std::deque<lattice::MatrixNoise> noise_of(const Options& options, const FieldRows& rows,
-                                          const markov::Field& field, const std::vector<markov::Start>& starts,
-                                          int max_gates, const std::vector<FinalDistribution>& predictions) {
+                                          const markov::Field& field,
+                                          const std::vector<markov::Start>& starts, int max_gates,
+                                          const std::vector<FinalDistribution>& predictions) {
   constexpr std::int64_t kMost = 200, kTogether = 8;
   const auto none = [&] {
     std::deque<lattice::MatrixNoise> noise;
     for (std::size_t k = 0; k < starts.size(); ++k) {
       const auto row = static_cast<std::size_t>(starts[k].row);
       const auto matrix = static_cast<std::size_t>(rows.matrices.matrix_of_row[row]);
-      noise.emplace_back(predictions[k],
-                         rows.matrices.matrices[matrix]->trials[static_cast<std::size_t>(starts[k].input)]);
+      noise.emplace_back(
+          predictions[k],
+          rows.matrices.matrices[matrix]->trials[static_cast<std::size_t>(starts[k].input)]);
     }
     return noise;
   };
@@ -149,7 +158,8 @@ std::deque<lattice::MatrixNoise> noise_of(const Options& options, const FieldRow
                      }
                    });
   } catch (const std::runtime_error& e) {
-    warn(std::string("no interval counts the sampling of the matrix: a resampled one fails: ") + e.what());
+    warn(std::string("no interval counts the sampling of the matrix: a resampled one fails: ") +
+         e.what());
     return none();
   }
   return noise;
@@ -186,20 +196,25 @@ std::string title_of(const PaperStart& s) {
   return title.str();
 }
 
-std::string table_of(const FinalDistribution& f, const EndingShares& shares, const ReadyStart& start, const Scene& scene) {
+std::string table_of(const FinalDistribution& f, const EndingShares& shares,
+                     const ReadyStart& start, const Scene& scene) {
   const bool intervals = !std::isnan(shares.interval.front().front());
   std::string table =
-      endings_text(shares, intervals ? "of all walks, 95 % intervals for the sampling of the matrix"
-                                     : "of all walks; no intervals: the field is too large for many predictions, "
-                                       "or a resampled matrix failed") +
-      limits_text(scene) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) + "left the field " + percent(f.left_field, 1.0, 2) + "\nstart: " + start.text + "\n";
+      endings_text(shares,
+                   intervals
+                       ? "of all walks, 95 % intervals for the sampling of the matrix"
+                       : "of all walks; no intervals: the field is too large for many predictions, "
+                         "or a resampled matrix failed") +
+      limits_text(scene) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
+      "left the field " + percent(f.left_field, 1.0, 2) + "\nstart: " + start.text + "\n";
   if (f.unsampled > 0.0)
     table += "reaches a row that was never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)
     table += "still walking when the sum was stopped: " + percent(f.remainder, 1.0, 6) + "\n";
   std::ostringstream bound;
   bound.precision(2);
-  bound << "The chain's own error (bins, memory, and with bins from a pilot where its rows start) is not in the intervals:\n"
+  bound << "The chain's own error (bins, memory, and with bins from a pilot where its rows start) "
+           "is not in the intervals:\n"
         << "gatewalk validate measures it.\n"
         << "Rounding and walks not finished, which are not the error of the prediction: at most "
         << f.remainder + f.rounding << " in all shares together\n";
@@ -209,20 +224,23 @@ std::string table_of(const FinalDistribution& f, const EndingShares& shares, con
 }  // namespace
 
 int run_predict(const std::vector<std::string>& arguments) {
-  Options options("predict MATRIX.nc [SCENE] [options]",
-                  "The exact distribution of endings and final gate: what infinitely many walks with this\n"
-                  "matrix would give. The 95 % intervals count that the matrix is a sample of gate runs;\n"
-                  "how far the chain itself (bins, memory) is off, gatewalk validate measures.",
-                  "gatewalk predict matrix.nc scenes/field.toml --start 0,0,15 --start 4,5,10 --json "
-                  "prediction.json");
+  Options options(
+      "predict MATRIX.nc [SCENE] [options]",
+      "The exact distribution of endings and final gate: what infinitely many walks with this\n"
+      "matrix would give. The 95 % intervals count that the matrix is a sample of gate runs;\n"
+      "how far the chain itself (bins, memory) is off, gatewalk validate measures.",
+      "gatewalk predict matrix.nc scenes/field.toml --start 0,0,15 --start 4,5,10 --json "
+      "prediction.json");
   options.positional("matrix", "matrix file written by gatewalk build", true);
   options.positional("scene", "scene file; without it the matrix's own scene", false);
   add_starts(options, "the scene's start");
-  options.add()("row", po::value<std::vector<std::string>>()->composing()->value_name("A-B=FILE"),
-                "gates of rows i_y = A to B as in another matrix of the same bins (may be repeated)");
-  options.add()("solver", po::value<std::string>()->default_value("auto")->value_name("NAME"),
-                "propagate: step by step; for field.max_gates = 0 also march: row by row, and klu: one "
-                "sparse solve; auto: march without limit, else propagate");
+  options.add()(
+      "row", po::value<std::vector<std::string>>()->composing()->value_name("A-B=FILE"),
+      "gates of rows i_y = A to B as in another matrix of the same bins (may be repeated)");
+  options.add()(
+      "solver", po::value<std::string>()->default_value("auto")->value_name("NAME"),
+      "propagate: step by step; for field.max_gates = 0 also march: row by row, and klu: one "
+      "sparse solve; auto: march without limit, else propagate");
   add_strict(options);
   options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
   options.add()("seed", po::value<Seed>()->default_value(Seed{1}, "1")->value_name("S"),
@@ -233,7 +251,8 @@ int run_predict(const std::vector<std::string>& arguments) {
     throw UsageError("--solver " + solver + ": must be auto, propagate, march or klu");
   const std::vector<PaperStart> given = given_starts(options);
   const std::vector<OtherRows> others = rows_of(options);
-  const auto m = read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
+  const auto m =
+      read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
   require_inside(given, m.scene);
   Json other_rows;
   const FieldRows rows = rows_of_field(options, m, others, other_rows);
@@ -252,7 +271,8 @@ int run_predict(const std::vector<std::string>& arguments) {
   const Stopwatch watch;
   const std::vector<FinalDistribution> found = solve(rows.chains, solver, field, places, max_gates);
   const double seconds = watch.seconds();
-  const std::deque<lattice::MatrixNoise> noise = noise_of(options, rows, field, places, max_gates, found);
+  const std::deque<lattice::MatrixNoise> noise =
+      noise_of(options, rows, field, places, max_gates, found);
 
   Json json;
   std::string table;
@@ -267,10 +287,12 @@ int run_predict(const std::vector<std::string>& arguments) {
     add_to(one, found[k], shares_of(k), noise[k]);
     one["start_state"] = start_state(starts[k]);
     json["starts"].push_back(std::move(one));
-    table += (k > 0 ? "\n" : "") + title_of(given[k]) + "\n" + table_of(found[k], shares_of(k), starts[k], m.scene);
+    table += (k > 0 ? "\n" : "") + title_of(given[k]) + "\n" +
+             table_of(found[k], shares_of(k), starts[k], m.scene);
   }
   for (const OtherRows& o : others)
-    table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " + o.path + "\n";
+    table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " +
+             o.path + "\n";
   json["solver"] = solver;
   if (given.empty()) json["start_state"] = start_state(starts.front());
   json["matrix_status"] = m.status;

@@ -66,8 +66,9 @@ void Progress::begin_part(std::string label, std::int64_t size) {
 
 void Progress::update(std::int64_t done) {
   if (outer_ != nullptr && total_ > 0)
-    outer_->draw(static_cast<double>(outer_->before_) +
-                 static_cast<double>(outer_->part_) * static_cast<double>(done) / static_cast<double>(total_));
+    outer_->draw(static_cast<double>(outer_->before_) + static_cast<double>(outer_->part_) *
+                                                            static_cast<double>(done) /
+                                                            static_cast<double>(total_));
   draw(static_cast<double>(done));
 }
 
@@ -83,8 +84,7 @@ void Progress::draw(double done) {
   const double left = (static_cast<double>(total_) - done) / rate;  // inf while nothing is done
   char figures[48];
   std::snprintf(figures, sizeof figures, " %3d%%  %.3g/s  ",
-                static_cast<int>(100.0 * done / static_cast<double>(total_)),
-                rate);
+                static_cast<int>(100.0 * done / static_cast<double>(total_)), rate);
   std::string line =
       label_ + figures + clock_text(elapsed) + " elapsed, " + clock_text(left) + " left";
   line.resize(std::min(line.size(), terminal_columns() - 1));

@@ -9,8 +9,8 @@
 namespace gatewalk::cli {
 
 /// One line on standard error, redrawn in place at most 5 times a second. Draws nothing unless
-/// `enabled` and standard error is a terminal. Not for several threads at once. One that is made while
-/// another lives is a part of that one and draws nothing itself: commands that run commands.
+/// `enabled` and standard error is a terminal. Not for several threads at once. One that is made
+/// while another lives is a part of that one and draws nothing itself: commands that run commands.
 class Progress {
  public:
   Progress(std::string label, std::int64_t total, bool enabled);

@@ -19,8 +19,12 @@ std::vector<Sized> sizes_of(const std::string& unit) {
   if (unit == "s")
     sizes.insert(sizes.end(), {{60.0, "min"}, {3600.0, "h"}, {86400.0, "d"}});
   else
-    sizes.insert(sizes.end(), {{1e3, "k" + unit}, {1e6, "M" + unit}, {1e9, "G" + unit},
-                               {1e12, "T" + unit}, {1e15, "P" + unit}, {1e18, "E" + unit}});
+    sizes.insert(sizes.end(), {{1e3, "k" + unit},
+                               {1e6, "M" + unit},
+                               {1e9, "G" + unit},
+                               {1e12, "T" + unit},
+                               {1e15, "P" + unit},
+                               {1e18, "E" + unit}});
   return sizes;
 }
 
@@ -68,11 +72,13 @@ std::string quantity(double x, const std::string& unit, int significant) {
 
 std::string reading(double x, const std::string& unit, double step) {
   if (!std::isfinite(x)) return "-";
-  const double power = std::round(std::log10(step)), last = std::pow(10.0, power), typical = 100.0 * last;
+  const double power = std::round(std::log10(step)), last = std::pow(10.0, power),
+               typical = 100.0 * last;
   const bool plain = power >= -4.0 && power <= 0.0;
   Sized shown = plain ? Sized{1.0, unit} : largest_within(unit, typical);
   std::string behind = " " + shown.name;
-  if (const double size = typical / shown.size; !plain && (size < 0.9 || size > 999.0)) {  // beyond all prefixes
+  if (const double size = typical / shown.size;
+      !plain && (size < 0.9 || size > 999.0)) {  // beyond all prefixes
     const int exponent = 3 * static_cast<int>(std::floor((power + 2.0) / 3.0));
     shown.size = std::pow(10.0, exponent);
     behind = "e" + std::to_string(exponent) + " " + unit;

@@ -72,10 +72,13 @@ const std::vector<Column>& columns() {
     using dynamics::BodyState;
     using dynamics::Energies;
     return std::vector<Column>{
-        {"trial", kCount, "number of the trial", [](const Line& l) { return static_cast<double>(l.trial); }},
+        {"trial", kCount, "number of the trial",
+         [](const Line& l) { return static_cast<double>(l.trial); }},
         {"time_s", "s", "time since the trial began", [](const Line& l) { return l.m.time; }},
-        {"gate_x", kCount, "column i_x of the gate that the body is in", [](const Line& l) { return l.m.i_x; }},
-        {"gate_y", kCount, "row i_y of the gate that the body is in", [](const Line& l) { return l.m.i_y; }},
+        {"gate_x", kCount, "column i_x of the gate that the body is in",
+         [](const Line& l) { return l.m.i_x; }},
+        {"gate_y", kCount, "row i_y of the gate that the body is in",
+         [](const Line& l) { return l.m.i_y; }},
         {"x_m", "m", "body, in its gate's frame", body(&BodyState::x)},
         {"y_m", "m", "body, in its gate's frame", body(&BodyState::y)},
         {"field_x_m", "m", "body, in the field's frame",
@@ -84,37 +87,65 @@ const std::vector<Column>& columns() {
          [](const Line& l) { return l.m.sample.state.body.y + l.p.run.traverse_y * l.m.i_y; }},
         {"vx_m_per_s", "m s-1", "velocity of the body", body(&BodyState::vx)},
         {"vy_m_per_s", "m s-1", "velocity of the body", body(&BodyState::vy)},
-        {"theta_left_rad", "rad", "left beam's angle, positive deflected forward", beam(kLeft, &BeamState::theta)},
-        {"theta_right_rad", "rad", "right beam's angle, positive deflected forward", beam(kRight, &BeamState::theta)},
-        {"omega_left_rad_per_s", "rad s-1", "left beam's angular velocity", beam(kLeft, &BeamState::omega)},
-        {"omega_right_rad_per_s", "rad s-1", "right beam's angular velocity", beam(kRight, &BeamState::omega)},
-        {"random_N", "N", "random force during the step that ends here", [](const Line& l) { return l.m.sample.random_force; }},
+        {"theta_left_rad", "rad", "left beam's angle, positive deflected forward",
+         beam(kLeft, &BeamState::theta)},
+        {"theta_right_rad", "rad", "right beam's angle, positive deflected forward",
+         beam(kRight, &BeamState::theta)},
+        {"omega_left_rad_per_s", "rad s-1", "left beam's angular velocity",
+         beam(kLeft, &BeamState::omega)},
+        {"omega_right_rad_per_s", "rad s-1", "right beam's angular velocity",
+         beam(kRight, &BeamState::omega)},
+        {"random_N", "N", "random force during the step that ends here",
+         [](const Line& l) { return l.m.sample.random_force; }},
         {"beams_x_N", "N", "mean force of both beams on the body during the step, hits included",
          [](const Line& l) { return l.m.sample.beam_force[0]; }},
         {"beams_y_N", "N", "mean force of both beams on the body during the step, hits included",
          [](const Line& l) { return l.m.sample.beam_force[1]; }},
-        {"hit_left_Ns", "N s", "impulse of the left beam's hits during the step", [](const Line& l) { return l.m.sample.impulse[kLeft]; }},
-        {"hit_right_Ns", "N s", "impulse of the right beam's hits during the step", [](const Line& l) { return l.m.sample.impulse[kRight]; }},
-        {"contact_left", kCount, "left beam: free, hit during the step, or held at its end; method penalty: always free", mode(kLeft), kModes},
-        {"contact_right", kCount, "right beam: free, hit during the step, or held at its end; method penalty: always free", mode(kRight), kModes},
+        {"hit_left_Ns", "N s", "impulse of the left beam's hits during the step",
+         [](const Line& l) { return l.m.sample.impulse[kLeft]; }},
+        {"hit_right_Ns", "N s", "impulse of the right beam's hits during the step",
+         [](const Line& l) { return l.m.sample.impulse[kRight]; }},
+        {"contact_left", kCount,
+         "left beam: free, hit during the step, or held at its end; method penalty: always free",
+         mode(kLeft), kModes},
+        {"contact_right", kCount,
+         "right beam: free, hit during the step, or held at its end; method penalty: always free",
+         mode(kRight), kModes},
         {"nearest_left", kCount, "part of the left beam nearest to the body", part(kLeft), kParts},
-        {"nearest_right", kCount, "part of the right beam nearest to the body", part(kRight), kParts},
-        {"gap_left_m", "m", "distance of body and left beam", [](const Line& l) { return l.m.sample.gap[kLeft]; }},
-        {"gap_right_m", "m", "distance of body and right beam", [](const Line& l) { return l.m.sample.gap[kRight]; }},
+        {"nearest_right", kCount, "part of the right beam nearest to the body", part(kRight),
+         kParts},
+        {"gap_left_m", "m", "distance of body and left beam",
+         [](const Line& l) { return l.m.sample.gap[kLeft]; }},
+        {"gap_right_m", "m", "distance of body and right beam",
+         [](const Line& l) { return l.m.sample.gap[kRight]; }},
         {"kinetic_body_J", "J", "kinetic energy of the body", energy(&Energies::body)},
         {"kinetic_beams_J", "J", "kinetic energy of both beams",
          [](const Line& l) { return l.m.energy.beams[kLeft] + l.m.energy.beams[kRight]; }},
-        {"elastic_left_J", "J", "elastic energy of the left beam, Eq. (14)", [](const Line& l) { return l.m.energy.elastic[kLeft]; }},
-        {"elastic_right_J", "J", "elastic energy of the right beam, Eq. (14)", [](const Line& l) { return l.m.energy.elastic[kRight]; }},
-        {"propulsion_work_J", "J", "work of the propulsion since the trial began", energy(&Energies::propulsion_work)},
-        {"random_work_J", "J", "work of the random force since the trial began", energy(&Energies::random_work)},
-        {"hit_loss_J", "J", "energy that hits took since the trial began", energy(&Energies::hit_loss)},
-        {"lost_J", "J", "energy lost since the trial began: hits, dampers, drag, beams left behind", energy(&Energies::lost)},
-        {"potential_J", "J", "elastic energy and that of the propulsion, Eq. (15), zero at run.traverse_y_m", potential},
-        {"landscape_J", "J", "the landscape here, Eq. (15): both beams deflected forward, zero at run.traverse_y_m",
-         [](const Line& l) { return dynamics::propulsion_energy(l.p, l.m.sample.state.body.y) + landscape(l, kLeft) + landscape(l, kRight); }},
-        {"landscape_left_J", "J", "the left beam's part of it", [](const Line& l) { return landscape(l, kLeft); }},
-        {"landscape_right_J", "J", "the right beam's part of it", [](const Line& l) { return landscape(l, kRight); }},
+        {"elastic_left_J", "J", "elastic energy of the left beam, Eq. (14)",
+         [](const Line& l) { return l.m.energy.elastic[kLeft]; }},
+        {"elastic_right_J", "J", "elastic energy of the right beam, Eq. (14)",
+         [](const Line& l) { return l.m.energy.elastic[kRight]; }},
+        {"propulsion_work_J", "J", "work of the propulsion since the trial began",
+         energy(&Energies::propulsion_work)},
+        {"random_work_J", "J", "work of the random force since the trial began",
+         energy(&Energies::random_work)},
+        {"hit_loss_J", "J", "energy that hits took since the trial began",
+         energy(&Energies::hit_loss)},
+        {"lost_J", "J", "energy lost since the trial began: hits, dampers, drag, beams left behind",
+         energy(&Energies::lost)},
+        {"potential_J", "J",
+         "elastic energy and that of the propulsion, Eq. (15), zero at run.traverse_y_m",
+         potential},
+        {"landscape_J", "J",
+         "the landscape here, Eq. (15): both beams deflected forward, zero at run.traverse_y_m",
+         [](const Line& l) {
+           return dynamics::propulsion_energy(l.p, l.m.sample.state.body.y) + landscape(l, kLeft) +
+                  landscape(l, kRight);
+         }},
+        {"landscape_left_J", "J", "the left beam's part of it",
+         [](const Line& l) { return landscape(l, kLeft); }},
+        {"landscape_right_J", "J", "the right beam's part of it",
+         [](const Line& l) { return landscape(l, kRight); }},
     };
   }();
   return list;
@@ -139,18 +170,26 @@ std::string ending_of(const GateParams& p, const dynamics::GateRun& run) {
 std::string field_ending(std::optional<markov::Ending> ending) {
   if (!ending) return "not finite";
   switch (*ending) {
-    case markov::Ending::trapped: return "trapped";
-    case markov::Ending::far_edge: return "crossed";
-    case markov::Ending::left_edge: return "left field left side";
-    case markov::Ending::right_edge: return "left field right side";
-    case markov::Ending::near_edge: return "left field near side";
-    case markov::Ending::cut_off: return "cut off";
-    case markov::Ending::unsampled: break;  // of walks only
+    case markov::Ending::trapped:
+      return "trapped";
+    case markov::Ending::far_edge:
+      return "crossed";
+    case markov::Ending::left_edge:
+      return "left field left side";
+    case markov::Ending::right_edge:
+      return "left field right side";
+    case markov::Ending::near_edge:
+      return "left field near side";
+    case markov::Ending::cut_off:
+      return "cut off";
+    case markov::Ending::unsampled:
+      break;  // of walks only
   }
   throw std::logic_error("the dynamics samples no matrix");
 }
 
-/// Energies of the trial when those of this gate are `now`, and what was done before it is `before`.
+/// Energies of the trial when those of this gate are `now`, and what was done before it is
+/// `before`.
 dynamics::Energies together(const dynamics::Energies& before, dynamics::Energies now) {
   now.propulsion_work += before.propulsion_work;
   now.random_work += before.random_work;
@@ -183,8 +222,9 @@ double own_unit(const dynamics::Scale& scale, std::string_view unit) {
   return 1.0;  // codes and angles
 }
 
-/// The sum of some columns of one run, an entry for each moment. Seven digits of what it is in the scene's
-/// own unit are more than a picture shows; rounded so, a scene in other units has the same film.
+/// The sum of some columns of one run, an entry for each moment. Seven digits of what it is in the
+/// scene's own unit are more than a picture shows; rounded so, a scene in other units has the same
+/// film.
 Json values_of(const GateParams& p, const Recording& r, const std::vector<const char*>& names) {
   std::vector<const Column*> parts;
   for (const char* name : names) parts.push_back(&column(name));
@@ -205,7 +245,8 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
   Recording r;
   r.trial = trial;
   if (across_field) {
-    const lattice::FieldTrace t = lattice::trace_field(scene.gate, scene.field, scene.start, seed, trial, most_moments);
+    const lattice::FieldTrace t =
+        lattice::trace_field(scene.gate, scene.field, scene.start, seed, trial, most_moments);
     for (const auto& visit : t.visits) {
       append(r, visit.trace, visit.column - scene.field.start_column(), visit.row);
       r.health.add(scene.gate, visit.trace.run);
@@ -226,7 +267,8 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
 
 std::vector<std::string> endings(bool across_field) {
   if (!across_field)
-    return {"traversed left", "traversed right", "traversed evenly", "exited left", "exited right", "trapped", "not finite"};
+    return {"traversed left", "traversed right", "traversed evenly", "exited left",
+            "exited right",   "trapped",         "not finite"};
   std::vector<std::string> names;
   for (std::size_t e = 0; e < markov::kEndings; ++e)
     if (const auto ending = static_cast<markov::Ending>(e); ending != markov::Ending::unsampled)
@@ -246,7 +288,7 @@ std::string csv_of(const Scene& scene, const std::vector<Recording>& runs) {
       for (const Column& c : columns()) {
         const double x = c.value(line);
         row += row.empty() ? "" : ",";
-        row += !c.words.empty() ? c.words[static_cast<std::size_t>(x)]
+        row += !c.words.empty()   ? c.words[static_cast<std::size_t>(x)]
                : c.unit == kCount ? std::to_string(static_cast<std::int64_t>(x))
                                   : digits(x);
       }
@@ -267,7 +309,8 @@ std::string netcdf_of(const Scene& scene, const std::vector<Recording>& runs, bo
       codes.push_back(static_cast<signed char>(codes.size()));
     }
     put_text(nc, variable, "flag_meanings", meanings);
-    check(nc_put_att_schar(nc, variable, "flag_values", NC_BYTE, codes.size(), codes.data()), "flag_values");
+    check(nc_put_att_schar(nc, variable, "flag_values", NC_BYTE, codes.size(), codes.data()),
+          "flag_values");
   };
   Image nc;
   nc.create();
@@ -282,11 +325,14 @@ std::string netcdf_of(const Scene& scene, const std::vector<Recording>& runs, bo
     samples += r.moments.size();
     trial.push_back(r.trial);
     row_size.push_back(static_cast<std::int32_t>(r.moments.size()));
-    ending.push_back(static_cast<std::int8_t>(std::find(known.begin(), known.end(), r.ending) - known.begin()));
+    ending.push_back(
+        static_cast<std::int8_t>(std::find(known.begin(), known.end(), r.ending) - known.begin()));
   }
-  const int sample = define_dimension(nc, "sample", samples), run = define_dimension(nc, "run", runs.size());
+  const int sample = define_dimension(nc, "sample", samples),
+            run = define_dimension(nc, "run", runs.size());
   put_variable(nc, "run_trial", run, trial, "1", "number of the trial");
-  const int sizes = put_variable(nc, "row_size", run, row_size, "1", "samples of a run, which follow each other");
+  const int sizes =
+      put_variable(nc, "row_size", run, row_size, "1", "samples of a run, which follow each other");
   put_text(nc, sizes, "sample_dimension", "sample");
   with_words(nc, put_variable(nc, "ending", run, ending, "1", "how a run ended"), known);
   for (const Column& c : columns()) {
@@ -317,8 +363,10 @@ std::string netcdf_of(const Scene& scene, const std::vector<Recording>& runs, bo
 Json film_of(const Scene& scene, const std::vector<Recording>& runs, bool across_field) {
   const GateParams& p = scene.gate;
   Json film;
-  film["title"] = scene.source + ": F " + quantity(p.forces.propulsion, "N", 7) + ", Rm " + quantity(p.forces.random, "N", 7) + ", k " + digits(p.beams.stiffness_left) +
-                  " / " + digits(p.beams.stiffness_right) + ", d " + digits(p.beams.damping) + ", " + p.run.method;
+  film["title"] = scene.source + ": F " + quantity(p.forces.propulsion, "N", 7) + ", Rm " +
+                  quantity(p.forces.random, "N", 7) + ", k " + digits(p.beams.stiffness_left) +
+                  " / " + digits(p.beams.stiffness_right) + ", d " + digits(p.beams.damping) +
+                  ", " + p.run.method;
   const dynamics::Scale scale = dynamics::scale_of(p);
   film["scale"] = {{"length_m", scale.length}, {"mass_kg", scale.mass}, {"time_s", scale.time}};
   film["radius_m"] = p.body.radius;
@@ -351,8 +399,10 @@ Json film_of(const Scene& scene, const std::vector<Recording>& runs, bool across
       {"lost_in_hits_J", {"hit_loss_J"}}};
   for (const Recording& r : runs) {
     Json run;
-    run["label"] = "trial " + std::to_string(r.trial) + ": " + r.ending + " after " + reading(r.seconds, "s", 0.01 * scale.time) +
-                   (across_field ? ", " + std::to_string(r.gates) + (r.gates == 1 ? " gate" : " gates") : "");
+    run["label"] =
+        "trial " + std::to_string(r.trial) + ": " + r.ending + " after " +
+        reading(r.seconds, "s", 0.01 * scale.time) +
+        (across_field ? ", " + std::to_string(r.gates) + (r.gates == 1 ? " gate" : " gates") : "");
     run["ending"] = r.ending;
     run["propulsion_N"] = p.forces.propulsion;
     for (const auto& [name, parts] : arrays) run[name] = values_of(p, r, parts);
@@ -370,7 +420,8 @@ void add_details(Json& film, const Scene& scene, const std::vector<Recording>& r
     Json& run = film["runs"][i];
     run["trial"] = runs[i].trial;
     run["hits"] = runs[i].health.impacts;
-    for (const char* name : {"potential_J", "elastic_left_J", "elastic_right_J", "landscape_J", "landscape_left_J", "landscape_right_J"})
+    for (const char* name : {"potential_J", "elastic_left_J", "elastic_right_J", "landscape_J",
+                             "landscape_left_J", "landscape_right_J"})
       run[name] = values_of(scene.gate, runs[i], {name});
   }
 }

@@ -9,7 +9,8 @@ std::string replay_page(const Json& film) {
   // Without scripts the page still says how the runs ended.
   std::string words;
   if (film.contains("runs"))
-    for (const Json& run : film["runs"]) words += "<p>" + escaped(run.value("label", "a run")) + "</p>";
+    for (const Json& run : film["runs"])
+      words += "<p>" + escaped(run.value("label", "a run")) + "</p>";
   return filled(carried_file("replay.html"), {{"title", escaped(film.value("title", "Replay"))},
                                               {"words", words},
                                               {"script", std::string(carried_file("replay.js"))},

@@ -85,8 +85,8 @@ std::string complaint(const dynamics::Health& h) {
     text += " the step is longer than the method's stability bound for these beams in " +
             of_runs(h.unstable) + ": take a smaller run.step_s or another run.method;";
   if (h.outcomes_off())
-    text += " a better method gives other outcomes for at least " + percent(h.outcome_error, 1.0) + " of " +
-            std::to_string(h.checked_trials) +
+    text += " a better method gives other outcomes for at least " + percent(h.outcome_error, 1.0) +
+            " of " + std::to_string(h.checked_trials) +
             " trials that were run again: take a smaller run.step_s, or run.method = \"auto\";";
   if (h.undefined_contacts > 0)
     text += " " + std::to_string(h.undefined_contacts) +
@@ -140,8 +140,8 @@ struct Span {
   Eigen::Index first, count, block;
 };
 
-/// All of them if they can be printed; else those between ends that hold next to nothing, in blocks if
-/// they are still too many.
+/// All of them if they can be printed; else those between ends that hold next to nothing, in blocks
+/// if they are still too many.
 Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
   constexpr double kNextToNothing = 5e-5;  // prints as 0.00 %
   Span span{0, shares.size(), 1};
@@ -166,7 +166,8 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
     columns.block |= 1;
     const Eigen::Index end = columns.first + columns.count;
     const Eigen::Index to_left = half - columns.block / 2 - columns.first;  // from the middle block
-    columns.first += to_left - (to_left + (to_left > 0 ? columns.block - 1 : 0)) / columns.block * columns.block;
+    columns.first +=
+        to_left - (to_left + (to_left > 0 ? columns.block - 1 : 0)) / columns.block * columns.block;
     columns.count = end - columns.first;
     text += "; blocks of " + std::to_string(columns.block) + " x " + std::to_string(rows.block) +
             " gates: i_x in their middle, i_y at their lower end";
@@ -176,9 +177,11 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
   for (Eigen::Index r = (rows.count - 1) / rows.block * rows.block; r >= 0; r -= rows.block) {
     text += padded(std::to_string(rows.first + r), 4) + " |";
     for (Eigen::Index c = columns.first; c < columns.first + columns.count; c += columns.block) {
-      const Eigen::Index left = std::max<Eigen::Index>(0, c), right = std::min(shares.cols(), c + columns.block);
+      const Eigen::Index left = std::max<Eigen::Index>(0, c),
+                         right = std::min(shares.cols(), c + columns.block);
       const double share =
-          shares.block(rows.first + r, left, std::min(rows.block, rows.count - r), right - left).sum();
+          shares.block(rows.first + r, left, std::min(rows.block, rows.count - r), right - left)
+              .sum();
       shown += share;
       text += share == 0.0 ? padded(".", 7) : padded(fixed(100.0 * share, 2), 7);
     }
@@ -189,7 +192,8 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
     text += padded(std::to_string(c + columns.block / 2 - half), 7);
   text += "\n";
   if (rows.count < shares.rows() || columns.count < shares.cols())
-    text += "elsewhere in the " + std::to_string(shares.cols()) + " x " + std::to_string(shares.rows()) +
+    text += "elsewhere in the " + std::to_string(shares.cols()) + " x " +
+            std::to_string(shares.rows()) +
             " gates: " + percent(std::max(0.0, shares.sum() - shown), 1.0, 4) + "\n";
   return text;
 }
@@ -213,7 +217,8 @@ std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
 }
 
 std::array<double, 2> interval_of_share(double share, double equivalent_trials) {
-  const double n = equivalent_trials * share, others = equivalent_trials * std::max(0.0, 1.0 - share);
+  const double n = equivalent_trials * share,
+               others = equivalent_trials * std::max(0.0, 1.0 - share);
   return {n == 0.0 ? 0.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.025),
           others == 0.0 ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
 }
@@ -222,23 +227,26 @@ EndingShares::EndingShares(const std::array<double, markov::kEndings>& shares) :
   interval.fill({std::nan(""), std::nan("")});
 }
 
-EndingShares::EndingShares(const std::array<std::int64_t, markov::kEndings>& counts, std::int64_t trials) {
+EndingShares::EndingShares(const std::array<std::int64_t, markov::kEndings>& counts,
+                           std::int64_t trials) {
   for (std::size_t e = 0; e < markov::kEndings; ++e) {
     share[e] = static_cast<double>(counts[e]) / static_cast<double>(trials);
     interval[e] = share_interval(counts[e], trials);
   }
 }
 
-EndingShares::EndingShares(const markov::FinalDistribution& prediction, const lattice::MatrixNoise& noise,
-                           int max_gates)
+EndingShares::EndingShares(const markov::FinalDistribution& prediction,
+                           const lattice::MatrixNoise& noise, int max_gates)
     : EndingShares(prediction.endings) {
   if (noise.replicates() == 0) return;
   constexpr double kRounding = 1e-12;
   for (std::size_t e = 0; e < markov::kEndings; ++e) {
     interval[e] = noise.interval_95(static_cast<markov::Ending>(e));
-    // Where no resampled matrix shows a spread: what the runs of the row that all walks begin in can rule out.
+    // Where no resampled matrix shows a spread: what the runs of the row that all walks begin in
+    // can rule out.
     if (interval[e][1] - interval[e][0] <= kRounding)
-      interval[e] = interval_of_share(std::clamp(share[e], 0.0, 1.0), static_cast<double>(noise.runs()));
+      interval[e] =
+          interval_of_share(std::clamp(share[e], 0.0, 1.0), static_cast<double>(noise.runs()));
   }
   if (max_gates == 0) interval[static_cast<std::size_t>(markov::Ending::cut_off)] = {0.0, 0.0};
 }
@@ -278,7 +286,8 @@ std::string endings_text(const EndingShares& shares, const std::string& of) {
     const auto at = static_cast<std::size_t>(e.ending);
     text += padded(e.name, -11) + padded(percents(shares.share[at]), 7) + " %";
     if (!std::isnan(shares.interval[at][0]))
-      text += "  [" + percents(shares.interval[at][0]) + ", " + percents(shares.interval[at][1]) + "]";
+      text +=
+          "  [" + percents(shares.interval[at][0]) + ", " + percents(shares.interval[at][1]) + "]";
     if (at == static_cast<std::size_t>(kEndingNames.front().ending)) text += "  " + of;
     text += "\n";
   }
@@ -317,8 +326,8 @@ Json to_json(const dynamics::GateTally& tally) {
   json["trapped"] = tally.trapped;
   json["not_finite"] = tally.broken;
   json["intervals_95"] = Json::object();
-  for (const char* outcome : {"traversed", "traversed_left", "traversed_right", "exited_left",
-                              "exited_right", "trapped"})
+  for (const char* outcome :
+       {"traversed", "traversed_left", "traversed_right", "exited_left", "exited_right", "trapped"})
     json["intervals_95"][outcome] = share_interval(json[outcome].get<std::int64_t>(), tally.trials);
   return json;
 }
@@ -334,13 +343,16 @@ std::string scene_line(const Scene& scene) {
   // Two numbers with one unit, that of the larger.
   const Sized place = readable_unit("m", std::max(std::abs(start.x), std::abs(start.y)));
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
-  return scene.source + ": start x " + number(start.x / place.size) + ", y " + number(start.y / place.size) + " " +
-         place.name + ", v (" + number(start.vx / speed.size) + ", " + number(start.vy / speed.size) + ") " +
-         speed.name + "; disc " + quantity(gate.body.mass, "kg", 6) + ", R " + quantity(gate.body.radius, "m", 6) +
-         "; F " + quantity(gate.forces.propulsion, "N", 6) + ", Rm " + quantity(gate.forces.random, "N", 6) +
-         "; beams k " + number(gate.beams.stiffness_left) + " / " + number(gate.beams.stiffness_right) + ", d " +
-         number(gate.beams.damping) + "; " + gate.run.method + " " +
-         (gate.run.method == "event" ? quantity(gate.run.event_tolerance, "m", 6) : quantity(gate.run.step, "s", 6)) +
+  return scene.source + ": start x " + number(start.x / place.size) + ", y " +
+         number(start.y / place.size) + " " + place.name + ", v (" + number(start.vx / speed.size) +
+         ", " + number(start.vy / speed.size) + ") " + speed.name + "; disc " +
+         quantity(gate.body.mass, "kg", 6) + ", R " + quantity(gate.body.radius, "m", 6) + "; F " +
+         quantity(gate.forces.propulsion, "N", 6) + ", Rm " + quantity(gate.forces.random, "N", 6) +
+         "; beams k " + number(gate.beams.stiffness_left) + " / " +
+         number(gate.beams.stiffness_right) + ", d " + number(gate.beams.damping) + "; " +
+         gate.run.method + " " +
+         (gate.run.method == "event" ? quantity(gate.run.event_tolerance, "m", 6)
+                                     : quantity(gate.run.step, "s", 6)) +
          "\n";
 }
 

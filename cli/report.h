@@ -27,10 +27,12 @@ namespace gatewalk::cli {
 [[nodiscard]] Json grid(const markov::CellCounts& cells);
 [[nodiscard]] Json grid(const markov::CellProbabilities& cells);
 
-/// The field seen from above, farthest row on top, in percent. Of fields too large to print: where all
-/// but next to nothing lies, in blocks if need be.
-[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares, const std::string& what = "final gate");
-/// The map of the trapped, below the first one; empty for fields too large to print and where none is.
+/// The field seen from above, farthest row on top, in percent. Of fields too large to print: where
+/// all but next to nothing lies, in blocks if need be.
+[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares,
+                                 const std::string& what = "final gate");
+/// The map of the trapped, below the first one; empty for fields too large to print and where none
+/// is.
 [[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares);
 
 /// Fixed-point text of x with `digits` decimals; "-" for a value that is not a number.
@@ -42,7 +44,8 @@ namespace gatewalk::cli {
 /// The same for a share that varies as that of so many independent trials would.
 [[nodiscard]] std::array<double, 2> interval_of_share(double share, double equivalent_trials);
 
-/// How trials through the field ended: shares of all, with 95 % intervals (NaN: none), by markov::Ending.
+/// How trials through the field ended: shares of all, with 95 % intervals (NaN: none), by
+/// markov::Ending.
 struct EndingShares {
   std::array<double, markov::kEndings> share{};
   std::array<std::array<double, 2>, markov::kEndings> interval;
@@ -51,20 +54,23 @@ struct EndingShares {
   explicit EndingShares(const std::array<double, markov::kEndings>& shares);
   /// Jeffreys' intervals of these counts.
   EndingShares(const std::array<std::int64_t, markov::kEndings>& counts, std::int64_t trials);
-  /// A prediction's, with what the sampling of its matrix makes. Without a limit of gates nothing is cut off.
-  EndingShares(const markov::FinalDistribution& prediction, const lattice::MatrixNoise& noise, int max_gates);
+  /// A prediction's, with what the sampling of its matrix makes. Without a limit of gates nothing
+  /// is cut off.
+  EndingShares(const markov::FinalDistribution& prediction, const lattice::MatrixNoise& noise,
+               int max_gates);
 };
-/// The five that a gate chain has, with their names in JSON and in tables. (It has no way out backwards;
-/// states never sampled are told apart.)
+/// The five that a gate chain has, with their names in JSON and in tables. (It has no way out
+/// backwards; states never sampled are told apart.)
 struct EndingName {
   markov::Ending ending;
   const char *key, *name;
 };
-inline constexpr std::array<EndingName, 5> kEndingNames{{{markov::Ending::far_edge, "crossed", "crossed"},
-                                                         {markov::Ending::left_edge, "left_side", "left side"},
-                                                         {markov::Ending::right_edge, "right_side", "right side"},
-                                                         {markov::Ending::trapped, "trapped", "trapped"},
-                                                         {markov::Ending::cut_off, "cut_off", "cut off"}}};
+inline constexpr std::array<EndingName, 5> kEndingNames{
+    {{markov::Ending::far_edge, "crossed", "crossed"},
+     {markov::Ending::left_edge, "left_side", "left side"},
+     {markov::Ending::right_edge, "right_side", "right side"},
+     {markov::Ending::trapped, "trapped", "trapped"},
+     {markov::Ending::cut_off, "cut_off", "cut off"}}};
 /// {"crossed": ..., "left_side": ..., ...}: counts, shares, or [low, high] (null: no interval).
 [[nodiscard]] Json endings(const std::array<std::int64_t, markov::kEndings>& counts);
 [[nodiscard]] Json endings(const std::array<double, markov::kEndings>& shares);

@@ -16,8 +16,9 @@ namespace gatewalk::cli {
 namespace {
 
 // What report.js draws; tests/web shows each of them.
-constexpr std::array kCharts = {"outcomes",     "right_share", "landscapes", "barriers", "penetration", "trajectories",
-                                "final_gates", "table4",      "rates",      "speed",    "histogram",   "replay"};
+constexpr std::array kCharts = {"outcomes",    "right_share",  "landscapes",  "barriers",
+                                "penetration", "trajectories", "final_gates", "table4",
+                                "rates",       "speed",        "histogram",   "replay"};
 
 /// How a verdict is shown: never by colour alone.
 struct Verdict {
@@ -32,7 +33,8 @@ const Verdict& verdict_of(const Json& claim) {
   for (const Verdict& v : kVerdicts) {
     if (name == v.name) return v;
   }
-  throw std::invalid_argument("claim " + claim.at("id").get<std::string>() + ": unknown verdict \"" + name + "\"");
+  throw std::invalid_argument("claim " + claim.at("id").get<std::string>() +
+                              ": unknown verdict \"" + name + "\"");
 }
 
 /// A text field, ready for HTML.
@@ -40,7 +42,8 @@ std::string text(const Json& object, const char* field) {
   return escaped(object.at(field).get<std::string>());
 }
 
-/// The same, with nothing broken apart at a line's end that belongs together: "46.0 % [45.3, 46.7]" between % and [ only.
+/// The same, with nothing broken apart at a line's end that belongs together: "46.0 % [45.3, 46.7]"
+/// between % and [ only.
 std::string values(const Json& object, const char* field) {
   const auto plain = object.at(field).get<std::string>();
   std::string out;
@@ -74,10 +77,13 @@ std::string badge(const Verdict& v) {
 std::string tally_of(const Json& claims) {
   std::string bar, list;
   for (const Verdict& v : kVerdicts) {
-    const auto n = std::count_if(claims.begin(), claims.end(), [&](const Json& c) { return &verdict_of(c) == &v; });
+    const auto n = std::count_if(claims.begin(), claims.end(),
+                                 [&](const Json& c) { return &verdict_of(c) == &v; });
     if (n == 0) continue;
-    bar += "<span class=\"" + std::string(v.style) + "\" style=\"flex-grow:" + std::to_string(n) + "\"></span>";
-    list += element(std::string("li class=\"") + v.style + "\"", "<b>" + std::to_string(n) + "</b>" + badge(v));
+    bar += "<span class=\"" + std::string(v.style) + "\" style=\"flex-grow:" + std::to_string(n) +
+           "\"></span>";
+    list += element(std::string("li class=\"") + v.style + "\"",
+                    "<b>" + std::to_string(n) + "</b>" + badge(v));
   }
   return element("div class=\"bar\" aria-hidden=\"true\"", bar) + element("ul", list);
 }
@@ -89,18 +95,21 @@ std::string claim_rows(const Json& claims, const std::map<std::string, std::stri
     const auto see = c.at("see").get<std::string>();
     const auto heading = headings.find(see);
     if (heading == headings.end()) {
-      throw std::invalid_argument("claim " + c.at("id").get<std::string>() + ": no section \"" + see + "\"");
+      throw std::invalid_argument("claim " + c.at("id").get<std::string>() + ": no section \"" +
+                                  see + "\"");
     }
-    std::string what = element("span class=\"where\"", text(c, "where")) + element("p", text(c, "claim"));
+    std::string what =
+        element("span class=\"where\"", text(c, "where")) + element("p", text(c, "claim"));
     if (!c.at("why").get<std::string>().empty()) what += element("p class=\"why\"", text(c, "why"));
     const std::string cell = "td role=\"cell\" ";
-    rows += element("tr role=\"row\" class=\"" + std::string(v.style) + "\" id=\"claim-" + text(c, "id") + "\"",
-                    element(cell + "class=\"claim\"", what) +
-                        element(cell + "data-label=\"Paper\"", values(c, "paper")) +
-                        element(cell + "data-label=\"Here\"", values(c, "ours")) +
-                        element(cell + "data-label=\"Verdict\"", badge(v)) +
-                        element(cell + "data-label=\"See\"",
-                                "<a href=\"#" + escaped(see) + "\">" + escaped(heading->second) + "</a>"));
+    rows += element(
+        "tr role=\"row\" class=\"" + std::string(v.style) + "\" id=\"claim-" + text(c, "id") + "\"",
+        element(cell + "class=\"claim\"", what) +
+            element(cell + "data-label=\"Paper\"", values(c, "paper")) +
+            element(cell + "data-label=\"Here\"", values(c, "ours")) +
+            element(cell + "data-label=\"Verdict\"", badge(v)) +
+            element(cell + "data-label=\"See\"",
+                    "<a href=\"#" + escaped(see) + "\">" + escaped(heading->second) + "</a>"));
   }
   return rows;
 }
@@ -109,7 +118,8 @@ std::string claim_rows(const Json& claims, const std::map<std::string, std::stri
 std::string table4(const Json& data) {
   const auto number = [](const Json& row, const char* field, int digits) {
     const auto found = row.find(field);
-    return found == row.end() || found->is_null() ? std::string("–") : fixed(found->get<double>(), digits);
+    return found == row.end() || found->is_null() ? std::string("–")
+                                                  : fixed(found->get<double>(), digits);
   };
   std::string rows;
   for (const Json& r : data.at("rows")) {
@@ -125,15 +135,22 @@ std::string table4(const Json& data) {
     rows += element("tr", cells + element("td class=\"ours\"", number(r, "tv", 3)) +
                               element("td", number(r, "tv_floor", 3)));
   }
-  const std::string four = "<th scope=\"col\">paper</th><th scope=\"col\">here ± sd</th><th scope=\"col\">noise floor</th>"
-                           "<th scope=\"col\">all trials</th>";
+  const std::string four =
+      "<th scope=\"col\">paper</th><th scope=\"col\">here ± sd</th><th scope=\"col\">noise "
+      "floor</th>"
+      "<th scope=\"col\">all trials</th>";
   const std::string head =
-      element("tr", "<th rowspan=\"2\" scope=\"col\">start</th><th colspan=\"4\" scope=\"colgroup\">correlation coefficient</th>"
-                    "<th colspan=\"4\" scope=\"colgroup\">RMSE, trials per 100</th>"
-                    "<th colspan=\"2\" scope=\"colgroup\">total variation</th>") +
-      element("tr", four + four + "<th scope=\"col\">all trials</th><th scope=\"col\">noise floor</th>");
-  return element("div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table IV, the paper's and ours\"",
-                 element("table class=\"numbers\"", element("thead", head) + element("tbody", rows)));
+      element("tr",
+              "<th rowspan=\"2\" scope=\"col\">start</th><th colspan=\"4\" "
+              "scope=\"colgroup\">correlation coefficient</th>"
+              "<th colspan=\"4\" scope=\"colgroup\">RMSE, trials per 100</th>"
+              "<th colspan=\"2\" scope=\"colgroup\">total variation</th>") +
+      element("tr",
+              four + four + "<th scope=\"col\">all trials</th><th scope=\"col\">noise floor</th>");
+  return element(
+      "div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table IV, the paper's and "
+      "ours\"",
+      element("table class=\"numbers\"", element("thead", head) + element("tbody", rows)));
 }
 
 std::string section(const Json& s, const Json& claims) {
@@ -146,7 +163,8 @@ std::string section(const Json& s, const Json& claims) {
   std::string about, commands, files;
   for (const Json& c : claims) {
     if (c.at("see").get<std::string>() != id) continue;
-    about += element("li", "<a href=\"#claim-" + text(c, "id") + "\">" + badge(verdict_of(c)) + text(c, "claim") + "</a>");
+    about += element("li", "<a href=\"#claim-" + text(c, "id") + "\">" + badge(verdict_of(c)) +
+                               text(c, "claim") + "</a>");
   }
   for (const Json& c : s.at("commands")) commands += element("code", escaped(c.get<std::string>()));
   for (const Json& f : s.at("files")) {
@@ -156,15 +174,16 @@ std::string section(const Json& s, const Json& claims) {
   std::string out = element("h2", text(s, "heading"));
   if (!about.empty()) out += element("ul class=\"about\" aria-label=\"Claims shown here\"", about);
   out += element("div class=\"text\"", paragraphs(s.at("text")));
-  out += "<figure>" +
-         element("div class=\"chart\" data-kind=\"" + kind + "\" data-section=\"" + escaped(id) + "\" data-alt=\"" +
-                     text(s, "alt") + "\"",
-                 "<noscript><p class=\"remark\">" + text(s, "alt") + "</p></noscript>");
+  out +=
+      "<figure>" + element("div class=\"chart\" data-kind=\"" + kind + "\" data-section=\"" +
+                               escaped(id) + "\" data-alt=\"" + text(s, "alt") + "\"",
+                           "<noscript><p class=\"remark\">" + text(s, "alt") + "</p></noscript>");
   if (kind == "table4") out += table4(s.at("data"));
   std::string how;
   const auto n = s.at("commands").size();
   if (n > 0) commands = element("div class=\"commands\"", commands);
-  how += n > 3 ? element("details", element("summary", std::to_string(n) + " commands") + commands) : commands;
+  how += n > 3 ? element("details", element("summary", std::to_string(n) + " commands") + commands)
+               : commands;
   if (!files.empty()) how += element("p class=\"files\"", "Files: " + files);
   out += element("figcaption", how) + "</figure>\n";
   return element("section id=\"" + escaped(id) + "\"", out);
@@ -181,11 +200,12 @@ std::string made_by(const Json& made) {
   const auto entry = [](const char* name, const std::string& value) {
     return element("div", element("dt", name) + element("dd", value));
   };
-  std::string out = element("dl", entry("Program", text(made, "program")) +
-                                      entry("Command", "<code>" + text(made, "command") + "</code>") +
-                                      entry("Seed", made.at("seed").dump()) + entry("Machine", text(made, "machine")) +
-                                      entry("Time taken", duration(made.at("seconds").get<double>())) +
-                                      entry("Date", text(made, "date")));
+  std::string out = element(
+      "dl", entry("Program", text(made, "program")) +
+                entry("Command", "<code>" + text(made, "command") + "</code>") +
+                entry("Seed", made.at("seed").dump()) + entry("Machine", text(made, "machine")) +
+                entry("Time taken", duration(made.at("seconds").get<double>())) +
+                entry("Date", text(made, "date")));
   for (const Json& scene : made.at("scenes")) {
     out += element("details", element("summary", text(scene, "name")) +
                                   element("pre tabindex=\"0\"", text(scene, "text")));
@@ -195,7 +215,8 @@ std::string made_by(const Json& made) {
 
 std::string licences() {
   std::string out;
-  for (const char* name : {"vega.LICENSE", "vega-lite.LICENSE", "vega-embed.LICENSE", "plotly.LICENSE"}) {
+  for (const char* name :
+       {"vega.LICENSE", "vega-lite.LICENSE", "vega-embed.LICENSE", "plotly.LICENSE"}) {
     out += element("h3", name) + element("pre tabindex=\"0\"", escaped(carried_file(name)));
   }
   return out;
@@ -204,7 +225,8 @@ std::string licences() {
 /// A script for report.js to start when it is needed, so that the page opens at once.
 std::string library(const char* name) {
   const std::string code(carried_file(name));
-  if (code.find("</script") != std::string::npos) throw std::logic_error(std::string(name) + " cannot stand in a page");
+  if (code.find("</script") != std::string::npos)
+    throw std::logic_error(std::string(name) + " cannot stand in a page");
   return element("script type=\"text/plain\" id=\"" + std::string(name) + "\"", code);
 }
 
@@ -239,8 +261,8 @@ std::string report_page(const Json& report) {
                  {"made_by", made_by(report.at("made_by"))},
                  {"licences", licences()},
                  {"data", script_json(data)},
-                 {"libraries", library("vega.min.js") + library("vega-lite.min.js") + library("vega-embed.min.js") +
-                                   library("plotly-gl3d.min.js")},
+                 {"libraries", library("vega.min.js") + library("vega-lite.min.js") +
+                                   library("vega-embed.min.js") + library("plotly-gl3d.min.js")},
                  {"replay", std::string(carried_file("replay.js"))},
                  {"js", std::string(carried_file("report.js"))}});
 }

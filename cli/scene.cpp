@@ -16,8 +16,8 @@
 #include <utility>
 #include <variant>
 
-#include "cli/scene_bins.h"
 #include "cli/edit_distance.h"
+#include "cli/scene_bins.h"
 #include "dynamics/methods/method.h"
 
 namespace gatewalk::cli {
@@ -68,7 +68,9 @@ const std::vector<SceneKey>& scene_keys() {
     std::vector<SceneKey> all;
     for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
       if (info.key == "run.step_s") {
-        all.push_back({kMethodKey, [](Scene& s) { return Slot(&s.gate.run.method); }, {},
+        all.push_back({kMethodKey,
+                       [](Scene& s) { return Slot(&s.gate.run.method); },
+                       {},
                        "how time is stepped, see dynamics/methods/method.h"});
       }
       all.push_back({info.key, [&info](Scene& s) { return Slot(&info.ref(s.gate)); },
@@ -83,26 +85,43 @@ const std::vector<SceneKey>& scene_keys() {
       const double most = kFar * dynamics::scale_of(s.gate).speed();
       return Interval{-most, most};
     };
-    const auto add = [&](std::string_view key, auto slot, std::function<Interval(const Scene&)> permitted,
+    const auto add = [&](std::string_view key, auto slot,
+                         std::function<Interval(const Scene&)> permitted,
                          std::string_view meaning) {
-      all.push_back({key, [slot](Scene& s) { return Slot(slot(s)); }, std::move(permitted), meaning});
+      all.push_back(
+          {key, [slot](Scene& s) { return Slot(slot(s)); }, std::move(permitted), meaning});
     };
-    add("field.columns", [](Scene& s) { return &s.field.columns; }, fixed(1, 2001), "gates side by side");
-    add("field.rows", [](Scene& s) { return &s.field.rows; }, fixed(1, 2001), "gates one behind the other");
-    add("field.max_gates", [](Scene& s) { return &s.field.max_gates; }, fixed(0, 1e9),
+    add(
+        "field.columns", [](Scene& s) { return &s.field.columns; }, fixed(1, 2001),
+        "gates side by side");
+    add(
+        "field.rows", [](Scene& s) { return &s.field.rows; }, fixed(1, 2001),
+        "gates one behind the other");
+    add(
+        "field.max_gates", [](Scene& s) { return &s.field.max_gates; }, fixed(0, 1e9),
         "gates a body may visit before it is cut off, 0: no limit");
-    add(kFidelityKey, [](Scene& s) { return &s.field.fidelity; }, {},
+    add(
+        kFidelityKey, [](Scene& s) { return &s.field.fidelity; }, {},
         "which beams act: active (only the gate the body is in), remember, all");
-    add("start.x_m", [](Scene& s) { return &s.start.x; },
-        [](const Scene& s) { return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x, true, true}; },
-        "start, from the gate's middle line");
-    add("start.y_m", [](Scene& s) { return &s.start.y; },
+    add(
+        "start.x_m", [](Scene& s) { return &s.start.x; },
         [](const Scene& s) {
-          return Interval{-kFar * dynamics::scale_of(s.gate).length, s.gate.run.traverse_y, false, true};
+          return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x, true, true};
+        },
+        "start, from the gate's middle line");
+    add(
+        "start.y_m", [](Scene& s) { return &s.start.y; },
+        [](const Scene& s) {
+          return Interval{-kFar * dynamics::scale_of(s.gate).length, s.gate.run.traverse_y, false,
+                          true};
         },
         "start, from the gate's entrance");
-    add("start.vx_m_per_s", [](Scene& s) { return &s.start.vx; }, speeds, "lateral velocity at the start");
-    add("start.vy_m_per_s", [](Scene& s) { return &s.start.vy; }, speeds, "forward velocity at the start");
+    add(
+        "start.vx_m_per_s", [](Scene& s) { return &s.start.vx; }, speeds,
+        "lateral velocity at the start");
+    add(
+        "start.vy_m_per_s", [](Scene& s) { return &s.start.vy; }, speeds,
+        "forward velocity at the start");
     return all;
   }();
   return keys;
@@ -204,7 +223,9 @@ std::string_view closest_key(std::string_view name) {
   name = name.substr(0, kLongestCompared);
   // The unit is easily forgotten.
   for (const SceneKey& k : scene_keys())
-    if (!leaf_of(name).empty() && table_of(k.key) == table_of(name) && leaf_of(k.key).starts_with(leaf_of(name))) return k.key;
+    if (!leaf_of(name).empty() && table_of(k.key) == table_of(name) &&
+        leaf_of(k.key).starts_with(leaf_of(name)))
+      return k.key;
   const auto distance = [&](const SceneKey& k) {
     return std::min(edit_distance(name, k.key), 1 + edit_distance(leaf_of(name), leaf_of(k.key)));
   };
@@ -256,8 +277,8 @@ toml::table parse_toml(std::string_view text, const Origin& origin) {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     const std::size_t line = error.source().begin.line;
-    throw SceneError(origin(line) + ": " + row_of(text, line) + ": "
-                     + std::string(error.description()));
+    throw SceneError(origin(line) + ": " + row_of(text, line) + ": " +
+                     std::string(error.description()));
   }
 }
 
@@ -270,15 +291,15 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
     const toml::table* table = table_node.as_table();
     if (table_name == kSweepTable || table_name == kBinsTable) continue;  // read apart
     if (!is_table(table_name)) {
-      throw SceneError(table_origin + ": unknown "
-                       + (table ? "table " + printable(table_name) + "; the closest known table is "
-                                      + std::string(closest_table(table_name))
-                                : "key " + printable(table_name) + "; the closest known key is "
-                                      + std::string(closest_key(table_name))));
+      throw SceneError(table_origin + ": unknown " +
+                       (table ? "table " + printable(table_name) + "; the closest known table is " +
+                                    std::string(closest_table(table_name))
+                              : "key " + printable(table_name) + "; the closest known key is " +
+                                    std::string(closest_key(table_name))));
     }
     if (!table) {
-      throw SceneError(table_origin + ": " + table_name + shown_value(table_node)
-                       + " is not permitted: must be a table, written [" + table_name + "]");
+      throw SceneError(table_origin + ": " + table_name + shown_value(table_node) +
+                       " is not permitted: must be a table, written [" + table_name + "]");
     }
     for (const auto& [key, node] : *table) {
       const std::string name = table_name + "." + std::string(key.str());
@@ -301,7 +322,9 @@ std::vector<Variation> variations_of(const toml::table& document, const Origin& 
     if (const auto* text = node.as_string()) return text->get();
     if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
     if (const auto* number = node.as_floating_point()) return shortest(number->get());
-    throw SceneError(begin + shown_value(node) + " is not permitted: must be \"from:step:to\", or a number or text, or an array of these");
+    throw SceneError(
+        begin + shown_value(node) +
+        " is not permitted: must be \"from:step:to\", or a number or text, or an array of these");
   };
   const auto take = [&](const std::string& name, const toml::node& node) {
     const std::string at = origin(node.source().begin.line);
@@ -326,9 +349,11 @@ std::vector<Variation> variations_of(const toml::table& document, const Origin& 
       take(name, node);  // a whole key in quotation marks
       continue;
     }
-    for (const auto& [key, value] : *node.as_table()) take(name + "." + std::string(key.str()), value);
+    for (const auto& [key, value] : *node.as_table())
+      take(name + "." + std::string(key.str()), value);
   }
-  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.place < b.place; });
+  std::sort(found.begin(), found.end(),
+            [](const Found& a, const Found& b) { return a.place < b.place; });
   std::vector<Variation> variations;
   for (Found& f : found) {
     for (const Variation& v : variations)
@@ -351,13 +376,13 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
   std::string value(trimmed(std::string_view(given).substr(equals + 1)));
 
   // A bare word for a text key: quotes seldom survive a shell.
-  if ((name == kMethodKey || name == kFidelityKey) &&
-      value.find_first_of("\"'") == value.npos)
+  if ((name == kMethodKey || name == kFidelityKey) && value.find_first_of("\"'") == value.npos)
     value = "\"" + value + "\"";
 
   documents.push_back(parse_toml(name + " = " + value, origin));
   const Settings added = settings_of(documents.back(), origin);
-  if (added.empty() && !documents.back().contains(kBinsTable)) throw SceneError(begin + ": sets no key");
+  if (added.empty() && !documents.back().contains(kBinsTable))
+    throw SceneError(begin + ": sets no key");
   for (const auto& [key, setting] : added) settings[key] = setting;
 }
 
@@ -365,8 +390,8 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
 
 void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
   const auto refusal = [&](const std::string& allowed) {
-    return SceneError(setting.origin + ": " + std::string(key.key) + shown_value(*setting.value)
-                      + " is not permitted: must " + allowed);
+    return SceneError(setting.origin + ": " + std::string(key.key) + shown_value(*setting.value) +
+                      " is not permitted: must " + allowed);
   };
   const Slot slot = key.slot(scene);
   const auto* whole = setting.value->as_integer();
@@ -419,8 +444,8 @@ double distance_to_beams(const Scene& scene) {
                   to_beam(beams.joint_x, beams.joint_x - beams.length));
 }
 
-/// Runs a check and blames what it refuses on the line of the key itself, else on that of a key which the
-/// message also names.
+/// Runs a check and blames what it refuses on the line of the key itself, else on that of a key
+/// which the message also names.
 template <class Check>
 void check(const Scene& scene, const Settings& settings, Check checked) {
   try {
@@ -440,7 +465,8 @@ void check(const Scene& scene, const Settings& settings, Check checked) {
 
 /// Settings of the methods, which follow from all the rest unless they are given.
 bool is_methods_own(std::string_view key) {
-  return key == "run.step_s" || key == "run.event_tolerance_m" || key == "contact.impulse_threshold_Ns";
+  return key == "run.step_s" || key == "run.event_tolerance_m" ||
+         key == "contact.impulse_threshold_Ns";
 }
 
 /// What depends on several keys of the gate at once.
@@ -459,10 +485,10 @@ void check_start(const Scene& scene, const Settings& settings) {
     lattice::validate(scene.gate, scene.field);
     if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
       throw dynamics::InvalidParameter(
-          "start.y_m", "start.y_m = " + shortest(scene.start.y)
-                           + " is not permitted: the disc (body.radius_m = "
-                           + shortest(scene.gate.body.radius) + ") would overlap a beam at rest, "
-                           + shortest(distance) + " m from start.x_m = " + shortest(scene.start.x));
+          "start.y_m", "start.y_m = " + shortest(scene.start.y) +
+                           " is not permitted: the disc (body.radius_m = " +
+                           shortest(scene.gate.body.radius) + ") would overlap a beam at rest, " +
+                           shortest(distance) + " m from start.x_m = " + shortest(scene.start.x));
     }
   });
 }
@@ -502,15 +528,16 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
 
 std::string scene_text(const std::string& path) {
   std::string text = read_file(path);
-  if (text.starts_with("\x89HDF")) throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
+  if (text.starts_with("\x89HDF"))
+    throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
   return text;
 }
 
 Scene parse_scene(std::string_view text, std::string name,
                   const std::vector<std::string>& overrides) {
   if (text.size() > kMaxBytes) {
-    throw SceneError(name + ": is too large for a scene: more than " + std::to_string(kMaxBytes)
-                     + " bytes");
+    throw SceneError(name + ": is too large for a scene: more than " + std::to_string(kMaxBytes) +
+                     " bytes");
   }
   const Origin origin = [&name](std::size_t line) { return name + ":" + std::to_string(line); };
   const toml::table document = parse_toml(text, origin);
@@ -523,9 +550,11 @@ Scene parse_scene(std::string_view text, std::string name,
   scene.source = name;
   scene.sweep = variations_of(document, origin);
   for (const auto& [key, setting] : settings) scene.named.emplace(key, setting.origin);
-  const auto of_gate = [](const SceneKey& key) { return table_of(key.key) != "field" && table_of(key.key) != "start"; };
-  // What the file leaves out follows from the file: an override changes its own key only, and the settings
-  // of the method. It may mend a value that the file should not have.
+  const auto of_gate = [](const SceneKey& key) {
+    return table_of(key.key) != "field" && table_of(key.key) != "start";
+  };
+  // What the file leaves out follows from the file: an override changes its own key only, and the
+  // settings of the method. It may mend a value that the file should not have.
   for (const SceneKey& key : scene_keys()) {
     const auto it = of_file.find(key.key);
     if (!of_gate(key) || it == of_file.end()) continue;
@@ -536,18 +565,22 @@ Scene parse_scene(std::string_view text, std::string name,
     }
   }
   const auto derive = [&](auto known) {
-    for (const std::string_view key : dynamics::fill_in(scene.gate, scene.start, known)) scene.derived.emplace(key);
+    for (const std::string_view key : dynamics::fill_in(scene.gate, scene.start, known))
+      scene.derived.emplace(key);
   };
-  check(scene, settings, [&] { derive([&](std::string_view key) { return of_file.contains(key); }); });
+  check(scene, settings,
+        [&] { derive([&](std::string_view key) { return of_file.contains(key); }); });
   for (const SceneKey& key : scene_keys())
-    if (const auto it = settings.find(key.key); of_gate(key) && it != settings.end()) assign(key, it->second, scene);
+    if (const auto it = settings.find(key.key); of_gate(key) && it != settings.end())
+      assign(key, it->second, scene);
   check(scene, settings, [&] {
     derive([&](std::string_view key) { return scene.named.contains(key) || !is_methods_own(key); });
   });
   std::erase_if(scene.derived, [&](const std::string& key) { return scene.named.contains(key); });
   check_gate(scene, settings);  // what a start may be depends on it
   for (const SceneKey& key : scene_keys())
-    if (const auto it = settings.find(key.key); !of_gate(key) && it != settings.end()) assign(key, it->second, scene);
+    if (const auto it = settings.find(key.key); !of_gate(key) && it != settings.end())
+      assign(key, it->second, scene);
   check_start(scene, settings);
   auto edges = edges_in(document, origin);
   for (std::size_t i = 0; i < overrides.size(); ++i)
@@ -570,7 +603,8 @@ std::string value_text(const SceneKey& key, Scene& scene) {
   const Slot slot = key.slot(scene);
   if (auto* const* string = std::get_if<std::string*>(&slot)) return "\"" + **string + "\"";
   if (auto* const* integer = std::get_if<int*>(&slot)) return std::to_string(**integer);
-  if (auto* const* fidelity = std::get_if<lattice::Fidelity*>(&slot)) return "\"" + std::string(name_of(**fidelity)) + "\"";
+  if (auto* const* fidelity = std::get_if<lattice::Fidelity*>(&slot))
+    return "\"" + std::string(name_of(**fidelity)) + "\"";
   return float_text(*std::get<double*>(slot));
 }
 
@@ -595,10 +629,13 @@ std::vector<KeyInfo> describe(const Scene& scene) {
   Scene copy = scene;
   std::vector<KeyInfo> all;
   for (const SceneKey& key : scene_keys()) {
-    KeyInfo info{std::string(key.key), value_text(key, copy), unit_of(key.key), {}, std::string(key.meaning), "paper"};
+    KeyInfo info{std::string(key.key),     value_text(key, copy),
+                 unit_of(key.key),         {},
+                 std::string(key.meaning), "paper"};
     if (!info.unit.empty()) info.unit.erase(0, 1);  // the blank before it
     if (key.permitted) info.range = key.permitted(scene).text();
-    if (const auto given = scene.named.find(key.key); given != scene.named.end()) info.source = given->second;
+    if (const auto given = scene.named.find(key.key); given != scene.named.end())
+      info.source = given->second;
     if (scene.derived.contains(key.key)) info.source = "derived";
     all.push_back(std::move(info));
   }

@@ -31,9 +31,10 @@ struct Scene {
   dynamics::BodyState start{0.0, 0.0, 0.0, 15.0};  // m, m, m/s, m/s; in the first gate's frame
   std::string source;                              // the file it came from
   std::map<std::string, std::string, std::less<>> named;  // keys the user gave, and where
-  std::set<std::string, std::less<>> derived;             // keys that follow from those; the rest are the paper's
-  std::vector<Variation> sweep;                    // table [sweep], in the order of the file
-  std::optional<SceneBins> bins;                   // table [bins], the chain's states
+  std::set<std::string, std::less<>>
+      derived;                    // keys that follow from those; the rest are the paper's
+  std::vector<Variation> sweep;   // table [sweep], in the order of the file
+  std::optional<SceneBins> bins;  // table [bins], the chain's states
 };
 
 /// A scene that cannot be used. what() reads
@@ -60,7 +61,7 @@ struct KeyInfo {
   std::string key, value;  // the value as TOML has it
   std::string unit;        // "N m/rad", empty for a pure number
   std::string range, meaning;
-  std::string source;      // "x.toml:12", "--set ...", "derived" or "paper"
+  std::string source;  // "x.toml:12", "--set ...", "derived" or "paper"
 };
 /// Every key of the scene, in the order of to_toml.
 [[nodiscard]] std::vector<KeyInfo> describe(const Scene& scene);
@@ -70,11 +71,13 @@ struct KeyInfo {
 /// Throws SceneError unless `key` is one of a scene; `origin` begins the message.
 void require_key(const std::string& key, const std::string& origin);
 
-/// The complete scene, every key in a fixed order, but no sweep; numbers with the digits that read back the same.
+/// The complete scene, every key in a fixed order, but no sweep; numbers with the digits that read
+/// back the same.
 [[nodiscard]] std::string to_toml(const Scene& scene);
 
 /// What differs between two scenes among the keys that shape a transition matrix (all of
-/// GateParams and [bins]; neither field nor start): "forces.random_N: 40 here, 20 there", empty if nothing.
+/// GateParams and [bins]; neither field nor start): "forces.random_N: 40 here, 20 there", empty if
+/// nothing.
 [[nodiscard]] std::vector<std::string> physics_differences(const Scene& here, const Scene& there);
 
 }  // namespace gatewalk::cli

@@ -39,7 +39,9 @@ std::string text(const std::vector<double>& edges) {
 
 std::vector<double> numbers_in(const toml::node& node, const std::string& begin) {
   const auto refuse = [&] {
-    throw SceneError(begin + " is not permitted: must be two or more numbers, finite and ascending, such as [-0.2, 0, 0.2]");
+    throw SceneError(begin +
+                     " is not permitted: must be two or more numbers, finite and ascending, such "
+                     "as [-0.2, 0, 0.2]");
   };
   const toml::array* const array = node.as_array();
   if (!array) refuse();
@@ -51,7 +53,8 @@ std::vector<double> numbers_in(const toml::node& node, const std::string& begin)
       edges.push_back(number->get());
     else
       refuse();
-    if (!std::isfinite(edges.back()) || (edges.size() > 1 && !(edges[edges.size() - 2] < edges.back())))
+    if (!std::isfinite(edges.back()) ||
+        (edges.size() > 1 && !(edges[edges.size() - 2] < edges.back())))
       refuse();
   }
   if (edges.size() < 2) refuse();
@@ -73,7 +76,8 @@ std::vector<GivenEdges> edges_in(const toml::table& document,
     for (int b = 0; b < kBoundaries; ++b)
       for (const Axis& axis : kAxes)
         if (name == key_of(b, axis))
-          all.push_back({b, axis.edges, "bins." + name, at, numbers_in(value, at + ": bins." + name)});
+          all.push_back(
+              {b, axis.edges, "bins." + name, at, numbers_in(value, at + ": bins." + name)});
     if (all.empty() || all.back().name != "bins." + name)
       throw SceneError(at + ": unknown key in [bins]; its keys are " + all_keys());
   }
@@ -88,7 +92,7 @@ std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<Given
   for (const GivenEdges& g : given) {
     const auto b = static_cast<Boundary>(g.boundary);
     const double low = b == Boundary::enter ? -side : 0.0;
-    const double high = b == Boundary::enter ? side
+    const double high = b == Boundary::enter                                          ? side
                         : b == Boundary::right_deflect || b == Boundary::left_deflect ? joint
                                                                                       : above;
     if (g.axis == &Bins::d && !(g.edges.front() >= low && g.edges.back() <= high))
@@ -109,7 +113,8 @@ std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<Given
 std::string bins_toml(const SceneBins& bins) {
   std::string lines = "[bins]\n";
   for (int b = 0; b < kBoundaries; ++b)
-    for (const Axis& axis : kAxes) lines += key_of(b, axis) + " = " + text(bins[b].*axis.edges) + "\n";
+    for (const Axis& axis : kAxes)
+      lines += key_of(b, axis) + " = " + text(bins[b].*axis.edges) + "\n";
   return lines;
 }
 

@@ -24,10 +24,11 @@ struct GivenEdges {
   std::vector<double> edges;
 };
 
-/// Those in the table [bins] of `document`, none without it. `origin(line)` is how a message begins.
-/// Throws SceneError unless every key is known and holds at least two numbers, finite and ascending.
-[[nodiscard]] std::vector<GivenEdges> edges_in(const toml::table& document,
-                                               const std::function<std::string(std::size_t)>& origin);
+/// Those in the table [bins] of `document`, none without it. `origin(line)` is how a message
+/// begins. Throws SceneError unless every key is known and holds at least two numbers, finite and
+/// ascending.
+[[nodiscard]] std::vector<GivenEdges> edges_in(
+    const toml::table& document, const std::function<std::string(std::size_t)>& origin);
 
 /// The bins of these edges in this gate, the last ones of a key; axes without any have Table III's
 /// in the scene's own units. None without edges. Throws SceneError when distances lie outside their

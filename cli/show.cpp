@@ -13,8 +13,8 @@ std::array<double, kBoundaries + 1> outcome_shares(const Transitions& t, int row
   std::array<double, kBoundaries + 1> share{};
   if (t.trials[row] == 0) return share;
   for (const auto& [column, n] : t.rows[row]) {
-    const int b = column == t.space.trapped() ? kBoundaries
-                                              : static_cast<int>(t.space.boundary(column));
+    const int b =
+        column == t.space.trapped() ? kBoundaries : static_cast<int>(t.space.boundary(column));
     share[b] += static_cast<double>(n) / static_cast<double>(t.trials[row]);
   }
   return share;
@@ -23,13 +23,14 @@ std::array<double, kBoundaries + 1> outcome_shares(const Transitions& t, int row
 }  // namespace
 
 int run_show(const std::vector<std::string>& arguments) {
-  Options options("show MATRIX.nc [options]",
-                  "Shows what a matrix file holds: size, counts, sparsity, clamped share, where it\n"
-                  "came from; with --rows every row, with --row I one row with all its outputs.",
-                  "gatewalk show matrix.nc --rows");
+  Options options(
+      "show MATRIX.nc [options]",
+      "Shows what a matrix file holds: size, counts, sparsity, clamped share, where it\n"
+      "came from; with --rows every row, with --row I one row with all its outputs.",
+      "gatewalk show matrix.nc --rows");
   options.positional("matrix", "matrix file written by gatewalk build", true);
-  options.add()("rows", "a line per input state")
-               ("row", po::value<int>()->value_name("I"), "all outputs of input state I (from 1)");
+  options.add()("rows", "a line per input state")("row", po::value<int>()->value_name("I"),
+                                                  "all outputs of input state I (from 1)");
   options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
   const lattice::MatrixFile file = lattice::read_matrix(options.text("matrix"));
@@ -66,7 +67,8 @@ int run_show(const std::vector<std::string>& arguments) {
                             {"outputs", std::move(outputs)}});
   }
   const auto stored = file.text.find("state_space");
-  const Json states = stored == file.text.end() ? Json() : Json::parse(stored->second, nullptr, false);
+  const Json states =
+      stored == file.text.end() ? Json() : Json::parse(stored->second, nullptr, false);
   if (states.is_discarded())
     throw markov::BadFile(options.text("matrix") + ": its record of the state space is damaged");
   if (!states.is_null()) json["state_space"] = states;
@@ -90,7 +92,8 @@ int run_show(const std::vector<std::string>& arguments) {
   if (!states.is_null()) out << "  " << states_line(states);
   out << "  numerical faults    " << (faults.empty() ? "none seen" : faults) << "\n";
   if (options.has("rows")) {
-    out << "\n  in  from d (m)       vx (m/s)    vy (m/s)    trials clamped |   EN    RD    LD    RT    LT  trap (%)\n";
+    out << "\n  in  from d (m)       vx (m/s)    vy (m/s)    trials clamped |   EN    RD    LD    "
+           "RT    LT  trap (%)\n";
     for (int row = 0; row < n; ++row) {
       const Cell cell = t.space.cell(row);
       const auto share = outcome_shares(t, row);

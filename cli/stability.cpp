@@ -41,13 +41,14 @@ static_assert(kColours.back() != nullptr, "one colour per verdict");
 
 struct FinishedMap {
   StabilityMap map;
-  std::vector<MapPoint> points;   // (y, x): row after row
-  std::vector<double> seconds;    // each point took
+  std::vector<MapPoint> points;  // (y, x): row after row
+  std::vector<double> seconds;   // each point took
   [[nodiscard]] const MapPoint& at(std::size_t ix, std::size_t iy) const {
     return points[iy * map.x.values.size() + ix];
   }
   [[nodiscard]] std::int64_t count(Verdict v) const {
-    return std::count_if(points.begin(), points.end(), [v](const MapPoint& p) { return p.verdict == v; });
+    return std::count_if(points.begin(), points.end(),
+                         [v](const MapPoint& p) { return p.verdict == v; });
   }
 };
 
@@ -58,13 +59,14 @@ FinishedMap run_map(const Options& options, const StabilityMap& map) {
   const std::size_t total = columns * map.y.values.size();
   done.points.resize(total);
   done.seconds.resize(total);
-  run_in_batches(std::string(map.name) + ", " + map.method, static_cast<std::int64_t>(total), options.talk(),
-                 [&](std::int64_t first, std::int64_t n) {
+  run_in_batches(std::string(map.name) + ", " + map.method, static_cast<std::int64_t>(total),
+                 options.talk(), [&](std::int64_t first, std::int64_t n) {
                    tbb::parallel_for(first, first + n, [&](std::int64_t k) {
                      const auto i = static_cast<std::size_t>(k);
                      const Stopwatch watch;
-                     done.points[i] = dynamics::run_point(map.kind, map.method, map.x.values[i % columns],
-                                                          map.y.values[i / columns], options.seed());
+                     done.points[i] =
+                         dynamics::run_point(map.kind, map.method, map.x.values[i % columns],
+                                             map.y.values[i / columns], options.seed());
                      done.seconds[i] = watch.seconds();
                    });
                  });
@@ -111,7 +113,8 @@ struct DrawnAxis {
         const long whole = std::lround(decade);
         if (v[i] == 0.0)
           tic(at[i], "0");
-        else if (by_number ? whole == -3 || whole == -9 : std::abs(decade - static_cast<double>(whole)) < 1e-9)
+        else if (by_number ? whole == -3 || whole == -9
+                           : std::abs(decade - static_cast<double>(whole)) < 1e-9)
           tic(at[i], (v[i] < 0 ? "-1e" : "1e") + std::to_string(whole));
       }
       if (by_number) tic(0.5 * (at.front() + at.back()), "-+1e-15");
@@ -133,9 +136,9 @@ void draw(const std::string& path, const std::vector<const FinishedMap*>& maps) 
     for (std::size_t iy = 0; iy < map.y.values.size(); ++iy)
       for (std::size_t ix = 0; ix < map.x.values.size(); ++ix) {
         const char* colour = kColours[static_cast<std::size_t>(maps[i]->at(ix, iy).verdict)];
-        cells += digits(std::sqrt(x.low[ix]) * std::sqrt(x.high[ix])) + " 0 " + digits(x.low[ix]) + " " +
-                 digits(x.high[ix]) + " " + digits(y.low[iy]) + " " + digits(y.high[iy]) + " 0x" + (colour + 1) +
-                 "\n";
+        cells += digits(std::sqrt(x.low[ix]) * std::sqrt(x.high[ix])) + " 0 " + digits(x.low[ix]) +
+                 " " + digits(x.high[ix]) + " " + digits(y.low[iy]) + " " + digits(y.high[iy]) +
+                 " 0x" + (colour + 1) + "\n";
       }
     const std::string tag = "$M" + std::to_string(i);
     out << data_block(tag, cells);
@@ -148,21 +151,25 @@ void draw(const std::string& path, const std::vector<const FinishedMap*>& maps) 
       const std::string name = tag + "B" + std::to_string(number);
       out << data_block(name, rows);
       lines += ", " + name + " using 1:2 with linespoints lw 2 pt 7 ps 0.2 lc rgb 'black' dt " +
-               std::to_string(++number) + " title " +
-               literal(border.label);
+               std::to_string(++number) + " title " + literal(border.label);
     }
     const double left = 0.08 + 0.32 * static_cast<double>(i % 3), right = left + 0.24;
     const double top = i < 3 ? 0.86 : 0.385, bottom = top - 0.29;
-    out << "set lmargin at screen " << left << "\nset rmargin at screen " << right << "\nset tmargin at screen "
-        << top << "\nset bmargin at screen " << bottom << "\nset title " << literal(map.method) << " offset 0,1.5\n"
+    out << "set lmargin at screen " << left << "\nset rmargin at screen " << right
+        << "\nset tmargin at screen " << top << "\nset bmargin at screen " << bottom
+        << "\nset title " << literal(map.method) << " offset 0,1.5\n"
         << "set xlabel " << literal(map.x.label) << "\nset ylabel " << literal(map.y.label) << "\n"
-        << (x.logarithmic ? "set logscale x\nset format x '10^{%L}'\n" : "unset logscale x\nset format x '%g'\n")
-        << (y.logarithmic ? "set logscale y\nset format y '10^{%L}'\n" : "unset logscale y\nset format y '%g'\n")
+        << (x.logarithmic ? "set logscale x\nset format x '10^{%L}'\n"
+                          : "unset logscale x\nset format x '%g'\n")
+        << (y.logarithmic ? "set logscale y\nset format y '10^{%L}'\n"
+                          : "unset logscale y\nset format y '%g'\n")
         << "set xtics nomirror out font ',10' " << (x.tics.empty() ? "autofreq" : x.tics) << "\n"
         << "set ytics nomirror out " << (y.tics.empty() ? "autofreq" : y.tics) << "\n"
-        << "set xrange [" << digits(x.low.front()) << ":" << digits(x.high.back()) << "]\nset yrange ["
-        << digits(y.low.front()) << ":" << digits(y.high.back()) << "]\n"
-        << (lines.empty() ? "unset key\n" : "set key at graph 0.5, graph 1.1 center horizontal font ',9' samplen 2\n");
+        << "set xrange [" << digits(x.low.front()) << ":" << digits(x.high.back())
+        << "]\nset yrange [" << digits(y.low.front()) << ":" << digits(y.high.back()) << "]\n"
+        << (lines.empty()
+                ? "unset key\n"
+                : "set key at graph 0.5, graph 1.1 center horizontal font ',9' samplen 2\n");
     if (i == 0)
       out << "set label 1 " << literal(map.title) << " at screen 0.02, screen 0.965 font ',16'\n";
     if (i + 1 == maps.size()) {  // the legend, in the place of the sixth panel
@@ -178,7 +185,8 @@ void draw(const std::string& path, const std::vector<const FinishedMap*>& maps) 
             << "' offset 1.5,0\n";
       }
     }
-    out << "plot " << tag << " using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable notitle" << lines << "\n"
+    out << "plot " << tag << " using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable notitle" << lines
+        << "\n"
         << "unset label\n";
   }
   out << "unset multiplot\n";
@@ -189,7 +197,8 @@ void draw(const std::string& path, const std::vector<const FinishedMap*>& maps) 
 
 std::string csv_of(const std::vector<FinishedMap>& maps) {
   std::ostringstream out;
-  out << "map,method,x_name,x,y_name,y,status,trials,not_finite,cut_short,penetrating,creating_energy,too_fast,"
+  out << "map,method,x_name,x,y_name,y,status,trials,not_finite,cut_short,penetrating,creating_"
+         "energy,too_fast,"
          "beyond_bound,contacts_without_formula,forced_holds,steps,evaluations,worst_penetration_m,"
          "worst_energy_created_J,worst_speed_m_per_s\n";
   for (const FinishedMap& m : maps)
@@ -197,11 +206,13 @@ std::string csv_of(const std::vector<FinishedMap>& maps) {
       for (std::size_t ix = 0; ix < m.map.x.values.size(); ++ix) {
         const MapPoint& p = m.at(ix, iy);
         const dynamics::Health& h = p.health;
-        out << m.map.name << ',' << m.map.method << ',' << m.map.x.name << ',' << digits(m.map.x.values[ix]) << ','
-            << m.map.y.name << ',' << digits(m.map.y.values[iy]) << ',' << dynamics::name_of(p.verdict) << ','
-            << h.runs << ',' << h.broken << ',' << p.cut_short << ',' << h.penetrating << ',' << h.creating_energy
-            << ',' << h.fast << ',' << h.unstable << ',' << h.undefined_contacts << ',' << h.forced_holds << ','
-            << h.steps << ',' << h.evaluations << ',' << digits(h.worst_penetration) << ','
+        out << m.map.name << ',' << m.map.method << ',' << m.map.x.name << ','
+            << digits(m.map.x.values[ix]) << ',' << m.map.y.name << ','
+            << digits(m.map.y.values[iy]) << ',' << dynamics::name_of(p.verdict) << ',' << h.runs
+            << ',' << h.broken << ',' << p.cut_short << ',' << h.penetrating << ','
+            << h.creating_energy << ',' << h.fast << ',' << h.unstable << ','
+            << h.undefined_contacts << ',' << h.forced_holds << ',' << h.steps << ','
+            << h.evaluations << ',' << digits(h.worst_penetration) << ','
             << digits(h.worst_energy_created) << ',' << digits(h.worst_speed) << '\n';
       }
   return out.str();
@@ -233,7 +244,8 @@ std::string table_of(const std::vector<FinishedMap>& maps) {
                     [v](const FinishedMap& m) { return m.count(static_cast<Verdict>(v)) > 0; }))
       seen.push_back(static_cast<Verdict>(v));
   std::ostringstream out;
-  out << "Points of each map by the worst that their " << dynamics::kTrialsPerPoint << " trials showed\n\n"
+  out << "Points of each map by the worst that their " << dynamics::kTrialsPerPoint
+      << " trials showed\n\n"
       << padded("", -35);
   for (const Verdict v : seen) out << padded(std::string(dynamics::name_of(v)), 13);
   out << "\n";
@@ -253,23 +265,26 @@ std::string figure_name(const StabilityMap& map) { return std::string(map.name) 
 }  // namespace
 
 int run_stability(const std::vector<std::string>& arguments) {
-  Options options("stability -o DIR [options]",
-                  "Maps where each method breaks: step and stiffness, step and damping, restitution and\n"
-                  "impulse threshold, first contact near a joint, grazing a tip. Writes stability.csv,\n"
-                  "stability.json and a figure per map. The maps have scenes of their own; for a scene of\n"
-                  "yours there are gatewalk chart and run.method = \"auto\".",
-                  "gatewalk stability -o results/stability --quick");
+  Options options(
+      "stability -o DIR [options]",
+      "Maps where each method breaks: step and stiffness, step and damping, restitution and\n"
+      "impulse threshold, first contact near a joint, grazing a tip. Writes stability.csv,\n"
+      "stability.json and a figure per map. The maps have scenes of their own; for a scene of\n"
+      "yours there are gatewalk chart and run.method = \"auto\".",
+      "gatewalk stability -o results/stability --quick");
   std::vector<std::string> written{"stability.csv", "stability.json"};
   for (int kind = 0; kind < dynamics::kMapKinds; ++kind)
-    written.push_back(figure_name(dynamics::stability_map(static_cast<dynamics::MapKind>(kind),
-                                                          dynamics::chart_methods().front(), true)));
+    written.push_back(figure_name(dynamics::stability_map(
+        static_cast<dynamics::MapKind>(kind), dynamics::chart_methods().front(), true)));
   options.output_folder("folder to write to", written);
   options.add()("quick", "coarser maps");
   add_seed(options);
   options.without_scene("the maps have scenes of their own");
   if (!options.parse(arguments)) return kFine;
   const std::string folder = options.text("output");
-  const auto file = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
+  const auto file = [&](const std::string& name) {
+    return (std::filesystem::path(folder) / name).string();
+  };
   std::vector<StabilityMap> planned;
   std::vector<std::string> figures;  // one for each kind
   for (int kind = 0; kind < dynamics::kMapKinds; ++kind) {
@@ -289,8 +304,11 @@ int run_stability(const std::vector<std::string>& arguments) {
   json["holds_share"] = dynamics::Health::kPermittedHolds;
   json["maps"] = Json::array();
   for (const FinishedMap& m : maps) json["maps"].push_back(to_json(m));
-  json["made_by"] = {{"program", "gatewalk"}, {"version", kVersion}, {"commit", kCommit},
-                     {"command", options.canonical()}, {"seed", options.seed()}};
+  json["made_by"] = {{"program", "gatewalk"},
+                     {"version", kVersion},
+                     {"commit", kCommit},
+                     {"command", options.canonical()},
+                     {"seed", options.seed()}};
   // Old figures shall not stand beside new numbers.
   for (const std::string& figure : figures) std::filesystem::remove(figure);
   write_text_atomically(file("stability.csv"), csv_of(maps));

@@ -40,8 +40,10 @@ PaperStart parse_start(const std::string& text) {
 }  // namespace
 
 void add_starts(Options& options, const std::string& by_default) {
-  const std::string help = "start at x = D m, y = 0 with this velocity in m/s (may be repeated; "
-                           "default: " + by_default + ")";
+  const std::string help =
+      "start at x = D m, y = 0 with this velocity in m/s (may be repeated; "
+      "default: " +
+      by_default + ")";
   options.add()("start", po::value<std::vector<std::string>>()->composing()->value_name("D,VX,VY"),
                 help.c_str());
 }
@@ -58,7 +60,8 @@ std::vector<PaperStart> starts_of(const Options& options, const Scene& scene) {
   if (options.has("start")) return given_starts(options);
   const std::vector<PaperStart> papers = table_iv(scene.gate);
   const dynamics::BodyState &own = scene.start, first = papers.front().body();
-  const bool the_papers = own.x == 0.0 && own.y == 0.0 && own.vx == 0.0 && std::abs(own.vy - first.vy) <= 1e-12 * first.vy;
+  const bool the_papers = own.x == 0.0 && own.y == 0.0 && own.vx == 0.0 &&
+                          std::abs(own.vy - first.vy) <= 1e-12 * first.vy;
   if (the_papers && papers_field(scene)) return papers;
   return {{own.x, own.vx, own.vy, {}, {}, own.y}};
 }
@@ -67,8 +70,9 @@ std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& start
   std::vector<dynamics::BodyState> bodies;
   for (const PaperStart& s : starts) {
     if (s.y != 0.0)
-      throw UsageError("start.y_m = " + Json(s.y).dump() +
-                       " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
+      throw UsageError(
+          "start.y_m = " + Json(s.y).dump() +
+          " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
     bodies.push_back(s.body());
   }
   return bodies;
@@ -94,13 +98,15 @@ StartTexts::StartTexts(const std::vector<PaperStart>& starts) : texts(starts.siz
     double PaperStart::*value;
     int width;  // at least
   };
-  for (const auto& [name, value, least] : {Column{"d", &PaperStart::d, 4}, Column{"vx", &PaperStart::vx, 5},
-                                           Column{"vy", &PaperStart::vy, 5}}) {
+  for (const auto& [name, value, least] :
+       {Column{"d", &PaperStart::d, 4}, Column{"vx", &PaperStart::vx, 5},
+        Column{"vy", &PaperStart::vy, 5}}) {
     std::vector<std::string> numbers;
     int width = least;
     for (const PaperStart& s : starts) {
       char digits[32];
-      const auto end = std::to_chars(digits, digits + sizeof digits, s.*value + 0.0).ptr;  // -0 is 0
+      const auto end =
+          std::to_chars(digits, digits + sizeof digits, s.*value + 0.0).ptr;  // -0 is 0
       numbers.emplace_back(digits, end);
       const int gap = least > 4 ? 2 : 1;
       width = std::max(width, static_cast<int>(numbers.back().size()) + gap);

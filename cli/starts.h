@@ -10,7 +10,8 @@
 
 namespace gatewalk::cli {
 
-/// d, vx, vy (m, m/s) of a start, at y = 0 but for a scene's own; corrcoef and RMSE as Table IV prints them.
+/// d, vx, vy (m, m/s) of a start, at y = 0 but for a scene's own; corrcoef and RMSE as Table IV
+/// prints them.
 struct PaperStart {
   double d = 0.0, vx = 0.0, vy = 0.0;
   std::optional<double> corrcoef, rmse;
@@ -21,8 +22,9 @@ struct PaperStart {
 
 /// Declares --start; `by_default` says where to start without it.
 void add_starts(Options& options,
-                const std::string& by_default = "the scene's start; in the paper's field with the paper's start "
-                                                "(0,0,15), the four of Table IV");
+                const std::string& by_default =
+                    "the scene's start; in the paper's field with the paper's start "
+                    "(0,0,15), the four of Table IV");
 /// The starts given; none without --start. Throws UsageError for a malformed one.
 [[nodiscard]] std::vector<PaperStart> given_starts(const Options& options);
 /// The starts given, else the scene's, or those of Table IV in the paper's field with the paper's

@@ -44,7 +44,8 @@ Axis axis_of(const Variation& v) {
     axis.values = split(v.values, ',');
     if (axis.values.empty() || std::any_of(axis.values.begin(), axis.values.end(),
                                            [](const std::string& s) { return s.empty(); }))
-      throw SceneError(v.origin + ": '" + v.values + "' lacks a value: from:step:to, or values between commas");
+      throw SceneError(v.origin + ": '" + v.values +
+                       "' lacks a value: from:step:to, or values between commas");
     return axis;
   }
   if (ends.size() > 3) throw SceneError(v.origin + ": '" + v.values + "' is not from:step:to");
@@ -52,9 +53,12 @@ Axis axis_of(const Variation& v) {
   const double step = ends.size() == 3 ? number_in(ends[1], v) : 1.0;
   if (step == 0.0) throw SceneError(v.origin + ": the step in '" + v.values + "' is 0");
   const double count = std::floor((to - from) / step + 1e-9) + 1.0;
-  if (!(count >= 1.0)) throw SceneError(v.origin + ": '" + v.values + "' holds no value: the step leads away from the end");
+  if (!(count >= 1.0))
+    throw SceneError(v.origin + ": '" + v.values +
+                     "' holds no value: the step leads away from the end");
   if (count > static_cast<double>(kMostPoints))
-    throw SceneError(v.origin + ": '" + v.values + "' holds more than " + std::to_string(kMostPoints) + " values");
+    throw SceneError(v.origin + ": '" + v.values + "' holds more than " +
+                     std::to_string(kMostPoints) + " values");
   for (int i = 0; i < static_cast<int>(count); ++i) {
     std::ostringstream text;
     text.precision(15);  // 0.1 * 3 is 0.3
@@ -66,15 +70,18 @@ Axis axis_of(const Variation& v) {
 }
 
 /// The scene's own variations, replaced and completed by those of --vary.
-std::vector<Axis> axes_of(const std::vector<Variation>& own, const std::vector<std::string>& given) {
+std::vector<Axis> axes_of(const std::vector<Variation>& own,
+                          const std::vector<std::string>& given) {
   std::vector<Variation> all = own;
   for (const std::string& text : given) {
     const std::size_t equals = text.find('=');
     const std::string origin = "--vary " + text;
-    if (equals == text.npos) throw SceneError(origin + ": must be key=from:step:to or key=value,value");
+    if (equals == text.npos)
+      throw SceneError(origin + ": must be key=from:step:to or key=value,value");
     const Variation v{text.substr(0, equals), text.substr(equals + 1), origin};
     require_key(v.key, origin);
-    const auto same = std::find_if(all.begin(), all.end(), [&](const Variation& a) { return a.key == v.key; });
+    const auto same =
+        std::find_if(all.begin(), all.end(), [&](const Variation& a) { return a.key == v.key; });
     if (same == all.end()) {
       all.push_back(v);
     } else if (same->origin.starts_with("--vary")) {
@@ -83,14 +90,17 @@ std::vector<Axis> axes_of(const std::vector<Variation>& own, const std::vector<s
       *same = v;
     }
   }
-  if (all.empty()) throw UsageError("nothing to vary: give --vary KEY=from:step:to, or a scene with a table [sweep]");
+  if (all.empty())
+    throw UsageError(
+        "nothing to vary: give --vary KEY=from:step:to, or a scene with a table [sweep]");
   std::vector<Axis> axes;
   std::size_t points = 1;
   for (const Variation& v : all) {
     axes.push_back(axis_of(v));
     points *= axes.back().values.size();
     if (points > kMostPoints)
-      throw SceneError(v.origin + ": the grid has more than " + std::to_string(kMostPoints) + " points");
+      throw SceneError(v.origin + ": the grid has more than " + std::to_string(kMostPoints) +
+                       " points");
   }
   return axes;
 }
@@ -103,7 +113,8 @@ struct Point {
 };
 
 /// Every combination, the last axis running fastest.
-std::vector<Point> grid_of(const Options& options, const std::string& scene, const std::vector<Axis>& axes) {
+std::vector<Point> grid_of(const Options& options, const std::string& scene,
+                           const std::vector<Axis>& axes) {
   std::vector<Point> points(1);
   for (const Axis& axis : axes) {
     std::vector<Point> longer;
@@ -116,15 +127,16 @@ std::vector<Point> grid_of(const Options& options, const std::string& scene, con
   }
   for (Point& p : points) {
     std::vector<std::string> overrides = options.overrides();
-    for (std::size_t i = 0; i < axes.size(); ++i) overrides.push_back(axes[i].key + "=" + p.values[i]);
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      overrides.push_back(axes[i].key + "=" + p.values[i]);
     p.scene = parse_scene(scene, options.text("scene"), overrides);
     p.scene.sweep.clear();  // this is one of its points
   }
   return points;
 }
 
-/// What a share is of, and how many of those. Right of those that pushed more past one beam than past
-/// the other: the paper's Fig. 12.
+/// What a share is of, and how many of those. Right of those that pushed more past one beam than
+/// past the other: the paper's Fig. 12.
 struct Share {
   const char* name;
   std::int64_t part, whole;
@@ -142,30 +154,36 @@ std::string csv_of(const std::vector<Axis>& axes, const std::vector<Point>& poin
   std::ostringstream out;
   out.precision(8);
   for (const Axis& axis : axes) out << axis.key << ',';
-  out << "method,trials,traversed_left_count,traversed_right_count,traversed_even_count,exited_left_count,"
+  out << "method,trials,traversed_left_count,traversed_right_count,traversed_even_count,exited_"
+         "left_count,"
          "exited_right_count,trapped_count,not_finite_count";
-  for (const Share& s : shares_of({})) out << ',' << s.name << ',' << s.name << "_low," << s.name << "_high";
+  for (const Share& s : shares_of({}))
+    out << ',' << s.name << ',' << s.name << "_low," << s.name << "_high";
   out << ",clean\n";
   for (const Point& p : points) {
     const dynamics::GateTally& t = p.tally;
     for (const std::string& value : p.values) out << csv_text(value) << ',';
-    out << p.scene.gate.run.method << ',' << t.trials << ',' << t.traversed_left << ',' << t.traversed_right << ','
-        << t.traversed_even << ',' << t.exited_left << ',' << t.exited_right << ',' << t.trapped << ',' << t.broken;
+    out << p.scene.gate.run.method << ',' << t.trials << ',' << t.traversed_left << ','
+        << t.traversed_right << ',' << t.traversed_even << ',' << t.exited_left << ','
+        << t.exited_right << ',' << t.trapped << ',' << t.broken;
     for (const Share& s : shares_of(t)) {
       if (s.whole == 0) {
         out << ",,,";  // of none there is no share
         continue;
       }
       const auto [low, high] = share_interval(s.part, s.whole);
-      out << ',' << static_cast<double>(s.part) / static_cast<double>(s.whole) << ',' << low << ',' << high;
+      out << ',' << static_cast<double>(s.part) / static_cast<double>(s.whole) << ',' << low << ','
+          << high;
     }
     out << ',' << t.health.clean() << '\n';
   }
   return out.str();
 }
 
-std::string table_of(const Scene& scene, const std::vector<Axis>& axes, const std::vector<Point>& points) {
-  std::string text = scene_line(scene) + "but for the keys varied. " + std::to_string(points.size()) + " points of " +
+std::string table_of(const Scene& scene, const std::vector<Axis>& axes,
+                     const std::vector<Point>& points) {
+  std::string text = scene_line(scene) + "but for the keys varied. " +
+                     std::to_string(points.size()) + " points of " +
                      std::to_string(points.front().tally.trials) +
                      " trials, all under the same noise; % of them with 95 % intervals.\n\n";
   std::vector<int> widths;
@@ -182,13 +200,17 @@ std::string table_of(const Scene& scene, const std::vector<Axis>& axes, const st
     const auto with_interval = [](const Share& s) {
       if (s.whole == 0) return padded("-", 6) + std::string(16, ' ');
       const auto [low, high] = share_interval(s.part, s.whole);
-      return padded(fixed(100.0 * static_cast<double>(s.part) / static_cast<double>(s.whole), 1), 6) +
+      return padded(fixed(100.0 * static_cast<double>(s.part) / static_cast<double>(s.whole), 1),
+                    6) +
              padded(" [" + fixed(100.0 * low, 1) + ", " + fixed(100.0 * high, 1) + "]", -16);
     };
-    text += "    " + with_interval(shares[0]) + with_interval(shares[5]) +
-            padded(percent(static_cast<double>(shares[3].part), static_cast<double>(shares[3].whole)), 8) +
-            padded(percent(static_cast<double>(shares[4].part), static_cast<double>(shares[4].whole)), 10) +
-            (p.tally.health.clean() ? "\n" : "  faults\n");
+    text +=
+        "    " + with_interval(shares[0]) + with_interval(shares[5]) +
+        padded(percent(static_cast<double>(shares[3].part), static_cast<double>(shares[3].whole)),
+               8) +
+        padded(percent(static_cast<double>(shares[4].part), static_cast<double>(shares[4].whole)),
+               10) +
+        (p.tally.health.clean() ? "\n" : "  faults\n");
   }
   return text;
 }
@@ -196,17 +218,22 @@ std::string table_of(const Scene& scene, const std::vector<Axis>& axes, const st
 }  // namespace
 
 int run_sweep(const std::vector<std::string>& arguments) {
-  Options options("sweep SCENE [options]",
-                  "Runs one gate many times at every point of a grid over any keys of the scene and counts how\n"
-                  "the runs end. Values are from:step:to or a list; the grid is all their combinations. A scene\n"
-                  "may bring its own in a table [sweep]; --vary adds to it or replaces its values of a key.",
-                  "gatewalk sweep scenes/single_gate.toml --vary forces.propulsion_N=4:1:9 "
-                  "--vary forces.random_N=0,10,20 --trials 1000 --csv sweep.csv");
+  Options options(
+      "sweep SCENE [options]",
+      "Runs one gate many times at every point of a grid over any keys of the scene and counts "
+      "how\n"
+      "the runs end. Values are from:step:to or a list; the grid is all their combinations. A "
+      "scene\n"
+      "may bring its own in a table [sweep]; --vary adds to it or replaces its values of a key.",
+      "gatewalk sweep scenes/single_gate.toml --vary forces.propulsion_N=4:1:9 "
+      "--vary forces.random_N=0,10,20 --trials 1000 --csv sweep.csv");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "runs of the gate at each point");
   add_strict(options);
-  options.add()("vary", po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUES"),
-                "a key and its values, e.g. forces.random_N=0:10:40 or run.method=stable,paper (may be repeated)");
+  options.add()("vary",
+                po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUES"),
+                "a key and its values, e.g. forces.random_N=0:10:40 or run.method=stable,paper "
+                "(may be repeated)");
   options.output_file("csv", "FILE", "write the grid as CSV; - is standard output");
   if (!options.parse(arguments)) return kFine;
   const std::string csv = options.text("csv");
@@ -220,7 +247,8 @@ int run_sweep(const std::vector<std::string>& arguments) {
     for (const std::string& key : keys_set_by(set))
       for (const Axis& axis : axes)
         if (key == axis.key)
-          throw UsageError("--set " + set + " has no effect: " + key + " is varied; --vary " + key + "=VALUE fixes it");
+          throw UsageError("--set " + set + " has no effect: " + key + " is varied; --vary " + key +
+                           "=VALUE fixes it");
   std::vector<Point> points = grid_of(options, text, axes);
 
   constexpr std::int64_t kEach = 1000;  // of the progress line
@@ -232,7 +260,8 @@ int run_sweep(const std::vector<std::string>& arguments) {
     run_in_batches(progress, static_cast<double>(kEach * static_cast<std::int64_t>(i)),
                    static_cast<double>(kEach) / static_cast<double>(trials), trials,
                    [&](std::int64_t first, std::int64_t n) {
-                     p.tally += dynamics::run_gate_trials(p.scene.gate, p.scene.start, options.seed(), {first, n});
+                     p.tally += dynamics::run_gate_trials(p.scene.gate, p.scene.start,
+                                                          options.seed(), {first, n});
                    });
     check_outcomes(options, p.scene, RunsFrom::start, trials, p.tally.health);
     health += p.tally.health;
@@ -255,7 +284,8 @@ int run_sweep(const std::vector<std::string>& arguments) {
     for (std::size_t i = 0; i < axes.size(); ++i) point["at"][axes[i].key] = value(p.values[i]);
     point.update(to_json(p.tally));
     const Share right = shares_of(p.tally).back();
-    if (right.whole > 0) point["intervals_95"][right.name] = share_interval(right.part, right.whole);
+    if (right.whole > 0)
+      point["intervals_95"][right.name] = share_interval(right.part, right.whole);
     if (!p.settled.is_null()) point["method"] = p.settled;
     point["status"] = to_json(p.tally.health);
     json["points"].push_back(std::move(point));

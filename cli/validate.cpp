@@ -11,8 +11,8 @@
 #include "cli/matrix.h"
 #include "cli/progress.h"
 #include "cli/report.h"
-#include "markov/sweep.h"
 #include "cli/starts.h"
+#include "markov/sweep.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -32,7 +32,8 @@ struct MeanAndSd {
   [[nodiscard]] double sd() const {
     if (n < 2) return std::nan("");
     const double m = mean();
-    return std::sqrt(std::max(0.0, (squares - static_cast<double>(n) * m * m) / static_cast<double>(n - 1)));
+    return std::sqrt(
+        std::max(0.0, (squares - static_cast<double>(n) * m * m) / static_cast<double>(n - 1)));
   }
 };
 
@@ -49,8 +50,8 @@ struct PaperSized {
   }
 };
 
-/// Fills a PaperSized from final gates in the order of the trials, handed over in any pieces; keeps no
-/// more than a block.
+/// Fills a PaperSized from final gates in the order of the trials, handed over in any pieces; keeps
+/// no more than a block.
 class BlocksOf100 {
  public:
   /// `walks_of(first, count)`: final cells of those walks.
@@ -109,16 +110,18 @@ struct StartReport {
   PaperSized paper_sized;
   lattice::NoiseFloor floor_100_exact, floor_100_walks;
   lattice::Judgement judgement;
-  double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;  // total variation of resampled matrices' predictions
-  std::int64_t resampled = 0;                             // so many matrices
+  double matrix_noise_mean = 0.0,
+         matrix_noise_sd = 0.0;  // total variation of resampled matrices' predictions
+  std::int64_t resampled = 0;    // so many matrices
   EndingShares dynamics_endings, walks_endings, exact_endings;
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
 };
 
-StartReport run_start(const Options& options, const Scene& scene, const dynamics::Transitions& matrix,
-                      const markov::Sweeper& sweeper, const markov::Walker& walker,
-                      const std::vector<markov::FinalDistribution>& resampled, const PaperStart& start,
-                      std::int64_t trials, std::int64_t walks) {
+StartReport run_start(const Options& options, const Scene& scene,
+                      const dynamics::Transitions& matrix, const markov::Sweeper& sweeper,
+                      const markov::Walker& walker,
+                      const std::vector<markov::FinalDistribution>& resampled,
+                      const PaperStart& start, std::int64_t trials, std::int64_t walks) {
   const dynamics::BodyState body = start.body();
   const markov::Field field{scene.field.columns, scene.field.rows};
   const int max_gates = scene.field.max_gates;
@@ -144,7 +147,8 @@ StartReport run_start(const Options& options, const Scene& scene, const dynamics
   double dynamics_seconds = 0.0;
   run_in_batches("full dynamics", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
     const Stopwatch dynamics_watch;
-    seen += lattice::run_field(scene.gate, scene.field, body, matrix.space, options.seed(), {first, n});
+    seen +=
+        lattice::run_field(scene.gate, scene.field, body, matrix.space, options.seed(), {first, n});
     dynamics_seconds += dynamics_watch.seconds();
     blocks.add(seen.final_gate_of_trial);
     seen.final_gate_of_trial.clear();
@@ -152,12 +156,14 @@ StartReport run_start(const Options& options, const Scene& scene, const dynamics
 
   // As many null draws as fit a fixed amount of work, 999 to 9999: each deals out the trials and
   // multiplies with a matrix of gates x gates.
-  const std::int64_t gates = std::min<std::int64_t>(exact.final_cells.size(), lattice::kMostEnergyGates);
+  const std::int64_t gates =
+      std::min<std::int64_t>(exact.final_cells.size(), lattice::kMostEnergyGates);
   const std::int64_t null_draws =
       options.has("null-draws")
           ? options.count("null-draws")
           : std::clamp<std::int64_t>(100'000'000 / (trials + walks + gates * gates / 8), 999, 9999);
-  lattice::MatrixNoise noise(exact, matrix.trials[static_cast<std::size_t>(chain_start.start.input)]);
+  lattice::MatrixNoise noise(exact,
+                             matrix.trials[static_cast<std::size_t>(chain_start.start.input)]);
   for (const markov::FinalDistribution& other : resampled) noise.add(other);
   const double s = lattice::concentration(seen.final_gates);
   return {.start = start,
@@ -165,12 +171,15 @@ StartReport run_start(const Options& options, const Scene& scene, const dynamics
           .dynamics = seen,
           .walks = walked,
           .exact = exact,
-          .walks_against = lattice::compare(seen.final_gates, walked.final_cells, null_draws, options.seed()),
-          .exact_against = lattice::compare(seen.final_gates, exact.final_cells, null_draws, options.seed()),
+          .walks_against =
+              lattice::compare(seen.final_gates, walked.final_cells, null_draws, options.seed()),
+          .exact_against =
+              lattice::compare(seen.final_gates, exact.final_cells, null_draws, options.seed()),
           .paper_sized = blocks.result(),
           .floor_100_exact = lattice::noise_floor(s, exact.final_cells.size(), 100, 0),
           .floor_100_walks = lattice::noise_floor(s, exact.final_cells.size(), 100, 100),
-          .judgement = lattice::judge({seen.final_gates, seen.endings}, exact, resampled, null_draws, options.seed()),
+          .judgement = lattice::judge({seen.final_gates, seen.endings}, exact, resampled,
+                                      null_draws, options.seed()),
           .matrix_noise_mean = noise.mean_total_variation(),
           .matrix_noise_sd = noise.sd_total_variation(),
           .resampled = noise.replicates(),
@@ -182,22 +191,25 @@ StartReport run_start(const Options& options, const Scene& scene, const dynamics
           .exact_seconds = exact_seconds};
 }
 
-/// Predictions from resampled matrices, (starts x replicates): fewer for large fields, which cost time and
-/// memory.
+/// Predictions from resampled matrices, (starts x replicates): fewer for large fields, which cost
+/// time and memory.
 std::vector<std::vector<markov::FinalDistribution>> resampled_predictions(
     const Options& options, const dynamics::Transitions& matrix, const markov::Field& field,
     const std::vector<markov::Start>& starts, int max_gates) {
   constexpr std::int64_t kMost = 999, kAtLeast = 50, kTogether = 8, kMostNumbers = 25'000'000;
   const std::int64_t numbers = std::int64_t{field.columns} * field.rows * std::ssize(starts);
   const std::int64_t count = std::max(
-      kAtLeast, lattice::affordable_replicates(field, max_gates, std::min(kMost, kMostNumbers / numbers)));
-  const lattice::FieldMatrices rows{{&matrix}, std::vector<int>(static_cast<std::size_t>(field.rows))};
+      kAtLeast,
+      lattice::affordable_replicates(field, max_gates, std::min(kMost, kMostNumbers / numbers)));
+  const lattice::FieldMatrices rows{{&matrix},
+                                    std::vector<int>(static_cast<std::size_t>(field.rows))};
   std::vector<std::vector<markov::FinalDistribution>> all(starts.size());
   run_in_batches("resampled matrices", (count + kTogether - 1) / kTogether, options.talk(),
                  [&](std::int64_t first, std::int64_t n) {
                    const std::int64_t begin = first * kTogether;
-                   auto found = lattice::replicate_predictions(rows, field, starts, max_gates, options.seed(), begin,
-                                                               std::min(n * kTogether, count - begin));
+                   auto found = lattice::replicate_predictions(
+                       rows, field, starts, max_gates, options.seed(), begin,
+                       std::min(n * kTogether, count - begin));
                    for (std::size_t k = 0; k < starts.size(); ++k)
                      std::move(found[k].begin(), found[k].end(), std::back_inserter(all[k]));
                  });
@@ -215,8 +227,9 @@ bool like_the_papers(const Scene& scene) {
   }
   const lattice::FieldParams field;
   return scene.gate.run.time_limit == paper.run.time_limit &&
-         scene.gate.run.traverse_y == paper.run.traverse_y && scene.field.columns == field.columns &&
-         scene.field.rows == field.rows && scene.field.max_gates == field.max_gates;
+         scene.gate.run.traverse_y == paper.run.traverse_y &&
+         scene.field.columns == field.columns && scene.field.rows == field.rows &&
+         scene.field.max_gates == field.max_gates;
 }
 
 /// What the one test says (lattice::judge), with what differs.
@@ -224,8 +237,11 @@ std::string verdict(const StartReport& r) {
   const lattice::Judgement& j = r.judgement;
   const std::string p = j.p < 0.001 ? "p < 0.001" : "p = " + fixed(j.p, 3);
   if (!j.differs())
-    return "the chain agrees with the dynamics as far as these trials and this matrix can tell (" + p + ")";
-  std::string text = "the chain differs from the dynamics by more than chance in trials and matrix makes (" + p + "):";
+    return "the chain agrees with the dynamics as far as these trials and this matrix can tell (" +
+           p + ")";
+  std::string text =
+      "the chain differs from the dynamics by more than chance in trials and matrix makes (" + p +
+      "):";
   const char* separator = " ";
   const auto say = [&](const std::string& what) {
     text += separator + what;
@@ -234,16 +250,18 @@ std::string verdict(const StartReport& r) {
   for (const EndingName& e : kEndingNames) {
     if (!j.differs(e.ending)) continue;
     const auto at = static_cast<std::size_t>(e.ending);
-    say(std::string(e.name) + " " + with_interval(r.dynamics_endings.share[at], r.dynamics_endings.interval[at]) +
-        " % in the dynamics, " + with_interval(r.exact_endings.share[at], r.exact_endings.interval[at]) +
-        " % by the chain");
+    say(std::string(e.name) + " " +
+        with_interval(r.dynamics_endings.share[at], r.dynamics_endings.interval[at]) +
+        " % in the dynamics, " +
+        with_interval(r.exact_endings.share[at], r.exact_endings.interval[at]) + " % by the chain");
   }
   if (j.differs(markov::Ending::unsampled))
     say("states never sampled, " + percent(r.exact.unsampled, 1.0, 2) + " by the chain");
   const auto gates = {j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted};
-  if (std::any_of(gates.begin(), gates.end(), [](double x) { return x <= lattice::Judgement::kLevel; }))
-    say("final gates, total variation " + fixed(j.total_variation.seen, 3) + " (chance: " +
-        fixed(j.chance_total_variation, 3) + ")");
+  if (std::any_of(gates.begin(), gates.end(),
+                  [](double x) { return x <= lattice::Judgement::kLevel; }))
+    say("final gates, total variation " + fixed(j.total_variation.seen, 3) +
+        " (chance: " + fixed(j.chance_total_variation, 3) + ")");
   return text;
 }
 
@@ -254,12 +272,14 @@ Json to_json(const lattice::Judgement& j, std::int64_t resampled) {
                    {"chi_squared", j.chi_squared.p_adjusted}};
   for (const EndingName& e : kEndingNames)
     adjusted["endings"][e.key] = j.endings[static_cast<std::size_t>(e.ending)].p_adjusted;
-  adjusted["endings"]["never_sampled"] = j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted;
+  adjusted["endings"]["never_sampled"] =
+      j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted;
   return {{"differs", j.differs()},
           {"p", j.p},
           {"level", lattice::Judgement::kLevel},
           {"p_adjusted", adjusted},
-          {"total_variation_by_chance", {{"mean", j.chance_total_variation}, {"at_95", j.chance_total_variation_95}}},
+          {"total_variation_by_chance",
+           {{"mean", j.chance_total_variation}, {"at_95", j.chance_total_variation_95}}},
           {"null_draws", j.null_draws},
           {"resampled_matrices", resampled}};
 }
@@ -268,25 +288,29 @@ Json to_json(const StartReport& r) {
   Json j;
   j["verdict"] = verdict(r);
   j["trials_and_matrix"] = to_json(r.judgement, r.resampled);
-  j["start"] = {{"d_m", r.start.d}, {"vx_m_per_s", r.start.vx}, {"vy_m_per_s", r.start.vy},
+  j["start"] = {{"d_m", r.start.d},
+                {"vx_m_per_s", r.start.vx},
+                {"vy_m_per_s", r.start.vy},
                 {"clamped", r.chain_start.clamped}};
-  if (r.start.corrcoef) j["paper"] = {{"corrcoef", *r.start.corrcoef}, {"rmse_per_100", *r.start.rmse}};
+  if (r.start.corrcoef)
+    j["paper"] = {{"corrcoef", *r.start.corrcoef}, {"rmse_per_100", *r.start.rmse}};
   j["exact"] = to_json(r.exact_against);
-  j["exact"]["total_variation_of_matrix_sampling"] = {{"mean", r.matrix_noise_mean}, {"sd", r.matrix_noise_sd}};
+  j["exact"]["total_variation_of_matrix_sampling"] = {{"mean", r.matrix_noise_mean},
+                                                      {"sd", r.matrix_noise_sd}};
   j["walks"] = to_json(r.walks_against);
   const PaperSized& p = r.paper_sized;
-  j["at_100_trials"] = {
-      {"repeats", p.exact_rmse.n},
-      {"exact_corrcoef", to_json(p.exact_corrcoef)},
-      {"exact_corrcoef_floor", r.floor_100_exact.corrcoef},
-      {"exact_rmse_per_100", to_json(p.exact_rmse)},
-      {"exact_rmse_per_100_floor", r.floor_100_exact.rmse_per_100},
-      {"exact_corrcoef_rmse_correlation", p.exact_correlation()},
-      {"walks_corrcoef", to_json(p.walks_corrcoef)},
-      {"walks_corrcoef_floor", r.floor_100_walks.corrcoef},
-      {"walks_rmse_per_100", to_json(p.walks_rmse)},
-      {"walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100}};
-  j["seconds"] = {{"dynamics", r.dynamics_seconds}, {"walks", r.walks_seconds}, {"exact", r.exact_seconds}};
+  j["at_100_trials"] = {{"repeats", p.exact_rmse.n},
+                        {"exact_corrcoef", to_json(p.exact_corrcoef)},
+                        {"exact_corrcoef_floor", r.floor_100_exact.corrcoef},
+                        {"exact_rmse_per_100", to_json(p.exact_rmse)},
+                        {"exact_rmse_per_100_floor", r.floor_100_exact.rmse_per_100},
+                        {"exact_corrcoef_rmse_correlation", p.exact_correlation()},
+                        {"walks_corrcoef", to_json(p.walks_corrcoef)},
+                        {"walks_corrcoef_floor", r.floor_100_walks.corrcoef},
+                        {"walks_rmse_per_100", to_json(p.walks_rmse)},
+                        {"walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100}};
+  j["seconds"] = {
+      {"dynamics", r.dynamics_seconds}, {"walks", r.walks_seconds}, {"exact", r.exact_seconds}};
   const double per_trial = r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
   const double per_walk = r.walks_seconds / static_cast<double>(r.walks.walks);
   j["speed_ratio"] = {{"dynamics_trial_over_walk", per_trial / per_walk},
@@ -318,7 +342,9 @@ Json to_json(const StartReport& r) {
   return j;
 }
 
-std::string with_sd(const MeanAndSd& m) { return fixed(m.mean(), 3) + " (" + fixed(m.sd(), 3) + ")"; }
+std::string with_sd(const MeanAndSd& m) {
+  return fixed(m.mean(), 3) + " (" + fixed(m.sd(), 3) + ")";
+}
 
 std::string table_of(const std::vector<StartReport>& reports, bool papers, std::int64_t trials,
                      std::int64_t walks, std::size_t threads) {
@@ -343,25 +369,31 @@ std::string table_of(const std::vector<StartReport>& reports, bool papers, std::
       text += "  " + padded(text_of(kEndingNames[e]), static_cast<int>(width[e]));
     return text;
   };
-  out << "Endings, % of " << trials << " trials of the full dynamics and by the exact chain, with 95 % intervals: chance in the\n"
-         "trials, in the sampling of the matrix. p: how often chance in both together would make any ending\n"
+  out << "Endings, % of " << trials
+      << " trials of the full dynamics and by the exact chain, with 95 % intervals: chance in the\n"
+         "trials, in the sampling of the matrix. p: how often chance in both together would make "
+         "any ending\n"
          "or the final gates look as different; *: this ending differs.\n\n"
       << labels.header << "  |         ";
   out << line([](const EndingName& e) { return std::string(e.name) + " "; }) << "       p\n";
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const StartReport& r = reports[k];
-    out << labels.texts[k] << "  | dynamics" << line([&](const EndingName& e) { return cell(r, r.dynamics_endings, e); })
-        << "\n" << labels.texts[k] << "  | chain   " << line([&](const EndingName& e) { return cell(r, r.exact_endings, e); })
+    out << labels.texts[k] << "  | dynamics"
+        << line([&](const EndingName& e) { return cell(r, r.dynamics_endings, e); }) << "\n"
+        << labels.texts[k] << "  | chain   "
+        << line([&](const EndingName& e) { return cell(r, r.exact_endings, e); })
         << padded(p_text(r.judgement.p), 8) << "\n";
   }
   out << "\n";
   for (std::size_t k = 0; k < reports.size(); ++k)
     out << labels.texts[k] << "  | " << verdict(reports[k]) << "\n";
   const std::string blank(labels.header.size(), ' ');
-  out << "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean (sd) over\n"
+  out << "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean "
+         "(sd) over\n"
          "repeats. Floor: what chance alone gives if the chain were perfect.\n\n"
       << blank << "  |            corrcoef                      |        RMSE, trials per 100\n"
-      << labels.header << "  | paper  exact chain    floor  100 walks   | paper  exact chain    floor  100 walks\n";
+      << labels.header
+      << "  | paper  exact chain    floor  100 walks   | paper  exact chain    floor  100 walks\n";
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const StartReport& r = reports[k];
     const PaperSized& p = r.paper_sized;
@@ -374,24 +406,30 @@ std::string table_of(const std::vector<StartReport>& reports, bool papers, std::
         << padded(with_sd(p.exact_rmse), -15) << padded(fixed(r.floor_100_exact.rmse_per_100, 3), 5)
         << "  " << with_sd(p.walks_rmse) << "\n";
   }
-  out << "\nFinal gates of all " << trials << " trials per start. Floor: chance in these trials (and walks) alone; matrix:\n"
-         "total variation (TV) that the sampling of the matrix alone makes; chance: that both together make.\n\n"
-      << labels.header << "  | against         corrcoef  floor    RMSE   floor      TV   floor  matrix  chance\n";
+  out << "\nFinal gates of all " << trials
+      << " trials per start. Floor: chance in these trials (and walks) alone; matrix:\n"
+         "total variation (TV) that the sampling of the matrix alone makes; chance: that both "
+         "together make.\n\n"
+      << labels.header
+      << "  | against         corrcoef  floor    RMSE   floor      TV   floor  matrix  chance\n";
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const StartReport& r = reports[k];
-    const auto compared = [&](const std::string& name, const lattice::Comparison& c, const std::string& chance) {
+    const auto compared = [&](const std::string& name, const lattice::Comparison& c,
+                              const std::string& chance) {
       out << labels.texts[k] << "  | " << padded(name, -15) << padded(fixed(c.corrcoef, 4), 9)
           << padded(fixed(c.floor.corrcoef, 4), 8) << padded(fixed(c.rmse_per_100, 3), 8)
           << padded(fixed(c.floor.rmse_per_100, 3), 8) << padded(fixed(c.total_variation, 3), 8)
-          << padded(fixed(c.floor_total_variation, 3), 8) << padded(fixed(r.matrix_noise_mean, 3), 8)
-          << padded(chance, 8) << "\n";
+          << padded(fixed(c.floor_total_variation, 3), 8)
+          << padded(fixed(r.matrix_noise_mean, 3), 8) << padded(chance, 8) << "\n";
     };
     compared("exact chain", r.exact_against, fixed(r.judgement.chance_total_variation, 3));
     compared(std::to_string(walks) + " walks", r.walks_against, "-");
   }
   out << "\nSeconds: " << trials << " trials and " << walks << " walks on " << threads
       << (threads == 1 ? " thread" : " threads") << ", one exact prediction on one.\n"
-      << "\n" << labels.header << "  |           dynamics      walks      exact | dynamics/exact  trial/walk\n";
+      << "\n"
+      << labels.header
+      << "  |           dynamics      walks      exact | dynamics/exact  trial/walk\n";
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const StartReport& r = reports[k];
     const double per_trial = r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
@@ -412,28 +450,31 @@ struct EntryShares {
 }  // namespace
 
 int run_validate(const std::vector<std::string>& arguments) {
-  Options options("validate SCENE [options]",
-                  "Compares the chain with the full dynamics: for the scene's start (in the paper's field the\n"
-                  "four of Table IV), or those given, the endings with 95 % intervals and one verdict on endings\n"
-                  "and final gates that counts chance in trials and matrix together; corrcoef, RMSE and total\n"
-                  "variation of walks and of the exact chain, each beside its noise floor; the time each takes.\n"
-                  "In JSON, trials_and_matrix is that verdict; p_values count chance in the trials (and walks)\n"
-                  "alone.",
-                  "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
+  Options options(
+      "validate SCENE [options]",
+      "Compares the chain with the full dynamics: for the scene's start (in the paper's field the\n"
+      "four of Table IV), or those given, the endings with 95 % intervals and one verdict on "
+      "endings\n"
+      "and final gates that counts chance in trials and matrix together; corrcoef, RMSE and total\n"
+      "variation of walks and of the exact chain, each beside its noise floor; the time each "
+      "takes.\n"
+      "In JSON, trials_and_matrix is that verdict; p_values count chance in the trials (and "
+      "walks)\n"
+      "alone.",
+      "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.positional("scene", "scene file (TOML)", true);
   add_trials_and_seed(options, "trials of the full dynamics per start");
   add_strict(options);
   options.input_file("matrix", "matrix to validate; without it one is built from the scene");
-  options.add()
-      ("matrix-trials", po::value<Count>()->value_name("N"),
-       "runs per input state of the matrix that is built (default: 100)")
-      ("walks", po::value<Count>()->value_name("N"), "walks per start (default: as many as trials)")
-      ("null-draws", po::value<Count>()->value_name("N"),
-       "draws behind each p-value (default: 999 to 9999, by the size of the work)");
+  options.add()("matrix-trials", po::value<Count>()->value_name("N"),
+                "runs per input state of the matrix that is built (default: 100)")(
+      "walks", po::value<Count>()->value_name("N"), "walks per start (default: as many as trials)")(
+      "null-draws", po::value<Count>()->value_name("N"),
+      "draws behind each p-value (default: 999 to 9999, by the size of the work)");
   add_starts(options);
   add_bins(options);
   if (!options.parse(arguments)) return kFine;
-  constexpr std::int64_t kMostNullDraws = 100'000;              // some 20 MB
+  constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
   const std::int64_t trials = options.count("trials");
   const std::int64_t walks = options.has("walks") ? options.count("walks") : trials;
   if (options.has("null-draws")) (void)options.count("null-draws", 1, kMostNullDraws);
@@ -451,7 +492,8 @@ int run_validate(const std::vector<std::string>& arguments) {
   Json settled, states;
   MatrixAndScene m = [&] {
     if (options.has("matrix"))
-      return read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
+      return read_matrix_and_scene(options.text("matrix"), options.text("scene"),
+                                   options.overrides());
     Scene scene = read_scene(options.text("scene"), options.overrides());
     const BinsChoice choice = bins_choice(options, scene);
     starts = starts_of(options, scene);
@@ -472,14 +514,16 @@ int run_validate(const std::vector<std::string>& arguments) {
   if (const auto chosen = m.file.text.find("method"); chosen != m.file.text.end()) {
     settled = Json::parse(chosen->second, nullptr, false);
     if (settled.is_discarded())
-      throw markov::BadFile(options.text("matrix") + ": its record of the chosen method is damaged");
+      throw markov::BadFile(options.text("matrix") +
+                            ": its record of the chosen method is damaged");
   }
   const Scene& scene = m.scene;
   // Some 50 predictions of every gate are kept.
   constexpr std::int64_t kMostGates = 100'000;
   if (std::int64_t{scene.field.columns} * scene.field.rows > kMostGates)
-    throw UsageError("validate compares fields of up to " + std::to_string(kMostGates) + " gates; field.columns = " +
-                     std::to_string(scene.field.columns) + " and field.rows = " + std::to_string(scene.field.rows));
+    throw UsageError("validate compares fields of up to " + std::to_string(kMostGates) +
+                     " gates; field.columns = " + std::to_string(scene.field.columns) +
+                     " and field.rows = " + std::to_string(scene.field.rows));
   const dynamics::Transitions& t = m.file.transitions;
   if (options.has("matrix")) {
     starts = starts_of(options, scene);
@@ -488,7 +532,8 @@ int run_validate(const std::vector<std::string>& arguments) {
     if (const auto stored = m.file.text.find("state_space"); stored != m.file.text.end()) {
       states = Json::parse(stored->second, nullptr, false);
       if (states.is_discarded())
-        throw markov::BadFile(options.text("matrix") + ": its record of the state space is damaged");
+        throw markov::BadFile(options.text("matrix") +
+                              ": its record of the state space is damaged");
     }
     require_inside_bins(starts, scene, t.space);
   }
@@ -505,7 +550,8 @@ int run_validate(const std::vector<std::string>& arguments) {
   EntryShares shares;
   dynamics::Health health = t.health;
   for (std::size_t k = 0; k < starts.size(); ++k) {
-    reports.push_back(run_start(options, scene, t, sweeper, walker, resampled[k], starts[k], trials, walks));
+    reports.push_back(
+        run_start(options, scene, t, sweeper, walker, resampled[k], starts[k], trials, walks));
     const lattice::FieldTally& d = reports.back().dynamics;
     health += d.health;
     for (int b = 0; b < dynamics::kBoundaries; ++b) {
@@ -545,12 +591,13 @@ int run_validate(const std::vector<std::string>& arguments) {
                                                         : fixed(matrix_seconds, 2) + " s";
   const bool papers = like_the_papers(scene);
   std::string table = table_of(reports, papers, trials, walks, threads);
-  table += "\nMatrix: " + std::to_string(total.runs) + " gate runs, " + matrix_time +
-           ". Crossings between gates in the dynamics: " +
-           percent(static_cast<double>(shares.traverse_sides), static_cast<double>(shares.entries)) +
-           " through RT or LT" + (papers ? " (paper: fewer than 4 %), " : ", ") +
-           percent(static_cast<double>(shares.clamped), static_cast<double>(shares.entries)) +
-           " outside the bins.\n" + states_line(states);
+  table +=
+      "\nMatrix: " + std::to_string(total.runs) + " gate runs, " + matrix_time +
+      ". Crossings between gates in the dynamics: " +
+      percent(static_cast<double>(shares.traverse_sides), static_cast<double>(shares.entries)) +
+      " through RT or LT" + (papers ? " (paper: fewer than 4 %), " : ", ") +
+      percent(static_cast<double>(shares.clamped), static_cast<double>(shares.entries)) +
+      " outside the bins.\n" + states_line(states);
   if (shares.entries == 0) table += "No trial ever reached a second gate.\n";
   options.give_out(json, table);
   if (!health.clean()) warn(complaint(health));

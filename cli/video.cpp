@@ -57,7 +57,9 @@ std::vector<double> integral(const std::vector<double>& t, const std::vector<dou
 }
 
 Film film_of(const Json& json, int index) {
-  const auto wrong = [](const std::string& what) -> void { throw std::invalid_argument("film: " + what); };
+  const auto wrong = [](const std::string& what) -> void {
+    throw std::invalid_argument("film: " + what);
+  };
   Film film{};
   try {
     film.title = json.at("title");
@@ -77,10 +79,23 @@ Film film_of(const Json& json, int index) {
     run.ending = from.at("ending");
     run.propulsion = from.at("propulsion_N");
     const std::pair<const char*, std::vector<double>*> arrays[] = {
-        {"t", &run.t}, {"gx", &run.gx}, {"gy", &run.gy}, {"x", &run.x}, {"y", &run.y}, {"vx", &run.vx},
-        {"vy", &run.vy}, {"left", &run.left}, {"right", &run.right}, {"contact_left", &run.contact_left},
-        {"contact_right", &run.contact_right}, {"random_N", &run.random}, {"body_J", &run.body},
-        {"beams_J", &run.beams}, {"elastic_J", &run.elastic}, {"work_J", &run.work}, {"lost_J", &run.lost}};
+        {"t", &run.t},
+        {"gx", &run.gx},
+        {"gy", &run.gy},
+        {"x", &run.x},
+        {"y", &run.y},
+        {"vx", &run.vx},
+        {"vy", &run.vy},
+        {"left", &run.left},
+        {"right", &run.right},
+        {"contact_left", &run.contact_left},
+        {"contact_right", &run.contact_right},
+        {"random_N", &run.random},
+        {"body_J", &run.body},
+        {"beams_J", &run.beams},
+        {"elastic_J", &run.elastic},
+        {"work_J", &run.work},
+        {"lost_J", &run.lost}};
     for (const auto& [name, values] : arrays) {
       *values = from.at(name).get<std::vector<double>>();
       if (values->size() != run.t.size() || values->empty())
@@ -146,7 +161,8 @@ struct Segment {
 Segment beam_of(const Film& film, double gx, double gy, Side side, double angle) {
   const double sign = side == kLeft ? 1.0 : -1.0;
   const Point joint{-sign * film.joint_x + film.width * gx, film.joint_y + film.depth * gy};
-  return {joint, {joint.x + sign * film.beam * std::cos(angle), joint.y + film.beam * std::sin(angle)}};
+  return {joint,
+          {joint.x + sign * film.beam * std::cos(angle), joint.y + film.beam * std::sin(angle)}};
 }
 
 Point nearest(const Segment& s, Point p) {
@@ -161,9 +177,9 @@ struct State {
   Moment moment;
   double gx, gy;
   Point body;
-  std::array<double, 2> angle;   // rad
-  std::array<int, 2> contact;    // 0 free, 1 hit, 2 held
-  std::array<int, 2> last_hit;   // entry, -1: none so far
+  std::array<double, 2> angle;  // rad
+  std::array<int, 2> contact;   // 0 free, 1 hit, 2 held
+  std::array<int, 2> last_hit;  // entry, -1: none so far
 };
 
 State state_at(const Run& run, double time) {
@@ -173,7 +189,8 @@ State state_at(const Run& run, double time) {
   s.gx = run.gx[m.i];
   s.gy = run.gy[m.i];
   s.body = {m.between(run.X), m.between(run.Y)};
-  // In another gate other beams are the moving ones: those left behind keep their last angle until then.
+  // In another gate other beams are the moving ones: those left behind keep their last angle until
+  // then.
   const bool same_gate = run.gx[m.j] == s.gx && run.gy[m.j] == s.gy;
   for (const Side side : {kLeft, kRight}) {
     const auto& angles = side == kLeft ? run.left : run.right;
@@ -181,7 +198,8 @@ State state_at(const Run& run, double time) {
     s.angle[side] = same_gate ? m.between(angles) : angles[m.i];
     s.contact[side] = static_cast<int>(contacts[m.i]);
     s.last_hit[side] = static_cast<int>(m.i);
-    while (s.last_hit[side] >= 0 && contacts[static_cast<std::size_t>(s.last_hit[side])] != 1.0) --s.last_hit[side];
+    while (s.last_hit[side] >= 0 && contacts[static_cast<std::size_t>(s.last_hit[side])] != 1.0)
+      --s.last_hit[side];
   }
   return s;
 }
@@ -193,7 +211,8 @@ Point calm_place(const Film& film, double time) {
   const double reach = std::min({most, time - run.t.front(), run.t.back() - time});
   const Moment now = moment_at(run, time);
   if (!(reach > 1e-6 * film.scale.time)) return {now.between(run.X), now.between(run.Y)};
-  const auto up_to = [&](const std::vector<double>& sums, const std::vector<double>& values, double at) {
+  const auto up_to = [&](const std::vector<double>& sums, const std::vector<double>& values,
+                         double at) {
     const Moment m = moment_at(run, at);
     return sums[m.i] + 0.5 * (at - run.t[m.i]) * (values[m.i] + m.between(values));
   };
@@ -215,14 +234,16 @@ constexpr Colour rgb(int hex) {
   return {(hex >> 16) / 255.0, (hex >> 8 & 255) / 255.0, (hex & 255) / 255.0};
 }
 // Those of web/replay.js.
-constexpr Colour kText = rgb(0x1b1f24), kMuted = rgb(0x59626d), kLine = rgb(0xd5dae0), kPaper = rgb(0xffffff),
-                 kStage = rgb(0xf5f7f9), kBlue = rgb(0x0072b2), kRed = rgb(0xc8401c), kOrange = rgb(0xd98300),
-                 kGrey = rgb(0x7b858f), kGreen = rgb(0x00805c), kSky = rgb(0x2b8fc9), kPurple = rgb(0xa8447f),
+constexpr Colour kText = rgb(0x1b1f24), kMuted = rgb(0x59626d), kLine = rgb(0xd5dae0),
+                 kPaper = rgb(0xffffff), kStage = rgb(0xf5f7f9), kBlue = rgb(0x0072b2),
+                 kRed = rgb(0xc8401c), kOrange = rgb(0xd98300), kGrey = rgb(0x7b858f),
+                 kGreen = rgb(0x00805c), kSky = rgb(0x2b8fc9), kPurple = rgb(0xa8447f),
                  kDisc = rgb(0xdfe4ea), kEdge = rgb(0x2c333b);
 
 /// A text for the picture: with a true minus sign.
 std::string shown(std::string text) {
-  if (const std::size_t minus = text.starts_with('>') ? 1 : 0; text[minus] == '-') text.replace(minus, 1, "−");
+  if (const std::size_t minus = text.starts_with('>') ? 1 : 0; text[minus] == '-')
+    text.replace(minus, 1, "−");
   return text;
 }
 
@@ -239,13 +260,19 @@ class Picture {
  public:
   /// `pace`: units of the scene's time in a second of the film.
   Picture(const Film& film, double pace, bool labels)
-      : film_(film), run_(film.run), unit_(film.scale), pace_(pace), labels_(labels),
-        surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, kWidth, kHeight), cairo_surface_destroy),
+      : film_(film),
+        run_(film.run),
+        unit_(film.scale),
+        pace_(pace),
+        labels_(labels),
+        surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, kWidth, kHeight),
+                 cairo_surface_destroy),
         cr_(cairo_create(surface_.get()), cairo_destroy) {
     check();
     std::vector<double> draws;
     for (const double f : run_.random) draws.push_back(std::abs(f));
-    const auto few = draws.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(draws.size() - 1));
+    const auto few =
+        draws.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(draws.size() - 1));
     std::nth_element(draws.begin(), few, draws.end());
     // The larger of propulsion and of what few draws exceed spans two radii.
     if (const double strong = std::max(*few, std::abs(run_.propulsion)); strong > 0.0)
@@ -294,7 +321,9 @@ class Picture {
   }
 
   // Paint
-  void colour(Colour c, double alpha = 1.0) { cairo_set_source_rgba(cr_.get(), c.red, c.green, c.blue, alpha); }
+  void colour(Colour c, double alpha = 1.0) {
+    cairo_set_source_rgba(cr_.get(), c.red, c.green, c.blue, alpha);
+  }
   void fill(const Box& b, Colour c) {
     cairo_rectangle(cr_.get(), b.x0, b.y0, b.x1 - b.x0, b.y1 - b.y0);
     colour(c);
@@ -334,7 +363,8 @@ class Picture {
     return extents.x_advance;
   }
   /// Text from x on, or up to x for a width below 0; what is wider than `width` loses its end.
-  void text(double x, double y, double size, std::string words, Colour c, bool bold = false, double width = 1e9) {
+  void text(double x, double y, double size, std::string words, Colour c, bool bold = false,
+            double width = 1e9) {
     if (!labels_) return;
     cairo_select_font_face(cr_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                            bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
@@ -361,19 +391,22 @@ class Picture {
               film_.rows * film_.depth + film_.radius + margin};
     const auto [left, right] = std::minmax_element(run_.X.begin(), run_.X.end());
     const auto [low, high] = std::minmax_element(run_.Y.begin(), run_.Y.end());
-    const double half = std::max({film_.joint_x, -*left + film_.radius, *right + film_.radius}) + margin;
+    const double half =
+        std::max({film_.joint_x, -*left + film_.radius, *right + film_.radius}) + margin;
     return {-half, std::min(0.0, *low - film_.radius) - margin, half,
             std::max(film_.joint_y + film_.beam, *high + film_.radius) + margin};
   }
 
-  /// The body among the beams in a part of the picture, which shows at least the part `seen` (m) of the world.
+  /// The body among the beams in a part of the picture, which shows at least the part `seen` (m) of
+  /// the world.
   void stage(const Box& box, const State& s, const Box& seen) {
     cairo_t* const cr = cr_.get();
     const double w = box.x1 - box.x0, h = box.y1 - box.y0;
     const double scale = std::min(w / (seen.x1 - seen.x0), h / (seen.y1 - seen.y0));
     const Point centre{0.5 * (seen.x0 + seen.x1), 0.5 * (seen.y0 + seen.y1)};
     const auto at = [&](Point p) -> Point {
-      return {0.5 * (box.x0 + box.x1) + (p.x - centre.x) * scale, 0.5 * (box.y0 + box.y1) - (p.y - centre.y) * scale};
+      return {0.5 * (box.x0 + box.x1) + (p.x - centre.x) * scale,
+              0.5 * (box.y0 + box.y1) - (p.y - centre.y) * scale};
     };
     const double thick = std::clamp(0.9 * unit_.length * scale, 1.5, 5.0);
     cairo_save(cr);
@@ -383,10 +416,12 @@ class Picture {
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
 
-    // Borders of the gates in sight, and their beams at rest. Of a gate alone only its sides are borders.
+    // Borders of the gates in sight, and their beams at rest. Of a gate alone only its sides are
+    // borders.
     const double x0 = centre.x - 0.5 * w / scale, x1 = centre.x + 0.5 * w / scale;
     const double y0 = centre.y - 0.5 * h / scale, y1 = centre.y + 0.5 * h / scale;
-    const int first = std::max(film_.first_column(), static_cast<int>(std::floor(x0 / film_.width - 0.5)));
+    const int first =
+        std::max(film_.first_column(), static_cast<int>(std::floor(x0 / film_.width - 0.5)));
     const int last = std::min(film_.first_column() + film_.columns - 1,
                               static_cast<int>(std::ceil(x1 / film_.width + 0.5)));
     const int low = std::max(0, static_cast<int>(std::floor(y0 / film_.depth - 1.0)));
@@ -398,11 +433,12 @@ class Picture {
     cairo_set_dash(cr, dashes, 1, 0.0);
     if (film_.width * scale > 6.0)
       for (int k = first; k <= last + 1; ++k)
-        line(at({(k - 0.5) * film_.width, bottom}), at({(k - 0.5) * film_.width, top}), kGreen, 1.2, 0.55);
+        line(at({(k - 0.5) * film_.width, bottom}), at({(k - 0.5) * film_.width, top}), kGreen, 1.2,
+             0.55);
     if (film_.is_field() && film_.depth * scale > 6.0)
       for (int k = low; k <= high + 1; ++k)
-        line(at({(first - 0.5) * film_.width, k * film_.depth}), at({(last + 0.5) * film_.width, k * film_.depth}),
-             kGreen, 1.2, 0.55);
+        line(at({(first - 0.5) * film_.width, k * film_.depth}),
+             at({(last + 0.5) * film_.width, k * film_.depth}), kGreen, 1.2, 0.55);
     cairo_set_dash(cr, nullptr, 0, 0.0);
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     if (film_.is_field() && film_.width * scale > 12.0)
@@ -411,7 +447,8 @@ class Picture {
           for (const Side side : {kLeft, kRight}) {
             if (gx == s.gx && gy == s.gy) continue;
             const Segment beam = beam_of(film_, gx, gy, side, 0.0);
-            line(at(beam.joint), at(beam.tip), side == kLeft ? kBlue : kRed, std::max(1.2, 0.6 * thick), 0.45);
+            line(at(beam.joint), at(beam.tip), side == kLeft ? kBlue : kRed,
+                 std::max(1.2, 0.6 * thick), 0.45);
           }
 
     // The trail: all of it faintly, the last part strongly.
@@ -460,7 +497,8 @@ class Picture {
       const auto i = static_cast<std::size_t>(s.last_hit[side]);
       const double grown = (s.time - run_.t[i]) / flash;
       if (grown > 1.0) continue;
-      const Segment then = beam_of(film_, run_.gx[i], run_.gy[i], side, side == kLeft ? run_.left[i] : run_.right[i]);
+      const Segment then = beam_of(film_, run_.gx[i], run_.gy[i], side,
+                                   side == kLeft ? run_.left[i] : run_.right[i]);
       circle(at(nearest(then, {run_.X[i], run_.Y[i]})), thick * (1.6 + 2.6 * grown));
       stroke(own, 2.0, 0.9 * (1.0 - grown));
     }
@@ -476,7 +514,8 @@ class Picture {
     cairo_restore(cr);
   }
 
-  /// A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width at `scale` points a metre.
+  /// A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width at `scale` points a
+  /// metre.
   void rule(const Box& box, double scale) {
     cairo_t* const cr = cr_.get();
     const double w = box.x1 - box.x0;
@@ -501,8 +540,11 @@ class Picture {
     else if (film_.is_field())
       text(x, 154, 17, "gate: column " + whole(s.gx) + ", row " + whole(s.gy), kMuted);
     double y = 196;
-    const auto force = [&](double newton) { return shown(reading(newton, "N", 0.1 * unit_.force())); };
-    const auto row = [&](Colour c, bool is_arrow, const std::string& name, const std::string& value) {
+    const auto force = [&](double newton) {
+      return shown(reading(newton, "N", 0.1 * unit_.force()));
+    };
+    const auto row = [&](Colour c, bool is_arrow, const std::string& name,
+                         const std::string& value) {
       if (is_arrow)
         arrow({x, y - 5}, {x + 26, y - 5}, c, 4.0);
       else
@@ -514,7 +556,8 @@ class Picture {
     for (const Side side : {kLeft, kRight}) {
       // A hit is named for a moment.
       const int hit = s.last_hit[side];
-      const bool just_hit = hit >= 0 && s.time - run_.t[static_cast<std::size_t>(hit)] < 0.1 * pace_ * unit_.time;
+      const bool just_hit =
+          hit >= 0 && s.time - run_.t[static_cast<std::size_t>(hit)] < 0.1 * pace_ * unit_.time;
       const int contact = s.contact[side] == 0 && just_hit ? 1 : s.contact[side];
       row(side == kLeft ? kBlue : kRed, false, side == kLeft ? "left beam" : "right beam",
           std::string(kContactNames[static_cast<std::size_t>(contact)]) + ", " +
@@ -527,13 +570,15 @@ class Picture {
     text(kRightEdge, y, 16, reading(speed, "m/s", 0.1 * unit_.speed()), kText, false, -160);
     y += 48;
 
-    const auto bar = [&](const std::string& name, const std::vector<double>& energy, double most, Colour c) {
+    const auto bar = [&](const std::string& name, const std::vector<double>& energy, double most,
+                         Colour c) {
       const double step = step_of(0.1 * unit_.energy(), most);
       const double joules = now.moment.between(energy);
       text(x, y, 16, name, kText);
       text(kRightEdge, y, 16, shown(reading(m.between(energy), "J", step)), kText, false, -160);
       fill({x, y + 7, kRightEdge, y + 15}, kLine);
-      if (most > 0.0) fill({x, y + 7, x + std::clamp(joules / most, 0.0, 1.0) * (kRightEdge - x), y + 15}, c);
+      if (most > 0.0)
+        fill({x, y + 7, x + std::clamp(joules / most, 0.0, 1.0) * (kRightEdge - x), y + 15}, c);
       y += 40;
     };
     text(x, y, 16, "Energy stored now", kText, true);
@@ -561,13 +606,14 @@ class Picture {
 
 // ---- ffmpeg
 
-/// Pictures on their way to ffmpeg. A pair of sockets and no pipe: when ffmpeg has gone away, writing
-/// is an error without a signal, and one that does not read leaves time to look at ctrl-C.
+/// Pictures on their way to ffmpeg. A pair of sockets and no pipe: when ffmpeg has gone away,
+/// writing is an error without a signal, and one that does not read leaves time to look at ctrl-C.
 class Conveyor {
  public:
   Conveyor() {
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends_.data()) != 0)
-      throw std::runtime_error(std::string("ffmpeg cannot be run: no sockets: ") + std::strerror(errno));
+      throw std::runtime_error(std::string("ffmpeg cannot be run: no sockets: ") +
+                               std::strerror(errno));
     const timeval patience{0, 100'000};
     ::setsockopt(ends_[0], SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
   }
@@ -606,14 +652,15 @@ class Conveyor {
 };
 
 std::vector<std::string> ffmpeg_command(const Film& film, double frames_per_second) {
-  return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-          "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
-          std::to_string(kWidth) + "x" + std::to_string(kHeight), "-framerate", std::to_string(frames_per_second),
-          "-i", "pipe:0", "-an", "-c:v", "libx264", "-preset", "veryfast", "-crf", "20",
+  return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo",
+          "-pixel_format", "bgr0", "-video_size",
+          std::to_string(kWidth) + "x" + std::to_string(kHeight), "-framerate",
+          std::to_string(frames_per_second), "-i", "pipe:0", "-an", "-c:v", "libx264", "-preset",
+          "veryfast", "-crf", "20",
           // Players take HD pictures for BT.709 ones.
           "-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-colorspace", "bt709",
-          "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
-          "-metadata", "title=" + film.title + ": " + film.run.label,
+          "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv", "-metadata",
+          "title=" + film.title + ": " + film.run.label,
           // Its standard output is a file: the index can be moved to the front.
           "-movflags", "+faststart", "-f", "mp4", "file:/dev/stdout"};
 }
@@ -638,7 +685,8 @@ std::pair<Film, double> film_and_pace(const Json& json, int run, const VideoOpti
 
 std::string video_frame(const Json& json, int run, double time, const VideoOptions& options) {
   const auto [film, pace] = film_and_pace(json, run, options);
-  return std::string(Picture(film, pace, options.labels).draw(std::clamp(time, film.run.t.front(), film.run.t.back())));
+  return std::string(Picture(film, pace, options.labels)
+                         .draw(std::clamp(time, film.run.t.front(), film.run.t.back())));
 }
 
 void write_video(const std::string& path, const Json& json, int run, const VideoOptions& options) {
@@ -652,14 +700,16 @@ void write_video(const std::string& path, const Json& json, int run, const Video
                "ffmpeg was not found; it packs the video (Debian: ffmpeg)");
   conveyor.close_exit();
 
-  const double start = film.run.t.front(), end = film.run.t.back(), step = pace * film.scale.time / frames_per_second;
+  const double start = film.run.t.front(), end = film.run.t.back(),
+               step = pace * film.scale.time / frames_per_second;
   const auto frames = static_cast<std::int64_t>(std::ceil((end - start) / step - 1e-9)) + 1 +
                       static_cast<std::int64_t>(frames_per_second);  // the last one stands
   bool reads = true;
-  run_in_batches("video, frames", frames, options.show_progress, [&](std::int64_t first, std::int64_t count) {
-    for (std::int64_t k = first; k < first + count && reads; ++k)
-      reads = conveyor.send(picture.draw(std::min(end, start + static_cast<double>(k) * step)));
-  });
+  run_in_batches(
+      "video, frames", frames, options.show_progress, [&](std::int64_t first, std::int64_t count) {
+        for (std::int64_t k = first; k < first + count && reads; ++k)
+          reads = conveyor.send(picture.draw(std::min(end, start + static_cast<double>(k) * step)));
+      });
   conveyor.close_entry();
   while (ffmpeg.runs()) {
     if (interrupted()) throw Interrupted{};

@@ -9,20 +9,24 @@
 namespace gatewalk::cli {
 
 struct VideoOptions {
-  std::optional<double> speed = std::nullopt;  // seconds of the run in a second of the film; none: the unit of time
+  std::optional<double> speed =
+      std::nullopt;  // seconds of the run in a second of the film; none: the unit of time
   double frames_per_second = 50.0;
   bool show_progress = false;
-  bool labels = true;              // words, numbers and the rule; without them scenes alike look the same
+  bool labels = true;  // words, numbers and the rule; without them scenes alike look the same
 };
 
 /// Writes run number `run` of a film (replay.h) as MP4: H.264, yuv420p, 1280 x 720, drawn by cairo,
-/// packed by ffmpeg. The last picture stands for a second. `path` is replaced as a whole or left as it was.
-/// Throws std::invalid_argument for a film or options that make no sense, std::runtime_error when
-/// ffmpeg is missing or fails or the file cannot be written, Interrupted after a signal.
-void write_video(const std::string& path, const Json& film, int run, const VideoOptions& options = {});
+/// packed by ffmpeg. The last picture stands for a second. `path` is replaced as a whole or left as
+/// it was. Throws std::invalid_argument for a film or options that make no sense,
+/// std::runtime_error when ffmpeg is missing or fails or the file cannot be written, Interrupted
+/// after a signal.
+void write_video(const std::string& path, const Json& film, int run,
+                 const VideoOptions& options = {});
 
-/// Its picture at `time` (s of the run): 720 rows of 1280 points of blue, green, red and an unused byte.
-/// Throws as write_video does for a film or options that make no sense.
-[[nodiscard]] std::string video_frame(const Json& film, int run, double time, const VideoOptions& options = {});
+/// Its picture at `time` (s of the run): 720 rows of 1280 points of blue, green, red and an unused
+/// byte. Throws as write_video does for a film or options that make no sense.
+[[nodiscard]] std::string video_frame(const Json& film, int run, double time,
+                                      const VideoOptions& options = {});
 
 }  // namespace gatewalk::cli

@@ -1,6 +1,6 @@
 #pragma once
-/// Files that the program carries inside, so that it works from anywhere: cli/web's pages, the script
-/// libraries from npm with their licences, the scenes.
+/// Files that the program carries inside, so that it works from anywhere: cli/web's pages, the
+/// script libraries from npm with their licences, the scenes.
 
 #include <string_view>
 

@@ -110,7 +110,8 @@ std::vector<Setting> chart_settings(std::string_view method, const GateParams& p
       add(kTolerance, tolerance * scale_of(p).length);
   else
     for (const double n : {1, 2, 3, 4, 5, 8, 10, 20}) add(kStep, 1.0 / (p.forces.random_rate * n));
-  if (method == "moreau") add(kStep, 1.0 / (p.forces.random_rate * 40));  // costs what others do at 4
+  if (method == "moreau")
+    add(kStep, 1.0 / (p.forces.random_rate * 40));  // costs what others do at 4
   return settings;
 }
 
@@ -149,9 +150,10 @@ TrialEnd end_without_column(const GateRun& run) {
 
 TrialEnd end_of(const GateParams& p, const StateSpace& space, const GateRun& run) {
   TrialEnd end = end_without_column(run);
-  end.column = end.outcome == Outcome::broken    ? space.trapped() + 1
-               : end.outcome == Outcome::trapped ? space.trapped()
-                                                 : space.index_of(crossing_of(p, run.ending, run.exit)).state;
+  end.column = end.outcome == Outcome::broken ? space.trapped() + 1
+               : end.outcome == Outcome::trapped
+                   ? space.trapped()
+                   : space.index_of(crossing_of(p, run.ending, run.exit)).state;
   return end;
 }
 
@@ -180,7 +182,8 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
         Faults& f = faults.local();
         f.health.add(p, run);
         f.cut_short += run.cut_short;
-        ends.trials[before + static_cast<std::size_t>(slot.trial)] = space ? end_of(p, *space, run) : end_without_column(run);
+        ends.trials[before + static_cast<std::size_t>(slot.trial)] =
+            space ? end_of(p, *space, run) : end_without_column(run);
         return false;
       },
       kMostWork);
@@ -234,7 +237,8 @@ void check_outcomes(Health& health, const GateParams& p, std::span<const BodySta
   }
   const WeakError e = outcome_error(here.trials, there.trials, parts);
   health.checked_trials += trials;
-  health.outcome_error = std::max(health.outcome_error, e.total_variation - 2.0 * uncertainty_of(e, trials));
+  health.outcome_error =
+      std::max(health.outcome_error, e.total_variation - 2.0 * uncertainty_of(e, trials));
 }
 
 // ---- Errors ----
@@ -270,7 +274,8 @@ WeakError column_error(std::span<const TrialEnd> run, std::span<const TrialEnd> 
 }
 
 double weak_limit(const WeakError& own, std::int64_t trials) {
-  const double least = std::max({own.total_variation, own.chance, 1.0 / static_cast<double>(trials)});
+  const double least =
+      std::max({own.total_variation, own.chance, 1.0 / static_cast<double>(trials)});
   return std::min(1.0, kReferenceMargin * least);
 }
 

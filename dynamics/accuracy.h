@@ -4,7 +4,8 @@
 /// Trial number i draws the same random force whatever the method (common random numbers), so runs
 /// are compared one by one. Two kinds of error:
 /// - weak: how far the distribution of outcomes is off, as total variation;
-/// - strong: how far single trials are off. Two hits may be microseconds apart and which comes first
+/// - strong: how far single trials are off. Two hits may be microseconds apart and which comes
+/// first
 ///   decides the branch: a trial that took another one has parted, which counts as infinitely far.
 
 #include <algorithm>
@@ -27,7 +28,7 @@ struct Setting {
   std::string method;
   std::string_view key;  // "run.step_s" or "run.event_tolerance_m"
   double value = 0.0;
-  bool usual = false;    // what a scene gets that says nothing
+  bool usual = false;  // what a scene gets that says nothing
 
   [[nodiscard]] GateParams applied_to(GateParams p) const;
 };
@@ -35,12 +36,13 @@ struct Setting {
 /// Methods that have a list of settings, in the order of a chart.
 [[nodiscard]] std::span<const std::string_view> chart_methods();
 
-/// Steps hold/n, n = 1, 2, 3, 4, 5, 8, 10, 20, for the methods with a fixed step, and 40 for `moreau`;
-/// tolerances 0.3 to 1e-4 units of length (Scale) for `event`. From coarse to fine. Throws std::invalid_argument for another name.
+/// Steps hold/n, n = 1, 2, 3, 4, 5, 8, 10, 20, for the methods with a fixed step, and 40 for
+/// `moreau`; tolerances 0.3 to 1e-4 units of length (Scale) for `event`. From coarse to fine.
+/// Throws std::invalid_argument for another name.
 [[nodiscard]] std::vector<Setting> chart_settings(std::string_view method, const GateParams& p);
 
-/// What everything is compared with, `event` at 1e-7 units of length (Scale), and the same ten times
-/// coarser, which shows how far the first can be trusted.
+/// What everything is compared with, `event` at 1e-7 units of length (Scale), and the same ten
+/// times coarser, which shows how far the first can be trusted.
 [[nodiscard]] Setting reference_setting(const GateParams& p);
 [[nodiscard]] Setting second_reference_setting(const GateParams& p);
 
@@ -52,14 +54,14 @@ enum class Outcome : std::uint8_t {
   exited_left,
   exited_right,
   trapped,
-  broken,           // not finite, or cut short
+  broken,  // not finite, or cut short
 };
 inline constexpr int kOutcomes = 6;
 
 /// What one trial leaves behind.
 struct TrialEnd {
   Outcome outcome = Outcome::broken;
-  int column = 0;     // state in which it enters the next gate, trapped() or, broken, trapped() + 1
+  int column = 0;  // state in which it enters the next gate, trapped() or, broken, trapped() + 1
   BodyState exit;
   double seconds = 0.0;
 };
@@ -80,7 +82,8 @@ inline constexpr std::int64_t kMostWork = 50'000'000;
 /// A fault in this share of the runs makes a setting a failure.
 inline constexpr double kPermittedFaults = 0.01;
 
-/// Appends trials `range`, on all threads of the current TBB arena; the same for any number of them.
+/// Appends trials `range`, on all threads of the current TBB arena; the same for any number of
+/// them.
 void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start,
                     std::uint64_t seed, TrialRange range);
 
@@ -108,17 +111,18 @@ struct WeakError {
 [[nodiscard]] WeakError column_error(std::span<const TrialEnd> run,
                                      std::span<const TrialEnd> reference, const StateSpace& space);
 
-/// A pair of trials has parted when it ends in different ways, more than this apart (in units of time
-/// and length, see Scale), or broken.
+/// A pair of trials has parted when it ends in different ways, more than this apart (in units of
+/// time and length, see Scale), or broken.
 inline constexpr double kPartedTime = 0.05;
 inline constexpr double kPartedLength = 1.0;
 
-/// Distances at the exit: medians over the trials that left the gate in one run or both, parted ones
-/// infinitely far, so that a median grows as more of them part. NaN when half or more have parted.
+/// Distances at the exit: medians over the trials that left the gate in one run or both, parted
+/// ones infinitely far, so that a median grows as more of them part. NaN when half or more have
+/// parted.
 struct StrongError {
   std::int64_t compared = 0;  // have not parted
   std::int64_t parted = 0;
-  std::int64_t trapped = 0;   // in both: no exit, nothing to compare
+  std::int64_t trapped = 0;  // in both: no exit, nothing to compare
   double position = std::numeric_limits<double>::quiet_NaN();  // m
   double velocity = std::numeric_limits<double>::quiet_NaN();  // m/s
   double time = std::numeric_limits<double>::quiet_NaN();      // s
@@ -134,30 +138,34 @@ struct StrongError {
 
 // ---- A check by a better method ----
 
-/// By what a scene's method is checked: `event` at its default for `stable`, `stable` at its default for the
-/// others, each the other where a method does not take the scene; `event` by itself with a tenth of its
-/// tolerance (not below rounding), and so any other by itself with half its step if neither takes the scene.
+/// By what a scene's method is checked: `event` at its default for `stable`, `stable` at its
+/// default for the others, each the other where a method does not take the scene; `event` by itself
+/// with a tenth of its tolerance (not below rounding), and so any other by itself with half its
+/// step if neither takes the scene.
 [[nodiscard]] GateParams checking_setting(const GateParams& p);
 
-/// How many of `trials` to check: enough to see a few per cent, but no multiple of the work asked for.
+/// How many of `trials` to check: enough to see a few per cent, but no multiple of the work asked
+/// for.
 [[nodiscard]] inline std::int64_t check_sample(std::int64_t trials) {
   return std::clamp<std::int64_t>(trials / 5, std::min<std::int64_t>(trials, 100), 1000);
 }
 
-/// Runs `trials` trials, shared out evenly over `starts`, with the scene's setting and with the checking one
-/// under the same noise, and puts into `health` what of their difference in outcomes chance does not
-/// explain: total variation less two standard errors of it. Nothing that a run can show of itself (overlap,
-/// energy) sees that a method is wrong for an elastic or undamped scene, and half the step may be as wrong.
-/// On all threads of the current TBB arena, the same for any number of them. Throws InvalidParameter.
+/// Runs `trials` trials, shared out evenly over `starts`, with the scene's setting and with the
+/// checking one under the same noise, and puts into `health` what of their difference in outcomes
+/// chance does not explain: total variation less two standard errors of it. Nothing that a run can
+/// show of itself (overlap, energy) sees that a method is wrong for an elastic or undamped scene,
+/// and half the step may be as wrong. On all threads of the current TBB arena, the same for any
+/// number of them. Throws InvalidParameter.
 void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
                     std::uint64_t seed, std::int64_t trials);
 
 /// The trials of start i among `trials` that are shared out evenly.
 [[nodiscard]] TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts);
-/// One standard error of a total variation of paired trials, from above: a trial that changed moves it by
-/// 1/n at most, so all spread it by sqrt(changed)/n at most. (The paired standard error is smaller, and zero
-/// where changes happen to cancel.) Where no trial changed, the share that does may be 1.84/n yet: then none
-/// of n is seen one time in six, as often as one standard error is exceeded.
+/// One standard error of a total variation of paired trials, from above: a trial that changed moves
+/// it by 1/n at most, so all spread it by sqrt(changed)/n at most. (The paired standard error is
+/// smaller, and zero where changes happen to cancel.) Where no trial changed, the share that does
+/// may be 1.84/n yet: then none of n is seen one time in six, as often as one standard error is
+/// exceeded.
 [[nodiscard]] double uncertainty_of(const WeakError& e, std::int64_t trials);
 
 /// An error below this many times the reference's own cannot be shown.

@@ -71,7 +71,8 @@ TrialEnds reference_pilot(const Pilots& pilots, Choice& choice) {
   if (!ends)
     throw InvalidParameter("run.method",
                            "run.method = \"auto\" is not permitted for this scene: no method is "
-                           "exact enough to compare the others with" + refusals);
+                           "exact enough to compare the others with" +
+                               refusals);
   return std::move(*ends);
 }
 

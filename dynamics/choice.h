@@ -26,8 +26,8 @@ struct Choice {
   };
   GateParams params;         // the scene with the method and setting chosen
   std::vector<Tried> tried;  // cheapest first; the last one was chosen if `met`
-  /// What all were compared with, chosen if not `met`: `event` at 1e-5 units of length (Scale) or, where that cannot run
-  /// the scene, `stable` at 1/50 of a hold, which then vouches for itself.
+  /// What all were compared with, chosen if not `met`: `event` at 1e-5 units of length (Scale) or,
+  /// where that cannot run the scene, `stable` at 1/50 of a hold, which then vouches for itself.
   Setting reference;
   Verdict reference_verdict = Verdict::fine;  // otherwise nothing fits
   std::int64_t trials = 0;                    // of the pilot

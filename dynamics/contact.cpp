@@ -61,7 +61,8 @@ double gap_rate_bias(const GateParams& p, Side side, const Touch& t, const BodyS
     const double vy = body.vy, ny = t.ny;
     // n = sign * (-sin, cos), l = sign * r: differentiate u = n.v - l w along the motion.
     const double sign = t.lever < 0.0 ? -1.0 : 1.0;
-    const double v_along = (sign * ny) * vx - (sign * nx) * vy;  // beam = (cos, sin) = sign*(ny, -nx)
+    const double v_along =
+        (sign * ny) * vx - (sign * nx) * vy;  // beam = (cos, sin) = sign*(ny, -nx)
     return -2.0 * sign * w * v_along - w * w * (t.gap + p.body.radius);
   }
   const double centripetal = p.beams.length * w * w * t.bend;
@@ -80,8 +81,10 @@ double free_gap_acceleration(const GateParams& p, Side side, const Touch& t, con
 
 void apply_impulses(const GateParams& p, const std::array<Touch, 2>& touch,
                     const std::array<double, 2>& impulse, GateState& s) {
-  s.body.vx += (impulse[kLeft] * touch[kLeft].nx + impulse[kRight] * touch[kRight].nx) / p.body.mass;
-  s.body.vy += (impulse[kLeft] * touch[kLeft].ny + impulse[kRight] * touch[kRight].ny) / p.body.mass;
+  s.body.vx +=
+      (impulse[kLeft] * touch[kLeft].nx + impulse[kRight] * touch[kRight].nx) / p.body.mass;
+  s.body.vy +=
+      (impulse[kLeft] * touch[kLeft].ny + impulse[kRight] * touch[kRight].ny) / p.body.mass;
   for (const Side side : {kLeft, kRight})
     s.beams[side].omega -= impulse[side] * touch[side].lever / p.beams.inertia();
 }

@@ -46,8 +46,7 @@ struct Direction {
     const double d = angle - theta, d2 = d * d;
     if (!(std::abs(d) < 0.0625)) return of(angle);
     // Taylor series; the first terms left out are d^10 / 10! < 3e-19 and d^11 / 11!.
-    const double cd =
-        1 - d2 * (1.0 / 2 - d2 * (1.0 / 24 - d2 * (1.0 / 720 - d2 * (1.0 / 40320))));
+    const double cd = 1 - d2 * (1.0 / 2 - d2 * (1.0 / 24 - d2 * (1.0 / 720 - d2 * (1.0 / 40320))));
     const double sd =
         d * (1 - d2 * (1.0 / 6 - d2 * (1.0 / 120 - d2 * (1.0 / 5040 - d2 * (1.0 / 362880)))));
     return {angle, c * cd - s * sd, s * cd + c * sd};
@@ -57,11 +56,11 @@ struct Direction {
 /// The point of one beam nearest to the disc's centre.
 struct Touch {
   ContactKind kind = ContactKind::interior;
-  double gap = 0.0;     // m, distance of centre and contact point less R; < 0 is penetration
-  double nx = 0.0;      // unit vector contact point -> centre, in the gate's frame
+  double gap = 0.0;  // m, distance of centre and contact point less R; < 0 is penetration
+  double nx = 0.0;   // unit vector contact point -> centre, in the gate's frame
   double ny = 0.0;
-  double lever = 0.0;   // m, r_c x n in the beam's own frame
-  double bend = 0.0;    // n.(unit vector along the beam), 0 on the interior
+  double lever = 0.0;  // m, r_c x n in the beam's own frame
+  double bend = 0.0;   // n.(unit vector along the beam), 0 on the interior
   Direction beam;
 };
 
@@ -139,7 +138,8 @@ struct Coupling {
 [[nodiscard]] inline double energy_gain(const Coupling& w, const std::array<double, 2>& u,
                                         const std::array<double, 2>& impulse) {
   const auto [l, r] = impulse;
-  return l * (u[kLeft] + 0.5 * w.left * l) + r * (u[kRight] + 0.5 * w.right * r) + w.cross * (l * r);
+  return l * (u[kLeft] + 0.5 * w.left * l) + r * (u[kRight] + 0.5 * w.right * r) +
+         w.cross * (l * r);
 }
 
 /// Solves z >= 0, W z + b >= 0, z.(W z + b) = 0 over the contacts marked `active` (others z = 0).

@@ -7,11 +7,10 @@
 ///   methods/       time stepping, one file per method behind methods/method.h
 ///   random.h       counter-based random streams, the held lateral force of Eq. (1)
 ///   gate.h         one run of one gate
-///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
-///   ensemble.h     many runs, their outcomes and their health
-///   state_space.h  how a body enters a gate, as a number: Table III or other bins
-///   quantile_bins.h  bins from entries that were seen, and how well bins resolve them
-///   trace.h        one run in full, step by step
+///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector
+///   registers ensemble.h     many runs, their outcomes and their health state_space.h  how a body
+///   enters a gate, as a number: Table III or other bins quantile_bins.h  bins from entries that
+///   were seen, and how well bins resolve them trace.h        one run in full, step by step
 ///   landscape.h    potential energy Eqs. (14), (15), the lowest way through
 ///   transitions.h  runs -> counts, the matrix of Eq. (16)
 ///   verdict.h      one word for how far a method can be trusted

@@ -66,10 +66,18 @@ void GateTally::add(const GateParams& p, const GateRun& run) {
     case Ending::traversed:
       ++(left > right ? traversed_left : right > left ? traversed_right : traversed_even);
       break;
-    case Ending::exited_left: ++exited_left; break;
-    case Ending::exited_right: ++exited_right; break;
-    case Ending::trapped: ++trapped; break;
-    case Ending::broken: ++broken; break;
+    case Ending::exited_left:
+      ++exited_left;
+      break;
+    case Ending::exited_right:
+      ++exited_right;
+      break;
+    case Ending::trapped:
+      ++trapped;
+      break;
+    case Ending::broken:
+      ++broken;
+      break;
   }
 }
 

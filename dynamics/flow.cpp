@@ -53,7 +53,8 @@ BeamFlow BeamLaw::over(double dt) const {
     }
     f.ta = dt * dt * theta;
     f.wa = dt * omega;
-    f.ww = 1 - d * f.wa - k * f.ta;  // response to a unit velocity: the derivative of that to a push
+    f.ww =
+        1 - d * f.wa - k * f.ta;  // response to a unit velocity: the derivative of that to a push
   } else if (z > 1e-4) {
     const double s = std::sqrt(a * a - k);
     const double fast = -(a + s), slow = k / fast;  // roots; slow without cancellation
@@ -109,7 +110,6 @@ BeamLaw beam_law(const GateParams& p, Side side) {
 }  // namespace
 
 GateLaw::GateLaw(const GateParams& p)
-    : drag(p.forces.drag / p.body.mass),
-      beams{beam_law(p, kLeft), beam_law(p, kRight)} {}
+    : drag(p.forces.drag / p.body.mass), beams{beam_law(p, kLeft), beam_law(p, kRight)} {}
 
 }  // namespace gatewalk::dynamics

@@ -40,8 +40,8 @@ class BeamLaw {
  public:
   BeamLaw(double stiffness_over_inertia, double damping_over_inertia);
   [[nodiscard]] BeamFlow over(double dt) const;
-  /// |theta| (rad) where the free beam first comes to rest, if it does so within `dt` (s), else 0. It never
-  /// swings out further after that.
+  /// |theta| (rad) where the free beam first comes to rest, if it does so within `dt` (s), else 0.
+  /// It never swings out further after that.
   [[nodiscard]] double swing(BeamState beam, double dt) const;
 
  private:

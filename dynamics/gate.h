@@ -15,17 +15,18 @@ enum class Ending : std::uint8_t { traversed, exited_left, exited_right, trapped
 
 struct GateRun {
   Ending ending = Ending::broken;
-  BodyState exit;          // state at the end, in this gate's frame
-  double seconds = 0.0;    // simulated time
-  bool cut_short = false;  // stopped because it took more work than was granted; `ending` means nothing
-  Watch watch;             // largest deflections, faults, work done
+  BodyState exit;        // state at the end, in this gate's frame
+  double seconds = 0.0;  // simulated time
+  bool cut_short =
+      false;    // stopped because it took more work than was granted; `ending` means nothing
+  Watch watch;  // largest deflections, faults, work done
 };
 
 /// Where a run that stopped in this state has ended; still inside is trapped.
 [[nodiscard]] Ending ending(const GateParams& p, const GateState& s);
 
-/// Runs one gate from `start` with both beams at rest, until the body is beyond traverse_y, beyond a
-/// side, or time_limit is over. There is no exit at the bottom: propulsion brings the body back.
+/// Runs one gate from `start` with both beams at rest, until the body is beyond traverse_y, beyond
+/// a side, or time_limit is over. There is no exit at the bottom: propulsion brings the body back.
 /// A run that takes more than `most_work` steps or evaluations is cut short: for studies of methods
 /// that may crawl. It is looked at once per draw of the random force.
 /// `follow` is told of every step of the method.

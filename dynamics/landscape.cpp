@@ -11,10 +11,10 @@
 
 namespace gatewalk::dynamics {
 
-// d, phi: the centre seen from the joint, in the beam's own frame. A beam turned forward by theta has
-// the disc behind it, theta > phi. Its side touches where the tangent from the joint does, at the
-// distance sqrt(d^2 - R^2): theta = phi + asin(R/d). If that is beyond the tip, the tip touches:
-// R^2 = d^2 + L^2 - 2 d L cos(theta - phi).
+// d, phi: the centre seen from the joint, in the beam's own frame. A beam turned forward by theta
+// has the disc behind it, theta > phi. Its side touches where the tangent from the joint does, at
+// the distance sqrt(d^2 - R^2): theta = phi + asin(R/d). If that is beyond the tip, the tip
+// touches: R^2 = d^2 + L^2 - 2 d L cos(theta - phi).
 double forward_deflection(const GateParams& p, Side side, double x, double y) {
   const double length = p.beams.length, radius = p.body.radius;
   const double px = from_joint(p, side, x), py = y - p.beams.joint_y;
@@ -54,7 +54,8 @@ std::size_t nearest_point(const std::vector<double>& v, double x) {
   const double spacing = v[1] - v[0];
   if (!(x >= v.front() - 0.5 * spacing && x <= v.back() + 0.5 * spacing))
     throw std::invalid_argument("the start lies outside the landscape");
-  return static_cast<std::size_t>(std::lround((std::clamp(x, v.front(), v.back()) - v.front()) / spacing));
+  return static_cast<std::size_t>(
+      std::lround((std::clamp(x, v.front(), v.back()) - v.front()) / spacing));
 }
 
 }  // namespace
@@ -66,8 +67,12 @@ Landscape landscape(const GateParams& p, double y_low, double spacing, BeamsThat
     throw std::invalid_argument("landscape: spacing must be positive and y_low below traverse_y");
   if (!((width / spacing + 2.0) * (depth / spacing + 2.0) <= 1e8))
     throw std::invalid_argument("landscape: more than 1e8 grid points");
-  Landscape l{points(-p.beams.joint_x, p.beams.joint_x, spacing), points(y_low, p.run.traverse_y, spacing), {}, {}};
-  const auto rows = static_cast<Eigen::Index>(l.y.size()), columns = static_cast<Eigen::Index>(l.x.size());
+  Landscape l{points(-p.beams.joint_x, p.beams.joint_x, spacing),
+              points(y_low, p.run.traverse_y, spacing),
+              {},
+              {}};
+  const auto rows = static_cast<Eigen::Index>(l.y.size()),
+             columns = static_cast<Eigen::Index>(l.x.size());
   l.elastic.resize(rows, columns);
   l.total.resize(rows, columns);
   for (Eigen::Index i = 0; i < rows; ++i)
@@ -80,23 +85,28 @@ Landscape landscape(const GateParams& p, double y_low, double spacing, BeamsThat
 
 std::array<double, 2> basin_below(const Landscape& l, double x, double y) {
   const double dx = l.x[1] - l.x[0], dy = l.y[1] - l.y[0];
-  auto row = static_cast<Eigen::Index>(nearest_point(l.y, y)), column = static_cast<Eigen::Index>(nearest_point(l.x, x));
+  auto row = static_cast<Eigen::Index>(nearest_point(l.y, y)),
+       column = static_cast<Eigen::Index>(nearest_point(l.x, x));
   for (;;) {
     double steepest = 0.0;  // J/m
     Eigen::Index down = 0, right = 0;
     for (const Eigen::Index i : {1, 0, -1})
       for (const Eigen::Index j : {0, -1, 1}) {  // straight on before aside
-        if (row + i < 0 || row + i >= l.total.rows() || column + j < 0 || column + j >= l.total.cols()) continue;
+        if (row + i < 0 || row + i >= l.total.rows() || column + j < 0 ||
+            column + j >= l.total.cols())
+          continue;
         const double drop = l.total(row, column) - l.total(row + i, column + j);
         if (i == 0 && j == 0) continue;
-        const double slope = drop / std::hypot(static_cast<double>(i) * dy, static_cast<double>(j) * dx);
+        const double slope =
+            drop / std::hypot(static_cast<double>(i) * dy, static_cast<double>(j) * dx);
         if (slope > steepest * (1 + 1e-9)) {
           steepest = slope;
           down = i;
           right = j;
         }
       }
-    if (down == 0 && right == 0) return {l.x[static_cast<std::size_t>(column)], l.y[static_cast<std::size_t>(row)]};
+    if (down == 0 && right == 0)
+      return {l.x[static_cast<std::size_t>(column)], l.y[static_cast<std::size_t>(row)]};
     row += down;
     column += right;
   }
@@ -107,10 +117,12 @@ Pass lowest_pass(const Landscape& l, double x, double y) {
   const std::size_t columns = l.x.size(), rows = l.y.size();
   const double dx = l.x[1] - l.x[0], dy = l.y[1] - l.y[0];
   const auto energy = [&](std::size_t cell) {
-    return l.total(static_cast<Eigen::Index>(cell / columns), static_cast<Eigen::Index>(cell % columns));
+    return l.total(static_cast<Eigen::Index>(cell / columns),
+                   static_cast<Eigen::Index>(cell % columns));
   };
   const std::size_t start = nearest_point(l.y, y) * columns + nearest_point(l.x, x);
-  using Reached = std::tuple<double, double, std::size_t, std::size_t>;  // highest, length, cell, from
+  using Reached =
+      std::tuple<double, double, std::size_t, std::size_t>;  // highest, length, cell, from
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
   constexpr std::size_t kNotYet = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> from(columns * rows, kNotYet);
@@ -121,19 +133,25 @@ Pass lowest_pass(const Landscape& l, double x, double y) {
     next.pop();
     if (from[cell] != kNotYet) continue;
     from[cell] = before;
-    const auto row = static_cast<std::ptrdiff_t>(cell / columns), column = static_cast<std::ptrdiff_t>(cell % columns);
+    const auto row = static_cast<std::ptrdiff_t>(cell / columns),
+               column = static_cast<std::ptrdiff_t>(cell % columns);
     if (row + 1 == static_cast<std::ptrdiff_t>(rows)) end = cell;
     for (const std::ptrdiff_t up : {-1, 0, 1})
       for (const std::ptrdiff_t right : {-1, 0, 1}) {
         const std::ptrdiff_t r = row + up, c = column + right;
-        if (r < 0 || c < 0 || r >= static_cast<std::ptrdiff_t>(rows) || c >= static_cast<std::ptrdiff_t>(columns)) continue;
+        if (r < 0 || c < 0 || r >= static_cast<std::ptrdiff_t>(rows) ||
+            c >= static_cast<std::ptrdiff_t>(columns))
+          continue;
         const std::size_t to = static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(c);
         if (from[to] != kNotYet || !std::isfinite(energy(to))) continue;
-        next.push({std::max(highest, energy(to)),
-                   length + std::hypot(static_cast<double>(right) * dx, static_cast<double>(up) * dy), to, cell});
+        next.push(
+            {std::max(highest, energy(to)),
+             length + std::hypot(static_cast<double>(right) * dx, static_cast<double>(up) * dy), to,
+             cell});
       }
   }
-  if (end == kNotYet) throw std::runtime_error("no way through the gate: the disc covers a joint all over its width");
+  if (end == kNotYet)
+    throw std::runtime_error("no way through the gate: the disc covers a joint all over its width");
 
   Pass pass;
   pass.start_energy = energy(start);

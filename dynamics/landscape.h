@@ -1,7 +1,7 @@
 #pragma once
-/// The potential energy landscape of Sec. II-C: what it costs to stand somewhere in the gate with both
-/// beams deflected forward and in contact, Eqs. (14) and (15). It knows no motion; a body that is slower
-/// than the beams, or beside a beam that swings free, is above or below it.
+/// The potential energy landscape of Sec. II-C: what it costs to stand somewhere in the gate with
+/// both beams deflected forward and in contact, Eqs. (14) and (15). It knows no motion; a body that
+/// is slower than the beams, or beside a beam that swings free, is above or below it.
 
 #include <Eigen/Core>
 #include <array>
@@ -15,9 +15,9 @@ namespace gatewalk::dynamics {
 using BeamsThatPush = std::array<bool, 2>;
 inline constexpr BeamsThatPush kBothBeams{true, true};
 
-/// Angle (rad) at which the beam, deflected forward, just touches a disc behind it with its centre at
-/// (x, y): on the beam's side, or with the tip. 0 where a beam at rest is not reached. Infinite where
-/// the disc covers the joint: no angle is out of its way.
+/// Angle (rad) at which the beam, deflected forward, just touches a disc behind it with its centre
+/// at (x, y): on the beam's side, or with the tip. 0 where a beam at rest is not reached. Infinite
+/// where the disc covers the joint: no angle is out of its way.
 [[nodiscard]] double forward_deflection(const GateParams& p, Side side, double x, double y);
 
 /// Elastic energy of the beams (J), Eq. (14).
@@ -29,9 +29,9 @@ inline constexpr BeamsThatPush kBothBeams{true, true};
 
 /// Eqs. (14) and (15) on a grid over the gate, side to side and from `y_low` to traverse_y.
 struct Landscape {
-  std::vector<double> x, y;            // m
-  Eigen::ArrayXXd elastic;             // (y x x) J, Eq. (14)
-  Eigen::ArrayXXd total;               // (y x x) J, Eq. (15)
+  std::vector<double> x, y;  // m
+  Eigen::ArrayXXd elastic;   // (y x x) J, Eq. (14)
+  Eigen::ArrayXXd total;     // (y x x) J, Eq. (15)
 };
 /// `spacing` in m, the paper's is 0.5; both ends are on the grid, so it is shortened to fit. Throws
 /// std::invalid_argument unless 0 < spacing and y_low < traverse_y, or for more than 10^8 points.
@@ -40,18 +40,20 @@ struct Landscape {
 
 /// The way through the gate whose highest point is lowest, step by step over the grid.
 struct Pass {
-  double x = 0.0, y = 0.0;      // m, its highest point: the lowest saddle, or the start if all is downhill
-  double energy = 0.0;          // J, there
-  double start_energy = 0.0;    // J, at the grid point nearest to the start
+  double x = 0.0,
+         y = 0.0;       // m, its highest point: the lowest saddle, or the start if all is downhill
+  double energy = 0.0;  // J, there
+  double start_energy = 0.0;               // J, at the grid point nearest to the start
   std::vector<std::array<double, 2>> way;  // m, from the start to traverse_y
   [[nodiscard]] double barrier() const { return energy - start_energy; }
 };
-/// Where steepest descent over `total` from (x, y) ends (m): in a basin, or on the far boundary if there
-/// is none on the way. Throws as lowest_pass does.
+/// Where steepest descent over `total` from (x, y) ends (m): in a basin, or on the far boundary if
+/// there is none on the way. Throws as lowest_pass does.
 [[nodiscard]] std::array<double, 2> basin_below(const Landscape& l, double x, double y);
 
-/// From (x, y) to the far boundary, inside the gate, over `total`. Throws std::invalid_argument for a
-/// start off the grid, std::runtime_error when there is no way (joints covered from side to side).
+/// From (x, y) to the far boundary, inside the gate, over `total`. Throws std::invalid_argument for
+/// a start off the grid, std::runtime_error when there is no way (joints covered from side to
+/// side).
 [[nodiscard]] Pass lowest_pass(const Landscape& l, double x, double y);
 
 }  // namespace gatewalk::dynamics

@@ -48,11 +48,15 @@ struct alignas(64) LaneWatches {
 class LaneRuns {
  public:
   LaneRuns(const GateParams& p, const NextRun& next, int lanes)
-      : p_(p), next_(next), usual_(p, p.run.step),
-        whole_hold_(p, 1.0 / p.forces.random_rate), nearly_over_(p.run.time_limit - 1e-6 * p.run.step) {
+      : p_(p),
+        next_(next),
+        usual_(p, p.run.step),
+        whole_hold_(p, 1.0 / p.forces.random_rate),
+        nearly_over_(p.run.time_limit - 1e-6 * p.run.step) {
     runs_.reserve(static_cast<std::size_t>(lanes));
     for (int i = 0; i < lanes; ++i) {
-      runs_.push_back({RunSlot{-1, {}, RandomForce(p.forces, Random(Purpose::gate, {}))}, {}, whole_hold_});
+      runs_.push_back(
+          {RunSlot{-1, {}, RandomForce(p.forces, Random(Purpose::gate, {}))}, {}, whole_hold_});
       take(i, nullptr);
     }
   }
@@ -227,7 +231,8 @@ namespace HWY_NAMESPACE {
 /// What tells whether disc and beam touch, nearest() of contact.h in all lanes ...
 struct Look {
   Wide c, s, along, across;
-  Wide r, qx, qy, distance_sq;  // the nearer end point, joint or tip, at r from the joint; from there to the disc
+  Wide r, qx, qy, distance_sq;  // the nearer end point, joint or tip, at r from the joint; from
+                                // there to the disc
   WideMask interior, touches;
 };
 HWY_INLINE Look look_at(const GateParams& p, Wide px, Wide py, Wide theta) {
@@ -239,8 +244,8 @@ HWY_INLINE Look look_at(const GateParams& p, Wide px, Wide py, Wide theta) {
   const Wide qx = px - r * c, qy = py - r * s;
   const Wide distance_sq = qx * qx + qy * qy;
   const Wide away_sq = choose(interior, across * across, distance_sq);
-  return {c, s, along, across, r, qx, qy, distance_sq, interior,
-          away_sq <= all(p.body.radius * p.body.radius)};
+  return {c,  s,  along,       across,   r,
+          qx, qy, distance_sq, interior, away_sq <= all(p.body.radius * p.body.radius)};
 }
 
 /// ... and where, in the lanes that do.
@@ -252,7 +257,8 @@ HWY_INLINE Touches touch_of(const GateParams& p, Side side, const Look& at) {
   const Wide radius = all(p.body.radius);
   const Wide distance = sqrt(at.distance_sq), over = all(1.0) / distance;
   const WideMask degenerate = distance < all(std::numeric_limits<double>::min());
-  const Wide ex = choose(degenerate, -at.s, at.qx * over), ey = choose(degenerate, at.c, at.qy * over);
+  const Wide ex = choose(degenerate, -at.s, at.qx * over),
+             ey = choose(degenerate, at.c, at.qy * over);
   const Wide sign = choose(at.across < all(0.0), all(-1.0), all(1.0));
   const Wide nx = choose(at.interior, -(sign * at.s), ex);
   return {side == kLeft ? nx : -nx, choose(at.interior, sign * at.c, ey),
@@ -286,7 +292,8 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
     t[side] = touch_of(p, side, at);
   }
 
-  // Both beams at once, with push_only of contact.h: one alone if that leaves the other open, else both.
+  // Both beams at once, with push_only of contact.h: one alone if that leaves the other open, else
+  // both.
   const Wide inv_mass = load(k.inv_mass);
   Wide before[2], rate[2], give[2], impulse[2];  // give: 1/M + l^2/I
   WideMask need[2], alone[2];
@@ -311,7 +318,8 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
   if (HWY_UNLIKELY(any(both))) {
     const Wide product = give[kLeft] * give[kRight], det = product - cross * cross;
     const WideMask same = det <= 1e-14 * product;
-    const Wide shared = -((rate[kLeft] + rate[kRight]) / (give[kLeft] + give[kRight] + 2.0 * cross));
+    const Wide shared =
+        -((rate[kLeft] + rate[kRight]) / (give[kLeft] + give[kRight] + 2.0 * cross));
     const Wide over = one / det;
     for (const Side side : {kLeft, kRight}) {
       const int other = 1 - side;
@@ -347,7 +355,8 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
   const Wide work = load(w.work) + force * (x1 - x0);
   const Wide kinetic = p.body.mass * speed_sq + p.beams.inertia() * spin;
   const Wide balance = 0.5 * (kinetic + elastic) - p.forces.propulsion * (y1 - load(w.y0)) - work;
-  const auto keep = [&](Wide value, Row& row) HWY_ATTR { store(choose(gone, load(row), value), row); };
+  const auto keep = [&](Wide value, Row& row)
+                        HWY_ATTR { store(choose(gone, load(row), value), row); };
   keep(work, w.work);
   keep(max(load(w.created), balance - load(w.lowest)), w.created);
   keep(min(load(w.lowest), balance), w.lowest);

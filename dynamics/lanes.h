@@ -1,13 +1,14 @@
 #pragma once
 /// Runs of method `moreau` side by side in the lanes of vector registers (Google Highway: the
-/// instruction set is chosen when the program runs). A lane whose run has ended takes the next one at
-/// once.
+/// instruction set is chosen when the program runs). A lane whose run has ended takes the next one
+/// at once.
 ///
-/// The plain reference is MoreauMethod (methods/moreau.h): the same steps in the same order under the
-/// same random force, to the last digits; cos, sin and divisions are rounded in their own way. The
-/// same bits for any instruction set and any company in the other lanes: no fused multiply-add, no
-/// sums over lanes. Two things differ in what is seen: penetration at the end of a step is taken from the
-/// gap and its rate in mid-step, off by (v h)^2 / R at most; and every step looks at both beams, in reach or not.
+/// The plain reference is MoreauMethod (methods/moreau.h): the same steps in the same order under
+/// the same random force, to the last digits; cos, sin and divisions are rounded in their own way.
+/// The same bits for any instruction set and any company in the other lanes: no fused multiply-add,
+/// no sums over lanes. Two things differ in what is seen: penetration at the end of a step is taken
+/// from the gap and its rate in mid-step, off by (v h)^2 / R at most; and every step looks at both
+/// beams, in reach or not.
 
 #include "dynamics/methods/moreau.h"
 #include "dynamics/runs.h"

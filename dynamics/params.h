@@ -53,8 +53,9 @@ inline constexpr double kPaperStep = 0.004;  // s, Sec. II-B; units of time (Sca
 
 struct Run {
   std::string method = "stable";  // a name of method_names()
-  double step = 0.02;             // s, one per draw of the random force; the paper's own is kPaperStep
-  double time_limit = 12.0;       // s, 3000 steps of the paper; method paper ends a step later if need be
+  double step = 0.02;  // s, one per draw of the random force; the paper's own is kPaperStep
+  double time_limit =
+      12.0;  // s, 3000 steps of the paper; method paper ends a step later if need be
   double traverse_y = 60.0;       // m; traversed beyond it, and the length of a gate in the field
   double event_tolerance = 1e-2;  // m; method event: local error and lowest rebound that is flown
   double tolerance = 0.005;       // -; method auto: total variation of the outcomes it may cost
@@ -75,18 +76,18 @@ struct BodyState {
 };
 
 /// The scene's own units, in which every limit of the program that has a unit is a plain number: a
-/// tenth of the radius, the body's mass, fifty holds of the random force. That time is kept within a
-/// factor 4 of sqrt(M R / F), in which the larger of both forces moves the body by half a radius.
+/// tenth of the radius, the body's mass, fifty holds of the random force. That time is kept within
+/// a factor 4 of sqrt(M R / F), in which the larger of both forces moves the body by half a radius.
 /// 1 m, 1 kg and 1 s, exactly, in the paper's scenes. A scene whose lengths, times and masses are
 /// multiplied by powers of 4 has its units multiplied so, without any other rounding: what it
 /// computes is the same bits but for these factors.
 struct Scale {
-  double length = 1.0;  // m
-  double mass = 1.0;    // kg
-  double time = 1.0;    // s
-  [[nodiscard]] double speed() const { return length / time; }                    // m/s
-  [[nodiscard]] double impulse() const { return mass * length / time; }           // N s
-  [[nodiscard]] double force() const { return mass * length / (time * time); }    // N
+  double length = 1.0;                                                                    // m
+  double mass = 1.0;                                                                      // kg
+  double time = 1.0;                                                                      // s
+  [[nodiscard]] double speed() const { return length / time; }                            // m/s
+  [[nodiscard]] double impulse() const { return mass * length / time; }                   // N s
+  [[nodiscard]] double force() const { return mass * length / (time * time); }            // N
   [[nodiscard]] double energy() const { return mass * length * length / (time * time); }  // J
 };
 [[nodiscard]] Scale scale_of(const GateParams& params);
@@ -95,8 +96,8 @@ struct Scale {
 struct ParamInfo {
   std::string_view key;  // "body.mass_kg"
   double& (*ref)(GateParams&);
-  double low, high;      // permitted range
-  bool low_open;         // true: `low` itself is not permitted
+  double low, high;  // permitted range
+  bool low_open;     // true: `low` itself is not permitted
   std::string_view meaning;
 
   [[nodiscard]] double get(const GateParams& p) const { return ref(const_cast<GateParams&>(p)); }
@@ -129,30 +130,31 @@ class InvalidParameter : public std::invalid_argument {
 /// method, and a step that fits a whole number of times into one hold of the random force.
 void validate(const GateParams& params);
 
-/// The step (s) of a scene that names none: what suits params.run.method, 0.02 units of time (Scale)
-/// for `stable` and kPaperStep of them for the others, shortened to fit a whole number of times into
-/// one hold of the random force.
+/// The step (s) of a scene that names none: what suits params.run.method, 0.02 units of time
+/// (Scale) for `stable` and kPaperStep of them for the others, shortened to fit a whole number of
+/// times into one hold of the random force.
 [[nodiscard]] double default_step(const GateParams& params);
 
-/// The other settings of a scene that names none, in its own units (Scale), as the paper's scenes have
-/// them: contact.impulse_threshold_Ns, but not more than three times what the propulsion (or a tenth of the
-/// random force) does in the paper's step; and run.event_tolerance_m, smaller by the same factor where that
-/// holds the threshold down: errors add up over a slow way, and count for more beside a small speed.
+/// The other settings of a scene that names none, in its own units (Scale), as the paper's scenes
+/// have them: contact.impulse_threshold_Ns, but not more than three times what the propulsion (or a
+/// tenth of the random force) does in the paper's step; and run.event_tolerance_m, smaller by the
+/// same factor where that holds the threshold down: errors add up over a slow way, and count for
+/// more beside a small speed.
 [[nodiscard]] double default_impulse_threshold(const GateParams& params);
 [[nodiscard]] double default_event_tolerance(const GateParams& params);
 
 /// True for a key that a scene gives.
 using IsNamed = std::function<bool(std::string_view key)>;
 
-/// Gives the keys that a scene leaves out the values that follow from those that it names, and returns
-/// these keys. With a body of its own (mass or radius) all that has a unit keeps the
-/// paper's proportions: lengths to the radius, masses to the body's, times by the propulsion or, if that
-/// is not named, by the random force, a stiffness or the rate. Tips meet, both beams are alike, a gate is
-/// twice as long as its joints lie deep, and the time limit is the paper's multiple of what the propulsion
-/// takes from rest through an open gate. A scene without a body of its own has the paper's values,
-/// but a gate as long as its joints ask for;
-/// the impulse threshold, the tolerance and the step of a scene are always its own.
-/// `start` comes with the paper's: its vy follows from the scene too, the rest is zero everywhere.
+/// Gives the keys that a scene leaves out the values that follow from those that it names, and
+/// returns these keys. With a body of its own (mass or radius) all that has a unit keeps the
+/// paper's proportions: lengths to the radius, masses to the body's, times by the propulsion or, if
+/// that is not named, by the random force, a stiffness or the rate. Tips meet, both beams are
+/// alike, a gate is twice as long as its joints lie deep, and the time limit is the paper's
+/// multiple of what the propulsion takes from rest through an open gate. A scene without a body of
+/// its own has the paper's values, but a gate as long as its joints ask for; the impulse threshold,
+/// the tolerance and the step of a scene are always its own. `start` comes with the paper's: its vy
+/// follows from the scene too, the rest is zero everywhere.
 std::vector<std::string_view> fill_in(GateParams& params, BodyState& start, const IsNamed& named);
 
 /// Steps in one hold of the random force: 1 / (random_rate * step), a whole number.

@@ -18,8 +18,9 @@ int bins_per_axis(double states) {
 }
 
 /// The place nearest to `at` where ascending `values` change, so that equal values stay together; 0
-/// or the end when there is none nearer. Of two as near: the lower one in the lower half (side < 0),
-/// the upper one in the upper half, and none, 0, in the middle: mirror images have mirrored places.
+/// or the end when there is none nearer. Of two as near: the lower one in the lower half (side <
+/// 0), the upper one in the upper half, and none, 0, in the middle: mirror images have mirrored
+/// places.
 std::size_t between_values(const std::vector<double>& values, std::size_t at, int side) {
   const std::size_t n = values.size();
   if (at == 0 || at == n || values[at - 1] != values[at]) return at;
@@ -41,7 +42,9 @@ std::vector<double> quantile_edges(std::vector<double> values, int bins,
   std::vector<double> edges{values.front()};
   for (int i = 1; i < bins; ++i) {
     const int side = 2 * i - bins;
-    const auto share = [&](int k) { return n * static_cast<std::size_t>(k) / static_cast<std::size_t>(bins); };
+    const auto share = [&](int k) {
+      return n * static_cast<std::size_t>(k) / static_cast<std::size_t>(bins);
+    };
     const std::size_t at = between_values(values, side > 0 ? n - share(bins - i) : share(i), side);
     if (at == 0 || at == n) continue;
     const double edge = 0.5 * values[at - 1] + 0.5 * values[at];
@@ -53,18 +56,26 @@ std::vector<double> quantile_edges(std::vector<double> values, int bins,
 
 }  // namespace
 
-bool symmetric(const GateParams& p) {
-  return p.beams.stiffness_left == p.beams.stiffness_right;
-}
+bool symmetric(const GateParams& p) { return p.beams.stiffness_left == p.beams.stiffness_right; }
 
 Crossing mirrored(const Crossing& c) {
   Crossing m{c.boundary, c.d, -c.vx, c.vy};
   switch (c.boundary) {
-    case Boundary::enter: m.d = -c.d; break;
-    case Boundary::right_deflect: m.boundary = Boundary::left_deflect; break;
-    case Boundary::left_deflect: m.boundary = Boundary::right_deflect; break;
-    case Boundary::right_traverse: m.boundary = Boundary::left_traverse; break;
-    case Boundary::left_traverse: m.boundary = Boundary::right_traverse; break;
+    case Boundary::enter:
+      m.d = -c.d;
+      break;
+    case Boundary::right_deflect:
+      m.boundary = Boundary::left_deflect;
+      break;
+    case Boundary::left_deflect:
+      m.boundary = Boundary::right_deflect;
+      break;
+    case Boundary::right_traverse:
+      m.boundary = Boundary::left_traverse;
+      break;
+    case Boundary::left_traverse:
+      m.boundary = Boundary::right_traverse;
+      break;
   }
   return m;
 }
@@ -78,7 +89,8 @@ void add_mirror_images(std::vector<Crossing>& entries) {
 StateSpace quantile_space(const GateParams& p, const std::vector<Crossing>& seen, int states,
                           const std::vector<Crossing>& points) {
   if (states < 1 || states > kMostStates)
-    throw std::invalid_argument("bins: " + std::to_string(states) + " states are not permitted: must lie in [1, " +
+    throw std::invalid_argument("bins: " + std::to_string(states) +
+                                " states are not permitted: must lie in [1, " +
                                 std::to_string(kMostStates) + "]");
   const auto entries = static_cast<std::int64_t>(seen.size());
   const std::int64_t wanted = std::min<std::int64_t>(states, entries / kEntriesPerState);
@@ -87,7 +99,8 @@ StateSpace quantile_space(const GateParams& p, const std::vector<Crossing>& seen
   std::array<Bins, kBoundaries> bins = StateSpace::paper(p).bins();
   for (int b = 0; b < kBoundaries; ++b) {
     const auto here = static_cast<double>(at[b].size());
-    const int n = bins_per_axis(static_cast<double>(wanted) * here / static_cast<double>(std::max<std::int64_t>(1, entries)));
+    const int n = bins_per_axis(static_cast<double>(wanted) * here /
+                                static_cast<double>(std::max<std::int64_t>(1, entries)));
     const std::array<std::vector<double>*, 3> edges{&bins[b].d, &bins[b].vx, &bins[b].vy};
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       std::vector<double>& e = *edges[axis];
@@ -132,7 +145,8 @@ Resolution resolution_of(const StateSpace& space, const std::vector<Crossing>& s
     of_boundary[static_cast<std::size_t>(c.boundary)].add(c);
   }
   r.entries = static_cast<std::int64_t>(seen.size());
-  std::sort(of_state.begin(), of_state.end(), [](const Group& a, const Group& b) { return a.n > b.n; });
+  std::sort(of_state.begin(), of_state.end(),
+            [](const Group& a, const Group& b) { return a.n > b.n; });
   std::int64_t held = 0;
   for (const Group& g : of_state) {
     if (g.n == 0) break;

@@ -24,10 +24,10 @@ void add_mirror_images(std::vector<Crossing>& entries);
 /// At least so many entries are seen for each state that quantile_space makes.
 inline constexpr std::int64_t kEntriesPerState = 10;
 
-/// An open space of about `states` bins, at most one for kEntriesPerState entries, and `points`. Each
-/// boundary gets its share of them by the entries seen there, on all three axes as many, with edges
-/// at the quantiles of these entries (fewer where entries coincide). Mirror-symmetric if `seen` is.
-/// A boundary where nothing was seen gets one bin, StateSpace::paper's range. Throws
+/// An open space of about `states` bins, at most one for kEntriesPerState entries, and `points`.
+/// Each boundary gets its share of them by the entries seen there, on all three axes as many, with
+/// edges at the quantiles of these entries (fewer where entries coincide). Mirror-symmetric if
+/// `seen` is. A boundary where nothing was seen gets one bin, StateSpace::paper's range. Throws
 /// std::invalid_argument unless 1 <= states <= kMostStates.
 [[nodiscard]] StateSpace quantile_space(const GateParams& p, const std::vector<Crossing>& seen,
                                         int states, const std::vector<Crossing>& points);
@@ -35,9 +35,9 @@ inline constexpr std::int64_t kEntriesPerState = 10;
 /// How well a state space tells entries apart.
 struct Resolution {
   std::int64_t entries = 0;
-  std::int64_t clamped = 0;   // outside every bin
-  int states_entered = 0;     // states that any entry fell into
-  int states_of_90 = 0;       // the fewest states that hold 90 % of the entries
+  std::int64_t clamped = 0;  // outside every bin
+  int states_entered = 0;    // states that any entry fell into
+  int states_of_90 = 0;      // the fewest states that hold 90 % of the entries
   /// Variance of d, vx, vy within the states over that within the boundaries, both summed over the
   /// entries: 0 where states tell all apart, 1 where they tell nothing, 0 without any variance.
   std::array<double, 3> unresolved{};

@@ -18,8 +18,8 @@ struct RunSlot {
 };
 
 /// Called with a slot and what became of its last run (null before the first): the owner takes the
-/// result, puts the next run into the slot and returns true, or returns false: there are no more for
-/// this slot. Slots are asked in any order.
+/// result, puts the next run into the slot and returns true, or returns false: there are no more
+/// for this slot. Slots are asked in any order.
 using NextRun = std::function<bool(RunSlot& slot, const GateRun* ended)>;
 
 inline constexpr std::int64_t kAnyWork = std::numeric_limits<std::int64_t>::max();

@@ -70,14 +70,13 @@ PointScene scene_of(MapKind kind, std::string_view method, double x, double y) {
       // Straight below the point of the left beam, so near that neither the lateral force nor the
       // speed along the beam, which keeps the disc inside the gate, moves it before it touches.
       const double gap = 1e-12 * y;
-      scene.starts.fill(
-          {-p.beams.joint_x + x, p.beams.joint_y - p.body.radius - gap, 0.1 * y, y});
+      scene.starts.fill({-p.beams.joint_x + x, p.beams.joint_y - p.body.radius - gap, 0.1 * y, y});
       break;
     }
     case MapKind::grazing_speed: {
-      // Straight up beside the left tip, which is at (-15, joint_y); the right one is far away. Small
-      // numbers: R (1 + delta) less 15 still tells delta = 1e-15. Starts differ, so that the grazing
-      // falls anywhere in a step.
+      // Straight up beside the left tip, which is at (-15, joint_y); the right one is far away.
+      // Small numbers: R (1 + delta) less 15 still tells delta = 1e-15. Starts differ, so that the
+      // grazing falls anywhere in a step.
       p.forces = {.propulsion = 0.0, .random = 0.0, .random_rate = 50.0, .drag = 0.0};
       p.beams.joint_x = p.beams.length + 15.0;
       for (int i = 0; i < kTrialsPerPoint; ++i)
@@ -219,7 +218,8 @@ std::vector<Border> borders(const StabilityMap& map) {
     steps.push_back(first * std::pow(last / first, static_cast<double>(i) / kPieces));
   if (map.method == "paper") {
     if (stiffness) {
-      // Swinging beams: h < d/k. (Creeping ones, k <= d^2/4I = 30 N m/rad, take any step up to I/d.)
+      // Swinging beams: h < d/k. (Creeping ones, k <= d^2/4I = 30 N m/rad, take any step up to
+      // I/d.)
       add("h = d/k", steps, [&](double h) { return d / h; });
     } else {
       add("h = d/k", steps, [&](double h) { return k * h; });

@@ -13,11 +13,11 @@
 namespace gatewalk::dynamics {
 
 /// The default gate (k = 400 N m/rad, d = 50 N m s/rad), F = 8 N, Rm = 20 N; the disc comes from
-/// 10 m below the beams at 15 m/s, unless the map says otherwise. 3 s a trial. Where the map does not
-/// vary it, the step is the default for `stable` and kPaperStep for the others; the tolerance of
-/// `event` is the default.
+/// 10 m below the beams at 15 m/s, unless the map says otherwise. 3 s a trial. Where the map does
+/// not vary it, the step is the default for `stable` and kPaperStep for the others; the tolerance
+/// of `event` is the default.
 enum class MapKind : std::uint8_t {
-  step_stiffness,         // both beams equally stiff
+  step_stiffness,  // both beams equally stiff
   step_damping,
   restitution_threshold,  // the threshold is an impulse in N s
   lever_speed,            // first contact at this distance from the joint, at this speed, at once
@@ -27,15 +27,15 @@ inline constexpr int kMapKinds = 5;
 
 /// One axis of a map. The method `event` has a tolerance where the others have a step.
 struct MapAxis {
-  std::string_view name;  // "stiffness_Nm_per_rad", for files
-  std::string_view label; // "stiffness (N m/rad)", for people
+  std::string_view name;       // "stiffness_Nm_per_rad", for files
+  std::string_view label;      // "stiffness (N m/rad)", for people
   std::vector<double> values;  // ascending, but grazing's
   bool logarithmic = true;     // a first value 0 stands below the others
 };
 
 struct StabilityMap {
   MapKind kind = MapKind::step_stiffness;
-  std::string_view name;   // "step_stiffness"
+  std::string_view name;  // "step_stiffness"
   std::string_view title;
   std::string method;
   MapAxis x, y;

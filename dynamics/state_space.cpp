@@ -38,11 +38,14 @@ std::vector<double> rebinned(const std::vector<double>& edges, double factor) {
 
 Move move_into(Boundary b) {
   switch (b) {
-    case Boundary::enter: return {0, 1};
+    case Boundary::enter:
+      return {0, 1};
     case Boundary::right_deflect:
-    case Boundary::right_traverse: return {-1, 0};
+    case Boundary::right_traverse:
+      return {-1, 0};
     case Boundary::left_deflect:
-    case Boundary::left_traverse: return {1, 0};
+    case Boundary::left_traverse:
+      return {1, 0};
   }
   throw std::logic_error("no such boundary");
 }
@@ -51,7 +54,8 @@ Crossing crossing_of(const GateParams& p, Ending ending, const BodyState& exit) 
   const bool below = exit.y < p.beams.joint_y;
   const double from_joint = std::abs(exit.y - p.beams.joint_y);
   switch (ending) {
-    case Ending::traversed: return {Boundary::enter, exit.x, exit.vx, exit.vy};
+    case Ending::traversed:
+      return {Boundary::enter, exit.x, exit.vx, exit.vy};
     case Ending::exited_left:
       return {below ? Boundary::right_deflect : Boundary::right_traverse, from_joint, exit.vx,
               exit.vy};
@@ -59,7 +63,8 @@ Crossing crossing_of(const GateParams& p, Ending ending, const BodyState& exit) 
       return {below ? Boundary::left_deflect : Boundary::left_traverse, from_joint, exit.vx,
               exit.vy};
     case Ending::trapped:
-    case Ending::broken: break;
+    case Ending::broken:
+      break;
   }
   throw std::logic_error("this run did not leave its gate");
 }
@@ -67,11 +72,25 @@ Crossing crossing_of(const GateParams& p, Ending ending, const BodyState& exit) 
 BodyState entry_state(const GateParams& p, const Crossing& c) {
   BodyState b{0.0, 0.0, c.vx, c.vy};
   switch (c.boundary) {
-    case Boundary::enter: b.x = c.d; return b;
-    case Boundary::right_deflect: b.x = p.beams.joint_x; b.y = p.beams.joint_y - c.d; return b;
-    case Boundary::left_deflect: b.x = -p.beams.joint_x; b.y = p.beams.joint_y - c.d; return b;
-    case Boundary::right_traverse: b.x = p.beams.joint_x; b.y = p.beams.joint_y + c.d; return b;
-    case Boundary::left_traverse: b.x = -p.beams.joint_x; b.y = p.beams.joint_y + c.d; return b;
+    case Boundary::enter:
+      b.x = c.d;
+      return b;
+    case Boundary::right_deflect:
+      b.x = p.beams.joint_x;
+      b.y = p.beams.joint_y - c.d;
+      return b;
+    case Boundary::left_deflect:
+      b.x = -p.beams.joint_x;
+      b.y = p.beams.joint_y - c.d;
+      return b;
+    case Boundary::right_traverse:
+      b.x = p.beams.joint_x;
+      b.y = p.beams.joint_y + c.d;
+      return b;
+    case Boundary::left_traverse:
+      b.x = -p.beams.joint_x;
+      b.y = p.beams.joint_y + c.d;
+      return b;
   }
   throw std::logic_error("no such boundary");
 }
@@ -109,7 +128,8 @@ StateSpace StateSpace::paper(const GateParams& p) {
     throw InvalidParameter("run.traverse_y_m",
                            "run.traverse_y_m = " + std::to_string(p.run.traverse_y) +
                                " is not permitted for a chain or a field: it must exceed "
-                               "beams.joint_y_m + body.radius_m = " + std::to_string(y + r));
+                               "beams.joint_y_m + body.radius_m = " +
+                               std::to_string(y + r));
   const double unit = scale_of(p).speed();
   const auto speeds = [unit](std::vector<double> edges) {  // Table III's, in m/s
     for (double& v : edges) v *= unit;
@@ -119,9 +139,9 @@ StateSpace StateSpace::paper(const GateParams& p) {
   const auto side_vy = speeds({-20, -10, 0, 10, 20, 30});
   const std::vector<double> below{r, (r + y) / 2, y}, above{r, p.run.traverse_y - y};
   return StateSpace({Bins{{-w, -0.6 * w, -0.2 * w, 0.2 * w, 0.6 * w, w},
-                          speeds({-25, -15, -5, 5, 15, 25}), speeds({10, 20})},
-                     Bins{below, leftward, side_vy},
-                     Bins{below, rightward, side_vy},
+                          speeds({-25, -15, -5, 5, 15, 25}),
+                          speeds({10, 20})},
+                     Bins{below, leftward, side_vy}, Bins{below, rightward, side_vy},
                      Bins{above, speeds({-30, 0}), speeds({-20, 30})},
                      Bins{above, speeds({0, 30}), speeds({-20, 30})}});
 }

@@ -59,23 +59,21 @@ struct Cell {
 
 class StateSpace {
  public:
-  /// States are the bins of every boundary (EN, RD, LD, RT, LT; within each by d, then vx, then vy),
-  /// then `points`: single entries that are states of their own, such as where walks start. Open:
-  /// the outermost bins take what lies beyond them, and their outer edges only say how far entries
-  /// were seen; nothing is clamped. Throws std::invalid_argument unless every boundary has at least
-  /// one bin and ascending edges, and all points are finite and different.
+  /// States are the bins of every boundary (EN, RD, LD, RT, LT; within each by d, then vx, then
+  /// vy), then `points`: single entries that are states of their own, such as where walks start.
+  /// Open: the outermost bins take what lies beyond them, and their outer edges only say how far
+  /// entries were seen; nothing is clamped. Throws std::invalid_argument unless every boundary has
+  /// at least one bin and ascending edges, and all points are finite and different.
   explicit StateSpace(std::array<Bins, kBoundaries> bins, bool open = false,
                       std::vector<Crossing> points = {});
 
   /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size, velocities the
   /// scene's own unit of speed: the table's in the paper's scenes. RT and LT are one state each;
-  /// their bin is what the README's "Departures" says: y from joint + R up, velocities of RD and LD.
-  /// Throws InvalidParameter when no disc can be ahead of the beams inside the gate.
+  /// their bin is what the README's "Departures" says: y from joint + R up, velocities of RD and
+  /// LD. Throws InvalidParameter when no disc can be ahead of the beams inside the gate.
   static StateSpace paper(const GateParams& p);
 
-  [[nodiscard]] int size() const {
-    return offset_[kBoundaries] + static_cast<int>(points_.size());
-  }
+  [[nodiscard]] int size() const { return offset_[kBoundaries] + static_cast<int>(points_.size()); }
   /// Column of "trapped", one past the states.
   [[nodiscard]] int trapped() const { return size(); }
   [[nodiscard]] const std::array<Bins, kBoundaries>& bins() const { return bins_; }
@@ -106,8 +104,9 @@ class StateSpace {
 
 /// The same ranges in finer (factor > 1) or coarser bins: an axis of n bins gets
 /// max(1, round(n * factor)) equal ones; where that is n again, its edges stay as they are, so
-/// factor 1 is the same space bit for bit; open and points stay as they are. Throws std::invalid_argument unless the factor is finite
-/// and > 0 and the result has at most kMostStates states.
+/// factor 1 is the same space bit for bit; open and points stay as they are. Throws
+/// std::invalid_argument unless the factor is finite and > 0 and the result has at most kMostStates
+/// states.
 inline constexpr int kMostStates = 1'000'000;
 [[nodiscard]] StateSpace refined(const StateSpace& space, double factor);
 

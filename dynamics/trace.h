@@ -13,13 +13,13 @@ namespace gatewalk::dynamics {
 
 /// Energies (J) at one moment; work and losses since the run began.
 struct Energies {
-  double body = 0.0;                  // kinetic
-  std::array<double, 2> beams{};      // kinetic
-  std::array<double, 2> elastic{};    // Eq. (14), beam by beam
+  double body = 0.0;                // kinetic
+  std::array<double, 2> beams{};    // kinetic
+  std::array<double, 2> elastic{};  // Eq. (14), beam by beam
   double propulsion_work = 0.0;
   double random_work = 0.0;
-  double hit_loss = 0.0;              // taken by hits
-  double lost = 0.0;                  // by hits, dampers and drag together: what came in less what is there
+  double hit_loss = 0.0;  // taken by hits
+  double lost = 0.0;      // by hits, dampers and drag together: what came in less what is there
 
   [[nodiscard]] double mechanical() const {
     return body + beams[kLeft] + beams[kRight] + elastic[kLeft] + elastic[kRight];
@@ -38,9 +38,10 @@ struct TraceSample {
   double time = 0.0;  // s since the run began
   GateState state;    // in the gate's own frame
   // During the step that ends here:
-  double random_force = 0.0;                    // N
-  std::array<double, 2> beam_force{0.0, 0.0};   // N (x, y), mean force of both beams on the disc, hits included
-  std::array<double, 2> impulse{0.0, 0.0};      // N s, of its hits, left and right
+  double random_force = 0.0;  // N
+  std::array<double, 2> beam_force{
+      0.0, 0.0};  // N (x, y), mean force of both beams on the disc, hits included
+  std::array<double, 2> impulse{0.0, 0.0};  // N s, of its hits, left and right
   std::array<ContactMode, 2> contact{};
   // Now:
   std::array<ContactKind, 2> nearest{};  // the part of each beam that is nearest to the disc
@@ -60,10 +61,10 @@ class TraceTooLong : public std::length_error {
 };
 
 /// run_gate, the same to the last bit, with everything that it passes over. Of contacts in method
-/// `penalty`, which are springs, it only has beam_force; their energy counts as lost while it is in them.
-/// Throws TraceTooLong instead of the sample after the `most_samples`-th.
-[[nodiscard]] GateTrace trace_gate(const GateParams& p, const Method& method, const BodyState& start,
-                                   RandomForce& force,
-                                   std::size_t most_samples = std::numeric_limits<std::size_t>::max());
+/// `penalty`, which are springs, it only has beam_force; their energy counts as lost while it is in
+/// them. Throws TraceTooLong instead of the sample after the `most_samples`-th.
+[[nodiscard]] GateTrace trace_gate(
+    const GateParams& p, const Method& method, const BodyState& start, RandomForce& force,
+    std::size_t most_samples = std::numeric_limits<std::size_t>::max());
 
 }  // namespace gatewalk::dynamics

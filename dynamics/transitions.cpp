@@ -84,7 +84,8 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
     first_run.push_back(first_run.back() + range.count * runs_per_trial(t.space, row));
   const auto row_of = [&](std::int64_t run) {
     return static_cast<int>(std::upper_bound(first_run.begin(), first_run.end(), run) -
-                            first_run.begin()) - 1;
+                            first_run.begin()) -
+           1;
   };
   std::vector<Outcome> outcomes(static_cast<std::size_t>(first_run.back()));
   tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do

@@ -43,8 +43,8 @@ struct Transitions {
 using Entries = std::vector<std::vector<Crossing>>;  // (n)
 [[nodiscard]] Entries entries_of(const StateSpace& space, const std::vector<Crossing>& seen);
 
-/// Runs in a row of the space for one trial of it. Every walk that starts in a point passes its row,
-/// once, and the others a few times in all: so that its sampling weighs no more than theirs, a
+/// Runs in a row of the space for one trial of it. Every walk that starts in a point passes its
+/// row, once, and the others a few times in all: so that its sampling weighs no more than theirs, a
 /// point's row gets as many runs as a tenth of the bins, at least 1. A bin's row gets 1.
 [[nodiscard]] std::int64_t runs_per_trial(const StateSpace& space, int row);
 /// The same of all rows together.

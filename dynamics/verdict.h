@@ -18,10 +18,11 @@ enum class Verdict : std::uint8_t {
   outcomes,      // a better method gives other outcomes
   energy,        // energy from nothing
   penetration,   // the disc sank into a beam by more than 1 % of its radius
-  beyond_bound,  // steps longer than the method's stability bound for free beams: explains the above
+  beyond_bound,  // steps longer than the method's stability bound for free beams: explains the
+                 // above
   stuck,         // hits piled up or the run took more work than it was granted
   not_finite,
-  refused,       // the method does not take the scene: InvalidParameter
+  refused,  // the method does not take the scene: InvalidParameter
 };
 inline constexpr std::array<std::string_view, 11> kVerdictNames{
     "ok",          "missed hit",   "no formula", "too fast",   "outcomes off", "energy",

@@ -1,7 +1,7 @@
-// Numbers side by side in two vector registers, written as one, for use inside Highway's foreach_target
-// (so no plain include guard). Two registers because a single one waits for itself: the two do not
-// depend on each other. Nothing is fused and nothing is summed over lanes, so that every lane has the
-// same bits with any instruction set.
+// Numbers side by side in two vector registers, written as one, for use inside Highway's
+// foreach_target (so no plain include guard). Two registers because a single one waits for itself:
+// the two do not depend on each other. Nothing is fused and nothing is summed over lanes, so that
+// every lane has the same bits with any instruction set.
 #if defined(GATEWALK_DYNAMICS_WIDE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GATEWALK_DYNAMICS_WIDE_INL_H_
 #undef GATEWALK_DYNAMICS_WIDE_INL_H_
@@ -58,8 +58,12 @@ HWY_INLINE WideMask operator>(Wide x, Wide y) { return y < x; }
 HWY_INLINE WideMask operator>=(Wide x, Wide y) { return y <= x; }
 HWY_INLINE WideMask operator==(Wide x, Wide y) { return {hn::Eq(x.a, y.a), hn::Eq(x.b, y.b)}; }
 HWY_INLINE WideMask finite(Wide x) { return {hn::IsFinite(x.a), hn::IsFinite(x.b)}; }
-HWY_INLINE WideMask operator&(WideMask x, WideMask y) { return {hn::And(x.a, y.a), hn::And(x.b, y.b)}; }
-HWY_INLINE WideMask operator|(WideMask x, WideMask y) { return {hn::Or(x.a, y.a), hn::Or(x.b, y.b)}; }
+HWY_INLINE WideMask operator&(WideMask x, WideMask y) {
+  return {hn::And(x.a, y.a), hn::And(x.b, y.b)};
+}
+HWY_INLINE WideMask operator|(WideMask x, WideMask y) {
+  return {hn::Or(x.a, y.a), hn::Or(x.b, y.b)};
+}
 HWY_INLINE WideMask operator~(WideMask x) { return {hn::Not(x.a), hn::Not(x.b)}; }
 HWY_INLINE bool any(WideMask x) { return !hn::AllFalse(D(), hn::Or(x.a, x.b)); }
 
@@ -88,21 +92,21 @@ struct Direction2 {
   Wide c, s;
 };
 
-/// cos and sin to 3e-16 for |angle| < 10^6, so that near their zeros the relative error is larger: reduced to [-pi/4, pi/4] by three
-/// parts of pi/2, the first two short enough for exact products; then Taylor's series, next terms
-/// below 6e-17 of the sum.
+/// cos and sin to 3e-16 for |angle| < 10^6, so that near their zeros the relative error is larger:
+/// reduced to [-pi/4, pi/4] by three parts of pi/2, the first two short enough for exact products;
+/// then Taylor's series, next terms below 6e-17 of the sum.
 HWY_INLINE Direction2 direction_of(Wide angle) {
   const Wide quarter = round(0x1.45f306dc9c883p-1 * angle);  // 2/pi
   Wide r = angle - 0x1.921fb54p+0 * quarter;
   r = r - 0x1.10b46118p-30 * quarter;
   r = r - 0x1.313198a2e0370p-61 * quarter;
   const Wide z = r * r;
-  constexpr double kSin[] = {-1.0 / 6,           1.0 / 120,           -1.0 / 5040,
-                             1.0 / 362880,       -1.0 / 39916800,     1.0 / 6227020800.0,
-                             -1.0 / 1307674368000.0};
-  constexpr double kCos[] = {-1.0 / 2,         1.0 / 24,           -1.0 / 720,
-                             1.0 / 40320,      -1.0 / 3628800,     1.0 / 479001600.0,
-                             -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
+  constexpr double kSin[] = {
+      -1.0 / 6,        1.0 / 120,          -1.0 / 5040,           1.0 / 362880,
+      -1.0 / 39916800, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
+  constexpr double kCos[] = {
+      -1.0 / 2,       1.0 / 24,          -1.0 / 720,           1.0 / 40320,
+      -1.0 / 3628800, 1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
   const Wide sine = r + r * z * series(z, kSin);
   const Wide cosine = all(1.0) + z * series(z, kCos);
   // quarter modulo 4: 0 (c, s), 1 (-s, c), 2 (-c, -s), 3 (s, -c).
@@ -131,7 +135,7 @@ HWY_INLINE Wide log(Wide x) {
   e = choose(upper, e + all(1.0), e);
   const Wide s = (m - all(1.0)) / (m + all(1.0));
   const Wide z = s * s, twice = s + s;
-  constexpr double kArtanh[] = {1.0 / 3,  1.0 / 5,  1.0 / 7,  1.0 / 9,  1.0 / 11,
+  constexpr double kArtanh[] = {1.0 / 3,  1.0 / 5,  1.0 / 7,  1.0 / 9, 1.0 / 11,
                                 1.0 / 13, 1.0 / 15, 1.0 / 17, 1.0 / 19};
   // log 2 in two parts, the first short enough for exact products.
   const Wide low = twice * z * series(z, kArtanh) + 0x1.ef35793c76730p-45 * e;

@@ -21,7 +21,14 @@ using dynamics::Purpose;
 using dynamics::Random;
 
 /// Rows of the streams of Purpose::comparison: one for each use, so that no two share their draws.
-enum Use : std::uint64_t { kDeals = 0, kExactDraws = 1, kSamples = 2, kSwaps = 3, kPooledDraws = 4, kJudgements = 5 };
+enum Use : std::uint64_t {
+  kDeals = 0,
+  kExactDraws = 1,
+  kSamples = 2,
+  kSwaps = 3,
+  kPooledDraws = 4,
+  kJudgements = 5
+};
 
 void require_same_shape(Eigen::Index rows_a, Eigen::Index cols_a, Eigen::Index rows_b,
                         Eigen::Index cols_b) {
@@ -84,8 +91,8 @@ struct Statistics {
   double chi_squared = 0.0, total_variation = 0.0, energy = 0.0;
 };
 
-/// a, b: shares on the support; `expected`: shares against whose sampling noise a difference counts;
-/// gates of a smaller expected share than `rare` count as one.
+/// a, b: shares on the support; `expected`: shares against whose sampling noise a difference
+/// counts; gates of a smaller expected share than `rare` count as one.
 Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                       const Eigen::VectorXd& expected, double rare, const Support& support) {
   const Eigen::VectorXd difference = a - b;
@@ -141,7 +148,8 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
 }
 
 /// `n` draws from shares whose running sums are `cumulative`, as counts.
-Eigen::VectorXd drawn_counts(const std::vector<double>& cumulative, std::int64_t n, Random& random) {
+Eigen::VectorXd drawn_counts(const std::vector<double>& cumulative, std::int64_t n,
+                             Random& random) {
   Eigen::VectorXd counts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cumulative.size()));
   for (std::int64_t i = 0; i < n; ++i) {
     const double u = random.uniform() * cumulative.back();
@@ -205,7 +213,8 @@ NoiseFloor noise_floor(double s, std::int64_t gates, std::int64_t trials,
                        std::int64_t second_trials) {
   const auto n = static_cast<double>(gates);
   const double first = (1.0 - s) / (n * static_cast<double>(trials));
-  const double second = second_trials > 0 ? (1.0 - s) / (n * static_cast<double>(second_trials)) : 0.0;
+  const double second =
+      second_trials > 0 ? (1.0 - s) / (n * static_cast<double>(second_trials)) : 0.0;
   const double signal = (s - 1.0 / n) / n;
   return {signal / std::sqrt((signal + first) * (signal + second)),
           100.0 * std::sqrt(first + second)};
@@ -281,7 +290,8 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   std::vector<std::int32_t> trials;  // every pooled trial, as its place in the support
   trials.reserve(n + m);
   for (std::size_t i = 0; i < support.gates.size(); ++i)
-    trials.insert(trials.end(), pooled_counts.data()[support.gates[i]], static_cast<std::int32_t>(i));
+    trials.insert(trials.end(), pooled_counts.data()[support.gates[i]],
+                  static_cast<std::int32_t>(i));
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kDeals, static_cast<std::uint64_t>(k)});
     // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
@@ -359,7 +369,8 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   require_same_shape(sample.rows(), sample.cols(), exact.rows(), exact.cols());
   const CellProbabilities a = shares(sample);
   const std::int64_t n = sample.sum();
-  Comparison c{corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0, 0};
+  Comparison c{
+      corrcoef(a, exact), rmse_per_100(a, exact), total_variation(a, exact), {}, 0, 0, 0, 0, 0, 0};
   c.floor = noise_floor(exact.square().sum(), sample.size(), n, 0);
 
   const Support support = affordable_support_of(a + exact);
@@ -370,7 +381,8 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kExactDraws, static_cast<std::uint64_t>(k)});
-    if (n > kMostDealt) return statistics(drawn_shares(expected, n, random), expected, expected, rare, support);
+    if (n > kMostDealt)
+      return statistics(drawn_shares(expected, n, random), expected, expected, rare, support);
     return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected,
                       expected, rare, support);
   });
@@ -386,18 +398,21 @@ struct Outcome {
 };
 
 constexpr std::size_t kGateTests = 3;
-using Tests = std::array<double, kGateTests + markov::kEndings>;  // statistics, as Judgement lists them
+using Tests =
+    std::array<double, kGateTests + markov::kEndings>;  // statistics, as Judgement lists them
 
-/// For each statistic, in how many of all rows of `all` it is at least as large as in row k; NaN counts
-/// as the least.
-std::vector<std::array<std::int64_t, std::tuple_size_v<Tests>>> ranks(const std::vector<Tests>& all) {
+/// For each statistic, in how many of all rows of `all` it is at least as large as in row k; NaN
+/// counts as the least.
+std::vector<std::array<std::int64_t, std::tuple_size_v<Tests>>> ranks(
+    const std::vector<Tests>& all) {
   std::vector<std::array<std::int64_t, std::tuple_size_v<Tests>>> rank(all.size());
   std::vector<double> sorted(all.size());
   for (std::size_t t = 0; t < std::tuple_size_v<Tests>; ++t) {
     const auto value = [&](const Tests& x) { return std::isnan(x[t]) ? -1.0 : x[t]; };
     std::transform(all.begin(), all.end(), sorted.begin(), value);
     std::sort(sorted.begin(), sorted.end());
-    for (std::size_t k = 0; k < all.size(); ++k)  // equal results of different rounding count as equal
+    for (std::size_t k = 0; k < all.size();
+         ++k)  // equal results of different rounding count as equal
       rank[k][t] = sorted.end() - std::lower_bound(sorted.begin(), sorted.end(),
                                                    value(all[k]) - 1e-12 * std::abs(value(all[k])));
   }
@@ -441,17 +456,21 @@ Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& predic
     }
   }
 
-  const auto tests = [&](const Eigen::VectorXd& gates, const std::array<double, markov::kEndings>& endings,
+  const auto tests = [&](const Eigen::VectorXd& gates,
+                         const std::array<double, markov::kEndings>& endings,
                          const markov::FinalDistribution& against) {
-    const Statistics s = statistics(gates, on_support(against.final_cells, support), expected, rare, support);
+    const Statistics s =
+        statistics(gates, on_support(against.final_cells, support), expected, rare, support);
     Tests t{s.total_variation, s.energy, s.chi_squared};
     for (std::size_t e = 0; e < markov::kEndings; ++e)
       t[kGateTests + e] = std::abs(endings[e] - against.endings[e]);
     return t;
   };
-  std::vector<Tests> all(static_cast<std::size_t>(null_draws) + 1);  // the null's, then what was seen
+  std::vector<Tests> all(static_cast<std::size_t>(null_draws) +
+                         1);  // the null's, then what was seen
   std::array<double, markov::kEndings> ended{};
-  for (std::size_t e = 0; e < markov::kEndings; ++e) ended[e] = static_cast<double>(seen.endings[e]) / trials;
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    ended[e] = static_cast<double>(seen.endings[e]) / trials;
   all.back() = tests(on_support(sample, support), ended, prediction);
   tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kJudgements, static_cast<std::uint64_t>(k)});
@@ -487,8 +506,10 @@ Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& predic
       return;
     }
     test.p = static_cast<double>(rank.back()[t]) / of_all;
-    test.p_adjusted = static_cast<double>(
-        std::upper_bound(least.begin(), least.end(), rank.back()[t]) - least.begin()) / of_all;
+    test.p_adjusted =
+        static_cast<double>(std::upper_bound(least.begin(), least.end(), rank.back()[t]) -
+                            least.begin()) /
+        of_all;
     j.p = std::min(j.p, test.p_adjusted);
   };
   fill(j.total_variation, 0);

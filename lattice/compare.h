@@ -36,8 +36,8 @@ struct NoiseFloor {
 [[nodiscard]] NoiseFloor noise_floor(double concentration, std::int64_t gates, std::int64_t trials,
                                      std::int64_t second_trials);
 
-/// Mean total variation between `trials` draws from `p` and `p` itself. Exact: the count of a gate is
-/// binomial, and de Moivre's E|X - np| = 2 (1-p) m P(X = m), m = floor(np) + 1 there.
+/// Mean total variation between `trials` draws from `p` and `p` itself. Exact: the count of a gate
+/// is binomial, and de Moivre's E|X - np| = 2 (1-p) m P(X = m), m = floor(np) + 1 there.
 [[nodiscard]] double expected_total_variation(const CellProbabilities& p, std::int64_t trials);
 /// The least number of trials whose expected_total_variation is at most `total_variation` (> 0),
 /// or 2^40 if that is fewer.
@@ -63,8 +63,8 @@ struct Comparison {
 };
 
 /// Two samples: permutation test, the pooled trials dealt out anew `null_draws` times. Of more than
-/// kMostDealt trials together both are drawn from the pooled shares instead, which hardly differs there
-/// and takes no memory for trials.
+/// kMostDealt trials together both are drawn from the pooled shares instead, which hardly differs
+/// there and takes no memory for trials.
 inline constexpr std::int64_t kMostDealt = std::int64_t{1} << 22;
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellCounts& other,
                                  std::int64_t null_draws, std::uint64_t seed);
@@ -83,23 +83,24 @@ inline constexpr std::int64_t kMostDealt = std::int64_t{1} << 22;
 
 /// How trials of the full dynamics ended: where, and how.
 struct SeenEndings {
-  CellCounts final_gates;                               // (rows x columns), all trials
-  std::array<std::int64_t, markov::kEndings> endings{}; // by Ending
+  CellCounts final_gates;                                // (rows x columns), all trials
+  std::array<std::int64_t, markov::kEndings> endings{};  // by Ending
 };
 
-/// One test of "the chain is right": do trials of the dynamics differ from the chain's prediction by more
-/// than chance in the trials and in the matrix together makes? Draw k of the null takes as many trials
-/// from the prediction, and sets them against what a resampled matrix predicts.
+/// One test of "the chain is right": do trials of the dynamics differ from the chain's prediction
+/// by more than chance in the trials and in the matrix together makes? Draw k of the null takes as
+/// many trials from the prediction, and sets them against what a resampled matrix predicts.
 struct Judgement {
   /// Of one statistic: what was seen, how often the null reaches it, and that p-value adjusted for
-  /// looking at all of them (single-step minP of Westfall and Young, from the same draws): how often the
-  /// null makes any of the p-values as small. At least 1 / (null_draws + 1).
+  /// looking at all of them (single-step minP of Westfall and Young, from the same draws): how
+  /// often the null makes any of the p-values as small. At least 1 / (null_draws + 1).
   struct Test {
     double seen = 0.0, p = 1.0, p_adjusted = 1.0;
   };
   static constexpr double kLevel = 0.05;
 
-  Test total_variation, energy, chi_squared;   // of the final gates; energy NaN above kMostEnergyGates
+  Test total_variation, energy,
+      chi_squared;  // of the final gates; energy NaN above kMostEnergyGates
   std::array<Test, markov::kEndings> endings;  // |difference of the shares|, by Ending
   double p = 1.0;                              // of all together: the smallest adjusted one
   double chance_total_variation = 0.0;         // mean over the null draws

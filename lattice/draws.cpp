@@ -15,7 +15,8 @@ using dynamics::Random;
 constexpr std::int64_t kMostTrials = std::int64_t{1} << 53;  // whole numbers of a double
 constexpr double kFew = 10.0;  // expected successes up to which they are counted up one by one
 
-/// By inversion: P(0), P(1), ... are taken from a uniform until it is used up. p <= 1/2, n p < kFew.
+/// By inversion: P(0), P(1), ... are taken from a uniform until it is used up. p <= 1/2, n p <
+/// kFew.
 std::int64_t counted_up(double n, double p, Random& random) {
   const double odds = p / (1.0 - p);
   const double none = std::exp(n * std::log1p(-p));
@@ -33,8 +34,8 @@ std::int64_t counted_up(double n, double p, Random& random) {
 /// log k! - (log sqrt(2 pi) + (k + 1/2) log(k + 1) - (k + 1)): what Stirling's formula leaves.
 double stirling_rest(double k) {
   static constexpr std::array<double, 10> kFirst{
-      0.08106146679532726, 0.04134069595540929, 0.02767792568499834, 0.02079067210376509,
-      0.01664469118982119, 0.01387612882307075, 0.01189670994589177, 0.01041126526197209,
+      0.08106146679532726,  0.04134069595540929, 0.02767792568499834, 0.02079067210376509,
+      0.01664469118982119,  0.01387612882307075, 0.01189670994589177, 0.01041126526197209,
       0.009255462182712733, 0.008330563433362871};
   if (k < 10.0) return kFirst[static_cast<std::size_t>(k)];
   const double x = 1.0 / ((k + 1.0) * (k + 1.0));
@@ -66,8 +67,8 @@ std::int64_t by_rejection(double n, double p, Random& random) {
 
 std::int64_t binomial(std::int64_t trials, double p, Random& random) {
   if (trials < 0 || trials > kMostTrials || !(p >= 0.0 && p <= 1.0))
-    throw std::invalid_argument("binomial: trials " + std::to_string(trials) + " must lie in [0, 2^53], p " +
-                                std::to_string(p) + " in [0, 1]");
+    throw std::invalid_argument("binomial: trials " + std::to_string(trials) +
+                                " must lie in [0, 2^53], p " + std::to_string(p) + " in [0, 1]");
   if (trials == 0 || p == 0.0) return 0;
   if (p == 1.0) return trials;
   if (p > 0.5) return trials - binomial(trials, 1.0 - p, random);
@@ -75,8 +76,8 @@ std::int64_t binomial(std::int64_t trials, double p, Random& random) {
   return n * p < kFew ? counted_up(n, p, random) : by_rejection(n, p, random);
 }
 
-void multinomial(std::int64_t trials, std::span<const double> weights, std::span<std::int64_t> counts,
-                 Random& random) {
+void multinomial(std::int64_t trials, std::span<const double> weights,
+                 std::span<std::int64_t> counts, Random& random) {
   if (weights.size() != counts.size())
     throw std::invalid_argument("multinomial: weights and counts differ in length");
   // What is left for an outcome and all after it: summed from the last on, so that nothing cancels.
@@ -89,7 +90,8 @@ void multinomial(std::int64_t trials, std::span<const double> weights, std::span
   if (!(left.front() > 0.0)) throw std::invalid_argument("multinomial: all weights are 0");
   for (std::size_t i = 0; i < weights.size(); ++i) {
     counts[i] = trials > 0 && weights[i] > 0.0
-                    ? binomial(trials, std::min(1.0, weights[i] / left[i]), random) : 0;
+                    ? binomial(trials, std::min(1.0, weights[i] / left[i]), random)
+                    : 0;
     trials -= counts[i];
   }
 }

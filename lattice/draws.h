@@ -9,13 +9,14 @@
 
 namespace gatewalk::lattice {
 
-/// Successes among `trials` (0 to 2^53), each with chance `p` in [0, 1]: exact but for the rounding of
-/// doubles, in a time that hardly depends on the trials. Throws std::invalid_argument for others.
+/// Successes among `trials` (0 to 2^53), each with chance `p` in [0, 1]: exact but for the rounding
+/// of doubles, in a time that hardly depends on the trials. Throws std::invalid_argument for
+/// others.
 [[nodiscard]] std::int64_t binomial(std::int64_t trials, double p, dynamics::Random& random);
 
-/// `trials` shared out over outcomes with these weights (>= 0, not all 0), into `counts` of the same
-/// length: one binomial per outcome, given those before. None goes to a weight of 0.
-void multinomial(std::int64_t trials, std::span<const double> weights, std::span<std::int64_t> counts,
-                 dynamics::Random& random);
+/// `trials` shared out over outcomes with these weights (>= 0, not all 0), into `counts` of the
+/// same length: one binomial per outcome, given those before. None goes to a weight of 0.
+void multinomial(std::int64_t trials, std::span<const double> weights,
+                 std::span<std::int64_t> counts, dynamics::Random& random);
 
 }  // namespace gatewalk::lattice

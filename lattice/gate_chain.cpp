@@ -29,8 +29,8 @@ Transitions resampled(const Transitions& t, std::uint64_t seed, std::uint64_t re
   Transitions drawn(t.space);
   std::vector<double> weights;
   std::vector<std::int64_t> counts;
-  // What a row never saw may yet happen in it. Its probabilities are its counts and one run more, which
-  // ends as those of all rows together: upto[i] runs ended in column[0] .. column[i].
+  // What a row never saw may yet happen in it. Its probabilities are its counts and one run more,
+  // which ends as those of all rows together: upto[i] runs ended in column[0] .. column[i].
   std::map<int, std::int64_t> all;
   for (const auto& row : t.rows)
     for (const auto& [output, n] : row) all[output] += n;
@@ -47,11 +47,13 @@ Transitions resampled(const Transitions& t, std::uint64_t seed, std::uint64_t re
     for (const auto& [output, n] : t.rows[row]) weights.push_back(static_cast<double>(n));
     counts.resize(weights.size());
     Random random(Purpose::resampling, {seed, static_cast<std::uint64_t>(row), replicate});
-    const std::int64_t others = binomial(t.trials[row], 1.0 / static_cast<double>(t.trials[row] + 1), random);
+    const std::int64_t others =
+        binomial(t.trials[row], 1.0 / static_cast<double>(t.trials[row] + 1), random);
     multinomial(t.trials[row] - others, weights, counts, random);
     auto count = counts.begin();
     for (const auto& [output, n] : t.rows[row])
-      if (const std::int64_t k = *count++; k > 0) drawn.rows[row].emplace_hint(drawn.rows[row].end(), output, k);
+      if (const std::int64_t k = *count++; k > 0)
+        drawn.rows[row].emplace_hint(drawn.rows[row].end(), output, k);
     for (std::int64_t i = 0; i < others; ++i) {
       const auto at = std::upper_bound(upto.begin(), upto.end(), random.below(upto.back()));
       ++drawn.rows[row][column[static_cast<std::size_t>(at - upto.begin())]];
@@ -112,7 +114,8 @@ std::vector<Crossing> points_in(const markov::CountsFile& in, const std::string&
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
     const std::vector<double>* const values = find_array(in, point_array(kAxes[axis]));
     if (!values || values->size() != points.size())
-      throw markov::BadFile(path + ": " + point_array(kAxes[axis]) + " does not belong to " + kPointBoundary);
+      throw markov::BadFile(path + ": " + point_array(kAxes[axis]) + " does not belong to " +
+                            kPointBoundary);
     for (std::size_t i = 0; i < points.size(); ++i) points[i].*kPointAxes[axis] = (*values)[i];
   }
   return points;
@@ -135,16 +138,19 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
                                 "vx, then vy",
                             t.space.bins()[b].*axis.edges});
   if (t.space.open())
-    out.arrays.push_back({kOpen, "1", "the outermost bins take what lies beyond their edges", {1.0}});
+    out.arrays.push_back(
+        {kOpen, "1", "the outermost bins take what lies beyond their edges", {1.0}});
   if (!t.space.points().empty()) {
     std::vector<double> boundary;
     for (const Crossing& c : t.space.points()) boundary.push_back(static_cast<double>(c.boundary));
     const std::string meaning = "entries that are states of their own, numbered after all bins";
-    out.arrays.push_back({kPointBoundary, "1", meaning + ": 0 EN, 1 RD, 2 LD, 3 RT, 4 LT", boundary});
+    out.arrays.push_back(
+        {kPointBoundary, "1", meaning + ": 0 EN, 1 RD, 2 LD, 3 RT, 4 LT", boundary});
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       std::vector<double> values;
       for (const Crossing& c : t.space.points()) values.push_back(c.*kPointAxes[axis]);
-      out.arrays.push_back({point_array(kAxes[axis]), kAxes[axis].unit, meaning, std::move(values)});
+      out.arrays.push_back(
+          {point_array(kAxes[axis]), kAxes[axis].unit, meaning, std::move(values)});
     }
   }
   out.text = file.text;
@@ -168,10 +174,12 @@ MatrixFile read_matrix(const std::string& path) {
     }
   }
   try {
-    Transitions t{StateSpace(std::move(bins), find_array(in, kOpen) != nullptr, points_in(in, path))};
+    Transitions t{
+        StateSpace(std::move(bins), find_array(in, kOpen) != nullptr, points_in(in, path))};
     if (t.space.size() != in.counts.rows())
       throw markov::BadFile(path + ": bins make " + std::to_string(t.space.size()) +
-                            " states, the counts have " + std::to_string(in.counts.rows()) + " rows");
+                            " states, the counts have " + std::to_string(in.counts.rows()) +
+                            " rows");
     if (in.exits != exits_of(t.space))
       throw markov::BadFile(path + ": exits are not those of its bins");
     for (int row = 0; row < t.space.size(); ++row)

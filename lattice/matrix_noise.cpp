@@ -17,13 +17,14 @@ using markov::FinalDistribution;
 std::vector<std::vector<FinalDistribution>> replicate_predictions(
     const FieldMatrices& rows, const markov::Field& field, const std::vector<markov::Start>& starts,
     int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count) {
-  std::vector<std::vector<FinalDistribution>> found(starts.size(),
-                                                    std::vector<FinalDistribution>(static_cast<std::size_t>(count)));
+  std::vector<std::vector<FinalDistribution>> found(
+      starts.size(), std::vector<FinalDistribution>(static_cast<std::size_t>(count)));
   tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t k) {
     std::vector<markov::Chain> chains;
     for (std::size_t m = 0; m < rows.matrices.size(); ++m) {
       // Another matrix of the same replicate takes another stream.
-      const std::uint64_t replicate = static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
+      const std::uint64_t replicate =
+          static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
       chains.push_back(make_chain(resampled(*rows.matrices[m], seed, replicate)));
     }
     const markov::Sweeper sweeper(markov::RowChains(std::move(chains), rows.matrix_of_row));
@@ -39,8 +40,9 @@ std::int64_t affordable_replicates(const markov::Field& field, int max_cells, st
   constexpr double kCellSteps = 1e8;
   constexpr std::int64_t kTooFew = 50;
   const double steps = std::max(1, max_cells);
-  const double cells = std::min(static_cast<double>(field.columns) * field.rows,
-                                max_cells > 0 ? 2.0 * steps * steps : std::numeric_limits<double>::infinity());
+  const double cells =
+      std::min(static_cast<double>(field.columns) * field.rows,
+               max_cells > 0 ? 2.0 * steps * steps : std::numeric_limits<double>::infinity());
   const double replicates = std::min(static_cast<double>(most), kCellSteps / (cells * steps));
   return replicates < kTooFew ? 0 : static_cast<std::int64_t>(replicates);
 }
@@ -65,7 +67,8 @@ std::array<double, 2> MatrixNoise::interval_95(markov::Ending e) const {
 }
 
 double MatrixNoise::mean_total_variation() const {
-  return std::accumulate(distances_.begin(), distances_.end(), 0.0) / static_cast<double>(replicates());
+  return std::accumulate(distances_.begin(), distances_.end(), 0.0) /
+         static_cast<double>(replicates());
 }
 
 double MatrixNoise::sd_total_variation() const {

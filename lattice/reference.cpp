@@ -24,8 +24,8 @@ struct Trial {
   std::vector<Crossing> crossings;
 };
 
-/// Takes the result of a trial's run through one gate. The crossing into the next gate; none when the
-/// trial ends here.
+/// Takes the result of a trial's run through one gate. The crossing into the next gate; none when
+/// the trial ends here.
 std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams& field,
                                const StateSpace& space, const GateRun& run, bool keep_crossings) {
   t.health.add(p, run);
@@ -37,7 +37,8 @@ std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams&
   const Crossing crossing = crossing_of(p, run.ending, run.exit);
   const Move move = move_into(crossing.boundary);
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
-    t.ending = markov::edge_before({field.columns, field.rows}, t.column + move.di_x, t.row + move.di_y);
+    t.ending =
+        markov::edge_before({field.columns, field.rows}, t.column + move.di_x, t.row + move.di_y);
     return {};
   }
   if (t.gates == field.max_gates) {
@@ -65,7 +66,8 @@ std::uint64_t stream_row(const GateParams& p, const BodyState& b) {
   const Scale scale = scale_of(p);
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 is 0
   const r123::Philox4x64::ctr_type state = {{bits(b.x / scale.length), bits(b.y / scale.length),
-                                             bits(b.vx / scale.speed()), bits(b.vy / scale.speed())}};
+                                             bits(b.vx / scale.speed()),
+                                             bits(b.vy / scale.speed())}};
   return r123::Philox4x64()(state, {{0, 0}})[0] >> 8;  // the top byte of a key is its purpose
 }
 
@@ -97,7 +99,9 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
   validate(p, field);
   std::vector<Trial> trials(range.count);
   for (Trial& t : trials) t.column = field.start_column();
-  const auto force_of = [&](std::int64_t i) { return field_force(p, start, seed, range.first + i); };
+  const auto force_of = [&](std::int64_t i) {
+    return field_force(p, start, seed, range.first + i);
+  };
   if (field.fidelity == Fidelity::active) {
     carry_out_trials(
         p, *method, range.count,
@@ -126,7 +130,8 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
   for (const Trial& t : trials) {
     ++tally.final_gates(t.row, t.column);
     tally.final_gate_of_trial.push_back(t.row * field.columns + t.column);
-    const bool trapped = t.ending == markov::Ending::trapped, cut_off = t.ending == markov::Ending::cut_off;
+    const bool trapped = t.ending == markov::Ending::trapped,
+               cut_off = t.ending == markov::Ending::cut_off;
     const bool departed = t.ending && !trapped && !cut_off;
     tally.trapped_gates(t.row, t.column) += trapped;
     tally.departed_gates(t.row, t.column) += departed;
@@ -148,8 +153,9 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
 FieldTrace trace_field(const GateParams& p, const FieldParams& field, const BodyState& start,
                        std::uint64_t seed, std::int64_t trial, std::size_t most_samples) {
   if (field.fidelity != Fidelity::active)
-    throw InvalidParameter("field.fidelity", "field.fidelity = \"" + std::string(name_of(field.fidelity)) +
-                                                 "\" is not permitted: only \"active\" can be traced");
+    throw InvalidParameter("field.fidelity",
+                           "field.fidelity = \"" + std::string(name_of(field.fidelity)) +
+                               "\" is not permitted: only \"active\" can be traced");
   const auto method = make_method(p);
   validate(p, field);
   const StateSpace space = StateSpace::paper(p);  // `follow` counts with it; nobody asks here

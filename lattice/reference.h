@@ -1,6 +1,6 @@
 #pragma once
-/// The reference: the full dynamics of a body through the field, gate by gate, written plainly; with
-/// or without memory and neighbours (field.fidelity).
+/// The reference: the full dynamics of a body through the field, gate by gate, written plainly;
+/// with or without memory and neighbours (field.fidelity).
 
 #include <array>
 #include <cstdint>
@@ -20,12 +20,14 @@ struct FieldTally {
   std::int64_t trials = 0;
   std::int64_t trapped = 0;
   std::int64_t left_field = 0;
-  std::int64_t cut_off = 0;        // max_gates gates visited, would have gone on
-  std::int64_t broken = 0;         // a run in it stopped being finite
+  std::int64_t cut_off = 0;  // max_gates gates visited, would have gone on
+  std::int64_t broken = 0;   // a run in it stopped being finite
   /// The same by markov::Ending, of which no trial is `unsampled`; the four edges: left_field.
   std::array<std::int64_t, markov::kEndings> endings{};
-  markov::CellCounts trapped_gates, departed_gates;  // of final_gates: trapped there; left the field from there
-  std::array<std::int64_t, dynamics::kBoundaries> entries{};  // crossings between gates, by boundary
+  markov::CellCounts trapped_gates,
+      departed_gates;  // of final_gates: trapped there; left the field from there
+  std::array<std::int64_t, dynamics::kBoundaries>
+      entries{};  // crossings between gates, by boundary
   std::array<std::int64_t, dynamics::kBoundaries> clamped{};  // of these, outside every bin
   dynamics::Health health;                                    // over all gate runs
   std::vector<std::int32_t> final_gate_of_trial;              // row * columns + column, trial order
@@ -33,19 +35,21 @@ struct FieldTally {
 
   explicit FieldTally(const FieldParams& f)
       : final_gates(markov::CellCounts::Zero(f.rows, f.columns)),
-        trapped_gates(final_gates), departed_gates(final_gates) {}
+        trapped_gates(final_gates),
+        departed_gates(final_gates) {}
   FieldTally& operator+=(const FieldTally& other);  // `other` continues this one's trials
 };
 
-/// The number that names a start in its trials' streams: other starts, other noise. From the start in
-/// the scene's own units (Scale), so that a rescaled scene has the same noise.
-[[nodiscard]] std::uint64_t stream_row(const dynamics::GateParams& p, const dynamics::BodyState& start);
+/// The number that names a start in its trials' streams: other starts, other noise. From the start
+/// in the scene's own units (Scale), so that a rescaled scene has the same noise.
+[[nodiscard]] std::uint64_t stream_row(const dynamics::GateParams& p,
+                                       const dynamics::BodyState& start);
 
 /// Runs trials `range` through the field. field.fidelity says what a gate is: fresh, with beams at
 /// rest, whenever the body enters (active), or one of many that go on and act beyond their bounds
 /// (remember, all; crowd.h). The random force goes on from gate to gate; its stream is
-/// {seed, stream_row(p, start), trial} whatever the fidelity. run.time_limit_s counts from the entry
-/// into a gate. `space` only counts what the chain would have clamped; `keep_crossings` keeps
+/// {seed, stream_row(p, start), trial} whatever the fidelity. run.time_limit_s counts from the
+/// entry into a gate. `space` only counts what the chain would have clamped; `keep_crossings` keeps
 /// the crossings themselves. On all threads of the current TBB arena, same result for any number of
 /// them. Throws InvalidParameter.
 [[nodiscard]] FieldTally run_field(const dynamics::GateParams& p, const FieldParams& field,
@@ -57,7 +61,8 @@ struct FieldTally {
 struct FieldTrace {
   struct Visit {
     int column = 0, row = 0;
-    dynamics::GateTrace trace;  // in the gate's own frame and time, work and losses from its entry on
+    dynamics::GateTrace
+        trace;  // in the gate's own frame and time, work and losses from its entry on
   };
   std::vector<Visit> visits;
   std::optional<markov::Ending> ending;  // none: a run stopped being finite
@@ -65,9 +70,9 @@ struct FieldTrace {
 
 /// Trial number `trial` of run_field, the same to the last bit. Throws InvalidParameter, also for
 /// another fidelity than `active`, and TraceTooLong when all visits together have more samples.
-[[nodiscard]] FieldTrace trace_field(const dynamics::GateParams& p, const FieldParams& field,
-                                     const dynamics::BodyState& start, std::uint64_t seed,
-                                     std::int64_t trial,
-                                     std::size_t most_samples = std::numeric_limits<std::size_t>::max());
+[[nodiscard]] FieldTrace trace_field(
+    const dynamics::GateParams& p, const FieldParams& field, const dynamics::BodyState& start,
+    std::uint64_t seed, std::int64_t trial,
+    std::size_t most_samples = std::numeric_limits<std::size_t>::max());
 
 }  // namespace gatewalk::lattice

@@ -16,7 +16,9 @@ Table::Table(const std::vector<Entry>& entries) {
     targets = std::max(targets, e.target + 1);
   }
   std::vector<int> end(static_cast<std::size_t>(targets * moves) + 1);
-  const auto kind = [&](const Entry& e) { return static_cast<std::size_t>(e.target * moves + e.move); };
+  const auto kind = [&](const Entry& e) {
+    return static_cast<std::size_t>(e.target * moves + e.move);
+  };
   for (const Entry& e : entries) ++end[kind(e) + 1];
   for (std::size_t k = 1; k < end.size(); ++k) end[k] += end[k - 1];
   terms.resize(entries.size());
@@ -64,7 +66,8 @@ Board::Board(std::int64_t columns, std::int64_t rows, const std::vector<Move>& m
   }
   origin_ = (lanes_up(-lowest) + kLanes) * colours;
   stride_ = lanes_up((origin_ + rows * pitch_ + highest) / colours) + 2 * kLanes;
-  // An odd number of registers: equal places of neighbouring stripes do not share cache lines' sets.
+  // An odd number of registers: equal places of neighbouring stripes do not share cache lines'
+  // sets.
   if (stride_ / kLanes % 2 == 0) stride_ += kLanes;
 
   // A mask per move and one for staying, each for all colours of the cells gone to.
@@ -73,7 +76,8 @@ Board::Board(std::int64_t columns, std::int64_t rows, const std::vector<Move>& m
     const std::int64_t di_x = m < moves.size() ? moves[m].di_x : 0;
     for (std::size_t j = 0; j < parities.size(); ++j)
       for (std::int64_t row = 0; row < rows; ++row)
-        for (std::int64_t c = std::max<std::int64_t>(0, di_x); c < std::min(columns, columns + di_x); ++c) {
+        for (std::int64_t c = std::max<std::int64_t>(0, di_x);
+             c < std::min(columns, columns + di_x); ++c) {
           const Place there = place(j, c, row);
           mask[there.colour * stride_ + there.at] = 1.0;
         }

@@ -55,8 +55,8 @@ class Numbers {
   hwy::AlignedFreeUniquePtr<double[]> p_;
 };
 
-/// Fields of equal size, side by side, one per start. With two colours, as on a chessboard, a stripe
-/// has only the cells of one: every move leads to the other.
+/// Fields of equal size, side by side, one per start. With two colours, as on a chessboard, a
+/// stripe has only the cells of one: every move leads to the other.
 class Board {
  public:
   struct Place {
@@ -79,7 +79,9 @@ class Board {
     return ways_[static_cast<std::size_t>(colour)].data();
   }
   /// Stays where it is.
-  [[nodiscard]] const Way* still(int colour) const { return &still_[static_cast<std::size_t>(colour)]; }
+  [[nodiscard]] const Way* still(int colour) const {
+    return &still_[static_cast<std::size_t>(colour)];
+  }
 
   /// Appends whole registers that hold those columns and rows of all starts, none twice.
   void cover(std::int64_t left, std::int64_t right, std::int64_t bottom, std::int64_t top,

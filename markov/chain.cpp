@@ -108,8 +108,8 @@ int Chain::unsampled_rows() const {
 void validate(const Chain& chain, const Field& field, const Start& start, int max_cells) {
   if (field.columns < 1 || field.rows < 1 ||
       std::int64_t{field.columns} * field.rows > std::numeric_limits<std::int32_t>::max()) {
-    refuse("field: " + std::to_string(field.columns) + " columns x " +
-           std::to_string(field.rows) + " rows is not between 1 and 2^31 - 1 cells");
+    refuse("field: " + std::to_string(field.columns) + " columns x " + std::to_string(field.rows) +
+           " rows is not between 1 and 2^31 - 1 cells");
   }
   if (start.column < 0 || start.column >= field.columns || start.row < 0 ||
       start.row >= field.rows) {

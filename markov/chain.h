@@ -12,8 +12,8 @@
 
 namespace gatewalk::markov {
 
-using Counts = Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor>;     // (n_in x n_out)
-using Probabilities = Eigen::SparseMatrix<double, Eigen::RowMajor>;    // (n_in x n_out)
+using Counts = Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor>;   // (n_in x n_out)
+using Probabilities = Eigen::SparseMatrix<double, Eigen::RowMajor>;  // (n_in x n_out)
 
 /// Where one output leads: the input state of the neighbouring cell (di_x, di_y) away, or nowhere.
 struct Exit {
@@ -62,16 +62,25 @@ struct Field {
   int rows = 9;
 };
 
-/// How a walk ends: in a trapped output, by a move over an edge of the field (`far_edge`: beyond the
-/// last row, `near_edge`: before the first; a move over a corner counts there), cut off by the limit of
-/// cells, or in a state whose row was never sampled.
-enum class Ending : std::uint8_t { trapped, far_edge, left_edge, right_edge, near_edge, cut_off, unsampled };
+/// How a walk ends: in a trapped output, by a move over an edge of the field (`far_edge`: beyond
+/// the last row, `near_edge`: before the first; a move over a corner counts there), cut off by the
+/// limit of cells, or in a state whose row was never sampled.
+enum class Ending : std::uint8_t {
+  trapped,
+  far_edge,
+  left_edge,
+  right_edge,
+  near_edge,
+  cut_off,
+  unsampled
+};
 inline constexpr std::size_t kEndings = 7;
-inline constexpr std::array<Ending, 4> kEdges{Ending::far_edge, Ending::left_edge, Ending::right_edge,
-                                              Ending::near_edge};
+inline constexpr std::array<Ending, 4> kEdges{Ending::far_edge, Ending::left_edge,
+                                              Ending::right_edge, Ending::near_edge};
 
 /// Over which edge of the field a move left that would have led to (column, row) outside it.
-[[nodiscard]] constexpr Ending edge_before(const Field& field, std::int64_t column, std::int64_t row) {
+[[nodiscard]] constexpr Ending edge_before(const Field& field, std::int64_t column,
+                                           std::int64_t row) {
   if (row >= field.rows) return Ending::far_edge;
   if (row < 0) return Ending::near_edge;
   return column < 0 ? Ending::left_edge : Ending::right_edge;

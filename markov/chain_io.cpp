@@ -26,10 +26,9 @@ using namespace netcdf;
 
 constexpr const char* kFormat = "gatewalk transition counts";
 constexpr int kFormatVersion = 1;
-const std::set<std::string> kOwnVariables = {"count_row", "count_column",    "count",
-                                             "trials",    "clamped",         "exit_next_input",
-                                             "exit_di_x", "exit_di_y",       "input_state",
-                                             "nonzero",   "output_state"};
+const std::set<std::string> kOwnVariables = {
+    "count_row", "count_column", "count",       "trials",  "clamped",     "exit_next_input",
+    "exit_di_x", "exit_di_y",    "input_state", "nonzero", "output_state"};
 // A matrix of 10 000 states and 10^8 nonzeros has fewer.
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 const std::set<std::string> kOwnAttributes = {"format", "format_version", "checksum"};
@@ -260,8 +259,8 @@ class Reader {
     check(nc_inq_dimlen(nc_, id, &length), "dimension " + name);
     if (length > kMostPerByte * file_bytes_ ||
         length > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-      throw std::runtime_error("dimension " + name + " is absurdly long: " +
-                               std::to_string(length));
+      throw std::runtime_error("dimension " + name +
+                               " is absurdly long: " + std::to_string(length));
     }
     return length;
   }
@@ -374,8 +373,8 @@ class Reader {
   throw std::runtime_error(what + ": " + std::strerror(errno));
 }
 
-// A regular file that is open for reading. Directories, pipes and devices are refused before they are
-// opened (a pipe would block), and what no matrix can be before it is read.
+// A regular file that is open for reading. Directories, pipes and devices are refused before they
+// are opened (a pipe would block), and what no matrix can be before it is read.
 class InputFile {
  public:
   explicit InputFile(const std::string& path) {
@@ -397,8 +396,8 @@ class InputFile {
   void read(std::size_t offset, std::vector<char>& bytes) const {
     bytes.resize(std::min(bytes.size(), size_ - std::min(size_, offset)));
     for (std::size_t done = 0; done < bytes.size();) {
-      const ssize_t got = ::pread(fd_, bytes.data() + done, bytes.size() - done,
-                                  static_cast<off_t>(offset + done));
+      const ssize_t got =
+          ::pread(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) fail("cannot read");
       if (got == 0) throw std::runtime_error("became shorter while it was read");
@@ -528,7 +527,8 @@ CountsFile read_counts(const std::string& path) {
     const InputFile opened(path);
     check_kind(opened);
     if (!has_its_checksum(opened)) {
-      throw BadChecksum(path + ": checksum does not match: damaged or altered since it was written");
+      throw BadChecksum(path +
+                        ": checksum does not match: damaged or altered since it was written");
     }
     std::vector<char> image = image_of(opened);
     return Reader(image).read();

@@ -32,7 +32,8 @@ namespace gatewalk::markov {
 class Ends {
  public:
   explicit Ends(const Field& field)
-      : field_(field), trapped_(static_cast<std::size_t>(field.columns) * field.rows),
+      : field_(field),
+        trapped_(static_cast<std::size_t>(field.columns) * field.rows),
         block_(trapped_.size() / kBlock + 1, kNone) {}
 
   void add(Ending why, std::int64_t cell, double mass) {
@@ -46,7 +47,8 @@ class Ends {
       block = static_cast<std::int32_t>(others_.size() / kBlock);
       others_.resize(others_.size() + kBlock);
     }
-    others_[static_cast<std::size_t>(block) * kBlock + at % kBlock][static_cast<std::size_t>(why) - 1] += mass;
+    others_[static_cast<std::size_t>(block) * kBlock + at % kBlock]
+           [static_cast<std::size_t>(why) - 1] += mass;
   }
   /// By a move from `cell` to (column, row), outside the field.
   void depart(std::int64_t cell, std::int64_t column, std::int64_t row, double mass) {
@@ -87,15 +89,16 @@ class Ends {
   }
 
  private:
-  // Most cells of a large field only trap. What ends otherwise is kept for small blocks of cells, each
-  // from the first such ending on.
+  // Most cells of a large field only trap. What ends otherwise is kept for small blocks of cells,
+  // each from the first such ending on.
   static constexpr std::size_t kBlock = 8;
   static constexpr std::int32_t kNone = -1;
 
   Field field_;
   std::vector<CompensatedSum> trapped_;  // (cells)
   std::vector<std::int32_t> block_;      // of each block, its place in others_, or kNone
-  std::vector<std::array<CompensatedSum, kEndings - 1>> others_;  // (opened blocks x kBlock) by Ending less 1
+  std::vector<std::array<CompensatedSum, kEndings - 1>>
+      others_;  // (opened blocks x kBlock) by Ending less 1
 };
 
 }  // namespace gatewalk::markov

@@ -124,8 +124,8 @@ Transient reachable(const RowChains& rows, const Field& field, const Start& star
     for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
       if (exit.next_input == Exit::kTrapped) continue;
-      const std::int64_t next = neighbour_cell(field, cell % field.columns, cell / field.columns,
-                                               exit.di_x, exit.di_y);
+      const std::int64_t next =
+          neighbour_cell(field, cell % field.columns, cell / field.columns, exit.di_x, exit.di_y);
       if (next >= 0 && rows.at(next / field.columns).is_sampled(exit.next_input))
         add(visit(next * n_in + exit.next_input), -it.value());
     }
@@ -143,8 +143,8 @@ class Klu {
     klu_l_defaults(&common_);
     symbolic_ = klu_l_analyze(n_, t_.begin.data(), t_.index.data(), &common_);
     if (symbolic_) {
-      numeric_ = klu_l_factor(t_.begin.data(), t_.index.data(), t_.value.data(), symbolic_,
-                              &common_);
+      numeric_ =
+          klu_l_factor(t_.begin.data(), t_.index.data(), t_.value.data(), symbolic_, &common_);
     }
     if (numeric_) {
       klu_l_condest(t_.begin.data(), t_.value.data(), symbolic_, numeric_, &common_);
@@ -182,8 +182,9 @@ std::vector<double> visits(Transient& t) {
                              std::to_string(t.states.size()) + " states; propagate instead");
   }
   if (klu.status() == KLU_SINGULAR) {
-    throw std::runtime_error("absorption: I - Q is singular: from the start a walk can get into a "
-                             "closed loop and never end");
+    throw std::runtime_error(
+        "absorption: I - Q is singular: from the start a walk can get into a "
+        "closed loop and never end");
   }
   if (klu.status() != KLU_OK) {
     throw std::runtime_error("absorption: KLU fails with status " + std::to_string(klu.status()));
@@ -205,7 +206,8 @@ double missing(const Transient& t, const std::vector<double>& draws) {
   std::vector<double> left(draws.size(), 0.0);
   left.front() = 1.0;
   for (std::size_t s = 0; s < draws.size(); ++s)
-    for (auto k = static_cast<std::size_t>(t.begin[s]); k < static_cast<std::size_t>(t.begin[s + 1]); ++k)
+    for (auto k = static_cast<std::size_t>(t.begin[s]);
+         k < static_cast<std::size_t>(t.begin[s + 1]); ++k)
       left[static_cast<std::size_t>(t.index[k])] -= t.value[k] * draws[s];
   CompensatedSum sum;
   for (const double mass : left) sum += std::abs(mass);
@@ -246,7 +248,8 @@ CellProbabilities trapped_cells(const FinalDistribution& d) {
 CellProbabilities departed_cells(const FinalDistribution& d) {
   CellProbabilities cells = CellProbabilities::Zero(d.final_cells.rows(), d.final_cells.cols());
   for (const CellEndings& c : d.mixed_cells)
-    for (const Ending edge : kEdges) cells.data()[c.cell] += c.by_ending[static_cast<std::size_t>(edge)];
+    for (const Ending edge : kEdges)
+      cells.data()[c.cell] += c.by_ending[static_cast<std::size_t>(edge)];
   return cells;
 }
 
@@ -290,7 +293,8 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
     for (const std::int64_t cell : now.active()) {
       const std::int64_t column = cell % field.columns, row = cell / field.columns;
       const Probabilities& p = rows.at(row).matrix();
-      const Stencil& stencil = stencils[static_cast<std::size_t>(rows.chain_of_row[static_cast<std::size_t>(row)])];
+      const Stencil& stencil =
+          stencils[static_cast<std::size_t>(rows.chain_of_row[static_cast<std::size_t>(row)])];
       std::fill(out.begin(), out.end(), 0.0);
       const double* const mass = now.at(cell);
       for (int input = 0; input < n_in; ++input) {  // out = mass P, Eq. (16)
@@ -353,7 +357,8 @@ RowChains all_rows(const Chain& chain, const Field& field) {
 
 FinalDistribution propagate(const Chain& chain, const Field& field, const Start& start,
                             int max_cells, double tolerance, int max_steps_without_limit) {
-  return propagate(all_rows(chain, field), field, start, max_cells, tolerance, max_steps_without_limit);
+  return propagate(all_rows(chain, field), field, start, max_cells, tolerance,
+                   max_steps_without_limit);
 }
 
 FinalDistribution solve_absorption(const Chain& chain, const Field& field, const Start& start) {
@@ -385,8 +390,8 @@ FinalDistribution solve_absorption(const RowChains& rows, const Field& field, co
         ends.add(Ending::trapped, cell, mass);
         continue;
       }
-      const std::int64_t next = neighbour_cell(field, cell % field.columns, cell / field.columns,
-                                               exit.di_x, exit.di_y);
+      const std::int64_t next =
+          neighbour_cell(field, cell % field.columns, cell / field.columns, exit.di_x, exit.di_y);
       if (next < 0) {
         ends.depart(cell, cell % field.columns + exit.di_x, cell / field.columns + exit.di_y, mass);
       } else if (!rows.at(next / field.columns).is_sampled(exit.next_input)) {
@@ -397,12 +402,14 @@ FinalDistribution solve_absorption(const RowChains& rows, const Field& field, co
   FinalDistribution result = ends.result();
   result.remainder = missing(t, draws);
   result.mean_steps = mean_steps.value();
-  result.rounding = rounding_bound(result.mean_steps, 2.0 * static_cast<double>(n_in + n_out + 4), n_out + 8);
+  result.rounding =
+      rounding_bound(result.mean_steps, 2.0 * static_cast<double>(n_in + n_out + 4), n_out + 8);
   // A condition estimate does not see a closed loop of one state.
   const double total = result.trapped + result.left_field + result.unsampled + result.remainder;
   if (!(std::abs(total - 1.0) <= 1e-6) || !(result.rounding >= 0.0))
-    throw std::runtime_error("absorption: I - Q is singular or nearly so: a walk can circle (almost) for ever, "
-                             "fewer than 6 digits hold");
+    throw std::runtime_error(
+        "absorption: I - Q is singular or nearly so: a walk can circle (almost) for ever, "
+        "fewer than 6 digits hold");
   return result;
 }
 

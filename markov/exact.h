@@ -15,8 +15,8 @@ struct RowChains {
   std::vector<Chain> chains;      // distinct ones
   std::vector<int> chain_of_row;  // (rows)
 
-  /// Throws std::invalid_argument unless there is a chain, all have the same number of inputs, and each
-  /// row is given one of them.
+  /// Throws std::invalid_argument unless there is a chain, all have the same number of inputs, and
+  /// each row is given one of them.
   RowChains(std::vector<Chain> distinct, std::vector<int> of_row);
 
   [[nodiscard]] const Chain& at(std::int64_t row) const {
@@ -29,8 +29,8 @@ void validate(const RowChains& rows, const Field& field, const Start& start, int
 
 /// What ended in one cell.
 struct CellEndings {
-  std::int64_t cell = 0;                        // row * columns + column
-  std::array<double, kEndings> by_ending{};     // by Ending
+  std::int64_t cell = 0;                     // row * columns + column
+  std::array<double, kEndings> by_ending{};  // by Ending
 };
 
 /// final_cells.sum() + remainder == 1 and trapped + left_field + cut_off + unsampled + remainder
@@ -40,15 +40,16 @@ struct FinalDistribution {
   CellProbabilities final_cells;  // (rows x columns)
   double trapped = 0.0;
   double left_field = 0.0;
-  double cut_off = 0.0;     // visited max_cells cells and would have gone on
-  double unsampled = 0.0;   // entered a state whose row was never sampled
+  double cut_off = 0.0;    // visited max_cells cells and would have gone on
+  double unsampled = 0.0;  // entered a state whose row was never sampled
   /// The same by Ending; its four edges together are left_field.
   std::array<double, kEndings> endings{};
   /// Cells in which walks ended otherwise than trapped, in ascending order. In all others, all of
   /// final_cells was trapped.
   std::vector<CellEndings> mixed_cells;
-  /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for. As
-  /// that would end at most once, it bounds the errors of all cells together, and of each number above.
+  /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for.
+  /// As that would end at most once, it bounds the errors of all cells together, and of each number
+  /// above.
   double remainder = 0.0;
   /// What rounding adds to these errors at most, to first order in 1e-16 (that of counts into
   /// probabilities included).
@@ -57,7 +58,8 @@ struct FinalDistribution {
   int steps = 0;            // propagation steps done (0 for a solve)
 };
 
-/// Shares of all walks that were trapped in each cell; that left the field from it (rows x columns).
+/// Shares of all walks that were trapped in each cell; that left the field from it (rows x
+/// columns).
 [[nodiscard]] CellProbabilities trapped_cells(const FinalDistribution& d);
 [[nodiscard]] CellProbabilities departed_cells(const FinalDistribution& d);
 
@@ -77,8 +79,8 @@ struct FinalDistribution {
 /// Without limit, by one sparse LU solve of (I - Q)^T visits = start over the reachable transient
 /// (cell, input) pairs (SuiteSparse KLU). Throws std::runtime_error when the matrix is singular (a
 /// walk can circle for ever) or its estimated condition leaves fewer than 6 digits.
-/// A second route to check the first by, not a faster one: 9 x 9 cells of 87 states take some 0.3 s.
-/// The fast routes are Sweeper's (sweep.h).
+/// A second route to check the first by, not a faster one: 9 x 9 cells of 87 states take some 0.3
+/// s. The fast routes are Sweeper's (sweep.h).
 [[nodiscard]] FinalDistribution solve_absorption(const Chain& chain, const Field& field,
                                                  const Start& start);
 [[nodiscard]] FinalDistribution solve_absorption(const RowChains& rows, const Field& field,

@@ -54,8 +54,8 @@ std::string folder_of(const std::string& path) {
 class Temporary {
  public:
   explicit Temporary(const std::string& path) {
-    // A short name of its own: the target's may already be as long as a name can be. One that exists
-    // was left by a process with our number that was killed; it is not ours to remove.
+    // A short name of its own: the target's may already be as long as a name can be. One that
+    // exists was left by a process with our number that was killed; it is not ours to remove.
     static std::atomic<unsigned> counter{0};
     do {
       name_ = folder_of(path) + "/.gatewalk-" + std::to_string(::getpid()) + "-" +
@@ -87,8 +87,8 @@ class Temporary {
 
 /// What stands at a path that can be written.
 struct Target {
-  bool is_stream = false;              // a pipe or a character device
-  std::optional<mode_t> permissions;   // of a regular file
+  bool is_stream = false;             // a pipe or a character device
+  std::optional<mode_t> permissions;  // of a regular file
 };
 
 Target target_at(const std::string& path) {
@@ -150,7 +150,8 @@ void require_replaceable(const std::string& path) {
   if (target_at(path).is_stream) return;
   const std::string folder = folder_of(path);
   struct stat found = {};
-  if (::stat(folder.c_str(), &found) != 0) fail(path, "folder " + folder + ": " + std::strerror(errno));
+  if (::stat(folder.c_str(), &found) != 0)
+    fail(path, "folder " + folder + ": " + std::strerror(errno));
   if (!S_ISDIR(found.st_mode)) fail(path, folder + " is no folder");
   // What access() says is not the whole truth: read-only mounts, /proc.
   FileDescriptor(Temporary(path).open_file());
@@ -171,8 +172,8 @@ void replace_file(const std::string& path, std::string_view bytes) {
     fail_with_errno(path);
   // Some file systems cannot sync a folder and say EINVAL; nothing is lost there.
   if (::fsync(directory.get()) != 0 && errno != EINVAL)
-    throw std::runtime_error(path + ": is written, but its folder could not be synced: " +
-                             std::strerror(errno));
+    throw std::runtime_error(
+        path + ": is written, but its folder could not be synced: " + std::strerror(errno));
 }
 
 }  // namespace gatewalk::markov

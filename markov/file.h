@@ -7,15 +7,15 @@
 
 namespace gatewalk::markov {
 
-/// Replaces `path` by `bytes`, or leaves it as it was: a temporary file beside it is written, synced and
-/// renamed, then the folder is synced. An existing file keeps its permissions, a new one follows the
-/// umask. A pipe or a character device (/dev/null, >(command)) cannot be replaced and is written into;
-/// links to anything else, folders, sockets and block devices are refused.
-/// Throws std::runtime_error naming the file and the reason; no temporary file stays behind.
+/// Replaces `path` by `bytes`, or leaves it as it was: a temporary file beside it is written,
+/// synced and renamed, then the folder is synced. An existing file keeps its permissions, a new one
+/// follows the umask. A pipe or a character device (/dev/null, >(command)) cannot be replaced and
+/// is written into; links to anything else, folders, sockets and block devices are refused. Throws
+/// std::runtime_error naming the file and the reason; no temporary file stays behind.
 void replace_file(const std::string& path, std::string_view bytes);
 
-/// Throws std::runtime_error, as replace_file would, when `path` cannot be written: to be asked before
-/// long work, not after it. Makes and removes a temporary file in its folder.
+/// Throws std::runtime_error, as replace_file would, when `path` cannot be written: to be asked
+/// before long work, not after it. Makes and removes a temporary file in its folder.
 void require_replaceable(const std::string& path);
 
 /// While it lives, a reader that went away is an error of write(), not the end of the process.
@@ -33,8 +33,8 @@ class IgnoreBrokenPipe {
 /// Writes all of `bytes`. False, with errno, when that fails.
 [[nodiscard]] bool write_all(int descriptor, std::string_view bytes);
 
-/// Removes the temporary file of a replace_file under way, if there is one. For signal handlers that
-/// end the process: makes async-signal-safe calls only.
+/// Removes the temporary file of a replace_file under way, if there is one. For signal handlers
+/// that end the process: makes async-signal-safe calls only.
 void remove_unfinished_file() noexcept;
 
 }  // namespace gatewalk::markov

@@ -5,9 +5,10 @@
 /// it is trapped there, or enters a neighbouring cell in that cell's input state (`Exit`).
 ///   counts on disk (chain_io.h)  ->  Chain, rows that sum to 1 (chain.h)
 ///   Chain  ->  Monte Carlo walks (walk.h): one draw per cell, a walk is named by its number
-///   Chain  ->  exact distribution: whole rows of the field at a time (sweep.h), the visits of a row by
-///              elimination (row_solver.h); plain references: forward propagation and one sparse solve,
-///              also of rows that differ (exact.h)
+///   Chain  ->  exact distribution: whole rows of the field at a time (sweep.h), the visits of a
+///   row by
+///              elimination (row_solver.h); plain references: forward propagation and one sparse
+///              solve, also of rows that differ (exact.h)
 /// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
 /// cell limit, entered a state that was never sampled. The final cell is the last one inside.
 /// What a state means, and how large a cell is, this module does not know.

@@ -58,8 +58,7 @@ constexpr nc_type type_of(const std::vector<std::int64_t>&) { return NC_INT64; }
 constexpr nc_type type_of(const std::vector<double>&) { return NC_DOUBLE; }
 
 inline void put_text(int nc, int variable, const std::string& name, const std::string& text) {
-  check(nc_put_att_text(nc, variable, name.c_str(), text.size(), text.data()),
-        "attribute " + name);
+  check(nc_put_att_text(nc, variable, name.c_str(), text.size(), text.data()), "attribute " + name);
 }
 
 inline int define_dimension(int nc, const std::string& name, std::size_t length) {
@@ -72,7 +71,7 @@ inline int define_dimension(int nc, const std::string& name, std::size_t length)
 /// A compressed, checksummed variable; returns its number.
 template <class T>
 int put_variable(int nc, const std::string& name, int dimension, const std::vector<T>& values,
-                  const std::string& unit, const std::string& meaning) {
+                 const std::string& unit, const std::string& meaning) {
   constexpr int kShuffle = 1, kDeflate = 1, kLevel = 4;
   int variable = -1;
   check(nc_def_var(nc, name.c_str(), type_of(values), 1, &dimension, &variable), name);

@@ -55,7 +55,8 @@ void multiply_some(const double* HWY_RESTRICT a, const Block& block, const doubl
   }
   if (j < block.columns) {
     const auto x0 = hn::Set(d, x[j]);
-    for (int i = 0; i < Height; ++i) even[i] = hn::Add(even[i], hn::Mul(x0, hn::LoadU(d, a + i * n)));
+    for (int i = 0; i < Height; ++i)
+      even[i] = hn::Add(even[i], hn::Mul(x0, hn::LoadU(d, a + i * n)));
   }
   for (int i = 0; i < Height; ++i)
     hn::StoreU(hn::Add(hn::LoadU(d, from + i * n), hn::Add(even[i], odd[i])), d, y + i * n);
@@ -68,10 +69,18 @@ void multiply(const Block& a, const double* HWY_RESTRICT x, const double* from, 
     const std::ptrdiff_t left = (a.height - i) / n;
     const double* const top = a.p.data() + i;
     switch (left) {
-      case 1: multiply_some<1>(top, a, x, from + i, y + i); break;
-      case 2: multiply_some<2>(top, a, x, from + i, y + i); break;
-      case 3: multiply_some<3>(top, a, x, from + i, y + i); break;
-      default: multiply_some<4>(top, a, x, from + i, y + i); break;
+      case 1:
+        multiply_some<1>(top, a, x, from + i, y + i);
+        break;
+      case 2:
+        multiply_some<2>(top, a, x, from + i, y + i);
+        break;
+      case 3:
+        multiply_some<3>(top, a, x, from + i, y + i);
+        break;
+      default:
+        multiply_some<4>(top, a, x, from + i, y + i);
+        break;
     }
     i += std::min<std::ptrdiff_t>(left, 4) * n;
   }
@@ -101,15 +110,16 @@ double invert(Block& a) {
       const auto times = hn::Set(d, column[k]);
       column[k] = 0.0;
       for (std::ptrdiff_t i = 0; i < a.height; i += n)
-        hn::StoreU(hn::Sub(hn::LoadU(d, column + i), hn::Mul(times, hn::LoadU(d, pivot_column + i))),
-                   d, column + i);
+        hn::StoreU(
+            hn::Sub(hn::LoadU(d, column + i), hn::Mul(times, hn::LoadU(d, pivot_column + i))), d,
+            column + i);
     }
   }
   return least;
 }
 
-/// r = N (arriving + P Ll l) and l = entering + Lr r + Ll l of the column at the right, solved for all
-/// columns: `arriving` from the left first, then l from the right.
+/// r = N (arriving + P Ll l) and l = entering + Lr r + Ll l of the column at the right, solved for
+/// all columns: `arriving` from the left first, then l from the right.
 void solve_row(const RowSystem& s) {
   const std::ptrdiff_t r = s.rr->height, l = s.ll->height;
   std::copy_n(s.entering_r, r, s.arriving);
@@ -164,7 +174,8 @@ std::vector<int> places(const std::vector<int>& inputs, int n_in) {
 }  // namespace
 
 Block::Block(int n_rows, int n_columns)
-    : rows(n_rows), columns(n_columns),
+    : rows(n_rows),
+      columns(n_columns),
       height(static_cast<int>((n_rows + kLanes - 1) / kLanes * kLanes)),
       p(static_cast<std::size_t>(height) * static_cast<std::size_t>(n_columns)) {}
 
@@ -172,7 +183,8 @@ bool RowSolver::suits(const Chain& chain) {
   for (int input = 0; input < chain.inputs(); ++input)
     for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-      if (exit.next_input != Exit::kTrapped && exit.di_y == 0 && std::abs(exit.di_x) != 1) return false;
+      if (exit.next_input != Exit::kTrapped && exit.di_y == 0 && std::abs(exit.di_x) != 1)
+        return false;
     }
   return true;
 }
@@ -197,7 +209,8 @@ RowSolver::RowSolver(const Chain& chain) {
     }
   }
   const int r = static_cast<int>(right_.size()), l = static_cast<int>(left_.size());
-  const std::vector<int> right_place = places(right_, chain.inputs()), left_place = places(left_, chain.inputs());
+  const std::vector<int> right_place = places(right_, chain.inputs()),
+                         left_place = places(left_, chain.inputs());
   rr_ = Block(r, r), rl_ = Block(r, l), lr_ = Block(l, r), ll_ = Block(l, l);
   const auto fill = [&](const std::vector<int>& from, Block& to_right, Block& to_left) {
     for (std::size_t j = 0; j < from.size(); ++j)
@@ -214,7 +227,8 @@ RowSolver::RowSolver(const Chain& chain) {
 
 double RowSolver::solve_cost() const {
   return (3.0 * rr_.height * rr_.columns + 2.0 * rl_.height * rl_.columns +
-          1.0 * lr_.height * lr_.columns + 1.0 * ll_.height * ll_.columns) / kLanes;
+          1.0 * lr_.height * lr_.columns + 1.0 * ll_.height * ll_.columns) /
+         kLanes;
 }
 
 double RowSolver::column_cost() const {
@@ -233,7 +247,7 @@ bool RowSolver::append() const {
     for (double& p : next.visits.p) p = -p;
     for (int i = 0; i < r; ++i) next.visits.column(i)[i] += 1.0;
     if (!(HWY_DYNAMIC_DISPATCH(invert)(next.visits) > 1e-14)) return false;
-    next.turned = product(next.visits, product(back, ll_));  // M = N P Ll
+    next.turned = product(next.visits, product(back, ll_));                   // M = N P Ll
     HWY_DYNAMIC_DISPATCH(multiply_blocks)(rr_, next.turned, rl_, next.back);  // P = Rl + Rr M
     double change = 0.0;
     for (std::size_t i = 0; i < back.p.size(); ++i)
@@ -268,8 +282,8 @@ void RowSolver::solve(const std::vector<const Column*>& columns, const double* e
   const auto count = static_cast<std::ptrdiff_t>(columns.size());
   const std::ptrdiff_t r = rr_.height, l = ll_.height;
   double *const entering_r = workspace, *const entering_l = entering_r + count * r,
-         *const visits_r = entering_l + count * l, *const visits_l = visits_r + count * r,
-         *const arriving = visits_l + count * l;
+                *const visits_r = entering_l + count * l, *const visits_l = visits_r + count * r,
+                *const arriving = visits_l + count * l;
   std::fill(workspace, visits_r, 0.0);
   // A few columns at a time: they share what is read of the stripes.
   constexpr std::ptrdiff_t kTogether = 2 * kLanes;

@@ -1,6 +1,6 @@
 #pragma once
-/// Visits in a row of equal cells, of walks that move to the neighbour at the right or the left until
-/// they end or leave the row: block elimination from the left, whatever the number of moves.
+/// Visits in a row of equal cells, of walks that move to the neighbour at the right or the left
+/// until they end or leave the row: block elimination from the left, whatever the number of moves.
 
 #include <cstdint>
 #include <deque>
@@ -35,12 +35,13 @@ class RowSolver {
     Block back;    // P = Rl + Rr M: leaves to the right, per visit of l
   };
 
-  /// Operations (products of registers) that solve() takes per column, that a further column() takes.
+  /// Operations (products of registers) that solve() takes per column, that a further column()
+  /// takes.
   [[nodiscard]] double solve_cost() const;
   [[nodiscard]] double column_cost() const;
 
-  /// The first `count` columns; the last one stands for all further ones once they hardly differ. Empty
-  /// if walks can circle (almost) for ever, or the columns do not fit the memory allowed.
+  /// The first `count` columns; the last one stands for all further ones once they hardly differ.
+  /// Empty if walks can circle (almost) for ever, or the columns do not fit the memory allowed.
   /// They are kept: only columns that no call asked for before take time. Thread-safe.
   [[nodiscard]] std::vector<const Column*> columns(int count) const;
 
@@ -53,9 +54,9 @@ class RowSolver {
  private:
   [[nodiscard]] bool append() const;
 
-  std::vector<int> right_, left_;  // inputs entered by a move to the right, left
+  std::vector<int> right_, left_;    // inputs entered by a move to the right, left
   std::vector<char> is_also_right_;  // of left_
-  Block rr_, rl_, lr_, ll_;  // rl: to the right after entering by a move to the left
+  Block rr_, rl_, lr_, ll_;          // rl: to the right after entering by a move to the left
   mutable std::mutex growing_;
   mutable std::deque<Column> columns_;
   mutable bool is_settled_ = false, is_singular_ = false;

@@ -19,8 +19,8 @@ using D = hn::CappedTag<double, kLanes>;
 /// `Width` registers share each p. Loads, one per product, lie on register boundaries where the
 /// stripes do; only what is stored is shifted.
 template <int Width>
-void push_block(const Push& push, const double* HWY_RESTRICT from, double* HWY_RESTRICT to, bool add,
-                std::ptrdiff_t c) {
+void push_block(const Push& push, const double* HWY_RESTRICT from, double* HWY_RESTRICT to,
+                bool add, std::ptrdiff_t c) {
   const D d;
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   for (const Group* g = push.groups; g != push.groups + push.count; ++g) {
@@ -52,17 +52,34 @@ void push_all(const Push& push, const double* HWY_RESTRICT from, double* HWY_RES
   const std::ptrdiff_t registers = (last - first) / n;
   const std::ptrdiff_t blocks = (registers + kWidest - 1) / kWidest;  // of nearly the same width
   for (std::ptrdiff_t i = 0; i < blocks; ++i) {
-    const std::ptrdiff_t begin = registers * i / blocks, width = registers * (i + 1) / blocks - begin;
+    const std::ptrdiff_t begin = registers * i / blocks,
+                         width = registers * (i + 1) / blocks - begin;
     const std::ptrdiff_t c = first + begin * n;
     switch (width) {
-      case 1: push_block<1>(push, from, to, add, c); break;
-      case 2: push_block<2>(push, from, to, add, c); break;
-      case 3: push_block<3>(push, from, to, add, c); break;
-      case 4: push_block<4>(push, from, to, add, c); break;
-      case 5: push_block<5>(push, from, to, add, c); break;
-      case 6: push_block<6>(push, from, to, add, c); break;
-      case 7: push_block<7>(push, from, to, add, c); break;
-      default: push_block<8>(push, from, to, add, c); break;
+      case 1:
+        push_block<1>(push, from, to, add, c);
+        break;
+      case 2:
+        push_block<2>(push, from, to, add, c);
+        break;
+      case 3:
+        push_block<3>(push, from, to, add, c);
+        break;
+      case 4:
+        push_block<4>(push, from, to, add, c);
+        break;
+      case 5:
+        push_block<5>(push, from, to, add, c);
+        break;
+      case 6:
+        push_block<6>(push, from, to, add, c);
+        break;
+      case 7:
+        push_block<7>(push, from, to, add, c);
+        break;
+      default:
+        push_block<8>(push, from, to, add, c);
+        break;
     }
   }
 }

@@ -43,8 +43,8 @@ struct Push {
 };
 
 /// For each group and each place c in [first, last), multiples of kLanes:
-/// to[target][c + shift] = mask * sum of p * from[source][c], or, with `add`, that much more. Terms are
-/// summed in their order, rounded after each product and each sum.
+/// to[target][c + shift] = mask * sum of p * from[source][c], or, with `add`, that much more. Terms
+/// are summed in their order, rounded after each product and each sum.
 void push(const Push& p, const double* from, double* to, std::ptrdiff_t first, std::ptrdiff_t last,
           bool add);
 

@@ -15,9 +15,9 @@ namespace {
 constexpr int kFarthest = 10'000;  // cells; stripes have room for a move beyond each end
 
 std::ptrdiff_t number_of(const std::vector<Move>& moves, const Exit& exit) {
-  return std::find_if(moves.begin(), moves.end(), [&](const Move& m) {
-           return m.di_x == exit.di_x && m.di_y == exit.di_y;
-         }) - moves.begin();
+  return std::find_if(moves.begin(), moves.end(),
+                      [&](const Move& m) { return m.di_x == exit.di_x && m.di_y == exit.di_y; }) -
+         moves.begin();
 }
 
 /// Prepares a chain; the plan knows what is entered already.
@@ -36,7 +36,8 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
     const auto i = static_cast<std::size_t>(input);
     std::fill(shares.begin(), shares.end(), 0.0);
     double stays = 0.0;
-    if (!is_entered[i]) continue;  // no mass but that of a start, of which the first draw is made apart
+    if (!is_entered[i])
+      continue;  // no mass but that of a start, of which the first draw is made apart
     if (chain.is_sampled(input)) {
       rules.walking_inputs.push_back(input);
       walking.push_back({kTotal, 0, input, 1.0});
@@ -63,7 +64,8 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
     }
     rules.stays = std::max(rules.stays, stays);
     for (std::size_t ending = 0; ending < shares.size(); ++ending)
-      if (shares[ending] > 0.0) ends.push_back({static_cast<int>(ending), 0, input, shares[ending]});
+      if (shares[ending] > 0.0)
+        ends.push_back({static_cast<int>(ending), 0, input, shares[ending]});
   }
   rules.moves = Table(moves);
   rules.first_sideways = Table(first_sideways);
@@ -81,7 +83,8 @@ Table totals_of(const std::vector<int>& inputs) {
   return Table(entries);
 }
 
-std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains, std::vector<int> chain_of_row) {
+std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains,
+                                         std::vector<int> chain_of_row) {
   auto plan = std::make_unique<SweepPlan>();
   plan->inputs = chains.front().inputs();
   plan->rules_of_row = std::move(chain_of_row);
@@ -93,8 +96,9 @@ std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains, std::
       const Exit& exit = chain.exits()[static_cast<std::size_t>(chain.matrix().innerIndexPtr()[k])];
       if (exit.next_input == Exit::kTrapped) continue;
       if (std::max(exit.di_x, exit.di_y) > kFarthest || std::min(exit.di_x, exit.di_y) < -kFarthest)
-        throw std::invalid_argument("sweep: a move of (" + std::to_string(exit.di_x) + ", " + std::to_string(exit.di_y) +
-                                    ") cells is more than " + std::to_string(kFarthest) + "; propagate (exact.h) takes it");
+        throw std::invalid_argument("sweep: a move of (" + std::to_string(exit.di_x) + ", " +
+                                    std::to_string(exit.di_y) + ") cells is more than " +
+                                    std::to_string(kFarthest) + "; propagate (exact.h) takes it");
       const auto next = static_cast<std::size_t>(exit.next_input);
       is_entered[next] = 1;
       if (exit.di_y > 0) from_below[next] = 1;
@@ -132,7 +136,8 @@ void validate_all(const SweepPlan& plan, const Field& field, const std::vector<S
 
 /// Starts side by side in groups of `size`, groups on all threads.
 template <class Run>
-std::vector<FinalDistribution> in_groups(const std::vector<Start>& starts, std::int64_t size, Run run) {
+std::vector<FinalDistribution> in_groups(const std::vector<Start>& starts, std::int64_t size,
+                                         Run run) {
   std::vector<FinalDistribution> all(starts.size());
   const auto count = std::ssize(starts);
   tbb::parallel_for(std::int64_t{0}, (count + size - 1) / size, [&](std::int64_t g) {
@@ -168,8 +173,9 @@ std::vector<FinalDistribution> Sweeper::propagate_all(const Field& field,
 }
 
 std::vector<FinalDistribution> Sweeper::march_all(const Field& field,
-                                                  const std::vector<Start>& starts, double tolerance,
-                                                  RowMethod method, int most_sums) const {
+                                                  const std::vector<Start>& starts,
+                                                  double tolerance, RowMethod method,
+                                                  int most_sums) const {
   validate_all(*plan_, field, starts, 0);
   if (!can_march()) throw std::invalid_argument("march: an exit leads to a row below");
   if (!(tolerance >= 0.0) || most_sums < 1)

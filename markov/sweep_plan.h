@@ -16,20 +16,21 @@ namespace gatewalk::markov {
 /// A mass that is nothing: products with it must not become denormal numbers, which are slow.
 inline constexpr double kNothing = 1e-280;
 
-/// Stripes of a tally: all mass; what ends in a cell: trapped, in a state never sampled, gone by a move.
+/// Stripes of a tally: all mass; what ends in a cell: trapped, in a state never sampled, gone by a
+/// move.
 inline constexpr int kTotal = 0, kTrapped = 1, kUnsampled = 2, kMoved = 3;
 
 /// A chain, ready for push().
 struct Rules {
   Chain chain;
   std::vector<int> walking_inputs, unsampled;  // of the inputs that are entered
-  Table moves;                      // all of them
-  Table first_sideways, sideways;   // within a row: of inputs entered from below, entered sideways
-  std::vector<Table> upwards;       // by 1 row, 2 rows, ...
-  Table ends;                       // to kTrapped, ...
-  Table walking;                    // to kTotal: all that walks on
+  Table moves;                                 // all of them
+  Table first_sideways, sideways;  // within a row: of inputs entered from below, entered sideways
+  std::vector<Table> upwards;      // by 1 row, 2 rows, ...
+  Table ends;                      // to kTrapped, ...
+  Table walking;                   // to kTotal: all that walks on
   std::unique_ptr<const RowSolver> solver;
-  double stays = 0.0;               // largest chance to stay in the row, of inputs entered sideways
+  double stays = 0.0;  // largest chance to stay in the row, of inputs entered sideways
 };
 
 struct SweepPlan {
@@ -79,7 +80,8 @@ struct Walks {
       if (exit.next_input == Exit::kTrapped) {
         ends.add(Ending::trapped, cell, it.value());
       } else if (neighbour_cell(field, start.column, start.row, exit.di_x, exit.di_y) < 0) {
-        ends.depart(cell, std::int64_t{start.column} + exit.di_x, std::int64_t{start.row} + exit.di_y, it.value());
+        ends.depart(cell, std::int64_t{start.column} + exit.di_x,
+                    std::int64_t{start.row} + exit.di_y, it.value());
       } else if (is_last) {
         ends.add(Ending::cut_off, cell, it.value());
       } else {
@@ -89,8 +91,8 @@ struct Walks {
     }
   }
 
-  /// What visitors of a cell draw: one number per stripe of ends at `tally`. `is_last`: whoever would
-  /// go on is cut off.
+  /// What visitors of a cell draw: one number per stripe of ends at `tally`. `is_last`: whoever
+  /// would go on is cut off.
   void count(const Field& field, const std::vector<Move>& moves, std::int64_t column,
              std::int64_t row, bool is_last, const double* tally, std::ptrdiff_t stride) {
     const std::int64_t cell = row * field.columns + column;

@@ -20,14 +20,20 @@ constexpr double kRoundingOnly = 1e-14;  // another round makes it no better
   throw std::runtime_error("march: fewer than 6 digits hold: walks can circle (almost) for ever");
 }
 
-/// A row of cells per start, without limit: what enters it from below, what visits it, what goes up.
+/// A row of cells per start, without limit: what enters it from below, what visits it, what goes
+/// up.
 class Rows {
  public:
-  Rows(const SweepPlan& plan, const Field& field, const std::vector<Start>& starts, double tolerance,
-       Sweeper::RowMethod method, int most_sums)
-      : plan_(plan), field_(field), tolerance_(tolerance / (field.rows + 1)), most_sums_(most_sums),
-        board_(field.columns, 1, sideways_only(plan.moves), 1, std::vector<std::int64_t>(starts.size())),
-        stride_(board_.stride()), all_(plan.inputs * stride_),
+  Rows(const SweepPlan& plan, const Field& field, const std::vector<Start>& starts,
+       double tolerance, Sweeper::RowMethod method, int most_sums)
+      : plan_(plan),
+        field_(field),
+        tolerance_(tolerance / (field.rows + 1)),
+        most_sums_(most_sums),
+        board_(field.columns, 1, sideways_only(plan.moves), 1,
+               std::vector<std::int64_t>(starts.size())),
+        stride_(board_.stride()),
+        all_(plan.inputs * stride_),
         numbers_((5 + plan.highest) * all_ + (kMoved + std::ssize(plan.moves)) * stride_) {
     double* next = numbers_.data();
     for (double** p : {&within_, &visits_, &now_, &next_}) *p = std::exchange(next, next + all_);
@@ -80,7 +86,8 @@ class Rows {
     push_all(table, board_.ways(0), stride_, nullptr, whole_, from, to, true);
   }
   void tally(const Table& table, const double* mass) {
-    std::fill_n(tally_, (kMoved + std::ssize(plan_.moves)) * stride_, 0.0);  // not every chain ends all ways
+    std::fill_n(tally_, (kMoved + std::ssize(plan_.moves)) * stride_,
+                0.0);  // not every chain ends all ways
     push_all(table, board_.still(0), stride_, nullptr, whole_, mass, tally_, false);
   }
   void add(const double* from, double* to) const {
@@ -91,7 +98,8 @@ class Rows {
     std::vector<double> sums;
     for (std::size_t j = 0; j < walks_.size(); ++j) {
       CompensatedSum sum;
-      for (std::ptrdiff_t c = 0; c < field_.columns; ++c) sum += tally_[kTotal * stride_ + first_of(j) + c];
+      for (std::ptrdiff_t c = 0; c < field_.columns; ++c)
+        sum += tally_[kTotal * stride_ + first_of(j) + c];
       sums.push_back(sum.value());
     }
     return sums;
@@ -110,7 +118,8 @@ class Rows {
   bool enter(std::int64_t row) {
     entered_ = totals(plan_.arriving, entering_.front());
     std::vector<double> left = entered_;
-    for (std::size_t k = 1; k < entering_.size() && row + static_cast<std::int64_t>(k) < field_.rows; ++k) {
+    for (std::size_t k = 1;
+         k < entering_.size() && row + static_cast<std::int64_t>(k) < field_.rows; ++k) {
       const std::vector<double> above = totals(plan_.arriving, entering_[k]);
       std::transform(left.begin(), left.end(), above.begin(), left.begin(), std::plus<>());
     }
@@ -120,7 +129,9 @@ class Rows {
       if (w.start.row == row) {
         w.draw_first(plan_.at(row).chain, field_, false,
                      [&](std::int64_t column, std::int64_t to_row, int input, double p) {
-                       double* const to = to_row == row ? within_ : entering_[static_cast<std::size_t>(to_row - row)];
+                       double* const to = to_row == row
+                                              ? within_
+                                              : entering_[static_cast<std::size_t>(to_row - row)];
                        to[input * stride_ + first_of(j) + column] += p;
                      });
         entered_[j] = 1.0;
@@ -179,7 +190,8 @@ class Rows {
     for (int round = 0; round < kMostRounds; ++round) {
       for (std::size_t j = 0; j < walks_.size(); ++j)
         if (wanted[j] && !walks_[j].over)
-          rules.solver->solve(columns, from + first_of(j), visits_ + first_of(j), stride_, workspace_.data());
+          rules.solver->solve(columns, from + first_of(j), visits_ + first_of(j), stride_,
+                              workspace_.data());
       std::copy_n(within_, all_, next_);
       push_row(rules.sideways, visits_, next_);
       double* const total = tally_ + kTotal * stride_;
@@ -197,7 +209,8 @@ class Rows {
       bool any = false;
       for (std::size_t j = 0; j < walks_.size(); ++j) {
         const bool better = round == 0 || found[j] < 0.5 * missing[j];
-        wanted[j] = wanted[j] && better && found[j] > std::max(tolerance_, kRoundingOnly) * entered_[j];
+        wanted[j] =
+            wanted[j] && better && found[j] > std::max(tolerance_, kRoundingOnly) * entered_[j];
         any = any || wanted[j];
       }
       missing = found;
@@ -223,8 +236,10 @@ class Rows {
     for (std::size_t k = 0; k < plan_.rules.size(); ++k) {
       const Rules& rules = plan_.rules[k];
       if (!rules.solver) continue;
-      const double width = field_.columns, rows = field_.rows;  // whatever the starts: same bits in any company
-      const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) / std::log(std::clamp(rules.stays, 1e-6, 1.0 - 1e-9));
+      const double width = field_.columns,
+                   rows = field_.rows;  // whatever the starts: same bits in any company
+      const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) /
+                          std::log(std::clamp(rules.stays, 1e-6, 1.0 - 1e-9));
       const double by_sums = rows * sums * static_cast<double>(rules.sideways.terms.size()) *
                              std::ceil(width / kLanes);
       const double by_elimination = std::min(width, 0.5 * sums) * rules.solver->column_cost() +

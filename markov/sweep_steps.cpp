@@ -26,7 +26,8 @@ class Steps {
                     std::min<std::int64_t>(field.rows - 1, from.top + plan.highest * moves)};
     };
     std::vector<std::int64_t> parities;
-    window_ = {starts.front().column, starts.front().column, starts.front().row, starts.front().row};
+    window_ = {starts.front().column, starts.front().column, starts.front().row,
+               starts.front().row};
     for (const Start& s : starts) {
       walks_.emplace_back(field, s);
       window_.include({s.column, s.column, s.row, s.row});
@@ -38,7 +39,8 @@ class Steps {
     stride_ = board_->stride();
     const std::ptrdiff_t all = plan.inputs * stride_, tallies = kMoved + std::ssize(plan.moves),
                          chains = plan.rules.size() > 1 ? std::ssize(plan.rules) : 0;
-    numbers_.emplace((2 + board_->colours()) * all + (tallies + chains * board_->colours()) * stride_);
+    numbers_.emplace((2 + board_->colours()) * all +
+                     (tallies + chains * board_->colours()) * stride_);
     now_ = numbers_->data(), next_ = now_ + all, visits_ = next_ + all;
     tally_ = visits_ + board_->colours() * all, rows_ = tally_ + tallies * stride_;
     if (chains > 0) mark_rows();
@@ -119,8 +121,10 @@ class Steps {
       for (std::int64_t row = window_.bottom; row <= window_.top;) {
         const std::int64_t begin = row;
         while (row <= window_.top && plan_.number_at(row) == static_cast<int>(k)) ++row;
-        if (row > begin) cover(begin, row - 1, ranges);
-        else ++row;
+        if (row > begin)
+          cover(begin, row - 1, ranges);
+        else
+          ++row;
       }
       const double* const mine =
           rows_ + (static_cast<std::ptrdiff_t>(k) * board_->colours() + colour_) * stride_;
@@ -173,7 +177,9 @@ class Steps {
         w.over = !walks_on(j);
       } else {
         CompensatedSum left;
-        each_cell(j, [&](std::int64_t, std::int64_t, std::ptrdiff_t at) { left += tally_[kTotal * stride_ + at]; });
+        each_cell(j, [&](std::int64_t, std::int64_t, std::ptrdiff_t at) {
+          left += tally_[kTotal * stride_ + at];
+        });
         w.over = stop || left.value() <= std::max(tolerance, kNothing);
       }
       if (w.over) close(j);
@@ -187,9 +193,8 @@ class Steps {
     bool any = false;
     each_cell(j, [&](std::int64_t, std::int64_t row, std::ptrdiff_t at) {
       const auto& inputs = plan_.at(row).walking_inputs;
-      any = any || std::any_of(inputs.begin(), inputs.end(), [&](int input) {
-        return now_[input * stride_ + at] > kNobody;
-      });
+      any = any || std::any_of(inputs.begin(), inputs.end(),
+                               [&](int input) { return now_[input * stride_ + at] > kNobody; });
     });
     return any;
   }
@@ -201,7 +206,8 @@ class Steps {
         visits()[input * stride_ + at] += now_[input * stride_ + at];
       for (const int input : plan_.at(row).walking_inputs)
         walks_[j].remainder += now_[input * stride_ + at];
-      for (std::ptrdiff_t input = 0; input < plan_.inputs; ++input) now_[input * stride_ + at] = 0.0;
+      for (std::ptrdiff_t input = 0; input < plan_.inputs; ++input)
+        now_[input * stride_ + at] = 0.0;
     });
   }
 

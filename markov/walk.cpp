@@ -28,12 +28,14 @@ namespace gatewalk::markov {
 
 using Word = std::uint64_t;
 
-/// A move in one word, so that a draw takes two look-ups. Bits 0 to 9: di_x + 512; 10 to 31: slots of
-/// the row it leads to; 32 to 41: di_y + 512; 42 to 62: that row's first slot; 63: the walk ends.
+/// A move in one word, so that a draw takes two look-ups. Bits 0 to 9: di_x + 512; 10 to 31: slots
+/// of the row it leads to; 32 to 41: di_y + 512; 42 to 62: that row's first slot; 63: the walk
+/// ends.
 constexpr int kReach = 512;
 constexpr Word kMostSlots = Word{1} << 21;
 constexpr Word kStay = (Word{kReach} << 32) + kReach;
-constexpr Word kShift = (Word{1} << 63) + (Word{0x3ff} << 32) + 0x3ff;  // the bits that change the cell
+constexpr Word kShift =
+    (Word{1} << 63) + (Word{0x3ff} << 32) + 0x3ff;  // the bits that change the cell
 constexpr Word kTrapped = (Word{1} << 63) + kStay;
 constexpr Word kUnsampled = kTrapped + (Word{1} << 10);
 constexpr Word kCutOff = kTrapped + (Word{2} << 10);
@@ -172,8 +174,8 @@ void draw_moves(const WalkRules& rules, const Word* words, Pool& pool) {
   }
 }
 
-/// Every walk moves or ends, the last time all do. Who walks on closes up to the front, with the words
-/// from the `next_word`-th on.
+/// Every walk moves or ends, the last time all do. Who walks on closes up to the front, with the
+/// words from the `next_word`-th on.
 void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool& pool) {
   const D d;
   const V nibbles = hn::ShiftLeft<2>(hn::Iota(d, 0));
@@ -182,7 +184,8 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
     V move = hn::Load(d, pool.on.move + i), cell = hn::Load(d, pool.on.cell + i);
     // Outside of the field, and at an end, a half of `next` or of `corner - next` is negative.
     const V next = hn::Sub(hn::Add(cell, hn::And(move, all(kShift))), all(kStay));
-    const V signs = hn::And(hn::Or(next, hn::Sub(all(rules.corner), next)), all(0x80000000'80000000));
+    const V signs =
+        hn::And(hn::Or(next, hn::Sub(all(rules.corner), next)), all(0x80000000'80000000));
     auto goes_on = hn::Eq(signs, hn::Zero(d));
     if (last_time) {
       move = hn::IfThenElse(goes_on, all(kCutOff), move);
@@ -196,9 +199,8 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
     std::uint8_t marks[8];
     hn::StoreMaskBits(d, kept, marks);
     const V order = hn::And(hn::Shr(all(kMarkedFirst[marks[0]]), nibbles), all(kMostLanes - 1));
-    const auto kept_first = [&, from = hn::IndicesFromVec(d, order)](V v) HWY_ATTR {
-      return hn::TableLookupLanes(v, from);
-    };
+    const auto kept_first = [&, from = hn::IndicesFromVec(d, order)](V v)
+                                HWY_ATTR { return hn::TableLookupLanes(v, from); };
     move = kept_first(move);
     cell = kept_first(cell);
     const V number = kept_first(hn::Load(d, pool.on.number + i));
@@ -219,23 +221,26 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
   pool.first_ended = first_ended;
 }
 
-/// Counts how those in `ended` ended. A number below 0, and a last column or row less one beyond it,
-/// have their top bit set.
+/// Counts how those in `ended` ended. A number below 0, and a last column or row less one beyond
+/// it, have their top bit set.
 void count_endings(const WalkRules& rules, const Pool& pool, PoolEndings& counts) {
   const D d;
   const V last_column = low_half(all(rules.corner)), last_row = high_half(all(rules.corner));
-  V trapped = hn::Zero(d), far = trapped, right = trapped, near = trapped, cut_off = trapped, unsampled = trapped;
+  V trapped = hn::Zero(d), far = trapped, right = trapped, near = trapped, cut_off = trapped,
+    unsampled = trapped;
   for (int i = pool.first_ended; i < Pool::kRoom; i += lanes()) {
     const auto there = hn::FirstN(d, static_cast<std::size_t>(Pool::kRoom - i));
     // Behind the last walk: a move that is no ending at all, from the first cell to itself.
     const V move = hn::IfThenElse(there, hn::LoadU(d, pool.ended.move + i), all(kStay));
     const V cell = hn::IfThenElseZero(there, hn::LoadU(d, pool.ended.cell + i));
     const V column = hn::Sub(hn::Add(low_half(cell), hn::And(move, all(0x3ff))), all(kReach));
-    const V row = hn::Sub(hn::Add(high_half(cell), hn::And(high_half(move), all(0x3ff))), all(kReach));
+    const V row =
+        hn::Sub(hn::Add(high_half(cell), hn::And(high_half(move), all(0x3ff))), all(kReach));
     const V above = hn::ShiftRight<63>(hn::Sub(last_row, row)), below = hn::ShiftRight<63>(row);
     far = hn::Add(far, above);
     near = hn::Add(near, below);
-    right = hn::Add(right, hn::AndNot(hn::Or(above, below), hn::ShiftRight<63>(hn::Sub(last_column, column))));
+    right = hn::Add(
+        right, hn::AndNot(hn::Or(above, below), hn::ShiftRight<63>(hn::Sub(last_column, column))));
     const auto add = [&](V& sum, Word ending) HWY_ATTR {
       sum = hn::Sub(sum, hn::VecFromMask(d, hn::Eq(move, all(ending))));
     };
@@ -352,22 +357,24 @@ Walker::Walker(const Chain& chain)
   const std::vector<Exit>& exits = chain_.exits();
   if (keep_.size() > kMostSlots || std::any_of(exits.begin(), exits.end(), far)) return;
   moves_.reserve(outputs_.size());
-  for (const int output : outputs_) moves_.push_back(packed(exits[static_cast<std::size_t>(output)]));
+  for (const int output : outputs_)
+    moves_.push_back(packed(exits[static_cast<std::size_t>(output)]));
   moves_.end()[-2] = kUnsampled;  // its slot keeps every word
 }
 
 Word Walker::packed(const Exit& exit) const {
   if (exit.next_input == Exit::kTrapped) return kTrapped;
   const int* const begin = chain_.matrix().outerIndexPtr() + exit.next_input;
-  return chain_.is_sampled(exit.next_input)
-             ? move_to(static_cast<std::size_t>(begin[0]), begin[1] - begin[0], exit.di_x, exit.di_y)
-             : move_to(keep_.size() - 1, 1, exit.di_x, exit.di_y);
+  return chain_.is_sampled(exit.next_input) ? move_to(static_cast<std::size_t>(begin[0]),
+                                                      begin[1] - begin[0], exit.di_x, exit.di_y)
+                                            : move_to(keep_.size() - 1, 1, exit.di_x, exit.di_y);
 }
 
 std::int32_t Walker::pick(int row, Word word) const {
   const int* const begin = chain_.matrix().outerIndexPtr() + row;
   const Wide product = static_cast<Wide>(word) * static_cast<Wide>(begin[1] - begin[0]);
-  const std::size_t slot = static_cast<std::size_t>(begin[0]) + static_cast<std::size_t>(product >> 64);
+  const std::size_t slot =
+      static_cast<std::size_t>(begin[0]) + static_cast<std::size_t>(product >> 64);
   return outputs_[2 * slot + (static_cast<Word>(product) > keep_[slot])];
 }
 
@@ -401,7 +408,8 @@ struct Walker::Counters {
 
   explicit Counters(std::int64_t cells) : by_cell(static_cast<std::size_t>(kKinds * cells)) {}
 
-  void count(const Job& job, std::int64_t kind, std::int64_t column, std::int64_t row, std::int64_t number) {
+  void count(const Job& job, std::int64_t kind, std::int64_t column, std::int64_t row,
+             std::int64_t number) {
     const std::int64_t cell = row * job.field.columns + column;
     ++by_cell[static_cast<std::size_t>(kind * job.cells() + cell)];
     if (job.final_cell_of_walk)
@@ -471,8 +479,11 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
 
 void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last,
                            Counters& counters) const {
-  const WalkRules rules{keep_.data(), moves_.data(), cell_at(job.field.columns - 1, job.field.rows - 1),
-                    {job.seed, kWalkStream}, static_cast<Word>(job.start.input)};
+  const WalkRules rules{keep_.data(),
+                        moves_.data(),
+                        cell_at(job.field.columns - 1, job.field.rows - 1),
+                        {job.seed, kWalkStream},
+                        static_cast<Word>(job.start.input)};
   const Word start_move = packed({job.start.input, 0, 0});
   const Word start_cell = cell_at(job.start.column, job.start.row);
   Pool pool;
@@ -496,10 +507,13 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
 
     for (int i = pool.first_ended; i < Pool::kRoom; ++i) {
       const Word cell = pool.ended.cell[i], move = pool.ended.move[i];
-      static_assert(Counters::kTrappedThere == 0 && Counters::kDepartedThere == 1 && Counters::kOthers == 2);
-      const auto kind = static_cast<std::int64_t>(move != kTrapped) << (move >> 63);  // without a jump
+      static_assert(Counters::kTrappedThere == 0 && Counters::kDepartedThere == 1 &&
+                    Counters::kOthers == 2);
+      const auto kind = static_cast<std::int64_t>(move != kTrapped)
+                        << (move >> 63);  // without a jump
       counters.count(job, kind, static_cast<std::int64_t>(cell & 0xffffffff),
-                     static_cast<std::int64_t>(cell >> 32), static_cast<std::int64_t>(pool.ended.number[i]));
+                     static_cast<std::int64_t>(cell >> 32),
+                     static_cast<std::int64_t>(pool.ended.number[i]));
     }
     PoolEndings ended;
     HWY_DYNAMIC_DISPATCH(count_endings)(rules, pool, ended);
@@ -525,20 +539,21 @@ WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int
                                 std::to_string(range.first) + " on is not a range from 0 up");
   }
   if (final_cell_of_walk) final_cell_of_walk->resize(static_cast<std::size_t>(range.count));
-  const Job job{field, start, max_cells == 0 ? kCellsWithoutLimit : max_cells, seed, range,
-                final_cell_of_walk ? final_cell_of_walk->data() : nullptr};
+  const Job job{field, start, max_cells == 0 ? kCellsWithoutLimit : max_cells,
+                seed,  range, final_cell_of_walk ? final_cell_of_walk->data() : nullptr};
 
   tbb::enumerable_thread_specific<Counters> counters(job.cells());
   const std::int64_t pools = range.count / kPool + (range.count % kPool > 0);
-  tbb::parallel_for(
-      tbb::blocked_range<std::int64_t>(0, pools), [&](const tbb::blocked_range<std::int64_t>& part) {
-        const std::int64_t first = range.first + part.begin() * kPool;
-        const std::int64_t last = range.first + (part.end() < pools ? part.end() * kPool : range.count);
-        if (in_lanes)
-          walk_in_lanes(job, first, last, counters.local());
-        else
-          walk_plainly(job, first, last, counters.local());
-      });
+  tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, pools),
+                    [&](const tbb::blocked_range<std::int64_t>& part) {
+                      const std::int64_t first = range.first + part.begin() * kPool;
+                      const std::int64_t last =
+                          range.first + (part.end() < pools ? part.end() * kPool : range.count);
+                      if (in_lanes)
+                        walk_in_lanes(job, first, last, counters.local());
+                      else
+                        walk_plainly(job, first, last, counters.local());
+                    });
   WalkTally total;
   for (CellCounts* cells : {&total.final_cells, &total.trapped_cells, &total.departed_cells})
     *cells = CellCounts::Zero(field.rows, field.columns);

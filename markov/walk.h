@@ -21,22 +21,23 @@ using CellCounts = Eigen::Array<std::int64_t, Eigen::Dynamic, Eigen::Dynamic, Ei
 
 /// trapped + left_field + cut_off + unsampled == walks == final_cells.sum().
 struct WalkTally {
-  CellCounts final_cells;       // (rows x columns), last cell inside the field
+  CellCounts final_cells;  // (rows x columns), last cell inside the field
   std::int64_t walks = 0;
-  std::int64_t trapped = 0;     // ended by a trapped output
-  std::int64_t left_field = 0;  // moved out of the field
-  std::int64_t cut_off = 0;     // max_cells cells visited, would have gone on
-  std::int64_t unsampled = 0;   // entered a state whose row was never sampled
+  std::int64_t trapped = 0;                      // ended by a trapped output
+  std::int64_t left_field = 0;                   // moved out of the field
+  std::int64_t cut_off = 0;                      // max_cells cells visited, would have gone on
+  std::int64_t unsampled = 0;                    // entered a state whose row was never sampled
   std::array<std::int64_t, kEndings> endings{};  // the same by Ending; the four edges: left_field
-  CellCounts trapped_cells, departed_cells;      // of final_cells: trapped there; left the field from there
-  std::int64_t steps = 0;       // draws over all walks
+  CellCounts trapped_cells,
+      departed_cells;      // of final_cells: trapped there; left the field from there
+  std::int64_t steps = 0;  // draws over all walks
   /// Throws std::invalid_argument if both have cells, of different fields.
   WalkTally& operator+=(const WalkTally& other);
 };
 
 /// Walk w under `seed` draws from Philox4x64-10 with key {seed, kWalkStream} and counter
-/// {block, w, start input, 0}: four words a block, one word a draw. Other users of the same seed take
-/// another second key word, so no two ever share a stream.
+/// {block, w, start input, 0}: four words a block, one word a draw. Other users of the same seed
+/// take another second key word, so no two ever share a stream.
 inline constexpr std::uint64_t kWalkStream = 0x77616c6b'00000001;  // "walk", version 1
 
 /// Draws from the rows of a chain: Walker's alias method (Vose's construction), one table per row,
@@ -59,9 +60,9 @@ class Walker {
                                std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
 
   /// The same walks, one after the other: the plain reference.
-  [[nodiscard]] WalkTally walk_plainly(const Field& field, const Start& start, int max_cells,
-                                       std::uint64_t seed, WalkRange range,
-                                       std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
+  [[nodiscard]] WalkTally walk_plainly(
+      const Field& field, const Start& start, int max_cells, std::uint64_t seed, WalkRange range,
+      std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
 
   /// Whether walk() uses vector registers.
   [[nodiscard]] bool walks_in_lanes() const { return !moves_.empty(); }
@@ -72,16 +73,20 @@ class Walker {
   [[nodiscard]] WalkTally run(bool in_lanes, const Field& field, const Start& start, int max_cells,
                               std::uint64_t seed, WalkRange range,
                               std::vector<std::int32_t>* final_cell_of_walk) const;
-  void walk_plainly(const Job& job, std::int64_t first, std::int64_t last, Counters& counters) const;
-  void walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last, Counters& counters) const;
+  void walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
+                    Counters& counters) const;
+  void walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last,
+                     Counters& counters) const;
   [[nodiscard]] std::int32_t pick(int row, std::uint64_t word) const;
   [[nodiscard]] std::uint64_t packed(const Exit& exit) const;
 
   Chain chain_;
-  // Slots: one per nonzero, in the order of the matrix, and one more for all unsampled rows in lanes.
+  // Slots: one per nonzero, in the order of the matrix, and one more for all unsampled rows in
+  // lanes.
   std::vector<std::uint64_t> keep_;    // (slots) the first output, up to here within the slot
   std::vector<std::int32_t> outputs_;  // (slots x 2) else the second
-  std::vector<std::uint64_t> moves_;   // (slots x 2) outputs packed for lanes; empty if that cannot be
+  std::vector<std::uint64_t>
+      moves_;  // (slots x 2) outputs packed for lanes; empty if that cannot be
 };
 
 }  // namespace gatewalk::markov

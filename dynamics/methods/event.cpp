@@ -9,18 +9,18 @@ namespace {
 
 constexpr double kMaxPhase = 1000.0;  // rad or e-folds of a beam in one hold of the random force
 constexpr int kMostPieces = 2000;     // events in one hold before contact is forced
-constexpr int kMostLooks = 100000;     // for contact in one flight
+constexpr int kMostLooks = 100000;    // for contact in one flight
 constexpr int kMostAttempts = 100;    // Runge-Kutta steps tried for one accepted
 
 constexpr std::array<double, 2> kNotSeen{std::numeric_limits<double>::quiet_NaN(),
-                                        std::numeric_limits<double>::quiet_NaN()};
+                                         std::numeric_limits<double>::quiet_NaN()};
 
 /// Positions and velocities of body and beams, for the integrator.
 using Vector = std::array<double, 8>;
 
 Vector pack(const GateState& s) {
-  return {s.body.x,           s.body.y,           s.beams[kLeft].theta, s.beams[kRight].theta,
-          s.body.vx,          s.body.vy,          s.beams[kLeft].omega, s.beams[kRight].omega};
+  return {s.body.x,  s.body.y,  s.beams[kLeft].theta, s.beams[kRight].theta,
+          s.body.vx, s.body.vy, s.beams[kLeft].omega, s.beams[kRight].omega};
 }
 
 GateState unpacked(const Vector& y, const GateState& flags) {
@@ -116,8 +116,8 @@ Step integrated(const GateParams& p, const GateState& s, const Motion& start, do
     motion = Motion(p, state, force_x);
     k[i] = motion.rate;
   }
-  // Errors in m: a speed counts as its way in the scene's unit of time, an angle as its tip's way or
-  // as that of the disc's speed of the same energy.
+  // Errors in m: a speed counts as its way in the scene's unit of time, an angle as its tip's way
+  // or as that of the disc's speed of the same energy.
   const double length = p.beams.length, mass = p.body.mass;
   const double spin = std::max(length, std::sqrt(p.beams.inertia() / mass));
   const Vector weight{1.0,
@@ -214,12 +214,13 @@ GateState EventMethod::flown(const GateState& s, double force_x, double dt) cons
 double EventMethod::swing(Side side, const GateState& before, const GateState& s, double dt) const {
   const double from = before.beams[side].omega, to = s.beams[side].omega;
   if (!before.beams[side].held) return law_.beams[side].swing(before.beams[side], dt);
-  return from * to < 0.0 ? std::abs(interpolated(before, s, dt, dt * from / (from - to)).beams[side].theta) : 0.0;
+  return from * to < 0.0
+             ? std::abs(interpolated(before, s, dt, dt * from / (from - to)).beams[side].theta)
+             : 0.0;
 }
 
-EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
-                                             std::array<double, 2>& surface, double force_x,
-                                             const Push& push, double horizon,
+EventMethod::Outlook EventMethod::look_ahead(const GateState& s, std::array<double, 2>& surface,
+                                             double force_x, const Push& push, double horizon,
                                              Watch& watch) const {
   Outlook out{std::numeric_limits<double>::infinity(), false};
   const BodyState& b = s.body;
@@ -228,7 +229,7 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s,
   const double fy = p_.forces.propulsion / p_.body.mass + push.ay;
   const double force = std::sqrt(fx * fx + fy * fy);
   const double v = std::sqrt(b.vx * b.vx + b.vy * b.vy) + force * horizon;  // m/s, drag only slows
-  const double a = force + drag * v;                          // m/s^2
+  const double a = force + drag * v;                                        // m/s^2
   for (const Side side : {kLeft, kRight}) {
     const BeamState& beam = s.beams[side];
     if (beam.held) continue;
@@ -325,7 +326,8 @@ double EventMethod::fly_on(GateState& s, double force_x, double duration, Watch&
     s = flown(start, force_x, t);
     if (!outside(p_, s.body)) {
       // Out and back again in one flight: look where the body turns.
-      const bool turns_x = start.body.vx * s.body.vx < 0.0, turns_y = start.body.vy * s.body.vy < 0.0;
+      const bool turns_x = start.body.vx * s.body.vx < 0.0,
+                 turns_y = start.body.vy * s.body.vy < 0.0;
       for (const bool x : {true, false}) {
         if (!(x ? turns_x : turns_y)) continue;
         const double v0 = x ? start.body.vx : start.body.vy, v1 = x ? s.body.vx : s.body.vy;

@@ -1,11 +1,11 @@
 #pragma once
-/// `event`: event-driven. Motion is cut at events only: a change of the random force, a hit, the end
-/// of a contact, the way out of the gate.
+/// `event`: event-driven. Motion is cut at events only: a change of the random force, a hit, the
+/// end of a contact, the way out of the gate.
 ///
 /// Free motion is closed-form, so a spell of constant force costs one evaluation when nothing is
-/// near. Hits are found by conservative advancement: from gap, its rate and a bound on how fast that
-/// can fall, a time is computed before which there is no contact; the state goes there and looks
-/// again. No graze is stepped over, and the steps shrink quadratically towards a hit.
+/// near. Hits are found by conservative advancement: from gap, its rate and a bound on how fast
+/// that can fall, a time is computed before which there is no contact; the state goes there and
+/// looks again. No graze is stepped over, and the steps shrink quadratically towards a hit.
 ///
 /// A hit whose rebound would rise less than the tolerance ends the bouncing (Zeno): the contact
 /// becomes a constraint, whose equations of motion an embedded Runge-Kutta pair integrates with
@@ -45,7 +45,8 @@ class EventMethod final : public Method {
                                    Watch& watch) const;
   void resolve(GateState& s, double force_x, Watch& watch) const;
   /// |theta| (rad) of a beam where it turned between the two states `dt` apart, 0 if it did not.
-  [[nodiscard]] double swing(Side side, const GateState& before, const GateState& s, double dt) const;
+  [[nodiscard]] double swing(Side side, const GateState& before, const GateState& s,
+                             double dt) const;
   [[nodiscard]] GateState flown(const GateState& s, double force_x, double dt) const;
 
   const GateParams& p_;
@@ -57,7 +58,7 @@ class EventMethod final : public Method {
   bool loose_;        // the tolerance suits an integrator of low order
   double hold_;       // s, between two changes of the random force
   GateLaw law_;
-  GateFlow flow_;     // over a whole hold
+  GateFlow flow_;  // over a whole hold
 };
 
 }  // namespace gatewalk::dynamics

@@ -26,8 +26,8 @@ namespace gatewalk::dynamics {
 
 /// Contact forces as accelerations of body and beams.
 struct Push {
-  double ax = 0.0, ay = 0.0;                // m/s^2
-  std::array<double, 2> beta{0.0, 0.0};     // rad/s^2
+  double ax = 0.0, ay = 0.0;             // m/s^2
+  std::array<double, 2> beta{0.0, 0.0};  // rad/s^2
   Push() = default;
   Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force);
 };
@@ -43,18 +43,19 @@ void fly(const GateParams& p, const GateFlow& flow, double force_x, const Push& 
 void fly(const GateParams& p, const GateLaw& law, double dt, double force_x, GateState& s);
 
 /// Puts `contacts` back to gap = 0 and u = 0, positions and velocities shifted along the mass
-/// metric; `touch` is where they are in `s`, the result where they are then. Removes energy or leaves
-/// it, to second order.
+/// metric; `touch` is where they are in `s`, the result where they are then. Removes energy or
+/// leaves it, to second order.
 std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool, 2> contacts,
-              std::array<Touch, 2> touch);
+                              std::array<Touch, 2> touch);
 
 /// Impact law at every contact that closes (gap up to `touching`, m, faster than `rest`, m/s), both
-/// beams together, until none does. `ends_bouncing(side, impulse, rebound)` says whether a hit of that impulse (N s), which
-/// leaves with the gap rate `rebound` (m/s), is so weak that the contact is a constraint instead.
+/// beams together, until none does. `ends_bouncing(side, impulse, rebound)` says whether a hit of
+/// that impulse (N s), which leaves with the gap rate `rebound` (m/s), is so weak that the contact
+/// is a constraint instead.
 template <class EndsBouncing>
 void resolve_hits(const GateParams& p, GateState& s, double touching, double rest, Watch& watch,
                   EndsBouncing ends_bouncing) {
-  constexpr int kRounds = 20;      // the last one is plastic
+  constexpr int kRounds = 20;  // the last one is plastic
   const auto touch = touches(p, s, {true, true});
   watch.evaluations += 2;
   const Coupling w = coupling(p, touch);
@@ -67,8 +68,8 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, double res
       // Only contacts that close take part. A contact that opens must not be pushed by the other's
       // restitution, that could create energy; if it closes after this round, it takes the next.
       active[side] = held || (touch[side].gap <= touching && u[side] < -rest);
-      const double e = touch[side].kind == ContactKind::tip ? p.contact.tip_restitution
-                                                            : p.contact.restitution;
+      const double e =
+          touch[side].kind == ContactKind::tip ? p.contact.tip_restitution : p.contact.restitution;
       const bool elastic = !held && round < kRounds - 1;
       rebound[side] = elastic ? -e * u[side] : 0.0;
       b[side] = u[side] - rebound[side];
@@ -81,16 +82,16 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, double res
     // either is held: the answer may look at the other beam, and a mirror image must not change it.
     std::array<bool, 2> ends{};
     for (const Side side : {kLeft, kRight})
-      ends[side] = active[side] && !s.beams[side].held &&
-                   ends_bouncing(side, impulse[side], rebound[side]);
+      ends[side] =
+          active[side] && !s.beams[side].held && ends_bouncing(side, impulse[side], rebound[side]);
     for (const Side side : {kLeft, kRight}) {
       if (!ends[side]) continue;
       s.beams[side].held = true;
       b[side] = u[side];
     }
     impulse = push_only(w, b, active);
-    // A held beam that the other side's hit throws off is free again; but not if it would be back at
-    // once: two contacts would free each other without end. Then both stay shut.
+    // A held beam that the other side's hit throws off is free again; but not if it would be back
+    // at once: two contacts would free each other without end. Then both stay shut.
     for (const Side side : {kLeft, kRight}) {
       if (!active[side] || !s.beams[side].held || impulse[side] > 0.0) continue;
       const double opens = b[side] + w.cross * impulse[1 - side];

@@ -12,8 +12,8 @@ namespace gatewalk::dynamics {
 struct Spell {
   double duration;  // s
   long steps;
-  double step;      // s
-  bool usual;       // step == run.step
+  double step;  // s
+  bool usual;   // step == run.step
 
   Spell(const GateParams& p, double seconds) : duration(seconds) {
     const double wanted = duration / p.run.step;

@@ -13,8 +13,8 @@
 namespace gatewalk::dynamics {
 
 std::span<const std::string_view> method_names() {
-  static constexpr std::array<std::string_view, 6> names{"paper",   "stable", "moreau", "event",
-                                                             "penalty", "auto"};
+  static constexpr std::array<std::string_view, 6> names{"paper", "stable",  "moreau",
+                                                         "event", "penalty", "auto"};
   return names;
 }
 
@@ -25,8 +25,9 @@ std::unique_ptr<Method> make_method(const GateParams& params) {
   if (params.run.method == "event") return std::make_unique<EventMethod>(params);
   if (params.run.method == "penalty") return std::make_unique<PenaltyMethod>(params);
   if (params.run.method == "auto")
-    throw InvalidParameter("run.method", "run.method = \"auto\" is no method yet: choose_method "
-                                         "(dynamics/choice.h) makes it one");
+    throw InvalidParameter("run.method",
+                           "run.method = \"auto\" is no method yet: choose_method "
+                           "(dynamics/choice.h) makes it one");
   return std::make_unique<StableMethod>(params);
 }
 
@@ -68,8 +69,8 @@ GateState interpolated(const GateState& a, const GateState& b, double dt, double
   return s;
 }
 
-std::array<BeamState, 2> mixed(const std::array<BeamState, 2>& a,
-                               const std::array<BeamState, 2>& b, double fraction) {
+std::array<BeamState, 2> mixed(const std::array<BeamState, 2>& a, const std::array<BeamState, 2>& b,
+                               double fraction) {
   std::array<BeamState, 2> m = b;
   for (const Side side : {kLeft, kRight}) {
     m[side].theta = a[side].theta + fraction * (b[side].theta - a[side].theta);
@@ -99,8 +100,8 @@ double energy(const GateParams& p, const GateState& s) {
   const BeamState &l = s.beams[kLeft], &r = s.beams[kRight];
   const double body = p.body.mass * (s.body.vx * s.body.vx + s.body.vy * s.body.vy);
   const double beams = p.beams.inertia() * (l.omega * l.omega + r.omega * r.omega);
-  const double joints = p.beams.stiffness_left * l.theta * l.theta +
-                        p.beams.stiffness_right * r.theta * r.theta;
+  const double joints =
+      p.beams.stiffness_left * l.theta * l.theta + p.beams.stiffness_right * r.theta * r.theta;
   return 0.5 * (body + beams + joints);
 }
 

@@ -15,15 +15,15 @@ namespace gatewalk::dynamics {
 /// Kept during a run: what decides left or right, and the evidence that the numbers can be trusted.
 struct Watch {
   std::array<double, 2> max_theta{0.0, 0.0};  // rad, largest deflection of each beam, either way
-  double max_penetration = 0.0;     // m
-  double energy_created = 0.0;      // J, largest rise of (energy - work done by the forces) ever seen
-  double max_speed = 0.0;           // m/s
-  std::int64_t steps = 0;           // time steps
-  std::int64_t evaluations = 0;     // evaluations of a gap or of the forces: the work done
-  std::int64_t impacts = 0;         // resolved hits
-  std::int64_t forced_holds = 0;    // steps in which hits piled up and were turned into constraints
+  double max_penetration = 0.0;               // m
+  double energy_created = 0.0;    // J, largest rise of (energy - work done by the forces) ever seen
+  double max_speed = 0.0;         // m/s
+  std::int64_t steps = 0;         // time steps
+  std::int64_t evaluations = 0;   // evaluations of a gap or of the forces: the work done
+  std::int64_t impacts = 0;       // resolved hits
+  std::int64_t forced_holds = 0;  // steps in which hits piled up and were turned into constraints
   std::int64_t undefined_contacts = 0;  // contacts for which the method has no formula
-  std::int64_t fast_steps = 0;      // steps in which disc or beam moved so far that hits can be missed
+  std::int64_t fast_steps = 0;  // steps in which disc or beam moved so far that hits can be missed
   std::int64_t unstable_steps = 0;  // steps longer than the method's stability bound for free beams
   // For traces; runs in vector lanes leave them out, and penalty, in which contact is no hit, too.
   std::array<double, 2> impulse{};  // N s, of the hits on each beam, along the contact's normal

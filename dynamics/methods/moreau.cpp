@@ -47,8 +47,8 @@ void MoreauMethod::one_step(GateState& s, double force_x, const Step& step, Watc
   for (const Side side : {kLeft, kRight}) {
     BeamState& beam = beams[side];
     beam.theta += half * s.beams[side].omega;
-    beam.omega = step.w_to_w[side] * s.beams[side].omega -
-                 step.w_per_rad[side] * s.beams[side].theta;
+    beam.omega =
+        step.w_to_w[side] * s.beams[side].omega - step.w_per_rad[side] * s.beams[side].theta;
     if (out_of_reach(p_, side, body, beam.theta)) continue;
     touch[side] = nearest(p_, side, body, beam.theta);
     ++watch.evaluations;
@@ -77,8 +77,10 @@ void MoreauMethod::one_step(GateState& s, double force_x, const Step& step, Watc
       watch.impacts += impulse[side] > 0.0 && touch[side].gap > step.h * before[side];
     }
     for (const Side side : {kLeft, kRight}) {
-      if (!active[side]) continue;  // by the midpoint rule an impulse works on the mean of both rates
-      watch.hit_loss -= 0.5 * impulse[side] * (before[side] + gap_rate(touch[side], body, beams[side]));
+      if (!active[side])
+        continue;  // by the midpoint rule an impulse works on the mean of both rates
+      watch.hit_loss -=
+          0.5 * impulse[side] * (before[side] + gap_rate(touch[side], body, beams[side]));
     }
   }
 

@@ -10,7 +10,8 @@ double euler_bound(const GateParams& p) {
   const double d = p.beams.damping, inertia = p.beams.inertia();
   const double spread = d * d - 4.0 * k * inertia;
   if (spread >= 0.0)
-    return d > 0.0 ? 4.0 * inertia / (d + std::sqrt(spread)) : std::numeric_limits<double>::infinity();
+    return d > 0.0 ? 4.0 * inertia / (d + std::sqrt(spread))
+                   : std::numeric_limits<double>::infinity();
   return d / k;
 }
 
@@ -51,7 +52,8 @@ void PaperMethod::collide(GateState& s, Watch& watch) const {
     beam.omega -= impulse * t.lever / p_.beams.inertia();
     ++watch.impacts;
     watch.impulse[side] += impulse;
-    watch.hit_loss -= impulse * (u + 0.5 * impulse * compliance(p_.body.mass, p_.beams.inertia(), t.lever));
+    watch.hit_loss -=
+        impulse * (u + 0.5 * impulse * compliance(p_.body.mass, p_.beams.inertia(), t.lever));
     if (impulse < p_.contact.impulse_threshold && t.lever != 0.0) {
       beam.held = true;  // the switch sets the beam's velocity to satisfy Eq. (10) or (12)
       beam.omega = (t.nx * s.body.vx + t.ny * s.body.vy) / t.lever;

@@ -27,6 +27,4 @@ class PaperMethod final : public Method {
   bool beyond_bound_;
 };
 
-
-
 }  // namespace gatewalk::dynamics

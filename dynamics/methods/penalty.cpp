@@ -87,7 +87,7 @@ double PenaltyMethod::advance(GateState& s, double force_x, double duration, Ene
   const double h = spell.step;
   const Springs springs = spell.usual ? usual_ : Springs(p_, h);
   const double inertia = p_.beams.inertia();
-  std::array<Touch, 2> touch;   // where the state is now; gap >= 0 stands for out of reach
+  std::array<Touch, 2> touch;    // where the state is now; gap >= 0 stands for out of reach
   std::array<double, 2> mass{};  // kg, effective in each contact
 
   const auto look = [&](const GateState& now) {
@@ -121,8 +121,10 @@ double PenaltyMethod::advance(GateState& s, double force_x, double duration, Ene
     for (const Side side : {kLeft, kRight}) {
       BeamState& beam = now.beams[side];
       const double k = p_.beams.stiffness(side);
-      beam.omega -= h * (k * beam.theta + p_.beams.damping * beam.omega +  // Eq. (3)
-                         touch[side].lever * force[side]) / inertia;
+      beam.omega -= h *
+                    (k * beam.theta + p_.beams.damping * beam.omega +  // Eq. (3)
+                     touch[side].lever * force[side]) /
+                    inertia;
       beam.theta += h * beam.omega;
     }
   };

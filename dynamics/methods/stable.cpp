@@ -8,11 +8,11 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kMaxPhase = 0.5;         // rad or e-folds of a beam per substep
-constexpr double kMaxTurn = 0.05;         // rad that a held beam may turn in a substep
-constexpr int kMaxHalvings = 10;          // for the fastest beam, and for the way in a piece
-constexpr int kContactHalvings = 4;       // for a held contact that turns fast or changes its kind
-constexpr int kMaxHits = 50;              // in one substep, then hits end in constraints
+constexpr double kMaxPhase = 0.5;    // rad or e-folds of a beam per substep
+constexpr double kMaxTurn = 0.05;    // rad that a held beam may turn in a substep
+constexpr int kMaxHalvings = 10;     // for the fastest beam, and for the way in a piece
+constexpr int kContactHalvings = 4;  // for a held contact that turns fast or changes its kind
+constexpr int kMaxHits = 50;         // in one substep, then hits end in constraints
 
 /// How often `phase` must be halved, up to `limit` times, not to exceed `most`.
 int halvings_for(double phase, double most, int limit) {
@@ -124,7 +124,8 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
       // A light beam may swing out and back in a piece.
       for (const Side side : {kLeft, kRight})
         if (halvings_[side] > 0 && !beams[side].held && watch.impacts == impacts)
-          watch.max_theta[side] = std::max(watch.max_theta[side], law_.beams[side].swing(beams[side], time));
+          watch.max_theta[side] =
+              std::max(watch.max_theta[side], law_.beams[side].swing(beams[side], time));
       fast |= n == kMaxHalvings && too_far(s, std::ldexp(spell.step, -n));
       passed += time;
       unit += units >> n;
@@ -143,8 +144,10 @@ bool StableMethod::too_far(const GateState& s, double dt) const {
   // Nearly always far from it: no root.
   double turns = 0.0;
   for (const Side side : {kLeft, kRight})
-    turns = std::max(turns, std::abs(s.beams[side].omega) + swing_root_[side] * std::abs(s.beams[side].theta));
-  if ((std::abs(s.body.vx) + std::abs(s.body.vy) + p_.beams.length * turns) * dt <= most) return false;
+    turns = std::max(
+        turns, std::abs(s.beams[side].omega) + swing_root_[side] * std::abs(s.beams[side].theta));
+  if ((std::abs(s.body.vx) + std::abs(s.body.vy) + p_.beams.length * turns) * dt <= most)
+    return false;
   const double disc = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy) * dt;
   if (disc > most) return true;
   for (const Side side : {kLeft, kRight}) {
@@ -180,8 +183,7 @@ int StableMethod::halvings(const GateState& s) const {
 
 StableMethod::Glide StableMethod::glide(GateState& s, double force_x, const GateFlow& flow,
                                         const GateFlow& half_flow) const {
-  if (s.beams[kLeft].held || s.beams[kRight].held)
-    return glide_held(s, force_x, flow, half_flow);
+  if (s.beams[kLeft].held || s.beams[kRight].held) return glide_held(s, force_x, flow, half_flow);
   fly(p_, flow, force_x, {}, s);
   return {};
 }
@@ -268,11 +270,10 @@ double StableMethod::substep(GateState& s, double force_x, const GateFlow& flow,
     }
     const double when = first_hit(s, force_x, end, span, hit, watch);
     if (outside(p_, s.body)) return start + when;
-    resolve_hits(p_, s, touching_, rest_, watch,
-                 [&](Side, double impulse, double rebound) {
-                   // What does not bounce is in contact from now on.
-                   return impulse < threshold_ || rebound <= rest_ || hits >= kMaxHits;
-                 });
+    resolve_hits(p_, s, touching_, rest_, watch, [&](Side, double impulse, double rebound) {
+      // What does not bounce is in contact from now on.
+      return impulse < threshold_ || rebound <= rest_ || hits >= kMaxHits;
+    });
     left -= when;
     if (left <= 1e-15 * flow.dt) return flow.dt;
     if (may_halve.travel && too_far(s, left)) {
@@ -322,9 +323,8 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
 
     // A first guess from the interpolated motion, which is cheap, and one Newton step on the motion
     // itself. If that does not land on the contact, a safe search on the motion itself does.
-    double when = crossing(dt, start, gap_of(end), from_contact, 10 * touching_, [&](double t) {
-      return gap_of(interpolated(s, end, dt, t));
-    });
+    double when = crossing(dt, start, gap_of(end), from_contact, 10 * touching_,
+                           [&](double t) { return gap_of(interpolated(s, end, dt, t)); });
     GateState there = moved(when);
     const Touch t = touch_of(there);
     when -= (t.gap - level) / gap_rate(t, there.body, there.beams[side]);

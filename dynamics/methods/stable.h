@@ -8,11 +8,12 @@
 /// constraint, along the mass metric, so that it can neither drift nor add energy. Contact forces
 /// only push: a contact whose force would pull is released.
 ///
-/// A step is taken in pieces, halves of halves, where it is too long: for contact forces on stiff or
-/// damped beams, for a held beam that turns fast, for a held contact that moves from a beam's side
-/// to its joint or tip.
+/// A step is taken in pieces, halves of halves, where it is too long: for contact forces on stiff
+/// or damped beams, for a held beam that turns fast, for a held contact that moves from a beam's
+/// side to its joint or tip.
 ///
-/// So is a piece in which disc or beam would move by more than half a radius: no hit is stepped over.
+/// So is a piece in which disc or beam would move by more than half a radius: no hit is stepped
+/// over.
 ///
 /// The impulse threshold shrinks with the step: contact.impulse_threshold_Ns is that of the paper's
 /// step (0.004 units of time, see Scale). With a fixed one the error of a trajectory stops falling.
@@ -39,8 +40,8 @@ class StableMethod final : public Method {
   /// reach does not count.
   [[nodiscard]] bool too_far(const GateState& s, double dt) const;
   /// Returns the time passed: flow.dt, or less when the body has left the gate; 0, and `s` as it
-  /// was, when a piece is to be halved: at a `handover` of a contact, or after a hit that sends disc or
-  /// beam too far within the rest of the piece and `travel`.
+  /// was, when a piece is to be halved: at a `handover` of a contact, or after a hit that sends
+  /// disc or beam too far within the rest of the piece and `travel`.
   struct MayHalve {
     bool handover, travel;
   };
@@ -59,17 +60,17 @@ class StableMethod final : public Method {
   /// moment of leaving; returns how long after `before` that is.
   double leave(const GateState& before, GateState& s, double dt) const;
   /// Takes `s` to the first moment in [0, dt] at which one of `hit` is reached; returns that time.
-  [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end,
-                                 double dt, std::array<bool, 2> hit, Watch& watch) const;
+  [[nodiscard]] double first_hit(GateState& s, double force_x, const GateState& end, double dt,
+                                 std::array<bool, 2> hit, Watch& watch) const;
 
   const GateParams& p_;
-  double threshold_;      // N s
-  double touching_;       // m, gaps up to this count as contact at a moment of impact
-  double rest_;           // m/s, contacts this slow do not close
+  double threshold_;                    // N s
+  double touching_;                     // m, gaps up to this count as contact at a moment of impact
+  double rest_;                         // m/s, contacts this slow do not close
   std::array<double, 2> swing_{};       // 1/s^2, k/I
   std::array<double, 2> swing_root_{};  // 1/s
-  std::array<int, 2> halvings_{};  // of a step that each beam needs, 0 unless it is very stiff
-  int finest_;                     // halvings that any piece may need
+  std::array<int, 2> halvings_{};       // of a step that each beam needs, 0 unless it is very stiff
+  int finest_;                          // halvings that any piece may need
   GateLaw law_;
   std::vector<GateFlow> flows_;  // over the step, halved 0 .. finest + 1 times
 };

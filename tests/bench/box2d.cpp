@@ -7,8 +7,8 @@
 namespace gatewalk::bench {
 namespace {
 
-/// Box2D wants moving things of 0.1 to 10 m: its unit of length is 10 m here. Times and masses stay,
-/// so forces are in 10 N and torques in 100 N m.
+/// Box2D wants moving things of 0.1 to 10 m: its unit of length is 10 m here. Times and masses
+/// stay, so forces are in 10 N and torques in 100 N m.
 constexpr double kUnit = 10.0;
 constexpr float length(double metres) { return static_cast<float>(metres / kUnit); }
 
@@ -76,8 +76,8 @@ class Box2D final : public Engine, b2ContactListener {
     const float sign = beam == beams_[dynamics::kLeft] ? 1.0F : -1.0F;
     const b2Vec2 along = sign * beam->GetTransform().q.GetXAxis();
     const b2Vec2 d = disc_->GetPosition() - beam->GetPosition();
-    contact->SetRestitution(static_cast<float>(
-        restitution(p_, d.x * kUnit, d.y * kUnit, along.x, along.y)));
+    contact->SetRestitution(
+        static_cast<float>(restitution(p_, d.x * kUnit, d.y * kUnit, along.x, along.y)));
   }
 
   const dynamics::GateParams& p_;

@@ -39,15 +39,17 @@ std::ofstream file(const std::string& path) {
 
 using Entries = std::vector<Eigen::Triplet<double, std::int64_t>>;
 
-void write_mtx(const std::string& path, std::int64_t rows, std::int64_t columns, const Entries& entries) {
+void write_mtx(const std::string& path, std::int64_t rows, std::int64_t columns,
+               const Entries& entries) {
   auto out = file(path);
   out << "%%MatrixMarket matrix coordinate real general\n"
       << rows << ' ' << columns << ' ' << entries.size() << '\n';
-  for (const auto& e : entries) out << e.row() + 1 << ' ' << e.col() + 1 << ' ' << e.value() << '\n';
+  for (const auto& e : entries)
+    out << e.row() + 1 << ' ' << e.col() + 1 << ' ' << e.value() << '\n';
 }
 
-/// The chain over a whole field as one matrix. States: (cell, input), then trapped in each cell, then
-/// left the field from each cell; the last two are absorbing.
+/// The chain over a whole field as one matrix. States: (cell, input), then trapped in each cell,
+/// then left the field from each cell; the last two are absorbing.
 void write_global(const std::string& path, const Chain& chain, const Field& field) {
   const std::int64_t n = chain.inputs(), cells = std::int64_t{field.columns} * field.rows;
   Entries entries;
@@ -55,10 +57,11 @@ void write_global(const std::string& path, const Chain& chain, const Field& fiel
     for (int input = 0; input < n; ++input)
       for (markov::Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
         const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-        const auto column = cell % field.columns + exit.di_x, row = cell / field.columns + exit.di_y;
+        const auto column = cell % field.columns + exit.di_x,
+                   row = cell / field.columns + exit.di_y;
         const bool inside = column >= 0 && column < field.columns && row >= 0 && row < field.rows;
         const std::int64_t to = exit.next_input == Exit::kTrapped ? n * cells + cell
-                                : !inside ? n * cells + cells + cell
+                                : !inside                         ? n * cells + cells + cell
                                           : (row * field.columns + column) * n + exit.next_input;
         entries.emplace_back(cell * n + input, to, it.value());
       }
@@ -75,8 +78,9 @@ void write_answer(const std::string& path, const FinalDistribution& d) {
 }
 
 double difference(const FinalDistribution& a, const FinalDistribution& b) {
-  return std::max({(a.final_cells - b.final_cells).abs().maxCoeff(), std::abs(a.trapped - b.trapped),
-                   std::abs(a.left_field - b.left_field), std::abs(a.cut_off - b.cut_off)});
+  return std::max({(a.final_cells - b.final_cells).abs().maxCoeff(),
+                   std::abs(a.trapped - b.trapped), std::abs(a.left_field - b.left_field),
+                   std::abs(a.cut_off - b.cut_off)});
 }
 
 /// `difference` from the plain answer is measured once, outside the timing.
@@ -91,17 +95,22 @@ void add_exact(const std::string& name, const FinalDistribution& plain,
 
 void add_walks(const std::string& name, const Chain& chain, const Field& field, const Start& start,
                const FinalDistribution& exact) {
-  benchmark::RegisterBenchmark(name.c_str(), [=, &chain](benchmark::State& state) {
-    const markov::Walker walker(chain);
-    markov::WalkTally tally;
-    for (auto _ : state)
-      tbb::task_arena(1).execute(
-          [&] { tally = walker.walk(field, start, kGates, bench::kSeed, {0, kWalks}); });
-    const markov::CellProbabilities seen = tally.final_cells.cast<double>() / kWalks;
-    state.counters["walks"] = kWalks;
-    state.counters["difference"] = lattice::total_variation(seen, exact.final_cells);
-    state.counters["floor"] = lattice::expected_total_variation(exact.final_cells, kWalks);
-  })->UseRealTime()->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark(
+      name.c_str(),
+      [=, &chain](benchmark::State& state) {
+        const markov::Walker walker(chain);
+        markov::WalkTally tally;
+        for (auto _ : state)
+          tbb::task_arena(1).execute([&] {
+            tally = walker.walk(field, start, kGates, bench::kSeed, {0, kWalks});
+          });
+        const markov::CellProbabilities seen = tally.final_cells.cast<double>() / kWalks;
+        state.counters["walks"] = kWalks;
+        state.counters["difference"] = lattice::total_variation(seen, exact.final_cells);
+        state.counters["floor"] = lattice::expected_total_variation(exact.final_cells, kWalks);
+      })
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
 }
 
 int run(int argc, char** argv) {
@@ -124,7 +133,8 @@ int run(int argc, char** argv) {
       kernel.emplace_back(row, it.col(), it.value());
   write_mtx(folder + "kernel.mtx", chain.inputs(), chain.outputs(), kernel);
   auto exits = file(folder + "exits.csv");
-  for (const Exit& e : chain.exits()) exits << e.next_input << ',' << e.di_x << ',' << e.di_y << '\n';
+  for (const Exit& e : chain.exits())
+    exits << e.next_input << ',' << e.di_x << ',' << e.di_y << '\n';
   file(folder + "start.txt") << input << '\n';
 
   const markov::Sweeper sweeper(chain);

@@ -27,11 +27,13 @@ class Chipmunk final : public Engine {
       cpSpaceAddShape(space_, shape);
       cpBody* ground = cpSpaceGetStaticBody(space_);
       cpSpaceAddConstraint(space_, cpPivotJointNew(ground, beams_[side], joint));
-      cpSpaceAddConstraint(space_, cpDampedRotarySpringNew(ground, beams_[side], 0.0,
-                                                           p.beams.stiffness(side), p.beams.damping));
+      cpSpaceAddConstraint(
+          space_, cpDampedRotarySpringNew(ground, beams_[side], 0.0, p.beams.stiffness(side),
+                                          p.beams.damping));
     }
-    disc_ = cpSpaceAddBody(space_, cpBodyNew(p.body.mass, cpMomentForCircle(p.body.mass, 0.0,
-                                                                            p.body.radius, cpvzero)));
+    disc_ = cpSpaceAddBody(
+        space_,
+        cpBodyNew(p.body.mass, cpMomentForCircle(p.body.mass, 0.0, p.body.radius, cpvzero)));
     cpShape* shape = cpSpaceAddShape(space_, cpCircleShapeNew(disc_, p.body.radius, cpvzero));
     cpShapeSetCollisionType(shape, kDisc);
     cpCollisionHandler* handler = cpSpaceAddCollisionHandler(space_, kBeam, kDisc);

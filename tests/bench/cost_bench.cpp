@@ -1,5 +1,5 @@
-/// cost_bench STUDY ...: one measurement a process, so that its peak of memory is its own. Prints lines
-/// of CSV; run.sh writes the headers.
+/// cost_bench STUDY ...: one measurement a process, so that its peak of memory is its own. Prints
+/// lines of CSV; run.sh writes the headers.
 ///   size trials METHOD N THREADS | size rows FACTOR THREADS | size lattice METHOD N THREADS
 ///   size walks MATRIX N THREADS | size field MATRIX SIDE GATES
 ///                study,what,size,threads,seconds,peak_MiB,note
@@ -67,10 +67,11 @@ dynamics::Transitions build(double bins, std::int64_t trials) {
   return t;
 }
 
-lattice::FieldTally cross_field(const char* method, std::int64_t trials, std::uint64_t seed = bench::kSeed) {
+lattice::FieldTally cross_field(const char* method, std::int64_t trials,
+                                std::uint64_t seed = bench::kSeed) {
   const GateParams p = bench::by(bench::field_gate(), method);
-  return lattice::run_field(p, bench::kField, bench::kFieldStart, dynamics::StateSpace::paper(p), seed,
-                            {0, trials});
+  return lattice::run_field(p, bench::kField, bench::kFieldStart, dynamics::StateSpace::paper(p),
+                            seed, {0, trials});
 }
 
 void size_study(const std::vector<std::string>& a) {
@@ -114,7 +115,9 @@ void size_study(const std::vector<std::string>& a) {
     name += gates > 0 ? " limited" : " no limit";
     const markov::Sweeper sweeper(c.chain);
     markov::FinalDistribution d;
-    time = best_seconds([&] { d = sweeper.predict({side, side}, {side / 2, 0, c.start.input}, gates); });
+    time = best_seconds([&] {
+      d = sweeper.predict({side, side}, {side / 2, 0, c.start.input}, gates);
+    });
     note = std::to_string(d.steps) + " steps, remainder " + std::to_string(d.remainder);
     // The whole must be there, or the time means nothing.
     if (!(std::abs(d.final_cells.sum() + d.remainder - 1.0) < 1e-9))
@@ -134,13 +137,14 @@ void evaluations() {
     for (const char* method : {"paper", "moreau", "stable", "event"}) {
       const GateParams gate = scene[0] == 'f' ? bench::field_gate() : bench::condition(scene[0]);
       const GateParams p = bench::by(gate, method);
-      const dynamics::BodyState start = scene[0] == 'f' ? bench::kFieldStart : dynamics::BodyState{};
+      const dynamics::BodyState start =
+          scene[0] == 'f' ? bench::kFieldStart : dynamics::BodyState{};
       const GateTally tally = dynamics::run_gate_trials(p, start, bench::kSeed, {0, kTrials});
       const auto per_trial = [&](std::int64_t n) { return static_cast<double>(n) / kTrials; };
       std::cout << scene << ',' << method << ',';
       if (p.run.method != "event") std::cout << p.run.step;  // it has none
-      std::cout << ',' << kTrials << ','
-                << per_trial(tally.health.steps) << ',' << per_trial(tally.health.evaluations) << '\n';
+      std::cout << ',' << kTrials << ',' << per_trial(tally.health.steps) << ','
+                << per_trial(tally.health.evaluations) << '\n';
     }
 }
 
@@ -165,8 +169,8 @@ void lanes(std::int64_t trials) {
     for (const std::uint64_t seed : {bench::kSeed, bench::kSeed + 1}) {
       const GateTally in_lanes = dynamics::run_gate_trials(p, {}, seed, {0, trials});
       const auto c = lattice::compare(outcomes(in_lanes), outcomes(plain), 1000, 1);
-      std::cout << condition << ',' << trials << ',' << (seed == bench::kSeed ? "same" : "other") << ','
-                << c.total_variation << ',' << c.floor_total_variation << ','
+      std::cout << condition << ',' << trials << ',' << (seed == bench::kSeed ? "same" : "other")
+                << ',' << c.total_variation << ',' << c.floor_total_variation << ','
                 << c.floor_total_variation_95 << ',' << c.p_total_variation << '\n';
     }
   }
@@ -177,12 +181,14 @@ void budget(const std::string& matrix) {
   const auto line = [](const char* key, double value) { std::cout << key << ',' << value << '\n'; };
   dynamics::Transitions built = build(1.0, bench::kTrialsPerRow);
   const dynamics::Transitions stored = lattice::read_matrix(matrix).transitions;
-  if (built.rows != stored.rows) throw std::runtime_error(matrix + ": not the matrix of this scene");
+  if (built.rows != stored.rows)
+    throw std::runtime_error(matrix + ": not the matrix of this scene");
 
   // The truth: trials of their own.
   constexpr std::int64_t kTruth = 400'000;
   const auto truth = cross_field("moreau", kTruth, bench::kSeed + 1);
-  const lattice::CellProbabilities p = truth.final_gates.cast<double>() / static_cast<double>(kTruth);
+  const lattice::CellProbabilities p =
+      truth.final_gates.cast<double>() / static_cast<double>(kTruth);
   const std::int64_t needed = lattice::trials_for(p, kGoal);
   line("trials_for_0.01", static_cast<double>(needed));
 
@@ -196,8 +202,9 @@ void budget(const std::string& matrix) {
       [&] { static_cast<void>(markov::Sweeper(lattice::make_chain(stored)).can_march()); });
   line("prepare_seconds", prepare);
   markov::FinalDistribution exact;
-  const double predict =
-      best_seconds([&] { exact = sweeper.predict({9, 9}, start, bench::kField.max_gates); });
+  const double predict = best_seconds([&] {
+    exact = sweeper.predict({9, 9}, start, bench::kField.max_gates);
+  });
   line("predict_seconds", predict);
   const double chain_error = lattice::total_variation(exact.final_cells, p);
   line("chain_total_variation", chain_error);
@@ -224,11 +231,16 @@ void budget(const std::string& matrix) {
 
 int run(const std::vector<std::string>& a) {
   const std::string study = a.empty() ? "" : a[0];
-  if (study == "size") size_study({a.begin() + 1, a.end()});
-  else if (study == "evaluations") evaluations();
-  else if (study == "lanes") lanes(std::stoll(a.at(1)));
-  else if (study == "budget") budget(a.at(1));
-  else throw std::invalid_argument("which study? size, evaluations, lanes or budget");
+  if (study == "size")
+    size_study({a.begin() + 1, a.end()});
+  else if (study == "evaluations")
+    evaluations();
+  else if (study == "lanes")
+    lanes(std::stoll(a.at(1)));
+  else if (study == "budget")
+    budget(a.at(1));
+  else
+    throw std::invalid_argument("which study? size, evaluations, lanes or budget");
   return 0;
 }
 

@@ -63,7 +63,8 @@ void add(const std::string& name, const char* method, double step, std::int64_t 
     // Shared by the repetitions: which trials come next.
     auto next = std::make_shared<std::int64_t>(0);
     benchmark::RegisterBenchmark(
-        (name + "/" + condition).c_str(), [=](benchmark::State& state) {
+        (name + "/" + condition).c_str(),
+        [=](benchmark::State& state) {
           GateTally tally;
           for (auto _ : state)
             tally += tbb::task_arena(1).execute([&] { return trials(p, {*next, batch}); });
@@ -89,9 +90,8 @@ void add(const std::string& name, const char* method, double step, std::int64_t 
 int main(int argc, char** argv) {
   const double paper_step = dynamics::kPaperStep;
   const auto engine = [&](const char* name, std::int64_t batch, Make make) {
-    add(name, "moreau", paper_step, batch, [make](const GateParams& p, TrialRange range) {
-      return engine_trials(make, p, range);
-    });
+    add(name, "moreau", paper_step, batch,
+        [make](const GateParams& p, TrialRange range) { return engine_trials(make, p, range); });
   };
   // Batches of about a third of a second.
   engine("Chipmunk", 200, bench::make_chipmunk);

@@ -52,8 +52,9 @@ class Ode final : public Engine {
   dynamics::BodyState step(double force_x) override {
     for (const auto side : {dynamics::kLeft, dynamics::kRight}) {
       touch(side);
-      dJointAddHingeTorque(hinges_[side], -p_.beams.stiffness(side) * dJointGetHingeAngle(hinges_[side]) -
-                                              p_.beams.damping * dJointGetHingeAngleRate(hinges_[side]));
+      dJointAddHingeTorque(hinges_[side],
+                           -p_.beams.stiffness(side) * dJointGetHingeAngle(hinges_[side]) -
+                               p_.beams.damping * dJointGetHingeAngleRate(hinges_[side]));
     }
     dBodyAddForce(disc_, force_x, p_.forces.propulsion, 0.0);
     dWorldStep(world_, p_.run.step);
@@ -72,8 +73,8 @@ class Ode final : public Engine {
     const dReal* at = dBodyGetPosition(disc_);
     const dReal* r = dBodyGetRotation(beams_[side]);
     contact.surface.mode = dContactBounce;
-    contact.surface.bounce = restitution(p_, at[0] + sign * p_.beams.joint_x, at[1] - p_.beams.joint_y,
-                                         sign * r[0], sign * r[4]);
+    contact.surface.bounce = restitution(p_, at[0] + sign * p_.beams.joint_x,
+                                         at[1] - p_.beams.joint_y, sign * r[0], sign * r[4]);
     dJointAttach(dJointCreateContact(world_, contacts_, &contact), disc_, beams_[side]);
   }
 

@@ -1,7 +1,8 @@
 #pragma once
 /// The same gate in general physics engines, each written as its manual says: a disc, two rods of
 /// their own mass on hinges, springs and dampers there, no gravity, no friction, beams that do not
-/// collide with each other. Restitution as in the scene, the tip's own where the disc touches a tip.
+/// collide with each other. Restitution as in the scene, the tip's own where the disc touches a
+/// tip.
 
 #include <memory>
 

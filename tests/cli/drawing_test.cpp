@@ -30,7 +30,9 @@ struct DrawSvg : ::testing::Test {
 // gnuplot itself looks: a kill while it draws leaves nothing behind but the old figure.
 TEST_F(DrawSvg, NothingLiesInTheFolderWhileItDraws) {
   const std::string listing = "system('ls -A " + folder.string() + " | tr \"\\n\" \" \"')";
-  draw_svg(figure, 300, 200, "set label 1 'seen:'.(" + listing + ").':end' at graph 0, graph 0.5 noenhanced\nplot sin(x)\n");
+  draw_svg(figure, 300, 200,
+           "set label 1 'seen:'.(" + listing +
+               ").':end' at graph 0, graph 0.5 noenhanced\nplot sin(x)\n");
   EXPECT_NE(text().find("seen:figure.svg :end"), std::string::npos) << text();
   EXPECT_NE(text().find("</svg>"), std::string::npos);
 }

@@ -13,8 +13,9 @@ inline Json small_film(int steps = 50) {
   Json run = {{"label", "trial 1: traversed left after " + std::to_string(steps / 50) + " s"},
               {"ending", "traversed left"},
               {"propulsion_N", 7.0}};
-  for (const char* name : {"t", "gx", "gy", "x", "y", "vx", "vy", "left", "right", "contact_left", "contact_right",
-                           "random_N", "body_J", "beams_J", "elastic_J", "work_J", "lost_J", "lost_in_hits_J"})
+  for (const char* name :
+       {"t", "gx", "gy", "x", "y", "vx", "vy", "left", "right", "contact_left", "contact_right",
+        "random_N", "body_J", "beams_J", "elastic_J", "work_J", "lost_J", "lost_in_hits_J"})
     run[name] = Json::array();
   for (int i = 0; i <= steps; ++i) {
     const int row = i / 120;
@@ -37,9 +38,17 @@ inline Json small_film(int steps = 50) {
     run["lost_J"].push_back(3.0 * 0.5 * i);
     run["lost_in_hits_J"].push_back(0.0);
   }
-  return {{"title", "A small film"}, {"scale", {{"length_m", 1.0}, {"mass_kg", 1.0}, {"time_s", 1.0}}}, {"radius_m", 10.0}, {"beam_m", 25.0}, {"joint_x_m", 25.0},
-          {"joint_y_m", 30.0},       {"gate_m", {50.0, 60.0}}, {"columns", 1}, {"rows", 1},
-          {"start_column", 0},       {"runs", {run}}};
+  return {{"title", "A small film"},
+          {"scale", {{"length_m", 1.0}, {"mass_kg", 1.0}, {"time_s", 1.0}}},
+          {"radius_m", 10.0},
+          {"beam_m", 25.0},
+          {"joint_x_m", 25.0},
+          {"joint_y_m", 30.0},
+          {"gate_m", {50.0, 60.0}},
+          {"columns", 1},
+          {"rows", 1},
+          {"start_column", 0},
+          {"runs", {run}}};
 }
 
 /// Through three gates of a field of 3 x 3.
@@ -81,7 +90,8 @@ inline Json twin(Json film, double length, double mass, double time) {
 struct Powers {
   int length, mass, time;
 };
-inline constexpr Powers kTwins[] = {{-5, 0, 0}, {0, 5, 0}, {0, 0, -5}, {-10, -10, -10}, {10, 10, 10}, {10, -10, 4}, {-3, 7, 10}};
+inline constexpr Powers kTwins[] = {{-5, 0, 0},   {0, 5, 0},    {0, 0, -5}, {-10, -10, -10},
+                                    {10, 10, 10}, {10, -10, 4}, {-3, 7, 10}};
 inline double power(int exponent) { return std::ldexp(1.0, 2 * exponent); }
 
 }  // namespace gatewalk::cli

@@ -25,7 +25,7 @@
 // These stand in front of the C library's in this test program: the k-th call can be made to fail.
 namespace {
 struct Faults {
-  int fsync = 0, rename = 0;  // 0: none, k: the k-th from now
+  int fsync = 0, rename = 0;       // 0: none, k: the k-th from now
   std::function<void()> at_fsync;  // what happens before a sync
 } faults;
 
@@ -231,7 +231,8 @@ TEST_F(Output, SaysBeforehandWhatCannotBeWritten) {
   std::string deep = folder_.string();
   while (deep.size() < 5000) deep += "/deep";
   EXPECT_NE(complaint(deep).find("File name too long"), std::string::npos);
-  EXPECT_NE(complaint("/proc/gatewalk").find("/proc/gatewalk: cannot be written"), std::string::npos);
+  EXPECT_NE(complaint("/proc/gatewalk").find("/proc/gatewalk: cannot be written"),
+            std::string::npos);
   EXPECT_EQ(names(), (std::vector<std::string>{"a", "folder"}));  // nothing stays behind
 }
 
@@ -250,7 +251,8 @@ TEST_F(Output, AFolderIsPossibleWhereItCanBeMade) {
   EXPECT_EQ(complaint("relative"), "(fine)");
   EXPECT_NE(complaint(path("file")).find("is no folder"), std::string::npos);
   EXPECT_NE(complaint(path("file/a/b")).find("cannot be made"), std::string::npos);
-  EXPECT_NE(complaint(path("a/" + std::string(256, 'n') + "/b")).find("cannot be made"), std::string::npos);
+  EXPECT_NE(complaint(path("a/" + std::string(256, 'n') + "/b")).find("cannot be made"),
+            std::string::npos);
   EXPECT_NE(complaint("").find("empty"), std::string::npos);
   EXPECT_EQ(names(), std::vector<std::string>{"file"});  // and none was made
 }

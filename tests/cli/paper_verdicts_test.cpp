@@ -6,14 +6,16 @@ namespace gatewalk::cli {
 namespace {
 
 TEST(Verdict, OfANumberCountedIn100Trials) {
-  EXPECT_EQ(against(52, share_of(4630, 10000)), kReproduced);  // within [42, 62] whatever our chance
+  EXPECT_EQ(against(52, share_of(4630, 10000)),
+            kReproduced);  // within [42, 62] whatever our chance
   EXPECT_EQ(against(52, share_of(500, 10000)), kDiffers);
   EXPECT_EQ(against(13, share_of(20, 10000)), kDiffers);
   EXPECT_EQ(against(98, share_of(9800, 10000)), kReproduced);
   EXPECT_EQ(against(52, share_of(0, 0)), kWithinNoise);
 }
 
-// Fewer trials widen our interval: what was reproduced or different becomes unsure, never the other way round.
+// Fewer trials widen our interval: what was reproduced or different becomes unsure, never the other
+// way round.
 TEST(Verdict, FewerTrialsAreNeverSurer) {
   EXPECT_EQ(against(52, share_of(46, 100)), kWithinNoise);
   EXPECT_EQ(against(52, share_of(23, 50)), kWithinNoise);
@@ -23,7 +25,8 @@ TEST(Verdict, FewerTrialsAreNeverSurer) {
 
 std::vector<Share> shares(const std::vector<double>& values, std::int64_t trials) {
   std::vector<Share> s;
-  for (const double v : values) s.push_back(share_of(static_cast<std::int64_t>(v * static_cast<double>(trials)), trials));
+  for (const double v : values)
+    s.push_back(share_of(static_cast<std::int64_t>(v * static_cast<double>(trials)), trials));
   return s;
 }
 std::string verdict(const std::vector<double>& values, std::int64_t trials, bool wiggles = false) {
@@ -35,11 +38,12 @@ std::string verdict(const std::vector<double>& values, std::int64_t trials, bool
 TEST(Verdict, OfATrend) {
   EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 10000), kReproduced);
   EXPECT_EQ(verdict({0.4, 0.3, 0.2, 0.1}, 10000), kDiffers);
-  EXPECT_EQ(verdict({0.3, 0.3, 0.3, 0.3}, 10000), kDiffers);             // it does not rise
-  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000), kDiffers);             // a fall that 100 trials show
-  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000, true), kReproduced);    // if the paper allows it
-  EXPECT_EQ(verdict({0.01, 0.05, 0.03, 0.6}, 10000), kWithinNoise);      // a fall that they do not
-  EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 100), kWithinNoise);           // too few trials to say "never falls"
+  EXPECT_EQ(verdict({0.3, 0.3, 0.3, 0.3}, 10000), kDiffers);  // it does not rise
+  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000), kDiffers);  // a fall that 100 trials show
+  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000, true), kReproduced);  // if the paper allows it
+  EXPECT_EQ(verdict({0.01, 0.05, 0.03, 0.6}, 10000), kWithinNoise);    // a fall that they do not
+  EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 100),
+            kWithinNoise);  // too few trials to say "never falls"
 }
 
 // Shares of few: what 100 trials of all would show of them depends on how few they are.

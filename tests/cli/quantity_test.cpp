@@ -51,7 +51,8 @@ TEST(Quantity, NeverLosesANumber) {
         factor = 0.0;
         for (int k = -6; k <= 6; ++k)
           for (const double size : {5.0, 20.0})
-            if (const Sized s = readable_unit("J", size * std::pow(1000.0, k)); s.name == unit) factor = s.size;
+            if (const Sized s = readable_unit("J", size * std::pow(1000.0, k)); s.name == unit)
+              factor = s.size;
       }
       EXPECT_NEAR(std::strtod(text.c_str(), nullptr) * factor, x, 0.6e-3 * x) << text;
       EXPECT_LE(text.size(), 12u) << text;

@@ -14,9 +14,13 @@ namespace gatewalk::cli {
 namespace {
 
 Scene scene(const std::string& more = "") {
-  return parse_scene("[beams]\nstiffness_left_Nm_per_rad = 300.0\nstiffness_right_Nm_per_rad = 500.0\ndamping_Nms_per_rad = 10.0\n"
-                     "[forces]\npropulsion_N = 7.0\nrandom_N = 10.0\ndrag_Ns_per_m = 0.0\n[run]\ntraverse_y_m = 65.0\n[start]\nvy_m_per_s = 0.0\n" + more,
-                     "soft.toml");
+  return parse_scene(
+      "[beams]\nstiffness_left_Nm_per_rad = 300.0\nstiffness_right_Nm_per_rad = "
+      "500.0\ndamping_Nms_per_rad = 10.0\n"
+      "[forces]\npropulsion_N = 7.0\nrandom_N = 10.0\ndrag_Ns_per_m = 0.0\n[run]\ntraverse_y_m = "
+      "65.0\n[start]\nvy_m_per_s = 0.0\n" +
+          more,
+      "soft.toml");
 }
 
 std::vector<std::vector<std::string>> table(const std::string& csv) {
@@ -42,7 +46,8 @@ TEST(Recording, EndsAsTheRunThatIsCounted) {
   EXPECT_EQ(ends["trapped"], counted.trapped);
   EXPECT_GE(ends.size(), 3u);
   const auto known = endings(false);
-  for (const auto& [ending, n] : ends) EXPECT_NE(std::find(known.begin(), known.end(), ending), known.end());
+  for (const auto& [ending, n] : ends)
+    EXPECT_NE(std::find(known.begin(), known.end(), ending), known.end());
 }
 
 TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
@@ -55,18 +60,23 @@ TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
     EXPECT_NE(at, rows[0].end()) << name;
     return static_cast<std::size_t>(at - rows[0].begin());
   };
-  const auto number = [&](std::size_t row, const char* name) { return std::stod(rows[row][column(name)]); };
+  const auto number = [&](std::size_t row, const char* name) {
+    return std::stod(rows[row][column(name)]);
+  };
   std::map<std::string, int> modes;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     ASSERT_EQ(rows[i].size(), rows[0].size());
     ++modes[rows[i][column("contact_left")]];
     const double x = number(i, "x_m"), y = number(i, "y_m");
-    const double height = dynamics::beam_energy(s.gate, x, y) + dynamics::propulsion_energy(s.gate, y);
+    const double height =
+        dynamics::beam_energy(s.gate, x, y) + dynamics::propulsion_energy(s.gate, y);
     if (std::isfinite(height)) {
       EXPECT_NEAR(number(i, "landscape_J"), height, 1e-3 * (1 + std::abs(height)));
     }
-    const double kept = number(i, "kinetic_body_J") + number(i, "kinetic_beams_J") + number(i, "elastic_left_J") + number(i, "elastic_right_J");
-    EXPECT_NEAR(number(i, "propulsion_work_J") + number(i, "random_work_J"), kept + number(i, "lost_J"), 2e-4);
+    const double kept = number(i, "kinetic_body_J") + number(i, "kinetic_beams_J") +
+                        number(i, "elastic_left_J") + number(i, "elastic_right_J");
+    EXPECT_NEAR(number(i, "propulsion_work_J") + number(i, "random_work_J"),
+                kept + number(i, "lost_J"), 2e-4);
   }
   EXPECT_EQ(rows.back()[column("trial")], "2");
   EXPECT_GT(modes["free"], 100);
@@ -87,7 +97,8 @@ TEST(Recording, GoesOnFromGateToGate) {
       const double ay = a.sample.state.body.y + 60 * a.i_y, by = b.sample.state.body.y + 60 * b.i_y;
       EXPECT_LT(std::hypot(bx - ax, by - ay), 0.02 * 60);
       const double start = 0.5 * 15 * 15;
-      EXPECT_NEAR(start + b.energy.propulsion_work + b.energy.random_work, b.energy.mechanical() + b.energy.lost, 1e-6);
+      EXPECT_NEAR(start + b.energy.propulsion_work + b.energy.random_work,
+                  b.energy.mechanical() + b.energy.lost, 1e-6);
     }
   }
 }
@@ -120,12 +131,14 @@ Scene in_other_units(const Scene& s, double length, double mass, double time) {
   for (double* const k : {&beams.stiffness_left, &beams.stiffness_right}) *k *= force * length;
   beams.damping *= force * length * time;
   dynamics::Forces& forces = other.gate.forces;
-  forces = {forces.propulsion * force, forces.random * force, forces.random_rate / time, forces.drag * mass / time};
+  forces = {forces.propulsion * force, forces.random * force, forces.random_rate / time,
+            forces.drag * mass / time};
   other.gate.contact.impulse_threshold *= force * time;
   dynamics::Run& run = other.gate.run;
   for (double* const t : {&run.step, &run.time_limit}) *t *= time;
   for (double* const x : {&run.traverse_y, &run.event_tolerance}) *x *= length;
-  other.start = {s.start.x * length, s.start.y * length, s.start.vx * length / time, s.start.vy * length / time};
+  other.start = {s.start.x * length, s.start.y * length, s.start.vx * length / time,
+                 s.start.vy * length / time};
   return other;
 }
 
@@ -133,8 +146,8 @@ Scene in_other_units(const Scene& s, double length, double mass, double time) {
 Recording in_other_units(Recording r, double length, double mass, double time) {
   const double speed = length / time, force = mass * speed / time, joule = force * length;
   const auto scale = [&](dynamics::Energies& e) {
-    for (double* const x : {&e.body, &e.beams[0], &e.beams[1], &e.elastic[0], &e.elastic[1], &e.propulsion_work,
-                            &e.random_work, &e.hit_loss, &e.lost})
+    for (double* const x : {&e.body, &e.beams[0], &e.beams[1], &e.elastic[0], &e.elastic[1],
+                            &e.propulsion_work, &e.random_work, &e.hit_loss, &e.lost})
       *x *= joule;
   };
   r.seconds *= time;
@@ -163,21 +176,25 @@ Json without_words(Json film) {
   return film;
 }
 
-// In other units a film has the same numbers times these, to the last bit; the CSV has its seven digits.
+// In other units a film has the same numbers times these, to the last bit; the CSV has its seven
+// digits.
 TEST(Recording, InOtherUnitsHasTheSameNumbers) {
-  for (const auto& [s, across] : {std::pair{scene("x_m = 1.5\n"), false}, {parse_scene("", "field.toml"), true}}) {
+  for (const auto& [s, across] :
+       {std::pair{scene("x_m = 1.5\n"), false}, {parse_scene("", "field.toml"), true}}) {
     const std::vector<Recording> runs{record(s, 3, 1, across), record(s, 3, 2, across)};
     Json film = film_of(s, runs, across);
     add_details(film, s, runs);
     const auto lines = table(csv_of(s, runs));
     for (const auto& [l, m, t] : kTwins) {
-      const double length = power(l), mass = power(m), time = power(t), force = mass * length / (time * time);
+      const double length = power(l), mass = power(m), time = power(t),
+                   force = mass * length / (time * time);
       const Scene other = in_other_units(s, length, mass, time);
       std::vector<Recording> others;
       for (const Recording& run : runs) others.push_back(in_other_units(run, length, mass, time));
       Json there = film_of(other, others, across);
       add_details(there, other, others);
-      EXPECT_TRUE(without_words(there) == without_words(twin(film, length, mass, time))) << l << " " << m << " " << t;
+      EXPECT_TRUE(without_words(there) == without_words(twin(film, length, mass, time)))
+          << l << " " << m << " " << t;
 
       const auto other_lines = table(csv_of(other, others));
       ASSERT_EQ(other_lines.size(), lines.size());
@@ -200,7 +217,9 @@ TEST(Recording, InOtherUnitsHasTheSameNumbers) {
           const double here = std::stod(lines[row][c]) * factor;
           ++compared;
           if (!std::isfinite(here)) continue;
-          EXPECT_NEAR(std::strtod(other_lines[row][c].c_str(), nullptr), here, 1.1e-6 * std::abs(here)) << name;
+          EXPECT_NEAR(std::strtod(other_lines[row][c].c_str(), nullptr), here,
+                      1.1e-6 * std::abs(here))
+              << name;
         }
       EXPECT_GT(compared, 1000u);
     }

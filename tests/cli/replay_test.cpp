@@ -14,7 +14,9 @@ int count(const std::string& text, const std::string& part) {
   return found;
 }
 
-TEST(Html, EscapedTextIsOnlyText) { EXPECT_EQ(escaped("a<b & \"c\">"), "a&lt;b &amp; &quot;c&quot;&gt;"); }
+TEST(Html, EscapedTextIsOnlyText) {
+  EXPECT_EQ(escaped("a<b & \"c\">"), "a&lt;b &amp; &quot;c&quot;&gt;");
+}
 
 TEST(Html, FilledLooksAtThePageOnce) {
   EXPECT_EQ(filled("1 {{a}} 2 {{b}}", {{"a", "{{b}}"}, {"b", "B"}}), "1 {{b}} 2 B");
@@ -33,7 +35,8 @@ TEST(Replay, PageHoldsTheFilm) {
   const std::string page = replay_page(small_film());
   EXPECT_EQ(film_in(page), small_film());
   EXPECT_NE(page.find("<title>A small film</title>"), page.npos);
-  EXPECT_NE(page.find("<p>trial 1: traversed left after 1 s</p>"), page.npos) << "said without scripts too";
+  EXPECT_NE(page.find("<p>trial 1: traversed left after 1 s</p>"), page.npos)
+      << "said without scripts too";
   EXPECT_EQ(page.find("{{"), page.npos);
 }
 

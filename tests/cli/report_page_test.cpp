@@ -30,7 +30,8 @@ TEST(ReportPage, HoldsEveryClaimAndSection) {
   for (const Json& s : report.at("sections")) {
     EXPECT_EQ(count(page, "<section id=\"" + s.at("id").get<std::string>() + "\">"), 1u);
   }
-  EXPECT_EQ(count(page.substr(0, page.find("<script")), "{{"), 0u) << "a place of the template left open";
+  EXPECT_EQ(count(page.substr(0, page.find("<script")), "{{"), 0u)
+      << "a place of the template left open";
 }
 
 // Text of a report is text: it can neither become markup nor end the script that holds the data.

@@ -42,7 +42,8 @@ Printed printed(const CellProbabilities& shares) {
 
 // Counts and an exact share: the five endings by name, in a fixed order, with Jeffreys' intervals.
 TEST(Endings, AreNamedWithTheirIntervals) {
-  const std::array<std::int64_t, markov::kEndings> counts{700, 1, 120, 119, 0, 60, 0};  // by markov::Ending
+  const std::array<std::int64_t, markov::kEndings> counts{700, 1,  120, 119,
+                                                          0,   60, 0};  // by markov::Ending
   const EndingShares shares(counts, 1000);
   EXPECT_EQ(endings(counts).dump(),
             R"({"crossed":1,"left_side":120,"right_side":119,"trapped":700,"cut_off":60})");
@@ -50,12 +51,14 @@ TEST(Endings, AreNamedWithTheirIntervals) {
   EXPECT_EQ(intervals["trapped"][0], share_interval(700, 1000)[0]);
   EXPECT_LT(intervals["crossed"][0].get<double>(), 0.001);
   EXPECT_GT(intervals["crossed"][1].get<double>(), 0.001);
-  for (const int k : {0, 1}) EXPECT_NEAR(interval_of_share(0.7, 1000.0)[k], share_interval(700, 1000)[k], 1e-12);
+  for (const int k : {0, 1})
+    EXPECT_NEAR(interval_of_share(0.7, 1000.0)[k], share_interval(700, 1000)[k], 1e-12);
   const std::string text = endings_text(shares, "of 1000 trials");
   EXPECT_EQ(text.substr(0, text.find('\n')), "crossed       0.10 %  [0.01, 0.47]  of 1000 trials");
   EXPECT_NE(text.find("\nleft side    12.00 %  [10.10, 14.12]\n"), std::string::npos) << text;
   // Without intervals, and shares that two decimals would hide.
-  EXPECT_EQ(endings_text(EndingShares({0.5, 1.23e-7, 0, 0, 0, 0, 0}), "x").substr(0, 23), "crossed    1.2e-05 %  x");
+  EXPECT_EQ(endings_text(EndingShares({0.5, 1.23e-7, 0, 0, 0, 0, 0}), "x").substr(0, 23),
+            "crossed    1.2e-05 %  x");
   EXPECT_TRUE(endings_95(EndingShares({0.5, 0.5, 0, 0, 0, 0, 0}))["crossed"][0].is_number_float());
   EXPECT_EQ(endings_95(EndingShares({0.5, 0.5, 0, 0, 0, 0, 0}))["crossed"].dump(), "[null,null]");
 }
@@ -96,7 +99,8 @@ TEST(MapOf, LargeFieldsAreShownWhereTheSharesLie) {
 }
 
 TEST(MapOf, WideSharesAreShownInBlocksAroundTheStart) {
-  for (const auto& [rows, columns] : {std::pair{200, 301}, {41, 16}, {3, 100}, {1000, 9}, {2001, 2001}}) {
+  for (const auto& [rows, columns] :
+       {std::pair{200, 301}, {41, 16}, {3, 100}, {1000, 9}, {2001, 2001}}) {
     const CellProbabilities shares =
         CellProbabilities::Constant(rows, columns, 1.0 / rows / columns);
     const Printed p = printed(shares);

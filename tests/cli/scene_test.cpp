@@ -200,14 +200,16 @@ TEST(Scene, FidelityIsOneOfThree) {
     EXPECT_EQ(static_cast<std::size_t>(scene.field.fidelity), i);
     EXPECT_TRUE(contains(to_toml(scene), "fidelity = \"" + name + "\"\n"));
     EXPECT_EQ(parse_scene(to_toml(scene), "b.toml").field.fidelity, scene.field.fidelity);
-    EXPECT_EQ(parse_scene("", "c.toml", {"run.method=moreau", "field.fidelity=" + name}).field.fidelity,
-              scene.field.fidelity);
+    EXPECT_EQ(
+        parse_scene("", "c.toml", {"run.method=moreau", "field.fidelity=" + name}).field.fidelity,
+        scene.field.fidelity);
   }
 }
 
 TEST(Scene, ShippedFieldIsTheDefaultSceneWithItsOwnForces) {
   const std::string path = (kScenes / "field.toml").string();
-  EXPECT_EQ(to_toml(read_scene(path, {"forces.propulsion_N=8", "forces.random_N=40"})), kDefaultScene);
+  EXPECT_EQ(to_toml(read_scene(path, {"forces.propulsion_N=8", "forces.random_N=40"})),
+            kDefaultScene);
   const Scene scene = read_scene(path, {});
   EXPECT_EQ(scene.gate.forces.propulsion, 7.0);  // results/field_scan
   EXPECT_EQ(scene.gate.forces.random, 50.0);
@@ -387,7 +389,8 @@ const Malformed kMalformed[] = {
     {"RateDoesNotFit", "[run]\nstep_s = 0.02\n[forces]\nrandom_rate_Hz = 30\n", 2,
      "run.step_s = 0.02 ", "forces.random_rate_Hz = 30"},
     {"TooManySteps", "[run]\nstep_s = 1e-10\n", 2, "run.time_limit_s = 12 ", "run.step_s = 1e-10"},
-    {"BigBody", "[body]\nradius_m = 30\n[beams]\njoint_y_m = 30\n", 2, "body.radius_m = 30 ", "beams.joint_y_m = 30"},
+    {"BigBody", "[body]\nradius_m = 30\n[beams]\njoint_y_m = 30\n", 2, "body.radius_m = 30 ",
+     "beams.joint_y_m = 30"},
     {"LowJoint", "[beams]\njoint_y_m = 9\n", 2, "body.radius_m = 10 ", "beams.joint_y_m = 9"},
     {"LowExit", "[run]\ntraverse_y_m = 30\n", 2, "run.traverse_y_m = 30 ", "beams.joint_y_m = 30"},
 };
@@ -502,7 +505,8 @@ forces.propulsion_N = "4:1:9"
 beams.damping_Nms_per_rad = [50, 1.5]
 "run.method" = ["stable", "paper"]
 field.columns = 3
-)", "a.toml");
+)",
+                                  "a.toml");
   ASSERT_EQ(scene.sweep.size(), 4u);
   EXPECT_EQ(scene.sweep[0].key, "forces.propulsion_N");
   EXPECT_EQ(scene.sweep[0].values, "4:1:9");
@@ -526,14 +530,17 @@ TEST(Sweep, RefusesWhatIsNoKeyOrNoValue) {
   };
   EXPECT_EQ(message("[sweep]\nforces.randm_N = 3"),
             "bad.toml:2: unknown key forces.randm_N; the closest known key is forces.random_N");
-  EXPECT_TRUE(message("[sweep]\nforces.random_N = true").starts_with("bad.toml:2: sweep.forces.random_N = true"));
-  EXPECT_EQ(message("[sweep]\n\"forces.random_N\" = 1\nforces.random_N = 2"), "bad.toml:3: sweep.forces.random_N is there twice");
+  EXPECT_TRUE(message("[sweep]\nforces.random_N = true")
+                  .starts_with("bad.toml:2: sweep.forces.random_N = true"));
+  EXPECT_EQ(message("[sweep]\n\"forces.random_N\" = 1\nforces.random_N = 2"),
+            "bad.toml:3: sweep.forces.random_N is there twice");
   EXPECT_TRUE(message("sweep = 3").starts_with("bad.toml:1: sweep = 3"));
 }
 
 TEST(SceneBins, AreEdgesOfOnesOwn) {
   EXPECT_FALSE(parse_scene("", "x.toml").bins);
-  const Scene scene = parse_scene("[bins]\nEN_d_m = [-20, 0, 0.1, 20]\nRD_vy_m_per_s = [-5, 5.5]\n", "x.toml");
+  const Scene scene =
+      parse_scene("[bins]\nEN_d_m = [-20, 0, 0.1, 20]\nRD_vy_m_per_s = [-5, 5.5]\n", "x.toml");
   ASSERT_TRUE(scene.bins);
   const auto paper = dynamics::StateSpace::paper(scene.gate).bins();
   EXPECT_EQ((*scene.bins)[0].d, (std::vector<double>{-20, 0, 0.1, 20}));
@@ -548,25 +555,33 @@ TEST(SceneBins, AreEdgesOfOnesOwn) {
   EXPECT_EQ(physics_differences(scene, parse_scene("", "y.toml")),
             std::vector<std::string>{"[bins]: edges of its own here, none there"});
   const Scene other = parse_scene("[bins]\nEN_d_m = [-20, 20]\n", "z.toml");
-  EXPECT_EQ(physics_differences(other, scene), std::vector<std::string>{"[bins]: other edges here than there"});
+  EXPECT_EQ(physics_differences(other, scene),
+            std::vector<std::string>{"[bins]: other edges here than there"});
 
-  const Scene set = parse_scene("[bins]\nEN_d_m = [-20, 20]", "x.toml", {"bins.EN_d_m=[-9, 1, 9]", "bins.LT_d_m=[0, 30]"});
+  const Scene set = parse_scene("[bins]\nEN_d_m = [-20, 20]", "x.toml",
+                                {"bins.EN_d_m=[-9, 1, 9]", "bins.LT_d_m=[0, 30]"});
   EXPECT_EQ((*set.bins)[0].d, (std::vector<double>{-9, 1, 9}));
   EXPECT_EQ((*set.bins)[4].d, (std::vector<double>{0, 30}));
 }
 
 TEST(SceneBins, AreRefusedByFileAndLine) {
-  const auto expect = [](const std::string& text, const std::string& part, const std::vector<std::string>& set = {}) {
+  const auto expect = [](const std::string& text, const std::string& part,
+                         const std::vector<std::string>& set = {}) {
     const std::string said = refusal(text, set);
     EXPECT_TRUE(contains(said, part)) << said;
   };
-  const std::string begin = "[bins]\nEN_vx_m_per_s = [-1, 1]\n", list = "bad.toml:3: bins.EN_d_m is not permitted: must be two or more numbers";
-  for (const char* value : {"1", "[]", "[1]", "[1, 1]", "[2, 1]", "[0, inf]", "[nan, 1]", "['a', 'b']", "true"})
+  const std::string begin = "[bins]\nEN_vx_m_per_s = [-1, 1]\n",
+                    list = "bad.toml:3: bins.EN_d_m is not permitted: must be two or more numbers";
+  for (const char* value :
+       {"1", "[]", "[1]", "[1, 1]", "[2, 1]", "[0, inf]", "[nan, 1]", "['a', 'b']", "true"})
     expect(begin + "EN_d_m = " + value, list);
-  expect(begin + "EN_d_m = [-26, 0]", "bad.toml:3: bins.EN_d_m = [-26.0, 0.0] is not permitted: must lie in [-25.0, 25.0] m");
-  expect(begin + "RD_d_m = [-1, 10]", "bad.toml:3: bins.RD_d_m = [-1.0, 10.0] is not permitted: must lie in [0.0, 30.0] m");
+  expect(begin + "EN_d_m = [-26, 0]",
+         "bad.toml:3: bins.EN_d_m = [-26.0, 0.0] is not permitted: must lie in [-25.0, 25.0] m");
+  expect(begin + "RD_d_m = [-1, 10]",
+         "bad.toml:3: bins.RD_d_m = [-1.0, 10.0] is not permitted: must lie in [0.0, 30.0] m");
   expect(begin + "RT_d_m = [1, 31]", "must lie in [0.0, 30.0] m");
-  expect(begin + "EN_x_m = [0, 1]", "bad.toml:3: unknown key in [bins]; its keys are EN_d_m, EN_vx_m_per_s,");
+  expect(begin + "EN_x_m = [0, 1]",
+         "bad.toml:3: unknown key in [bins]; its keys are EN_d_m, EN_vx_m_per_s,");
   expect("bins = 3", "bad.toml:1: bins is not permitted: must be a table");
   expect(begin, "--set bins.EN_d_m=[5, -5]: bins.EN_d_m is not permitted", {"bins.EN_d_m=[5, -5]"});
   expect(begin + "[run]\ntraverse_y_m = 35", "run.traverse_y_m = 35");
@@ -575,18 +590,17 @@ TEST(SceneBins, AreRefusedByFileAndLine) {
 TEST(ToToml, ReadsBackBitForBit) {
   std::mt19937_64 random(7);  // NOLINT: the same numbers every time
   const auto spread = [&](double low_power, double high_power) {
-    return std::pow(10.0, low_power
-                              + (high_power - low_power)
-                                    * std::ldexp(static_cast<double>(random() >> 11), -53));
+    return std::pow(10.0, low_power + (high_power - low_power) *
+                                          std::ldexp(static_cast<double>(random() >> 11), -53));
   };
   for (int trial = 0; trial < 500; ++trial) {
     Scene scene;
     scene.gate.run.method = trial % 2 ? "paper" : "stable";
     for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
       // Any permitted number; the keys that others hang on stay as they are.
-      const bool tied = info.key.starts_with("run.") || info.key.find("joint") != info.key.npos
-                        || info.key == "body.radius_m" || info.key == "forces.random_rate_Hz"
-                        || (trial % 2 == 0 && info.key.starts_with("beams."));  // stable has limits
+      const bool tied = info.key.starts_with("run.") || info.key.find("joint") != info.key.npos ||
+                        info.key == "body.radius_m" || info.key == "forces.random_rate_Hz" ||
+                        (trial % 2 == 0 && info.key.starts_with("beams."));  // stable has limits
       if (!tied) info.ref(scene.gate) = spread(-5.0, std::min(5.0, std::log10(info.high)));
     }
     scene.gate.run.step = 0.02 / static_cast<double>(1 + random() % 50);

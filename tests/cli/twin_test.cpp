@@ -28,15 +28,20 @@ class TwinCommands : public testing::Test {
   }
   ~TwinCommands() override { fs::remove_all(folder_); }
 
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
 
   /// A rescaled scene: every key that the file names; the rest is left to the program.
-  [[nodiscard]] std::string rescaled(const Scene& scene, const Twin& twin, const std::string& name) const {
+  [[nodiscard]] std::string rescaled(const Scene& scene, const Twin& twin,
+                                     const std::string& name) const {
     std::ofstream out(path(name));
     for (const KeyInfo& k : describe(scene)) {
       if (k.source == "derived" || k.source == "paper") continue;
       double number = 0.0;
-      const bool numeric = std::from_chars(k.value.data(), k.value.data() + k.value.size(), number).ec == std::errc();
+      const bool numeric =
+          std::from_chars(k.value.data(), k.value.data() + k.value.size(), number).ec ==
+          std::errc();
       const double factor = twin.of(k.key);
       char text[40];
       if (numeric && factor != 1.0) std::snprintf(text, sizeof text, "%.17e", number * factor);
@@ -58,12 +63,14 @@ class TwinCommands : public testing::Test {
 
 /// Not the result of a computation, or of a clock.
 bool is_told(const std::string& key) {
-  for (const char* told : {"seconds", "made_by", "speed_ratio", "threads", "matrix", "microseconds", "work_per_trial"})
+  for (const char* told :
+       {"seconds", "made_by", "speed_ratio", "threads", "matrix", "microseconds", "work_per_trial"})
     if (key == told) return true;
   return false;
 }
 
-/// Numbers of `b` are those of `a` times the power of the unit that their key names; texts may hold numbers.
+/// Numbers of `b` are those of `a` times the power of the unit that their key names; texts may hold
+/// numbers.
 void expect_twins(const Json& a, const Json& b, const Twin& twin, const std::string& key) {
   ASSERT_EQ(a.type(), b.type()) << key;
   if (a.is_object()) {
@@ -101,12 +108,17 @@ TEST_F(TwinCommands, GiveTheSameNumbersInOtherUnits) {
       {"gate event", run_gate, {"--trials", "20", "--set", "run.method=event"}, false},
       {"lattice", run_lattice, {"--trials", "30"}, false},
       {"lattice moreau", run_lattice, {"--trials", "30", "--set", "run.method=moreau"}, false},
-      {"lattice remember", run_lattice,
-       {"--trials", "10", "--set", "run.method=moreau", "--set", "field.fidelity=remember"}, false},
+      {"lattice remember",
+       run_lattice,
+       {"--trials", "10", "--set", "run.method=moreau", "--set", "field.fidelity=remember"},
+       false},
       {"walk", run_walk, {"--walks", "1000"}, true},
       {"predict", run_predict, {}, true},
       {"predict without limit", run_predict, {"--set", "field.max_gates=0"}, true},
-      {"validate", run_validate, {"--trials", "20", "--matrix-trials", "2", "--null-draws", "19"}, false},
+      {"validate",
+       run_validate,
+       {"--trials", "20", "--matrix-trials", "2", "--null-draws", "19"},
+       false},
       {"sweep", run_sweep, {"--vary", "contact.restitution=0.5:0.5:1", "--trials", "10"}, false}};
   const auto build = [&](const std::string& file, const std::string& to, const char* bins) {
     return result(run_build, {file, "-o", to, "--trials", "3", "--bins", bins});
@@ -127,7 +139,8 @@ TEST_F(TwinCommands, GiveTheSameNumbersInOtherUnits) {
     const std::string file = rescaled(scene, twin, "twin.toml");
     expect_twins(built, build(file, other_matrix, "paper"), twin, "build");
     // A pilot of 2000 trials: not for all.
-    if (number == 10) expect_twins(automatic, build(file, path("auto.nc"), "auto"), twin, "build auto");
+    if (number == 10)
+      expect_twins(automatic, build(file, path("auto.nc"), "auto"), twin, "build auto");
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (!every && std::string(lines[i].name).starts_with("validate")) continue;
       SCOPED_TRACE(lines[i].name);

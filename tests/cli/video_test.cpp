@@ -19,7 +19,8 @@
 #include "cli/interrupt.h"
 #include "tests/cli/films.h"
 
-// What fontconfig keeps to the program's end is no leak of ours (read by the address sanitizer alone).
+// What fontconfig keeps to the program's end is no leak of ours (read by the address sanitizer
+// alone).
 extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
 
 namespace gatewalk::cli {
@@ -39,7 +40,9 @@ class Video : public testing::Test {
     ::setenv("PATH", path_.c_str(), 1);
     fs::remove_all(folder_);
   }
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
   [[nodiscard]] std::ptrdiff_t files() const {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator{});
   }
@@ -86,8 +89,8 @@ double number(const std::string& words, const std::string& name) {
 TEST_F(Video, IsOneThatPlaysEverywhere) {
   write_video(path("a.mp4"), small_film(), 0);  // 1 s, then a second that stands
   const std::string words = probed(path("a.mp4"));
-  for (const char* fact : {"codec_name=h264", "pix_fmt=yuv420p", "width=1280", "height=720", "r_frame_rate=50/1",
-                           "color_space=bt709", "nb_streams=1"})
+  for (const char* fact : {"codec_name=h264", "pix_fmt=yuv420p", "width=1280", "height=720",
+                           "r_frame_rate=50/1", "color_space=bt709", "nb_streams=1"})
     EXPECT_NE(words.find(std::string("\n") + fact + "\n"), words.npos) << fact << "\n" << words;
   EXPECT_EQ(number(words, "nb_read_frames"), 101);
   EXPECT_NEAR(number(words, "duration"), 2.02, 0.001);
@@ -106,8 +109,8 @@ TEST_F(Video, SpeedAndFramesPerSecond) {
 /// The mean of red, green and blue of the picture at a time, in a box of it.
 std::array<double, 3> mean_colour(const std::string& path, double time, const std::string& box) {
   const File nothing = scratch_file();
-  Child ffmpeg({"ffmpeg", "-v", "error", "-i", path, "-ss", std::to_string(time), "-frames:v", "1", "-vf",
-                "crop=" + box, "-f", "rawvideo", "-pix_fmt", "rgb24", "pipe:1"},
+  Child ffmpeg({"ffmpeg", "-v", "error", "-i", path, "-ss", std::to_string(time), "-frames:v", "1",
+                "-vf", "crop=" + box, "-f", "rawvideo", "-pix_fmt", "rgb24", "pipe:1"},
                ::fileno(nothing.get()), "ffmpeg was not found");
   const std::string pixels = ffmpeg.output();
   std::array<double, 3> mean{};
@@ -125,7 +128,8 @@ TEST_F(Video, ShowsTheBodyMovingAndTheBeamsInTheirColours) {
   EXPECT_GT(right[0], right[2] + 80) << "right beam";
   // Where the body was at the start there is bare ground at the end.
   const std::string start = "20:20:490:590";
-  EXPECT_GT(mean_colour(path("a.mp4"), 1.5, start)[0], mean_colour(path("a.mp4"), 0.0, start)[0] + 5);
+  EXPECT_GT(mean_colour(path("a.mp4"), 1.5, start)[0],
+            mean_colour(path("a.mp4"), 0.0, start)[0] + 5);
 }
 
 /// How many bytes of two pictures differ.
@@ -147,9 +151,12 @@ TEST_F(Video, ASceneInOtherUnitsLooksTheSame) {
       const std::string paper = video_frame(film, 0, part * end, bare);
       ASSERT_EQ(paper.size(), 1280u * 720u * 4u);
       EXPECT_GT(differing(paper, video_frame(film, 0, part * end)), 1000u) << "labels are seen";
-      EXPECT_GT(differing(paper, video_frame(film, 0, (part + 0.05) * end, bare)), 1000u) << "it moves";
+      EXPECT_GT(differing(paper, video_frame(film, 0, (part + 0.05) * end, bare)), 1000u)
+          << "it moves";
       for (std::size_t i = 0; i < twins.size(); ++i)
-        EXPECT_EQ(differing(paper, video_frame(twins[i], 0, part * end * power(kTwins[i].time), bare)), 0u)
+        EXPECT_EQ(
+            differing(paper, video_frame(twins[i], 0, part * end * power(kTwins[i].time), bare)),
+            0u)
             << "twin " << i << " at " << part;
     }
   }
@@ -166,7 +173,8 @@ TEST_F(Video, PaceIsTheScenes) {
 
 TEST_F(Video, MissingFfmpegIsSaidAndLeavesNothing) {
   ::setenv("PATH", "/nonexistent", 1);
-  EXPECT_EQ(complaint_of(path("a.mp4")), "ffmpeg was not found; it packs the video (Debian: ffmpeg)");
+  EXPECT_EQ(complaint_of(path("a.mp4")),
+            "ffmpeg was not found; it packs the video (Debian: ffmpeg)");
   EXPECT_EQ(files(), 0);
 }
 
@@ -209,7 +217,8 @@ TEST_F(Video, RefusesAFilmThatIsIncomplete) {
   for (const int run : {-1, 1})
     EXPECT_NE(complaint_of(path("a.mp4"), small_film(5), run).find("film: "), std::string::npos);
   for (const double speed : {0.0, -1.0, std::nan("")})
-    EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.speed = speed}), "a video's speed must be above 0");
+    EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.speed = speed}),
+              "a video's speed must be above 0");
   EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.frames_per_second = 0.0}),
             "a video has 1 to 240 frames a second");
   EXPECT_EQ(files(), 0);

@@ -36,7 +36,8 @@ TEST(WebFiles, CarriesLibrariesWithTheirLicences) {
   EXPECT_TRUE(carried_file("vega.min.js") == bytes_of(npm / "vega" / "build" / "vega.min.js"));
   EXPECT_TRUE(carried_file("plotly-gl3d.min.js") ==
               bytes_of(npm / "plotly.js-gl3d-dist-min" / "plotly-gl3d.min.js"));
-  for (const char* name : {"vega.LICENSE", "vega-lite.LICENSE", "vega-embed.LICENSE", "plotly.LICENSE"}) {
+  for (const char* name :
+       {"vega.LICENSE", "vega-lite.LICENSE", "vega-embed.LICENSE", "plotly.LICENSE"}) {
     EXPECT_NE(carried_file(name).find("Copyright"), std::string_view::npos) << name;
   }
 }

@@ -64,7 +64,8 @@ TEST(WeakError, OfHandMadeOutcomes) {
   const WeakError e = outcome_error(run, reference);
   EXPECT_NEAR(e.total_variation, 0.2, 4 * kEps);
   EXPECT_NEAR(e.standard_error, std::sqrt(0.16 / 9.0), 4 * kEps);
-  EXPECT_NEAR(e.chance, std::sqrt(2.0 / std::numbers::pi) / 20.0 * (std::sqrt(2.0) + 2.0), 4 * kEps);
+  EXPECT_NEAR(e.chance, std::sqrt(2.0 / std::numbers::pi) / 20.0 * (std::sqrt(2.0) + 2.0),
+              4 * kEps);
   EXPECT_EQ(e.changed, 2);
 }
 
@@ -87,9 +88,9 @@ TEST(WeakError, LimitIsTheLargestOfErrorChanceAndOneTrial) {
   EXPECT_EQ(weak_limit({.total_variation = 0.0, .chance = 0.0}, 1000), kReferenceMargin * 0.001);
 }
 
-// The mean of |TV| over fair coin flips of the changed trials is `chance`: 2000 repeats of 100 trials
-// whose standard deviation is sqrt(1 - 2/pi) of it, 1.7 % after 2000; the normal law for a sum of 100
-// flips is off by 1/(4 * 100); 4 standard errors and that are 4 * 1.7 % + 0.25 %.
+// The mean of |TV| over fair coin flips of the changed trials is `chance`: 2000 repeats of 100
+// trials whose standard deviation is sqrt(1 - 2/pi) of it, 1.7 % after 2000; the normal law for a
+// sum of 100 flips is off by 1/(4 * 100); 4 standard errors and that are 4 * 1.7 % + 0.25 %.
 TEST(WeakError, ChanceIsWhatFairFlipsShow) {
   test::Draw draw(7);
   double sum = 0.0, chance = 0.0;
@@ -133,9 +134,9 @@ TEST(WeakError, StandardErrorIsTheSpreadOfRepeats) {
   EXPECT_NEAR(claimed / kRepeats / spread, 1.0, 0.065);
 }
 
-// Two starts: of the first's 4 trials one goes from trapped to left, of the second's 6 two go the other
-// way. 4/10 * 1/4 + 6/10 * 2/6 = 0.3; all together a surplus of one trapped, 0.1. Standard errors:
-// variances of the means 1/4 * 3/4 / 3 and 2/6 * 4/6 / 5, weighted with 0.4^2 and 0.6^2.
+// Two starts: of the first's 4 trials one goes from trapped to left, of the second's 6 two go the
+// other way. 4/10 * 1/4 + 6/10 * 2/6 = 0.3; all together a surplus of one trapped, 0.1. Standard
+// errors: variances of the means 1/4 * 3/4 / 3 and 2/6 * 4/6 / 5, weighted with 0.4^2 and 0.6^2.
 TEST(WeakError, OfTwoStartsDoesNotCancel) {
   std::vector<TrialEnd> reference(10, left()), run;
   reference[0] = trapped();
@@ -163,7 +164,8 @@ TEST(WeakError, OfColumns) {
 
 // ---- Strong error, by hand ----
 
-// Of ten trials five have not parted, four have and one is trapped: the median of nine is the fifth.
+// Of ten trials five have not parted, four have and one is trapped: the median of nine is the
+// fifth.
 TEST(StrongError, MediansWithPartedTrialsInfinitelyFar) {
   const GateParams p;
   std::vector<TrialEnd> reference(10, left()), run = reference;

@@ -52,8 +52,8 @@ void expect_in_order(const Choice& c, double tolerance) {
     if (i > 0) {
       EXPECT_GE(t.work, c.tried[i - 1].work);
     }
-    const bool fits = t.verdict == Verdict::fine &&
-                      t.error.total_variation + t.uncertainty <= tolerance;
+    const bool fits =
+        t.verdict == Verdict::fine && t.error.total_variation + t.uncertainty <= tolerance;
     EXPECT_EQ(t.fits, fits);
     EXPECT_EQ(t.fits, i + 1 == c.tried.size()) << "the first that fits is the last that is tried";
     EXPECT_EQ(std::isnan(t.error.total_variation), std::isnan(t.uncertainty));
@@ -217,9 +217,8 @@ TEST(Choice, RefusesWhatCannotBe) {
 
   p = {};
   EXPECT_THROW((void)choose_method(p, {}, 1), std::invalid_argument);
-  for (const BodyState& bad :
-       {BodyState{25.1, 0}, BodyState{0, 61}, BodyState{std::nan(""), 0},
-        BodyState{0, 0, std::numeric_limits<double>::infinity(), 0}}) {
+  for (const BodyState& bad : {BodyState{25.1, 0}, BodyState{0, 61}, BodyState{std::nan(""), 0},
+                               BodyState{0, 0, std::numeric_limits<double>::infinity(), 0}}) {
     const BodyState starts[] = {kIn, bad};
     EXPECT_THROW((void)choose_method(p, starts, 1), std::invalid_argument);
   }

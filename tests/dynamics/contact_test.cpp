@@ -28,8 +28,7 @@ struct Point {
 /// Point of the beam `r` from its joint, in the gate's frame.
 Point beam_point(const GateParams& p, Side side, double theta, double r) {
   const double inwards = side == kLeft ? 1.0 : -1.0;
-  return {inwards * (r * std::cos(theta) - p.beams.joint_x),
-          p.beams.joint_y + r * std::sin(theta)};
+  return {inwards * (r * std::cos(theta) - p.beams.joint_x), p.beams.joint_y + r * std::sin(theta)};
 }
 
 /// Body whose centre is `at` in the beam's own frame (joint at the origin, x inwards).
@@ -391,8 +390,13 @@ TEST(Impact, SolvesEqs4And5) {
   for (const auto& [what, error] :
        {std::pair("side hits, J", impulse), std::pair("side hits, v'", velocity),
         std::pair("side hits, w'", spin), std::pair("side hits, restitution", restitution)})
-    measured({.requirement = 3, .method = "contact", .what = what, .figure = error, .limit = 1e-12,
-              .cases = hits, .asked = 1'000'000});
+    measured({.requirement = 3,
+              .method = "contact",
+              .what = what,
+              .figure = error,
+              .limit = 1e-12,
+              .cases = hits,
+              .asked = 1'000'000});
 }
 
 // Eqs. (6)-(9), e = 1: with dP = J n and I dw = -l J the energy of Eq. (6) is a parabola in J that
@@ -413,18 +417,23 @@ TEST(Impact, TipHitIsTheOtherZeroOfTheEnergyChange) {
       const L dx = J * h.t.nx / M, dy = J * h.t.ny / M, dw = -l * J / I;
       return M / 2 * (dx * (2 * vx + dx) + dy * (2 * vy + dy)) + I / 2 * dw * (2 * w + dw);
     };
-    const double u_scale = std::hypot(h.s.body.vx, h.s.body.vy) +
-                           std::abs(h.t.lever * h.s.beams[kLeft].omega);
+    const double u_scale =
+        std::hypot(h.s.body.vx, h.s.body.vy) + std::abs(h.t.lever * h.s.beams[kLeft].omega);
     const L unit = u_scale * M * I / (I + M * l * l);
     const L up = energy_change(unit), down = energy_change(-unit);
     const L other = -(up - down) / (up + down) * unit;
     // n is a unit vector to eps only, which (up + down) sees and J's formula does not.
-    worst = std::max(worst, std::abs(j - static_cast<double>(other)) /
-                                (2 * static_cast<double>(unit)));
+    worst =
+        std::max(worst, std::abs(j - static_cast<double>(other)) / (2 * static_cast<double>(unit)));
   }
   EXPECT_LE(worst, 16 * kEps);
-  measured({.requirement = 3, .method = "contact", .what = "tip hits, J", .figure = worst,
-            .limit = 1e-12, .cases = hits, .asked = 1'000'000});
+  measured({.requirement = 3,
+            .method = "contact",
+            .what = "tip hits, J",
+            .figure = worst,
+            .limit = 1e-12,
+            .cases = hits,
+            .asked = 1'000'000});
 }
 
 // Law: the angular momentum about the joint, which is where the only other force acts.
@@ -463,8 +472,13 @@ TEST(Impact, ConservesAngularMomentum) {
   }
   // A few roundings of a handful of terms.
   EXPECT_LE(worst, 16 * kEps);
-  measured({.requirement = 3, .method = "contact", .what = "angular momentum about the joint",
-            .figure = worst, .limit = 1e-13, .cases = hits, .asked = 1'000'000});
+  measured({.requirement = 3,
+            .method = "contact",
+            .what = "angular momentum about the joint",
+            .figure = worst,
+            .limit = 1e-13,
+            .cases = hits,
+            .asked = 1'000'000});
 }
 
 // Law: dE = -(1 - e^2)/2 mu u^2; none for e = 1, and for e = 0 all of the relative motion.
@@ -690,12 +704,12 @@ TEST(ContactForces, TangentialContactObeysEq11) {
     s.beams[side] = {th, omega, true};
     const auto [ax, ay, beta] = accelerations(p, side, s, draw.uniform(-100, 100));
     const double rr = std::sqrt(x * x + y * y - R * R);
-    const double eq11 = beta * rr + sn * ax - c * ay + (x / rr + c) * omega * vx +
-                        (y / rr + sn) * omega * vy;
+    const double eq11 =
+        beta * rr + sn * ax - c * ay + (x / rr + c) * omega * vx + (y / rr + sn) * omega * vy;
     // The spring's part of beta, up to 500 * 1.5 / I, and the contact force's may cancel.
-    const double terms = (std::abs(beta) + 36) * rr + std::abs(ax) + std::abs(ay) + 100 +
-                         (std::hypot(x, y) / rr + 1) * std::abs(omega) *
-                             (std::abs(vx) + std::abs(vy));
+    const double terms =
+        (std::abs(beta) + 36) * rr + std::abs(ax) + std::abs(ay) + 100 +
+        (std::hypot(x, y) / rr + 1) * std::abs(omega) * (std::abs(vx) + std::abs(vy));
     // Some 20 roundings; r from the root and x/r lose (x^2 + y^2) / r^2 more.
     ASSERT_LE(std::abs(eq11), 20 * kEps * terms * (x * x + y * y) / (rr * rr));
   }

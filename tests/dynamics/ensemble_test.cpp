@@ -207,9 +207,9 @@ TEST(GateTrials, ConvergedFiguresAtDamping50) {
 
 double total_variation(const GateTally& a, const GateTally& b) {
   double distance = 0.0;
-  for (const auto outcome : {&GateTally::traversed_left, &GateTally::traversed_right,
-                             &GateTally::traversed_even, &GateTally::exited_left,
-                             &GateTally::exited_right, &GateTally::trapped, &GateTally::broken})
+  for (const auto outcome :
+       {&GateTally::traversed_left, &GateTally::traversed_right, &GateTally::traversed_even,
+        &GateTally::exited_left, &GateTally::exited_right, &GateTally::trapped, &GateTally::broken})
     distance += 0.5 * std::abs(static_cast<double>(a.*outcome - b.*outcome)) /
                 static_cast<double>(a.trials);
   return distance;

@@ -87,8 +87,12 @@ TEST(Event, FreeBeamFollowsItsClosedForm) {
     EXPECT_EQ(ride.watch.impacts, 0);
   }
   EXPECT_LE(error, 100 * 4 * kEps);
-  measured({.requirement = 1, .method = "event", .what = "free beam after 2 s, error",
-            .figure = error, .unit = "rad", .limit = 1e-8});
+  measured({.requirement = 1,
+            .method = "event",
+            .what = "free beam after 2 s, error",
+            .figure = error,
+            .unit = "rad",
+            .limit = 1e-8});
 }
 
 // S2: 600 holds, each of which rounds angle and speed by an eps or so.
@@ -105,8 +109,11 @@ TEST(Event, FreeBeamKeepsItsEnergyWithoutDamping) {
   EXPECT_EQ(ride.watch.impacts, 0);
   const double error = std::abs(energy(p, ride.s) / before - 1.0);
   EXPECT_LE(error, 600 * 4 * kEps);
-  measured({.requirement = 2, .method = "event", .what = "energy of an undamped beam after 12 s",
-            .figure = error, .limit = 1e-6});
+  measured({.requirement = 2,
+            .method = "event",
+            .what = "energy of an undamped beam after 12 s",
+            .figure = error,
+            .limit = 1e-6});
 }
 
 TEST(Event, FreeBodyFollowsItsClosedForm) {
@@ -317,12 +324,25 @@ struct Settling {
 
   void record(std::string_view setting) const {
     const std::string what = "Zeno time, relative error, " + std::string(setting);
-    measured({.requirement = 4, .method = "event", .what = what, .figure = error, .limit = 1e-6,
+    measured({.requirement = 4,
+              .method = "event",
+              .what = what,
+              .figure = error,
+              .limit = 1e-6,
               .cases = scenes});
-    measured({.requirement = 4, .method = "event", .what = "looks, share of 8 a hit and 3 a hold",
-              .figure = looks, .limit = 1.0, .cases = scenes});
-    measured({.requirement = 4, .method = "event", .what = "slowest scene, CPU time",
-              .figure = seconds, .unit = "s", .limit = 10.0, .cases = scenes});
+    measured({.requirement = 4,
+              .method = "event",
+              .what = "looks, share of 8 a hit and 3 a hold",
+              .figure = looks,
+              .limit = 1.0,
+              .cases = scenes});
+    measured({.requirement = 4,
+              .method = "event",
+              .what = "slowest scene, CPU time",
+              .figure = seconds,
+              .unit = "s",
+              .limit = 10.0,
+              .cases = scenes});
   }
 };
 
@@ -344,8 +364,8 @@ void expect_settling(const Bouncing& b, double relative_error, Settling& worst) 
   const auto allowed = 8 * hits + 3 * static_cast<std::int64_t>(t / kHold);
   EXPECT_LE(ride.watch.evaluations, allowed);
   worst.error = std::max(worst.error, error);
-  worst.looks = std::max(worst.looks, static_cast<double>(ride.watch.evaluations) /
-                                          static_cast<double>(allowed));
+  worst.looks = std::max(
+      worst.looks, static_cast<double>(ride.watch.evaluations) / static_cast<double>(allowed));
   EXPECT_EQ(ride.watch.forced_holds, 0);
 
   ride.go(1.0);
@@ -492,8 +512,12 @@ TEST(Event, ReleasesAContactWhenTheRandomForcePulls) {
   EXPECT_NEAR(ride.touch(kLeft).gap, 0.0, 1e-12);
   ride.go(0.4, 30.0);
   EXPECT_FALSE(ride.s.beams[kLeft].held);
-  measured({.requirement = 6, .method = "event", .what = "contacts still held when drawn apart",
-            .figure = ride.s.beams[kLeft].held ? 1.0 : 0.0, .unit = "contacts", .limit = 0.0});
+  measured({.requirement = 6,
+            .method = "event",
+            .what = "contacts still held when drawn apart",
+            .figure = ride.s.beams[kLeft].held ? 1.0 : 0.0,
+            .unit = "contacts",
+            .limit = 0.0});
   EXPECT_EQ(ride.watch.impacts, 0);
   // From then on it is free: 30 N for 0.4 s, less what the push gave the beam, 3.6e-6 of that.
   EXPECT_NEAR(ride.s.body.vx, 12.0, 1e-4);
@@ -506,9 +530,9 @@ TEST(Event, ReleasesAContactWhenTheRandomForcePulls) {
 GateState on_the_side() {
   const GateParams p;
   const double theta = 0.3, r = 12.0;
-  GateState s = at_rest(-p.beams.joint_x + r * std::cos(theta) + p.body.radius * std::sin(theta),
-                        p.beams.joint_y + r * std::sin(theta) - p.body.radius * std::cos(theta),
-                        4.0, 8.0);
+  GateState s =
+      at_rest(-p.beams.joint_x + r * std::cos(theta) + p.body.radius * std::sin(theta),
+              p.beams.joint_y + r * std::sin(theta) - p.body.radius * std::cos(theta), 4.0, 8.0);
   const double v_n = -std::sin(theta) * s.body.vx + std::cos(theta) * s.body.vy;
   s.beams[kLeft] = {theta, v_n / r, true};  // Eq. (10)
   s.beams[kRight] = {1.5, 0.0, false};      // out of the way
@@ -599,8 +623,8 @@ void follow(const GateParams& p, const Method& method, GateState& s, double forc
     const auto t = touches(p, g, held);
     return std::pair(t[kLeft].kind, t[kRight].kind);
   };
-  const bool smooth = w.impacts == 0 && w.forced_holds == 0 && held == held_of(end) &&
-                      kinds(s) == kinds(end);
+  const bool smooth =
+      w.impacts == 0 && w.forced_holds == 0 && held == held_of(end) && kinds(s) == kinds(end);
   if (!smooth && dt > 1e-11) {
     follow(p, method, s, force, 0.5 * dt, ledger);
     follow(p, method, s, force, 0.5 * dt, ledger);
@@ -629,11 +653,11 @@ void follow(const GateParams& p, const Method& method, GateState& s, double forc
         held == std::array{false, false}) {
       const auto touch = touches(p, s, {true, true});
       const Side side = std::abs(touch[kLeft].gap) < std::abs(touch[kRight].gap) ? kLeft : kRight;
-      const double e = touch[side].kind == ContactKind::tip ? p.contact.tip_restitution
-                                                            : p.contact.restitution;
+      const double e =
+          touch[side].kind == ContactKind::tip ? p.contact.tip_restitution : p.contact.restitution;
       const double u = gap_rate(touch[side], s.body, s.beams[side]);
-      lost -= 0.5 * (1 - e * e) * u * u /
-              compliance(p.body.mass, p.beams.inertia(), touch[side].lever);
+      lost -=
+          0.5 * (1 - e * e) * u * u / compliance(p.body.mass, p.beams.inertia(), touch[side].lever);
       ledger.error += std::abs(lost);
       ++ledger.hits;
     }
@@ -682,8 +706,13 @@ TEST(EnergyLedger, EventAddsUp) {
   EXPECT_LE(by_default, 5e-4);
   for (const auto& [what, error] : {std::pair("ledger, share of the work, tolerance 1e-7 m", fine),
                                     std::pair("ledger, share of the work, default", by_default)})
-    measured({.requirement = 5, .method = "event", .what = what, .figure = error, .limit = 1e-8,
-              .cases = trials, .asked = 10'000});
+    measured({.requirement = 5,
+              .method = "event",
+              .what = what,
+              .figure = error,
+              .limit = 1e-8,
+              .cases = trials,
+              .asked = 10'000});
 }
 
 // Over whole trials of a disc that has up to 430 and 1370 J. Measured over 10^4: 3e-6 and 5.6e-3 J
@@ -698,8 +727,12 @@ TEST(EnergyLedger, EventCreatesNoEnergy) {
       const GateTally tally = run_gate_trials(p, {}, 1, {0, trials});
       EXPECT_LE(tally.health.worst_energy_created, tolerance == 1e-2 ? 2e-2 : 1e-9) << random;
       if (tolerance == 1e-2)
-        measured({.requirement = 5, .method = "event", .what = "energy created in a trial, default",
-                  .figure = tally.health.worst_energy_created, .unit = "J", .cases = trials});
+        measured({.requirement = 5,
+                  .method = "event",
+                  .what = "energy created in a trial, default",
+                  .figure = tally.health.worst_energy_created,
+                  .unit = "J",
+                  .cases = trials});
       EXPECT_LE(tally.health.worst_penetration, 1e-6 * p.body.radius) << "Rm = " << random;
       EXPECT_TRUE(tally.health.clean());
     }
@@ -814,8 +847,12 @@ TEST(Limits, EventTakesStiffBeamsForARigidWall) {
     EXPECT_TRUE(settle.s.beams[kLeft].held);
     const double error = std::abs(settle.s.body.y - (20.0 + share * r * r / 1e12));
     EXPECT_LE(error, 1e-6);
-    measured({.requirement = 9, .method = "event", .what = "place of rest at a wall, k = 1e12",
-              .figure = error, .unit = "m", .limit = 1e-6});
+    measured({.requirement = 9,
+              .method = "event",
+              .what = "place of rest at a wall, k = 1e12",
+              .figure = error,
+              .unit = "m",
+              .limit = 1e-6});
     EXPECT_NEAR(settle.s.body.vy, 0.0, 2e-4);  // the beam rings on, d / 2I = 1e-5 / s
     EXPECT_LE(settle.watch.energy_created, 1e-6);
   }
@@ -891,8 +928,13 @@ TEST(Reversal, EventReturnsToTheStart) {
   }
   EXPECT_LE(worst, 1e-10);  // measured 2e-12
   EXPECT_GT(rides, 20);
-  measured({.requirement = 10, .method = "event", .what = "distance from the start on return",
-            .figure = worst, .unit = "m, m/s, rad", .limit = 1e-6, .cases = rides});
+  measured({.requirement = 10,
+            .method = "event",
+            .what = "distance from the start on return",
+            .figure = worst,
+            .unit = "m, m/s, rad",
+            .limit = 1e-6,
+            .cases = rides});
 }
 
 // ---- S11 - S14: near-singular starts ----
@@ -949,7 +991,7 @@ TEST(Grazing, EventHitsTheTipOnlyBelowTheRadius) {
   for (int exponent = -3; exponent >= -15; --exponent)
     for (const double sign : {1.0, -1.0}) {
       GateState s = at_rest(R * (1 + sign * std::pow(10.0, exponent)), 10.0, 0.0, 10.0);
-      s.beams[kRight].theta = 1.5;  // out of the way
+      s.beams[kRight].theta = 1.5;              // out of the way
       const double delta = (R - s.body.x) / R;  // as rounded
       SCOPED_TRACE(testing::Message() << "delta = " << delta);
       Ride ride(p, s);
@@ -979,7 +1021,7 @@ TEST(Grazing, EventHitsTheSideOnlyBelowTheRadius) {
   for (int exponent = -3; exponent >= -15; --exponent)
     for (const double sign : {1.0, -1.0}) {
       GateState s = at_rest(-10.0, 22.0 + R * sign * std::pow(10.0, exponent), 0.0, -4.0);
-      s.beams[kRight].theta = 1.5;  // out of the way
+      s.beams[kRight].theta = 1.5;           // out of the way
       const double depth = 22.0 - s.body.y;  // m, as rounded
       SCOPED_TRACE(testing::Message() << "depth = " << depth);
       Ride ride(p, s);
@@ -1035,8 +1077,12 @@ TEST(Event, RunsAnySceneItAccepts) {
           run_gate(p, *method, {draw.uniform(-20, 20), 0, 0, 15}, force, 200'000'000);
       const double seconds = test::thread_seconds() - began;
       const BodyState& b = run.exit;
-      seen[i] = {false, run.ending == Ending::broken, run.cut_short,
-                 std::isfinite(b.x + b.y + b.vx + b.vy), run.watch.max_penetration, seconds};
+      seen[i] = {false,
+                 run.ending == Ending::broken,
+                 run.cut_short,
+                 std::isfinite(b.x + b.y + b.vx + b.vy),
+                 run.watch.max_penetration,
+                 seconds};
     } catch (const InvalidParameter& e) {
       EXPECT_EQ(e.key(), "run.method");
       EXPECT_NE(std::string(e.what()).find("1/s; at most 50000 1/s"), std::string::npos);

@@ -102,8 +102,7 @@ TEST_P(FixedStep, MirrorImagesHaveTheSameBits) {
     const GateParams m = test::mirrored(p);
     Draw draw(static_cast<std::uint64_t>(trial));
     BodyState start;
-    if (trial % 2)
-      start = {draw.uniform(-15, 15), 0.0, draw.uniform(-10, 10), draw.uniform(0, 20)};
+    if (trial % 2) start = {draw.uniform(-15, 15), 0.0, draw.uniform(-10, 10), draw.uniform(0, 20)};
     const Random random(Purpose::gate, {3, 0, static_cast<std::uint64_t>(trial)});
     RandomForce force(p.forces, random, 1.0), flipped(p.forces, random, -1.0);
     seen[trial] = run_gate(p, *make_method(p), start, force);

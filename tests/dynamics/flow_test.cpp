@@ -116,8 +116,8 @@ TEST(BeamFlow, IsASemigroup) {
       const double t = first + second, tau = std::min(t, 1 / rate);
       const double omega = std::abs(start.omega) + 3 * tau + std::sqrt(k) * std::abs(start.theta);
       const double theta = std::abs(start.theta) + std::abs(start.omega) * tau + 3 * t * tau;
-      SCOPED_TRACE(testing::Message() << "k/I = " << k << ", d/I = " << d << ", dt = " << first
-                                      << " + " << second);
+      SCOPED_TRACE(testing::Message()
+                   << "k/I = " << k << ", d/I = " << d << ", dt = " << first << " + " << second);
       ASSERT_NEAR(twice.theta, once.theta, 16 * kEps * loss * theta);
       ASSERT_NEAR(twice.omega, once.omega, 16 * kEps * loss * (omega + std::sqrt(k) * theta));
     }
@@ -182,8 +182,7 @@ TEST(BeamFlow, FreeBeamOfTheKnownAnswers) {
     BeamState beam{0.5, 0.3, false};
     BeamFlow(k, d, t).apply(beam, 0.0);
     const double expected =
-        std::exp(-1.2 * t) *
-        (0.5 * std::cos(wd * t) + (0.3 + 1.2 * 0.5) / wd * std::sin(wd * t));
+        std::exp(-1.2 * t) * (0.5 * std::cos(wd * t) + (0.3 + 1.2 * 0.5) / wd * std::sin(wd * t));
     EXPECT_NEAR(beam.theta, expected, 16 * kEps) << t;
   }
 }
@@ -322,11 +321,14 @@ TEST(BeamLaw, SwingIsTheLargestDeflectionOnTheWay) {
       }
       const double swing = law.swing(start, dt);
       turned += swing > 0.0;
-      // Within one look the deflection changes by (rate dt / looks)^2 at most of itself about its maximum.
+      // Within one look the deflection changes by (rate dt / looks)^2 at most of itself about its
+      // maximum.
       EXPECT_NEAR(std::max({swing, std::abs(start.theta), std::abs(end.theta)}),
                   std::max(seen, std::abs(start.theta)), 1e-4)
           << o.k << ' ' << o.d << ' ' << start.theta << ' ' << start.omega << ' ' << dt;
-      if (start.omega * end.omega < 0.0) { EXPECT_GT(swing, 0.0); }
+      if (start.omega * end.omega < 0.0) {
+        EXPECT_GT(swing, 0.0);
+      }
     }
   }
   EXPECT_GT(turned, 50);
@@ -336,7 +338,8 @@ TEST(BeamLaw, SwingFromRestAndWithoutForces) {
   EXPECT_EQ(BeamLaw(0.0, 0.0).swing({0.3, 2.0}, 10.0), 0.0);  // goes on for ever
   EXPECT_EQ(BeamLaw(0.0, 1.0).swing({0.3, 2.0}, 10.0), 0.0);  // slows, never turns
   EXPECT_EQ(BeamLaw(4.0, 0.0).swing({0.0, 0.0}, 10.0), 0.0);
-  EXPECT_NEAR(BeamLaw(4.0, 0.0).swing({0.0, -3.0}, 10.0), 1.5, 1e-15);  // energy: omega^2 = k theta^2
+  EXPECT_NEAR(BeamLaw(4.0, 0.0).swing({0.0, -3.0}, 10.0), 1.5,
+              1e-15);  // energy: omega^2 = k theta^2
   EXPECT_LE(BeamLaw(4.0, 1.0).swing({0.5, 0.0}, 10.0), 0.5);
 }
 

@@ -156,8 +156,13 @@ TEST_P(Gate, LateralSpeedHasTheStandardDeviationOfHeldForce) {
     worst = std::max(worst, std::abs(std::sqrt(squares / kTrials) / 4.0 - 1.0));
   }
   EXPECT_LE(worst, 0.01);
-  test::measured({.requirement = 13, .method = GetParam(), .what = "sd of v_x after 2 s, relative",
-                  .figure = worst, .limit = 0.01, .cases = steps, .asked = 5});
+  test::measured({.requirement = 13,
+                  .method = GetParam(),
+                  .what = "sd of v_x after 2 s, relative",
+                  .figure = worst,
+                  .limit = 0.01,
+                  .cases = steps,
+                  .asked = 5});
 }
 
 // The force goes on where the last gate left it: two runs of 1 s are one of 2 s.

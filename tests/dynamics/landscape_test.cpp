@@ -48,15 +48,15 @@ TEST(Landscape, DeflectedBeamsTouchTheDisc) {
 
 TEST(Landscape, ABeamOutOfReachRests) {
   const GateParams p;
-  EXPECT_EQ(forward_deflection(p, kLeft, 0.0, 15.0), 0.0);   // 5 m behind it
-  EXPECT_EQ(forward_deflection(p, kLeft, 24.0, 55.0), 0.0);  // beyond its tip's circle
+  EXPECT_EQ(forward_deflection(p, kLeft, 0.0, 15.0), 0.0);             // 5 m behind it
+  EXPECT_EQ(forward_deflection(p, kLeft, 24.0, 55.0), 0.0);            // beyond its tip's circle
   EXPECT_NEAR(forward_deflection(p, kLeft, -12.0, 20.0), 0.0, 1e-12);  // just touching
   // Straight ahead at the distance of the tip: the beam stands upright beside the disc.
   EXPECT_NEAR(forward_deflection(p, kLeft, -15.0, 30.0 + 5.0), std::numbers::pi / 2, 1e-12);
 }
 
-// Minus the gradient is the quasi-static force: of beams at rest in contact, k theta = -l f, and of the
-// propulsion. Central differences: h^2 times a third derivative, and eps E / h of rounding.
+// Minus the gradient is the quasi-static force: of beams at rest in contact, k theta = -l f, and of
+// the propulsion. Central differences: h^2 times a third derivative, and eps E / h of rounding.
 TEST(Landscape, MinusTheGradientIsTheForce) {
   const GateParams p = unequal();
   Random random(Purpose::gate, {.seed = 2, .row = 0, .trial = 0});
@@ -68,12 +68,14 @@ TEST(Landscape, MinusTheGradientIsTheForce) {
     bool smooth = true;
     for (const Side side : {kLeft, kRight}) {
       const double theta = forward_deflection(p, side, x, y);
-      for (const double dx : {-h, h})  // no corner between: tip and side, rest and reach, a joint nearby
+      for (const double dx :
+           {-h, h})  // no corner between: tip and side, rest and reach, a joint nearby
         for (const double dy : {-h, h}) {
           const double other = forward_deflection(p, side, x + dx, y + dy);
           smooth = smooth && std::isfinite(other) && (other > 0.0) == (theta > 0.0);
           if (theta > 0.0 && smooth)
-            smooth = nearest(p, side, {x + dx, y + dy, 0, 0}, other).kind == nearest(p, side, {x, y, 0, 0}, theta).kind;
+            smooth = nearest(p, side, {x + dx, y + dy, 0, 0}, other).kind ==
+                     nearest(p, side, {x, y, 0, 0}, theta).kind;
         }
       if (theta <= 0.0 || !smooth) continue;
       const Touch t = nearest(p, side, {x, y, 0, 0}, theta);
@@ -83,7 +85,9 @@ TEST(Landscape, MinusTheGradientIsTheForce) {
       fy += f * t.ny;
     }
     if (!smooth) continue;
-    const auto total = [&](double u, double v) { return beam_energy(p, u, v) + propulsion_energy(p, v); };
+    const auto total = [&](double u, double v) {
+      return beam_energy(p, u, v) + propulsion_energy(p, v);
+    };
     const double size = std::hypot(fx, fy);
     EXPECT_NEAR(-(total(x + h, y) - total(x - h, y)) / (2 * h), fx, 1e-5 * size) << x << ' ' << y;
     EXPECT_NEAR(-(total(x, y + h) - total(x, y - h)) / (2 * h), fy, 1e-5 * size) << x << ' ' << y;
@@ -105,9 +109,10 @@ TEST(Landscape, MirroredBeamsMirrorIt) {
     }
 }
 
-// Sec. III-B with equal beams of 500 N m/rad at 7 N. On the paper's grid the start has 32 J too little.
-// The true pass is lower: it follows the edge of one beam's reach, where the other alone resists, and no
-// grid point lies on that circle. Walked along here, it is what ever finer grids come down to.
+// Sec. III-B with equal beams of 500 N m/rad at 7 N. On the paper's grid the start has 32 J too
+// little. The true pass is lower: it follows the edge of one beam's reach, where the other alone
+// resists, and no grid point lies on that circle. Walked along here, it is what ever finer grids
+// come down to.
 TEST(Landscape, TheLowestPassOfThePapersGates) {
   GateParams p = test::study(10.0);
   p.forces.propulsion = 7.0;
@@ -115,7 +120,8 @@ TEST(Landscape, TheLowestPassOfThePapersGates) {
   double along_the_edge = -1e300;
   for (double angle = 2.2; angle < 3.9; angle += 1e-4) {
     const double reach = (p.beams.length + p.body.radius) * (1 + 1e-12);
-    const double x = p.beams.joint_x + reach * std::cos(angle), y = p.beams.joint_y + reach * std::sin(angle);
+    const double x = p.beams.joint_x + reach * std::cos(angle),
+                 y = p.beams.joint_y + reach * std::sin(angle);
     if (std::abs(x) > p.beams.joint_x) continue;
     along_the_edge = std::max(along_the_edge, beam_energy(p, x, y) - p.forces.propulsion * y);
   }
@@ -146,7 +152,8 @@ TEST(Landscape, ASofterBeamOpensItsSide) {
   const Pass pass = lowest_pass(l, x, y);
   EXPECT_GT(pass.barrier(), 0.0);
   EXPECT_LT(pass.x, 0.0);
-  const auto beyond = std::find_if(pass.way.begin(), pass.way.end(), [](const auto& at) { return at[1] > 40.0; });
+  const auto beyond =
+      std::find_if(pass.way.begin(), pass.way.end(), [](const auto& at) { return at[1] > 40.0; });
   ASSERT_NE(beyond, pass.way.end());
   EXPECT_LT((*beyond)[0], 0.0);
 }
@@ -157,9 +164,7 @@ TEST(Landscape, ThePassIsTheLowestOfTheHighest) {
   l.x = {0, 1, 2};
   l.y = {0, 1, 2};
   l.total = Eigen::ArrayXXd::Zero(3, 3);
-  l.total << 1, 2, 3,
-             9, 8, 7,
-             0, 0, 0;
+  l.total << 1, 2, 3, 9, 8, 7, 0, 0, 0;
   const Pass pass = lowest_pass(l, 0.0, 0.0);
   EXPECT_EQ(pass.energy, 7.0);
   EXPECT_EQ(pass.x, 2.0);
@@ -167,8 +172,9 @@ TEST(Landscape, ThePassIsTheLowestOfTheHighest) {
   EXPECT_EQ(pass.start_energy, 1.0);
   EXPECT_EQ(pass.barrier(), 6.0);
   EXPECT_EQ(basin_below(l, 2.0, 0.0), (std::array<double, 2>{0.0, 0.0}));  // 3, 2, 1
-  EXPECT_EQ(basin_below(l, 2.0, 1.0), (std::array<double, 2>{2.0, 2.0}));  // beyond the wall, straight on
-  ASSERT_EQ(pass.way.size(), 4u);  // (0,0), (1,0), (2,1), then up
+  EXPECT_EQ(basin_below(l, 2.0, 1.0),
+            (std::array<double, 2>{2.0, 2.0}));  // beyond the wall, straight on
+  ASSERT_EQ(pass.way.size(), 4u);                // (0,0), (1,0), (2,1), then up
   l.total.row(1) = std::numeric_limits<double>::infinity();
   EXPECT_THROW((void)lowest_pass(l, 0.0, 0.0), std::runtime_error);
   EXPECT_THROW((void)lowest_pass(l, 5.0, 0.0), std::invalid_argument);

@@ -62,7 +62,8 @@ struct LaneScene {
 
 std::vector<LaneScene> lane_scenes() {
   std::vector<LaneScene> scenes;
-  const auto add = [&](const char* name, GateParams p, const BodyState& start, double step = 0.004) {
+  const auto add = [&](const char* name, GateParams p, const BodyState& start,
+                       double step = 0.004) {
     scenes.push_back({name, moreau(p, step), start});
   };
   GateParams p;
@@ -108,9 +109,10 @@ TEST(Lanes, DoWhatThePlainMethodDoes) {
       fastest = std::max(fastest, plain.watch.max_speed);
       penetrating[0] += plain.watch.max_penetration > 0.01 * scene.p.body.radius;
       penetrating[1] += lane.watch.max_penetration > 0.01 * scene.p.body.radius;
-      const bool near = plain.ending == lane.ending &&
-                        std::hypot(plain.exit.x - lane.exit.x, plain.exit.y - lane.exit.y) < 1e-6 &&
-                        std::hypot(plain.exit.vx - lane.exit.vx, plain.exit.vy - lane.exit.vy) < 1e-6;
+      const bool near =
+          plain.ending == lane.ending &&
+          std::hypot(plain.exit.x - lane.exit.x, plain.exit.y - lane.exit.y) < 1e-6 &&
+          std::hypot(plain.exit.vx - lane.exit.vx, plain.exit.vy - lane.exit.vy) < 1e-6;
       if (!near) {
         ++parted;
         continue;

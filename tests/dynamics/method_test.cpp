@@ -60,7 +60,7 @@ TEST(Method, IsNotMadeForAnInvalidScene) {
 TEST(Outside, IsBeyondASideOrTheFarEnd) {
   const GateParams p;
   EXPECT_FALSE(outside(p, {0, 0}));
-  EXPECT_FALSE(outside(p, {-25, 60}));  // on the border is inside
+  EXPECT_FALSE(outside(p, {-25, 60}));   // on the border is inside
   EXPECT_FALSE(outside(p, {25, -100}));  // no exit at the bottom
   EXPECT_TRUE(outside(p, {0, 60.001}));
   EXPECT_TRUE(outside(p, {-25.001, 5}));

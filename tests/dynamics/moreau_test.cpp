@@ -50,7 +50,7 @@ TEST(Moreau, FreeBodyFollowsTheMidpointRule) {
   Ride ride(moreau(p), at_rest(1.0, -2.0, 3.0, 4.0));
   ride.go(2.0, -6.0);
   const double g = 0.25 * 0.004, q = std::pow((1 - g / 2) / (1 + g / 2), 500);
-  const double tolerance = 500 * 32 * kEps;  // 500 steps, numbers up to 24
+  const double tolerance = 500 * 32 * kEps;                  // 500 steps, numbers up to 24
   EXPECT_NEAR(ride.s.body.vx, -12.0 + 15.0 * q, tolerance);  // towards F / D = -12
   EXPECT_NEAR(ride.s.body.vy, 4.0, tolerance);               // F / D = 4 from the start
   EXPECT_NEAR(ride.s.body.x, 1.0 - 12.0 * 2.0 + 15.0 * (1 - q) / 0.25, tolerance);
@@ -71,8 +71,11 @@ TEST(Moreau, FreeBeamKeepsItsEnergyWithoutDamping) {
     ride.go(12.0);
     const double error = std::abs(energy(p, ride.s) / before - 1.0);
     EXPECT_LE(error, 1e-12) << step;
-    measured({.requirement = 2, .method = "moreau", .what = "energy of an undamped beam after 12 s",
-              .figure = error, .limit = 1e-6});
+    measured({.requirement = 2,
+              .method = "moreau",
+              .what = "energy of an undamped beam after 12 s",
+              .figure = error,
+              .limit = 1e-6});
   }
 }
 
@@ -144,8 +147,8 @@ TEST(Moreau, SingleHitsObeyTheLawAtMidStep) {
     const auto at_mid = [&](Side side) {
       return nearest(p, side, mid, start.beams[side].theta + half * start.beams[side].omega);
     };
-    const Side side = at_mid(kLeft).gap <= 0.0 ? kLeft : kRight, other = side == kLeft ? kRight
-                                                                                       : kLeft;
+    const Side side = at_mid(kLeft).gap <= 0.0 ? kLeft : kRight,
+               other = side == kLeft ? kRight : kLeft;
     const Touch t = at_mid(side);
     const double u = gap_rate(t, start.body, start.beams[side]);
     ride.step();
@@ -305,8 +308,13 @@ TEST(Moreau, EnergyCreatedWithOneRestitutionFallsWithTheStep) {
     last = mean;
   }
   EXPECT_GE(order, 1.0);
-  measured({.requirement = 5, .method = "moreau", .what = "order of the energy's error in the step",
-            .figure = order, .limit = 0.9, .at_least = true, .cases = 300});
+  measured({.requirement = 5,
+            .method = "moreau",
+            .what = "order of the energy's error in the step",
+            .figure = order,
+            .limit = 0.9,
+            .at_least = true,
+            .cases = 300});
 }
 
 // As in the paper's scenes, 0.8 on sides and 1 on tips. Measured 7.6e-4 and 2.2e-3 J, of a disc
@@ -366,17 +374,21 @@ TEST(Moreau, ElasticRidesReturnToTheStart) {
     EXPECT_EQ(ride.watch.impacts, 2 * there);
     turn(ride.s);
     ++rides;
-    worst = std::max({worst, std::abs(ride.s.body.x - start.body.x),
-                      std::abs(ride.s.body.y - start.body.y),
-                      std::abs(ride.s.body.vx - start.body.vx),
-                      std::abs(ride.s.body.vy - start.body.vy),
-                      std::abs(ride.s.beams[kLeft].theta), std::abs(ride.s.beams[kRight].theta),
-                      std::abs(ride.s.beams[kLeft].omega), std::abs(ride.s.beams[kRight].omega)});
+    worst = std::max(
+        {worst, std::abs(ride.s.body.x - start.body.x), std::abs(ride.s.body.y - start.body.y),
+         std::abs(ride.s.body.vx - start.body.vx), std::abs(ride.s.body.vy - start.body.vy),
+         std::abs(ride.s.beams[kLeft].theta), std::abs(ride.s.beams[kRight].theta),
+         std::abs(ride.s.beams[kLeft].omega), std::abs(ride.s.beams[kRight].omega)});
   }
   EXPECT_EQ(rides, 6);
   EXPECT_LE(worst, 1e-11);
-  measured({.requirement = 10, .method = "moreau", .what = "distance from the start on return",
-            .figure = worst, .unit = "m, m/s, rad", .limit = 1e-6, .cases = rides});
+  measured({.requirement = 10,
+            .method = "moreau",
+            .what = "distance from the start on return",
+            .figure = worst,
+            .unit = "m, m/s, rad",
+            .limit = 1e-6,
+            .cases = rides});
 }
 
 }  // namespace

@@ -42,10 +42,16 @@ TEST(Paper, FreeBeamGainsEnergyWithoutDamping) {
   ride.go(12.0);
   const double growth = energy(p, ride.s) / before;
   EXPECT_NEAR(growth, 2.513, 1e-3);
-  measured({.requirement = 2, .method = "paper", .what = "growth of that energy, off 2.513",
-            .figure = std::abs(growth - 2.513), .limit = 1e-3});
-  measured({.requirement = 2, .method = "paper", .what = "energy of an undamped beam after 12 s",
-            .figure = growth - 1.0, .limit = 1e-6});
+  measured({.requirement = 2,
+            .method = "paper",
+            .what = "growth of that energy, off 2.513",
+            .figure = std::abs(growth - 2.513),
+            .limit = 1e-3});
+  measured({.requirement = 2,
+            .method = "paper",
+            .what = "energy of an undamped beam after 12 s",
+            .figure = growth - 1.0,
+            .limit = 1e-6});
   EXPECT_NEAR(growth, std::pow(1 + 400.0 / p.beams.inertia() * 0.004 * 0.004, 3000), 1e-11);
   EXPECT_NEAR(ride.watch.energy_created, (growth - 1) * before, 1e-9);  // and the ledger sees it
 }
@@ -65,9 +71,11 @@ TEST(Paper, FreeBeamIsUnstableBeyondEulersLimit) {
     EXPECT_NEAR(energy(p, ride.s) / before, growth, 0.12 * growth) << factor;
     EXPECT_EQ(ride.watch.unstable_steps, factor > 1 ? 3000 : 0);
     if (factor > 1)
-      measured({.requirement = 12, .method = "paper",
+      measured({.requirement = 12,
+                .method = "paper",
                 .what = "steps beyond the stability bound that are taken",
-                .figure = static_cast<double>(ride.watch.unstable_steps), .unit = "steps",
+                .figure = static_cast<double>(ride.watch.unstable_steps),
+                .unit = "steps",
                 .limit = 0.0});
   }
 }
@@ -178,11 +186,11 @@ TEST(Paper, HealthShowsItsFaults) {
   const Health health = run_gate_trials(p, {}, 1, {0, 1000}).health;
   EXPECT_FALSE(health.clean());
   EXPECT_EQ(health.broken, 0);
-  EXPECT_GT(health.creating_energy, 900);        // Euler in every contact, measured 1000
-  EXPECT_GT(health.penetrating, 200);            // constraint drift, measured 318
-  EXPECT_GT(health.undefined_contacts, 500);     // joints, measured 1738
-  EXPECT_GT(health.worst_energy_created, 1.0);   // J, where `stable` has 1e-5
-  EXPECT_GT(health.worst_penetration, 5.0);      // m of a radius of 10 m
+  EXPECT_GT(health.creating_energy, 900);       // Euler in every contact, measured 1000
+  EXPECT_GT(health.penetrating, 200);           // constraint drift, measured 318
+  EXPECT_GT(health.undefined_contacts, 500);    // joints, measured 1738
+  EXPECT_GT(health.worst_energy_created, 1.0);  // J, where `stable` has 1e-5
+  EXPECT_GT(health.worst_penetration, 5.0);     // m of a radius of 10 m
 }
 
 }  // namespace

@@ -157,8 +157,11 @@ TEST(Validate, RefusesWhatCannotBeComputed) {
   EXPECT_TRUE(refused([](GateParams& p) { p.beams.mass = 5e-324; }));
   EXPECT_TRUE(refused([](GateParams& p) { p.beams.length = 1e-170; }));
   EXPECT_TRUE(refused([](GateParams& p) { p.beams.stiffness_left = 1e99; }));
-  EXPECT_TRUE(refused([](GateParams& p) { p.run.method = "event", p.run.event_tolerance = 2.0; }));  // over a tenth of the radius
-  EXPECT_TRUE(refused([](GateParams& p) { p.run.method = "event", p.run.event_tolerance = 1e-14; }));
+  EXPECT_TRUE(refused([](GateParams& p) {
+    p.run.method = "event", p.run.event_tolerance = 2.0;
+  }));  // over a tenth of the radius
+  EXPECT_TRUE(
+      refused([](GateParams& p) { p.run.method = "event", p.run.event_tolerance = 1e-14; }));
   EXPECT_FALSE(refused([](GateParams& p) { p.beams.stiffness_left = 1e12; }));
   EXPECT_FALSE(refused([](GateParams& p) { p.beams.mass = 1e-12; }));
 }

@@ -65,8 +65,11 @@ TEST(Penalty, FreeBeamKeepsItsInvariantWithoutDamping) {
   const double swing = 0.5 * std::sqrt(400.0 / inertia) * 0.004;
   EXPECT_NEAR(most, 1.0 / (1.0 - swing), 1e-4);
   EXPECT_NEAR(most, 1.009, 5e-4);  // the printed digits
-  measured({.requirement = 2, .method = "penalty", .what = "energy of an undamped beam after 12 s",
-            .figure = most - 1.0, .limit = 1e-6});
+  measured({.requirement = 2,
+            .method = "penalty",
+            .what = "energy of an undamped beam after 12 s",
+            .figure = most - 1.0,
+            .limit = 1e-6});
 }
 
 // Drag: v after n steps is (1 - g)^n of the start's, less what the forces add.
@@ -80,7 +83,7 @@ TEST(Penalty, FreeBodyFollowsSemiImplicitEuler) {
   Ride ride(penalty(p), at_rest(1.0, -2.0, 3.0, 4.0));
   ride.go(2.0, -6.0);
   const double g = 0.25 * 0.004, q = std::pow(1 - g, 500);
-  const double tolerance = 500 * 32 * kEps;  // 500 steps, numbers up to 24
+  const double tolerance = 500 * 32 * kEps;                  // 500 steps, numbers up to 24
   EXPECT_NEAR(ride.s.body.vx, -12.0 + 15.0 * q, tolerance);  // towards F / D = -12
   EXPECT_NEAR(ride.s.body.vy, 4.0, tolerance);               // F / D = 4 from the start
   EXPECT_NEAR(ride.s.body.x, 1.0 - 24.0 + 15.0 * (1 - g) * (1 - q) / 0.25, tolerance);
@@ -256,8 +259,13 @@ TEST(Penalty, EnergyCreatedFallsWithTheStep) {
     }
     last = mean;
   }
-  measured({.requirement = 5, .method = "penalty", .what = "order of the energy's error in the step",
-            .figure = order, .limit = 0.9, .at_least = true, .cases = 300});
+  measured({.requirement = 5,
+            .method = "penalty",
+            .what = "order of the energy's error in the step",
+            .figure = order,
+            .limit = 0.9,
+            .at_least = true,
+            .cases = 300});
 }
 
 // Elastic tips create more, and that falls slower. Measured worst 20 J at Rm = 40.
@@ -366,9 +374,12 @@ TEST(PenaltyBound, IsKeptByTheConstructor) {
     EXPECT_NE(std::string(e.what()).find("at most 0.00399"), std::string::npos) << e.what();
   }
   EXPECT_EQ(taken, 0);
-  measured({.requirement = 12, .method = "penalty",
+  measured({.requirement = 12,
+            .method = "penalty",
             .what = "steps beyond the stability bound that are taken",
-            .figure = static_cast<double>(taken), .unit = "steps", .limit = 0.0});
+            .figure = static_cast<double>(taken),
+            .unit = "steps",
+            .limit = 0.0});
   p.beams.stiffness_left = 1e12;
   EXPECT_THROW((void)make_method(p), InvalidParameter);
 }

@@ -119,7 +119,8 @@ TEST(QuantileSpace, TwinsHaveTheSameBins) {
   for (const int power : {-10, -3, 7, 10}) {
     const double length = std::ldexp(1.0, 2 * power), time = std::ldexp(1.0, 2 - 2 * power);
     const double speed = length / time;
-    const auto twin = quantile_space(p, scaled(seen, length, speed), 87, scaled({start}, length, speed));
+    const auto twin =
+        quantile_space(p, scaled(seen, length, speed), 87, scaled({start}, length, speed));
     EXPECT_EQ(twin.size(), s.size());
     for (std::size_t b = 0; b < kBoundaries; ++b) {
       const auto times = [](std::vector<double> edges, double factor) {
@@ -130,7 +131,8 @@ TEST(QuantileSpace, TwinsHaveTheSameBins) {
       EXPECT_EQ(twin.bins()[b].vx, times(s.bins()[b].vx, speed));
       EXPECT_EQ(twin.bins()[b].vy, times(s.bins()[b].vy, speed));
     }
-    const Resolution a = resolution_of(s, seen), b = resolution_of(twin, scaled(seen, length, speed));
+    const Resolution a = resolution_of(s, seen),
+                     b = resolution_of(twin, scaled(seen, length, speed));
     EXPECT_EQ(a.unresolved, b.unresolved);
     EXPECT_EQ(a.states_of_90, b.states_of_90);
   }
@@ -146,9 +148,10 @@ TEST(QuantileSpace, TakesEntriesThatAreAllAlike) {
 }
 
 TEST(Resolution, IsTheVarianceWithinTheStates) {
-  const std::array<Bins, kBoundaries> bins{Bins{{-1, 0, 1}, {-1, 1}, {0, 10}}, Bins{{0, 1}, {-1, 1}, {0, 10}},
-                                           Bins{{0, 1}, {-1, 1}, {0, 10}}, Bins{{0, 1}, {-1, 1}, {0, 10}},
-                                           Bins{{0, 1}, {-1, 1}, {0, 10}}};
+  const std::array<Bins, kBoundaries> bins{
+      Bins{{-1, 0, 1}, {-1, 1}, {0, 10}}, Bins{{0, 1}, {-1, 1}, {0, 10}},
+      Bins{{0, 1}, {-1, 1}, {0, 10}}, Bins{{0, 1}, {-1, 1}, {0, 10}},
+      Bins{{0, 1}, {-1, 1}, {0, 10}}};
   // d: values -.75, -.25, .25, .75: variance 5/16 in all, 1/16 within a bin.
   std::vector<Crossing> seen;
   for (const double d : {-0.75, -0.25, 0.25, 0.75})

@@ -1,5 +1,5 @@
-// Scenes of anybody: units over 12 orders of magnitude each, proportions around the paper's. Every method
-// must end, and either be right or say that it may not be.
+// Scenes of anybody: units over 12 orders of magnitude each, proportions around the paper's. Every
+// method must end, and either be right or say that it may not be.
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ struct RandomScene {
   BodyState start;
 };
 
-/// Scene number `n`: log-uniform factors about the paper's proportions, then units of length, time and mass
-/// from 10^-6 to 10^6.
+/// Scene number `n`: log-uniform factors about the paper's proportions, then units of length, time
+/// and mass from 10^-6 to 10^6.
 RandomScene random_scene(std::uint64_t n) {
   Random random(Purpose::comparison, {2026, 0, n});
   const auto about = [&](double value, double factor) {
@@ -56,8 +56,12 @@ RandomScene random_scene(std::uint64_t n) {
   const double l = unit(), t = unit(), m = unit();
   const double force = m * l / (t * t), torque = force * l;
   p.body = {p.body.mass * m, p.body.radius * l};
-  p.beams = {p.beams.length * l, p.beams.mass * m, p.beams.stiffness_left * torque,
-             p.beams.stiffness_right * torque, p.beams.damping * torque * t, p.beams.joint_x * l,
+  p.beams = {p.beams.length * l,
+             p.beams.mass * m,
+             p.beams.stiffness_left * torque,
+             p.beams.stiffness_right * torque,
+             p.beams.damping * torque * t,
+             p.beams.joint_x * l,
              p.beams.joint_y * l};
   p.forces = {p.forces.propulsion * force, p.forces.random * force, p.forces.random_rate / t,
               p.forces.drag * m / t};
@@ -92,9 +96,10 @@ std::optional<Result> result(const RandomScene& s, const GateParams& p, std::int
   }
 }
 
-// `stable` against `event`, both at what a scene gets that says nothing. A scene in which they seem to differ
-// is looked at with more trials: few of them cannot tell 0.005. Seldom, next to no noise lets many trials
-// decide alike by a hair, and more than that is off: less than what the check itself calls a fault.
+// `stable` against `event`, both at what a scene gets that says nothing. A scene in which they seem
+// to differ is looked at with more trials: few of them cannot tell 0.005. Seldom, next to no noise
+// lets many trials decide alike by a hair, and more than that is off: less than what the check
+// itself calls a fault.
 TEST(RandomScenes, StableAndEventAgreeWhereBothSayClean) {
   const int scenes = usual_or_full(25, 10'000);
   const std::int64_t few = 100, many = 2000;
@@ -128,21 +133,30 @@ TEST(RandomScenes, StableAndEventAgreeWhereBothSayClean) {
     worst = std::max(worst, least);
     if (least > 0.005) {
       ++off;
-      std::printf("scene %d: %.4f, %d trials of %d changed\n", n, e.total_variation, static_cast<int>(e.changed),
-                  static_cast<int>(many));
+      std::printf("scene %d: %.4f, %d trials of %d changed\n", n, e.total_variation,
+                  static_cast<int>(e.changed), static_cast<int>(many));
     }
   }
   EXPECT_LE(off, scenes / 1000);
   EXPECT_LE(worst, Health::kPermittedOutcomeError);
   EXPECT_GE(both, scenes / 2);
-  measured({.requirement = 12, .method = "stable",
-            .what = "total variation to event, units over 12 orders of magnitude, less two standard errors",
-            .figure = worst, .limit = 0.005, .cases = both, .asked = 10'000});
-  std::printf("%d scenes: both clean %d, said to have faults %d, refused %d; worst %.4f, over 0.005 in %d\n", scenes,
-              both, said, refused, worst, off);
+  measured(
+      {.requirement = 12,
+       .method = "stable",
+       .what =
+           "total variation to event, units over 12 orders of magnitude, less two standard errors",
+       .figure = worst,
+       .limit = 0.005,
+       .cases = both,
+       .asked = 10'000});
+  std::printf(
+      "%d scenes: both clean %d, said to have faults %d, refused %d; worst %.4f, over 0.005 in "
+      "%d\n",
+      scenes, both, said, refused, worst, off);
 }
 
-// The other methods: what is off says so. `moreau` at its default step may be off by some per cent (README).
+// The other methods: what is off says so. `moreau` at its default step may be off by some per cent
+// (README).
 TEST(RandomScenes, WhatIsOffSaysSo) {
   const int scenes = usual_or_full(15, 10'000);
   int clean = 0, off = 0, said = 0;
@@ -161,8 +175,8 @@ TEST(RandomScenes, WhatIsOffSaysSo) {
     worst = std::max(worst, least);
     if (least > 0.05) ++off;
   }
-  std::printf("moreau: clean %d of %d, said %d; off by over 0.05 and clean %d; worst %.3f\n", clean, scenes, said,
-              off, worst);
+  std::printf("moreau: clean %d of %d, said %d; off by over 0.05 and clean %d; worst %.3f\n", clean,
+              scenes, said, off, worst);
   EXPECT_LE(off, clean / 100);
 }
 

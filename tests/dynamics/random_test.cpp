@@ -18,25 +18,23 @@ namespace {
 using Words = std::array<std::uint64_t, 4>;
 
 Words philox(const Words& counter, std::array<std::uint64_t, 2> key) {
-  const auto out = r123::Philox4x64()({{counter[0], counter[1], counter[2], counter[3]}},
-                                      {{key[0], key[1]}});
+  const auto out =
+      r123::Philox4x64()({{counter[0], counter[1], counter[2], counter[3]}}, {{key[0], key[1]}});
   return {out[0], out[1], out[2], out[3]};
 }
 
 // philox4x64-10 of Random123's kat_vectors.
 TEST(Philox, KnownAnswers) {
   constexpr std::uint64_t ones = ~std::uint64_t{0};
-  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}),
-            (Words{0x16554d9eca36314c, 0xdb20fe9d672d0fdc,
-                   0xd7e772cee186176b, 0x7e68b68aec7ba23b}));
-  EXPECT_EQ(philox({ones, ones, ones, ones}, {ones, ones}),
-            (Words{0x87b092c3013fe90b, 0x438c3c67be8d0224,
-                   0x9cc7d7c69cd777b6, 0xa09caebf594f0ba0}));
-  EXPECT_EQ(philox({0x243f6a8885a308d3, 0x13198a2e03707344,
-                    0xa4093822299f31d0, 0x082efa98ec4e6c89},
-                   {0x452821e638d01377, 0xbe5466cf34e90c6c}),
-            (Words{0xa528f45403e61d95, 0x38c72dbd566e9788,
-                   0xa5a1610e72fd18b5, 0x57bd43b5e52b7fe6}));
+  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Words{0x16554d9eca36314c, 0xdb20fe9d672d0fdc,
+                                                 0xd7e772cee186176b, 0x7e68b68aec7ba23b}));
+  EXPECT_EQ(
+      philox({ones, ones, ones, ones}, {ones, ones}),
+      (Words{0x87b092c3013fe90b, 0x438c3c67be8d0224, 0x9cc7d7c69cd777b6, 0xa09caebf594f0ba0}));
+  EXPECT_EQ(
+      philox({0x243f6a8885a308d3, 0x13198a2e03707344, 0xa4093822299f31d0, 0x082efa98ec4e6c89},
+             {0x452821e638d01377, 0xbe5466cf34e90c6c}),
+      (Words{0xa528f45403e61d95, 0x38c72dbd566e9788, 0xa5a1610e72fd18b5, 0x57bd43b5e52b7fe6}));
 }
 
 // A stream is the key {seed, purpose and row} and the counter {block, trial}: what a result file
@@ -141,8 +139,8 @@ TEST(Random, NormalsAreStandardNormal) {
   EXPECT_NEAR(beyond, n * tail, 4 * std::sqrt(n * tail));
 }
 
-// The plain reference takes the same uniforms; what differs is rounding, relative to the radius of a
-// pair and including that of the angle, 2 pi eps.
+// The plain reference takes the same uniforms; what differs is rounding, relative to the radius of
+// a pair and including that of the angle, 2 pi eps.
 TEST(Random, NormalsByTheBatchAreThoseOfThePlainReference) {
   constexpr double eps = std::numeric_limits<double>::epsilon();
   double worst = 0.0;
@@ -155,7 +153,8 @@ TEST(Random, NormalsByTheBatchAreThoseOfThePlainReference) {
       for (std::size_t i = 0; i < normals.size(); i += 2) {
         const double x = plain.normal(), y = plain.normal();
         const double radius = std::hypot(x, y);
-        worst = std::max({worst, std::abs(normals[i] - x) / radius, std::abs(normals[i + 1] - y) / radius});
+        worst = std::max(
+            {worst, std::abs(normals[i] - x) / radius, std::abs(normals[i + 1] - y) / radius});
       }
     }
     EXPECT_EQ(plain.word(), batch.word());  // as many were taken

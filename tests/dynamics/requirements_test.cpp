@@ -74,8 +74,13 @@ TEST_P(Requirement, LimitsHaveNoFaults) {
     faults += of_limit;
     runs += h.runs;
   }
-  measured({.requirement = 9, .method = GetParam(), .what = "faults at the limits of k, Rm, F, e",
-            .figure = static_cast<double>(faults), .unit = "faults", .limit = 0.0, .cases = runs});
+  measured({.requirement = 9,
+            .method = GetParam(),
+            .what = "faults at the limits of k, Rm, F, e",
+            .figure = static_cast<double>(faults),
+            .unit = "faults",
+            .limit = 0.0,
+            .cases = runs});
 }
 
 // Requirement 14 at the default step; `event` has none, its tolerance is halved. Of 2000 trials
@@ -98,8 +103,13 @@ TEST_P(Requirement, HalvingTheStepKeepsTheOutput) {
   EXPECT_LE(outcomes, 0.01);
   EXPECT_LE(columns, 0.01);
   const auto record = [&](const char* what, double figure, double limit) {
-    measured({.requirement = 14, .method = GetParam(), .what = what, .figure = figure,
-              .limit = limit, .cases = 2 * n, .asked = 2 * 20'000});
+    measured({.requirement = 14,
+              .method = GetParam(),
+              .what = what,
+              .figure = figure,
+              .limit = limit,
+              .cases = 2 * n,
+              .asked = 2 * 20'000});
   };
   const double none = std::nan("");
   record("TV of the six outcomes, step or tolerance halved", outcomes, 0.01);
@@ -130,10 +140,14 @@ TEST_P(Requirement, OutcomesHardlyDependOnTheThreshold) {
         worst = std::max(worst, std::abs(static_cast<double>(c)) / static_cast<double>(n));
     }
     EXPECT_LE(worst, !event() && factor > 1.0 ? 0.2 : 0.005) << factor;
-    measured({.requirement = 15, .method = GetParam(),
+    measured({.requirement = 15,
+              .method = GetParam(),
               .what = factor > 1.0 ? "change of an outcome's probability, threshold x10"
                                    : "change of an outcome's probability, threshold /10",
-              .figure = worst, .limit = 0.005, .cases = 2 * n, .asked = 2 * 20'000});
+              .figure = worst,
+              .limit = 0.005,
+              .cases = 2 * n,
+              .asked = 2 * 20'000});
   }
 }
 

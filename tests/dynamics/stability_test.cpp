@@ -38,9 +38,7 @@ TEST(StabilityMap, EveryMethodHasEveryMap) {
 }
 
 TEST(StabilityMap, SpansWhatItPromises) {
-  const auto ends = [](const MapAxis& a) {
-    return std::pair(a.values.front(), a.values.back());
-  };
+  const auto ends = [](const MapAxis& a) { return std::pair(a.values.front(), a.values.back()); };
   const auto stiffness = stability_map(MapKind::step_stiffness, "stable", false);
   EXPECT_DOUBLE_EQ(stiffness.x.values.front(), 0.0005);
   EXPECT_DOUBLE_EQ(stiffness.x.values.back(), 0.02);
@@ -50,9 +48,9 @@ TEST(StabilityMap, SpansWhatItPromises) {
             std::pair(0.0, std::pow(10.0, 6.0)));
   const auto grazing = stability_map(MapKind::grazing_speed, "paper", false).x.values;
   EXPECT_DOUBLE_EQ(grazing.front(), -1e-3);
-  EXPECT_DOUBLE_EQ(*std::min_element(grazing.begin(), grazing.end(), [](double a, double b) {
-                     return std::abs(a) < std::abs(b);
-                   }), -1e-15);
+  EXPECT_DOUBLE_EQ(*std::min_element(grazing.begin(), grazing.end(),
+                                     [](double a, double b) { return std::abs(a) < std::abs(b); }),
+                   -1e-15);
 }
 
 TEST(StabilityMap, PointsCanBeRepeated) {
@@ -115,8 +113,7 @@ double growth(const GateParams& p, double h) {
   const double b = h * p.beams.damping / p.beams.inertia();
   const double half_trace = 0.5 * (2.0 - h * a - b), determinant = 1.0 - b;
   const double under = half_trace * half_trace - determinant;
-  return under < 0.0 ? std::sqrt(determinant)
-                     : std::abs(half_trace) + std::sqrt(under);
+  return under < 0.0 ? std::sqrt(determinant) : std::abs(half_trace) + std::sqrt(under);
 }
 
 TEST(SemiImplicitBound, IsWhereFreeBeamsBeginToGrow) {
@@ -203,7 +200,8 @@ TEST(Stability, StableHoldsAtTheJoint) {
       EXPECT_EQ(at(MapKind::lever_speed, "stable", r, speed), Verdict::fine) << r << ' ' << speed;
 }
 
-// `paper` creates energy or sinks wherever its constraint acts, however far from any stability bound.
+// `paper` creates energy or sinks wherever its constraint acts, however far from any stability
+// bound.
 TEST(Stability, PaperFailsAtItsOwnSetting) {
   const Verdict v = at(MapKind::step_stiffness, "paper", 0.004, 400.0);
   EXPECT_GE(v, Verdict::energy);

@@ -53,8 +53,12 @@ TEST(Stable, FreeBeamFollowsItsClosedForm) {
   const double error = std::max(std::abs(ride.s.beams[kLeft].theta - theta(0.5, 0.3)),
                                 std::abs(ride.s.beams[kRight].theta - theta(-0.4, 0.0)));
   EXPECT_LE(error, 100 * kEps);
-  measured({.requirement = 1, .method = "stable", .what = "free beam after 2 s, error",
-            .figure = error, .unit = "rad", .limit = 1e-8});
+  measured({.requirement = 1,
+            .method = "stable",
+            .what = "free beam after 2 s, error",
+            .figure = error,
+            .unit = "rad",
+            .limit = 1e-8});
   EXPECT_EQ(ride.watch.impacts, 0);
 }
 
@@ -71,8 +75,11 @@ TEST(Stable, FreeBeamKeepsItsEnergyWithoutDamping) {
   // 600 steps, each of which rounds angle and speed by an eps or so.
   const double error = std::abs(energy(p, ride.s) / before - 1.0);
   EXPECT_LE(error, 600 * 4 * kEps);
-  measured({.requirement = 2, .method = "stable", .what = "energy of an undamped beam after 12 s",
-            .figure = error, .limit = 1e-6});
+  measured({.requirement = 2,
+            .method = "stable",
+            .what = "energy of an undamped beam after 12 s",
+            .figure = error,
+            .limit = 1e-6});
 }
 
 TEST(Stable, FreeBodyFollowsItsClosedForm) {
@@ -221,8 +228,7 @@ TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
       EXPECT_LE(t, hold + step + 1e-6);
       EXPECT_EQ(ride.watch.impacts, last + 1);
       EXPECT_EQ(ride.watch.forced_holds, 0);
-      if (step == GateParams{}.run.step)
-        error = std::max(error, std::abs(t / b.zeno_time() - 1.0));
+      if (step == GateParams{}.run.step) error = std::max(error, std::abs(t / b.zeno_time() - 1.0));
       unforeseen = std::max(unforeseen, std::abs(ride.watch.impacts - (last + 1)));
       // Zeno's remainder: what the hold cuts off.
       EXPECT_NEAR(b.zeno_time() - hold, 2 * b.t0 * std::pow(e, last + 1) / (1 - e), 1e-9);
@@ -239,14 +245,26 @@ TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
     }
   }
   EXPECT_LE(slowest, 10.0);
-  measured({.requirement = 4, .method = "stable",
-            .what = "Zeno time, relative error, default, from 0.33 m", .figure = error,
-            .limit = 1e-6, .cases = scenes / 3});
-  measured({.requirement = 4, .method = "stable", .what = "hits off the predicted number",
-            .figure = static_cast<double>(unforeseen), .unit = "hits", .limit = 0.0,
+  measured({.requirement = 4,
+            .method = "stable",
+            .what = "Zeno time, relative error, default, from 0.33 m",
+            .figure = error,
+            .limit = 1e-6,
+            .cases = scenes / 3});
+  measured({.requirement = 4,
+            .method = "stable",
+            .what = "hits off the predicted number",
+            .figure = static_cast<double>(unforeseen),
+            .unit = "hits",
+            .limit = 0.0,
             .cases = scenes});
-  measured({.requirement = 4, .method = "stable", .what = "slowest scene, CPU time",
-            .figure = slowest, .unit = "s", .limit = 10.0, .cases = scenes});
+  measured({.requirement = 4,
+            .method = "stable",
+            .what = "slowest scene, CPU time",
+            .figure = slowest,
+            .unit = "s",
+            .limit = 10.0,
+            .cases = scenes});
 }
 
 // The printed numbers of S6: 9 t0 at e = 0.8, the threshold is reached at impact 21.
@@ -258,8 +276,8 @@ TEST(Zeno, NumbersOfTheKnownAnswers) {
 
 // Without a threshold every flight is flown until a step holds more hits than a method can bear;
 // then contact is forced. With 50 hits in one step, its 49 flights are over 49 times as long as the
-// next; less than (step / 49) / (1 - e) is left to bounce. Small e needs no force: before 50 hits the
-// disc leaves at no more than what counts as rest.
+// next; less than (step / 49) / (1 - e) is left to bounce. Small e needs no force: before 50 hits
+// the disc leaves at no more than what counts as rest.
 TEST(Zeno, EndsWithoutAThreshold) {
   for (const double e : {0.1, 0.5, 0.8, 0.95, 0.99}) {
     SCOPED_TRACE(e);
@@ -327,8 +345,8 @@ Contacts contacts_of_trial(const GateParams& p, int trial) {
     if (left) c.exit_speed = std::hypot(ride.s.body.vx, ride.s.body.vy);
     const auto held = held_of(ride.s);
     if (!left && (held[kLeft] || held[kRight])) {
-      const auto push = contact_forces(p, ride.s, {ride.touch(kLeft), ride.touch(kRight)}, f, held,
-                                       push_or_pull);
+      const auto push =
+          contact_forces(p, ride.s, {ride.touch(kLeft), ride.touch(kRight)}, f, held, push_or_pull);
       for (const Side side : {kLeft, kRight})
         if (held[side]) c.pull = std::max(c.pull, -push[side]);
     }
@@ -336,8 +354,7 @@ Contacts contacts_of_trial(const GateParams& p, int trial) {
       const Touch t = ride.touch(side);
       const BeamState& beam = ride.s.beams[side];
       most(c.overlap, c.exit_overlap, -t.gap);
-      if (left && (beam.held || t.gap < 0.0))
-        c.exit_speed += std::abs(beam.omega) * p.beams.length;
+      if (left && (beam.held || t.gap < 0.0)) c.exit_speed += std::abs(beam.omega) * p.beams.length;
       if (!beam.held) continue;
       ++c.held_steps;
       most(c.gap, c.exit_gap, std::abs(t.gap));
@@ -402,8 +419,12 @@ TEST(Stable, ContactIsReleasedWhenItsForceWouldPull) {
   EXPECT_NEAR(ride.touch(kLeft).gap, 0.0, 1e-12);
   ride.go(0.4, 30.0);
   EXPECT_FALSE(ride.s.beams[kLeft].held);
-  measured({.requirement = 6, .method = "stable", .what = "contacts still held when drawn apart",
-            .figure = ride.s.beams[kLeft].held ? 1.0 : 0.0, .unit = "contacts", .limit = 0.0});
+  measured({.requirement = 6,
+            .method = "stable",
+            .what = "contacts still held when drawn apart",
+            .figure = ride.s.beams[kLeft].held ? 1.0 : 0.0,
+            .unit = "contacts",
+            .limit = 0.0});
   EXPECT_EQ(ride.watch.impacts, 0);
   // From then on it is free: 30 N for 0.4 s, less what the push gave the beam, 3.6e-6 of that.
   EXPECT_NEAR(ride.s.body.vx, 12.0, 1e-4);
@@ -557,9 +578,9 @@ TEST(EnergyLedger, StableCreatesNoEnergy) {
   struct Limit {
     double step, random, created;
   };
-  for (const Limit& limit : {Limit{0.004, 10.0, 4e-5}, Limit{0.004, 40.0, 1.2e-4},
-                             Limit{0.004, 60.0, 2.5e-4}, Limit{0.02, 10.0, 5e-3},
-                             Limit{0.02, 40.0, 2e-2}, Limit{0.02, 60.0, 3e-2}}) {
+  for (const Limit& limit :
+       {Limit{0.004, 10.0, 4e-5}, Limit{0.004, 40.0, 1.2e-4}, Limit{0.004, 60.0, 2.5e-4},
+        Limit{0.02, 10.0, 5e-3}, Limit{0.02, 40.0, 2e-2}, Limit{0.02, 60.0, 3e-2}}) {
     SCOPED_TRACE(testing::Message() << "Rm = " << limit.random << ", step " << limit.step);
     GateParams p = test::study(10.0);
     p.forces.random = limit.random;
@@ -567,8 +588,12 @@ TEST(EnergyLedger, StableCreatesNoEnergy) {
     const GateTally tally = run_gate_trials(p, {}, 1, {0, 10'000});
     EXPECT_LE(tally.health.worst_energy_created, limit.created);
     if (limit.step == GateParams{}.run.step)
-      measured({.requirement = 5, .method = "stable", .what = "energy created in a trial, default",
-                .figure = tally.health.worst_energy_created, .unit = "J", .cases = tally.trials});
+      measured({.requirement = 5,
+                .method = "stable",
+                .what = "energy created in a trial, default",
+                .figure = tally.health.worst_energy_created,
+                .unit = "J",
+                .cases = tally.trials});
     EXPECT_TRUE(tally.health.clean());
     EXPECT_LE(tally.health.worst_penetration, 1e-9 * p.body.radius);
   }
@@ -594,8 +619,13 @@ TEST(EnergyLedger, StablesErrorFallsWithTheStep) {
   // Measured 3.4 and 3.0; the midpoint rule's second order is the least.
   const double order = std::min(std::log2(mean[0] / mean[1]), std::log2(mean[1] / mean[2]));
   EXPECT_GT(order, 2.0);
-  measured({.requirement = 5, .method = "stable", .what = "order of the energy's error in the step",
-            .figure = order, .limit = 0.9, .at_least = true, .cases = 2000});
+  measured({.requirement = 5,
+            .method = "stable",
+            .what = "order of the energy's error in the step",
+            .figure = order,
+            .limit = 0.9,
+            .at_least = true,
+            .cases = 2000});
 }
 
 // ---- S8: mirror images ----
@@ -694,8 +724,12 @@ TEST(Limits, StiffBeamsAreARigidWall) {
     wall.go(12.0);
     const double error = std::abs(wall.s.body.y - (20.0 + share * r * r / 1e12));
     EXPECT_LE(error, 1e-6);
-    measured({.requirement = 9, .method = "stable", .what = "place of rest at a wall, k = 1e12",
-              .figure = error, .unit = "m", .limit = 1e-6});
+    measured({.requirement = 9,
+              .method = "stable",
+              .what = "place of rest at a wall, k = 1e12",
+              .figure = error,
+              .unit = "m",
+              .limit = 1e-6});
   }
 }
 
@@ -791,17 +825,21 @@ TEST(Reversal, ReturnsToTheStart) {
     turn(ride.s);
     EXPECT_EQ(ride.watch.impacts, 2 * there);
     ++rides;
-    worst = std::max({worst, std::abs(ride.s.body.x - start.body.x),
-                      std::abs(ride.s.body.y - start.body.y),
-                      std::abs(ride.s.body.vx - start.body.vx),
-                      std::abs(ride.s.body.vy - start.body.vy),
-                      std::abs(ride.s.beams[kLeft].theta), std::abs(ride.s.beams[kRight].theta),
-                      std::abs(ride.s.beams[kLeft].omega), std::abs(ride.s.beams[kRight].omega)});
+    worst = std::max(
+        {worst, std::abs(ride.s.body.x - start.body.x), std::abs(ride.s.body.y - start.body.y),
+         std::abs(ride.s.body.vx - start.body.vx), std::abs(ride.s.body.vy - start.body.vy),
+         std::abs(ride.s.beams[kLeft].theta), std::abs(ride.s.beams[kRight].theta),
+         std::abs(ride.s.beams[kLeft].omega), std::abs(ride.s.beams[kRight].omega)});
   }
   EXPECT_EQ(rides, 6);
   EXPECT_LE(worst, 1e-10);
-  measured({.requirement = 10, .method = "stable", .what = "distance from the start on return",
-            .figure = worst, .unit = "m, m/s, rad", .limit = 1e-6, .cases = rides});
+  measured({.requirement = 10,
+            .method = "stable",
+            .what = "distance from the start on return",
+            .figure = worst,
+            .unit = "m, m/s, rad",
+            .limit = 1e-6,
+            .cases = rides});
 }
 
 // ---- S11, S12, S14: near-singular starts ----
@@ -907,9 +945,14 @@ TEST(Stable, RunsAnySceneItAccepts) {
       const BodyState& b = run.exit;
       Health health;
       health.add(p, run);
-      seen[i] = {false, run.ending == Ending::broken, std::isfinite(b.x + b.y + b.vx + b.vy),
-                 p.beams.mass < p.body.mass, health.clean(), run.watch.max_penetration,
-                 run.watch.energy_created / energy, seconds};
+      seen[i] = {false,
+                 run.ending == Ending::broken,
+                 std::isfinite(b.x + b.y + b.vx + b.vy),
+                 p.beams.mass < p.body.mass,
+                 health.clean(),
+                 run.watch.max_penetration,
+                 run.watch.energy_created / energy,
+                 seconds};
     } catch (const InvalidParameter& e) {
       EXPECT_EQ(e.key(), "run.step_s");
       seen[i].refused = true;
@@ -929,7 +972,8 @@ TEST(Stable, RunsAnySceneItAccepts) {
   EXPECT_EQ(escaped, 0);
   EXPECT_LE(slowest, 10.0);
   for (int i = 0; i < kScenes; ++i) {
-    EXPECT_LE(seen[i].overlap, 1e-6 * 10.0) << i;  // requirement 11's bar; next to all keep a tighter one
+    EXPECT_LE(seen[i].overlap, 1e-6 * 10.0)
+        << i;  // requirement 11's bar; next to all keep a tighter one
     deep += seen[i].overlap > 1e-9 * 10.0;
     // A light beam that a heavy disc holds may whip round its joint faster than any step follows;
     // then energy appears (and Health says so). A beam as heavy as the disc does not, but for a few
@@ -983,9 +1027,9 @@ TEST(Stable, StopsWhereTheBodyLeavesTheGate) {
   EXPECT_EQ(ride.watch.steps, 126);  // 0.5 s are 125 steps; rounding leaves the way out to the next
 }
 
-// Under drag and force the way is no cubic, but over one step all but. y'''' <= D^2 (F + D v), which
-// is 2.3 m/s^4 at 2 m/s downwards; a cubic misses y'''' h^4 / 384 in position and
-// y'''' h^3 / 125 in velocity: 1.5e-12 m and 1.2e-9 m/s at 0.004 s.
+// Under drag and force the way is no cubic, but over one step all but. y'''' <= D^2 (F + D v),
+// which is 2.3 m/s^4 at 2 m/s downwards; a cubic misses y'''' h^4 / 384 in position and y'''' h^3 /
+// 125 in velocity: 1.5e-12 m and 1.2e-9 m/s at 0.004 s.
 TEST(Stable, LeavesACurvedFlightOnTheBorder) {
   GateParams p = test::free_rods();
   p.forces.propulsion = 8.0;

@@ -57,8 +57,8 @@ TEST(StateSpace, TableIIIIsInTheScenesOwnUnits) {
     const double length = std::ldexp(1.0, 2 * power), time = std::ldexp(1.0, 4 - 2 * power),
                  mass = std::ldexp(1.0, 6), speed = length / time;
     GateParams p;
-    for (double* x : {&p.body.radius, &p.beams.length, &p.beams.joint_x, &p.beams.joint_y,
-                      &p.run.traverse_y})
+    for (double* x :
+         {&p.body.radius, &p.beams.length, &p.beams.joint_x, &p.beams.joint_y, &p.run.traverse_y})
       *x *= length;
     p.body.mass *= mass;
     p.forces.random_rate /= time;
@@ -81,7 +81,8 @@ TEST(StateSpace, OpenBinsClampNothing) {
   const StateSpace closed = paper(), open(closed.bins(), true);
   EXPECT_FALSE(closed == open);
   EXPECT_TRUE(refined(open, 2.0).open());
-  const Crossing outside{Boundary::enter, 0.0, 60.0, 15.0}, inside{Boundary::enter, 0.0, 20.0, 15.0};
+  const Crossing outside{Boundary::enter, 0.0, 60.0, 15.0},
+      inside{Boundary::enter, 0.0, 20.0, 15.0};
   EXPECT_TRUE(closed.index_of(outside).clamped && closed.index_of(outside).beyond);
   EXPECT_FALSE(open.index_of(outside).clamped);
   EXPECT_TRUE(open.index_of(outside).beyond);
@@ -104,7 +105,8 @@ TEST(StateSpace, SingleEntriesAreStatesOfTheirOwn) {
   EXPECT_EQ(space.sample(88, random), b);
   EXPECT_EQ(refined(space, 2.0).size(), 698);
   EXPECT_THROW((void)StateSpace(paper().bins(), false, {a, a}), std::invalid_argument);
-  EXPECT_THROW((void)StateSpace(paper().bins(), false, {{Boundary::enter, kInf, 0, 0}}), std::invalid_argument);
+  EXPECT_THROW((void)StateSpace(paper().bins(), false, {{Boundary::enter, kInf, 0, 0}}),
+               std::invalid_argument);
 }
 
 // The text fixes an order for nobody but us: d slowest, then vx, then vy.
@@ -132,8 +134,7 @@ TEST(StateSpace, CellsTileTheBoundary) {
     for (const auto& side : {c.d, c.vx, c.vy}) EXPECT_LT(side[0], side[1]);
     volume[static_cast<int>(c.boundary)] +=
         (c.d[1] - c.d[0]) * (c.vx[1] - c.vx[0]) * (c.vy[1] - c.vy[0]);
-    EXPECT_TRUE(
-        corners.insert({static_cast<double>(c.boundary), c.d[0], c.vx[0], c.vy[0]}).second);
+    EXPECT_TRUE(corners.insert({static_cast<double>(c.boundary), c.d[0], c.vx[0], c.vy[0]}).second);
   }
   EXPECT_EQ(volume, (std::array<double, kBoundaries>{25000, 30000, 30000, 30000, 30000}));
 }
@@ -190,9 +191,10 @@ TEST(Refined, CountsBinsPerAxis) {
     double factor;
     int enter, deflect, traverse;
   };
-  for (const Case& c : {Case{0.25, 1, 1, 1}, Case{0.5, 3 * 3 * 1, 1 * 2 * 3, 1}, Case{1, 25, 30, 1},
-                        Case{1.5, 8 * 8 * 2, 3 * 5 * 8, 2 * 2 * 2}, Case{2, 10 * 10 * 2, 4 * 6 * 10, 8},
-                        Case{4, 20 * 20 * 4, 8 * 12 * 20, 64}}) {
+  for (const Case& c :
+       {Case{0.25, 1, 1, 1}, Case{0.5, 3 * 3 * 1, 1 * 2 * 3, 1}, Case{1, 25, 30, 1},
+        Case{1.5, 8 * 8 * 2, 3 * 5 * 8, 2 * 2 * 2}, Case{2, 10 * 10 * 2, 4 * 6 * 10, 8},
+        Case{4, 20 * 20 * 4, 8 * 12 * 20, 64}}) {
     const StateSpace s = refined(paper(), c.factor);
     EXPECT_EQ(s.first(Boundary::right_deflect), c.enter) << c.factor;
     EXPECT_EQ(s.first(Boundary::left_deflect), c.enter + c.deflect) << c.factor;
@@ -251,7 +253,8 @@ TEST(Refined, FinerBinsAreNested) {
     const Crossing corner{cell.boundary, cell.d[0], cell.vx[0], cell.vy[0]};
     const Cell around = coarse.cell(coarse.index_of(corner).state);
     EXPECT_TRUE(inside(cell.d, around.d) && inside(cell.vx, around.vx) &&
-                inside(cell.vy, around.vy)) << state;
+                inside(cell.vy, around.vy))
+        << state;
   }
 }
 
@@ -329,8 +332,8 @@ TEST(StateSpace, EveryBoundaryClampsEverySide) {
     const Crossing low{boundary, g.d.front(), g.vx.front(), g.vy.front()};
     const Crossing high{boundary, g.d.back(), g.vx.back(), g.vy.back()};
     const int first = s.first(boundary);
-    const int last = first + static_cast<int>((g.d.size() - 1) * (g.vx.size() - 1) *
-                                              (g.vy.size() - 1)) - 1;
+    const int last =
+        first + static_cast<int>((g.d.size() - 1) * (g.vx.size() - 1) * (g.vy.size() - 1)) - 1;
     for (const auto& [corner, state, away] : {std::tuple{low, first, -1.0}, {high, last, 1.0}}) {
       EXPECT_EQ(s.index_of(corner).state, state);
       EXPECT_FALSE(s.index_of(corner).clamped);

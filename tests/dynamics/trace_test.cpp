@@ -44,9 +44,11 @@ TEST_P(Trace, IsTheRunItself) {
   }
 }
 
-// Energy at the start and work are what is there and what is lost; nothing comes back from what is lost.
+// Energy at the start and work are what is there and what is lost; nothing comes back from what is
+// lost.
 TEST_P(Trace, EnergyIsAccountedFor) {
-  const bool sound = p.run.method == "stable" || p.run.method == "event" || p.run.method == "moreau";
+  const bool sound =
+      p.run.method == "stable" || p.run.method == "event" || p.run.method == "moreau";
   const GateTrace t = trace(p, 0);
   const double at_start = t.samples.front().energy.mechanical();
   double worst_gain = 0.0, lost = 0.0;
@@ -67,7 +69,8 @@ TEST_P(Trace, EnergyIsAccountedFor) {
   }
 }
 
-// Before the first contact nobody pushes the body but propulsion and random force; the beams push back.
+// Before the first contact nobody pushes the body but propulsion and random force; the beams push
+// back.
 TEST_P(Trace, ForcesOfTheBeams) {
   const GateTrace t = trace(p, 0);
   double pushed_back = 0.0;
@@ -85,17 +88,20 @@ TEST_P(Trace, ForcesOfTheBeams) {
   EXPECT_LT(pushed_back, -7.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Trace, testing::Values("stable", "event", "moreau", "paper", "penalty"),
+INSTANTIATE_TEST_SUITE_P(Methods, Trace,
+                         testing::Values("stable", "event", "moreau", "paper", "penalty"),
                          [](const auto& method) { return std::string(method.param); });
 
-// A hit on one beam in the middle of a free flight: (1 - e^2)/2 mu u^2, and the impulse (1 + e) mu u.
+// A hit on one beam in the middle of a free flight: (1 - e^2)/2 mu u^2, and the impulse (1 + e) mu
+// u.
 TEST(TraceOfOneHit, HasItsImpulseAndItsLoss) {
   for (const char* method : {"stable", "event", "paper"}) {
     GateParams p = test::free_rods();
     p.run.method = method;
     p.run.step = 0.004;
     p.run.time_limit = 0.4;
-    const BodyState start{-10.0, 15.0, 0.0, 15.0};  // meets the left beam's interior, 15 m from its joint
+    const BodyState start{-10.0, 15.0, 0.0,
+                          15.0};  // meets the left beam's interior, 15 m from its joint
     const GateTrace t = trace(p, 0, start);
     const double lever = 15.0, mu = 1.0 / (1.0 / p.body.mass + lever * lever / p.beams.inertia());
     const double u = 15.0, e = p.contact.restitution;
@@ -120,10 +126,13 @@ TEST(EnergyGain, IsTheChangeOfKineticEnergyOfBothHits) {
   s.beams[kLeft] = {0.05, -0.3, false};
   s.beams[kRight] = {0.02, 0.2, false};
   const std::array<Touch, 2> t{nearest(p, kLeft, s.body, 0.05), nearest(p, kRight, s.body, 0.02)};
-  const std::array<double, 2> u{gap_rate(t[0], s.body, s.beams[0]), gap_rate(t[1], s.body, s.beams[1])}, impulse{1.7, 0.9};
+  const std::array<double, 2> u{gap_rate(t[0], s.body, s.beams[0]),
+                                gap_rate(t[1], s.body, s.beams[1])},
+      impulse{1.7, 0.9};
   GateState after = s;
   apply_impulses(p, t, impulse, after);
-  EXPECT_NEAR(energy_gain(coupling(p, t), u, impulse), energy(p, after) - energy(p, s), 64 * kEps * energy(p, s));
+  EXPECT_NEAR(energy_gain(coupling(p, t), u, impulse), energy(p, after) - energy(p, s),
+              64 * kEps * energy(p, s));
 }
 
 }  // namespace

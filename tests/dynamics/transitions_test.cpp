@@ -163,7 +163,8 @@ TEST(Transitions, GiveSingleEntriesMoreRuns) {
   EXPECT_EQ(whole.trials[87], 40);
   EXPECT_EQ(whole.totals().clamped, 0);
   const Transitions closed = built(5, {0, 5});  // the bins' rows are those without the point
-  for (int row = 0; row < 87; ++row) EXPECT_EQ(whole.rows[row][88], closed.rows[row].count(87) ? closed.rows[row].at(87) : 0);
+  for (int row = 0; row < 87; ++row)
+    EXPECT_EQ(whole.rows[row][88], closed.rows[row].count(87) ? closed.rows[row].at(87) : 0);
 
   const auto method = make_method(p);
   std::map<int, std::int64_t> replayed;
@@ -172,8 +173,9 @@ TEST(Transitions, GiveSingleEntriesMoreRuns) {
     (void)space.sample(87, random);
     RandomForce force(p.forces, random);
     const GateRun r = run_gate(p, *method, {0, 0, 0, 15}, force);
-    ++replayed[r.ending == Ending::trapped ? space.trapped()
-                                           : space.index_of(crossing_of(p, r.ending, r.exit)).state];
+    ++replayed[r.ending == Ending::trapped
+                   ? space.trapped()
+                   : space.index_of(crossing_of(p, r.ending, r.exit)).state];
   }
   EXPECT_EQ(whole.rows[87], replayed);
 }
@@ -185,9 +187,7 @@ TEST(Transitions, PartsAddUpToTheWhole) {
   EXPECT_THROW(sum += Transitions(refined(sum.space, 2.0)), std::invalid_argument);
 }
 
-TEST(Transitions, OtherSeedOtherCounts) {
-  EXPECT_NE(built(1, {0, 5}).rows, built(2, {0, 5}).rows);
-}
+TEST(Transitions, OtherSeedOtherCounts) { EXPECT_NE(built(1, {0, 5}).rows, built(2, {0, 5}).rows); }
 
 // Row 0: 3 to a neighbour, 2 trapped, 1 of the 3 clamped; row 86: all 5 trapped; others empty.
 TEST(Transitions, TotalsAddUpTheRows) {
@@ -213,8 +213,8 @@ TEST(Transitions, TotalsAddUpTheRows) {
 TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
   GateParams p = field_scene();
   p.forces = {.propulsion = 0.0, .random = 0.0, .random_rate = 50.0, .drag = 0.0};
-  p.beams = {.length = 1e-3, .mass = 0.1, .stiffness_left = 0.0, .stiffness_right = 0.0,
-             .damping = 0.0};
+  p.beams = {
+      .length = 1e-3, .mass = 0.1, .stiffness_left = 0.0, .stiffness_right = 0.0, .damping = 0.0};
   p.body.radius = 1e-3;
   p.run.method = "moreau";  // nothing is hit; `stable` would look for hits every half radius
   p.run.step = kPaperStep;
@@ -228,8 +228,8 @@ TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
     Transitions t{StateSpace(bins)};
     add_trials(t, p, 1, {trial, 1});
     for (int row = 0; row < t.space.size(); ++row) {
-      Random random(Purpose::row, {1, static_cast<std::uint64_t>(row),
-                                   static_cast<std::uint64_t>(trial)});
+      Random random(Purpose::row,
+                    {1, static_cast<std::uint64_t>(row), static_cast<std::uint64_t>(trial)});
       const BodyState b = entry_state(p, t.space.sample(row, random));
       const double border = b.vx > 0 ? 25.0 : -25.0;
       const double to_side = (border - b.x) / b.vx, to_top = b.vy > 0 ? (60 - b.y) / b.vy : 1e9;

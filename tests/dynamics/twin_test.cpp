@@ -87,7 +87,8 @@ TEST_P(Twins, MatricesHaveTheSameCounts) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Twins, testing::Values("paper", "stable", "moreau", "event", "penalty"));
+INSTANTIATE_TEST_SUITE_P(Methods, Twins,
+                         testing::Values("paper", "stable", "moreau", "event", "penalty"));
 
 TEST(Twin, AutoChoosesTheSame) {
   GateParams p = scene("auto");
@@ -100,7 +101,8 @@ TEST(Twin, AutoChoosesTheSame) {
   EXPECT_EQ(a.params.run.method, b.params.run.method);
   EXPECT_EQ(a.params.run.step * twin.of(0, 1, 0), b.params.run.step);
   ASSERT_EQ(a.tried.size(), b.tried.size());
-  for (std::size_t i = 0; i < a.tried.size(); ++i) EXPECT_EQ(a.tried[i].error.changed, b.tried[i].error.changed);
+  for (std::size_t i = 0; i < a.tried.size(); ++i)
+    EXPECT_EQ(a.tried[i].error.changed, b.tried[i].error.changed);
 }
 
 TEST(Twin, LandscapesAndTracesAreTheSame) {
@@ -115,7 +117,8 @@ TEST(Twin, LandscapesAndTracesAreTheSame) {
     const Landscape b = landscape(q, 0.0, 2.0 * twin.of(1, 0, 0));
     ASSERT_EQ(a.total.size(), b.total.size());
     EXPECT_TRUE((a.total * twin.of(2, -2, 1) == b.total || a.total.isInf()).all());
-    EXPECT_EQ(lowest_pass(a, 0.0, 0.0).barrier() * twin.of(2, -2, 1), lowest_pass(b, 0.0, 0.0).barrier());
+    EXPECT_EQ(lowest_pass(a, 0.0, 0.0).barrier() * twin.of(2, -2, 1),
+              lowest_pass(b, 0.0, 0.0).barrier());
     const auto other = make_method(q);
     RandomForce same = gate_force(q, 1, 3);
     const GateTrace t = trace_gate(q, *other, twin.of(BodyState{0.0, 0.0, 0.0, 15.0}), same);
@@ -176,7 +179,8 @@ Filled filled(GateParams p, std::vector<std::string_view> given) {
 
 TEST(FillIn, ASceneWithoutABodyOfItsOwnIsThePapers) {
   const Filled f = filled({}, {"forces.propulsion_N"});
-  for (const ParamInfo& info : gate_param_table()) EXPECT_EQ(info.get(f.p), info.get(GateParams{})) << info.key;
+  for (const ParamInfo& info : gate_param_table())
+    EXPECT_EQ(info.get(f.p), info.get(GateParams{})) << info.key;
   EXPECT_EQ(f.start.vy, 15.0);
 }
 
@@ -210,7 +214,8 @@ TEST(FillIn, WhatIsGivenStays) {
   p.body = {0.25, 0.08};
   p.beams.joint_x = 0.23;
   p.beams.stiffness_left = 0.15;
-  const Filled f = filled(p, {"body.radius_m", "body.mass_kg", "beams.joint_x_m", "beams.stiffness_left_Nm_per_rad"});
+  const Filled f = filled(
+      p, {"body.radius_m", "body.mass_kg", "beams.joint_x_m", "beams.stiffness_left_Nm_per_rad"});
   EXPECT_EQ(f.p.beams.joint_x, 0.23);
   EXPECT_EQ(f.p.beams.length, 0.23);  // tips meet
   EXPECT_EQ(f.p.beams.stiffness_right, 0.15);

@@ -217,8 +217,8 @@ TEST(ExpectedTotalVariation, BecomesTheNormalOne) {
   for (const std::int64_t n : {100'000LL, 10'000'000LL, 1'000'000'000LL}) {
     const auto root = std::sqrt(static_cast<double>(n));
     // The next term is of relative size 1/n; logarithms of n! lose n log n eps.
-    EXPECT_NEAR(expected_total_variation(p, n) * root / normal, 1.0, 2.0 / static_cast<double>(n) +
-                                                                         40 * kEps * root * root);
+    EXPECT_NEAR(expected_total_variation(p, n) * root / normal, 1.0,
+                2.0 / static_cast<double>(n) + 40 * kEps * root * root);
   }
 }
 
@@ -425,9 +425,8 @@ TEST(Compare, SameSeedSameBitsOnAnyNumberOfThreads) {
   const CellProbabilities p = hill(1.5);
   const CellCounts a = sample(p, 500, draw), b = sample(p, 400, draw);
   const auto on = [&](int threads, std::uint64_t seed, bool exact) {
-    return test::on_threads(threads, [&] {
-      return exact ? compare(a, p, 200, seed) : compare(a, b, 200, seed);
-    });
+    return test::on_threads(
+        threads, [&] { return exact ? compare(a, p, 200, seed) : compare(a, b, 200, seed); });
   };
   for (const bool exact : {false, true}) {
     const Comparison one = on(1, 3, exact);
@@ -456,8 +455,8 @@ TEST(Compare, IsSymmetric) {
 }
 
 // Four pairs differ, all in one direction: of the 16 ways to swap them, 2 are as extreme. TV is
-// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials. 4 comes in 1 of 8, so it is
-// the 95 % quantile; of six pairs 6 comes in 1 of 32 and 4 in 6 of 32: 4 is.
+// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials. 4 comes in 1 of 8, so it
+// is the 95 % quantile; of six pairs 6 comes in 1 of 32 and 4 in 6 of 32: 4 is.
 TEST(ComparePairs, SwapsOfAHandfulAreExact) {
   std::vector<std::int32_t> first(20, 0), second(20, 0);
   for (int i = 3; i < 7; ++i) second[i] = 1;
@@ -486,7 +485,8 @@ TEST(ComparePairs, ThrowsCoinsOfItsOwn) {
   for (std::int64_t k = 0; k < kDraws; ++k) {
     seen.push_back(alike_up_to(k + 1) > (k == 0 ? 0 : alike_up_to(k)));
     for (std::uint64_t row = 0; row < 3; ++row) {
-      dynamics::Random random(dynamics::Purpose::comparison, {1, row, static_cast<std::uint64_t>(k)});
+      dynamics::Random random(dynamics::Purpose::comparison,
+                              {1, row, static_cast<std::uint64_t>(k)});
       const std::uint64_t coins = random.word();
       of_row[row].push_back((coins & 1) == (coins >> 1 & 1));
     }
@@ -505,7 +505,8 @@ TEST(ComparePairs, SeesWhatIndependentSamplesCannot) {
   CellCounts a = CellCounts::Zero(3, 3), b = a;
   for (const auto cell : first) ++a.data()[cell];
   for (const auto cell : second) ++b.data()[cell];
-  const Comparison pairs = compare_pairs(first, second, 3, 3, 999, 1), apart = compare(a, b, 999, 1);
+  const Comparison pairs = compare_pairs(first, second, 3, 3, 999, 1),
+                   apart = compare(a, b, 999, 1);
   EXPECT_EQ(pairs.total_variation, apart.total_variation);
   EXPECT_EQ(pairs.corrcoef, apart.corrcoef);
   EXPECT_EQ(pairs.rmse_per_100, apart.rmse_per_100);

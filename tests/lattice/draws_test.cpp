@@ -18,8 +18,9 @@ using dynamics::Random;
 
 Random random(std::uint64_t trial) { return {Purpose::resampling, {7, 3, trial}}; }
 
-// Kolmogorov's distance between 20 000 draws and the exact distribution function, at its 0.1 % point; for a
-// discrete distribution the true level is lower. Both samplers, either side of p = 1/2, counts from a few to 10^12.
+// Kolmogorov's distance between 20 000 draws and the exact distribution function, at its 0.1 %
+// point; for a discrete distribution the true level is lower. Both samplers, either side of p =
+// 1/2, counts from a few to 10^12.
 TEST(Binomial, HasItsDistribution) {
   constexpr int kDraws = 20'000;
   struct Case {
@@ -27,9 +28,22 @@ TEST(Binomial, HasItsDistribution) {
     double p;
   };
   std::uint64_t trial = 0;
-  for (const auto& [n, p] : {Case{1, 0.3}, {10, 0.5}, {19, 0.5}, {20, 0.5}, {21, 0.5}, {100, 0.02}, {100, 0.0999},
-                             {100, 0.1}, {100, 0.45}, {100, 0.97}, {1000, 0.012}, {10'000, 0.3}, {1'000'000, 1e-6},
-                             {1'000'000, 0.2}, {1'000'000'000, 0.7}, {1'000'000'000'000, 1e-11},
+  for (const auto& [n, p] : {Case{1, 0.3},
+                             {10, 0.5},
+                             {19, 0.5},
+                             {20, 0.5},
+                             {21, 0.5},
+                             {100, 0.02},
+                             {100, 0.0999},
+                             {100, 0.1},
+                             {100, 0.45},
+                             {100, 0.97},
+                             {1000, 0.012},
+                             {10'000, 0.3},
+                             {1'000'000, 1e-6},
+                             {1'000'000, 0.2},
+                             {1'000'000'000, 0.7},
+                             {1'000'000'000'000, 1e-11},
                              {1'000'000'000'000, 1e-4}}) {
     SCOPED_TRACE(testing::Message() << "n " << n << ", p " << p);
     Random r = random(++trial);
@@ -49,7 +63,8 @@ TEST(Binomial, HasItsDistribution) {
     double worst = 0.0;
     for (int i = 0; i < kDraws; ++i)
       if (i + 1 == kDraws || drawn[i + 1] != drawn[i])
-        worst = std::max(worst, std::abs((i + 1.0) / kDraws - cdf(exact, static_cast<double>(drawn[i]))));
+        worst = std::max(worst,
+                         std::abs((i + 1.0) / kDraws - cdf(exact, static_cast<double>(drawn[i]))));
     EXPECT_LT(worst, 1.95 / std::sqrt(kDraws));
     EXPECT_LT(std::abs(sum), 5 * std::sqrt(kDraws));
     const double fourth = 2.0 + 1.0 / variance;  // of z, less 1: at most
@@ -98,11 +113,13 @@ TEST(Multinomial, SharesOutAllTrials) {
   }
   for (const auto& [k, p] : {std::pair<std::size_t, double>{0, 0.5}, {2, 1 / 6.0}, {3, 1 / 3.0}})
     EXPECT_NEAR(sum[k] / kDraws, 60 * p, 5 * std::sqrt(60 * p * (1 - p) / kDraws));
-  EXPECT_NEAR(products / kDraws, -60.0 * 0.5 / 3.0, 5 * 16.0 / std::sqrt(kDraws));  // sd of a product about 15
+  EXPECT_NEAR(products / kDraws, -60.0 * 0.5 / 3.0,
+              5 * 16.0 / std::sqrt(kDraws));  // sd of a product about 15
   std::array<std::int64_t, 5> counts{};
   EXPECT_THROW(multinomial(3, std::array<double, 5>{}, counts, r), std::invalid_argument);
   EXPECT_THROW(multinomial(3, std::array<double, 2>{1, 1}, counts, r), std::invalid_argument);
-  EXPECT_THROW(multinomial(3, std::array<double, 5>{1, -1, 1, 1, 1}, counts, r), std::invalid_argument);
+  EXPECT_THROW(multinomial(3, std::array<double, 5>{1, -1, 1, 1, 1}, counts, r),
+               std::invalid_argument);
 }
 
 }  // namespace

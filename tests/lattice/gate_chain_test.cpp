@@ -110,7 +110,8 @@ TEST(Resampled, KeepsTrialsAndVariesAsAMultinomial) {
       const double mean = (static_cast<double>(n) + all[column] / runs) * trials / (trials + 1.0);
       const double variance = mean * (1 - mean / trials);
       // Five standard errors, for some 100 entries.
-      EXPECT_NEAR(sum[row][column] / kReplicates, mean, 5 * std::sqrt(variance / kReplicates) + 1e-12);
+      EXPECT_NEAR(sum[row][column] / kReplicates, mean,
+                  5 * std::sqrt(variance / kReplicates) + 1e-12);
       if (variance < 1.0) continue;  // a few counts are far from normal
       const double m = sum[row][column] / kReplicates;
       const double seen = squares[row][column] / kReplicates - m * m;
@@ -229,7 +230,8 @@ TEST_F(MatrixOnDisk, KeepsBinsThatAreNotThePapers) {
 }
 
 TEST_F(MatrixOnDisk, KeepsOpenBinsAndSingleEntries) {
-  const std::vector<Crossing> points{{Boundary::enter, 0, 0, 15}, {Boundary::left_traverse, 12, 3.5, -1}};
+  const std::vector<Crossing> points{{Boundary::enter, 0, 0, 15},
+                                     {Boundary::left_traverse, 12, 3.5, -1}};
   Transitions t{StateSpace(paper().bins(), true, points)};
   t.rows[88][89] = 7;
   t.trials[88] = 7;
@@ -331,7 +333,9 @@ TEST_F(MatrixOnDisk, ForeignExitsAreRefused) {
             std::string::npos);
   EXPECT_NE(refusal([](markov::CountsFile& f) { f.exits[0].next_input = 1; }).find("exits"),
             std::string::npos);
-  EXPECT_NE(refusal([](markov::CountsFile& f) { f.exits[87] = {0, 0, 1}; }).find("exits"),
+  EXPECT_NE(refusal([](markov::CountsFile& f) {
+              f.exits[87] = {0, 0, 1};
+            }).find("exits"),
             std::string::npos);
 }
 

@@ -1,4 +1,5 @@
-// What the sampling of a matrix does: intervals that cover, and one test of trials and matrix together.
+// What the sampling of a matrix does: intervals that cover, and one test of trials and matrix
+// together.
 #include "lattice/matrix_noise.h"
 
 #include <gtest/gtest.h>
@@ -67,15 +68,16 @@ FinalDistribution predicted(const Transitions& t) {
   return markov::Sweeper(make_chain(t)).predict(kField, kStart, kMaxGates);
 }
 
-std::vector<FinalDistribution> replicates(const Transitions& t, std::uint64_t seed, std::int64_t count) {
+std::vector<FinalDistribution> replicates(const Transitions& t, std::uint64_t seed,
+                                          std::int64_t count) {
   return replicate_predictions(all_rows(t), kField, {kStart}, kMaxGates, seed, 0, count).front();
 }
 
-constexpr std::array<Ending, 5> kAll{Ending::far_edge, Ending::left_edge, Ending::right_edge, Ending::trapped,
-                                     Ending::cut_off};
+constexpr std::array<Ending, 5> kAll{Ending::far_edge, Ending::left_edge, Ending::right_edge,
+                                     Ending::trapped, Ending::cut_off};
 
-// 400 matrices of 100 runs a row: of each ending, 92 to 98 % of the intervals hold the truth (95 % and a
-// standard error of 1.1 %).
+// 400 matrices of 100 runs a row: of each ending, 92 to 98 % of the intervals hold the truth (95 %
+// and a standard error of 1.1 %).
 TEST(MatrixNoise, IntervalsCoverTheTruth) {
   constexpr int kMatrices = 400;
   const FinalDistribution right = predicted(truth());
@@ -105,7 +107,8 @@ TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
   const auto sd = [&](const std::vector<FinalDistribution>& all, Ending e) {
     double squares = 0.0;
     for (const FinalDistribution& f : all)
-      squares += std::pow(f.endings[static_cast<std::size_t>(e)] - p.endings[static_cast<std::size_t>(e)], 2);
+      squares += std::pow(
+          f.endings[static_cast<std::size_t>(e)] - p.endings[static_cast<std::size_t>(e)], 2);
     return std::sqrt(squares / static_cast<double>(all.size()));
   };
   const auto made = replicates(t, 5, 400);
@@ -116,7 +119,8 @@ TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
     drawn.add(others[i]);
   }
   // Two estimates of a standard deviation from 400: 5 standard errors of their ratio.
-  for (const Ending e : kAll) EXPECT_NEAR(sd(made, e) / sd(others, e), 1.0, 5 * std::sqrt(1.0 / 400));
+  for (const Ending e : kAll)
+    EXPECT_NEAR(sd(made, e) / sd(others, e), 1.0, 5 * std::sqrt(1.0 / 400));
   EXPECT_NEAR(noise.mean_total_variation() / drawn.mean_total_variation(), 1.0, 0.1);
   EXPECT_GT(noise.total_variation_95(), noise.mean_total_variation());
   EXPECT_EQ(noise.replicates(), 400);
@@ -140,7 +144,8 @@ TEST(Replicates, SameBitsForAnyThreadsAndAnySplit) {
   };
   const auto whole = on(1, 0, 10), again = on(3, 0, 10), part = on(2, 4, 3);
   for (std::size_t s = 0; s < starts.size(); ++s) {
-    for (std::size_t k = 0; k < 10; ++k) EXPECT_TRUE((whole[s][k].final_cells == again[s][k].final_cells).all());
+    for (std::size_t k = 0; k < 10; ++k)
+      EXPECT_TRUE((whole[s][k].final_cells == again[s][k].final_cells).all());
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[s][4 + k].endings, part[s][k].endings);
     EXPECT_NE(whole[s][0].endings, whole[s][1].endings);
   }
@@ -189,11 +194,11 @@ SeenEndings trials_of(const FinalDistribution& p, std::int64_t trials, std::uint
   return seen;
 }
 
-// Under the null - the dynamics is the chain, the matrix a sample of it - the p-value of all together is
-// uniform, whether chance lies in the trials, in the matrix or in both: 400 repeats each, at most 9 % below
-// 0.05. The bootstrap of a matrix is exact only for many runs a row: with 100, where matrix noise rules,
-// p-values in the middle are too small by up to 0.1 here (Kolmogorov's 1 % point is 0.08). Each statistic's
-// own, too.
+// Under the null - the dynamics is the chain, the matrix a sample of it - the p-value of all
+// together is uniform, whether chance lies in the trials, in the matrix or in both: 400 repeats
+// each, at most 9 % below 0.05. The bootstrap of a matrix is exact only for many runs a row: with
+// 100, where matrix noise rules, p-values in the middle are too small by up to 0.1 here
+// (Kolmogorov's 1 % point is 0.08). Each statistic's own, too.
 TEST(Judge, PValuesAreUniformUnderTheNull) {
   struct Case {
     std::int64_t runs, trials;
@@ -206,8 +211,8 @@ TEST(Judge, PValuesAreUniformUnderTheNull) {
     for (int i = 0; i < kRepeats; ++i) {
       const auto number = static_cast<std::uint64_t>(i);
       const Transitions t = simulated(runs, 5000 + number);
-      const Judgement j = judge(trials_of(right, trials, number), predicted(t), replicates(t, number, kMatrices),
-                                kDraws, number);
+      const Judgement j = judge(trials_of(right, trials, number), predicted(t),
+                                replicates(t, number, kMatrices), kDraws, number);
       all.push_back(j.p);
       tv.push_back(j.total_variation.p);
       energy.push_back(j.energy.p);
@@ -222,13 +227,16 @@ TEST(Judge, PValuesAreUniformUnderTheNull) {
       for (int i = 0; i < kRepeats; ++i) excess = std::max(excess, (i + 1.0) / kRepeats - (*p)[i]);
       constexpr double kBootstrap = 0.03;
       EXPECT_LT(excess, 1.63 / std::sqrt(kRepeats) + 1.0 / kDraws + kBootstrap);
-      EXPECT_LE(std::count_if(p->begin(), p->end(), [](double x) { return x <= 0.05; }), 0.09 * kRepeats);
+      EXPECT_LE(std::count_if(p->begin(), p->end(), [](double x) { return x <= 0.05; }),
+                0.09 * kRepeats);
     }
-    EXPECT_GE(std::count_if(all.begin(), all.end(), [](double x) { return x <= 0.05; }), 0.02 * kRepeats);
+    EXPECT_GE(std::count_if(all.begin(), all.end(), [](double x) { return x <= 0.05; }),
+              0.02 * kRepeats);
   }
 }
 
-// Trials of a chain whose walks cross more often: seen, and by which ending; not seen with too coarse a matrix.
+// Trials of a chain whose walks cross more often: seen, and by which ending; not seen with too
+// coarse a matrix.
 TEST(Judge, NamesTheEndingThatDiffers) {
   Transitions other = truth();
   for (int row = 0; row < 5; ++row) {
@@ -255,8 +263,10 @@ TEST(Judge, IsTheSmallestAdjustedPValue) {
   const FinalDistribution right = predicted(truth());
   for (std::uint64_t i = 0; i < 40; ++i) {
     const Transitions t = simulated(200, 9000 + i);
-    const Judgement j = judge(trials_of(right, 400, 100 + i), predicted(t), replicates(t, i, 60), 99, i);
-    double least = std::min({j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted});
+    const Judgement j =
+        judge(trials_of(right, 400, 100 + i), predicted(t), replicates(t, i, 60), 99, i);
+    double least =
+        std::min({j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted});
     for (const auto& e : j.endings) {
       EXPECT_GE(e.p_adjusted, e.p);
       least = std::min(least, e.p_adjusted);
@@ -271,7 +281,9 @@ TEST(Judge, SameBitsForAnyThreadsAndRefusals) {
   const FinalDistribution p = predicted(t);
   const auto others = replicates(t, 2, 20);
   const SeenEndings seen = trials_of(p, 300, 3);
-  const auto on = [&](int threads) { return test::on_threads(threads, [&] { return judge(seen, p, others, 99, 4); }); };
+  const auto on = [&](int threads) {
+    return test::on_threads(threads, [&] { return judge(seen, p, others, 99, 4); });
+  };
   const Judgement a = on(1), b = on(3);
   EXPECT_EQ(a.p, b.p);
   EXPECT_EQ(a.energy.p, b.energy.p);

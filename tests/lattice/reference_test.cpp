@@ -48,8 +48,9 @@ void expect_adds_up(const FieldTally& t, const FieldParams& field) {
   EXPECT_EQ(t.trapped + t.left_field + t.cut_off + t.broken, t.trials);
   const auto of = [&](markov::Ending e) { return t.endings[static_cast<std::size_t>(e)]; };
   EXPECT_EQ(of(markov::Ending::trapped), t.trapped);
-  EXPECT_EQ(of(markov::Ending::far_edge) + of(markov::Ending::left_edge) + of(markov::Ending::right_edge),
-            t.left_field);
+  EXPECT_EQ(
+      of(markov::Ending::far_edge) + of(markov::Ending::left_edge) + of(markov::Ending::right_edge),
+      t.left_field);
   EXPECT_EQ(of(markov::Ending::cut_off), t.cut_off);
   EXPECT_EQ(of(markov::Ending::near_edge) + of(markov::Ending::unsampled), 0);
   EXPECT_EQ(t.trapped_gates.sum(), t.trapped);
@@ -90,8 +91,8 @@ TEST(RunField, TalliesAddUp) {
   for (const FieldParams& field :
        {FieldParams{}, FieldParams{3, 2, 13}, FieldParams{9, 9, 4}, FieldParams{9, 9, 0},
         FieldParams{1, 5, 0}, FieldParams{4, 1, 2}}) {
-    SCOPED_TRACE(testing::Message() << field.columns << " x " << field.rows << ", at most "
-                                    << field.max_gates);
+    SCOPED_TRACE(testing::Message()
+                 << field.columns << " x " << field.rows << ", at most " << field.max_gates);
     const FieldTally t = run(p, field, {0, 200});
     expect_adds_up(t, field);
     EXPECT_TRUE(t.health.clean());
@@ -142,9 +143,8 @@ TEST(RunField, TrialsCanBeReplayedAlone) {
   const FieldTally t = run(p, field, {100, 60}, 8);
   std::array<std::int64_t, kBoundaries> entries{};
   for (int i = 0; i < 60; ++i) {
-    RandomForce force(p.forces,
-                      Random(Purpose::field,
-                             {8, stream_row(p, kStart), static_cast<std::uint64_t>(100 + i)}));
+    RandomForce force(p.forces, Random(Purpose::field, {8, stream_row(p, kStart),
+                                                        static_cast<std::uint64_t>(100 + i)}));
     BodyState body = kStart;
     int ix = 0, iy = 0;
     for (int gates = 1;; ++gates) {
@@ -322,9 +322,10 @@ TEST(Fidelity, ActiveIsGateByGate) {
         const Crossing crossing = crossing_of(p, r.ending, r.exit);
         const Move move = move_into(crossing.boundary);
         const bool leaves = !field.contains(column + move.di_x, row + move.di_y);
-        if (leaves) why = row + move.di_y > 8      ? markov::Ending::far_edge
-                          : column + move.di_x < 0 ? markov::Ending::left_edge
-                                                   : markov::Ending::right_edge;
+        if (leaves)
+          why = row + move.di_y > 8      ? markov::Ending::far_edge
+                : column + move.di_x < 0 ? markov::Ending::left_edge
+                                         : markov::Ending::right_edge;
         if (!leaves && gates == 13) why = markov::Ending::cut_off;
         if (leaves) ++plain.departed_gates(row, column);
         plain.left_field += leaves;
@@ -406,7 +407,8 @@ TEST(Fidelity, SameTallyOnAnyNumberOfThreadsAndForAnySplit) {
     expect_same(on(2), whole);
     expect_same(on(8), whole);
     FieldTally split(field);
-    for (const TrialRange part : {TrialRange{0, 1}, {1, 32}, {33, 17}}) split += run(p, field, part);
+    for (const TrialRange part : {TrialRange{0, 1}, {1, 32}, {33, 17}})
+      split += run(p, field, part);
     expect_same(split, whole);
   }
 }
@@ -473,7 +475,8 @@ TEST(FieldTrace, IsTheTrialItself) {
   for (std::int64_t i = 0; i < 40; ++i) {
     const FieldTrace t = trace_field(p, field, kStart, 3, i);
     ++endings[t.ending];
-    EXPECT_EQ(t.visits.back().row * field.columns + t.visits.back().column, tally.final_gate_of_trial[i]);
+    EXPECT_EQ(t.visits.back().row * field.columns + t.visits.back().column,
+              tally.final_gate_of_trial[i]);
     for (std::size_t v = 1; v < t.visits.size(); ++v) {
       const auto &from = t.visits[v - 1], &to = t.visits[v];
       EXPECT_EQ(std::abs(from.column - to.column) + to.row - from.row, 1);

@@ -288,8 +288,9 @@ TEST_F(ChainIo, RefusesToWriteWhatDoesNotAddUp) {
   refused("name \"empty\" is taken", [](CountsFile& f) { f.arrays[1].name = "empty"; });
   refused("name \"empty_length\" is taken",
           [](CountsFile& f) { f.arrays[1].name = "empty_length"; });
-  refused("name \"empty_length\" is taken",
-          [](CountsFile& f) { f.arrays = {{"empty_length", "", "", {}}, {"empty", "", "", {}}}; });
+  refused("name \"empty_length\" is taken", [](CountsFile& f) {
+    f.arrays = {{"empty_length", "", "", {}}, {"empty", "", "", {}}};
+  });
   refused("name \"checksum\" is taken", [](CountsFile& f) { f.text["checksum"] = "1"; });
   for (const std::string name : {"", "1st", "_x", "a b", "a/b", "\xc3\xa9t\xc3\xa9"}) {
     refused("name \"" + name + "\"", [&](CountsFile& f) { f.arrays[0].name = name; });
@@ -446,14 +447,16 @@ TEST_F(ChainIo, RefusesEveryMalformedDraft) {
   refused("row 2 (counted from 1): 4 clamped of 3 trials", value("clamped", 1, 4));
   refused("row 2 (counted from 1): -1 clamped", value("clamped", 1, -1));
   refused("row 1 (counted from 1): column 2 is repeated", value("count_column", 0, 2));
-  refused("row 2 (counted from 1): column 1 is repeated or out of order",
-          [](Draft& d) { d.variables.at("count_column").values = {0, 2, 2, 1}; });
+  refused("row 2 (counted from 1): column 1 is repeated or out of order", [](Draft& d) {
+    d.variables.at("count_column").values = {0, 2, 2, 1};
+  });
   refused("row 1 (counted from 1): column -1 is out of range", value("count_column", 0, -1));
   refused("row 2 (counted from 1): column 3 is out of range", value("count_column", 3, 3));
   refused("count_row: entry 1, row -1", value("count_row", 0, -1));
   refused("count_row: entry 4, row 2", value("count_row", 3, 2));
-  refused("count_row: entry 3, row 0",
-          [](Draft& d) { d.variables.at("count_row").values = {0, 1, 0, 1}; });
+  refused("count_row: entry 3, row 0", [](Draft& d) {
+    d.variables.at("count_row").values = {0, 1, 0, 1};
+  });
   refused("exit of output 2 (counted from 1): next_input 2", value("exit_next_input", 1, 2));
   refused("exit of output 2 (counted from 1): next_input -2", value("exit_next_input", 1, -2));
   refused("exit of output 3 (counted from 1): trapped", value("exit_di_x", 2, 1));

@@ -25,9 +25,9 @@ std::string refusal(const std::function<void()>& action) {
   return "accepted";
 }
 
-#define EXPECT_REFUSED(action, part)                      \
-  do {                                                    \
-    const std::string what = refusal([&] { action; });    \
+#define EXPECT_REFUSED(action, part)                       \
+  do {                                                     \
+    const std::string what = refusal([&] { action; });     \
     EXPECT_NE(what.find(part), std::string::npos) << what; \
   } while (false)
 
@@ -89,9 +89,9 @@ TEST(Chain, RefusesARowThatDoesNotAddUp) {
 
 TEST(Chain, RefusesWhatIsNoProbability) {
   for (const double p : {-1e-300, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-    EXPECT_REFUSED(Chain::from_probabilities(
-                       matrix(2, 2, {{0, 1, 1.0}, {1, 0, p}, {1, 1, 1.0}}), kTwoExits),
-                   "of output 1 is not a probability");
+    EXPECT_REFUSED(
+        Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}, {1, 0, p}, {1, 1, 1.0}}), kTwoExits),
+        "of output 1 is not a probability");
   }
 }
 

@@ -94,8 +94,10 @@ inline constexpr Field kNineByNine{9, 9};
 inline constexpr Start kBottomCentre{4, 0, 12};
 
 /// The same endings, in all and cell by cell, within `bound` each.
-inline void expect_same_endings(const FinalDistribution& a, const FinalDistribution& b, double bound) {
-  for (std::size_t e = 0; e < kEndings; ++e) EXPECT_NEAR(a.endings[e], b.endings[e], bound) << "ending " << e;
+inline void expect_same_endings(const FinalDistribution& a, const FinalDistribution& b,
+                                double bound) {
+  for (std::size_t e = 0; e < kEndings; ++e)
+    EXPECT_NEAR(a.endings[e], b.endings[e], bound) << "ending " << e;
   EXPECT_LE((trapped_cells(a) - trapped_cells(b)).abs().maxCoeff(), bound);
   EXPECT_LE((departed_cells(a) - departed_cells(b)).abs().maxCoeff(), bound);
 }
@@ -123,10 +125,10 @@ inline void expect_endings_add_up(const FinalDistribution& d) {
 }
 
 /// The rule of a step as walk.h words it: no boxes, no sparse rows, and digits to spare.
-inline FinalDistribution propagate_plainly(const Chain& chain, const Field& field, const Start& start,
-                                    int max_cells) {
-  using State = std::array<int, 3>;             // column, row, input
-  const Eigen::MatrixXd p = chain.matrix();     // (n_in x n_out)
+inline FinalDistribution propagate_plainly(const Chain& chain, const Field& field,
+                                           const Start& start, int max_cells) {
+  using State = std::array<int, 3>;          // column, row, input
+  const Eigen::MatrixXd p = chain.matrix();  // (n_in x n_out)
   long double draws = 0;
   std::map<std::array<int, 2>, std::array<long double, kEndings>> final_cells;  // by Ending
   const auto end = [&](Ending why, int column, int row, long double mass) {
@@ -155,7 +157,8 @@ inline FinalDistribution propagate_plainly(const Chain& chain, const Field& fiel
           end(r >= field.rows ? Ending::far_edge
               : r < 0         ? Ending::near_edge
               : c < 0         ? Ending::left_edge
-                              : Ending::right_edge, column, row, m);
+                              : Ending::right_edge,
+              column, row, m);
         else if (visited == max_cells)
           end(Ending::cut_off, column, row, m);
         else

@@ -81,13 +81,12 @@ Chain lattice_chain(std::uint64_t seed, std::initializer_list<int> emptied = {})
 Chain knuths_die() {
   constexpr int kFace = 7;
   std::vector<Exit> exits;
-  for (int state = 0; state < 7; ++state) exits.push_back({state, 0, 0});       // outputs 0 ... 6
-  for (int face = 1; face <= 6; ++face) exits.push_back({kFace, face, 0});      // 7 ... 12
-  exits.push_back({});                                                          // 13
+  for (int state = 0; state < 7; ++state) exits.push_back({state, 0, 0});   // outputs 0 ... 6
+  for (int face = 1; face <= 6; ++face) exits.push_back({kFace, face, 0});  // 7 ... 12
+  exits.push_back({});                                                      // 13
   const auto face = [](int k) { return 6 + k; };
-  const std::array<std::array<int, 2>, 7> flips = {{{1, 2}, {3, 4}, {5, 6}, {1, face(1)},
-                                                    {face(2), face(3)}, {face(4), face(5)},
-                                                    {2, face(6)}}};
+  const std::array<std::array<int, 2>, 7> flips = {
+      {{1, 2}, {3, 4}, {5, 6}, {1, face(1)}, {face(2), face(3)}, {face(4), face(5)}, {2, face(6)}}};
   std::vector<Entry> entries = {{kFace, 13, 1.0}};
   for (int state = 0; state < 7; ++state) {
     for (const int output : flips[static_cast<std::size_t>(state)]) {
@@ -219,8 +218,9 @@ TEST(Exact, WhereAStepEnds) {
   EXPECT_EQ(propagate(chain, field, {1, 0, 1}, 5).steps, 0);
 }
 
-// Up 1/2, left and right 1/8, trapped 1/4, from the middle of the first row of 3 x 3 cells. A row that is
-// entered by (x, y, x) is visited m = (y + x/4) 32/31 times in its middle and x + m/8 at each side.
+// Up 1/2, left and right 1/8, trapped 1/4, from the middle of the first row of 3 x 3 cells. A row
+// that is entered by (x, y, x) is visited m = (y + x/4) 32/31 times in its middle and x + m/8 at
+// each side.
 TEST(Exact, EndingsOfThreeByThreeAreFractions) {
   const Chain chain = Chain::from_probabilities(
       matrix(1, 4, {{0, 0, 0.5}, {0, 1, 0.125}, {0, 2, 0.125}, {0, 3, 0.25}}),
@@ -228,15 +228,17 @@ TEST(Exact, EndingsOfThreeByThreeAreFractions) {
   const Field field{3, 3};
   const Start start{1, 0, 0};
   const Sweeper sweeper(chain);
-  const auto expect = [&](const FinalDistribution& d, double far, double side, double trapped, double cut,
-                          double bound) {
+  const auto expect = [&](const FinalDistribution& d, double far, double side, double trapped,
+                          double cut, double bound) {
     const std::array<double, kEndings> wanted{trapped, far, side, side, 0.0, cut, 0.0};
-    for (std::size_t e = 0; e < kEndings; ++e) EXPECT_NEAR(d.endings[e], wanted[e], bound) << "ending " << e;
+    for (std::size_t e = 0; e < kEndings; ++e)
+      EXPECT_NEAR(d.endings[e], wanted[e], bound) << "ending " << e;
     expect_whole(d);
   };
   const auto expect_all = [&](int max_cells, double far, double side, double trapped, double cut) {
     constexpr double kBound = 1e-12;  // what may still walk
-    expect(propagate_plainly(chain, field, start, max_cells == 0 ? 100 : max_cells), far, side, trapped, cut, kBound);
+    expect(propagate_plainly(chain, field, start, max_cells == 0 ? 100 : max_cells), far, side,
+           trapped, cut, kBound);
     expect(propagate(chain, field, start, max_cells), far, side, trapped, cut, kBound);
     expect(sweeper.propagate(field, start, max_cells), far, side, trapped, cut, kBound);
     expect(sweeper.predict(field, start, max_cells), far, side, trapped, cut, kBound);
@@ -251,11 +253,14 @@ TEST(Exact, EndingsOfThreeByThreeAreFractions) {
   };
   const double whole = 29791.0;
   expect_all(0, 7584 / whole, 2729 / (2 * whole), 19478 / whole, 0.0);
-  expect(solve_absorption(chain, field, start), 7584 / whole, 2729 / (2 * whole), 19478 / whole, 0.0, 1e-14);
+  expect(solve_absorption(chain, field, start), 7584 / whole, 2729 / (2 * whole), 19478 / whole,
+         0.0, 1e-14);
   for (const auto method : {Sweeper::RowMethod::elimination, Sweeper::RowMethod::sums})
-    expect(sweeper.march(field, start, 1e-14, method), 7584 / whole, 2729 / (2 * whole), 19478 / whole, 0.0, 1e-13);
+    expect(sweeper.march(field, start, 1e-14, method), 7584 / whole, 2729 / (2 * whole),
+           19478 / whole, 0.0, 1e-13);
   expect_all(2, 0.0, 1 / 64.0, 7 / 16.0, 17 / 32.0);
-  // Who leaves is last seen at the edges: over the far one from row 2, over the sides from columns 0, 2.
+  // Who leaves is last seen at the edges: over the far one from row 2, over the sides from columns
+  // 0, 2.
   const FinalDistribution d = propagate(chain, field, start, 0);
   const CellProbabilities departed = departed_cells(d), trapped = trapped_cells(d);
   EXPECT_EQ(departed(0, 1), 0.0);
@@ -338,12 +343,14 @@ TEST(Exact, PartlyEmptyFieldsAndLongMoves) {
 
 // ---- Rows that differ ----
 
-// Brute force: all (cell, input) pairs in one dense matrix; visits by its inverse, or (with a limit) by
-// its powers; then every output of every visit is looked at once.
-FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& field, const Start& start,
-                          int max_cells) {
+// Brute force: all (cell, input) pairs in one dense matrix; visits by its inverse, or (with a
+// limit) by its powers; then every output of every visit is looked at once.
+FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& field,
+                          const Start& start, int max_cells) {
   const int n = chain_of_row.front().inputs(), cells = field.columns * field.rows;
-  const auto state = [&](int column, int row, int input) { return (row * field.columns + column) * n + input; };
+  const auto state = [&](int column, int row, int input) {
+    return (row * field.columns + column) * n + input;
+  };
   struct Draw {
     double p;
     int next;  // state; or where it ends, below
@@ -358,7 +365,8 @@ FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& f
       const int c = column + exit.di_x, r = row + exit.di_y;
       const bool inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
       all.push_back({chain.matrix().coeff(s % n, j), exit.next_input == Exit::kTrapped ? kTrapped
-                                                     : inside ? state(c, r, exit.next_input) : kLeft});
+                                                     : inside ? state(c, r, exit.next_input)
+                                                              : kLeft});
     }
     return all;
   };
@@ -445,8 +453,8 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   for (int from = 1; from <= 3; ++from) {
     for (int to = 1; to <= 3; ++to) entries.push_back({from, to, 1.0 / 3.0});
   }
-  const Chain chain = Chain::from_probabilities(
-      matrix(4, 5, entries), {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {}});
+  const Chain chain = Chain::from_probabilities(matrix(4, 5, entries),
+                                                {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {}});
   EXPECT_THROW((void)solve_absorption(chain, {1, 1}, {}), std::runtime_error);
   const FinalDistribution d = propagate(chain, {1, 1}, {}, 0, 1e-13, 100);
   EXPECT_EQ(d.steps, 100);
@@ -459,8 +467,9 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   EXPECT_EQ(propagate(one, {1, 1}, {}, 0, 0.0, 7).remainder, 1.0);
   // Rounding may make the sum of its row 1 +- 1e-16: no less a loop.
   for (const double p : {1.0 / 6, 0.1, 0.3, 1.0 / 7}) {
-    const Chain parts = Chain::from_probabilities(matrix(1, 3, {{0, 0, p}, {0, 1, p}, {0, 2, 1.0 - 2 * p}}),
-                                                  {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+    const Chain parts =
+        Chain::from_probabilities(matrix(1, 3, {{0, 0, p}, {0, 1, p}, {0, 2, 1.0 - 2 * p}}),
+                                  {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
     EXPECT_THROW((void)solve_absorption(parts, {1, 1}, {}), std::runtime_error) << p;
   }
 }

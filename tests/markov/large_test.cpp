@@ -16,8 +16,8 @@ namespace {
 const int kSide = gatewalk::test::usual_or_full(301, 1001);
 const std::int64_t kWalks = gatewalk::test::usual_or_full(20'000, 1'000'000);
 
-/// The paper's shape: from below (0 to 24), to the right (25 to 54), to the left (55 to 84). Walks keep
-/// their direction for some 20 cells and end in `trapped` of the draws.
+/// The paper's shape: from below (0 to 24), to the right (25 to 54), to the left (55 to 84). Walks
+/// keep their direction for some 20 cells and end in `trapped` of the draws.
 Chain keeping_on(double trapped) {
   test::Words words(11);
   auto exits = test::lattice_exits();
@@ -28,7 +28,8 @@ Chain keeping_on(double trapped) {
     const int kind = row < 25 ? 0 : row < 55 ? 1 : row < 85 ? 2 : 0;  // up, right, left
     const double up = kind == 0 ? 0.9 : 0.05;
     const auto share_out = [&](double p, int first, int count) {
-      for (int k = 0; k < 4; ++k) entries.push_back({row, first + (words.below(count / 4) * 4 + k) % count, p / 4});
+      for (int k = 0; k < 4; ++k)
+        entries.push_back({row, first + (words.below(count / 4) * 4 + k) % count, p / 4});
     };
     share_out((1 - trapped) * up, 0, 25);
     share_out((1 - trapped) * (1 - up) * (kind == 1 ? 0.9 : kind == 2 ? 0.1 : 0.5), 25, 30);
@@ -48,9 +49,9 @@ void expect_whole(const FinalDistribution& d) {
 
 using Shares = Eigen::ArrayXd;
 
-// A count of n walks is off a probability p by sqrt(p (1 - p) / n) or less on average; one walk moves
-// the total variation by 1/n, so it exceeds its mean by more than sqrt(10 / n) once in e^20 = 5e8
-// (McDiarmid).
+// A count of n walks is off a probability p by sqrt(p (1 - p) / n) or less on average; one walk
+// moves the total variation by 1/n, so it exceeds its mean by more than sqrt(10 / n) once in e^20 =
+// 5e8 (McDiarmid).
 void expect_as_walked(const Shares& walked, const Shares& p, const char* what) {
   const auto n = static_cast<double>(kWalks);
   const double apart = 0.5 * (walked / n - p).abs().sum();
@@ -72,7 +73,8 @@ TEST(LargeField, IsAsWalked) {
   const WalkTally tally = Walker(chain).walk(field, start, 0, 5, {0, kWalks});
   const Eigen::ArrayXXd walked = tally.final_cells.cast<double>();
   expect_as_walked(walked.rowwise().sum(), d.final_cells.rowwise().sum(), "final rows");
-  expect_as_walked(walked.colwise().sum().transpose(), d.final_cells.colwise().sum().transpose(), "final columns");
+  expect_as_walked(walked.colwise().sum().transpose(), d.final_cells.colwise().sum().transpose(),
+                   "final columns");
   const auto n = static_cast<double>(kWalks);
   const Shares fates{{static_cast<double>(tally.trapped), static_cast<double>(tally.left_field)}};
   expect_as_walked(fates, Shares{{d.trapped, d.left_field}}, "fates");
@@ -88,13 +90,14 @@ TEST(LargeField, EliminationIsSummation) {
   const auto b = sweeper.march(field, start, 1e-12, Sweeper::RowMethod::sums);
   expect_whole(a);
   expect_whole(b);
-  EXPECT_LE((a.final_cells - b.final_cells).abs().sum(), a.remainder + a.rounding + b.remainder + b.rounding);
+  EXPECT_LE((a.final_cells - b.final_cells).abs().sum(),
+            a.remainder + a.rounding + b.remainder + b.rounding);
   EXPECT_LE((a.final_cells - b.final_cells).abs().sum(), 1e-11);
   EXPECT_NEAR(a.mean_steps / b.mean_steps, 1.0, 1e-9);
 }
 
-// Where walks end long before any border, rows (and columns) alone are a chain of their own: the same
-// one with its moves in the other direction struck out.
+// Where walks end long before any border, rows (and columns) alone are a chain of their own: the
+// same one with its moves in the other direction struck out.
 TEST(LargeField, RowsAndColumnsAreChainsOfTheirOwn) {
   const Chain chain = keeping_on(0.3);
   const auto d = Sweeper(chain).predict({kSide, kSide}, {kSide / 2, 0, 12}, 0);

@@ -9,9 +9,11 @@
 namespace gatewalk::markov {
 namespace {
 
-/// Two inputs entered from the left, two from the right, one (2) from both; the rest goes up or ends.
+/// Two inputs entered from the left, two from the right, one (2) from both; the rest goes up or
+/// ends.
 Chain small() {
-  const std::vector<Exit> exits{{0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {2, -1, 0}, {3, -1, 0}, {4, -1, 0}, {0, 0, 1}, {}};
+  const std::vector<Exit> exits{{0, 1, 0},  {1, 1, 0},  {2, 1, 0}, {2, -1, 0},
+                                {3, -1, 0}, {4, -1, 0}, {0, 0, 1}, {}};
   std::vector<test::Entry> entries;
   test::Words words(3);
   for (int row = 0; row < 5; ++row) {
@@ -32,7 +34,8 @@ Eigen::MatrixXd within_row(const Chain& chain, int cells) {
       for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
         const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
         const int next = cell + exit.di_x;
-        if (exit.next_input == Exit::kTrapped || exit.di_y != 0 || next < 0 || next >= cells) continue;
+        if (exit.next_input == Exit::kTrapped || exit.di_y != 0 || next < 0 || next >= cells)
+          continue;
         q(next * n + exit.next_input, cell * n + input) += it.value();
       }
   return q;
@@ -46,7 +49,8 @@ void expect_solves(const Chain& chain, int cells, double bound) {
   Stripes entering = Stripes::Zero(n, cells + 3), visits = Stripes::Ones(n, cells + 3);
   std::vector<char> sideways(static_cast<std::size_t>(n));
   for (const Exit& exit : chain.exits())
-    if (exit.next_input != Exit::kTrapped && exit.di_y == 0) sideways[static_cast<std::size_t>(exit.next_input)] = 1;
+    if (exit.next_input != Exit::kTrapped && exit.di_y == 0)
+      sideways[static_cast<std::size_t>(exit.next_input)] = 1;
   Eigen::VectorXd b = Eigen::VectorXd::Zero(n * cells);
   test::Words words(7);
   for (int input = 0; input < n; ++input)
@@ -59,7 +63,8 @@ void expect_solves(const Chain& chain, int cells, double bound) {
   solver.solve(columns, entering.data(), visits.data(), cells + 3, workspace.data());
 
   const Eigen::MatrixXd q = within_row(chain, cells);
-  const Eigen::VectorXd x = (Eigen::MatrixXd::Identity(n * cells, n * cells) - q).partialPivLu().solve(b);
+  const Eigen::VectorXd x =
+      (Eigen::MatrixXd::Identity(n * cells, n * cells) - q).partialPivLu().solve(b);
   for (int input = 0; input < n; ++input)
     for (int cell = 0; cell < cells; ++cell)
       EXPECT_NEAR(visits(input, cell) - 1.0, x(cell * n + input), bound * x.maxCoeff());
@@ -73,7 +78,8 @@ TEST(RowSolver, IsTheDenseSolutionForThePapersShape) {
   auto exits = test::lattice_exits();
   for (Exit& exit : exits)
     if (exit.di_y < 0) exit.di_y = 1;
-  for (const int cells : {1, 5, 12}) expect_solves(Chain::from_counts(test::lattice_counts(1), exits), cells, 1e-12);
+  for (const int cells : {1, 5, 12})
+    expect_solves(Chain::from_counts(test::lattice_counts(1), exits), cells, 1e-12);
 }
 
 TEST(RowSolver, FurtherColumnsAreTheLastOne) {

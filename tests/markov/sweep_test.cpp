@@ -46,8 +46,8 @@ bool same_bits(const FinalDistribution& a, const FinalDistribution& b) {
          a.trapped == b.trapped && a.left_field == b.left_field && a.cut_off == b.cut_off &&
          a.unsampled == b.unsampled && a.remainder == b.remainder && a.mean_steps == b.mean_steps &&
          a.rounding == b.rounding && a.steps == b.steps && a.endings == b.endings &&
-         std::equal(a.mixed_cells.begin(), a.mixed_cells.end(), b.mixed_cells.begin(), b.mixed_cells.end(),
-                    [](const CellEndings& x, const CellEndings& y) {
+         std::equal(a.mixed_cells.begin(), a.mixed_cells.end(), b.mixed_cells.begin(),
+                    b.mixed_cells.end(), [](const CellEndings& x, const CellEndings& y) {
                       return x.cell == y.cell && x.by_ending == y.by_ending;
                     });
 }
@@ -103,7 +103,8 @@ TEST(Sweep, PropagatesAsThePlainReferenceWhereFewRowsAreEntered) {
         }
         if (!sweeper.can_march()) continue;
         try {
-          const auto marched = sweeper.march({6, 5}, {2, 1, input}, 1e-13, RowMethod::cheapest, 1000);
+          const auto marched =
+              sweeper.march({6, 5}, {2, 1, input}, 1e-13, RowMethod::cheapest, 1000);
           expect_near(marched, propagate(chain, {6, 5}, {2, 1, input}, 0, 1e-13, 1000), 1e-12);
         } catch (const std::runtime_error&) {  // left and right for ever
           EXPECT_GT(propagate(chain, {6, 5}, {2, 1, input}, 0, 1e-13, 1000).remainder, 0.1);
@@ -113,7 +114,8 @@ TEST(Sweep, PropagatesAsThePlainReferenceWhereFewRowsAreEntered) {
   }
 }
 
-/// Up to 9 inputs, moves of up to 2 cells (of `up` alone: none down), rows of any number of outputs.
+/// Up to 9 inputs, moves of up to 2 cells (of `up` alone: none down), rows of any number of
+/// outputs.
 Chain random_chain(test::Words& words, bool chequered, bool up) {
   const int inputs = 1 + words.below(9), outputs = 1 + words.below(14);
   std::vector<Exit> exits;
@@ -139,7 +141,8 @@ TEST(Sweep, RandomChains) {
     const Field field{1 + words.below(12), 1 + words.below(12)};
     std::vector<Start> starts;
     for (int j = 0; j < 1 + k % 5; ++j)
-      starts.push_back({words.below(field.columns), words.below(field.rows), words.below(chain.inputs())});
+      starts.push_back(
+          {words.below(field.columns), words.below(field.rows), words.below(chain.inputs())});
     const int limit = 1 + words.below(15);
     const auto fast = sweeper.propagate_all(field, starts, limit);
     const auto free = sweeper.propagate_all(field, starts, 0, 1e-13, 60);
@@ -162,14 +165,18 @@ TEST(Sweep, RandomChains) {
 
 TEST(Sweep, RowsThatDifferAreThePlainReference) {
   for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
-    const std::vector<Chain> chains{with_gaps(1, exits), thin(2, exits), Chain::from_counts(lattice_counts(3), exits)};
-    for (const std::vector<int>& of_row :
-         {std::vector{0, 1, 2, 0, 1, 2, 2, 0}, {2, 2, 2, 0, 0, 2, 2, 2}, {1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 2}}) {
+    const std::vector<Chain> chains{with_gaps(1, exits), thin(2, exits),
+                                    Chain::from_counts(lattice_counts(3), exits)};
+    for (const std::vector<int>& of_row : {std::vector{0, 1, 2, 0, 1, 2, 2, 0},
+                                           {2, 2, 2, 0, 0, 2, 2, 2},
+                                           {1, 1, 1, 1, 1, 1, 1, 1},
+                                           {0, 0, 0, 0, 0, 0, 0, 2}}) {
       const RowChains rows(chains, of_row);
       const Sweeper sweeper(rows);
       for (const int columns : {1, 5, 9, 40}) {
         const Field field{columns, 8};
-        const std::vector<Start> starts{{columns / 2, 0, 12}, {0, 3, 40}, {columns - 1, 7, 60}, {columns / 3, 2, 85}};
+        const std::vector<Start> starts{
+            {columns / 2, 0, 12}, {0, 3, 40}, {columns - 1, 7, 60}, {columns / 3, 2, 85}};
         for (const int limit : {1, 2, 13, 0}) {
           const auto fast = sweeper.propagate_all(field, starts, limit, 1e-13, 300);
           for (std::size_t k = 0; k < starts.size(); ++k) {
@@ -198,7 +205,8 @@ TEST(Sweep, EqualChainsInTurnHaveTheBitsOfOne) {
     const Sweeper one(chain), two(RowChains({chain, chain}, {0, 1, 1, 0, 1, 0, 0, 0, 1}));
     const std::vector<Start> starts{{4, 0, 12}, {1, 5, 33}};
     for (const int limit : {2, 13, 0}) {
-      const auto a = one.predict_all(kNineByNine, starts, limit), b = two.predict_all(kNineByNine, starts, limit);
+      const auto a = one.predict_all(kNineByNine, starts, limit),
+                 b = two.predict_all(kNineByNine, starts, limit);
       for (std::size_t k = 0; k < starts.size(); ++k) EXPECT_TRUE(same_bits(a[k], b[k])) << limit;
     }
     EXPECT_THROW((void)two.predict({9, 8}, kBottomCentre, 13), std::invalid_argument);
@@ -208,7 +216,7 @@ TEST(Sweep, EqualChainsInTurnHaveTheBitsOfOne) {
 
 TEST(Sweep, PropagatesAsThePlainReference) {
   const std::vector<std::pair<Field, Start>> places{
-      {kNineByNine, kBottomCentre}, {{1, 1}, {0, 0, 5}}, {{3, 5}, {2, 4, 80}},
+      {kNineByNine, kBottomCentre}, {{1, 1}, {0, 0, 5}},  {{3, 5}, {2, 4, 80}},
       {{20, 2}, {0, 1, 30}},        {{2, 20}, {1, 7, 0}}, {{64, 64}, {63, 63, 9}}};
   for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
     for (const std::uint64_t seed : {1, 2}) {
@@ -231,11 +239,12 @@ TEST(Sweep, PropagatesAsThePlainReference) {
   }
 }
 
-// What goes up by two rows and out of the field has left it, and does not remain as well; a loose tolerance
-// shows it.
+// What goes up by two rows and out of the field has left it, and does not remain as well; a loose
+// tolerance shows it.
 TEST(Sweep, LeapsOutOfTheTopAreCountedOnce) {
   const Chain chain = Chain::from_probabilities(
-      matrix(2, 4, {{0, 2, 1.0}, {1, 0, 0.05}, {1, 1, 0.01}, {1, 3, 0.94}}), {{0, 0, 1}, {1, 0, 2}, {1, 0, 1}, {}});
+      matrix(2, 4, {{0, 2, 1.0}, {1, 0, 0.05}, {1, 1, 0.01}, {1, 3, 0.94}}),
+      {{0, 0, 1}, {1, 0, 2}, {1, 0, 1}, {}});
   for (const RowMethod method : kMethods)
     expect_whole(Sweeper(chain).march({1, 3}, {0, 0, 0}, 0.3, method));
 }
@@ -253,15 +262,18 @@ TEST(Sweep, FindsAFewThatCircleForLong) {
   exits.push_back({});
   const Chain chain = Chain::from_probabilities(matrix(n, n + 1, entries), exits);
   const auto d = Sweeper(chain).predict({5, 1}, {2, 0, 0}, 0);
-  EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0, d.rounding + 1e-13);  // some 10^6 moves are rounded
+  EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0,
+              d.rounding + 1e-13);  // some 10^6 moves are rounded
   EXPECT_LT(d.rounding, 1e-6);
   expect_near(d, solve_absorption(chain, {5, 1}, {2, 0, 0}), 1e-9);
 }
 
 TEST(Sweep, RefusesMovesBeyondAnyField) {
-  const Chain chain = Chain::from_probabilities(matrix(1, 2, {{0, 0, 0.5}, {0, 1, 0.5}}), {{0, 1'000'000, 0}, {}});
+  const Chain chain =
+      Chain::from_probabilities(matrix(1, 2, {{0, 0, 0.5}, {0, 1, 0.5}}), {{0, 1'000'000, 0}, {}});
   EXPECT_THROW(Sweeper{chain}, std::invalid_argument);
-  EXPECT_THROW((void)Sweeper(Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{}})).march({1, 1}, {}, 0.1, RowMethod::sums, 0),
+  EXPECT_THROW((void)Sweeper(Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{}}))
+                   .march({1, 1}, {}, 0.1, RowMethod::sums, 0),
                std::invalid_argument);
 }
 
@@ -280,7 +292,8 @@ TEST(Sweep, StartInARowThatWasNeverSampled) {
   const Chain chain = with_gaps(1, never_down());
   const Sweeper sweeper(chain);
   const Start start{4, 2, 40};
-  for (const auto& d : {sweeper.propagate(kNineByNine, start, 13), sweeper.march(kNineByNine, start)}) {
+  for (const auto& d :
+       {sweeper.propagate(kNineByNine, start, 13), sweeper.march(kNineByNine, start)}) {
     EXPECT_EQ(d.unsampled, 1.0);
     EXPECT_EQ(d.final_cells(2, 4), 1.0);
     EXPECT_EQ(d.steps, 0);
@@ -310,8 +323,11 @@ TEST(Sweep, MarchIsTheLimitOfPropagation) {
     const Chain chain = with_gaps(seed, never_down());
     const Sweeper sweeper(chain);
     ASSERT_TRUE(sweeper.can_march());
-    for (const auto& [field, start] : std::vector<std::pair<Field, Start>>{
-             {kNineByNine, kBottomCentre}, {{9, 9}, {0, 8, 3 + 1}}, {{1, 30}, {0, 0, 2}}, {{40, 3}, {39, 1, 7}}}) {
+    for (const auto& [field, start] :
+         std::vector<std::pair<Field, Start>>{{kNineByNine, kBottomCentre},
+                                              {{9, 9}, {0, 8, 3 + 1}},
+                                              {{1, 30}, {0, 0, 2}},
+                                              {{40, 3}, {39, 1, 7}}}) {
       const auto propagated = propagate(chain, field, start, 0);
       const auto solved = solve_absorption(chain, field, start);
       for (const auto method : kMethods) {
@@ -380,14 +396,16 @@ TEST(Sweep, RemainderAndRoundingBoundTheError) {
 // The longer the walks, the fewer digits hold; how many is said, or refused.
 TEST(Sweep, RemainderOfEliminationIsHonest) {
   for (const double escape : {1e-3, 1e-6, 1e-8}) {
-    const auto d = Sweeper(test::nearly_closed(escape)).march({2, 1}, {}, 1e-13, RowMethod::elimination);
+    const auto d =
+        Sweeper(test::nearly_closed(escape)).march({2, 1}, {}, 1e-13, RowMethod::elimination);
     const double error = std::abs(d.final_cells(0, 0) - 1 / (2 - escape));
     EXPECT_LE(error, d.remainder + d.rounding);
     EXPECT_LE(d.remainder, 1e-15 / escape);
     EXPECT_LE(d.rounding, 1e-13 / escape);
   }
   for (const double escape : {1e-13, 1e-16, 1e-300})
-    EXPECT_THROW((void)Sweeper(test::nearly_closed(escape)).march({2, 1}, {}, 1e-13, RowMethod::elimination, 1000),
+    EXPECT_THROW((void)Sweeper(test::nearly_closed(escape))
+                     .march({2, 1}, {}, 1e-13, RowMethod::elimination, 1000),
                  std::runtime_error);
 }
 
@@ -416,7 +434,8 @@ TEST(Sweep, SeveralStartsHaveTheBitsOfEachAlone) {
       }
     }
     EXPECT_TRUE(sweeper.predict_all(kNineByNine, {}, 13).empty());
-    EXPECT_THROW((void)sweeper.predict_all(kNineByNine, {kBottomCentre, {9, 0, 0}}, 13), std::invalid_argument);
+    EXPECT_THROW((void)sweeper.predict_all(kNineByNine, {kBottomCentre, {9, 0, 0}}, 13),
+                 std::invalid_argument);
   }
 }
 
@@ -455,8 +474,8 @@ TEST(Sweep, MarchRefusesWhatItCannotDo) {
                std::invalid_argument);
   EXPECT_THROW((void)Sweeper(down).propagate({0, 9}, kBottomCentre, 13), std::invalid_argument);
   // Left and right for ever.
-  const Chain circle = Chain::from_probabilities(
-      matrix(2, 2, {{0, 1, 1.0}, {1, 0, 1.0}}), {{0, 1, 0}, {1, -1, 0}});
+  const Chain circle =
+      Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}, {1, 0, 1.0}}), {{0, 1, 0}, {1, -1, 0}});
   EXPECT_THROW((void)Sweeper(circle).march({2, 1}, {1, 0, 0}, 1e-13, RowMethod::cheapest, 1000),
                std::runtime_error);
   const auto still = Sweeper(circle).propagate({2, 1}, {1, 0, 0}, 0, 1e-13, 100);
@@ -475,7 +494,8 @@ TEST(Sweep, HasTheSameBitsWithAnyInstructionSet) {
       results.push_back(sweeper.propagate({70, 20}, starts.front(), 0));
       if (sweeper.can_march())
         for (const auto method : kMethods)
-          for (const auto& d : sweeper.march_all(field, starts, 1e-13, method)) results.push_back(d);
+          for (const auto& d : sweeper.march_all(field, starts, 1e-13, method))
+            results.push_back(d);
       return results;
     };
     const auto before = all();

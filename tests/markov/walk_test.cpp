@@ -31,8 +31,8 @@ constexpr std::uint64_t kLongSeed = 0xfedcba98'76543210;
 bool same(const WalkTally& a, const WalkTally& b) {
   return (a.final_cells == b.final_cells).all() && a.walks == b.walks && a.trapped == b.trapped &&
          a.left_field == b.left_field && a.cut_off == b.cut_off && a.unsampled == b.unsampled &&
-         a.steps == b.steps && a.endings == b.endings && (a.trapped_cells == b.trapped_cells).all() &&
-         (a.departed_cells == b.departed_cells).all();
+         a.steps == b.steps && a.endings == b.endings &&
+         (a.trapped_cells == b.trapped_cells).all() && (a.departed_cells == b.departed_cells).all();
 }
 
 struct Walked {
@@ -53,7 +53,8 @@ Walked in_lanes(const Walker& walker, const Field& field, const Start& start, in
 Walked plainly(const Walker& walker, const Field& field, const Start& start, int max_cells,
                WalkRange range) {
   Walked walked;
-  walked.tally = walker.walk_plainly(field, start, max_cells, kLongSeed, range, &walked.final_cells);
+  walked.tally =
+      walker.walk_plainly(field, start, max_cells, kLongSeed, range, &walked.final_cells);
   return walked;
 }
 
@@ -146,8 +147,8 @@ TEST(Walker, EveryProbabilityIsMetToAFewWordsOf2To64) {
 
 TEST(Walker, TheExtremeWordsAreValid) {
   // 1/2 and 1/2: both slots are always kept.
-  const Walker even(Chain::from_probabilities(
-      matrix(1, 3, {{0, 0, 0.5}, {0, 2, 0.5}}), {{0, 0, 0}, {0, 0, 0}, {}}));
+  const Walker even(Chain::from_probabilities(matrix(1, 3, {{0, 0, 0.5}, {0, 2, 0.5}}),
+                                              {{0, 0, 0}, {0, 0, 0}, {}}));
   EXPECT_EQ(even.draw(0, 0), 0);
   EXPECT_EQ(even.draw(0, kLastWord / 2), 0);
   EXPECT_EQ(even.draw(0, kLastWord / 2 + 1), 2);
@@ -167,8 +168,7 @@ TEST(Walker, KeepsAnEntryTooSmallForA64BitWord) {
 }
 
 TEST(Walker, RefusesARowItCannotDrawFrom) {
-  const Walker walker(
-      Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}}), {{0, 0, 0}, {}}));
+  const Walker walker(Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}}), {{0, 0, 0}, {}}));
   EXPECT_THROW((void)walker.draw(1, 0), std::invalid_argument);
   EXPECT_THROW((void)walker.draw(-1, 0), std::invalid_argument);
   EXPECT_THROW((void)walker.draw(2, 0), std::invalid_argument);
@@ -195,7 +195,7 @@ TEST(Walk, FrequenciesPassChiSquare) {
     chi2 += off * off / expected;
   }
   EXPECT_LT(chi2, 44.81);  // 9 degrees of freedom, exceeded with probability 1e-6
-  EXPECT_GT(chi2, 0.228);   // and undercut with probability 1e-6: not too even to be random
+  EXPECT_GT(chi2, 0.228);  // and undercut with probability 1e-6: not too even to be random
   EXPECT_EQ(tally.trapped, kWalks);
   EXPECT_EQ(tally.steps, 2 * kWalks);
 }
@@ -229,10 +229,10 @@ TEST(Walk, IsTheDocumentedStream) {
           why = Ending::unsampled;
           break;
         }
-        const auto words = philox({{static_cast<std::uint64_t>(draw / 4),
-                                    static_cast<std::uint64_t>(w),
-                                    static_cast<std::uint64_t>(kBottomCentre.input), 0}},
-                                  {{kSeed, kWalkStream}});
+        const auto words =
+            philox({{static_cast<std::uint64_t>(draw / 4), static_cast<std::uint64_t>(w),
+                     static_cast<std::uint64_t>(kBottomCentre.input), 0}},
+                   {{kSeed, kWalkStream}});
         ++replay.steps;
         const int output = walker.draw(input, words[static_cast<std::size_t>(draw % 4)]);
         const Exit exit = chain.exits()[static_cast<std::size_t>(output)];
@@ -245,9 +245,10 @@ TEST(Walk, IsTheDocumentedStream) {
         }
         if (next_column < 0 || next_column > 8 || next_row < 0 || next_row > 8) {
           ++replay.left_field;
-          why = next_row > 8   ? Ending::far_edge
-                : next_row < 0 ? Ending::near_edge
-                : next_column < 0 ? Ending::left_edge : Ending::right_edge;
+          why = next_row > 8      ? Ending::far_edge
+                : next_row < 0    ? Ending::near_edge
+                : next_column < 0 ? Ending::left_edge
+                                  : Ending::right_edge;
           ++replay.departed_cells(row, column);
           break;
         }
@@ -273,14 +274,12 @@ TEST(Walk, IsThePlainReferenceWalkByWalk) {
     Field field;
     Start start;
   };
-  const Place places[] = {{{1, 1}, {0, 0, 5}},        {kNineByNine, kBottomCentre},
-                          {kNineByNine, {8, 8, 40}},  {{400, 1}, {399, 0, 30}},
-                          {{1, 400}, {0, 0, 3}},      {{301, 301}, {150, 0, 12}}};
+  const Place places[] = {{{1, 1}, {0, 0, 5}},       {kNineByNine, kBottomCentre},
+                          {kNineByNine, {8, 8, 40}}, {{400, 1}, {399, 0, 30}},
+                          {{1, 400}, {0, 0, 3}},     {{301, 301}, {150, 0, 12}}};
   const Chain chains[] = {Chain::from_counts(lattice_counts(1), lattice_exits()),
-                          Chain::from_counts(lattice_counts(2), lattice_exits()),
-                          with_gaps(3),
-                          leaping(4, 2),
-                          leaping(5, 511)};
+                          Chain::from_counts(lattice_counts(2), lattice_exits()), with_gaps(3),
+                          leaping(4, 2), leaping(5, 511)};
   for (const Chain& chain : chains) {
     const Walker walker(chain);
     EXPECT_TRUE(walker.walks_in_lanes());
@@ -329,8 +328,9 @@ TEST(Walk, RowsOfOneEntryAndOfHardlyPossibleOnes) {
 }
 
 TEST(Walk, TheLowHalfOfAWordCounts) {
-  // 1/4 + 1.25 2^-33: what a word must not exceed within the first of two slots is 0x8000000140000000
-  // less one. This walk's word decides in its low half, and in the carry out of it.
+  // 1/4 + 1.25 2^-33: what a word must not exceed within the first of two slots is
+  // 0x8000000140000000 less one. This walk's word decides in its low half, and in the carry out of
+  // it.
   const double p = 0.25 + 1.25 / 8589934592.0;
   const Walker walker(
       Chain::from_probabilities(matrix(1, 2, {{0, 0, p}, {0, 1, 1 - p}}), {{}, {0, 1, 0}}));
@@ -354,9 +354,15 @@ TEST(Walk, NothingSampledAtAll) {
 }
 
 TEST(Walk, WhatFitsIntoNoRegisterIsWalkedPlainly) {
-  for (const auto& [exit, fits] : std::initializer_list<std::pair<Exit, bool>>{
-           {{0, 511, 0}, true}, {{0, 512, 0}, false}, {{0, -512, 0}, true}, {{0, -513, 0}, false},
-           {{0, 0, 511}, true}, {{0, 0, 512}, false}, {{0, 0, -512}, true}, {{0, 0, -513}, false}}) {
+  for (const auto& [exit, fits] :
+       std::initializer_list<std::pair<Exit, bool>>{{{0, 511, 0}, true},
+                                                    {{0, 512, 0}, false},
+                                                    {{0, -512, 0}, true},
+                                                    {{0, -513, 0}, false},
+                                                    {{0, 0, 511}, true},
+                                                    {{0, 0, 512}, false},
+                                                    {{0, 0, -512}, true},
+                                                    {{0, 0, -513}, false}}) {
     const Walker walker(
         Chain::from_probabilities(matrix(1, 2, {{0, 0, 0.5}, {0, 1, 0.5}}), {{0, 0, 0}, exit}));
     EXPECT_EQ(walker.walks_in_lanes(), fits);
@@ -471,8 +477,8 @@ TEST(Walk, WithoutLimitIsCutOffAfterAMillionCells) {
 
 TEST(Walk, AMoveFarBeyondTheFieldLeavesIt) {
   constexpr int kFar = std::numeric_limits<int>::max();
-  const Walker walker(Chain::from_probabilities(
-      matrix(2, 2, {{0, 0, 1.0}, {1, 1, 1.0}}), {{0, kFar, kFar}, {0, -kFar - 1, 0}}));
+  const Walker walker(Chain::from_probabilities(matrix(2, 2, {{0, 0, 1.0}, {1, 1, 1.0}}),
+                                                {{0, kFar, kFar}, {0, -kFar - 1, 0}}));
   for (const int input : {0, 1}) {
     const WalkTally tally = walker.walk({3, 3}, {2, 2, input}, 0, 1, {0, 5});
     EXPECT_EQ(tally.left_field, 5);

@@ -42,16 +42,23 @@ inline void expect_free_beam_order(std::string_view method, double order, double
     const double now = std::hypot(beam.theta - theta, (beam.omega - omega) / w0);
     if (halvings == 0) {
       EXPECT_NEAR(now, error, digits);
-      measured({.requirement = 1, .method = method, .what = "free beam after 2 s, error",
-                .figure = now, .unit = "rad", .limit = 1e-8});
+      measured({.requirement = 1,
+                .method = method,
+                .what = "free beam after 2 s, error",
+                .figure = now,
+                .unit = "rad",
+                .limit = 1e-8});
     } else {
       EXPECT_NEAR(std::log2(last / now), order, 0.1) << halvings;
       off = std::max(off, std::abs(std::log2(last / now) - order));
     }
     last = now;
   }
-  measured({.requirement = 1, .method = method, .what = "order over 5 halvings, off the nominal",
-            .figure = off, .limit = 0.1});
+  measured({.requirement = 1,
+            .method = method,
+            .what = "order over 5 halvings, off the nominal",
+            .figure = off,
+            .limit = 0.1});
 }
 
 }  // namespace gatewalk::test

@@ -1,6 +1,6 @@
 #pragma once
-/// What a test measured of a requirement, with the bound that the requirement sets. It goes into the
-/// test's entry of --gtest_output=json, from where results/requirements/run.sh makes its table.
+/// What a test measured of a requirement, with the bound that the requirement sets. It goes into
+/// the test's entry of --gtest_output=json, from where results/requirements/run.sh makes its table.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ struct Figure {
   std::string_view unit = "-";
   /// What the requirement asks; NaN: it only asks for the figure.
   double limit = std::numeric_limits<double>::quiet_NaN();
-  bool at_least = false;  // the limit is the least, not the most
+  bool at_least = false;              // the limit is the least, not the most
   std::int64_t cases = 1, asked = 1;  // looked at, and asked for by the requirement
 };
 
@@ -46,8 +46,10 @@ inline void measured(const Figure& f) {
       "{\"requirement\":" + std::to_string(f.requirement) + ",\"method\":" + quoted(f.method) +
           ",\"what\":" + quoted(f.what) + ",\"figure\":" + number(f.figure) +
           ",\"unit\":" + quoted(f.unit) + ",\"limit\":" + number(f.limit) +
-          ",\"at_least\":" + (f.at_least ? "true" : "false") +
-          ",\"within\":" + (std::isnan(f.limit) ? "null" : within ? "true" : "false") +
+          ",\"at_least\":" + (f.at_least ? "true" : "false") + ",\"within\":" +
+          (std::isnan(f.limit) ? "null"
+           : within            ? "true"
+                               : "false") +
           ",\"cases\":" + std::to_string(f.cases) + ",\"asked\":" + std::to_string(f.asked) + "}");
 }
 
@@ -55,25 +57,48 @@ inline void measured(const Figure& f) {
 inline void measured_double_hit(std::string_view method, double vy, double left, double right) {
   const double error =
       std::max({std::abs(vy - 10.78125), std::abs(left - 1.51875), std::abs(right - 1.51875)});
-  measured({.requirement = 7, .method = method, .what = "symmetric double hit, error of speeds",
-            .figure = error, .unit = "m/s, rad/s", .limit = 1e-12});
-  measured({.requirement = 7, .method = method, .what = "left beam's speed less the right's",
-            .figure = std::abs(left - right), .unit = "rad/s", .limit = 1e-13});
+  measured({.requirement = 7,
+            .method = method,
+            .what = "symmetric double hit, error of speeds",
+            .figure = error,
+            .unit = "m/s, rad/s",
+            .limit = 1e-12});
+  measured({.requirement = 7,
+            .method = method,
+            .what = "left beam's speed less the right's",
+            .figure = std::abs(left - right),
+            .unit = "rad/s",
+            .limit = 1e-13});
 }
 
 /// Requirement 6: `gap` in radii, `pull` in N, the worst of `held` looks.
 inline void measured_held(std::string_view method, double gap, double pull, std::int64_t held) {
-  measured({.requirement = 6, .method = method, .what = "gap of held contacts", .figure = gap,
-            .unit = "R", .limit = 1e-9, .cases = held});
-  measured({.requirement = 6, .method = method, .what = "pull of held contacts", .figure = pull,
-            .unit = "N", .limit = 1e-12, .cases = held});
+  measured({.requirement = 6,
+            .method = method,
+            .what = "gap of held contacts",
+            .figure = gap,
+            .unit = "R",
+            .limit = 1e-9,
+            .cases = held});
+  measured({.requirement = 6,
+            .method = method,
+            .what = "pull of held contacts",
+            .figure = pull,
+            .unit = "N",
+            .limit = 1e-12,
+            .cases = held});
 }
 
 /// Requirement 8, after the comparison: it stops at the first trial that differs.
 inline void measured_mirror(std::string_view method, std::int64_t trials, std::int64_t asked) {
-  measured({.requirement = 8, .method = method, .what = "mirrored trials with other bits",
-            .figure = testing::Test::HasFailure() ? 1.0 : 0.0, .unit = "trials", .limit = 0.0,
-            .cases = trials, .asked = asked});
+  measured({.requirement = 8,
+            .method = method,
+            .what = "mirrored trials with other bits",
+            .figure = testing::Test::HasFailure() ? 1.0 : 0.0,
+            .unit = "trials",
+            .limit = 0.0,
+            .cases = trials,
+            .asked = asked});
 }
 
 /// Requirement 11; five tests look at 200 000 starts each.
@@ -86,11 +111,21 @@ inline void measured_trouble(std::string_view method, const dynamics::GateParams
     overlap = std::max(overlap, t.overlap);
   }
   const auto n = static_cast<std::int64_t>(seen.size());
-  measured({.requirement = 11, .method = method, .what = "near-singular starts that end in NaN",
-            .figure = static_cast<double>(not_finite), .unit = "starts", .limit = 0.0, .cases = n,
+  measured({.requirement = 11,
+            .method = method,
+            .what = "near-singular starts that end in NaN",
+            .figure = static_cast<double>(not_finite),
+            .unit = "starts",
+            .limit = 0.0,
+            .cases = n,
             .asked = 200'000});
-  measured({.requirement = 11, .method = method, .what = "penetration from near-singular starts",
-            .figure = overlap / p.body.radius, .unit = "R", .limit = 1e-6, .cases = n,
+  measured({.requirement = 11,
+            .method = method,
+            .what = "penetration from near-singular starts",
+            .figure = overlap / p.body.radius,
+            .unit = "R",
+            .limit = 1e-6,
+            .cases = n,
             .asked = 200'000});
 }
 
@@ -101,16 +136,27 @@ struct AnyScenes {
 };
 inline void measured_scenes(std::string_view method, const AnyScenes& s) {
   const auto count = [&](std::string_view what, int n, double limit) {
-    measured({.requirement = 12, .method = method, .what = what, .figure = static_cast<double>(n),
-              .unit = "scenes", .limit = limit, .cases = s.scenes, .asked = 100'000});
+    measured({.requirement = 12,
+              .method = method,
+              .what = what,
+              .figure = static_cast<double>(n),
+              .unit = "scenes",
+              .limit = limit,
+              .cases = s.scenes,
+              .asked = 100'000});
   };
   const double none = std::numeric_limits<double>::quiet_NaN();
   count("random scenes with a NaN that the result does not own to", s.escaped, 0.0);
   count("random scenes that hang", s.hung, 0.0);
   count("random scenes that end as broken and say so", s.broken, none);
   count("random scenes refused by name", s.refused, none);
-  measured({.requirement = 4, .method = method, .what = "slowest scene, CPU time",
-            .figure = s.slowest, .unit = "s", .limit = 10.0, .cases = s.scenes});
+  measured({.requirement = 4,
+            .method = method,
+            .what = "slowest scene, CPU time",
+            .figure = s.slowest,
+            .unit = "s",
+            .limit = 10.0,
+            .cases = s.scenes});
 }
 
 /// CPU seconds of this thread: how long a scene took, whatever else the machine does.

@@ -41,8 +41,8 @@ inline dynamics::BodyState placed(Near near, const dynamics::GateParams& p,
     case Near::tip:
       return beside(b, length, draw.sign() * draw.log_uniform(1e-15, 1e-1), dist, draw);
     case Near::handover:
-      return beside(b, length + draw.sign() * draw.log_uniform(1e-15, 1e-2),
-                    draw.sign() * kPi / 2, dist, draw);
+      return beside(b, length + draw.sign() * draw.log_uniform(1e-15, 1e-2), draw.sign() * kPi / 2,
+                    dist, draw);
     case Near::grazing:
       break;
   }
@@ -80,7 +80,7 @@ inline dynamics::GateState near_singular(Near near, const dynamics::GateParams& 
 /// What a method did with one of them.
 struct Trouble {
   int not_finite = 0;
-  double overlap = 0.0;         // m
+  double overlap = 0.0;  // m
   std::int64_t evaluations = 0;
 };
 

@@ -47,7 +47,8 @@ inline std::array<double, 2> energy_created(const dynamics::GateParams& p) {
   std::vector<double> created(kTrials);
   tbb::parallel_for(0, kTrials, [&](int trial) {
     dynamics::RandomForce force(
-        p.forces, dynamics::Random(dynamics::Purpose::gate, {1, 0, static_cast<std::uint64_t>(trial)}));
+        p.forces,
+        dynamics::Random(dynamics::Purpose::gate, {1, 0, static_cast<std::uint64_t>(trial)}));
     created[trial] = dynamics::run_gate(p, *method, {}, force).watch.energy_created;
   });
   std::array<double, 2> result{};

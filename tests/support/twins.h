@@ -1,6 +1,6 @@
 #pragma once
-/// Scenes rescaled by powers of 4: no rounding changes, so every number of theirs must be that of the scene
-/// they come from, times the power of its unit.
+/// Scenes rescaled by powers of 4: no rounding changes, so every number of theirs must be that of
+/// the scene they come from, times the power of its unit.
 
 #include <array>
 #include <cmath>
@@ -44,7 +44,8 @@ struct Twin {
     return 1.0;
   }
   [[nodiscard]] dynamics::GateParams of(dynamics::GateParams p) const {
-    for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) info.ref(p) *= of(info.key);
+    for (const dynamics::ParamInfo& info : dynamics::gate_param_table())
+      info.ref(p) *= of(info.key);
     return p;
   }
   [[nodiscard]] dynamics::BodyState of(const dynamics::BodyState& b) const {
@@ -59,9 +60,11 @@ inline std::ostream& operator<<(std::ostream& out, const Twin& t) {
 
 /// Each unit alone and all together, from 4^-10 to 4^10.
 inline std::vector<Twin> twins() {
-  return {{-10, 0, 0}, {10, 0, 0},  {0, -10, 0},  {0, 10, 0},   {0, 0, -10},  {0, 0, 10},  {-1, 0, 0},
-          {0, 1, 0},   {0, 0, -1},  {-3, -1, -1}, {5, 7, -2},   {-10, 10, 10}, {10, -10, 10}, {10, 10, -10},
-          {-10, -10, 10}, {-10, 10, -10}, {10, -10, -10}, {-10, -10, -10}, {10, 10, 10}, {-6, -8, 9}, {2, -3, 4}};
+  return {{-10, 0, 0},    {10, 0, 0},     {0, -10, 0},     {0, 10, 0},    {0, 0, -10},
+          {0, 0, 10},     {-1, 0, 0},     {0, 1, 0},       {0, 0, -1},    {-3, -1, -1},
+          {5, 7, -2},     {-10, 10, 10},  {10, -10, 10},   {10, 10, -10}, {-10, -10, 10},
+          {-10, 10, -10}, {10, -10, -10}, {-10, -10, -10}, {10, 10, 10},  {-6, -8, 9},
+          {2, -3, 4}};
 }
 
 }  // namespace gatewalk::test

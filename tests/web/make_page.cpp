@@ -9,7 +9,8 @@
 int main(int argc, char** argv) try {
   if (argc != 3) throw std::invalid_argument("make_page REPORT.json PAGE.html");
   std::ifstream in(argv[1]);
-  gatewalk::cli::write_text_atomically(argv[2], gatewalk::cli::report_page(gatewalk::cli::Json::parse(in)));
+  gatewalk::cli::write_text_atomically(argv[2],
+                                       gatewalk::cli::report_page(gatewalk::cli::Json::parse(in)));
 } catch (const std::exception& error) {
   std::cerr << error.what() << '\n';
   return 1;

@@ -22,8 +22,10 @@ int main(int argc, char** argv) try {
   int number = 0;
   for (const auto& [length, mass, time] : kTwins) {
     const auto name = [&](const char* of) { return of + std::to_string(number) + ".html"; };
-    write(name("gate-twin-").c_str(), twin(small_film(100), power(length), power(mass), power(time)));
-    write(name("field-twin-").c_str(), twin(small_field_film(), power(length), power(mass), power(time)));
+    write(name("gate-twin-").c_str(),
+          twin(small_film(100), power(length), power(mass), power(time)));
+    write(name("field-twin-").c_str(),
+          twin(small_field_film(), power(length), power(mass), power(time)));
     ++number;
   }
   Json broken = small_film(5);
