@@ -3,6 +3,6 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 . ./.ci/prepare
-packages+=(chromium)  # shows the pages to their tests
+packages+=(chromium clang-format)  # shows the pages to their tests; checks the layout of the code
 build_gatewalk -DBUILD_TESTING=ON
 ctest --test-dir build --output-on-failure -j "$(nproc)" "$@"

@@ -5,15 +5,15 @@
 #include <sstream>
 
 #include "cli/bins.h"
-#include "cli/interrupt.h"
-#include "cli/progress.h"
-#include "cli/report.h"
+#include "cli/render/report.h"
+#include "cli/terminal/interrupt.h"
+#include "cli/terminal/progress.h"
 
 namespace gatewalk::cli {
 namespace {
 
 /// The scene's start, and the middles of eight bins spread over the state space.
-std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from) {
+std::vector<dynamics::BodyState> pilot_starts(const lattice::Scene& scene, RunsFrom from) {
   std::vector<dynamics::BodyState> starts{scene.start};
   if (from == RunsFrom::start) return starts;
   const auto space = fixed_space(scene);
@@ -29,7 +29,7 @@ std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from)
 }
 
 /// Keys that the user gave and the method does not look at.
-void warn_unused(const Scene& scene) {
+void warn_unused(const lattice::Scene& scene) {
   const std::string& method = scene.gate.run.method;
   const auto unused = [&](const char* key, bool used, const std::string& why) {
     if (!used && scene.named.contains(key)) warn(std::string(key) + " has no effect: " + why);
@@ -43,9 +43,9 @@ void warn_unused(const Scene& scene) {
 }
 
 /// What the scene leaves out and has been given by its own proportions.
-void tell_derived(const Options& options, const Scene& scene) {
+void tell_derived(const Options& options, const lattice::Scene& scene) {
   std::string all;
-  for (const KeyInfo& k : describe(scene)) {
+  for (const lattice::KeyInfo& k : lattice::describe(scene)) {
     const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" ||
                              k.key == "contact.impulse_threshold_Ns";
     if (k.source != "derived" || methods_own) continue;
@@ -74,7 +74,7 @@ std::string setting_text(const Json& settled) {
 
 }  // namespace
 
-Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
+Json settle_method(const Options& options, lattice::Scene& scene, RunsFrom from) {
   warn_unused(scene);
   tell_derived(options, scene);
   if (scene.gate.run.method != "auto") return nullptr;
@@ -128,8 +128,8 @@ Json settle_method(const Options& options, Scene& scene, RunsFrom from) {
   return settled;
 }
 
-void check_outcomes(const Options& options, const Scene& scene, RunsFrom from, std::int64_t trials,
-                    dynamics::Health& health) {
+void check_outcomes(const Options& options, const lattice::Scene& scene, RunsFrom from,
+                    std::int64_t trials, dynamics::Health& health) {
   if (interrupted()) throw Interrupted{};
   dynamics::check_outcomes(health, scene.gate, pilot_starts(scene, from), options.seed(),
                            dynamics::check_sample(trials));

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "cli/progress.h"
-#include "cli/report.h"
+#include "cli/render/report.h"
+#include "cli/terminal/progress.h"
 #include "lattice/reference.h"
 
 namespace gatewalk::cli {
@@ -24,7 +24,7 @@ Json to_json(const Crossing& c) {
 
 }  // namespace
 
-bool papers_field(const Scene& scene) {
+bool papers_field(const lattice::Scene& scene) {
   const GateParams paper;
   const GateParams& p = scene.gate;
   const Scale unit = scale_of(p);
@@ -42,7 +42,7 @@ std::string BinsChoice::name() const {
   return kind == Kind::paper ? "paper" : kind == Kind::automatic ? "auto" : "scene";
 }
 
-BinsChoice usual_bins(const Scene& scene) {
+BinsChoice usual_bins(const lattice::Scene& scene) {
   using Kind = BinsChoice::Kind;
   BinsChoice choice{scene.bins ? Kind::scene : papers_field(scene) ? Kind::paper : Kind::automatic};
   choice.by_default = true;
@@ -60,7 +60,7 @@ void add_bins(Options& options) {
                 "auto in any other");
 }
 
-BinsChoice bins_choice(const Options& options, const Scene& scene) {
+BinsChoice bins_choice(const Options& options, const lattice::Scene& scene) {
   using Kind = BinsChoice::Kind;
   if (!options.has("bins")) return usual_bins(scene);
   const std::string& text = options.get<std::string>("bins");
@@ -79,12 +79,12 @@ BinsChoice bins_choice(const Options& options, const Scene& scene) {
   return choice;
 }
 
-StateSpace fixed_space(const Scene& scene) {
+StateSpace fixed_space(const lattice::Scene& scene) {
   return scene.bins ? StateSpace(*scene.bins) : StateSpace::paper(scene.gate);
 }
 
-Pilot run_pilot(const Options& options, const Scene& scene, const std::vector<BodyState>& starts,
-                std::int64_t trials) {
+Pilot run_pilot(const Options& options, const lattice::Scene& scene,
+                const std::vector<BodyState>& starts, std::int64_t trials) {
   Pilot pilot;
   lattice::FieldParams field = scene.field;
   field.fidelity = lattice::Fidelity::active;
@@ -107,7 +107,7 @@ Pilot run_pilot(const Options& options, const Scene& scene, const std::vector<Bo
   return pilot;
 }
 
-SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
+SeenStates seen_states(const lattice::Scene& scene, const Pilot& pilot, double scale) {
   std::vector<Crossing> entries = pilot.entries;
   if (symmetric(scene.gate)) add_mirror_images(entries);
   const double states = std::round(kAutoStates * scale * scale * scale);
@@ -119,7 +119,7 @@ SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
   return {std::move(space), std::move(of_rows)};
 }
 
-States states_of(const Options& options, const Scene& scene, const BinsChoice& choice,
+States states_of(const Options& options, const lattice::Scene& scene, const BinsChoice& choice,
                  const std::vector<BodyState>& starts) {
   using Kind = BinsChoice::Kind;
   (void)StateSpace::paper(scene.gate);  // refuses gates too short for their beams

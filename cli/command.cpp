@@ -12,7 +12,7 @@
 #include <memory>
 #include <sstream>
 
-#include "cli/output.h"
+#include "cli/terminal/output.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/scene.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
 

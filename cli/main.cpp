@@ -4,10 +4,10 @@
 #include <iostream>
 
 #include "cli/command.h"
-#include "cli/edit_distance.h"
-#include "cli/interrupt.h"
+#include "cli/terminal/interrupt.h"
 #include "cli/version.h"
-#include "markov/chain_io.h"
+#include "lattice/scene/edit_distance.h"
+#include "markov/formats/counts.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -50,7 +50,7 @@ const Command* find_command(const std::string& name) {
                                   [&](const Command& c) { return name == c.name; });
   if (named != kCommands.end()) return &*named;
   const auto distance = [&](const Command& c) {
-    return edit_distance(name.substr(0, 100), c.name);
+    return lattice::edit_distance(name.substr(0, 100), c.name);
   };
   const auto nearest = std::min_element(
       kCommands.begin(), kCommands.end(),
@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
     return cli::kStopped;
   } catch (const cli::UsageError& e) {
     return fail(cli::kWrongUse, e);
-  } catch (const cli::SceneError& e) {
+  } catch (const gatewalk::lattice::SceneError& e) {
     return fail(cli::kWrongUse, e);
   } catch (const markov::BadFile& e) {
     return fail(cli::kWrongUse, e);

@@ -1,7 +1,7 @@
 #include "cli/matrix.h"
 
-#include "cli/progress.h"
-#include "cli/report.h"
+#include "cli/render/report.h"
+#include "cli/terminal/progress.h"
 
 namespace gatewalk::cli {
 
@@ -12,8 +12,8 @@ void require_unbroken(const dynamics::Transitions& t) {
                              "runs, try method stable or a smaller run.step_s");
 }
 
-dynamics::Transitions build_matrix(const Scene& scene, const States& states, std::int64_t trials,
-                                   std::uint64_t seed, bool show_progress) {
+dynamics::Transitions build_matrix(const lattice::Scene& scene, const States& states,
+                                   std::int64_t trials, std::uint64_t seed, bool show_progress) {
   dynamics::Transitions t(states.space);
   run_in_batches("building matrix", trials, show_progress, [&](std::int64_t first, std::int64_t n) {
     dynamics::add_trials(t, scene.gate, seed, {first, n}, states.entries);
@@ -35,11 +35,13 @@ MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::
   lattice::MatrixFile file = lattice::read_matrix(matrix_path);
   const auto stored = file.text.find("scene");
   if (stored == file.text.end()) throw markov::BadFile(matrix_path + ": holds no scene");
-  const Scene built_with = parse_scene(stored->second, matrix_path + " (its scene)");
-  Scene scene = scene_path.empty()
-                    ? parse_scene(stored->second, matrix_path + " (its scene)", overrides)
-                    : read_scene(scene_path, overrides);
-  auto differences = physics_differences(scene, built_with);
+  const lattice::Scene built_with =
+      lattice::parse_scene(stored->second, matrix_path + " (its scene)");
+  lattice::Scene scene =
+      scene_path.empty()
+          ? lattice::parse_scene(stored->second, matrix_path + " (its scene)", overrides)
+          : lattice::read_scene(scene_path, overrides);
+  auto differences = lattice::physics_differences(scene, built_with);
   // A matrix that was built with a method by name is not the one that "auto" stands for.
   if (scene.gate.run.method == "auto" && file.text.count("method") == 0)
     differences.push_back("run.method: auto here, " + built_with.gate.run.method +

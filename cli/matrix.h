@@ -12,14 +12,14 @@ void require_unbroken(const dynamics::Transitions& t);
 
 /// A matrix of these states, `trials` runs per row (dynamics::runs_per_trial as many for a single
 /// entry's). Throws std::runtime_error when a run broke.
-[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, const States& states,
+[[nodiscard]] dynamics::Transitions build_matrix(const lattice::Scene& scene, const States& states,
                                                  std::int64_t trials, std::uint64_t seed,
                                                  bool show_progress);
 
 /// A matrix file and the scene to use it with: the one given, or the one stored in the file.
 struct MatrixAndScene {
   lattice::MatrixFile file;
-  Scene scene;
+  lattice::Scene scene;
   Json status;  // the health of the runs that made the matrix
 };
 /// The faults of the runs behind a stored status, in one sentence; empty when none were seen.

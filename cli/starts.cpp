@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "cli/matrix.h"
-#include "cli/report.h"
+#include "cli/render/report.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -56,7 +56,7 @@ std::vector<PaperStart> given_starts(const Options& options) {
   return starts;
 }
 
-std::vector<PaperStart> starts_of(const Options& options, const Scene& scene) {
+std::vector<PaperStart> starts_of(const Options& options, const lattice::Scene& scene) {
   if (options.has("start")) return given_starts(options);
   const std::vector<PaperStart> papers = table_iv(scene.gate);
   const dynamics::BodyState &own = scene.start, first = papers.front().body();
@@ -78,7 +78,7 @@ std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& start
   return bodies;
 }
 
-void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
+void require_inside(const std::vector<PaperStart>& starts, const lattice::Scene& scene) {
   const double side = scene.gate.beams.joint_x;
   for (const PaperStart& s : starts)
     if (!(std::abs(s.d) < side))
@@ -86,7 +86,7 @@ void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
                        Json(side).dump() + ", " + Json(side).dump() + ")");
 }
 
-void require_inside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
+void require_inside_bins(const std::vector<PaperStart>& starts, const lattice::Scene& scene,
                          const dynamics::StateSpace& space) {
   for (const PaperStart& s : starts)
     (void)start_in_bins(space, scene.field, s.body(), "start" + start_text(s));

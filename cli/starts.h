@@ -29,14 +29,15 @@ void add_starts(Options& options,
 [[nodiscard]] std::vector<PaperStart> given_starts(const Options& options);
 /// The starts given, else the scene's, or those of Table IV in the paper's field with the paper's
 /// start. Throws UsageError for a malformed one.
-[[nodiscard]] std::vector<PaperStart> starts_of(const Options& options, const Scene& scene);
+[[nodiscard]] std::vector<PaperStart> starts_of(const Options& options,
+                                                const lattice::Scene& scene);
 /// Their bodies. Throws UsageError when one does not start on the lower edge of its gate: a chain's
 /// states are entries.
 [[nodiscard]] std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& starts);
 /// Throws UsageError unless all of them lie between the sides of the scene's gates.
-void require_inside(const std::vector<PaperStart>& starts, const Scene& scene);
+void require_inside(const std::vector<PaperStart>& starts, const lattice::Scene& scene);
 /// As start_in_bins for each of them.
-void require_inside_bins(const std::vector<PaperStart>& starts, const Scene& scene,
+void require_inside_bins(const std::vector<PaperStart>& starts, const lattice::Scene& scene,
                          const dynamics::StateSpace& space);
 /// "  23  -11   16": columns as wide as the numbers of all starts need, every digit of them.
 struct StartTexts {

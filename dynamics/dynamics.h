@@ -1,4 +1,5 @@
 #pragma once
+// clang-format off
 /// gatewalk::dynamics: a disc pushing through one gate of two hinged, springy beams.
 ///
 ///   params.h       the scene: body, beams, forces, contact, run
@@ -7,19 +8,19 @@
 ///   methods/       time stepping, one file per method behind methods/method.h
 ///   random.h       counter-based random streams, the held lateral force of Eq. (1)
 ///   gate.h         one run of one gate
-///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector
-///   registers ensemble.h     many runs, their outcomes and their health state_space.h  how a body
-///   enters a gate, as a number: Table III or other bins quantile_bins.h  bins from entries that
-///   were seen, and how well bins resolve them trace.h        one run in full, step by step
+///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
+///   ensemble.h     many runs, their outcomes and their health
+///   state_space.h  how a body enters a gate, as a number: Table III or other bins
+///   quantile_bins.h  bins from entries that were seen, and how well bins resolve them
+///   trace.h        one run in full, step by step
 ///   landscape.h    potential energy Eqs. (14), (15), the lowest way through
 ///   transitions.h  runs -> counts, the matrix of Eq. (16)
-///   verdict.h      one word for how far a method can be trusted
-///   accuracy.h     a method's errors against a reference under the same noise
-///   stability.h    maps of where each method breaks
-///   choice.h       the cheapest method and setting that a scene can do with
+///   study/verdict.h      one word for how far a method can be trusted
+///   study/accuracy.h     a method's errors against a reference under the same noise
+///   study/stability.h    maps of where each method breaks
+///   study/choice.h       the cheapest method and setting that a scene can do with
+// clang-format on
 
-#include "dynamics/accuracy.h"
-#include "dynamics/choice.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/flow.h"
 #include "dynamics/gate.h"
@@ -27,9 +28,10 @@
 #include "dynamics/params.h"
 #include "dynamics/quantile_bins.h"
 #include "dynamics/random.h"
-#include "dynamics/runs.h"
-#include "dynamics/stability.h"
 #include "dynamics/state_space.h"
+#include "dynamics/study/accuracy.h"
+#include "dynamics/study/choice.h"
+#include "dynamics/study/stability.h"
+#include "dynamics/study/verdict.h"
 #include "dynamics/trace.h"
 #include "dynamics/transitions.h"
-#include "dynamics/verdict.h"

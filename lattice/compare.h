@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "markov/exact.h"
+#include "markov/predict/reference.h"
 #include "markov/walk.h"
 
 namespace gatewalk::lattice {

@@ -7,7 +7,7 @@
 
 #include "dynamics/transitions.h"
 #include "lattice/field.h"
-#include "markov/chain_io.h"
+#include "markov/formats/counts.h"
 
 namespace gatewalk::lattice {
 

@@ -1,16 +1,17 @@
 #pragma once
+// clang-format off
 /// gatewalk::lattice: a field of gates, walked both ways and compared.
 ///
 ///   field.h       the field's size, where a trial starts, which beams act (fidelity)
-///   crowd.h       one disc among the beams of many gates; push_only.h, its contact problem
+///   field_stepper.h  one disc among the beams of many gates; complementarity.h, its contact problem
 ///   reference.h   the full dynamics through the field, gate by gate
 ///   gate_chain.h  counts + state space -> markov::Chain, and the matrix file
 ///   compare.h     corrcoef, RMSE, total variation, noise floors, p-values
 ///   matrix_noise.h  what the sampling of a matrix does to its predictions
 ///   draws.h       binomial and multinomial counts
+// clang-format on
 
 #include "lattice/compare.h"
-#include "lattice/crowd.h"
 #include "lattice/draws.h"
 #include "lattice/field.h"
 #include "lattice/gate_chain.h"

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "lattice/gate_chain.h"
-#include "markov/sweep.h"
+#include "markov/predict/predictor.h"
 
 namespace gatewalk::lattice {
 

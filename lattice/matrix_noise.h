@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/transitions.h"
-#include "markov/exact.h"
+#include "markov/predict/reference.h"
 
 namespace gatewalk::lattice {
 

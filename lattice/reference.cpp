@@ -7,7 +7,7 @@
 #include <string>
 
 #include "dynamics/runs.h"
-#include "lattice/crowd.h"
+#include "lattice/field_stepper.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -1,5 +1,5 @@
 // A run of the body among the beams, to be watched: gatewalkReplay(element, film) builds the whole
-// animation inside `element` and answers {play, pause, seek, key}. cli/replay.h says what a film holds.
+// animation inside `element` and answers {play, pause, seek, key}. cli/film/replay.h says what a film holds.
 // All of it lives in a shadow tree, so neither styles nor names can clash with the page around it.
 'use strict';
 
@@ -245,7 +245,7 @@ const gatewalkReplay = (() => {
   }
   const largestWithin = (unit, most) => sizesOf(unit).findLast(([size]) => size <= most * (1 + 1e-9)) ?? [1, unit];
 
-  /** The unit in which numbers up to `most` are short, as cli/quantity.h says. */
+  /** The unit in which numbers up to `most` are short, as cli/render/quantity.h says. */
   function readableUnit(unit, most) {
     if (most === 0 || (most >= 0.01 && most < 1e4)) return [1, unit];
     const found = largestWithin(unit, most);
@@ -258,7 +258,7 @@ const gatewalkReplay = (() => {
     return `${minus(String(Number((rounded / size).toPrecision(significant))))} ${name}`;
   }
 
-  /** The unit and the decimals of many numbers of a kind, of which `step` is what counts: as cli/quantity.h says. */
+  /** The unit and the decimals of many numbers of a kind, of which `step` is what counts: as cli/render/quantity.h says. */
   function readingUnit(unit, step) {
     const power = Math.round(Math.log10(step)), last = 10 ** power, typical = 100 * last;
     const plain = power >= -4 && power <= 0;

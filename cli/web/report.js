@@ -1,5 +1,5 @@
 // Draws the charts of the report into its .chart elements when they come into view, anew when the width or
-// the colours change. The data stand in the page; cli/report_page.cpp wrote all that is text.
+// the colours change. The data stand in the page; cli/paper/page.cpp wrote all that is text.
 'use strict';
 
 (() => {

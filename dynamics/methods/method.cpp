@@ -27,7 +27,7 @@ std::unique_ptr<Method> make_method(const GateParams& params) {
   if (params.run.method == "auto")
     throw InvalidParameter("run.method",
                            "run.method = \"auto\" is no method yet: choose_method "
-                           "(dynamics/choice.h) makes it one");
+                           "(dynamics/study/choice.h) makes it one");
   return std::make_unique<StableMethod>(params);
 }
 

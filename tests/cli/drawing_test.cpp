@@ -1,4 +1,4 @@
-#include "cli/drawing.h"
+#include "cli/render/drawing.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

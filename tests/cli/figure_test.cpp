@@ -1,4 +1,4 @@
-#include "cli/figure.h"
+#include "cli/render/gnuplot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cli/output.h"
+#include "cli/terminal/output.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 #include <thread>
 #include <vector>
 
-#include "cli/interrupt.h"
+#include "cli/terminal/interrupt.h"
 
 // These stand in front of the C library's in this test program: the k-th call can be made to fail.
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/paper_verdicts.h"
+#include "cli/paper/verdicts.h"
 
 #include <gtest/gtest.h>
 

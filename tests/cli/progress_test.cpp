@@ -1,4 +1,4 @@
-#include "cli/progress.h"
+#include "cli/terminal/progress.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/interrupt.h"
+#include "cli/terminal/interrupt.h"
 
 namespace gatewalk::cli {
 namespace {

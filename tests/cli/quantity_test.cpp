@@ -1,4 +1,4 @@
-#include "cli/quantity.h"
+#include "cli/render/quantity.h"
 
 #include <gtest/gtest.h>
 

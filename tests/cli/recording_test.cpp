@@ -1,4 +1,4 @@
-#include "cli/recording.h"
+#include "cli/render/recording.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 namespace gatewalk::cli {
 namespace {
 
-Scene scene(const std::string& more = "") {
-  return parse_scene(
+lattice::Scene scene(const std::string& more = "") {
+  return lattice::parse_scene(
       "[beams]\nstiffness_left_Nm_per_rad = 300.0\nstiffness_right_Nm_per_rad = "
       "500.0\ndamping_Nms_per_rad = 10.0\n"
       "[forces]\npropulsion_N = 7.0\nrandom_N = 10.0\ndrag_Ns_per_m = 0.0\n[run]\ntraverse_y_m = "
@@ -36,7 +36,7 @@ std::vector<std::vector<std::string>> table(const std::string& csv) {
 
 // The endings are those that `gate` counts.
 TEST(Recording, EndsAsTheRunThatIsCounted) {
-  const Scene s = scene();
+  const lattice::Scene s = scene();
   dynamics::GateTally counted = dynamics::run_gate_trials(s.gate, s.start, 5, {10, 12});
   std::map<std::string, std::int64_t> ends;
   for (int i = 10; i < 22; ++i) ++ends[record(s, 5, i, false).ending];
@@ -51,7 +51,7 @@ TEST(Recording, EndsAsTheRunThatIsCounted) {
 }
 
 TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
-  const Scene s = scene();
+  const lattice::Scene s = scene();
   const std::vector<Recording> runs{record(s, 1, 0, false), record(s, 1, 2, false)};
   const auto rows = table(csv_of(s, runs));
   ASSERT_EQ(rows.size(), 1 + runs[0].moments.size() + runs[1].moments.size());
@@ -86,7 +86,7 @@ TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
 
 // Gate after gate: time and losses go on, the field's frame has no jumps.
 TEST(Recording, GoesOnFromGateToGate) {
-  const Scene s = parse_scene("", "field.toml");
+  const lattice::Scene s = lattice::parse_scene("", "field.toml");
   for (int trial = 0; trial < 5; ++trial) {
     const Recording r = record(s, 1, trial, true);
     for (std::size_t i = 1; i < r.moments.size(); ++i) {
@@ -105,7 +105,7 @@ TEST(Recording, GoesOnFromGateToGate) {
 
 // A film's force holds until the next entry; a sample's acted before it.
 TEST(Recording, FilmHasTheForceThatComes) {
-  const Scene s = scene();
+  const lattice::Scene s = scene();
   const std::vector<Recording> runs{record(s, 1, 0, false)};
   Json film = film_of(s, runs, false);
   const Json& run = film["runs"][0];
@@ -121,9 +121,9 @@ TEST(Recording, FilmHasTheForceThatComes) {
 }
 
 /// The scene in other units: each of its keys times what its unit is made of.
-Scene in_other_units(const Scene& s, double length, double mass, double time) {
+lattice::Scene in_other_units(const lattice::Scene& s, double length, double mass, double time) {
   const double force = mass * length / (time * time);
-  Scene other = s;
+  lattice::Scene other = s;
   other.gate.body = {s.gate.body.mass * mass, s.gate.body.radius * length};
   dynamics::Beams& beams = other.gate.beams;
   for (double* const x : {&beams.length, &beams.joint_x, &beams.joint_y}) *x *= length;
@@ -180,7 +180,7 @@ Json without_words(Json film) {
 // digits.
 TEST(Recording, InOtherUnitsHasTheSameNumbers) {
   for (const auto& [s, across] :
-       {std::pair{scene("x_m = 1.5\n"), false}, {parse_scene("", "field.toml"), true}}) {
+       {std::pair{scene("x_m = 1.5\n"), false}, {lattice::parse_scene("", "field.toml"), true}}) {
     const std::vector<Recording> runs{record(s, 3, 1, across), record(s, 3, 2, across)};
     Json film = film_of(s, runs, across);
     add_details(film, s, runs);
@@ -188,7 +188,7 @@ TEST(Recording, InOtherUnitsHasTheSameNumbers) {
     for (const auto& [l, m, t] : kTwins) {
       const double length = power(l), mass = power(m), time = power(t),
                    force = mass * length / (time * time);
-      const Scene other = in_other_units(s, length, mass, time);
+      const lattice::Scene other = in_other_units(s, length, mass, time);
       std::vector<Recording> others;
       for (const Recording& run : runs) others.push_back(in_other_units(run, length, mass, time));
       Json there = film_of(other, others, across);

@@ -1,8 +1,8 @@
-#include "cli/replay.h"
+#include "cli/film/replay.h"
 
 #include <gtest/gtest.h>
 
-#include "cli/html.h"
+#include "cli/web/html.h"
 #include "tests/cli/films.h"
 
 namespace gatewalk::cli {

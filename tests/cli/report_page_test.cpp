@@ -1,4 +1,4 @@
-#include "cli/report_page.h"
+#include "cli/paper/page.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "cli/command.h"
-#include "cli/scene.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -33,10 +33,10 @@ class TwinCommands : public testing::Test {
   }
 
   /// A rescaled scene: every key that the file names; the rest is left to the program.
-  [[nodiscard]] std::string rescaled(const Scene& scene, const Twin& twin,
+  [[nodiscard]] std::string rescaled(const lattice::Scene& scene, const Twin& twin,
                                      const std::string& name) const {
     std::ofstream out(path(name));
-    for (const KeyInfo& k : describe(scene)) {
+    for (const lattice::KeyInfo& k : lattice::describe(scene)) {
       if (k.source == "derived" || k.source == "paper") continue;
       double number = 0.0;
       const bool numeric =
@@ -92,7 +92,7 @@ void expect_twins(const Json& a, const Json& b, const Twin& twin, const std::str
 }
 
 TEST_F(TwinCommands, GiveTheSameNumbersInOtherUnits) {
-  const Scene scene = read_scene((kScenes / "field.toml").string(), {});
+  const lattice::Scene scene = lattice::read_scene((kScenes / "field.toml").string(), {});
   const std::string paper = rescaled(scene, {}, "paper.toml");
   const std::string matrix = path("m.nc"), other_matrix = path("n.nc");
   struct Line {

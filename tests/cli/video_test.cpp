@@ -1,4 +1,4 @@
-#include "cli/video.h"
+#include "cli/film/video.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -15,8 +15,8 @@
 #include <thread>
 #include <vector>
 
-#include "cli/child.h"
-#include "cli/interrupt.h"
+#include "cli/terminal/child.h"
+#include "cli/terminal/interrupt.h"
 #include "tests/cli/films.h"
 
 // What fontconfig keeps to the program's end is no leak of ours (read by the address sanitizer

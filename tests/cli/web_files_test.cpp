@@ -1,4 +1,4 @@
-#include "cli/web_files.h"
+#include "cli/web/embedded.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "dynamics/accuracy.h"
+#include "dynamics/study/accuracy.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "dynamics/choice.h"
+#include "dynamics/study/choice.h"
 
 #include <gtest/gtest.h>
 

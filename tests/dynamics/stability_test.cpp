@@ -1,12 +1,12 @@
-#include "dynamics/stability.h"
+#include "dynamics/study/stability.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/accuracy.h"
 #include "dynamics/methods/paper.h"
+#include "dynamics/study/accuracy.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::dynamics {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamics/accuracy.h"
-#include "dynamics/choice.h"
 #include "dynamics/landscape.h"
+#include "dynamics/study/accuracy.h"
+#include "dynamics/study/choice.h"
 #include "dynamics/trace.h"
 #include "dynamics/transitions.h"
 

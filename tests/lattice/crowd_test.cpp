@@ -1,4 +1,4 @@
-#include "lattice/crowd.h"
+#include "lattice/field_stepper.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "lattice/compare.h"
 #include "lattice/draws.h"
 #include "lattice/gate_chain.h"
-#include "markov/sweep.h"
+#include "markov/predict/predictor.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::lattice {

@@ -1,4 +1,4 @@
-#include "lattice/push_only.h"
+#include "lattice/complementarity.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "lattice/gate_chain.h"
-#include "markov/exact.h"
+#include "markov/predict/reference.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 

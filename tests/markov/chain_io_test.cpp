@@ -1,4 +1,4 @@
-#include "markov/chain_io.h"
+#include "markov/formats/counts.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "markov/exact.h"
+#include "markov/predict/reference.h"
 
 namespace gatewalk::markov::test {
 

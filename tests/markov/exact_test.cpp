@@ -1,4 +1,4 @@
-#include "markov/exact.h"
+#include "markov/predict/reference.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "chains.h"
-#include "markov/sweep.h"
+#include "markov/predict/predictor.h"
 #include "markov/walk.h"
 
 namespace gatewalk::markov {

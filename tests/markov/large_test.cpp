@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "chains.h"
-#include "markov/sweep.h"
+#include "markov/predict/predictor.h"
 #include "markov/walk.h"
 #include "tests/support/long.h"
 

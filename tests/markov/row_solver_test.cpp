@@ -1,4 +1,4 @@
-#include "markov/row_solver.h"
+#include "markov/predict/row_elimination.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "markov/sweep.h"
+#include "markov/predict/predictor.h"
 
 #include <gtest/gtest.h>
 

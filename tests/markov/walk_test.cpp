@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "chains.h"
-#include "markov/exact.h"
+#include "markov/predict/reference.h"
 #include "tests/support/instruction_sets.h"
 
 namespace gatewalk::markov {

@@ -3,8 +3,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "cli/output.h"
-#include "cli/report_page.h"
+#include "cli/paper/page.h"
+#include "cli/terminal/output.h"
 
 int main(int argc, char** argv) try {
   if (argc != 3) throw std::invalid_argument("make_page REPORT.json PAGE.html");

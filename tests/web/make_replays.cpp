@@ -2,8 +2,8 @@
 
 #include <iostream>
 
-#include "cli/output.h"
-#include "cli/replay.h"
+#include "cli/film/replay.h"
+#include "cli/terminal/output.h"
 #include "tests/cli/films.h"
 
 int main(int argc, char** argv) try {

@@ -1,0 +1,28 @@
+#pragma once
+// clang-format off
+/// A single run to be watched: a page with an animation, made of a film.
+///
+/// A film is JSON:
+///   {"title": text, "radius_m", "beam_m", "joint_x_m", "joint_y_m": of the body and the beams,
+///    "scale": {"length_m", "mass_kg", "time_s"}: the scene's own units (dynamics::Scale), in which all that is
+///    drawn and timed is a plain number; at normal speed one such unit of time takes a second,
+///    "gate_m": [width, depth], "columns", "rows": the field's gates (1 x 1: a gate alone), "start_column",
+///    "runs": [run, ...]}
+/// A run is {"label": text, "ending": text, "propulsion_N": number} and arrays with an entry for each step:
+///   t (s, uneven steps allowed), gx, gy (the gate the body is in: i_x, i_y), x, y (m, in the gate's frame),
+///   vx, vy (m/s), left, right (deflection of the gate's beams, rad), contact_left, contact_right (0 free,
+///   1 hit, 2 held), random_N, body_J, beams_J (kinetic), elastic_J, work_J (of propulsion and random force
+///   so far), lost_J (so far), and perhaps lost_in_hits_J. A force and a contact hold until the next entry.
+// clang-format on
+
+#include <string>
+
+#include "cli/command.h"
+
+namespace gatewalk::cli {
+
+/// A whole page with the animation of all runs of a film; it loads nothing from anywhere. A film
+/// that is not as above makes a page that says so.
+[[nodiscard]] std::string replay_page(const Json& film);
+
+}  // namespace gatewalk::cli

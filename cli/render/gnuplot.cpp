@@ -1,0 +1,24 @@
+#include "cli/render/gnuplot.h"
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include "cli/terminal/child.h"
+
+namespace gatewalk::cli {
+
+std::string drawn(const std::string& script) {
+  const File in = scratch_file();
+  if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() ||
+      std::fflush(in.get()) != 0)
+    throw std::runtime_error(std::string("gnuplot cannot be run: its script cannot be written: ") +
+                             std::strerror(errno));
+  std::rewind(in.get());
+  // As a named file, so that gnuplot's complaints have line numbers and any error ends it.
+  Child gnuplot({"gnuplot", "/dev/stdin"}, ::fileno(in.get()),
+                "gnuplot was not found; it draws the figures (Debian: gnuplot-nox)");
+  return gnuplot.output();
+}
+
+}  // namespace gatewalk::cli

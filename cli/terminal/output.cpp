@@ -1,0 +1,67 @@
+#include "cli/terminal/output.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+
+#include "markov/formats/file.h"
+
+namespace gatewalk::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_to_stdout(std::string_view text) {
+  const markov::IgnoreBrokenPipe guard;
+  errno = EIO;  // stands when std::cout had failed before
+  // Flush first: what was printed before comes before.
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || !markov::write_all(STDOUT_FILENO, text))
+    throw std::runtime_error(std::string("standard output: cannot be written: ") +
+                             std::strerror(errno));
+}
+
+}  // namespace
+
+void require_writable(const std::string& path) {
+  if (path != "-") markov::require_replaceable(path);
+}
+
+void write_text_atomically(const std::string& path, std::string_view text) {
+  if (path == "-") return write_to_stdout(text);
+  markov::replace_file(path, text);
+}
+
+void require_possible_folder(const std::string& name) {
+  fs::path folder = name;
+  if (folder.empty()) throw std::runtime_error("\"\": the name of a folder is empty");
+  std::error_code error;
+  for (fs::file_status found; (found = fs::status(folder, error), !fs::is_directory(found));) {
+    if (found.type() != fs::file_type::not_found)
+      throw std::runtime_error(name + ": cannot be made: " +
+                               (error ? error.message() : folder.string() + " is no folder"));
+    const fs::path above = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+    if (above == folder) break;
+    if (folder.filename().string().size() > 255)
+      throw std::runtime_error(name + ": cannot be made: " + std::strerror(ENAMETOOLONG));
+    folder = above;
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw std::runtime_error(name + ": cannot be written to: folder " + folder.string() + ": " +
+                             std::strerror(errno));
+}
+
+void require_folder(const std::string& name) {
+  std::error_code error;
+  fs::create_directories(name, error);
+  if (error) throw std::runtime_error(name + ": cannot be made: " + error.message());
+  if (::access(name.c_str(), W_OK | X_OK) != 0)
+    throw std::runtime_error(name + ": cannot be written to");
+}
+
+}  // namespace gatewalk::cli

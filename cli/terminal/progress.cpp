@@ -1,0 +1,129 @@
+#include "cli/terminal/progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "cli/terminal/interrupt.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr std::chrono::milliseconds kRedraw{200};
+constexpr double kBatchSeconds = 0.3;
+
+double seconds_between(std::chrono::steady_clock::time_point a,
+                       std::chrono::steady_clock::time_point b) {
+  return std::chrono::duration<double>(b - a).count();
+}
+
+/// "0:07", "12:34", "1:02:03".
+std::string clock_text(double seconds) {
+  constexpr double kDay = 86400.0;
+  if (!(seconds < 100.0 * kDay)) return "over 100 days";
+  const auto whole = static_cast<int>(seconds);
+  char text[32];
+  if (whole < 3600) {
+    std::snprintf(text, sizeof text, "%d:%02d", whole / 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%d:%02d:%02d", whole / 3600, whole / 60 % 60, whole % 60);
+  }
+  return text;
+}
+
+/// Columns of the terminal, so that the line never wraps and leaves a trail.
+std::size_t terminal_columns() {
+  winsize size = {};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+Progress::Progress(std::string label, std::int64_t total, bool enabled)
+    : outer_(innermost_),
+      label_(std::move(label)),
+      total_(total),
+      visible_(enabled && total > 0 && outer_ == nullptr && ::isatty(STDERR_FILENO) == 1),
+      start_(Clock::now()),
+      last_drawn_(start_) {
+  innermost_ = this;
+}
+
+Progress::~Progress() {
+  finish();
+  innermost_ = outer_;
+}
+
+void Progress::begin_part(std::string label, std::int64_t size) {
+  before_ += part_;
+  part_ = size;
+  label_ = std::move(label);
+  draw(static_cast<double>(before_));
+}
+
+void Progress::update(std::int64_t done) {
+  if (outer_ != nullptr && total_ > 0)
+    outer_->draw(static_cast<double>(outer_->before_) + static_cast<double>(outer_->part_) *
+                                                            static_cast<double>(done) /
+                                                            static_cast<double>(total_));
+  draw(static_cast<double>(done));
+}
+
+void Progress::draw(double done) {
+  if (!visible_) return;
+  const auto now = Clock::now();
+  if (now - last_drawn_ < kRedraw) return;
+  last_drawn_ = now;
+  drawn_ = true;
+
+  const double elapsed = seconds_between(start_, now);
+  const double rate = done / elapsed;
+  const double left = (static_cast<double>(total_) - done) / rate;  // inf while nothing is done
+  char figures[48];
+  std::snprintf(figures, sizeof figures, " %3d%%  %.3g/s  ",
+                static_cast<int>(100.0 * done / static_cast<double>(total_)), rate);
+  std::string line =
+      label_ + figures + clock_text(elapsed) + " elapsed, " + clock_text(left) + " left";
+  line.resize(std::min(line.size(), terminal_columns() - 1));
+  std::fprintf(stderr, "\r%s\x1b[K", line.c_str());
+  std::fflush(stderr);
+}
+
+void Progress::finish() {
+  if (drawn_) std::fputs("\r\x1b[K", stderr);
+  drawn_ = false;
+}
+
+void BatchSize::measured(std::int64_t count, double seconds) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 40;
+  const std::int64_t ceiling = std::min(kMost, 4 * size_);
+  const double wanted =
+      static_cast<double>(count) * kBatchSeconds / seconds;  // inf if too quick to see
+  size_ = wanted < static_cast<double>(ceiling) ? std::max<std::int64_t>(1, std::llround(wanted))
+                                                : ceiling;
+}
+
+void run_in_batches(const std::string& label, std::int64_t total, bool show_progress,
+                    const std::function<void(std::int64_t, std::int64_t)>& run) {
+  Progress progress(label, total, show_progress);
+  run_in_batches(progress, 0.0, 1.0, total, run);
+}
+
+void run_in_batches(Progress& progress, double before, double each, std::int64_t total,
+                    const std::function<void(std::int64_t, std::int64_t)>& run) {
+  BatchSize batch;
+  for (std::int64_t done = 0; done < total;) {
+    if (interrupted()) throw Interrupted{};
+    const std::int64_t count = std::min(batch.get(), total - done);
+    const auto start = std::chrono::steady_clock::now();
+    run(done, count);
+    batch.measured(count, seconds_between(start, std::chrono::steady_clock::now()));
+    done += count;
+    progress.update(std::llround(before + each * static_cast<double>(done)));
+  }
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,28 @@
+#include "cli/web/embedded.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace {
+
+struct CarriedFile {
+  const char* name;  // nullptr behind the last one
+  const char* begin;
+  const char* end;
+};
+
+}  // namespace
+
+// Made by cli/web_files.cmake, an assembly file.
+extern "C" const CarriedFile gatewalk_carried_files[];
+
+namespace gatewalk::cli {
+
+std::string_view carried_file(std::string_view name) {
+  for (const CarriedFile* file = gatewalk_carried_files; file->name; ++file) {
+    if (name == file->name) return {file->begin, static_cast<std::size_t>(file->end - file->begin)};
+  }
+  throw std::logic_error("gatewalk carries no file named " + std::string(name));
+}
+
+}  // namespace gatewalk::cli

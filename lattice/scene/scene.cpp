@@ -1,0 +1,673 @@
+#include "lattice/scene/scene.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "dynamics/methods/method.h"
+#include "lattice/scene/edit_distance.h"
+#include "lattice/scene/scene_bins.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+constexpr std::size_t kMaxBytes = 1 << 20;
+// Every level of a dotted key costs a dot and, in the parser's destructors, stack. Brackets are
+// limited by the parser itself (256 deep).
+constexpr int kMaxDots = 2000;
+constexpr std::size_t kLongestCompared = 100;  // bytes of an unknown key
+
+// ---- The table of keys
+
+constexpr std::string_view kMethodKey = "run.method";
+constexpr std::string_view kFidelityKey = "field.fidelity";
+constexpr std::string_view kSweepTable = "sweep";
+
+using Slot = std::variant<double*, int*, std::string*, Fidelity*>;
+
+/// What a number may be. An open end is not itself permitted.
+struct Interval {
+  double low, high;
+  bool low_open = false, high_open = false;
+
+  [[nodiscard]] bool permits(double v) const {
+    return (low_open ? v > low : v >= low) && (high_open ? v < high : v <= high);  // false for NaN
+  }
+  [[nodiscard]] std::string text() const {
+    std::string range = dynamics::ParamInfo{{}, {}, low, high, low_open, {}}.range();
+    if (high_open) range.back() = ')';
+    return range;
+  }
+};
+
+struct SceneKey {
+  std::string_view key;
+  std::function<Slot(Scene&)> slot;
+  std::function<Interval(const Scene&)> permitted;  // may depend on keys that stand before this one
+  std::string_view meaning;
+};
+
+/// Every key of a scene in canonical order: those of GateParams, then field and start.
+const std::vector<SceneKey>& scene_keys() {
+  static const std::vector<SceneKey> keys = [] {
+    const auto fixed = [](double low, double high) {
+      return [low, high](const Scene&) { return Interval{low, high}; };
+    };
+    std::vector<SceneKey> all;
+    for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
+      if (info.key == "run.step_s") {
+        all.push_back({kMethodKey,
+                       [](Scene& s) { return Slot(&s.gate.run.method); },
+                       {},
+                       "how time is stepped, see dynamics/methods/method.h"});
+      }
+      all.push_back({info.key, [&info](Scene& s) { return Slot(&info.ref(s.gate)); },
+                     [&info](const Scene&) {
+                       return Interval{info.low, info.high, info.low_open};
+                     },
+                     info.meaning});
+    }
+    // Units away from the scene's own: far enough for anybody, near enough to compute with.
+    constexpr double kFar = 1e12;
+    const auto speeds = [](const Scene& s) {
+      const double most = kFar * dynamics::scale_of(s.gate).speed();
+      return Interval{-most, most};
+    };
+    const auto add = [&](std::string_view key, auto slot,
+                         std::function<Interval(const Scene&)> permitted,
+                         std::string_view meaning) {
+      all.push_back(
+          {key, [slot](Scene& s) { return Slot(slot(s)); }, std::move(permitted), meaning});
+    };
+    add(
+        "field.columns", [](Scene& s) { return &s.field.columns; }, fixed(1, 2001),
+        "gates side by side");
+    add(
+        "field.rows", [](Scene& s) { return &s.field.rows; }, fixed(1, 2001),
+        "gates one behind the other");
+    add(
+        "field.max_gates", [](Scene& s) { return &s.field.max_gates; }, fixed(0, 1e9),
+        "gates a body may visit before it is cut off, 0: no limit");
+    add(
+        kFidelityKey, [](Scene& s) { return &s.field.fidelity; }, {},
+        "which beams act: active (only the gate the body is in), remember, all");
+    add(
+        "start.x_m", [](Scene& s) { return &s.start.x; },
+        [](const Scene& s) {
+          return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x, true, true};
+        },
+        "start, from the gate's middle line");
+    add(
+        "start.y_m", [](Scene& s) { return &s.start.y; },
+        [](const Scene& s) {
+          return Interval{-kFar * dynamics::scale_of(s.gate).length, s.gate.run.traverse_y, false,
+                          true};
+        },
+        "start, from the gate's entrance");
+    add(
+        "start.vx_m_per_s", [](Scene& s) { return &s.start.vx; }, speeds,
+        "lateral velocity at the start");
+    add(
+        "start.vy_m_per_s", [](Scene& s) { return &s.start.vy; }, speeds,
+        "forward velocity at the start");
+    return all;
+  }();
+  return keys;
+}
+
+const SceneKey* find_key(std::string_view name) {
+  const auto& keys = scene_keys();
+  const auto it =
+      std::find_if(keys.begin(), keys.end(), [&](const SceneKey& k) { return k.key == name; });
+  return it == keys.end() ? nullptr : &*it;
+}
+
+std::string_view table_of(std::string_view key) { return key.substr(0, key.find('.')); }
+std::string_view leaf_of(std::string_view key) { return key.substr(key.find('.') + 1); }
+
+bool is_table(std::string_view name) {
+  const auto& keys = scene_keys();
+  return std::any_of(keys.begin(), keys.end(),
+                     [&](const SceneKey& k) { return table_of(k.key) == name; });
+}
+
+/// " N s/m" for "forces.drag_Ns_per_m", nothing for a pure number.
+std::string unit_of(std::string_view key) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kUnits{
+      {{"_Nms_per_rad", " N m s/rad"},
+       {"_Nm_per_rad", " N m/rad"},
+       {"_Ns_per_m", " N s/m"},
+       {"_m_per_s", " m/s"},
+       {"_kg", " kg"},
+       {"_Hz", " Hz"},
+       {"_Ns", " N s"},
+       {"_N", " N"},
+       {"_m", " m"},
+       {"_s", " s"}}};
+  for (const auto& [suffix, unit] : kUnits) {
+    if (key.ends_with(suffix)) return std::string(unit);
+  }
+  return {};
+}
+
+// ---- Texts
+
+/// The shortest digits that read back as the same double.
+std::string shortest(double v) {
+  std::array<char, 32> buffer;
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), v).ptr};
+}
+
+/// As `shortest`, but never to be taken for a whole number: "8.0", "-0.0".
+std::string float_text(double v) {
+  const std::string digits = shortest(v);
+  return digits.find_first_of(".en") == digits.npos ? digits + ".0" : digits;  // n: nan, inf
+}
+
+/// Fit for one line of a message, whatever a file contains.
+std::string printable(std::string_view raw) {
+  constexpr std::size_t kLongest = 60;
+  std::string shown;
+  for (const char c : raw.substr(0, kLongest)) {
+    shown += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  }
+  if (raw.size() > kLongest) {
+    while (!shown.empty() && static_cast<unsigned char>(shown.back()) >= 0x80) shown.pop_back();
+    shown += "...";
+  }
+  return shown;
+}
+
+/// " = -3", " = \"fast\"", " (an array)": the value behind a key, as a message shows it.
+std::string shown_value(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return " = " + float_text(number->get());
+  if (const auto* whole = node.as_integer()) return " = " + std::to_string(whole->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? " = true" : " = false";
+  if (const auto* string = node.as_string()) return " = \"" + printable(string->get()) + "\"";
+  if (node.is_array()) return " (an array)";
+  if (node.is_table()) return " (a table)";
+  return " (a date or time)";
+}
+
+std::string_view trimmed(std::string_view s) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = s.find_first_not_of(kBlank);
+  return first == s.npos ? std::string_view{}
+                         : s.substr(first, s.find_last_not_of(kBlank) - first + 1);
+}
+
+/// The table whose name is nearest to `name`.
+std::string_view closest_table(std::string_view name) {
+  name = name.substr(0, kLongestCompared);
+  const auto& keys = scene_keys();
+  return table_of(
+      std::min_element(keys.begin(), keys.end(), [&](const SceneKey& a, const SceneKey& b) {
+        return edit_distance(name, table_of(a.key)) < edit_distance(name, table_of(b.key));
+      })->key);
+}
+
+/// The key nearest to `name`, by its whole length or by the part behind the table's name.
+std::string_view closest_key(std::string_view name) {
+  name = name.substr(0, kLongestCompared);
+  // The unit is easily forgotten.
+  for (const SceneKey& k : scene_keys())
+    if (!leaf_of(name).empty() && table_of(k.key) == table_of(name) &&
+        leaf_of(k.key).starts_with(leaf_of(name)))
+      return k.key;
+  const auto distance = [&](const SceneKey& k) {
+    return std::min(edit_distance(name, k.key), 1 + edit_distance(leaf_of(name), leaf_of(k.key)));
+  };
+  const auto& keys = scene_keys();
+  return std::min_element(
+             keys.begin(), keys.end(),
+             [&](const SceneKey& a, const SceneKey& b) { return distance(a) < distance(b); })
+      ->key;
+}
+
+// ---- From TOML to settings
+
+/// `origin(line)` is how a message begins: "scenes/x.toml:12" or "--set forces.random_N=-3".
+using Origin = std::function<std::string(std::size_t line)>;
+
+/// One key that a file or an override gives.
+struct Setting {
+  const toml::node* value;
+  std::string origin;
+};
+using Settings = std::map<std::string, Setting, std::less<>>;
+
+void refuse_deep_nesting(std::string_view text, const Origin& origin) {
+  int dots = 0;
+  std::size_t line = 1;
+  while (!text.empty()) {
+    const std::string_view row = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), row.size() + 1));
+    const std::size_t first = row.find_first_not_of(" \t");
+    if (first != row.npos && row[first] != '#') {
+      dots += static_cast<int>(std::count(row.begin(), row.end(), '.'));
+    }
+    if (dots > kMaxDots) {
+      throw SceneError(origin(line) + ": nested too deeply: too many dotted keys");
+    }
+    ++line;
+  }
+}
+
+/// Row `line` (from 1) of `text`, for a message.
+std::string row_of(std::string_view text, std::size_t line) {
+  for (; line > 1; --line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
+  return printable(trimmed(text.substr(0, text.find('\n'))));
+}
+
+toml::table parse_toml(std::string_view text, const Origin& origin) {
+  refuse_deep_nesting(text, origin);
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const std::size_t line = error.source().begin.line;
+    throw SceneError(origin(line) + ": " + row_of(text, line) + ": " +
+                     std::string(error.description()));
+  }
+}
+
+/// Every key that `document` sets. Refuses what is no key of a scene.
+Settings settings_of(const toml::table& document, const Origin& origin) {
+  Settings settings;
+  for (const auto& [table_key, table_node] : document) {
+    const std::string table_name(table_key.str());
+    const std::string table_origin = origin(table_node.source().begin.line);
+    const toml::table* table = table_node.as_table();
+    if (table_name == kSweepTable || table_name == kBinsTable) continue;  // read apart
+    if (!is_table(table_name)) {
+      throw SceneError(table_origin + ": unknown " +
+                       (table ? "table " + printable(table_name) + "; the closest known table is " +
+                                    std::string(closest_table(table_name))
+                              : "key " + printable(table_name) + "; the closest known key is " +
+                                    std::string(closest_key(table_name))));
+    }
+    if (!table) {
+      throw SceneError(table_origin + ": " + table_name + shown_value(table_node) +
+                       " is not permitted: must be a table, written [" + table_name + "]");
+    }
+    for (const auto& [key, node] : *table) {
+      const std::string name = table_name + "." + std::string(key.str());
+      const std::string key_origin = origin(node.source().begin.line);
+      require_key(name, key_origin);
+      settings[name] = {&node, key_origin};
+    }
+  }
+  return settings;
+}
+
+/// Table [sweep]: keys of the scene with text "4:1:9" or "1,2", or an array of numbers or texts.
+std::vector<Variation> variations_of(const toml::table& document, const Origin& origin) {
+  struct Found {
+    toml::source_position place;
+    Variation variation;
+  };
+  std::vector<Found> found;
+  const auto item = [&](const toml::node& node, const std::string& begin) {
+    if (const auto* text = node.as_string()) return text->get();
+    if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
+    if (const auto* number = node.as_floating_point()) return shortest(number->get());
+    throw SceneError(
+        begin + shown_value(node) +
+        " is not permitted: must be \"from:step:to\", or a number or text, or an array of these");
+  };
+  const auto take = [&](const std::string& name, const toml::node& node) {
+    const std::string at = origin(node.source().begin.line);
+    require_key(name, at);
+    const std::string begin = at + ": sweep." + name;
+    std::string values;
+    if (const auto* array = node.as_array()) {
+      for (const toml::node& n : *array) values += (values.empty() ? "" : ",") + item(n, begin);
+    } else {
+      values = item(node, begin);
+    }
+    found.push_back({node.source().begin, {name, values, begin}});
+  };
+  const toml::node* sweep = document.get(kSweepTable);
+  if (!sweep) return {};
+  if (!sweep->is_table())
+    throw SceneError(origin(sweep->source().begin.line) + ": sweep" + shown_value(*sweep) +
+                     " is not permitted: must be a table, written [sweep]");
+  for (const auto& [table, node] : *sweep->as_table()) {
+    const std::string name(table.str());
+    if (!node.is_table()) {
+      take(name, node);  // a whole key in quotation marks
+      continue;
+    }
+    for (const auto& [key, value] : *node.as_table())
+      take(name + "." + std::string(key.str()), value);
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Found& a, const Found& b) { return a.place < b.place; });
+  std::vector<Variation> variations;
+  for (Found& f : found) {
+    for (const Variation& v : variations)
+      if (v.key == f.variation.key) throw SceneError(f.variation.origin + " is there twice");
+    variations.push_back(std::move(f.variation));
+  }
+  return variations;
+}
+
+/// Adds "key=value" to `settings`; `documents` keeps the parsed values alive.
+void apply_override(const std::string& given, std::deque<toml::table>& documents,
+                    Settings& settings) {
+  const std::string begin = "--set " + printable(given);
+  const Origin origin = [&begin](std::size_t) { return begin; };
+  const std::size_t equals = given.find('=');
+  if (equals == given.npos || given.find_first_of("\r\n") != given.npos) {
+    throw SceneError(begin + ": must be key=value, for example forces.random_N=20");
+  }
+  const std::string name(trimmed(std::string_view(given).substr(0, equals)));
+  std::string value(trimmed(std::string_view(given).substr(equals + 1)));
+
+  // A bare word for a text key: quotes seldom survive a shell.
+  if ((name == kMethodKey || name == kFidelityKey) && value.find_first_of("\"'") == value.npos)
+    value = "\"" + value + "\"";
+
+  documents.push_back(parse_toml(name + " = " + value, origin));
+  const Settings added = settings_of(documents.back(), origin);
+  if (added.empty() && !documents.back().contains(kBinsTable))
+    throw SceneError(begin + ": sets no key");
+  for (const auto& [key, setting] : added) settings[key] = setting;
+}
+
+// ---- From settings to a scene
+
+void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
+  const auto refusal = [&](const std::string& allowed) {
+    return SceneError(setting.origin + ": " + std::string(key.key) + shown_value(*setting.value) +
+                      " is not permitted: must " + allowed);
+  };
+  const Slot slot = key.slot(scene);
+  const auto* whole = setting.value->as_integer();
+
+  if (auto* const* text = std::get_if<std::string*>(&slot)) {
+    const auto* string = setting.value->as_string();
+    if (!string) throw refusal("be text, such as \"" + **text + "\"");
+    **text = string->get();
+    return;
+  }
+  if (auto* const* fidelity = std::get_if<Fidelity*>(&slot)) {
+    const auto* string = setting.value->as_string();
+    const auto& names = kFidelityNames;
+    const auto name = string ? std::find(names.begin(), names.end(), string->get()) : names.end();
+    if (name == names.end()) {
+      std::string known;
+      for (const std::string_view n : names)
+        known += (known.empty() ? "\"" : ", \"") + std::string(n) + "\"";
+      throw refusal("be one of " + known);
+    }
+    **fidelity = static_cast<Fidelity>(name - names.begin());
+    return;
+  }
+
+  const Interval interval = key.permitted(scene);
+  const std::string allowed = interval.text() + unit_of(key.key);
+  if (auto* const* integer = std::get_if<int*>(&slot)) {
+    if (!whole) throw refusal("be a whole number in " + allowed);
+    if (!interval.permits(static_cast<double>(whole->get()))) throw refusal("lie in " + allowed);
+    **integer = static_cast<int>(whole->get());
+    return;
+  }
+
+  const auto* floating = setting.value->as_floating_point();
+  if (!whole && !floating) throw refusal("be a number in " + allowed);
+  const double number = floating ? floating->get() : static_cast<double>(whole->get());
+  if (!interval.permits(number)) throw refusal("lie in " + allowed);
+  *std::get<double*>(slot) = number;
+}
+
+/// Distance from the start to the nearest point of the two beams at rest (both on y = joint_y).
+double distance_to_beams(const Scene& scene) {
+  const dynamics::Beams& beams = scene.gate.beams;
+  const auto to_beam = [&](double joint_x, double tip_x) {
+    const double nearest_x =
+        std::clamp(scene.start.x, std::min(joint_x, tip_x), std::max(joint_x, tip_x));
+    return std::hypot(scene.start.x - nearest_x, scene.start.y - beams.joint_y);
+  };
+  return std::min(to_beam(-beams.joint_x, beams.length - beams.joint_x),
+                  to_beam(beams.joint_x, beams.joint_x - beams.length));
+}
+
+/// Runs a check and blames what it refuses on the line of the key itself, else on that of a key
+/// which the message also names.
+template <class Check>
+void check(const Scene& scene, const Settings& settings, Check checked) {
+  try {
+    checked();
+  } catch (const dynamics::InvalidParameter& error) {
+    std::string origin = scene.source;
+    if (const auto own = settings.find(error.key()); own != settings.end()) {
+      origin = own->second.origin;
+    } else {
+      for (const auto& [key, setting] : settings) {
+        if (std::strstr(error.what(), key.c_str())) origin = setting.origin;
+      }
+    }
+    throw SceneError(origin + ": " + error.what());
+  }
+}
+
+/// Settings of the methods, which follow from all the rest unless they are given.
+bool is_methods_own(std::string_view key) {
+  return key == "run.step_s" || key == "run.event_tolerance_m" ||
+         key == "contact.impulse_threshold_Ns";
+}
+
+/// What depends on several keys of the gate at once.
+void check_gate(const Scene& scene, const Settings& settings) {
+  check(scene, settings, [&] {
+    if (scene.gate.run.method == "auto")
+      dynamics::validate(scene.gate);
+    else
+      (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
+  });
+}
+
+/// What depends on gate, field and start.
+void check_start(const Scene& scene, const Settings& settings) {
+  check(scene, settings, [&] {
+    validate(scene.gate, scene.field);
+    if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
+      throw dynamics::InvalidParameter(
+          "start.y_m", "start.y_m = " + shortest(scene.start.y) +
+                           " is not permitted: the disc (body.radius_m = " +
+                           shortest(scene.gate.body.radius) + ") would overlap a beam at rest, " +
+                           shortest(distance) + " m from start.x_m = " + shortest(scene.start.x));
+    }
+  });
+}
+
+std::string read_file(const std::string& path) {
+  const auto fail = [&] { throw SceneError(path + ": cannot be read: " + std::strerror(errno)); };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             std::fclose);
+  if (!file) fail();
+  std::string text(kMaxBytes + 1, '\0');  // one more than allowed, so that parse_scene notices
+  errno = 0;
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  if (std::ferror(file.get())) fail();
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> keys_set_by(const std::string& given) {
+  std::deque<toml::table> documents;
+  Settings settings;
+  apply_override(given, documents, settings);
+  std::vector<std::string> keys;
+  for (const auto& [key, setting] : settings) keys.push_back(key);
+  return keys;
+}
+
+void require_key(const std::string& key, const std::string& origin) {
+  if (find_key(key)) return;
+  throw SceneError(origin + ": unknown key " + printable(key) + "; the closest known key is " +
+                   std::string(closest_key(key)));
+}
+
+Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  return parse_scene(scene_text(path), path, overrides);
+}
+
+std::string scene_text(const std::string& path) {
+  std::string text = read_file(path);
+  if (text.starts_with("\x89HDF"))
+    throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
+  return text;
+}
+
+Scene parse_scene(std::string_view text, std::string name,
+                  const std::vector<std::string>& overrides) {
+  if (text.size() > kMaxBytes) {
+    throw SceneError(name + ": is too large for a scene: more than " + std::to_string(kMaxBytes) +
+                     " bytes");
+  }
+  const Origin origin = [&name](std::size_t line) { return name + ":" + std::to_string(line); };
+  const toml::table document = parse_toml(text, origin);
+  const Settings of_file = settings_of(document, origin);
+  Settings settings = of_file;
+  std::deque<toml::table> override_documents;
+  for (const std::string& given : overrides) apply_override(given, override_documents, settings);
+
+  Scene scene;
+  scene.source = name;
+  scene.sweep = variations_of(document, origin);
+  for (const auto& [key, setting] : settings) scene.named.emplace(key, setting.origin);
+  const auto of_gate = [](const SceneKey& key) {
+    return table_of(key.key) != "field" && table_of(key.key) != "start";
+  };
+  // What the file leaves out follows from the file: an override changes its own key only, and the
+  // settings of the method. It may mend a value that the file should not have.
+  for (const SceneKey& key : scene_keys()) {
+    const auto it = of_file.find(key.key);
+    if (!of_gate(key) || it == of_file.end()) continue;
+    try {
+      assign(key, it->second, scene);
+    } catch (const SceneError&) {
+      if (settings.at(std::string(key.key)).origin == it->second.origin) throw;
+    }
+  }
+  const auto derive = [&](auto known) {
+    for (const std::string_view key : dynamics::fill_in(scene.gate, scene.start, known))
+      scene.derived.emplace(key);
+  };
+  check(scene, settings,
+        [&] { derive([&](std::string_view key) { return of_file.contains(key); }); });
+  for (const SceneKey& key : scene_keys())
+    if (const auto it = settings.find(key.key); of_gate(key) && it != settings.end())
+      assign(key, it->second, scene);
+  check(scene, settings, [&] {
+    derive([&](std::string_view key) { return scene.named.contains(key) || !is_methods_own(key); });
+  });
+  std::erase_if(scene.derived, [&](const std::string& key) { return scene.named.contains(key); });
+  check_gate(scene, settings);  // what a start may be depends on it
+  for (const SceneKey& key : scene_keys())
+    if (const auto it = settings.find(key.key); !of_gate(key) && it != settings.end())
+      assign(key, it->second, scene);
+  check_start(scene, settings);
+  auto edges = edges_in(document, origin);
+  for (std::size_t i = 0; i < overrides.size(); ++i)
+    for (GivenEdges& given : edges_in(override_documents[i], [&](std::size_t) {
+           return "--set " + printable(overrides[i]);
+         }))
+      edges.push_back(std::move(given));
+  try {
+    scene.bins = bins_of(scene.gate, edges);
+  } catch (const dynamics::InvalidParameter& error) {
+    throw SceneError(scene.source + ": " + error.what());
+  }
+  return scene;
+}
+
+namespace {
+
+/// The value as TOML has it.
+std::string value_text(const SceneKey& key, Scene& scene) {
+  const Slot slot = key.slot(scene);
+  if (auto* const* string = std::get_if<std::string*>(&slot)) return "\"" + **string + "\"";
+  if (auto* const* integer = std::get_if<int*>(&slot)) return std::to_string(**integer);
+  if (auto* const* fidelity = std::get_if<Fidelity*>(&slot))
+    return "\"" + std::string(name_of(**fidelity)) + "\"";
+  return float_text(*std::get<double*>(slot));
+}
+
+}  // namespace
+
+std::string to_toml(const Scene& scene) {
+  Scene copy = scene;  // slots point into a mutable scene
+  std::string text;
+  std::string_view table;
+  for (const SceneKey& key : scene_keys()) {
+    if (table_of(key.key) != table) {
+      table = table_of(key.key);
+      text += (text.empty() ? "[" : "\n[") + std::string(table) + "]\n";
+    }
+    text += std::string(leaf_of(key.key)) + " = " + value_text(key, copy) + "\n";
+  }
+  if (scene.bins) text += "\n" + bins_toml(*scene.bins);
+  return text;
+}
+
+std::vector<KeyInfo> describe(const Scene& scene) {
+  Scene copy = scene;
+  std::vector<KeyInfo> all;
+  for (const SceneKey& key : scene_keys()) {
+    KeyInfo info{std::string(key.key),     value_text(key, copy),
+                 unit_of(key.key),         {},
+                 std::string(key.meaning), "paper"};
+    if (!info.unit.empty()) info.unit.erase(0, 1);  // the blank before it
+    if (key.permitted) info.range = key.permitted(scene).text();
+    if (const auto given = scene.named.find(key.key); given != scene.named.end())
+      info.source = given->second;
+    if (scene.derived.contains(key.key)) info.source = "derived";
+    all.push_back(std::move(info));
+  }
+  return all;
+}
+
+std::vector<std::string> physics_differences(const Scene& here, const Scene& there) {
+  std::vector<std::string> lines;
+  const auto add = [&](std::string_view key, const std::string& a, const std::string& b) {
+    lines.push_back(std::string(key) + ": " + a + " here, " + b + " there");
+  };
+  for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
+    const double a = info.get(here.gate), b = info.get(there.gate);
+    // "auto" agrees with whatever was chosen.
+    const bool chosen = info.key == "run.step_s" || info.key == "run.event_tolerance_m";
+    if (here.gate.run.method == "auto" && chosen) continue;
+    // These shape nothing here: how "auto" chose, and the setting of another method.
+    if (info.key == "run.tolerance" && here.gate.run.method != "auto") continue;
+    if (info.key == "run.event_tolerance_m" && there.gate.run.method != "event") continue;
+    if (a != b) add(info.key, shortest(a), shortest(b));
+  }
+  if (here.gate.run.method != there.gate.run.method && here.gate.run.method != "auto") {
+    add(kMethodKey, here.gate.run.method, there.gate.run.method);
+  }
+  if (here.bins != there.bins) {
+    const auto told = [](const Scene& s) { return s.bins ? "edges of its own" : "none"; };
+    if (here.bins && there.bins)
+      lines.push_back("[bins]: other edges here than there");
+    else
+      add("[bins]", told(here), told(there));
+  }
+  return lines;
+}
+
+}  // namespace gatewalk::lattice

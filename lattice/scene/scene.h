@@ -1,0 +1,83 @@
+#pragma once
+/// The scene file: everything a run depends on, in TOML, every key optional.
+
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/params.h"
+#include "dynamics/state_space.h"
+#include "lattice/field.h"
+
+namespace gatewalk::lattice {
+
+/// A key and the values that a sweep gives it: "4:1:9" (from:step:to) or "300,400,500".
+struct Variation {
+  std::string key, values;
+  std::string origin;  // how a message about it begins
+};
+
+/// Bin edges of every boundary, as StateSpace takes them.
+using SceneBins = std::array<dynamics::Bins, dynamics::kBoundaries>;
+
+struct Scene {
+  dynamics::GateParams gate;
+  FieldParams field;
+  dynamics::BodyState start{0.0, 0.0, 0.0, 15.0};  // m, m, m/s, m/s; in the first gate's frame
+  std::string source;                              // the file it came from
+  std::map<std::string, std::string, std::less<>> named;  // keys the user gave, and where
+  std::set<std::string, std::less<>>
+      derived;                    // keys that follow from those; the rest are the paper's
+  std::vector<Variation> sweep;   // table [sweep], in the order of the file
+  std::optional<SceneBins> bins;  // table [bins], the chain's states
+};
+
+/// A scene that cannot be used. what() reads
+/// "scenes/x.toml:12: forces.random_N = -3 is not permitted: must lie in [0, 1e+06] N",
+/// or begins "--set forces.random_N=-3: " when the value came from an override.
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads `path` and applies `overrides`, each "forces.random_N=20" with a TOML value behind the
+/// first '=' (text may stand without quotes); the last one of a key wins. Throws SceneError.
+[[nodiscard]] Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The text of a scene file, for parse_scene. Throws SceneError.
+[[nodiscard]] std::string scene_text(const std::string& path);
+
+/// The same for text already in memory; `name` stands for the file in messages.
+[[nodiscard]] Scene parse_scene(std::string_view text, std::string name,
+                                const std::vector<std::string>& overrides = {});
+
+/// One key as a reader sees it.
+struct KeyInfo {
+  std::string key, value;  // the value as TOML has it
+  std::string unit;        // "N m/rad", empty for a pure number
+  std::string range, meaning;
+  std::string source;  // "x.toml:12", "--set ...", "derived" or "paper"
+};
+/// Every key of the scene, in the order of to_toml.
+[[nodiscard]] std::vector<KeyInfo> describe(const Scene& scene);
+/// The keys that the override `given` sets, however it is spelled. Throws SceneError.
+[[nodiscard]] std::vector<std::string> keys_set_by(const std::string& given);
+
+/// Throws SceneError unless `key` is one of a scene; `origin` begins the message.
+void require_key(const std::string& key, const std::string& origin);
+
+/// The complete scene, every key in a fixed order, but no sweep; numbers with the digits that read
+/// back the same.
+[[nodiscard]] std::string to_toml(const Scene& scene);
+
+/// What differs between two scenes among the keys that shape a transition matrix (all of
+/// GateParams and [bins]; neither field nor start): "forces.random_N: 40 here, 20 there", empty if
+/// nothing.
+[[nodiscard]] std::vector<std::string> physics_differences(const Scene& here, const Scene& there);
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,127 @@
+#include "lattice/scene/scene_bins.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+struct Axis {
+  std::string_view name;
+  std::vector<double> Bins::*edges;
+};
+constexpr std::array<Axis, 3> kAxes{Axis{"d_m", &Bins::d}, Axis{"vx_m_per_s", &Bins::vx},
+                                    Axis{"vy_m_per_s", &Bins::vy}};
+
+std::string key_of(int boundary, const Axis& axis) {
+  return std::string(kBoundaryNames[boundary]) + "_" + std::string(axis.name);
+}
+
+std::string all_keys() {
+  std::string names;
+  for (int b = 0; b < kBoundaries; ++b)
+    for (const Axis& axis : kAxes) names += (names.empty() ? "" : ", ") + key_of(b, axis);
+  return names;
+}
+
+/// The shortest digits that read back the same, never a whole number: "0.2", "-1.0".
+/// A TOML float: the digits that read back the same.
+std::string text(double v) {
+  std::array<char, 32> buffer{};
+  const std::string digits(buffer.data(),
+                           std::to_chars(buffer.data(), buffer.data() + buffer.size(), v).ptr);
+  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
+}
+
+std::string text(const std::vector<double>& edges) {
+  std::string list;
+  for (const double e : edges) list += (list.empty() ? "[" : ", ") + text(e);
+  return list + "]";
+}
+
+std::vector<double> numbers_in(const toml::node& node, const std::string& begin) {
+  const auto refuse = [&] {
+    throw SceneError(begin +
+                     " is not permitted: must be two or more numbers, finite and ascending, such "
+                     "as [-0.2, 0, 0.2]");
+  };
+  const toml::array* const array = node.as_array();
+  if (!array) refuse();
+  std::vector<double> edges;
+  for (const toml::node& item : *array) {
+    if (const auto* whole = item.as_integer())
+      edges.push_back(static_cast<double>(whole->get()));
+    else if (const auto* number = item.as_floating_point())
+      edges.push_back(number->get());
+    else
+      refuse();
+    if (!std::isfinite(edges.back()) ||
+        (edges.size() > 1 && !(edges[edges.size() - 2] < edges.back())))
+      refuse();
+  }
+  if (edges.size() < 2) refuse();
+  return edges;
+}
+
+}  // namespace
+
+std::vector<GivenEdges> edges_in(const toml::table& document,
+                                 const std::function<std::string(std::size_t)>& origin) {
+  const toml::node* const node = document.get(kBinsTable);
+  if (!node) return {};
+  if (!node->is_table())
+    throw SceneError(origin(node->source().begin.line) +
+                     ": bins is not permitted: must be a table, written [bins]");
+  std::vector<GivenEdges> all;
+  for (const auto& [key, value] : *node->as_table()) {
+    const std::string at = origin(value.source().begin.line), name(key.str());
+    for (int b = 0; b < kBoundaries; ++b)
+      for (const Axis& axis : kAxes)
+        if (name == key_of(b, axis))
+          all.push_back(
+              {b, axis.edges, "bins." + name, at, numbers_in(value, at + ": bins." + name)});
+    if (all.empty() || all.back().name != "bins." + name)
+      throw SceneError(at + ": unknown key in [bins]; its keys are " + all_keys());
+  }
+  return all;
+}
+
+std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<GivenEdges>& given) {
+  if (given.empty()) return std::nullopt;
+  SceneBins bins = StateSpace::paper(gate).bins();
+  const double side = gate.beams.joint_x, joint = gate.beams.joint_y;
+  const double above = gate.run.traverse_y - joint;
+  for (const GivenEdges& g : given) {
+    const auto b = static_cast<Boundary>(g.boundary);
+    const double low = b == Boundary::enter ? -side : 0.0;
+    const double high = b == Boundary::enter                                          ? side
+                        : b == Boundary::right_deflect || b == Boundary::left_deflect ? joint
+                                                                                      : above;
+    if (g.axis == &Bins::d && !(g.edges.front() >= low && g.edges.back() <= high))
+      throw SceneError(g.origin + ": " + g.name + " = " + text(g.edges) +
+                       " is not permitted: must lie in [" + text(low) + ", " + text(high) + "] m");
+    bins[g.boundary].*g.axis = g.edges;
+  }
+  double states = 0.0;
+  for (const Bins& b : bins)
+    states += static_cast<double>(b.d.size() - 1) * static_cast<double>(b.vx.size() - 1) *
+              static_cast<double>(b.vy.size() - 1);
+  if (states > kMostStates)
+    throw SceneError(given.back().origin + ": the table [bins] makes more than " +
+                     std::to_string(kMostStates) + " states");
+  return bins;
+}
+
+std::string bins_toml(const SceneBins& bins) {
+  std::string lines = "[bins]\n";
+  for (int b = 0; b < kBoundaries; ++b)
+    for (const Axis& axis : kAxes)
+      lines += key_of(b, axis) + " = " + text(bins[b].*axis.edges) + "\n";
+  return lines;
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,116 @@
+#include "markov/predict/layout.h"
+
+namespace gatewalk::markov {
+namespace {
+
+constexpr std::ptrdiff_t lanes_down(std::ptrdiff_t x) { return x / kLanes * kLanes; }
+constexpr std::ptrdiff_t lanes_up(std::ptrdiff_t x) { return lanes_down(x + kLanes - 1); }
+
+}  // namespace
+
+Table::Table(const std::vector<Entry>& entries) {
+  // Sorted by target and move, otherwise in their order: by counting.
+  int moves = 0, targets = 0;
+  for (const Entry& e : entries) {
+    moves = std::max(moves, e.move + 1);
+    targets = std::max(targets, e.target + 1);
+  }
+  std::vector<int> end(static_cast<std::size_t>(targets * moves) + 1);
+  const auto kind = [&](const Entry& e) {
+    return static_cast<std::size_t>(e.target * moves + e.move);
+  };
+  for (const Entry& e : entries) ++end[kind(e) + 1];
+  for (std::size_t k = 1; k < end.size(); ++k) end[k] += end[k - 1];
+  terms.resize(entries.size());
+  for (const Entry& e : entries) {
+    int& place = end[kind(e)];  // after the last: the beginning of the next kind
+    terms[static_cast<std::size_t>(place++)] = {e.p, e.source};
+  }
+  for (int target = 0, begin = 0; target < targets; ++target) {
+    std::size_t pass = 0;
+    const int first = begin;
+    for (int move = 0; move < moves; ++move) {
+      const int next = end[static_cast<std::size_t>(target * moves + move)];
+      if (next == begin) continue;
+      if (pass == passes.size()) passes.emplace_back();
+      passes[pass++].push_back({begin, next, target, move});
+      begin = next;
+    }
+    most_terms = std::max(most_terms, begin - first);
+  }
+}
+
+void push_all(const Table& table, const Way* ways, std::ptrdiff_t stride, const double* mine,
+              const std::vector<Range>& ranges, const double* from, double* to, bool add) {
+  for (const auto& groups : table.passes) {
+    for (const Range& r : ranges)
+      push({table.terms.data(), groups.data(), static_cast<int>(groups.size()), ways, stride, mine},
+           from, to, r.first, r.last, add);
+    add = true;
+  }
+}
+
+Board::Board(std::int64_t columns, std::int64_t rows, const std::vector<Move>& moves, int colours,
+             const std::vector<std::int64_t>& parities)
+    : colours_(colours) {
+  for (const std::int64_t parity : parities) {
+    if (colours == 2 && (pitch_ + parity - parities.front()) % 2 != 0) ++pitch_;
+    offsets_.push_back(pitch_);
+    pitch_ += columns;
+  }
+  if (colours == 2 && pitch_ % 2 == 0) ++pitch_;
+  std::ptrdiff_t lowest = 0, highest = 0;
+  for (const Move& m : moves) {
+    lowest = std::min(lowest, way_of(m));
+    highest = std::max(highest, way_of(m));
+  }
+  origin_ = (lanes_up(-lowest) + kLanes) * colours;
+  stride_ = lanes_up((origin_ + rows * pitch_ + highest) / colours) + 2 * kLanes;
+  // An odd number of registers: equal places of neighbouring stripes do not share cache lines'
+  // sets.
+  if (stride_ / kLanes % 2 == 0) stride_ += kLanes;
+
+  // A mask per move and one for staying, each for all colours of the cells gone to.
+  for (std::size_t m = 0; m <= moves.size(); ++m) {
+    double* const mask = masks_.emplace_back(colours * stride_).data();
+    const std::int64_t di_x = m < moves.size() ? moves[m].di_x : 0;
+    for (std::size_t j = 0; j < parities.size(); ++j)
+      for (std::int64_t row = 0; row < rows; ++row)
+        for (std::int64_t c = std::max<std::int64_t>(0, di_x);
+             c < std::min(columns, columns + di_x); ++c) {
+          const Place there = place(j, c, row);
+          mask[there.colour * stride_ + there.at] = 1.0;
+        }
+    for (int colour = 0; colour < colours; ++colour) {
+      const auto k = static_cast<std::size_t>(colour);
+      if (m == moves.size()) {
+        still_[k] = {0, mask + colour * stride_};
+        continue;
+      }
+      const std::ptrdiff_t to = colour + way_of(moves[m]);  // from the colour's place 0
+      const std::ptrdiff_t to_colour = (to % colours + colours) % colours;
+      ways_[k].push_back({(to - to_colour) / colours, mask + to_colour * stride_});
+    }
+  }
+}
+
+void Board::cover(std::int64_t left, std::int64_t right, std::int64_t bottom, std::int64_t top,
+                  std::vector<Range>& ranges) const {
+  std::ptrdiff_t done = ranges.empty() ? 0 : ranges.back().last;
+  const auto of_rows = [&](std::int64_t low, std::int64_t high) {
+    return Range{std::max(done, lanes_down(place(0, left, low).at)),
+                 lanes_up(place(offsets_.size() - 1, right, high).at + 1)};
+  };
+  const auto size = [](const Range& r) { return r.last - r.first; };
+  const Range together = of_rows(bottom, top);
+  if (size(together) <= (top - bottom + 1) * size(of_rows(bottom, bottom))) {
+    ranges.push_back(together);
+    return;
+  }
+  for (std::int64_t row = bottom; row <= top; ++row) {
+    ranges.push_back(of_rows(row, row));
+    done = ranges.back().last;
+  }
+}
+
+}  // namespace gatewalk::markov

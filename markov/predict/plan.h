@@ -1,0 +1,137 @@
+#pragma once
+/// What Sweeper's two ways share: prepared chains, and what is known of one start. Step by step:
+/// sweep_steps.cpp; row by row: sweep_rows.cpp.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "markov/predict/ends.h"
+#include "markov/predict/layout.h"
+#include "markov/predict/predictor.h"
+#include "markov/predict/row_elimination.h"
+
+namespace gatewalk::markov {
+
+/// A mass that is nothing: products with it must not become denormal numbers, which are slow.
+inline constexpr double kNothing = 1e-280;
+
+/// Stripes of a tally: all mass; what ends in a cell: trapped, in a state never sampled, gone by a
+/// move.
+inline constexpr int kTotal = 0, kTrapped = 1, kUnsampled = 2, kMoved = 3;
+
+/// A chain, ready for push().
+struct Rules {
+  Chain chain;
+  std::vector<int> walking_inputs, unsampled;  // of the inputs that are entered
+  Table moves;                                 // all of them
+  Table first_sideways, sideways;  // within a row: of inputs entered from below, entered sideways
+  std::vector<Table> upwards;      // by 1 row, 2 rows, ...
+  Table ends;                      // to kTrapped, ...
+  Table walking;                   // to kTotal: all that walks on
+  std::unique_ptr<const RowSolver> solver;
+  double stays = 0.0;  // largest chance to stay in the row, of inputs entered sideways
+};
+
+struct SweepPlan {
+  int inputs = 0, outputs = 0;    // outputs: of the chain with most
+  int most_terms = 0;             // of a sum over moves
+  std::vector<Move> moves;        // that some exit makes
+  int widest = 0;                 // largest |di_x|
+  int lowest = 0, highest = 0;    // di_y
+  bool is_chequered = true;       // every move leads to the other colour of a chessboard
+  std::vector<int> from_below;    // inputs entered from a row below
+  std::vector<int> sideways;      // inputs entered within a row
+  Table arriving, staying;        // to kTotal: all mass in from_below, sideways
+  std::vector<Rules> rules;       // a chain each
+  std::vector<int> rules_of_row;  // none: the first chain in all rows
+
+  [[nodiscard]] const Rules& at(std::int64_t row) const {
+    return rules[static_cast<std::size_t>(number_at(row))];
+  }
+  [[nodiscard]] int number_at(std::int64_t row) const {
+    return rules_of_row.empty() ? 0 : rules_of_row[static_cast<std::size_t>(row)];
+  }
+};
+
+/// What has ended of the walks from a start, and what is left.
+struct Walks {
+  Start start;
+  Ends ends;
+  CompensatedSum draws, remainder;
+  int steps = 0;
+  bool over = false;
+
+  Walks(const Field& field, const Start& from) : start(from), ends(field) {}
+
+  /// The first draw; `enter(column, row, input, p)` for what walks on.
+  template <class Enter>
+  void draw_first(const Chain& chain, const Field& field, bool is_last, Enter enter) {
+    const std::int64_t cell = std::int64_t{start.row} * field.columns + start.column;
+    over = is_last;
+    if (!chain.is_sampled(start.input)) {
+      ends.add(Ending::unsampled, cell, 1.0);
+      over = true;
+      return;
+    }
+    draws += 1.0;
+    for (Probabilities::InnerIterator it(chain.matrix(), start.input); it; ++it) {
+      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
+      if (exit.next_input == Exit::kTrapped) {
+        ends.add(Ending::trapped, cell, it.value());
+      } else if (neighbour_cell(field, start.column, start.row, exit.di_x, exit.di_y) < 0) {
+        ends.depart(cell, std::int64_t{start.column} + exit.di_x,
+                    std::int64_t{start.row} + exit.di_y, it.value());
+      } else if (is_last) {
+        ends.add(Ending::cut_off, cell, it.value());
+      } else {
+        enter(std::int64_t{start.column} + exit.di_x, std::int64_t{start.row} + exit.di_y,
+              exit.next_input, it.value());
+      }
+    }
+  }
+
+  /// What visitors of a cell draw: one number per stripe of ends at `tally`. `is_last`: whoever
+  /// would go on is cut off.
+  void count(const Field& field, const std::vector<Move>& moves, std::int64_t column,
+             std::int64_t row, bool is_last, const double* tally, std::ptrdiff_t stride) {
+    const std::int64_t cell = row * field.columns + column;
+    const double trapped = tally[kTrapped * stride], unsampled = tally[kUnsampled * stride];
+    if (trapped != 0.0) ends.add(Ending::trapped, cell, trapped);
+    if (unsampled != 0.0) ends.add(Ending::unsampled, cell, unsampled);
+    double drawn = trapped;
+    for (std::size_t m = 0; m < moves.size(); ++m) {
+      const double moved = tally[(kMoved + static_cast<std::ptrdiff_t>(m)) * stride];
+      if (moved == 0.0) continue;
+      drawn += moved;
+      if (neighbour_cell(field, column, row, moves[m].di_x, moves[m].di_y) < 0) {
+        ends.depart(cell, column + moves[m].di_x, row + moves[m].di_y, moved);
+      } else if (is_last) {
+        ends.add(Ending::cut_off, cell, moved);
+      }
+    }
+    draws += drawn;
+  }
+
+  /// Roundings that a move and an ending go through: see rounding_bound().
+  [[nodiscard]] FinalDistribution result(double per_move, double ending) const {
+    FinalDistribution d = ends.result();
+    d.remainder = remainder.value();
+    d.mean_steps = draws.value();
+    d.rounding = rounding_bound(d.mean_steps, per_move, ending);
+    d.steps = steps;
+    return d;
+  }
+};
+
+/// As Sweeper::propagate and march, arguments checked.
+[[nodiscard]] std::vector<FinalDistribution> sweep_steps(const SweepPlan& plan, const Field& field,
+                                                         const std::vector<Start>& starts,
+                                                         int max_cells, double tolerance,
+                                                         int max_steps_without_limit);
+[[nodiscard]] std::vector<FinalDistribution> sweep_rows(const SweepPlan& plan, const Field& field,
+                                                        const std::vector<Start>& starts,
+                                                        double tolerance, Sweeper::RowMethod method,
+                                                        int most_sums);
+
+}  // namespace gatewalk::markov

@@ -1,0 +1,416 @@
+#include "markov/predict/reference.h"
+
+#include <klu.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "markov/predict/ends.h"
+
+namespace gatewalk::markov {
+namespace {
+
+// The chain seen from one cell: outputs that lead to the same neighbour together, so that the edge
+// of the field is looked at once per neighbour.
+struct Link {
+  int output;
+  int input;
+};
+struct Neighbour {
+  int di_x;
+  int di_y;
+  std::vector<Link> links;
+};
+struct Stencil {
+  std::vector<Neighbour> neighbours;
+  std::vector<int> trapped;
+};
+
+Stencil stencil_of(const Chain& chain) {
+  Stencil stencil;
+  for (int output = 0; output < chain.outputs(); ++output) {
+    const Exit& exit = chain.exits()[static_cast<std::size_t>(output)];
+    if (exit.next_input == Exit::kTrapped) {
+      stencil.trapped.push_back(output);
+      continue;
+    }
+    auto& all = stencil.neighbours;
+    auto it = std::find_if(all.begin(), all.end(), [&](const Neighbour& n) {
+      return n.di_x == exit.di_x && n.di_y == exit.di_y;
+    });
+    if (it == all.end()) it = all.insert(it, {exit.di_x, exit.di_y, {}});
+    it->links.push_back({output, exit.next_input});
+  }
+  return stencil;
+}
+
+// Walking mass per (cell, input), and which cells hold any.
+class Mass {
+ public:
+  Mass(const Field& field, int inputs)
+      : inputs_(static_cast<std::size_t>(inputs)),
+        mass_(static_cast<std::size_t>(field.columns) * field.rows * inputs_),
+        is_active_(static_cast<std::size_t>(field.columns) * field.rows) {}
+
+  [[nodiscard]] const std::vector<std::int64_t>& active() const { return active_; }
+  [[nodiscard]] double* at(std::int64_t cell) {
+    return mass_.data() + static_cast<std::size_t>(cell) * inputs_;
+  }
+  void activate(std::int64_t cell) {
+    char& is_active = is_active_[static_cast<std::size_t>(cell)];
+    if (!is_active) active_.push_back(cell);
+    is_active = 1;
+  }
+  void clear() {
+    for (const std::int64_t cell : active_) {
+      std::fill_n(at(cell), inputs_, 0.0);
+      is_active_[static_cast<std::size_t>(cell)] = 0;
+    }
+    active_.clear();
+  }
+
+ private:
+  std::size_t inputs_;
+  std::vector<double> mass_;  // (cells x n_in)
+  std::vector<char> is_active_;
+  std::vector<std::int64_t> active_;
+};
+
+// I - Q, transposed, in compressed columns: column s holds what state s passes on.
+struct Transient {
+  std::vector<std::int64_t> states;  // cell * n_in + input, in the order they are reached
+  std::vector<std::int64_t> begin{0};
+  std::vector<std::int64_t> index;
+  std::vector<double> value;
+};
+
+Transient reachable(const RowChains& rows, const Field& field, const Start& start) {
+  const std::int64_t n_in = rows.at(0).inputs();
+  const std::int64_t cells = std::int64_t{field.columns} * field.rows;
+  constexpr std::int64_t kUnknown = -1;
+  std::vector<std::int64_t> number(static_cast<std::size_t>(cells * n_in), kUnknown);
+  // Where state t stands in the column under construction, if it stands there.
+  std::vector<std::int64_t> place;
+  Transient t;
+  const auto visit = [&](std::int64_t state) {
+    std::int64_t& known = number[static_cast<std::size_t>(state)];
+    if (known == kUnknown) {
+      known = static_cast<std::int64_t>(t.states.size());
+      t.states.push_back(state);
+      place.push_back(-1);
+    }
+    return known;
+  };
+  const auto add = [&](std::int64_t row, double value) {
+    std::int64_t& at = place[static_cast<std::size_t>(row)];
+    if (at < t.begin.back()) {
+      at = static_cast<std::int64_t>(t.index.size());
+      t.index.push_back(row);
+      t.value.push_back(0.0);
+    }
+    t.value[static_cast<std::size_t>(at)] += value;
+  };
+
+  visit((std::int64_t{start.row} * field.columns + start.column) * n_in + start.input);
+  for (std::size_t s = 0; s < t.states.size(); ++s) {
+    const std::int64_t cell = t.states[s] / n_in;
+    add(static_cast<std::int64_t>(s), 1.0);
+    const Chain& chain = rows.at(cell / field.columns);
+    for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
+      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
+      if (exit.next_input == Exit::kTrapped) continue;
+      const std::int64_t next =
+          neighbour_cell(field, cell % field.columns, cell / field.columns, exit.di_x, exit.di_y);
+      if (next >= 0 && rows.at(next / field.columns).is_sampled(exit.next_input))
+        add(visit(next * n_in + exit.next_input), -it.value());
+    }
+    t.begin.push_back(static_cast<std::int64_t>(t.index.size()));
+  }
+  return t;
+}
+
+static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
+
+// One factorisation by KLU, freed with the object.
+class Klu {
+ public:
+  explicit Klu(Transient& t) : t_(t), n_(static_cast<SuiteSparse_long>(t.states.size())) {
+    klu_l_defaults(&common_);
+    symbolic_ = klu_l_analyze(n_, t_.begin.data(), t_.index.data(), &common_);
+    if (symbolic_) {
+      numeric_ =
+          klu_l_factor(t_.begin.data(), t_.index.data(), t_.value.data(), symbolic_, &common_);
+    }
+    if (numeric_) {
+      klu_l_condest(t_.begin.data(), t_.value.data(), symbolic_, numeric_, &common_);
+    }
+  }
+  ~Klu() {
+    klu_l_free_numeric(&numeric_, &common_);
+    klu_l_free_symbolic(&symbolic_, &common_);
+  }
+  Klu(const Klu&) = delete;
+  Klu& operator=(const Klu&) = delete;
+
+  [[nodiscard]] int status() const { return static_cast<int>(common_.status); }
+  [[nodiscard]] double condition() const { return common_.condest; }
+
+  // x = A \ x
+  [[nodiscard]] bool solve(std::vector<double>& x) {
+    return klu_l_solve(symbolic_, numeric_, n_, 1, x.data(), &common_) != 0;
+  }
+
+ private:
+  Transient& t_;
+  SuiteSparse_long n_;
+  klu_l_common common_{};
+  klu_l_symbolic* symbolic_ = nullptr;
+  klu_l_numeric* numeric_ = nullptr;
+};
+
+// Mean number of draws made in each transient state.
+std::vector<double> visits(Transient& t) {
+  constexpr double kWorstCondition = 1e-6 / std::numeric_limits<double>::epsilon();
+  Klu klu(t);
+  if (klu.status() == KLU_OUT_OF_MEMORY || klu.status() == KLU_TOO_LARGE) {
+    throw std::runtime_error("absorption: no memory to factor I - Q of " +
+                             std::to_string(t.states.size()) + " states; propagate instead");
+  }
+  if (klu.status() == KLU_SINGULAR) {
+    throw std::runtime_error(
+        "absorption: I - Q is singular: from the start a walk can get into a "
+        "closed loop and never end");
+  }
+  if (klu.status() != KLU_OK) {
+    throw std::runtime_error("absorption: KLU fails with status " + std::to_string(klu.status()));
+  }
+  if (!(klu.condition() <= kWorstCondition)) {
+    std::ostringstream message;
+    message << "absorption: I - Q is singular or nearly so (condition about " << klu.condition()
+            << "): a walk can circle (almost) for ever, fewer than 6 digits hold";
+    throw std::runtime_error(message.str());
+  }
+  std::vector<double> x(t.states.size(), 0.0);
+  x.front() = 1.0;
+  if (!klu.solve(x)) throw std::runtime_error("absorption: KLU cannot solve");
+  return x;
+}
+
+// start - (I - Q)^T draws, in magnitude: what the draws do not account for and would walk on.
+double missing(const Transient& t, const std::vector<double>& draws) {
+  std::vector<double> left(draws.size(), 0.0);
+  left.front() = 1.0;
+  for (std::size_t s = 0; s < draws.size(); ++s)
+    for (auto k = static_cast<std::size_t>(t.begin[s]);
+         k < static_cast<std::size_t>(t.begin[s + 1]); ++k)
+      left[static_cast<std::size_t>(t.index[k])] -= t.value[k] * draws[s];
+  CompensatedSum sum;
+  for (const double mass : left) sum += std::abs(mass);
+  return sum.value();
+}
+
+}  // namespace
+
+RowChains::RowChains(std::vector<Chain> distinct, std::vector<int> of_row)
+    : chains(std::move(distinct)), chain_of_row(std::move(of_row)) {
+  if (chains.empty()) throw std::invalid_argument("rows: no chain is given");
+  for (const Chain& chain : chains)
+    if (chain.inputs() != chains.front().inputs())
+      throw std::invalid_argument("rows: chains of " + std::to_string(chains.front().inputs()) +
+                                  " and of " + std::to_string(chain.inputs()) +
+                                  " inputs cannot share a field");
+  for (std::size_t row = 0; row < chain_of_row.size(); ++row)
+    if (chain_of_row[row] < 0 || chain_of_row[row] >= std::ssize(chains))
+      throw std::invalid_argument("rows: row " + std::to_string(row) + " is given chain " +
+                                  std::to_string(chain_of_row[row]) + " of " +
+                                  std::to_string(chains.size()));
+}
+
+void validate(const RowChains& rows, const Field& field, const Start& start, int max_cells) {
+  validate(rows.chains.front(), field, start, max_cells);
+  if (std::ssize(rows.chain_of_row) != field.rows)
+    throw std::invalid_argument("rows: chains for " + std::to_string(rows.chain_of_row.size()) +
+                                " rows, the field has " + std::to_string(field.rows));
+}
+
+CellProbabilities trapped_cells(const FinalDistribution& d) {
+  CellProbabilities cells = d.final_cells;
+  for (const CellEndings& c : d.mixed_cells)
+    cells.data()[c.cell] = c.by_ending[static_cast<std::size_t>(Ending::trapped)];
+  return cells;
+}
+
+CellProbabilities departed_cells(const FinalDistribution& d) {
+  CellProbabilities cells = CellProbabilities::Zero(d.final_cells.rows(), d.final_cells.cols());
+  for (const CellEndings& c : d.mixed_cells)
+    for (const Ending edge : kEdges)
+      cells.data()[c.cell] += c.by_ending[static_cast<std::size_t>(edge)];
+  return cells;
+}
+
+FinalDistribution propagate(const RowChains& rows, const Field& field, const Start& start,
+                            int max_cells, double tolerance, int max_steps_without_limit) {
+  validate(rows, field, start, max_cells);
+  if (!(tolerance >= 0.0) || max_steps_without_limit < 0) {
+    throw std::invalid_argument("propagate: tolerance and step limit must not be negative");
+  }
+  const int n_in = rows.at(0).inputs();
+  int n_out = 0;
+  std::vector<Stencil> stencils;
+  for (const Chain& chain : rows.chains) {
+    stencils.push_back(stencil_of(chain));
+    n_out = std::max(n_out, chain.outputs());
+  }
+
+  Ends ends(field);
+  Mass now(field, n_in);
+  Mass next(field, n_in);
+  std::vector<double> out(static_cast<std::size_t>(n_out));  // mass per output of a cell
+  CompensatedSum draws;
+
+  double walking = 1.0;
+  const std::int64_t start_cell = std::int64_t{start.row} * field.columns + start.column;
+  if (rows.at(start.row).is_sampled(start.input)) {
+    now.activate(start_cell);
+    now.at(start_cell)[start.input] = walking;
+  } else {
+    ends.add(Ending::unsampled, start_cell, walking);
+    walking = 0.0;
+  }
+
+  int steps = 0;
+  while (max_cells > 0 ? steps < max_cells && walking > 0.0
+                       : steps < max_steps_without_limit && walking > tolerance) {
+    ++steps;
+    draws += walking;
+    const bool is_last = steps == max_cells;
+    CompensatedSum walks_on;
+    for (const std::int64_t cell : now.active()) {
+      const std::int64_t column = cell % field.columns, row = cell / field.columns;
+      const Probabilities& p = rows.at(row).matrix();
+      const Stencil& stencil =
+          stencils[static_cast<std::size_t>(rows.chain_of_row[static_cast<std::size_t>(row)])];
+      std::fill(out.begin(), out.end(), 0.0);
+      const double* const mass = now.at(cell);
+      for (int input = 0; input < n_in; ++input) {  // out = mass P, Eq. (16)
+        if (mass[input] == 0.0) continue;
+        for (Probabilities::InnerIterator it(p, input); it; ++it)
+          out[static_cast<std::size_t>(it.col())] += mass[input] * it.value();
+      }
+      const auto mass_of = [&out](int o) { return out[static_cast<std::size_t>(o)]; };
+
+      double trapped = 0.0;
+      for (const int o : stencil.trapped) trapped += mass_of(o);
+      ends.add(Ending::trapped, cell, trapped);
+
+      for (const Neighbour& n : stencil.neighbours) {
+        double moves = 0.0;
+        for (const Link& link : n.links) moves += mass_of(link.output);
+        if (moves == 0.0) continue;
+        const std::int64_t target = neighbour_cell(field, column, row, n.di_x, n.di_y);
+        if (target < 0) {
+          ends.depart(cell, column + n.di_x, row + n.di_y, moves);
+        } else if (is_last) {
+          ends.add(Ending::cut_off, cell, moves);
+        } else {
+          const Chain& there = rows.at(target / field.columns);
+          double* const entering = next.at(target);
+          for (const Link& link : n.links) {
+            const double m = mass_of(link.output);
+            if (m == 0.0) continue;
+            if (there.is_sampled(link.input)) {
+              next.activate(target);
+              entering[link.input] += m;
+              walks_on += m;
+            } else {
+              ends.add(Ending::unsampled, target, m);
+            }
+          }
+        }
+      }
+    }
+    now.clear();
+    std::swap(now, next);
+    walking = walks_on.value();
+  }
+
+  FinalDistribution result = ends.result();
+  result.remainder = walking;
+  result.mean_steps = draws.value();
+  result.rounding = rounding_bound(result.mean_steps, n_in + n_out + 2, n_in + n_out + 8);
+  result.steps = steps;
+  return result;
+}
+
+namespace {
+
+RowChains all_rows(const Chain& chain, const Field& field) {
+  return {{chain}, std::vector<int>(static_cast<std::size_t>(std::max(field.rows, 0)), 0)};
+}
+
+}  // namespace
+
+FinalDistribution propagate(const Chain& chain, const Field& field, const Start& start,
+                            int max_cells, double tolerance, int max_steps_without_limit) {
+  return propagate(all_rows(chain, field), field, start, max_cells, tolerance,
+                   max_steps_without_limit);
+}
+
+FinalDistribution solve_absorption(const Chain& chain, const Field& field, const Start& start) {
+  return solve_absorption(all_rows(chain, field), field, start);
+}
+
+FinalDistribution solve_absorption(const RowChains& rows, const Field& field, const Start& start) {
+  validate(rows, field, start, 0);
+  Ends ends(field);
+  const std::int64_t n_in = rows.at(0).inputs();
+  if (!rows.at(start.row).is_sampled(start.input)) {
+    ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
+    return ends.result();
+  }
+  Transient t = reachable(rows, field, start);
+  const std::vector<double> draws = visits(t);
+
+  CompensatedSum mean_steps;
+  int n_out = 0;
+  for (std::size_t s = 0; s < draws.size(); ++s) {
+    mean_steps += draws[s];
+    const std::int64_t cell = t.states[s] / n_in;
+    const Chain& chain = rows.at(cell / field.columns);
+    n_out = std::max(n_out, chain.outputs());
+    for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
+      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
+      const double mass = draws[s] * it.value();
+      if (exit.next_input == Exit::kTrapped) {
+        ends.add(Ending::trapped, cell, mass);
+        continue;
+      }
+      const std::int64_t next =
+          neighbour_cell(field, cell % field.columns, cell / field.columns, exit.di_x, exit.di_y);
+      if (next < 0) {
+        ends.depart(cell, cell % field.columns + exit.di_x, cell / field.columns + exit.di_y, mass);
+      } else if (!rows.at(next / field.columns).is_sampled(exit.next_input)) {
+        ends.add(Ending::unsampled, next, mass);
+      }
+    }
+  }
+  FinalDistribution result = ends.result();
+  result.remainder = missing(t, draws);
+  result.mean_steps = mean_steps.value();
+  result.rounding =
+      rounding_bound(result.mean_steps, 2.0 * static_cast<double>(n_in + n_out + 4), n_out + 8);
+  // A condition estimate does not see a closed loop of one state.
+  const double total = result.trapped + result.left_field + result.unsampled + result.remainder;
+  if (!(std::abs(total - 1.0) <= 1e-6) || !(result.rounding >= 0.0))
+    throw std::runtime_error(
+        "absorption: I - Q is singular or nearly so: a walk can circle (almost) for ever, "
+        "fewer than 6 digits hold");
+  return result;
+}
+
+}  // namespace gatewalk::markov

@@ -1,0 +1,115 @@
+#include "markov/predict/stencil.h"
+
+#include <algorithm>
+
+// Registers whose length is not known when this is compiled cannot stand in arrays.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "markov/predict/stencil.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace gatewalk::markov {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, kLanes>;
+
+/// `Width` registers share each p. Loads, one per product, lie on register boundaries where the
+/// stripes do; only what is stored is shifted.
+template <int Width>
+void push_block(const Push& push, const double* HWY_RESTRICT from, double* HWY_RESTRICT to,
+                bool add, std::ptrdiff_t c) {
+  const D d;
+  const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  for (const Group* g = push.groups; g != push.groups + push.count; ++g) {
+    hn::Vec<D> s[Width];
+    for (int i = 0; i < Width; ++i) s[i] = hn::Zero(d);
+    const Term* const end = push.terms + g->end;
+    for (const Term* k = push.terms + g->begin; k != end; ++k) {
+      const auto p = hn::Set(d, k->p);
+      const double* const in = from + k->source * push.stride + c;
+      for (int i = 0; i < Width; ++i) s[i] = hn::Add(s[i], hn::Mul(p, hn::LoadU(d, in + i * n)));
+    }
+    if (push.mine)
+      for (int i = 0; i < Width; ++i) s[i] = hn::Mul(s[i], hn::LoadU(d, push.mine + c + i * n));
+
+    const Way& way = push.ways[g->way];
+    const std::ptrdiff_t there = c + way.shift, place = g->target * push.stride + there;
+    for (int i = 0; i < Width; ++i) {
+      s[i] = hn::Mul(s[i], hn::LoadU(d, way.mask + there + i * n));
+      double* const out = to + place + i * n;
+      hn::StoreU(add ? hn::Add(hn::LoadU(d, out), s[i]) : s[i], d, out);
+    }
+  }
+}
+
+void push_all(const Push& push, const double* HWY_RESTRICT from, double* HWY_RESTRICT to,
+              std::ptrdiff_t first, std::ptrdiff_t last, bool add) {
+  constexpr std::ptrdiff_t kWidest = 8;
+  const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(D()));
+  const std::ptrdiff_t registers = (last - first) / n;
+  const std::ptrdiff_t blocks = (registers + kWidest - 1) / kWidest;  // of nearly the same width
+  for (std::ptrdiff_t i = 0; i < blocks; ++i) {
+    const std::ptrdiff_t begin = registers * i / blocks,
+                         width = registers * (i + 1) / blocks - begin;
+    const std::ptrdiff_t c = first + begin * n;
+    switch (width) {
+      case 1:
+        push_block<1>(push, from, to, add, c);
+        break;
+      case 2:
+        push_block<2>(push, from, to, add, c);
+        break;
+      case 3:
+        push_block<3>(push, from, to, add, c);
+        break;
+      case 4:
+        push_block<4>(push, from, to, add, c);
+        break;
+      case 5:
+        push_block<5>(push, from, to, add, c);
+        break;
+      case 6:
+        push_block<6>(push, from, to, add, c);
+        break;
+      case 7:
+        push_block<7>(push, from, to, add, c);
+        break;
+      default:
+        push_block<8>(push, from, to, add, c);
+        break;
+    }
+  }
+}
+
+void accumulate_all(const double* HWY_RESTRICT from, double* HWY_RESTRICT to, int count,
+                    std::ptrdiff_t stride, std::ptrdiff_t first, std::ptrdiff_t last) {
+  const D d;
+  for (int stripe = 0; stripe < count; ++stripe, from += stride, to += stride)
+    for (std::ptrdiff_t c = first; c < last; c += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
+      hn::StoreU(hn::Add(hn::LoadU(d, to + c), hn::LoadU(d, from + c)), d, to + c);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace gatewalk::markov
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace gatewalk::markov {
+HWY_EXPORT(push_all);
+HWY_EXPORT(accumulate_all);
+
+void push(const Push& p, const double* from, double* to, std::ptrdiff_t first, std::ptrdiff_t last,
+          bool add) {
+  HWY_DYNAMIC_DISPATCH(push_all)(p, from, to, first, last, add);
+}
+
+void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,
+                std::ptrdiff_t first, std::ptrdiff_t last) {
+  HWY_DYNAMIC_DISPATCH(accumulate_all)(from, to, count, stride, first, last);
+}
+
+}  // namespace gatewalk::markov
+#endif
