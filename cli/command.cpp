@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "cli/terminal/output.h"
+#include "cli/terminal/progress.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -365,6 +366,8 @@ int exit_status(const Options& options, bool clean) {
       "--strict: the result's status is not clean, so the exit status is 1; the result is written");
   return kFailure;
 }
+
+dynamics::Work Options::work() const { return watched_work(talk()); }
 
 std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/work.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
@@ -113,6 +114,8 @@ class Options {
   [[nodiscard]] const std::vector<std::string>& overrides() const;
   /// Progress lines and remarks are wanted.
   [[nodiscard]] bool talk() const { return !has("quiet"); }
+  /// Long work of this command: shown unless --quiet, stopped by a signal.
+  [[nodiscard]] dynamics::Work work() const;
 
   /// The command as it shaped the result, without what cannot change it (threads, output names).
   [[nodiscard]] std::string canonical() const;

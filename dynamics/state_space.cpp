@@ -1,6 +1,7 @@
 #include "dynamics/state_space.h"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -206,6 +207,20 @@ StateSpace refined(const StateSpace& space, double factor) {
   }
   if (states > kMostStates) throw too_many_states(factor);
   return StateSpace(std::move(bins), space.open(), space.points());
+}
+
+std::string text_of(const std::array<double, 2>& range) {
+  std::ostringstream text;
+  if (range[0] == range[1])
+    text << range[0];
+  else
+    text << "[" << range[0] << ", " << range[1] << "]";
+  return text.str();
+}
+
+std::string text_of(const Cell& cell) {
+  return std::string(kBoundaryNames[static_cast<int>(cell.boundary)]) + " d " + text_of(cell.d) +
+         " m, vx " + text_of(cell.vx) + " m/s, vy " + text_of(cell.vy) + " m/s";
 }
 
 }  // namespace gatewalk::dynamics

@@ -110,4 +110,9 @@ class StateSpace {
 inline constexpr int kMostStates = 1'000'000;
 [[nodiscard]] StateSpace refined(const StateSpace& space, double factor);
 
+/// A state's bin: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
+[[nodiscard]] std::string text_of(const Cell& cell);
+/// "[-5, 5]", or "15" for a single value.
+[[nodiscard]] std::string text_of(const std::array<double, 2>& range);
+
 }  // namespace gatewalk::dynamics

@@ -72,12 +72,13 @@ plain() {
     *) sed -E 's/[0-9]+\.[0-9]+ s\b//g; s/gatewalk [0-9][^ ]*//g' "$1" ;;
   esac
 }
-# A word that OLD itself writes otherwise when it runs again was timed: it stands as "timed".
+# A word that OLD itself writes otherwise when it runs again was timed: it and its column stand as
+# "timed".
 again=(again1 again2 again3)
 words() { awk -F '[ ,]+' 'FNR == 1 { ++file }
   file == 1 { first[FNR] = $0; next }
-  file <= runs { n = split(first[FNR], a); for (i = 1; i <= n; ++i) timed[FNR, i] += a[i] != $i; next }
-  { line = ""; for (i = 1; i <= NF; ++i) line = line " " (timed[FNR, i] ? "timed" : $i); print line }' "$@"; }
+  file <= runs { n = split(first[FNR], a); for (i = 1; i <= n; ++i) timed[NF, i] += a[i] != $i; next }
+  { line = ""; for (i = 1; i <= NF; ++i) line = line " " (timed[NF, i] ? "timed" : $i); print line }' "$@"; }
 
 while read -r line; do
   for side in old "${again[@]}" new; do

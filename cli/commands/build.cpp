@@ -1,7 +1,9 @@
-#include "cli/auto.h"
+#include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/matrix.h"
+#include "cli/render/choice.h"
+#include "cli/render/matrix.h"
 #include "cli/render/report.h"
+#include "cli/render/states.h"
 #include "cli/version.h"
 
 namespace gatewalk::cli {
@@ -23,19 +25,21 @@ int run_build(const std::vector<std::string>& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = lattice::read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
-  const BinsChoice choice = bins_choice(options, scene);
-  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
+  const lattice::BinsChoice choice = bins_choice(options, scene);
+  const Json settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
 
   const Stopwatch pilot_watch;
-  const States states = states_of(options, scene, choice, {scene.start});
+  const lattice::States states = states_of(options, scene, choice, {scene.start});
   const double pilot_seconds = pilot_watch.seconds();
-  const Json bins = states.choice.kind == BinsChoice::Kind::paper ? Json(states.choice.factor)
-                                                                  : Json(states.choice.name());
+  const Json bins = states.choice.kind == lattice::BinsChoice::Kind::paper
+                        ? Json(states.choice.factor)
+                        : Json(states.choice.name());
   const Stopwatch watch;
-  lattice::MatrixFile file{build_matrix(scene, states, trials, options.seed(), options.talk()), {}};
+  lattice::MatrixFile file{
+      lattice::build_matrix(scene, states, trials, options.seed(), options.work()), {}};
   const double seconds = watch.seconds();
-  check_outcomes(options, scene, RunsFrom::everywhere, file.transitions.totals().runs,
-                 file.transitions.health);
+  lattice::check_outcomes(scene, lattice::RunsFrom::everywhere, options.seed(),
+                          file.transitions.totals().runs, file.transitions.health);
   const dynamics::Transitions& t = file.transitions;
   file.text = {
       {"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},

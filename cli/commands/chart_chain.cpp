@@ -9,12 +9,14 @@
 #include <set>
 #include <sstream>
 
-#include "cli/auto.h"
-#include "cli/matrix.h"
+#include "cli/arguments.h"
+#include "cli/render/choice.h"
 #include "cli/render/drawing.h"
+#include "cli/render/matrix.h"
 #include "cli/render/quantity.h"
 #include "cli/render/report.h"
-#include "cli/starts.h"
+#include "cli/render/start.h"
+#include "cli/render/states.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
@@ -65,7 +67,7 @@ CellProbabilities shares(const markov::CellCounts& counts) {
 
 /// Full dynamics from one start: what every error is taken against.
 struct Truth {
-  PaperStart start;
+  lattice::PaperStart start;
   lattice::FieldTally tally;
   CellProbabilities p;             // shares of the final gates
   double seconds_per_trial = 0.0;  // one thread
@@ -178,10 +180,10 @@ double seconds_per_item(std::int64_t most, std::int64_t batch, const Work& work,
 }
 
 /// Begins the truth: as many trials as it takes to time one.
-Truth begin_truth(const lattice::Scene& scene, const PaperStart& start, std::int64_t trials,
-                  std::uint64_t seed) {
+Truth begin_truth(const lattice::Scene& scene, const lattice::PaperStart& start,
+                  std::int64_t trials, std::uint64_t seed) {
   Truth t{start, lattice::FieldTally(scene.field), {}, 0.0, {}};
-  const auto space = fixed_space(scene);
+  const auto space = lattice::fixed_space(scene);
   t.seconds_per_trial = seconds_per_item(trials, 10, [&](std::int64_t first, std::int64_t n) {
     t.tally += lattice::run_field(scene.gate, scene.field, start.body(), space, seed, {first, n});
   });
@@ -190,7 +192,7 @@ Truth begin_truth(const lattice::Scene& scene, const PaperStart& start, std::int
 
 void finish_truth(Truth& t, const lattice::Scene& scene, std::int64_t trials, std::uint64_t seed,
                   Progress& progress, double before, double each) {
-  const auto space = fixed_space(scene);
+  const auto space = lattice::fixed_space(scene);
   const std::int64_t done = t.tally.trials;
   run_in_batches(progress, before, each, trials - done, [&](std::int64_t first, std::int64_t n) {
     t.tally +=
@@ -835,31 +837,33 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
   add_strict(options);
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = lattice::read_scene(options.text("scene"), options.overrides());
-  const std::vector<PaperStart> starts = starts_of(options, scene);
-  require_inside(starts, scene);
-  const auto bodies = entries_at(starts);
-  const BinsChoice choice = usual_bins(scene);
-  const bool from_pilot = choice.kind == BinsChoice::Kind::automatic;
-  const dynamics::StateSpace fixed_bins = fixed_space(scene);
+  const std::vector<lattice::PaperStart> starts = starts_of(options, scene);
+  lattice::require_inside(starts, scene);
+  const auto bodies = lattice::entries_at(starts);
+  const lattice::BinsChoice choice = lattice::usual_bins(scene);
+  const bool from_pilot = choice.kind == lattice::BinsChoice::Kind::automatic;
+  const dynamics::StateSpace fixed_bins = lattice::fixed_space(scene);
   if (!from_pilot) require_inside_bins(starts, scene, fixed_bins);
-  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
+  const Json settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   const std::int64_t truth_trials = options.count("truth-trials", 100);
   const std::int64_t runs_limit = options.count("runs-limit");
   const std::uint64_t seed = options.seed();
 
   const std::int64_t pilot_trials = options.has("visited")
                                         ? options.count("visited", 1, kMostPilotTrials)
-                                    : from_pilot ? kPilotTrials
+                                    : from_pilot ? lattice::kPilotTrials
                                                  : 0;
 
   Chart chart;
   const std::vector<double> factors = factors_of(options);
-  const Pilot pilot = from_pilot ? run_pilot(options, scene, bodies, pilot_trials) : Pilot{};
+  const lattice::Pilot pilot =
+      from_pilot ? lattice::run_pilot(scene, bodies, pilot_trials, options.seed(), options.work())
+                 : lattice::Pilot{};
   chart.health += pilot.health;
   for (const double factor : factors) {
     Curve curve{factor, fixed_bins};
     if (from_pilot) {
-      SeenStates made = seen_states(scene, pilot, factor);
+      lattice::SeenStates made = lattice::seen_states(scene, pilot, factor);
       curve.space = std::move(made.space);
       curve.entries = std::move(made.entries);
     } else {
@@ -887,7 +891,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
 
   // Costs first, on one thread: they say how long the rest will take.
   remark(options, "measuring the cost of a trial and of a gate run");
-  for (const PaperStart& start : starts)
+  for (const lattice::PaperStart& start : starts)
     chart.truths.push_back(begin_truth(scene, start, truth_trials, seed));
   std::vector<dynamics::Crossing> seen;
   double pilot_seconds = 0.0;
@@ -935,7 +939,7 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
       run_in_batches(progress, done, each, trials, [&](std::int64_t first, std::int64_t n) {
         dynamics::add_trials(t, scene.gate, seed, {*from + first, n}, curve.entries);
       });
-      require_unbroken(t);
+      lattice::require_unbroken(t);
       done += each * static_cast<double>(trials);
       chart.health += t.health;
       all.add(std::move(t));

@@ -7,11 +7,12 @@
 #include <limits>
 #include <sstream>
 
+#include "cli/arguments.h"
 #include "cli/render/drawing.h"
 #include "cli/render/gnuplot.h"
 #include "cli/render/quantity.h"
 #include "cli/render/report.h"
-#include "cli/starts.h"
+#include "cli/render/start.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
 
@@ -64,12 +65,12 @@ struct Run {
 };
 
 struct StartRuns {
-  PaperStart start;
+  lattice::PaperStart start;
   std::vector<Run> runs;  // as the variants
 };
 
 StartRuns run_start(const Options& options, const std::vector<Variant>& variants,
-                    const PaperStart& start, std::int64_t trials) {
+                    const lattice::PaperStart& start, std::int64_t trials) {
   const auto space = dynamics::StateSpace::paper(variants[0].scene.gate);
   const auto run = [&](const Variant& v, std::int64_t first, std::int64_t n) {
     return lattice::run_field(v.scene.gate, v.scene.field, start.body(), space, options.seed(),
@@ -365,8 +366,8 @@ int run_chart_field(const std::vector<std::string>& arguments) {
     throw UsageError(
         "run.method = \"auto\" is not permitted for chart-field, which runs method moreau: "
         "name a method, and give moreau's step as run.step_s");
-  const std::vector<PaperStart> starts = starts_of(options, scene);
-  require_inside(starts, scene);
+  const std::vector<lattice::PaperStart> starts = starts_of(options, scene);
+  lattice::require_inside(starts, scene);
   const std::vector<Variant> variants = variants_of(scene);
   (void)dynamics::StateSpace::paper(scene.gate);  // refuses gates too short for their beams
 
@@ -379,7 +380,7 @@ int run_chart_field(const std::vector<std::string>& arguments) {
 
   const std::int64_t trials = options.count("trials");
   std::vector<StartRuns> reports;
-  for (const PaperStart& start : starts)
+  for (const lattice::PaperStart& start : starts)
     reports.push_back(run_start(options, variants, start, trials));
   std::vector<dynamics::Health> health(variants.size());
   for (const StartRuns& r : reports)

@@ -1,5 +1,5 @@
-#include "cli/auto.h"
 #include "cli/command.h"
+#include "cli/render/choice.h"
 #include "cli/render/report.h"
 #include "cli/terminal/progress.h"
 
@@ -16,14 +16,14 @@ int run_gate(const std::vector<std::string>& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = lattice::read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
-  const Json settled = settle_method(options, scene, RunsFrom::start);
+  const Json settled = settle_method(options, scene, lattice::RunsFrom::start);
 
   dynamics::GateTally tally;
   run_in_batches("gate runs", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
     tally += dynamics::run_gate_trials(scene.gate, scene.start, options.seed(), {first, n});
   });
 
-  check_outcomes(options, scene, RunsFrom::start, trials, tally.health);
+  lattice::check_outcomes(scene, lattice::RunsFrom::start, options.seed(), trials, tally.health);
 
   Json json = to_json(tally);
   if (!settled.is_null()) json["method"] = settled;

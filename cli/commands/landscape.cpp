@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "cli/auto.h"
 #include "cli/command.h"
+#include "cli/render/choice.h"
 #include "cli/render/drawing.h"
 #include "cli/render/quantity.h"
 #include "cli/render/report.h"
@@ -214,12 +214,12 @@ int run_landscape(const std::vector<std::string>& arguments) {
                                      "body that comes to rest in a basin must "
                                      "climb out of it.\n");
   if (trials > 0) {
-    const Json settled = settle_method(options, scene, RunsFrom::start);
+    const Json settled = settle_method(options, scene, lattice::RunsFrom::start);
     dynamics::GateTally tally;
     run_in_batches("gate runs", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
       tally += dynamics::run_gate_trials(scene.gate, scene.start, options.seed(), {first, n});
     });
-    check_outcomes(options, scene, RunsFrom::start, trials, tally.health);
+    lattice::check_outcomes(scene, lattice::RunsFrom::start, options.seed(), trials, tally.health);
     json["measured"] = to_json(tally);
     if (!settled.is_null()) json["measured"]["method"] = settled;
     json["measured"]["status"] = to_json(tally.health);

@@ -1,7 +1,8 @@
-#include "cli/auto.h"
-#include "cli/bins.h"
+#include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/render/choice.h"
 #include "cli/render/report.h"
+#include "cli/render/states.h"
 #include "cli/terminal/progress.h"
 
 namespace gatewalk::cli {
@@ -17,8 +18,8 @@ int run_lattice(const std::vector<std::string>& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = lattice::read_scene(options.text("scene"), options.overrides());
   const std::int64_t trials = options.count("trials");
-  const Json settled = settle_method(options, scene, RunsFrom::everywhere);
-  const auto space = fixed_space(scene);
+  const Json settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  const auto space = lattice::fixed_space(scene);
 
   const Stopwatch watch;
   lattice::FieldTally tally(scene.field);
@@ -27,7 +28,8 @@ int run_lattice(const std::vector<std::string>& arguments) {
         lattice::run_field(scene.gate, scene.field, scene.start, space, options.seed(), {first, n});
     tally.final_gate_of_trial.clear();  // asked for by nobody
   });
-  check_outcomes(options, scene, RunsFrom::everywhere, trials, tally.health);
+  lattice::check_outcomes(scene, lattice::RunsFrom::everywhere, options.seed(), trials,
+                          tally.health);
 
   Json json;
   const EndingShares shares(tally.endings, tally.trials);

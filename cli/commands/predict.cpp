@@ -4,9 +4,11 @@
 #include <map>
 #include <sstream>
 
-#include "cli/matrix.h"
+#include "cli/arguments.h"
+#include "cli/render/matrix.h"
 #include "cli/render/report.h"
-#include "cli/starts.h"
+#include "cli/render/start.h"
+#include "cli/render/states.h"
 #include "cli/terminal/progress.h"
 #include "markov/predict/predictor.h"
 
@@ -190,7 +192,7 @@ Json start_state(const ReadyStart& s) {
   return {{"input", s.start.start.input + 1}, {"bin", s.text}, {"clamped", s.start.clamped}};
 }
 
-std::string title_of(const PaperStart& s) {
+std::string title_of(const lattice::PaperStart& s) {
   std::ostringstream title;
   title << "start d " << s.d << " m, vx " << s.vx << " m/s, vy " << s.vy << " m/s";
   return title.str();
@@ -249,15 +251,15 @@ int run_predict(const std::vector<std::string>& arguments) {
   const std::string& solver = options.get<std::string>("solver");
   if (solver != "auto" && solver != "propagate" && solver != "march" && solver != "klu")
     throw UsageError("--solver " + solver + ": must be auto, propagate, march or klu");
-  const std::vector<PaperStart> given = given_starts(options);
+  const std::vector<lattice::PaperStart> given = given_starts(options);
   const std::vector<OtherRows> others = rows_of(options);
   const auto m =
       read_matrix_and_scene(options.text("matrix"), options.text("scene"), options.overrides());
-  require_inside(given, m.scene);
+  lattice::require_inside(given, m.scene);
   Json other_rows;
   const FieldRows rows = rows_of_field(options, m, others, other_rows);
   std::vector<ReadyStart> starts;
-  for (const PaperStart& s : given)
+  for (const lattice::PaperStart& s : given)
     starts.push_back(ready_start(options, m, s.body(), title_of(s)));
   if (given.empty()) starts.push_back(ready_start(options, m, m.scene.start, "the start"));
   std::vector<markov::Start> places;

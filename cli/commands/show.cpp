@@ -1,7 +1,9 @@
 #include <sstream>
 
-#include "cli/matrix.h"
+#include "cli/arguments.h"
+#include "cli/render/matrix.h"
 #include "cli/render/report.h"
+#include "cli/render/states.h"
 
 namespace gatewalk::cli {
 namespace {

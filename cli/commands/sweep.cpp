@@ -3,8 +3,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "cli/auto.h"
 #include "cli/command.h"
+#include "cli/render/choice.h"
 #include "cli/render/report.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
@@ -258,14 +258,15 @@ int run_sweep(const std::vector<std::string>& arguments) {
   dynamics::Health health;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Point& p = points[i];
-    p.settled = settle_method(options, p.scene, RunsFrom::start);
+    p.settled = settle_method(options, p.scene, lattice::RunsFrom::start);
     run_in_batches(progress, static_cast<double>(kEach * static_cast<std::int64_t>(i)),
                    static_cast<double>(kEach) / static_cast<double>(trials), trials,
                    [&](std::int64_t first, std::int64_t n) {
                      p.tally += dynamics::run_gate_trials(p.scene.gate, p.scene.start,
                                                           options.seed(), {first, n});
                    });
-    check_outcomes(options, p.scene, RunsFrom::start, trials, p.tally.health);
+    lattice::check_outcomes(p.scene, lattice::RunsFrom::start, options.seed(), trials,
+                            p.tally.health);
     health += p.tally.health;
   }
   progress.finish();

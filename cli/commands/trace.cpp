@@ -2,10 +2,10 @@
 #include <cmath>
 #include <optional>
 
-#include "cli/auto.h"
 #include "cli/command.h"
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
+#include "cli/render/choice.h"
 #include "cli/render/drawing.h"
 #include "cli/render/quantity.h"
 #include "cli/render/recording.h"
@@ -128,8 +128,8 @@ int run_trace(const std::vector<std::string>& arguments) {
       throw UsageError("--video-speed: must lie in [" + digits(0.01 * pace) + ", " +
                        digits(100.0 * pace) + "]");
   }
-  const Json settled =
-      settle_method(options, scene, across_field ? RunsFrom::everywhere : RunsFrom::start);
+  const Json settled = settle_method(
+      options, scene, across_field ? lattice::RunsFrom::everywhere : lattice::RunsFrom::start);
   std::vector<Recording> runs;
   std::size_t moments = 0;
   dynamics::Health health;
@@ -165,8 +165,9 @@ int run_trace(const std::vector<std::string>& arguments) {
                              std::to_string(first + trials - 1) + " ends '" + only +
                              "': nothing was written");
 
-  check_outcomes(options, scene, across_field ? RunsFrom::everywhere : RunsFrom::start,
-                 std::max(trials, kCheckedAs), health);
+  lattice::check_outcomes(scene,
+                          across_field ? lattice::RunsFrom::everywhere : lattice::RunsFrom::start,
+                          options.seed(), std::max(trials, kCheckedAs), health);
 
   const bool wanted = options.has("replay") || options.has("video") || options.has("json");
   Json film = wanted ? film_of(scene, runs, across_field) : Json::object();

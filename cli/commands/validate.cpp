@@ -7,10 +7,12 @@
 #include <iterator>
 #include <sstream>
 
-#include "cli/auto.h"
-#include "cli/matrix.h"
+#include "cli/arguments.h"
+#include "cli/render/choice.h"
+#include "cli/render/matrix.h"
 #include "cli/render/report.h"
-#include "cli/starts.h"
+#include "cli/render/start.h"
+#include "cli/render/states.h"
 #include "cli/terminal/progress.h"
 #include "markov/predict/predictor.h"
 
@@ -101,7 +103,7 @@ Json to_json(const MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; 
 
 /// Everything about one start.
 struct StartReport {
-  PaperStart start;
+  lattice::PaperStart start;
   lattice::ChainStart chain_start;
   lattice::FieldTally dynamics;
   markov::WalkTally walks;
@@ -121,7 +123,7 @@ StartReport run_start(const Options& options, const lattice::Scene& scene,
                       const dynamics::Transitions& matrix, const markov::Sweeper& sweeper,
                       const markov::Walker& walker,
                       const std::vector<markov::FinalDistribution>& resampled,
-                      const PaperStart& start, std::int64_t trials, std::int64_t walks) {
+                      const lattice::PaperStart& start, std::int64_t trials, std::int64_t walks) {
   const dynamics::BodyState body = start.body();
   const markov::Field field{scene.field.columns, scene.field.rows};
   const int max_gates = scene.field.max_gates;
@@ -348,7 +350,7 @@ std::string with_sd(const MeanAndSd& m) {
 
 std::string table_of(const std::vector<StartReport>& reports, bool papers, std::int64_t trials,
                      std::int64_t walks, std::size_t threads) {
-  std::vector<PaperStart> starts;
+  std::vector<lattice::PaperStart> starts;
   for (const StartReport& r : reports) starts.push_back(r.start);
   const StartTexts labels(starts);
   std::ostringstream out;
@@ -480,7 +482,7 @@ int run_validate(const std::vector<std::string>& arguments) {
   if (options.has("null-draws")) (void)options.count("null-draws", 1, kMostNullDraws);
   const std::int64_t matrix_trials =
       options.has("matrix-trials") ? options.count("matrix-trials") : 100;
-  std::vector<PaperStart> starts = given_starts(options);
+  std::vector<lattice::PaperStart> starts = given_starts(options);
 
   if (options.has("matrix")) {
     if (options.has("bins"))
@@ -495,18 +497,19 @@ int run_validate(const std::vector<std::string>& arguments) {
       return read_matrix_and_scene(options.text("matrix"), options.text("scene"),
                                    options.overrides());
     lattice::Scene scene = lattice::read_scene(options.text("scene"), options.overrides());
-    const BinsChoice choice = bins_choice(options, scene);
+    const lattice::BinsChoice choice = bins_choice(options, scene);
     starts = starts_of(options, scene);
-    require_inside(starts, scene);
-    const auto bodies = entries_at(starts);
-    if (choice.kind != BinsChoice::Kind::automatic)
-      require_inside_bins(starts, scene, fixed_space(scene));
-    settled = settle_method(options, scene, RunsFrom::everywhere);
-    const States made = states_of(options, scene, choice, bodies);
+    lattice::require_inside(starts, scene);
+    const auto bodies = lattice::entries_at(starts);
+    if (choice.kind != lattice::BinsChoice::Kind::automatic)
+      require_inside_bins(starts, scene, lattice::fixed_space(scene));
+    settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+    const lattice::States made = states_of(options, scene, choice, bodies);
     states = gatewalk::cli::to_json(made);
     warn_if_poor(made);
-    auto built = build_matrix(scene, made, matrix_trials, options.seed(), options.talk());
-    check_outcomes(options, scene, RunsFrom::everywhere, built.totals().runs, built.health);
+    auto built = lattice::build_matrix(scene, made, matrix_trials, options.seed(), options.work());
+    lattice::check_outcomes(scene, lattice::RunsFrom::everywhere, options.seed(),
+                            built.totals().runs, built.health);
     Json status = gatewalk::cli::to_json(built.health);
     return MatrixAndScene{{std::move(built), {}}, scene, std::move(status)};
   }();
@@ -527,8 +530,8 @@ int run_validate(const std::vector<std::string>& arguments) {
   const dynamics::Transitions& t = m.file.transitions;
   if (options.has("matrix")) {
     starts = starts_of(options, scene);
-    require_inside(starts, scene);
-    (void)entries_at(starts);
+    lattice::require_inside(starts, scene);
+    (void)lattice::entries_at(starts);
     if (const auto stored = m.file.text.find("state_space"); stored != m.file.text.end()) {
       states = Json::parse(stored->second, nullptr, false);
       if (states.is_discarded())
@@ -542,7 +545,7 @@ int run_validate(const std::vector<std::string>& arguments) {
   const markov::Walker walker(chain);
   const markov::Field field{scene.field.columns, scene.field.rows};
   std::vector<markov::Start> places;
-  for (const PaperStart& start : starts)
+  for (const lattice::PaperStart& start : starts)
     places.push_back(lattice::chain_start(t.space, scene.field, start.body()).start);
   const auto resampled = resampled_predictions(options, t, field, places, scene.field.max_gates);
 

@@ -1,5 +1,7 @@
-#include "cli/matrix.h"
+#include "cli/arguments.h"
+#include "cli/render/matrix.h"
 #include "cli/render/report.h"
+#include "cli/render/states.h"
 #include "cli/terminal/progress.h"
 
 namespace gatewalk::cli {

@@ -209,20 +209,6 @@ std::string percent(double part, double whole, int digits) {
   return fixed(whole > 0.0 ? 100.0 * part / whole : std::nan(""), digits) + " %";
 }
 
-// Brown, Cai and DasGupta, Interval estimation for a binomial proportion, Statist. Sci. 16, 2001.
-std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
-  const auto n = static_cast<double>(part), others = static_cast<double>(whole - part);
-  return {part == 0 ? 0.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.025),
-          part == whole ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
-}
-
-std::array<double, 2> interval_of_share(double share, double equivalent_trials) {
-  const double n = equivalent_trials * share,
-               others = equivalent_trials * std::max(0.0, 1.0 - share);
-  return {n == 0.0 ? 0.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.025),
-          others == 0.0 ? 1.0 : boost::math::ibeta_inv(n + 0.5, others + 0.5, 0.975)};
-}
-
 EndingShares::EndingShares(const std::array<double, markov::kEndings>& shares) : share(shares) {
   interval.fill({std::nan(""), std::nan("")});
 }
@@ -373,24 +359,6 @@ std::string padded(const std::string& text, int width) {
   if (size >= wanted) return text;
   const std::string space(wanted - size, ' ');
   return width > 0 ? space + text : text + space;
-}
-
-std::string text_of(const std::array<double, 2>& range) {
-  std::ostringstream text;
-  if (range[0] == range[1])
-    text << range[0];
-  else
-    text << "[" << range[0] << ", " << range[1] << "]";
-  return text.str();
-}
-
-std::string text_of(const dynamics::Cell& cell) {
-  return std::string(dynamics::kBoundaryNames[static_cast<int>(cell.boundary)]) + " d " +
-         text_of(cell.d) + " m, vx " + text_of(cell.vx) + " m/s, vy " + text_of(cell.vy) + " m/s";
-}
-
-double Stopwatch::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
 }  // namespace gatewalk::cli

@@ -2,14 +2,19 @@
 /// Results as JSON and as tables to read.
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <string>
 
 #include "cli/command.h"
+#include "dynamics/share.h"
+#include "dynamics/work.h"
 #include "lattice/lattice.h"
 
 namespace gatewalk::cli {
+
+using dynamics::interval_of_share;
+using dynamics::share_interval;
+using dynamics::Stopwatch;
 
 /// Where a result came from: program version and commit, command, seed, the whole scene.
 [[nodiscard]] Json manifest(const Options& options, const lattice::Scene& scene);
@@ -39,11 +44,6 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string fixed(double x, int digits);
 /// "12.3 %"
 [[nodiscard]] std::string percent(double part, double whole, int digits = 1);
-/// What share of all trials a count of some stands for, with 95 %: Jeffreys' interval.
-[[nodiscard]] std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole);
-/// The same for a share that varies as that of so many independent trials would.
-[[nodiscard]] std::array<double, 2> interval_of_share(double share, double equivalent_trials);
-
 /// How trials through the field ended: shares of all, with 95 % intervals (NaN: none), by
 /// markov::Ending.
 struct EndingShares {
@@ -92,19 +92,5 @@ void warn_if_too_few_gates(const lattice::Scene& scene);
 [[nodiscard]] std::string csv_text(const std::string& text);
 /// Text padded on the left or (negative width) on the right.
 [[nodiscard]] std::string padded(const std::string& text, int width);
-
-/// A state's bin: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
-[[nodiscard]] std::string text_of(const dynamics::Cell& cell);
-/// "[-5, 5]", or "15" for a single value.
-[[nodiscard]] std::string text_of(const std::array<double, 2>& range);
-
-/// Seconds since construction.
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const;
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace gatewalk::cli

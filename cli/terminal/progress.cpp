@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <optional>
 
 #include "cli/terminal/interrupt.h"
 
@@ -13,7 +15,6 @@ namespace gatewalk::cli {
 namespace {
 
 constexpr std::chrono::milliseconds kRedraw{200};
-constexpr double kBatchSeconds = 0.3;
 
 double seconds_between(std::chrono::steady_clock::time_point a,
                        std::chrono::steady_clock::time_point b) {
@@ -97,33 +98,38 @@ void Progress::finish() {
   drawn_ = false;
 }
 
-void BatchSize::measured(std::int64_t count, double seconds) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 40;
-  const std::int64_t ceiling = std::min(kMost, 4 * size_);
-  const double wanted =
-      static_cast<double>(count) * kBatchSeconds / seconds;  // inf if too quick to see
-  size_ = wanted < static_cast<double>(ceiling) ? std::max<std::int64_t>(1, std::llround(wanted))
-                                                : ceiling;
+dynamics::Work watched_work(bool show_progress) {
+  struct Line {
+    std::string what;
+    std::optional<Progress> progress;
+  };
+  const auto line = std::make_shared<Line>();
+  return {[line, show_progress](std::string_view what, std::int64_t done, std::int64_t total) {
+    if (done >= total) {
+      line->progress.reset();
+      return;
+    }
+    if (interrupted()) throw Interrupted{};
+    if (!line->progress || what != line->what)
+      line->progress.emplace(line->what = what, total, show_progress);
+    line->progress->update(done);
+  }};
 }
 
 void run_in_batches(const std::string& label, std::int64_t total, bool show_progress,
                     const std::function<void(std::int64_t, std::int64_t)>& run) {
-  Progress progress(label, total, show_progress);
-  run_in_batches(progress, 0.0, 1.0, total, run);
+  watched_work(show_progress).in_pieces(label, total, [&](dynamics::TrialRange range) {
+    run(range.first, range.count);
+  });
 }
 
 void run_in_batches(Progress& progress, double before, double each, std::int64_t total,
                     const std::function<void(std::int64_t, std::int64_t)>& run) {
-  BatchSize batch;
-  for (std::int64_t done = 0; done < total;) {
-    if (interrupted()) throw Interrupted{};
-    const std::int64_t count = std::min(batch.get(), total - done);
-    const auto start = std::chrono::steady_clock::now();
-    run(done, count);
-    batch.measured(count, seconds_between(start, std::chrono::steady_clock::now()));
-    done += count;
+  const dynamics::Work work{[&](std::string_view, std::int64_t done, std::int64_t of) {
+    if (done < of && interrupted()) throw Interrupted{};
     progress.update(std::llround(before + each * static_cast<double>(done)));
-  }
+  }};
+  work.in_pieces("", total, [&](dynamics::TrialRange range) { run(range.first, range.count); });
 }
 
 }  // namespace gatewalk::cli

@@ -6,6 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "dynamics/work.h"
+
 namespace gatewalk::cli {
 
 /// One line on standard error, redrawn in place at most 5 times a second. Draws nothing unless
@@ -38,16 +40,9 @@ class Progress {
   Clock::time_point last_drawn_;
 };
 
-/// How many items to do before looking up again: about 0.3 s of work, learnt from the batches so
-/// far. Starts with a single item and grows at most fourfold at a time.
-class BatchSize {
- public:
-  [[nodiscard]] std::int64_t get() const { return size_; }
-  void measured(std::int64_t count, double seconds);
-
- private:
-  std::int64_t size_ = 1;
-};
+/// Work that is shown as a progress line, if wanted, and that a first signal stops: Interrupted is
+/// thrown before the next piece.
+[[nodiscard]] dynamics::Work watched_work(bool show_progress);
 
 /// Calls run(first, count) for consecutive ranges that cover [0, total) exactly once, with a
 /// progress line. Throws Interrupted between two batches after a first signal. The ranges depend

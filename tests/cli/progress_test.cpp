@@ -89,25 +89,6 @@ TEST(RunInBatchesDeathTest, WorkThatIsDoneStaysDone) {
       testing::ExitedWithCode(7), "");
 }
 
-TEST(BatchSize, AimsAtAThirdOfASecond) {
-  BatchSize batch;
-  for (int i = 0; i < 20; ++i) batch.measured(batch.get(), static_cast<double>(batch.get()) * 1e-5);
-  EXPECT_EQ(batch.get(), 30000);  // 0.3 s of 10 us each
-  batch.measured(batch.get(), static_cast<double>(batch.get()) * 1e-3);
-  EXPECT_EQ(batch.get(), 300);  // shrinks at once
-  batch.measured(batch.get(), static_cast<double>(batch.get()) * 1e-5);
-  EXPECT_EQ(batch.get(), 1200);  // grows fourfold at most
-}
-
-TEST(BatchSize, NeverFallsBelowOneNorOverflows) {
-  BatchSize batch;
-  batch.measured(1, 1e6);
-  EXPECT_EQ(batch.get(), 1);
-  for (int i = 0; i < 100; ++i) batch.measured(batch.get(), 0.0);  // a clock that does not move
-  EXPECT_GT(batch.get(), 1'000'000);
-  EXPECT_LT(batch.get(), std::numeric_limits<std::int64_t>::max() / 4);
-}
-
 // ---- The line
 
 /// What `work` writes to standard error when that is a terminal of `columns` columns.

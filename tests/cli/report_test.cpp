@@ -4,7 +4,8 @@
 
 #include <sstream>
 
-#include "cli/starts.h"
+#include "cli/arguments.h"
+#include "cli/render/start.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -4,18 +4,19 @@
 
 #include <vector>
 
-#include "cli/command.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/quantile_bins.h"
 #include "dynamics/transitions.h"
+#include "dynamics/work.h"
+#include "lattice/scene/scene.h"
 
-namespace gatewalk::cli {
+namespace gatewalk::lattice {
 
 /// The field of the paper, in whatever units: its proportions of body, beams' length, joints and
 /// rate of the random force, and forces that move the body at the paper's speeds (the rate is 50
 /// per unit of dynamics::Scale's time). Other forces, stiffness, damping and run keys are studies
 /// of the same field.
-[[nodiscard]] bool papers_field(const lattice::Scene& scene);
+[[nodiscard]] bool papers_field(const Scene& scene);
 
 /// Which states a chain has.
 struct BinsChoice {
@@ -29,16 +30,10 @@ struct BinsChoice {
 };
 
 /// The scene's own table [bins]; else Table III in the paper's field, and auto in any other.
-[[nodiscard]] BinsChoice usual_bins(const lattice::Scene& scene);
-/// Declares --bins.
-void add_bins(Options& options);
-/// --bins if given, else usual_bins. Throws UsageError for anything else, and for --bins beside a
-/// table [bins].
-[[nodiscard]] BinsChoice bins_choice(const Options& options, const lattice::Scene& scene);
-
+[[nodiscard]] BinsChoice usual_bins(const Scene& scene);
 /// The scene's table [bins], else Table III in the scene's own units: for counting, no pilot is
 /// run.
-[[nodiscard]] dynamics::StateSpace fixed_space(const lattice::Scene& scene);
+[[nodiscard]] dynamics::StateSpace fixed_space(const Scene& scene);
 
 /// What bodies do in the full dynamics (beams at rest on entry, as the chain has it).
 struct Pilot {
@@ -48,8 +43,9 @@ struct Pilot {
   dynamics::Health health;
 };
 /// `trials` from each start. Their noise is theirs alone: no other command runs these trials.
-[[nodiscard]] Pilot run_pilot(const Options& options, const lattice::Scene& scene,
-                              const std::vector<dynamics::BodyState>& starts, std::int64_t trials);
+[[nodiscard]] Pilot run_pilot(const Scene& scene, const std::vector<dynamics::BodyState>& starts,
+                              std::int64_t trials, std::uint64_t seed,
+                              const dynamics::Work& work = {});
 /// Trials per start that bins are made of.
 inline constexpr std::int64_t kPilotTrials = 2000;
 
@@ -59,27 +55,22 @@ struct SeenStates {
   dynamics::StateSpace space;
   dynamics::Entries entries;
 };
-[[nodiscard]] SeenStates seen_states(const lattice::Scene& scene, const Pilot& pilot,
-                                     double scale = 1.0);
+[[nodiscard]] SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale = 1.0);
 
 /// The states of a scene's chain, and how well they resolve what its bodies do.
 struct States {
   BinsChoice choice;
+  bool replaced = false;  // nobody asked for Table III, which does not resolve the scene
   dynamics::StateSpace space;
   dynamics::Entries entries;  // where rows start; empty: uniform in the bins
   Pilot pilot;
   dynamics::Resolution resolution;  // of the pilot's entries
 };
-/// The states that `choice` says for walks from `starts`. Throws InvalidParameter as
+/// The states that `choice` says for walks from `starts`; auto where Table III by default does not
+/// resolve the scene. Throws InvalidParameter as
 /// StateSpace::paper.
-[[nodiscard]] States states_of(const Options& options, const lattice::Scene& scene,
-                               const BinsChoice& choice,
-                               const std::vector<dynamics::BodyState>& starts);
-[[nodiscard]] Json to_json(const States& states);
-/// A line of a table about a state space as to_json describes it; empty for null.
-[[nodiscard]] std::string states_line(const Json& states);
-/// Warns when the states resolve too little of what was seen, and of faults in a pilot that rows
-/// start from.
-void warn_if_poor(const States& states);
+[[nodiscard]] States states_of(const Scene& scene, const BinsChoice& choice,
+                               const std::vector<dynamics::BodyState>& starts, std::uint64_t seed,
+                               const dynamics::Work& work = {});
 
-}  // namespace gatewalk::cli
+}  // namespace gatewalk::lattice

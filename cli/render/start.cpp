@@ -1,0 +1,36 @@
+#include "cli/render/start.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "cli/render/report.h"
+
+namespace gatewalk::cli {
+
+StartTexts::StartTexts(const std::vector<lattice::PaperStart>& starts) : texts(starts.size()) {
+  struct Column {
+    const char* name;
+    double lattice::PaperStart::*value;
+    int width;  // at least
+  };
+  for (const auto& [name, value, least] :
+       {Column{"d", &lattice::PaperStart::d, 4}, Column{"vx", &lattice::PaperStart::vx, 5},
+        Column{"vy", &lattice::PaperStart::vy, 5}}) {
+    std::vector<std::string> numbers;
+    int width = least;
+    for (const lattice::PaperStart& s : starts) {
+      char digits[32];
+      const auto end =
+          std::to_chars(digits, digits + sizeof digits, s.*value + 0.0).ptr;  // -0 is 0
+      numbers.emplace_back(digits, end);
+      const int gap = least > 4 ? 2 : 1;
+      width = std::max(width, static_cast<int>(numbers.back().size()) + gap);
+    }
+    header += padded(name, width);
+    for (std::size_t k = 0; k < starts.size(); ++k) texts[k] += padded(numbers[k], width);
+  }
+}
+
+std::string start_text(const lattice::PaperStart& s) { return StartTexts({s}).texts.front(); }
+
+}  // namespace gatewalk::cli

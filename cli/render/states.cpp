@@ -1,0 +1,96 @@
+#include "cli/render/states.h"
+
+#include <algorithm>
+
+#include "cli/render/report.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using namespace dynamics;
+
+Json to_json(const Crossing& c) {
+  return {{"d_m", c.d}, {"vx_m_per_s", c.vx}, {"vy_m_per_s", c.vy}};
+}
+
+}  // namespace
+
+Json to_json(const lattice::States& s) {
+  const Resolution& r = s.resolution;
+  const auto n = static_cast<double>(std::max<std::int64_t>(1, r.entries));
+  Json j;
+  j["bins"] = s.choice.name();
+  if (s.choice.kind == lattice::BinsChoice::Kind::paper) j["factor"] = s.choice.factor;
+  j["states"] = s.space.size();
+  j["outermost_bins"] = s.space.open() ? "open" : "closed";
+  j["row_starts"] = s.entries.empty() ? "uniform" : "visited";
+  if (!s.entries.empty()) {
+    const auto bins =
+        s.entries.begin() + (s.space.size() - static_cast<int>(s.space.points().size()));
+    j["rows_without_entries"] =
+        std::count_if(s.entries.begin(), bins, [](const auto& e) { return e.empty(); });
+  }
+  j["starts_of_their_own"] = Json::array();
+  for (const Crossing& c : s.space.points()) j["starts_of_their_own"].push_back(to_json(c));
+  j["pilot"] = {
+      {"trials", s.pilot.trials}, {"entries", r.entries}, {"status", to_json(s.pilot.health)}};
+  j["resolution"] = {{"clamped_share", static_cast<double>(r.clamped) / n},
+                     {"states_entered", r.states_entered},
+                     {"states_of_90_percent", r.states_of_90},
+                     {"unresolved_variance",
+                      {{"d", r.unresolved[0]}, {"vx", r.unresolved[1]}, {"vy", r.unresolved[2]}}},
+                     {"poor", r.poor()}};
+  return j;
+}
+
+std::string states_line(const Json& j) {
+  if (j.is_null()) return "";
+  const Json &r = j.at("resolution"), &pilot = j.at("pilot"),
+             &unresolved = r.at("unresolved_variance");
+  const std::string kind = j.at("bins");
+  std::string text = "states: " + j.at("states").dump() +
+                     (kind == "paper"  ? " (Table III's bins"
+                      : kind == "auto" ? " (bins from a pilot"
+                                       : " (the scene's bins");
+  if (kind == "paper" && j.at("factor") != 1.0) text += " x " + j.at("factor").dump();
+  text += "); of " + pilot.at("entries").dump() + " entries in " + pilot.at("trials").dump() +
+          " pilot trials " + percent(r.at("clamped_share").get<double>(), 1.0) +
+          " lie outside, 90 % in " + r.at("states_of_90_percent").dump() +
+          " states; variance within states: d " + percent(unresolved.at("d").get<double>(), 1.0) +
+          ", vx " + percent(unresolved.at("vx").get<double>(), 1.0) + ", vy " +
+          percent(unresolved.at("vy").get<double>(), 1.0) + "\n";
+  if (const auto rows = j.find("rows_without_entries"); rows != j.end() && rows->get<int>() > 0)
+    text += "states without an entry seen: " + rows->dump() +
+            ", their rows start anywhere in the bin\n";
+  return text;
+}
+
+void warn_if_poor(const lattice::States& s) {
+  if (!s.entries.empty() && !s.pilot.health.clean())
+    warn("the pilot: " + complaint(s.pilot.health));
+  if (s.pilot.entries.empty())
+    warn("no body entered a second gate in " + std::to_string(s.pilot.trials) +
+         " pilot trials: bins could not be judged by what bodies do");
+  if (!s.resolution.poor()) return;
+  const std::string what = "the bins resolve too little of how bodies enter gates: " +
+                           percent(static_cast<double>(s.resolution.clamped),
+                                   static_cast<double>(s.resolution.entries)) +
+                           " of the entries seen lie outside, 90 % of them in " +
+                           std::to_string(s.resolution.states_of_90) +
+                           " states; the chain may be far off. ";
+  warn(what + (s.choice.kind == lattice::BinsChoice::Kind::automatic
+                   ? "Only " + std::to_string(s.resolution.entries) +
+                         " entries were seen, too few for more states"
+                   : "--bins auto, without a table [bins] in the scene, makes bins that suit it"));
+}
+
+lattice::States states_of(const Options& options, const lattice::Scene& scene,
+                          const lattice::BinsChoice& choice, const std::vector<BodyState>& starts) {
+  lattice::States states =
+      lattice::states_of(scene, choice, starts, options.seed(), options.work());
+  if (states.replaced)
+    warn("Table III's bins do not resolve how bodies move in this scene; takes --bins auto");
+  return states;
+}
+
+}  // namespace gatewalk::cli

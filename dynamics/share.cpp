@@ -1,0 +1,24 @@
+#include "dynamics/share.h"
+
+#include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
+
+namespace gatewalk::dynamics {
+namespace {
+
+std::array<double, 2> jeffreys(double part, double others) {
+  return {part == 0.0 ? 0.0 : boost::math::ibeta_inv(part + 0.5, others + 0.5, 0.025),
+          others == 0.0 ? 1.0 : boost::math::ibeta_inv(part + 0.5, others + 0.5, 0.975)};
+}
+
+}  // namespace
+
+std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
+  return jeffreys(static_cast<double>(part), static_cast<double>(whole - part));
+}
+
+std::array<double, 2> interval_of_share(double share, double equivalent_trials) {
+  return jeffreys(equivalent_trials * share, equivalent_trials * std::max(0.0, 1.0 - share));
+}
+
+}  // namespace gatewalk::dynamics

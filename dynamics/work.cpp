@@ -1,0 +1,43 @@
+#include "dynamics/work.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gatewalk::dynamics {
+
+void PieceSize::measured(std::int64_t count, double seconds) {
+  constexpr double kSeconds = 0.3;
+  constexpr std::int64_t kMost = std::int64_t{1} << 40;
+  const std::int64_t ceiling = std::min(kMost, 4 * size_);
+  const double wanted = static_cast<double>(count) * kSeconds / seconds;  // inf if too quick to see
+  size_ = wanted < static_cast<double>(ceiling) ? std::max<std::int64_t>(1, std::llround(wanted))
+                                                : ceiling;
+}
+
+void Work::in_pieces(std::string_view what, std::int64_t total,
+                     const std::function<void(TrialRange)>& run) const {
+  PieceSize size;
+  for (std::int64_t done = 0; done < total;) {
+    tell(what, done, total);
+    const std::int64_t count = std::min(size.get(), total - done);
+    const Stopwatch watch;
+    run({done, count});
+    size.measured(count, watch.seconds());
+    done += count;
+  }
+  tell(what, total, total);
+}
+
+Work Work::part(std::string what, std::int64_t before, std::int64_t size,
+                std::int64_t total) const {
+  if (!told) return {};
+  return {[this, what = std::move(what), before, size, total](std::string_view, std::int64_t done,
+                                                              std::int64_t of) {
+    const double share = of > 0 ? static_cast<double>(done) / static_cast<double>(of) : 1.0;
+    // The end of a part is not the end of all.
+    const std::int64_t now = before + std::llround(share * static_cast<double>(size));
+    told(what, std::min(now, total - 1), total);
+  }};
+}
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,58 @@
+#pragma once
+/// Long work in pieces that somebody may watch and stop.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "dynamics/ensemble.h"
+
+namespace gatewalk::dynamics {
+
+/// How many items to do before looking up again: about 0.3 s of work, learnt from the pieces so
+/// far. Starts with a single item and grows at most fourfold at a time.
+class PieceSize {
+ public:
+  [[nodiscard]] std::int64_t get() const { return size_; }
+  void measured(std::int64_t count, double seconds);
+
+ private:
+  std::int64_t size_ = 1;
+};
+
+/// Whoever starts long work says here who is told how far it is. Nobody by default.
+struct Work {
+  /// Told before each piece, and when all is done: `done` of `total` of what. May throw to stop.
+  std::function<void(std::string_view what, std::int64_t done, std::int64_t total)> told;
+
+  /// Calls run(range) for consecutive ranges that cover [0, total) exactly once, as long as
+  /// PieceSize says. The ranges depend on the machine's speed, so results must not depend
+  /// on how [0, total) is cut.
+  void in_pieces(std::string_view what, std::int64_t total,
+                 const std::function<void(TrialRange)>& run) const;
+
+  /// Tells it, if there is somebody.
+  void tell(std::string_view what, std::int64_t done, std::int64_t total) const {
+    if (told) told(what, done, total);
+  }
+  /// Work that is one part of this: whatever its own pieces are, they are told as `what`, from
+  /// `before` to `before` + `size` of `total`. This one must outlive it.
+  [[nodiscard]] Work part(std::string what, std::int64_t before, std::int64_t size,
+                          std::int64_t total) const;
+};
+
+/// Seconds since construction.
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace gatewalk::dynamics

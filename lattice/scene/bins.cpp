@@ -1,0 +1,112 @@
+#include "lattice/scene/bins.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lattice/reference.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+constexpr int kAutoStates = 348;                            // four times Table III's
+constexpr std::int64_t kJudgingTrials = 200;                // of a pilot that only judges bins
+constexpr int kPilotGates = 30;                             // a pilot's trial visits no more
+constexpr std::int64_t kPilotsOwn = std::int64_t{1} << 40;  // number of a pilot's first trial
+
+}  // namespace
+
+bool papers_field(const Scene& scene) {
+  const GateParams paper;
+  const GateParams& p = scene.gate;
+  const Scale unit = scale_of(p);
+  // To rounding, which no other scene meets by chance.
+  const auto is = [](double own, double papers) {
+    return std::abs(own - papers) <= 1e-12 * papers;
+  };
+  return is(p.beams.length / unit.length, paper.beams.length) &&
+         is(p.beams.joint_x / unit.length, paper.beams.joint_x) &&
+         is(p.beams.joint_y / unit.length, paper.beams.joint_y) &&
+         is(p.forces.random_rate * unit.time, paper.forces.random_rate);
+}
+
+std::string BinsChoice::name() const {
+  return kind == Kind::paper ? "paper" : kind == Kind::automatic ? "auto" : "scene";
+}
+
+BinsChoice usual_bins(const Scene& scene) {
+  using Kind = BinsChoice::Kind;
+  BinsChoice choice{scene.bins ? Kind::scene : papers_field(scene) ? Kind::paper : Kind::automatic};
+  choice.by_default = true;
+  return choice;
+}
+
+StateSpace fixed_space(const Scene& scene) {
+  return scene.bins ? StateSpace(*scene.bins) : StateSpace::paper(scene.gate);
+}
+
+Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::int64_t trials,
+                std::uint64_t seed, const Work& work) {
+  Pilot pilot;
+  FieldParams field = scene.field;
+  field.fidelity = Fidelity::active;
+  field.max_gates = field.max_gates == 0 ? kPilotGates : std::min(field.max_gates, kPilotGates);
+  const StateSpace space =
+      StateSpace::paper(scene.gate);  // run_field counts with it; nobody asks here
+  for (const BodyState& start : starts) {
+    const Crossing entry{Boundary::enter, start.x, start.vx, start.vy};
+    if (start.y == 0.0 &&
+        std::find(pilot.starts.begin(), pilot.starts.end(), entry) == pilot.starts.end())
+      pilot.starts.push_back(entry);
+    work.in_pieces("pilot", trials, [&](TrialRange range) {
+      const auto part = run_field(scene.gate, field, start, space, seed,
+                                  {kPilotsOwn + range.first, range.count}, true);
+      pilot.entries.insert(pilot.entries.end(), part.crossings.begin(), part.crossings.end());
+      pilot.health += part.health;
+    });
+    pilot.trials += trials;
+  }
+  return pilot;
+}
+
+SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
+  std::vector<Crossing> entries = pilot.entries;
+  if (symmetric(scene.gate)) add_mirror_images(entries);
+  const double states = std::round(kAutoStates * scale * scale * scale);
+  if (!(states >= 1.0 && states <= kMostStates))
+    throw std::invalid_argument("bins finer by " + std::to_string(scale) +
+                                ": fewer than 1 or more than " + std::to_string(kMostStates) +
+                                " states");
+  StateSpace space = quantile_space(scene.gate, entries, static_cast<int>(states), pilot.starts);
+  Entries of_rows = entries_of(space, entries);
+  return {std::move(space), std::move(of_rows)};
+}
+
+States states_of(const Scene& scene, const BinsChoice& choice, const std::vector<BodyState>& starts,
+                 std::uint64_t seed, const Work& work) {
+  using Kind = BinsChoice::Kind;
+  (void)StateSpace::paper(scene.gate);  // refuses gates too short for their beams
+  Pilot pilot = run_pilot(scene, starts, choice.kind == Kind::paper ? kJudgingTrials : kPilotTrials,
+                          seed, work);
+  SeenStates seen{fixed_space(scene), {}};
+  if (choice.kind == Kind::automatic) {
+    seen = seen_states(scene, pilot);
+  } else if (choice.kind == Kind::scene) {
+    std::vector<Crossing> entries = pilot.entries;
+    for (const Crossing& start : pilot.starts) entries.insert(entries.end(), kPilotTrials, start);
+    seen.entries = entries_of(seen.space, entries);
+  } else {
+    seen.space = refined(StateSpace::paper(scene.gate), choice.factor);
+  }
+  const Resolution resolution = resolution_of(seen.space, pilot.entries);
+  if (choice.by_default && choice.kind == Kind::paper && resolution.poor()) {
+    States instead = states_of(scene, {Kind::automatic}, starts, seed, work);
+    instead.replaced = true;
+    return instead;
+  }
+  return {choice,           false,     std::move(seen.space), std::move(seen.entries),
+          std::move(pilot), resolution};
+}
+
+}  // namespace gatewalk::lattice

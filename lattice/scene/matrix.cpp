@@ -1,0 +1,72 @@
+#include "lattice/scene/matrix.h"
+
+#include <stdexcept>
+
+#include "markov/formats/counts.h"
+
+namespace gatewalk::lattice {
+
+void require_unbroken(const dynamics::Transitions& t) {
+  if (t.health.broken > 0)
+    throw std::runtime_error("matrix: " + std::to_string(t.health.broken) +
+                             " gate runs stopped being finite numbers; no matrix is made from such "
+                             "runs, try method stable or a smaller run.step_s");
+}
+
+dynamics::Transitions build_matrix(const Scene& scene, const States& states, std::int64_t trials,
+                                   std::uint64_t seed, const dynamics::Work& work) {
+  dynamics::Transitions t(states.space);
+  work.in_pieces("building matrix", trials, [&](dynamics::TrialRange range) {
+    dynamics::add_trials(t, scene.gate, seed, range, states.entries);
+  });
+  require_unbroken(t);
+  return t;
+}
+
+SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string& scene_path,
+                              const std::vector<std::string>& overrides) {
+  MatrixFile file = read_matrix(matrix_path);
+  const auto stored = file.text.find("scene");
+  if (stored == file.text.end()) throw markov::BadFile(matrix_path + ": holds no scene");
+  const Scene built_with = parse_scene(stored->second, matrix_path + " (its scene)");
+  Scene scene = scene_path.empty()
+                    ? parse_scene(stored->second, matrix_path + " (its scene)", overrides)
+                    : read_scene(scene_path, overrides);
+  auto differences = physics_differences(scene, built_with);
+  // A matrix that was built with a method by name is not the one that "auto" stands for.
+  if (scene.gate.run.method == "auto" && file.text.count("method") == 0)
+    differences.push_back("run.method: auto here, " + built_with.gate.run.method +
+                          " by name there");
+  if (!differences.empty()) {
+    std::string text = "the scene is not the one that " + matrix_path + " was built with:";
+    for (const auto& line : differences) text += "\n  " + line;
+    throw std::invalid_argument(
+        text +
+        "\n(here: the scene given; there: the matrix). Build a matrix for this "
+        "scene, or give the matrix alone to use its own scene.");
+  }
+  scene.gate = built_with.gate;  // the same, or the method that "auto" was settled to
+  return {std::move(file), std::move(scene)};
+}
+
+std::string entry_bins(const dynamics::StateSpace& space) {
+  const dynamics::Bins& enter = space.bins()[static_cast<int>(dynamics::Boundary::enter)];
+  const auto range = [](const std::vector<double>& edges) {
+    return std::array<double, 2>{edges.front(), edges.back()};
+  };
+  return text_of(
+      dynamics::Cell{dynamics::Boundary::enter, range(enter.d), range(enter.vx), range(enter.vy)});
+}
+
+ChainStart start_in_bins(const dynamics::StateSpace& space, const FieldParams& field,
+                         const dynamics::BodyState& body, const std::string& name) {
+  const ChainStart start = chain_start(space, field, body);
+  if (start.clamped)
+    throw std::invalid_argument(
+        name + " lies outside the chain's bins, " + entry_bins(space) +
+        ": take a start inside them, or other bins: gatewalk build --bins auto makes them "
+        "for the scene's start, a table [bins] in the scene names their edges");
+  return start;
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,41 @@
+#pragma once
+/// Matrices with the scene they belong to: building one, taking one from a file.
+
+#include <string>
+#include <vector>
+
+#include "dynamics/work.h"
+#include "lattice/gate_chain.h"
+#include "lattice/scene/bins.h"
+
+namespace gatewalk::lattice {
+
+/// Throws std::runtime_error when a run of the matrix broke.
+void require_unbroken(const dynamics::Transitions& t);
+
+/// A matrix of these states, `trials` runs per row (dynamics::runs_per_trial as many for a single
+/// entry's). Throws std::runtime_error when a run broke.
+[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, const States& states,
+                                                 std::int64_t trials, std::uint64_t seed,
+                                                 const dynamics::Work& work = {});
+
+/// A matrix and the scene to use it with.
+struct SceneMatrix {
+  MatrixFile file;
+  Scene scene;
+};
+/// The matrix file with the scene at `scene_path`, or (empty) the one stored in the file. Throws
+/// markov::BadFile, SceneError, and std::invalid_argument when the given scene's physics are not
+/// those the matrix was built with.
+[[nodiscard]] SceneMatrix read_scene_matrix(const std::string& matrix_path,
+                                            const std::string& scene_path,
+                                            const std::vector<std::string>& overrides);
+
+/// As chain_start; `name` ("the start") begins the message. Throws std::invalid_argument when the
+/// start lies outside the chain's bins.
+[[nodiscard]] ChainStart start_in_bins(const dynamics::StateSpace& space, const FieldParams& field,
+                                       const dynamics::BodyState& body, const std::string& name);
+/// The bins of entries from below: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s".
+[[nodiscard]] std::string entry_bins(const dynamics::StateSpace& space);
+
+}  // namespace gatewalk::lattice

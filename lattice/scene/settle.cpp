@@ -1,0 +1,94 @@
+#include "lattice/scene/settle.h"
+
+#include <array>
+#include <charconv>
+#include <sstream>
+
+#include "lattice/scene/bins.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+/// The scene's start, and the middles of eight bins spread over the state space.
+std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from) {
+  std::vector<dynamics::BodyState> starts{scene.start};
+  if (from == RunsFrom::start) return starts;
+  const auto space = fixed_space(scene);
+  for (int i = 0; i < 8; ++i) {
+    const dynamics::Cell c = space.cell(i * (space.size() - 1) / 7);
+    const auto middle = [](const std::array<double, 2>& edges) {
+      return 0.5 * (edges[0] + edges[1]);
+    };
+    starts.push_back(
+        dynamics::entry_state(scene.gate, {c.boundary, middle(c.d), middle(c.vx), middle(c.vy)}));
+  }
+  return starts;
+}
+
+/// The shortest digits that read back the same.
+std::string shortest(double x) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr};
+}
+
+}  // namespace
+
+std::vector<std::string> keys_without_effect(const Scene& scene) {
+  std::vector<std::string> told;
+  const std::string& method = scene.gate.run.method;
+  if (!scene.sweep.empty())
+    told.push_back("the table [sweep] of " + scene.source +
+                   " has no effect here: gatewalk sweep runs it");
+  const auto unused = [&](const char* key, bool used, const std::string& why) {
+    if (!used && scene.named.contains(key))
+      told.push_back(std::string(key) + " has no effect: " + why);
+  };
+  const std::string says = "run.method = \"" + method + "\" ";
+  const bool chosen = method == "auto", event = method == "event";
+  unused("run.step_s", !chosen && !event, says + (chosen ? "chooses it" : "has no step"));
+  unused("run.event_tolerance_m", event, says + (chosen ? "chooses it" : "does not use it"));
+  return told;
+}
+
+std::string derived_keys(const Scene& scene) {
+  if (scene.named.empty())
+    return scene.source + " names no key: this is the paper's scene, 1 kg and 10 m in radius";
+  std::string all;
+  for (const KeyInfo& k : describe(scene)) {
+    const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" ||
+                             k.key == "contact.impulse_threshold_Ns";
+    if (k.source != "derived" || methods_own) continue;
+    std::ostringstream value;  // six digits will do; gatewalk scene shows all
+    value << std::stod(k.value);
+    all += (all.empty() ? "" : ", ") + k.key + " = " + value.str();
+  }
+  if (all.empty()) return all;
+  return scene.source +
+         " leaves out keys, which follow from the others by the paper's proportions: " + all;
+}
+
+std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t seed,
+                                     const dynamics::Work& work) {
+  if (scene.gate.run.method != "auto") return {};
+  Settled settled;
+  settled.tolerance = scene.gate.run.tolerance;
+  const auto starts = pilot_starts(scene, from);
+  settled.pilot_starts = starts.size();
+  settled.choice = dynamics::choose_method(
+      scene.gate, starts, seed,
+      [&](const dynamics::Setting& s, std::int64_t done, std::int64_t trials) {
+        work.tell("run.method \"auto\": pilot of " + std::to_string(trials) + " trials, " +
+                      s.method + " " + shortest(s.value),
+                  done, trials);
+      });
+  scene.gate = settled.choice.params;
+  return settled;
+}
+
+void check_outcomes(const Scene& scene, RunsFrom from, std::uint64_t seed, std::int64_t trials,
+                    dynamics::Health& health) {
+  dynamics::check_outcomes(health, scene.gate, pilot_starts(scene, from), seed,
+                           dynamics::check_sample(trials));
+}
+
+}  // namespace gatewalk::lattice

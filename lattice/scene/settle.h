@@ -1,0 +1,40 @@
+#pragma once
+/// run.method = "auto": the method and setting that a scene can do with; and a check of a scene's
+/// method by a better one.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/study/choice.h"
+#include "dynamics/work.h"
+#include "lattice/scene/scene.h"
+
+namespace gatewalk::lattice {
+
+/// Where gate runs begin: at the scene's start, or in states all over the state space too.
+enum class RunsFrom { start, everywhere };
+
+/// What "auto" became.
+struct Settled {
+  dynamics::Choice choice;
+  double tolerance = 0.0;  // run.tolerance, that was asked for
+  std::size_t pilot_starts = 0;
+};
+
+/// Replaces "auto" in the scene by the method and setting that a pilot chooses; none when the scene
+/// names its method.
+[[nodiscard]] std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t seed,
+                                                   const dynamics::Work& work = {});
+
+/// Keys that the scene gives and its method does not look at, a sentence each.
+[[nodiscard]] std::vector<std::string> keys_without_effect(const Scene& scene);
+/// What the scene leaves out and has been given by its own proportions; empty if nothing.
+[[nodiscard]] std::string derived_keys(const Scene& scene);
+
+/// Runs a sample of `trials` again by a better method, and puts into `health` what that changes:
+/// see dynamics::check_outcomes.
+void check_outcomes(const Scene& scene, RunsFrom from, std::uint64_t seed, std::int64_t trials,
+                    dynamics::Health& health);
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,68 @@
+#include "lattice/scene/table4.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "lattice/scene/bins.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+/// Table IV's starts, in the scene's own units.
+std::vector<PaperStart> table_iv(const dynamics::GateParams& p) {
+  std::vector<PaperStart> starts{{0, 0, 15, 0.914, 1.018},
+                                 {23, -11, 16, 0.9097, 1.133},
+                                 {4, 5, 10, 0.8929, 1.252},
+                                 {-17, 13, 12, 0.9026, 0.9813}};
+  const dynamics::Scale unit = dynamics::scale_of(p);
+  for (PaperStart& s : starts) {
+    s.d *= unit.length;
+    s.vx *= unit.speed();
+    s.vy *= unit.speed();
+  }
+  return starts;
+}
+
+/// The digits that read back the same, a whole number with ".0".
+std::string number(double x) {
+  std::array<char, 32> buffer{};
+  const std::string digits(buffer.data(),
+                           std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr);
+  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
+}
+
+}  // namespace
+
+std::vector<PaperStart> usual_starts(const Scene& scene) {
+  const std::vector<PaperStart> papers = table_iv(scene.gate);
+  const dynamics::BodyState &own = scene.start, first = papers.front().body();
+  const bool the_papers = own.x == 0.0 && own.y == 0.0 && own.vx == 0.0 &&
+                          std::abs(own.vy - first.vy) <= 1e-12 * first.vy;
+  if (the_papers && papers_field(scene)) return papers;
+  return {{own.x, own.vx, own.vy, {}, {}, own.y}};
+}
+
+std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& starts) {
+  std::vector<dynamics::BodyState> bodies;
+  for (const PaperStart& s : starts) {
+    if (s.y != 0.0)
+      throw std::invalid_argument(
+          "start.y_m = " + number(s.y) +
+          " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
+    bodies.push_back(s.body());
+  }
+  return bodies;
+}
+
+void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
+  const double side = scene.gate.beams.joint_x;
+  for (const PaperStart& s : starts)
+    if (!(std::abs(s.d) < side))
+      throw std::invalid_argument("--start: d = " + number(s.d) +
+                                  " m must lie inside the gate, (-" + number(side) + ", " +
+                                  number(side) + ")");
+}
+
+}  // namespace gatewalk::lattice

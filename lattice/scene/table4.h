@@ -1,0 +1,30 @@
+#pragma once
+/// Where trials through the field start: the four starts of the paper's Table IV, or others.
+
+#include <optional>
+#include <vector>
+
+#include "lattice/scene/scene.h"
+
+namespace gatewalk::lattice {
+
+/// d, vx, vy (m, m/s) of a start, at y = 0 but for a scene's own; corrcoef and RMSE as Table IV
+/// prints them.
+struct PaperStart {
+  double d = 0.0, vx = 0.0, vy = 0.0;
+  std::optional<double> corrcoef, rmse;
+  double y = 0.0;  // m
+
+  [[nodiscard]] dynamics::BodyState body() const { return {d, y, vx, vy}; }
+};
+
+/// The scene's start, or those of Table IV, in the scene's own units, in the paper's field with the
+/// paper's start.
+[[nodiscard]] std::vector<PaperStart> usual_starts(const Scene& scene);
+/// The bodies of starts of a chain. Throws std::invalid_argument when one does not start on the
+/// lower edge of its gate: a chain's states are entries.
+[[nodiscard]] std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& starts);
+/// Throws std::invalid_argument unless all of them lie between the sides of the scene's gates.
+void require_inside(const std::vector<PaperStart>& starts, const Scene& scene);
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,20 @@
+#include "dynamics/share.h"
+
+#include <gtest/gtest.h>
+
+namespace gatewalk::dynamics {
+namespace {
+
+// Jeffreys' interval of 0 of n has no lower end; the table of Brown, Cai and DasGupta (2001), n
+// = 10.
+TEST(ShareInterval, IsJeffreys) {
+  EXPECT_EQ(share_interval(0, 10)[0], 0.0);
+  EXPECT_NEAR(share_interval(0, 10)[1], 0.217, 5e-4);
+  EXPECT_NEAR(share_interval(5, 10)[0], 0.224, 5e-4);
+  EXPECT_NEAR(share_interval(5, 10)[1], 0.776, 5e-4);
+  EXPECT_EQ(share_interval(10, 10)[1], 1.0);
+  EXPECT_EQ(interval_of_share(0.5, 10.0), share_interval(5, 10));
+}
+
+}  // namespace
+}  // namespace gatewalk::dynamics
