@@ -1,7 +1,7 @@
 #pragma once
 /// The scene of one gate: who pushes, what is in the way, how time is stepped.
 /// Defaults are the paper's field study (Sec. III-C, Tables I and IV) where it says, else the
-/// decisions of the README's "Departures" table.
+/// decisions of the "Departures" table in README.md here.
 
 #include <cmath>
 #include <functional>

@@ -69,7 +69,7 @@ class StateSpace {
 
   /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size, velocities the
   /// scene's own unit of speed: the table's in the paper's scenes. RT and LT are one state each;
-  /// their bin is what the README's "Departures" says: y from joint + R up, velocities of RD and
+  /// their bin is what "Departures" in README.md says: y from joint + R up, velocities of RD and
   /// LD. Throws InvalidParameter when no disc can be ahead of the beams inside the gate.
   static StateSpace paper(const GateParams& p);
 

@@ -247,6 +247,9 @@ jq -s '(.[0].runs | map(.ending)) as $e | .[1].endings | [.crossed, .left_side, 
 "$gatewalk" trace "$scenes/field.toml" --set field.rows=2 --field --trials 40 --seed 3 --only crossed --json crossed.json --quiet
 jq -s '(.[0].runs | map(select(.ending == "crossed"))) == .[1].runs and .[0].recorded > .[1].recorded' some.json crossed.json | grep -q true ||
   fail "trace --only: who crossed left the field"
+"$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.5 --video short.gif --quiet >/dev/null && [ "$(head -c 6 short.gif)" = GIF89a ] ||
+  fail "trace: no GIF"
+expect 2 '^gatewalk: --video short.avi: a video is FILE.mp4 or FILE.gif$' "$gatewalk" trace "$scenes/soft_left.toml" --video short.avi
 expect 0 '^trial,' "$gatewalk" trace "$scenes/soft_left.toml" --csv -
 expect 2 'a run ends as one of' "$gatewalk" trace "$scenes/soft_left.toml" --only stuck
 expect 1 'none of trials 0 to 4' "$gatewalk" trace "$scenes/single_gate.toml" --trials 5 --only 'traversed right'

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "cli/command.h"
 #include "cli/film/replay.h"
@@ -98,7 +99,7 @@ int run_trace(const std::vector<std::string>& arguments) {
   options.output_file("csv", "FILE", "write all samples as CSV; - is standard output");
   options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
   options.output_file("replay", "FILE.html", "write a page that plays the runs");
-  options.output_file("video", "FILE.mp4", "write a film of the first run (needs ffmpeg)",
+  options.output_file("video", "FILE.mp4|gif", "write a film of the first run (needs ffmpeg)",
                       Options::Content::binary);
   options.add()("video-speed", po::value<double>()->value_name("X"),
                 "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
@@ -118,6 +119,13 @@ int run_trace(const std::vector<std::string>& arguments) {
   } else if (trials > kMostRuns) {
     throw UsageError("--trials " + std::to_string(trials) + ": at most " +
                      std::to_string(kMostRuns) + " runs are recorded; pick some with --only");
+  }
+  if (options.has("video")) {
+    try {
+      (void)video_format(options.text("video"));
+    } catch (const std::invalid_argument& e) {
+      throw UsageError(std::string("--video ") + e.what());
+    }
   }
   lattice::Scene scene = lattice::read_scene(options.text("scene"), options.overrides());
   std::optional<double> speed;

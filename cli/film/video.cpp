@@ -651,18 +651,37 @@ class Conveyor {
   std::array<int, 2> ends_{-1, -1};
 };
 
-std::vector<std::string> ffmpeg_command(const Film& film, double frames_per_second) {
-  return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo",
-          "-pixel_format", "bgr0", "-video_size",
-          std::to_string(kWidth) + "x" + std::to_string(kHeight), "-framerate",
-          std::to_string(frames_per_second), "-i", "pipe:0", "-an", "-c:v", "libx264", "-preset",
-          "veryfast", "-crf", "20",
-          // Players take HD pictures for BT.709 ones.
-          "-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-colorspace", "bt709",
-          "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv", "-metadata",
-          "title=" + film.title + ": " + film.run.label,
-          // Its standard output is a file: the index can be moved to the front.
-          "-movflags", "+faststart", "-f", "mp4", "file:/dev/stdout"};
+/// Pictures from all over the film that go ahead of a GIF: its 64 colours are chosen from them.
+constexpr std::int64_t kPaletteFrames = 32;
+
+std::vector<std::string> ffmpeg_command(const Film& film, VideoFormat format,
+                                        double frames_per_second) {
+  std::vector<std::string> command{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+                                   // Pictures as cairo keeps them, without a header.
+                                   "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
+                                   std::to_string(kWidth) + "x" + std::to_string(kHeight),
+                                   "-framerate", std::to_string(frames_per_second), "-i", "pipe:0",
+                                   "-an"};
+  const std::vector<std::string> mp4{
+      "-c:v", "libx264", "-preset", "veryfast", "-crf", "20",
+      // Players take HD pictures for BT.709 ones.
+      "-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-colorspace", "bt709",
+      "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv", "-metadata",
+      "title=" + film.title + ": " + film.run.label,
+      // Its standard output is a file: the index can be moved to the front.
+      "-movflags", "+faststart", "-f", "mp4", "file:/dev/stdout"};
+  const std::string ahead = std::to_string(kPaletteFrames);
+  const std::vector<std::string> gif{
+      "-filter_complex",
+      // The colours are known before the film begins, so that ffmpeg need not keep it in memory.
+      // Without dither what does not move stays the same, and costs nothing.
+      "[0:v]scale=800:-1:flags=area,split[a][b];[a]trim=end_frame=" + ahead +
+          ",palettegen=max_colors=64[colours];[b]trim=start_frame=" + ahead +
+          ",setpts=PTS-STARTPTS[film];[film][colours]paletteuse=dither=none:diff_mode=rectangle",
+      "-loop", "0", "-f", "gif", "file:/dev/stdout"};
+  const auto& packing = format == VideoFormat::gif ? gif : mp4;
+  command.insert(command.end(), packing.begin(), packing.end());
+  return command;
 }
 
 }  // namespace
@@ -673,7 +692,7 @@ namespace {
 std::pair<Film, double> film_and_pace(const Json& json, int run, const VideoOptions& options) {
   if (options.speed && (!(*options.speed > 0.0) || !std::isfinite(*options.speed)))
     throw std::invalid_argument("a video's speed must be above 0");
-  if (!(options.frames_per_second >= 1.0 && options.frames_per_second <= 240.0))
+  if (const double rate = options.frames_per_second.value_or(50.0); !(rate >= 1.0 && rate <= 240.0))
     throw std::invalid_argument("a video has 1 to 240 frames a second");
   if (run < 0) throw std::invalid_argument("film: no run " + std::to_string(run));
   Film film = film_of(json, run);
@@ -683,6 +702,12 @@ std::pair<Film, double> film_and_pace(const Json& json, int run, const VideoOpti
 
 }  // namespace
 
+VideoFormat video_format(const std::string& path) {
+  if (path.ends_with(".mp4")) return VideoFormat::mp4;
+  if (path.ends_with(".gif")) return VideoFormat::gif;
+  throw std::invalid_argument(path + ": a video is FILE.mp4 or FILE.gif");
+}
+
 std::string video_frame(const Json& json, int run, double time, const VideoOptions& options) {
   const auto [film, pace] = film_and_pace(json, run, options);
   return std::string(Picture(film, pace, options.labels)
@@ -691,12 +716,14 @@ std::string video_frame(const Json& json, int run, double time, const VideoOptio
 
 void write_video(const std::string& path, const Json& json, int run, const VideoOptions& options) {
   const auto [film, pace] = film_and_pace(json, run, options);
-  const double frames_per_second = options.frames_per_second;
+  const VideoFormat format = video_format(path);
+  const double frames_per_second =
+      options.frames_per_second.value_or(format == VideoFormat::gif ? 10 : 50.0);
   require_writable(path);
 
   Picture picture(film, pace, options.labels);
   Conveyor conveyor;
-  Child ffmpeg(ffmpeg_command(film, frames_per_second), conveyor.exit(),
+  Child ffmpeg(ffmpeg_command(film, format, frames_per_second), conveyor.exit(),
                "ffmpeg was not found; it packs the video (Debian: ffmpeg)");
   conveyor.close_exit();
 
@@ -705,6 +732,10 @@ void write_video(const std::string& path, const Json& json, int run, const Video
   const auto frames = static_cast<std::int64_t>(std::ceil((end - start) / step - 1e-9)) + 1 +
                       static_cast<std::int64_t>(frames_per_second);  // the last one stands
   bool reads = true;
+  if (format == VideoFormat::gif)
+    for (std::int64_t k = 0; k < kPaletteFrames && reads; ++k)
+      reads = conveyor.send(picture.draw(start + static_cast<double>(k) * (end - start) /
+                                                     static_cast<double>(kPaletteFrames - 1)));
   run_in_batches(
       "video, frames", frames, options.show_progress, [&](std::int64_t first, std::int64_t count) {
         for (std::int64_t k = first; k < first + count && reads; ++k)

@@ -1,6 +1,7 @@
 #pragma once
 /// A single run as a film that plays everywhere.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -11,16 +12,21 @@ namespace gatewalk::cli {
 struct VideoOptions {
   std::optional<double> speed =
       std::nullopt;  // seconds of the run in a second of the film; none: the unit of time
-  double frames_per_second = 50.0;
+  std::optional<double> frames_per_second = std::nullopt;  // none: 50, of a GIF 10
   bool show_progress = false;
   bool labels = true;  // words, numbers and the rule; without them scenes alike look the same
 };
 
-/// Writes run number `run` of a film (replay.h) as MP4: H.264, yuv420p, 1280 x 720, drawn by cairo,
-/// packed by ffmpeg. The last picture stands for a second. `path` is replaced as a whole or left as
-/// it was. Throws std::invalid_argument for a film or options that make no sense,
-/// std::runtime_error when ffmpeg is missing or fails or the file cannot be written, Interrupted
-/// after a signal.
+enum class VideoFormat : std::uint8_t { mp4, gif };
+
+/// By the ending of a file's name, .mp4 or .gif. Throws std::invalid_argument for any other.
+[[nodiscard]] VideoFormat video_format(const std::string& path);
+
+/// Writes run number `run` of a film (replay.h), drawn by cairo, packed by ffmpeg: as MP4 (H.264,
+/// yuv420p, 1280 x 720) or as GIF (800 x 450, repeats for ever), by the ending of `path`. The last
+/// picture stands for a second. `path` is replaced as a whole or left as it was. Throws
+/// std::invalid_argument for a film, a name or options that make no sense, std::runtime_error when
+/// ffmpeg is missing or fails or the file cannot be written, Interrupted after a signal.
 void write_video(const std::string& path, const Json& film, int run,
                  const VideoOptions& options = {});
 

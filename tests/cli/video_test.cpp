@@ -99,6 +99,16 @@ TEST_F(Video, IsOneThatPlaysEverywhere) {
   EXPECT_EQ(files(), 1);
 }
 
+TEST_F(Video, IsAGifByTheEndingOfItsName) {
+  write_video(path("a.gif"), small_film(), 0);
+  const std::string words = probed(path("a.gif"));
+  for (const char* fact : {"codec_name=gif", "width=800", "height=450"})
+    EXPECT_NE(words.find(std::string("\n") + fact + "\n"), words.npos) << fact << "\n" << words;
+  EXPECT_NEAR(number(words, "duration"), 2.08, 0.05);  // 1 s, then a second that stands
+  EXPECT_EQ(complaint_of(path("a.avi")), path("a.avi") + ": a video is FILE.mp4 or FILE.gif");
+  EXPECT_EQ(files(), 1);
+}
+
 TEST_F(Video, SpeedAndFramesPerSecond) {
   write_video(path("a.mp4"), small_film(), 0, {.speed = 0.5, .frames_per_second = 10.0});
   const std::string words = probed(path("a.mp4"));

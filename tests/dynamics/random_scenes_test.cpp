@@ -156,7 +156,7 @@ TEST(RandomScenes, StableAndEventAgreeWhereBothSayClean) {
 }
 
 // The other methods: what is off says so. `moreau` at its default step may be off by some per cent
-// (README).
+// (dynamics/README.md).
 TEST(RandomScenes, WhatIsOffSaysSo) {
   const int scenes = usual_or_full(15, 10'000);
   int clean = 0, off = 0, said = 0;

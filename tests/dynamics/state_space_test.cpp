@@ -45,7 +45,7 @@ TEST(StateSpace, HasTheEdgesOfTableIII) {
   EXPECT_EQ(of(Boundary::enter), (Bins{fives, fives, {10, 20}}));
   EXPECT_EQ(of(Boundary::right_deflect), (Bins{{10, 20, 30}, {-30, -20, -10, 0}, sideways}));
   EXPECT_EQ(of(Boundary::left_deflect), (Bins{{10, 20, 30}, {0, 10, 20, 30}, sideways}));
-  // One state each; the bin is the README's: y in [40, 60].
+  // One state each; the bin is that of dynamics/README.md: y in [40, 60].
   EXPECT_EQ(of(Boundary::right_traverse), (Bins{{10, 30}, {-30, 0}, {-20, 30}}));
   EXPECT_EQ(of(Boundary::left_traverse), (Bins{{10, 30}, {0, 30}, {-20, 30}}));
 }
