@@ -18,7 +18,9 @@ std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
 }
 
 std::array<double, 2> interval_of_share(double share, double equivalent_trials) {
-  return jeffreys(equivalent_trials * share, equivalent_trials * std::max(0.0, 1.0 - share));
+  const auto [low, high] =
+      jeffreys(equivalent_trials * share, equivalent_trials * std::max(0.0, 1.0 - share));
+  return {std::min(low, share), std::max(high, share)};  // a share far below one trial is no trial
 }
 
 }  // namespace gatewalk::dynamics

@@ -10,7 +10,8 @@ namespace gatewalk::dynamics {
 /// and DasGupta, Interval estimation for a binomial proportion, Statist. Sci. 16, 2001). [low,
 /// high]; low is 0 for no trial, high 1 for all of them.
 [[nodiscard]] std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole);
-/// The same for a share that varies as that of so many independent trials would.
+/// The same for a share that varies as that of so many independent trials would; it contains the
+/// share.
 [[nodiscard]] std::array<double, 2> interval_of_share(double share, double equivalent_trials);
 
 }  // namespace gatewalk::dynamics

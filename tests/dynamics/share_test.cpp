@@ -16,5 +16,12 @@ TEST(ShareInterval, IsJeffreys) {
   EXPECT_EQ(interval_of_share(0.5, 10.0), share_interval(5, 10));
 }
 
+TEST(ShareInterval, ContainsTheShare) {
+  const auto [low, high] = interval_of_share(1e-99, 100.0);
+  EXPECT_LE(low, 1e-99);
+  EXPECT_NEAR(high, 0.0247, 1e-4);
+  EXPECT_GE(interval_of_share(1.0 - 1e-16, 100.0)[1], 1.0 - 1e-16);
+}
+
 }  // namespace
 }  // namespace gatewalk::dynamics
