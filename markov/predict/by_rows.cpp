@@ -24,22 +24,22 @@ constexpr double kRoundingOnly = 1e-14;  // another round makes it no better
 /// up.
 class Rows {
  public:
-  Rows(const SweepPlan& plan, const Field& field, const std::vector<Start>& starts,
+  Rows(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
        double tolerance, Sweeper::RowMethod method, int most_sums)
       : plan_(plan),
         field_(field),
         tolerance_(tolerance / (field.rows + 1)),
         most_sums_(most_sums),
-        board_(field.columns, 1, sideways_only(plan.moves), 1,
-               std::vector<std::int64_t>(starts.size())),
-        stride_(board_.stride()),
+        layout_(field.columns, 1, sideways_only(plan.moves), 1,
+                std::vector<std::int64_t>(starts.size())),
+        stride_(layout_.stride()),
         all_(plan.inputs * stride_),
-        numbers_((5 + plan.highest) * all_ + (kMoved + std::ssize(plan.moves)) * stride_) {
+        numbers_((5 + plan.highest) * all_ + (kTallyMoved + std::ssize(plan.moves)) * stride_) {
     double* next = numbers_.data();
     for (double** p : {&within_, &visits_, &now_, &next_}) *p = std::exchange(next, next + all_);
     for (int k = 0; k <= plan.highest; ++k) entering_.push_back(std::exchange(next, next + all_));
     tally_ = next;
-    board_.cover(0, field.columns - 1, 0, 0, whole_);
+    layout_.cover(0, field.columns - 1, 0, 0, whole_);
     first_ = field.rows;
     for (const Start& s : starts) {
       walks_.emplace_back(field, s);
@@ -50,25 +50,25 @@ class Rows {
     choose(method);
   }
 
-  std::vector<Walks> run() {
+  std::vector<StartTally> run() {
     for (std::int64_t row = first_; row < field_.rows; ++row) {
-      const Rules& rules = plan_.at(row);
+      const PreparedChain& chain = plan_.at(row);
       clear(within_);
-      push_row(rules.first_sideways, entering_.front(), within_);
+      apply_in_row(chain.first_sideways, entering_.front(), within_);
       if (!enter(row)) break;
       clear(visits_);
       const auto& columns = columns_[static_cast<std::size_t>(plan_.number_at(row))];
       if (columns.empty())
-        sum(rules, row);
+        sum(chain, row);
       else
-        eliminate(rules, columns);
+        eliminate(chain, columns);
       add(entering_.front(), visits_);
-      count(rules, row);
+      count(chain, row);
       // Rows move down by one; what goes up by k arrives in the k-th.
       clear(entering_.front());
       std::rotate(entering_.begin(), entering_.begin() + 1, entering_.end());
-      for (std::size_t k = 0; k < rules.upwards.size(); ++k)
-        push_row(rules.upwards[k], visits_, entering_[k]);
+      for (std::size_t k = 0; k < chain.upwards.size(); ++k)
+        apply_in_row(chain.upwards[k], visits_, entering_[k]);
     }
     return std::move(walks_);
   }
@@ -79,16 +79,16 @@ class Rows {
   [[nodiscard]] double passed(std::size_t j) const { return passed_[j]; }
 
  private:
-  [[nodiscard]] std::ptrdiff_t first_of(std::size_t j) const { return board_.place(j, 0, 0).at; }
+  [[nodiscard]] std::ptrdiff_t first_of(std::size_t j) const { return layout_.place(j, 0, 0).at; }
   void clear(double* mass) const { std::fill_n(mass, all_, 0.0); }
 
-  void push_row(const Table& table, const double* from, double* to) const {
-    push_all(table, board_.ways(0), stride_, nullptr, whole_, from, to, true);
+  void apply_in_row(const Stencil& stencil, const double* from, double* to) const {
+    apply_stencil(stencil, layout_.shifts(0), stride_, nullptr, whole_, from, to, true);
   }
-  void tally(const Table& table, const double* mass) {
-    std::fill_n(tally_, (kMoved + std::ssize(plan_.moves)) * stride_,
-                0.0);  // not every chain ends all ways
-    push_all(table, board_.still(0), stride_, nullptr, whole_, mass, tally_, false);
+  void tally(const Stencil& stencil, const double* mass) {
+    std::fill_n(tally_, (kTallyMoved + std::ssize(plan_.moves)) * stride_,
+                0.0);  // not every chain ends in all ways
+    apply_stencil(stencil, layout_.identity(0), stride_, nullptr, whole_, mass, tally_, false);
   }
   void add(const double* from, double* to) const {
     for (const Range& r : whole_) accumulate(from, to, plan_.inputs, stride_, r.first, r.last);
@@ -99,13 +99,13 @@ class Rows {
     for (std::size_t j = 0; j < walks_.size(); ++j) {
       CompensatedSum sum;
       for (std::ptrdiff_t c = 0; c < field_.columns; ++c)
-        sum += tally_[kTotal * stride_ + first_of(j) + c];
+        sum += tally_[kTallyTotal * stride_ + first_of(j) + c];
       sums.push_back(sum.value());
     }
     return sums;
   }
-  [[nodiscard]] std::vector<double> totals(const Table& table, const double* mass) {
-    tally(table, mass);
+  [[nodiscard]] std::vector<double> totals(const Stencil& stencil, const double* mass) {
+    tally(stencil, mass);
     return totals();
   }
   void erase(std::size_t j, double* mass) const {
@@ -125,7 +125,7 @@ class Rows {
     }
     bool any = false;
     for (std::size_t j = 0; j < walks_.size(); ++j) {
-      Walks& w = walks_[j];
+      StartTally& w = walks_[j];
       if (w.start.row == row) {
         w.draw_first(plan_.at(row).chain, field_, false,
                      [&](std::int64_t column, std::int64_t to_row, int input, double p) {
@@ -148,7 +148,7 @@ class Rows {
   }
 
   /// visits = within + Q within + Q Q within + ...
-  void sum(const Rules& rules, std::int64_t row) {
+  void sum(const PreparedChain& chain, std::int64_t row) {
     std::swap(now_, within_);
     std::vector<char> done(walks_.size());
     for (int sums = 0;; ++sums) {
@@ -174,27 +174,28 @@ class Rows {
       if (!any) return;
       add(now_, visits_);
       clear(next_);
-      push_row(rules.sideways, now_, next_);
+      apply_in_row(chain.sideways, now_, next_);
       std::swap(now_, next_);
     }
   }
 
   /// The same by elimination, as (I - Q)^-1 within. What is still missing then, within + Q visits -
   /// visits, bounds the error: were it to walk on, it would end somewhere.
-  void eliminate(const Rules& rules, const std::vector<const RowSolver::Column*>& columns) {
+  void eliminate(const PreparedChain& chain,
+                 const std::vector<const RowElimination::Column*>& columns) {
     constexpr int kMostRounds = 4;
-    workspace_.resize(rules.solver->workspace(field_.columns));
+    workspace_.resize(chain.elimination->workspace(field_.columns));
     std::vector<char> wanted(walks_.size(), 1);
     std::vector<double> missing;
     const double* from = within_;
     for (int round = 0; round < kMostRounds; ++round) {
       for (std::size_t j = 0; j < walks_.size(); ++j)
         if (wanted[j] && !walks_[j].over)
-          rules.solver->solve(columns, from + first_of(j), visits_ + first_of(j), stride_,
-                              workspace_.data());
+          chain.elimination->solve(columns, from + first_of(j), visits_ + first_of(j), stride_,
+                                   workspace_.data());
       std::copy_n(within_, all_, next_);
-      push_row(rules.sideways, visits_, next_);
-      double* const total = tally_ + kTotal * stride_;
+      apply_in_row(chain.sideways, visits_, next_);
+      double* const total = tally_ + kTallyTotal * stride_;
       std::fill_n(total, stride_, 0.0);
       for (const int input : plan_.sideways) {
         double* const after = next_ + input * stride_;
@@ -222,8 +223,8 @@ class Rows {
     }
   }
 
-  void count(const Rules& rules, std::int64_t row) {
-    tally(rules.ends, visits_);
+  void count(const PreparedChain& chain, std::int64_t row) {
+    tally(chain.ends, visits_);
     for (std::size_t j = 0; j < walks_.size(); ++j)
       for (std::ptrdiff_t c = 0; c < field_.columns; ++c)
         walks_[j].count(field_, plan_.moves, c, row, false, tally_ + first_of(j) + c, stride_);
@@ -231,51 +232,51 @@ class Rows {
 
   /// Columns to eliminate, per chain; none where sums are chosen.
   void choose(Sweeper::RowMethod method) {
-    columns_.resize(plan_.rules.size());
+    columns_.resize(plan_.chains.size());
     if (method == Sweeper::RowMethod::sums) return;
-    for (std::size_t k = 0; k < plan_.rules.size(); ++k) {
-      const Rules& rules = plan_.rules[k];
-      if (!rules.solver) continue;
+    for (std::size_t k = 0; k < plan_.chains.size(); ++k) {
+      const PreparedChain& chain = plan_.chains[k];
+      if (!chain.elimination) continue;
       const double width = field_.columns,
                    rows = field_.rows;  // whatever the starts: same bits in any company
       const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) /
-                          std::log(std::clamp(rules.stays, 1e-6, 1.0 - 1e-9));
-      const double by_sums = rows * sums * static_cast<double>(rules.sideways.terms.size()) *
+                          std::log(std::clamp(chain.stays, 1e-6, 1.0 - 1e-9));
+      const double by_sums = rows * sums * static_cast<double>(chain.sideways.terms.size()) *
                              std::ceil(width / kLanes);
-      const double by_elimination = std::min(width, 0.5 * sums) * rules.solver->column_cost() +
-                                    rows * width * rules.solver->solve_cost();
+      const double by_elimination = std::min(width, 0.5 * sums) * chain.elimination->column_cost() +
+                                    rows * width * chain.elimination->solve_cost();
       if (method == Sweeper::RowMethod::elimination || by_elimination < by_sums)
-        columns_[k] = rules.solver->columns(field_.columns);
+        columns_[k] = chain.elimination->columns(field_.columns);
     }
   }
 
-  const SweepPlan& plan_;
+  const PredictionPlan& plan_;
   Field field_;
   double tolerance_;  // share of a row, and of all rows above together
   int most_sums_;
-  Board board_;
+  Layout layout_;
   std::ptrdiff_t stride_, all_;
-  Numbers numbers_;
-  // All stripes of a row. Q: one move within the row.
+  Planes numbers_;
+  // All planes of a row. Q: one move within the row.
   double *within_ = nullptr, *visits_ = nullptr, *now_ = nullptr, *next_ = nullptr;
   std::vector<double*> entering_;  // this row from below, the row above, ...
   double* tally_ = nullptr;
   std::vector<Range> whole_;
   std::int64_t first_ = 0;  // row
-  std::vector<Walks> walks_;
+  std::vector<StartTally> walks_;
   std::vector<double> entered_, passed_;  // per start: this row, rows until now
   std::vector<int> most_sums_taken_;      // per start
-  std::vector<std::vector<const RowSolver::Column*>> columns_;  // per chain
+  std::vector<std::vector<const RowElimination::Column*>> columns_;  // per chain
   std::vector<double> workspace_;
 };
 
 }  // namespace
 
-std::vector<FinalDistribution> sweep_rows(const SweepPlan& plan, const Field& field,
-                                          const std::vector<Start>& starts, double tolerance,
-                                          Sweeper::RowMethod method, int most_sums) {
+std::vector<FinalDistribution> predict_by_rows(const PredictionPlan& plan, const Field& field,
+                                               const std::vector<Start>& starts, double tolerance,
+                                               Sweeper::RowMethod method, int most_sums) {
   Rows rows(plan, field, starts, tolerance, method, most_sums);
-  const std::vector<Walks> walks = rows.run();
+  const std::vector<StartTally> walks = rows.run();
   std::vector<FinalDistribution> results;
   // A move is rounded twice: into a row's equations, and in what they still miss.
   for (std::size_t j = 0; j < walks.size(); ++j) {

@@ -1,6 +1,6 @@
 #pragma once
 /// Exact distributions fast: the chain applied to whole rows of the field at a time, in vector
-/// registers (stripes.h). The plain references are propagate and solve_absorption (exact.h).
+/// registers (planes.h). The plain references are propagate and solve_absorption (exact.h).
 
 #include <memory>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace gatewalk::markov {
 
-struct SweepPlan;  // sweep.cpp
+struct PredictionPlan;  // sweep.cpp
 
 /// A chain, or one per row, prepared for any field and starts. May be used from several threads at
 /// a time. Predictions from several starts are made side by side, each on its own: the same bits as
@@ -66,7 +66,7 @@ class Sweeper {
                                                            int max_cells) const;
 
  private:
-  std::unique_ptr<const SweepPlan> plan_;
+  std::unique_ptr<const PredictionPlan> plan_;
 };
 
 }  // namespace gatewalk::markov
