@@ -9,7 +9,7 @@ constexpr std::ptrdiff_t lanes_up(std::ptrdiff_t x) { return lanes_down(x + kLan
 }  // namespace
 
 Stencil::Stencil(const std::vector<Entry>& entries) {
-  // Sorted by target and move, otherwise in their order: by counting.
+  // Counting sort by target and move; entries of the same target and move keep their order.
   int moves = 0, targets = 0;
   for (const Entry& e : entries) {
     moves = std::max(moves, e.move + 1);
@@ -74,7 +74,7 @@ Layout::Layout(std::int64_t columns, std::int64_t rows, const std::vector<Move>&
 
   // A mask per move and one for staying, each for all colours of the cells gone to.
   for (std::size_t m = 0; m <= moves.size(); ++m) {
-    double* const mask = masks_.emplace_back(colours * stride_).data();
+    double* const mask = masks_.emplace_back(colours, stride_).take(colours).data();
     const std::int64_t di_x = m < moves.size() ? moves[m].di_x : 0;
     for (std::size_t j = 0; j < parities.size(); ++j)
       for (std::int64_t row = 0; row < rows; ++row)

@@ -44,18 +44,41 @@ void apply_stencil(const Stencil& stencil, const Shift* shifts, std::ptrdiff_t s
                    const double* source_mask, const std::vector<Range>& ranges, const double* from,
                    double* to, bool add);
 
-/// Some planes and the numbers in them; zeros to begin with, from a register boundary on.
+/// Some planes of a PlaneBuffer.
 class Planes {
  public:
-  explicit Planes(std::ptrdiff_t count)
-      : p_(hwy::AllocateAligned<double>(static_cast<std::size_t>(count))) {
+  Planes() = default;
+  Planes(double* first, std::ptrdiff_t size) : p_(first), size_(size) {}
+  [[nodiscard]] double* data() const { return p_; }
+  [[nodiscard]] std::ptrdiff_t size() const { return size_; }  // numbers
+  void clear() const { std::fill_n(p_, size_, 0.0); }
+
+ private:
+  double* p_ = nullptr;
+  std::ptrdiff_t size_ = 0;
+};
+
+/// The memory of planes, all numbers zero to begin with, from a register boundary on. One piece: to
+/// allocate its parts one by one makes a small prediction three times as long (the allocator gives
+/// the pages back each time, and they are faulted in again).
+class PlaneBuffer {
+ public:
+  PlaneBuffer(std::ptrdiff_t count, std::ptrdiff_t stride)
+      : p_(hwy::AllocateAligned<double>(static_cast<std::size_t>(count * stride))),
+        stride_(stride) {
     if (!p_) throw std::bad_alloc();
-    std::fill_n(p_.get(), count, 0.0);
+    std::fill_n(p_.get(), count * stride, 0.0);
   }
-  [[nodiscard]] double* data() { return p_.get(); }
+  /// The next `count` planes; not more in all than the buffer has.
+  [[nodiscard]] Planes take(std::ptrdiff_t count) {
+    double* const first = p_.get() + taken_ * stride_;
+    taken_ += count;
+    return {first, count * stride_};
+  }
 
  private:
   hwy::AlignedFreeUniquePtr<double[]> p_;
+  std::ptrdiff_t stride_, taken_ = 0;
 };
 
 /// Places of the cells of several fields of equal size, side by side, one field per start. With two
@@ -97,7 +120,7 @@ class Layout {
   std::vector<std::ptrdiff_t> offsets_;  // of a start's columns
   std::ptrdiff_t pitch_ = 0;             // from row to row; odd with two colours
   std::ptrdiff_t origin_ = 0, stride_ = 0;
-  std::vector<Planes> masks_;
+  std::vector<PlaneBuffer> masks_;
   std::array<std::vector<Shift>, 2> shifts_;
   std::array<Shift, 2> identity_{};
 };

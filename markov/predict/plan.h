@@ -1,14 +1,14 @@
 #pragma once
-/// What both of Predictor's ways share: prepared chains, and what is known of one start. Step by
-/// step: by_steps.cpp; row by row: by_rows.cpp.
+/// What the solvers by steps (by_steps.cpp) and by rows (by_rows.cpp) share: prepared chains, and
+/// what has ended of the walks from one start.
 
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "markov/predict.h"
 #include "markov/predict/ends.h"
 #include "markov/predict/layout.h"
-#include "markov/predict/predictor.h"
 #include "markov/predict/row_elimination.h"
 
 namespace gatewalk::markov {
@@ -20,20 +20,22 @@ inline constexpr double kNothing = 1e-280;
 /// by the first move, by the second, ...
 enum Tally : int { kTallyTotal, kTallyTrapped, kTallyUnsampled, kTallyMoved };
 
-/// A chain, ready for apply_stencil().
+/// A chain as stencils.
 struct PreparedChain {
-  Chain chain;
-  std::vector<int> walking_inputs, unsampled;  // of the inputs that are entered
-  Stencil moves;                               // all of them
-  Stencil first_sideways, sideways;  // within a row: of inputs entered from below, entered sideways
-  std::vector<Stencil> upwards;      // by 1 row, 2 rows, ...
-  Stencil ends;                      // to kTallyTrapped, ...
-  Stencil walking;                   // to kTallyTotal: all that walks on
-  std::unique_ptr<const RowElimination> elimination;
+  std::vector<int> walking_inputs, unsampled;         // of the inputs that are entered
+  Stencil moves;                                      // all of them
+  Stencil first_sideways;                             // within a row: of inputs entered from below
+  Stencil sideways;                                   // within a row: of inputs entered sideways
+  std::vector<Stencil> upwards;                       // by 1 row, 2 rows, ...
+  Stencil ends;                                       // to the planes of a Tally but the first
+  Stencil walking;                                    // to kTallyTotal: all that walks on
+  std::unique_ptr<const RowElimination> elimination;  // none where it cannot be used
   double stays = 0.0;  // largest chance to stay in the row, of inputs entered sideways
 };
 
 struct PredictionPlan {
+  FieldChain field_chain;
+  bool has_uniform_rows = true;       // all cells of a row have one type
   int inputs = 0, outputs = 0;        // outputs: of the chain with most
   int most_terms = 0;                 // of a sum over moves
   std::vector<Move> moves;            // that some exit makes
@@ -43,14 +45,11 @@ struct PredictionPlan {
   std::vector<int> from_below;        // inputs entered from a row below
   std::vector<int> sideways;          // inputs entered within a row
   Stencil arriving, staying;          // to kTallyTotal: all mass in from_below, sideways
-  std::vector<PreparedChain> chains;  // a chain each
-  std::vector<int> type_of_row;       // none: the first chain in all rows
+  std::vector<PreparedChain> chains;  // by type of cell
 
-  [[nodiscard]] const PreparedChain& at(std::int64_t row) const {
-    return chains[static_cast<std::size_t>(number_at(row))];
-  }
-  [[nodiscard]] int number_at(std::int64_t row) const {
-    return type_of_row.empty() ? 0 : type_of_row[static_cast<std::size_t>(row)];
+  explicit PredictionPlan(FieldChain chain) : field_chain(std::move(chain)) {}
+  [[nodiscard]] const PreparedChain& at(std::int64_t column, std::int64_t row) const {
+    return chains[static_cast<std::size_t>(field_chain.type_of(column, row))];
   }
 };
 
@@ -125,14 +124,14 @@ struct StartTally {
   }
 };
 
-/// As Sweeper::propagate and march, arguments checked.
+/// Predictor::predict_all by Solver::steps and Solver::rows, arguments checked.
 [[nodiscard]] std::vector<FinalDistribution> predict_by_steps(const PredictionPlan& plan,
                                                               const Field& field,
                                                               const std::vector<Start>& starts,
-                                                              int max_cells, double tolerance,
-                                                              int max_steps_without_limit);
-[[nodiscard]] std::vector<FinalDistribution> predict_by_rows(
-    const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
-    double tolerance, Sweeper::RowMethod method, int most_sums);
+                                                              const PredictOptions& options);
+[[nodiscard]] std::vector<FinalDistribution> predict_by_rows(const PredictionPlan& plan,
+                                                             const Field& field,
+                                                             const std::vector<Start>& starts,
+                                                             const PredictOptions& options);
 
 }  // namespace gatewalk::markov

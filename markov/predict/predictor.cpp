@@ -1,4 +1,4 @@
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 
 #include <tbb/parallel_for.h>
 
@@ -11,6 +11,8 @@
 
 namespace gatewalk::markov {
 namespace {
+
+using Solver = PredictOptions::Solver;
 
 constexpr int kFarthest = 10'000;  // cells; planes have room for a move beyond each end
 
@@ -29,7 +31,7 @@ PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
     return in;
   };
   const std::vector<char> from_below = is_in(plan.from_below), sideways = is_in(plan.sideways);
-  PreparedChain prepared{chain, {}, {}, {}, {}, {}, {}, {}, {}, nullptr, 0.0};
+  PreparedChain prepared;
   std::vector<Entry> moves, first_sideways, further_sideways, ends, walking;
   std::vector<std::vector<Entry>> upwards(static_cast<std::size_t>(plan.highest));
   std::vector<double> shares(kTallyMoved + plan.moves.size());  // of an input, by ending
@@ -85,11 +87,11 @@ Stencil totals_of(const std::vector<int>& inputs) {
   return Stencil(entries);
 }
 
-std::unique_ptr<const PredictionPlan> plan_of(const std::vector<Chain>& chains,
-                                              std::vector<int> chain_of_row) {
-  auto plan = std::make_unique<PredictionPlan>();
-  plan->inputs = chains.front().inputs();
-  plan->type_of_row = std::move(chain_of_row);
+std::unique_ptr<const PredictionPlan> plan_of(FieldChain field_chain) {
+  auto plan = std::make_unique<PredictionPlan>(std::move(field_chain));
+  const std::vector<Chain>& chains = plan->field_chain.chains();
+  plan->has_uniform_rows = plan->field_chain.has_uniform_rows();
+  plan->inputs = plan->field_chain.inputs();
   std::vector<char> is_entered(static_cast<std::size_t>(plan->inputs)), from_below(is_entered),
       sideways(is_entered);
   for (const Chain& chain : chains) {
@@ -98,9 +100,9 @@ std::unique_ptr<const PredictionPlan> plan_of(const std::vector<Chain>& chains,
       const Exit& exit = chain.exits()[static_cast<std::size_t>(chain.matrix().innerIndexPtr()[k])];
       if (exit.next_input == Exit::kTrapped) continue;
       if (std::max(exit.di_x, exit.di_y) > kFarthest || std::min(exit.di_x, exit.di_y) < -kFarthest)
-        throw std::invalid_argument("sweep: a move of (" + std::to_string(exit.di_x) + ", " +
+        throw std::invalid_argument("predict: a move of (" + std::to_string(exit.di_x) + ", " +
                                     std::to_string(exit.di_y) + ") cells is more than " +
-                                    std::to_string(kFarthest) + "; propagate (exact.h) takes it");
+                                    std::to_string(kFarthest) + "; solver plain takes it");
       const auto next = static_cast<std::size_t>(exit.next_input);
       is_entered[next] = 1;
       if (exit.di_y > 0) from_below[next] = 1;
@@ -128,12 +130,14 @@ std::unique_ptr<const PredictionPlan> plan_of(const std::vector<Chain>& chains,
   return plan;
 }
 
-void validate_all(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
-                  int max_cells) {
-  for (const Start& s : starts) validate(plan.chains.front().chain, field, s, max_cells);
-  if (!plan.type_of_row.empty() && std::ssize(plan.type_of_row) != field.rows)
-    throw std::invalid_argument("rows: chains for " + std::to_string(plan.type_of_row.size()) +
-                                " rows, the field has " + std::to_string(field.rows));
+/// Whether it is a plain reference, for which nothing is prepared.
+bool is_reference(Solver solver) { return solver == Solver::klu || solver == Solver::plain; }
+
+void require_no_limit(const std::string& solver, const PredictOptions& options) {
+  if (options.max_cells != 0)
+    throw std::invalid_argument("predict: solver " + solver +
+                                " takes no limit of cells, max_cells is " +
+                                std::to_string(options.max_cells));
 }
 
 /// Starts side by side in groups of `size`, groups on all threads.
@@ -152,60 +156,56 @@ std::vector<FinalDistribution> in_groups(const std::vector<Start>& starts, std::
 
 }  // namespace
 
-Sweeper::Sweeper(const Chain& chain) : plan_(plan_of({chain}, {})) {}
+Predictor::Predictor(FieldChain chain) : plan_(plan_of(std::move(chain))) {}
 
-Sweeper::Sweeper(const RowChains& rows) : plan_(plan_of(rows.chains, rows.chain_of_row)) {}
+Predictor::~Predictor() = default;
 
-Sweeper::~Sweeper() = default;
+bool Predictor::can_go_by_rows() const { return plan_->lowest >= 0 && plan_->has_uniform_rows; }
 
-bool Sweeper::can_march() const { return plan_->lowest >= 0; }
-
-std::vector<FinalDistribution> Sweeper::propagate_all(const Field& field,
+std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
                                                       const std::vector<Start>& starts,
-                                                      int max_cells, double tolerance,
-                                                      int max_steps_without_limit) const {
-  validate_all(*plan_, field, starts, max_cells);
-  if (!(tolerance >= 0.0) || max_steps_without_limit < 0)
-    throw std::invalid_argument("propagate: tolerance and step limit must not be negative");
+                                                      const PredictOptions& options) const {
+  if (is_reference(options.solver))
+    return markov::predict(plan_->field_chain, field, starts, options);
+  for (const Start& s : starts) validate(plan_->field_chain, field, s, options.max_cells);
+  const bool by_rows =
+      options.solver == Solver::rows ||
+      (options.solver == Solver::automatic && options.max_cells == 0 && can_go_by_rows());
+  if (!(options.tolerance.value_or(0.0) >= 0.0) || options.max_steps < (by_rows ? 1 : 0))
+    throw std::invalid_argument(
+        "predict: tolerance and max_steps must not be negative, by rows max_steps be positive");
+  if (by_rows) {
+    require_no_limit("rows", options);
+    if (!plan_->has_uniform_rows)
+      throw std::invalid_argument("predict: solver rows needs rows of one type of cell each");
+    if (!can_go_by_rows())
+      throw std::invalid_argument("predict: solver rows: an exit leads to a row below");
+    return in_groups(starts, std::clamp(40 / field.columns, 1, 4), [&](const auto& group) {
+      return predict_by_rows(*plan_, field, group, options);
+    });
+  }
   // Measured: a few small fields together leave fewer lanes empty, more of them leave the cache.
   const std::int64_t cells = std::int64_t{field.columns} * field.rows;
   return in_groups(starts, std::clamp<std::int64_t>(400 / cells, 1, 4), [&](const auto& group) {
-    return predict_by_steps(*plan_, field, group, max_cells, tolerance, max_steps_without_limit);
+    return predict_by_steps(*plan_, field, group, options);
   });
 }
 
-std::vector<FinalDistribution> Sweeper::march_all(const Field& field,
-                                                  const std::vector<Start>& starts,
-                                                  double tolerance, RowMethod method,
-                                                  int most_sums) const {
-  validate_all(*plan_, field, starts, 0);
-  if (!can_march()) throw std::invalid_argument("march: an exit leads to a row below");
-  if (!(tolerance >= 0.0) || most_sums < 1)
-    throw std::invalid_argument("march: tolerance must not be negative, most_sums be positive");
-  return in_groups(starts, std::clamp(40 / field.columns, 1, 4), [&](const auto& group) {
-    return predict_by_rows(*plan_, field, group, tolerance, method, most_sums);
-  });
+FinalDistribution Predictor::predict(const Field& field, const Start& start,
+                                     const PredictOptions& options) const {
+  return std::move(predict_all(field, {start}, options).front());
 }
 
-std::vector<FinalDistribution> Sweeper::predict_all(const Field& field,
-                                                    const std::vector<Start>& starts,
-                                                    int max_cells) const {
-  return max_cells == 0 && can_march() ? march_all(field, starts)
-                                       : propagate_all(field, starts, max_cells);
-}
-
-FinalDistribution Sweeper::propagate(const Field& field, const Start& start, int max_cells,
-                                     double tolerance, int max_steps_without_limit) const {
-  return propagate_all(field, {start}, max_cells, tolerance, max_steps_without_limit).front();
-}
-
-FinalDistribution Sweeper::march(const Field& field, const Start& start, double tolerance,
-                                 RowMethod method, int most_sums) const {
-  return march_all(field, {start}, tolerance, method, most_sums).front();
-}
-
-FinalDistribution Sweeper::predict(const Field& field, const Start& start, int max_cells) const {
-  return predict_all(field, {start}, max_cells).front();
+std::vector<FinalDistribution> predict(const FieldChain& chain, const Field& field,
+                                       const std::vector<Start>& starts,
+                                       const PredictOptions& options) {
+  if (!is_reference(options.solver)) return Predictor(chain).predict_all(field, starts, options);
+  const bool by_klu = options.solver == Solver::klu;
+  if (by_klu) require_no_limit("klu", options);
+  std::vector<FinalDistribution> all;
+  for (const Start& s : starts)
+    all.push_back(by_klu ? solve_absorption(chain, field, s) : propagate(chain, field, s, options));
+  return all;
 }
 
 }  // namespace gatewalk::markov

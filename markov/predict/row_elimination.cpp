@@ -91,7 +91,8 @@ void multiply_blocks(const Block& a, const Block& b, const Block& from, Block& c
   for (int j = 0; j < b.columns; ++j) multiply(a, b.column(j), from.column(j), c.column(j));
 }
 
-/// a = a^-1 (Gauss and Jordan, no pivoting: a is I less what a walk does). The least pivot.
+/// a = a^-1 by Gauss-Jordan; returns the least pivot. Without pivoting: a = I - Q with Q >= 0 whose
+/// columns sum to 1 at most (an M-matrix), of which all pivots are positive unless it is singular.
 double invert(Block& a) {
   const D d;
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));

@@ -52,7 +52,7 @@ class RowElimination {
   /// They are kept: only columns that no call asked for before take time. Thread-safe.
   [[nodiscard]] std::vector<const Column*> columns(int count) const;
 
-  /// Planes that solve() needs to work with.
+  /// Numbers that solve() needs to work with.
   [[nodiscard]] std::size_t workspace(int count) const;
   /// visits += (I - Q)^-1 entering, both in planes (stencil.h) that begin at the first column.
   void solve(const std::vector<const Column*>& columns, const double* entering, double* visits,

@@ -12,7 +12,7 @@
 #include "lattice/compare.h"
 #include "lattice/draws.h"
 #include "lattice/gate_chain.h"
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::lattice {
@@ -65,7 +65,7 @@ Transitions simulated(std::int64_t trials, std::uint64_t number) {
 FieldMatrices all_rows(const Transitions& t) { return {{&t}, std::vector<int>(kField.rows)}; }
 
 FinalDistribution predicted(const Transitions& t) {
-  return markov::Sweeper(make_chain(t)).predict(kField, kStart, kMaxGates);
+  return markov::Predictor(make_chain(t)).predict(kField, kStart, {.max_cells = kMaxGates});
 }
 
 std::vector<FinalDistribution> replicates(const Transitions& t, std::uint64_t seed,
