@@ -221,6 +221,33 @@ TEST(Predictor, RowsThatDifferAreThePlainReference) {
   }
 }
 
+TEST(Predictor, CellsThatDifferAreThePlainReference) {
+  test::Words words(9);
+  for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
+    const std::vector<Chain> chains{with_gaps(1, exits), thin(2, exits),
+                                    Chain::from_counts(lattice_counts(3), exits)};
+    for (const int columns : {1, 5, 9, 40}) {
+      const Field field{columns, 8};
+      std::vector<int> types;
+      for (int cell = 0; cell < columns * field.rows; ++cell) types.push_back(words.below(3));
+      const FieldChain cells = FieldChain::by_cell(chains, columns, types);
+      const Predictor predictor(cells);
+      const std::vector<Start> starts{
+          {columns / 2, 0, 12}, {0, 3, 40}, {columns - 1, 7, 60}, {columns / 3, 2, 85}};
+      for (const int limit : {1, 2, 13, 0}) {
+        const PredictOptions options{
+            .max_cells = limit, .solver = Solver::steps, .tolerance = 1e-13, .max_steps = 300};
+        const auto fast = predictor.predict_all(field, starts, options);
+        for (std::size_t k = 0; k < starts.size(); ++k) {
+          const auto plain = propagate(cells, field, starts[k], options);
+          expect_near(plain, fast[k], 1e-14);
+          EXPECT_NEAR(plain.remainder, fast[k].remainder, 1e-14);
+        }
+      }
+    }
+  }
+}
+
 // Equal chains are prepared twice here, and drawn from in turn: not a bit changes.
 TEST(Predictor, EqualChainsInTurnHaveTheBitsOfOne) {
   for (const auto& exits : {never_down(), leaps()}) {
