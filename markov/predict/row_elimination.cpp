@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "markov/predict/stencil.h"
 
@@ -284,10 +285,13 @@ void RowElimination::solve(const std::vector<const Column*>& columns, const doub
                            double* visits, std::ptrdiff_t stride, double* workspace) const {
   const auto count = static_cast<std::ptrdiff_t>(columns.size());
   const std::ptrdiff_t r = rr_.height, l = ll_.height;
-  double *const entering_r = workspace, *const entering_l = entering_r + count * r,
-                *const visits_r = entering_l + count * l, *const visits_l = visits_r + count * r,
-                *const arriving = visits_l + count * l;
-  std::fill(workspace, visits_r, 0.0);
+  const auto take = [&workspace](std::ptrdiff_t numbers) {
+    return std::exchange(workspace, workspace + numbers);
+  };
+  double *const entering_r = take(count * r), *const entering_l = take(count * l),
+                *const visits_r = take(count * r), *const visits_l = take(count * l),
+                *const arriving = take(r);
+  std::fill(entering_r, visits_r, 0.0);  // both that enter
   // A few columns at a time: they share what is read of the planes.
   constexpr std::ptrdiff_t kTogether = 2 * kLanes;
   for (std::ptrdiff_t first = 0; first < count; first += kTogether) {
