@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "markov/predict/reference.h"
+#include "markov/predict.h"
 #include "markov/walk.h"
 
 namespace gatewalk::lattice {

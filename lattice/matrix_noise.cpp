@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "lattice/gate_chain.h"
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 
 namespace gatewalk::lattice {
 
@@ -27,8 +27,10 @@ std::vector<std::vector<FinalDistribution>> replicate_predictions(
           static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
       chains.push_back(make_chain(resampled(*rows.matrices[m], seed, replicate)));
     }
-    const markov::Sweeper sweeper(markov::RowChains(std::move(chains), rows.matrix_of_row));
-    std::vector<FinalDistribution> of_starts = sweeper.predict_all(field, starts, max_cells);
+    const markov::Predictor predictor(
+        markov::FieldChain::by_row(std::move(chains), rows.matrix_of_row));
+    std::vector<FinalDistribution> of_starts =
+        predictor.predict_all(field, starts, {.max_cells = max_cells});
     for (std::size_t s = 0; s < starts.size(); ++s)
       found[s][static_cast<std::size_t>(k)] = std::move(of_starts[s]);
   });

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/transitions.h"
-#include "markov/predict/reference.h"
+#include "markov/predict.h"
 
 namespace gatewalk::lattice {
 
@@ -18,8 +18,8 @@ struct FieldMatrices {
 };
 
 /// Predictions from replicates first, ... first + count - 1: each matrix resampled() row by row on
-/// its own. (starts x count) by Sweeper::predict, on all threads of the current TBB arena; the same
-/// bits for any number of them. Throws as Sweeper::predict does.
+/// its own. (starts x count) by Predictor::predict, on all threads of the current TBB arena; the
+/// same bits for any number of them. Throws as Predictor::predict does.
 [[nodiscard]] std::vector<std::vector<markov::FinalDistribution>> replicate_predictions(
     const FieldMatrices& rows, const markov::Field& field, const std::vector<markov::Start>& starts,
     int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count);

@@ -105,6 +105,52 @@ int Chain::unsampled_rows() const {
   return count;
 }
 
+FieldChain::FieldChain(Chain everywhere) : types_{0} { chains_.push_back(std::move(everywhere)); }
+
+FieldChain::FieldChain(std::vector<Chain> chains, std::vector<int> types, std::int64_t row_stride,
+                       std::int64_t column_stride)
+    : chains_(std::move(chains)),
+      types_(std::move(types)),
+      row_stride_(row_stride),
+      column_stride_(column_stride) {
+  const std::string what = column_stride == 0 ? "row " : "cell ";
+  if (chains_.empty()) refuse("field: no chain is given");
+  if (types_.empty()) refuse("field: no " + what + "is given a chain");
+  for (const Chain& chain : chains_)
+    if (chain.inputs() != inputs())
+      refuse("field: chains of " + std::to_string(inputs()) + " and of " +
+             std::to_string(chain.inputs()) + " inputs cannot share a field");
+  for (std::size_t k = 0; k < types_.size(); ++k)
+    if (types_[k] < 0 || types_[k] >= std::ssize(chains_))
+      refuse("field: " + what + std::to_string(k) + " is given chain " + std::to_string(types_[k]) +
+             " of " + std::to_string(chains_.size()));
+}
+
+FieldChain FieldChain::by_row(std::vector<Chain> chains, std::vector<int> type_of_row) {
+  return {std::move(chains), std::move(type_of_row), 1, 0};
+}
+
+FieldChain FieldChain::by_cell(std::vector<Chain> chains, int columns,
+                               std::vector<int> type_of_cell) {
+  if (columns < 1 || std::ssize(type_of_cell) % columns != 0)
+    refuse("field: types of " + std::to_string(type_of_cell.size()) +
+           " cells do not fill rows of " + std::to_string(columns));
+  return {std::move(chains), std::move(type_of_cell), columns, 1};
+}
+
+bool FieldChain::has_uniform_rows() const {
+  for (std::int64_t row = 0; row < rows(); ++row)
+    for (std::int64_t column = 1; column < columns(); ++column)
+      if (type_of(column, row) != type_of(0, row)) return false;
+  return true;
+}
+
+std::int64_t FieldChain::columns() const { return column_stride_ == 0 ? 0 : row_stride_; }
+
+std::int64_t FieldChain::rows() const {
+  return row_stride_ == 0 ? 0 : std::ssize(types_) / row_stride_;
+}
+
 void validate(const Chain& chain, const Field& field, const Start& start, int max_cells) {
   if (field.columns < 1 || field.rows < 1 ||
       std::int64_t{field.columns} * field.rows > std::numeric_limits<std::int32_t>::max()) {
@@ -121,6 +167,17 @@ void validate(const Chain& chain, const Field& field, const Start& start, int ma
            std::to_string(chain.inputs()) + ")");
   }
   if (max_cells < 0) refuse("max_cells: " + std::to_string(max_cells) + " is negative");
+}
+
+void validate(const FieldChain& chain, const Field& field, const Start& start, int max_cells) {
+  validate(chain.chains().front(), field, start, max_cells);
+  const auto fits = [](std::int64_t given, int in_field, const char* what) {
+    if (given != 0 && given != in_field)
+      refuse("field: chains for " + std::to_string(given) + what + ", the field has " +
+             std::to_string(in_field));
+  };
+  fits(chain.rows(), field.rows, " rows");
+  fits(chain.columns(), field.columns, " columns");
 }
 
 }  // namespace gatewalk::markov

@@ -56,6 +56,42 @@ class Chain {
   std::vector<Exit> exits_;
 };
 
+/// What the cells of a field draw from: a chain per type of cell, and the type of each cell.
+class FieldChain {
+ public:
+  /// Uniform: one chain in all cells, of a field of any size.
+  FieldChain(Chain everywhere);  // NOLINT(google-explicit-constructor): a Chain is the uniform case
+  /// Cells of row r draw from chains[type_of_row[r]]; for fields of that many rows. Throws
+  /// std::invalid_argument unless there is a chain, all chains have the same number of inputs, and
+  /// each row is given one of them.
+  [[nodiscard]] static FieldChain by_row(std::vector<Chain> chains, std::vector<int> type_of_row);
+  /// Cell (column, row) draws from chains[type_of_cell[row * columns + column]]; for fields of that
+  /// size. Throws as by_row, and unless the cells fill whole rows.
+  [[nodiscard]] static FieldChain by_cell(std::vector<Chain> chains, int columns,
+                                          std::vector<int> type_of_cell);
+
+  [[nodiscard]] const std::vector<Chain>& chains() const { return chains_; }  // one per type
+  [[nodiscard]] int inputs() const { return chains_.front().inputs(); }
+  [[nodiscard]] int type_of(std::int64_t column, std::int64_t row) const {
+    return types_[static_cast<std::size_t>(row * row_stride_ + column * column_stride_)];
+  }
+  [[nodiscard]] const Chain& at(std::int64_t column, std::int64_t row) const {
+    return chains_[static_cast<std::size_t>(type_of(column, row))];
+  }
+  /// Whether all cells of a row have the same type, in every row.
+  [[nodiscard]] bool has_uniform_rows() const;
+  /// The size of the fields it is made for; 0: any.
+  [[nodiscard]] std::int64_t columns() const;
+  [[nodiscard]] std::int64_t rows() const;
+
+ private:
+  FieldChain(std::vector<Chain> chains, std::vector<int> types, std::int64_t row_stride,
+             std::int64_t column_stride);
+  std::vector<Chain> chains_;
+  std::vector<int> types_;  // (rows x columns), (rows) or (1): see the strides
+  std::int64_t row_stride_ = 0, column_stride_ = 0;
+};
+
 /// A rectangle of cells; a move that ends outside has left the field.
 struct Field {
   int columns = 9;
@@ -95,5 +131,7 @@ struct Start {
 
 /// Throws std::invalid_argument if field, start or max_cells (0: no limit) cannot belong together.
 void validate(const Chain& chain, const Field& field, const Start& start, int max_cells);
+/// Also if the field is not of the size the types are given for.
+void validate(const FieldChain& chain, const Field& field, const Start& start, int max_cells);
 
 }  // namespace gatewalk::markov

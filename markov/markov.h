@@ -6,9 +6,10 @@
 /// it is trapped there, or enters a neighbouring cell in that cell's input state (`Exit`).
 ///   counts on disk (formats/counts.h)  ->  Chain, rows that sum to 1 (chain.h)
 ///   Chain  ->  Monte Carlo walks (walk.h): one draw per cell, a walk is named by its number
-///   Chain  ->  exact distribution: whole rows of the field at a time (predict/predictor.h), the visits of a row by
-///              elimination (predict/row_elimination.h); plain references: forward propagation and one sparse solve,
-///              also of rows that differ (predict/reference.h)
+///   Chain, or one per row or cell (FieldChain)  ->  exact distribution (predict.h): Predictor and
+///              predict() by the solver asked for. Step by step: all planes of the field at a time; by
+///              rows: the visits of a row by elimination or sums, then the next row. Plain references:
+///              forward propagation (propagate) and one sparse solve (solve_absorption)
 /// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
 /// cell limit, entered a state that was never sampled. The final cell is the last one inside.
 /// What a state means, and how large a cell is, this module does not know.
@@ -16,6 +17,5 @@
 
 #include "markov/chain.h"
 #include "markov/formats/counts.h"
-#include "markov/predict/predictor.h"
-#include "markov/predict/reference.h"
+#include "markov/predict.h"
 #include "markov/walk.h"

@@ -36,9 +36,9 @@ constexpr Word kMostSlots = Word{1} << 21;
 constexpr Word kStay = (Word{kReach} << 32) + kReach;
 constexpr Word kShift =
     (Word{1} << 63) + (Word{0x3ff} << 32) + 0x3ff;  // the bits that change the cell
-constexpr Word kTrapped = (Word{1} << 63) + kStay;
-constexpr Word kUnsampled = kTrapped + (Word{1} << 10);
-constexpr Word kCutOff = kTrapped + (Word{2} << 10);
+constexpr Word kEndTrapped = (Word{1} << 63) + kStay;
+constexpr Word kEndUnsampled = kEndTrapped + (Word{1} << 10);
+constexpr Word kEndCutOff = kEndTrapped + (Word{2} << 10);
 
 constexpr Word move_to(std::size_t first_slot, int slots, int di_x, int di_y) {
   return (Word{first_slot} << 42) + (static_cast<Word>(di_y + kReach) << 32) +
@@ -174,8 +174,10 @@ void draw_moves(const WalkRules& rules, const Word* words, Pool& pool) {
   }
 }
 
-/// Every walk moves or ends, the last time all do. Who walks on closes up to the front, with the
-/// words from the `next_word`-th on.
+/// Every walk of the pool carries out the move it has drawn, or ends; with `last_time` all end.
+/// Walks that go on are put into places 0, 1, ... of `on` in their order, with the words they have
+/// not used
+/// (`next_word` to 3), so that registers stay full; walks that ended go to the back of `ended`.
 void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool& pool) {
   const D d;
   const V nibbles = hn::ShiftLeft<2>(hn::Iota(d, 0));
@@ -188,7 +190,7 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
         hn::And(hn::Or(next, hn::Sub(all(rules.corner), next)), all(0x80000000'80000000));
     auto goes_on = hn::Eq(signs, hn::Zero(d));
     if (last_time) {
-      move = hn::IfThenElse(goes_on, all(kCutOff), move);
+      move = hn::IfThenElse(goes_on, all(kEndCutOff), move);
       goes_on = hn::MaskFromVec(hn::Zero(d));
     }
     cell = hn::IfThenElse(goes_on, next, cell);
@@ -244,9 +246,9 @@ void count_endings(const WalkRules& rules, const Pool& pool, PoolEndings& counts
     const auto add = [&](V& sum, Word ending) HWY_ATTR {
       sum = hn::Sub(sum, hn::VecFromMask(d, hn::Eq(move, all(ending))));
     };
-    add(trapped, kTrapped);
-    add(cut_off, kCutOff);
-    add(unsampled, kUnsampled);
+    add(trapped, kEndTrapped);
+    add(cut_off, kEndCutOff);
+    add(unsampled, kEndUnsampled);
   }
   const auto sum = [&](V v) HWY_ATTR {
     alignas(64) Word of_lane[kMostLanes];
@@ -359,11 +361,11 @@ Walker::Walker(const Chain& chain)
   moves_.reserve(outputs_.size());
   for (const int output : outputs_)
     moves_.push_back(packed(exits[static_cast<std::size_t>(output)]));
-  moves_.end()[-2] = kUnsampled;  // its slot keeps every word
+  moves_.end()[-2] = kEndUnsampled;  // its slot keeps every word
 }
 
 Word Walker::packed(const Exit& exit) const {
-  if (exit.next_input == Exit::kTrapped) return kTrapped;
+  if (exit.next_input == Exit::kTrapped) return kEndTrapped;
   const int* const begin = chain_.matrix().outerIndexPtr() + exit.next_input;
   return chain_.is_sampled(exit.next_input) ? move_to(static_cast<std::size_t>(begin[0]),
                                                       begin[1] - begin[0], exit.di_x, exit.di_y)
@@ -509,7 +511,7 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
       const Word cell = pool.ended.cell[i], move = pool.ended.move[i];
       static_assert(Counters::kTrappedThere == 0 && Counters::kDepartedThere == 1 &&
                     Counters::kOthers == 2);
-      const auto kind = static_cast<std::int64_t>(move != kTrapped)
+      const auto kind = static_cast<std::int64_t>(move != kEndTrapped)
                         << (move >> 63);  // without a jump
       counters.count(job, kind, static_cast<std::int64_t>(cell & 0xffffffff),
                      static_cast<std::int64_t>(cell >> 32),

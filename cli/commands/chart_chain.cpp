@@ -20,7 +20,7 @@
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -275,10 +275,10 @@ Point point_of(const lattice::Scene& scene, const Chart& chart, std::size_t plac
   double freezing_seconds = 0.0;
   const auto ask = [&](std::int64_t k) {
     std::optional<markov::Chain> chain;
-    std::optional<markov::Sweeper> sweeper;
+    std::optional<markov::Predictor> predictor;
     const double freezing = one_thread_seconds([&] {
       chain = lattice::make_chain(matrices[k]);
-      sweeper.emplace(*chain);
+      predictor.emplace(*chain);
     });
     if (k == 0) freezing_seconds = freezing;
     std::optional<markov::Walker> walker;
@@ -286,8 +286,8 @@ Point point_of(const lattice::Scene& scene, const Chart& chart, std::size_t plac
     for (std::size_t s = 0; s < truths.size() && !interrupted(); ++s) {
       auto& [exact, a] = said[k][s];
       markov::FinalDistribution f;
-      a.exact_seconds =
-          one_thread_seconds([&] { f = sweeper->predict(field, starts[s], max_gates); });
+      a.exact_seconds = one_thread_seconds(
+          [&] { f = predictor->predict(field, starts[s], {.max_cells = max_gates}); });
       a.exact = error_of(f.final_cells, truths[s].p);
       a.never_sampled = f.unsampled;
       exact = f.final_cells;
@@ -308,11 +308,11 @@ Point point_of(const lattice::Scene& scene, const Chart& chart, std::size_t plac
   tbb::parallel_for(std::int64_t{0}, kResampled, [&](std::int64_t k) {
     if (interrupted()) return;
     const std::int64_t of = k % count;
-    const markov::Sweeper other(
+    const markov::Predictor other(
         lattice::make_chain(lattice::resampled(matrices[of], seed, static_cast<std::uint64_t>(k))));
     for (std::size_t s = 0; s < truths.size(); ++s)
-      moved[s][k] = lattice::total_variation(other.predict(field, starts[s], max_gates).final_cells,
-                                             said[of][s].exact);
+      moved[s][k] = lattice::total_variation(
+          other.predict(field, starts[s], {.max_cells = max_gates}).final_cells, said[of][s].exact);
   });
   if (interrupted()) throw Interrupted{};
 

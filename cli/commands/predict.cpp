@@ -10,7 +10,7 @@
 #include "cli/render/start.h"
 #include "cli/render/states.h"
 #include "cli/terminal/progress.h"
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -59,7 +59,7 @@ std::vector<OtherRows> rows_of(const Options& options) {
 struct FieldRows {
   std::deque<dynamics::Transitions> other_matrices;
   lattice::FieldMatrices matrices;
-  markov::RowChains chains;
+  markov::FieldChain chains;
 };
 
 /// Matrix and chain of each row. Throws UsageError when rows lie outside the field or are given
@@ -109,21 +109,18 @@ FieldRows rows_of_field(const Options& options, const MatrixAndScene& base,
   lattice::FieldMatrices all{{&base.file.transitions}, chain_of_row};
   for (const dynamics::Transitions& t : matrices)
     all.matrices.push_back(&t);  // a deque's stay in place
-  return {std::move(matrices), std::move(all), {std::move(chains), std::move(chain_of_row)}};
+  return {std::move(matrices), std::move(all),
+          markov::FieldChain::by_row(std::move(chains), std::move(chain_of_row))};
 }
 
-std::vector<FinalDistribution> solve(const markov::RowChains& rows, const std::string& solver,
-                                     const markov::Field& field,
-                                     const std::vector<markov::Start>& starts, int max_gates) {
-  if (solver == "klu") {
-    std::vector<FinalDistribution> all;
-    for (const markov::Start& s : starts) all.push_back(markov::solve_absorption(rows, field, s));
-    return all;
-  }
-  const markov::Sweeper sweeper(rows);
-  return solver == "march"       ? sweeper.march_all(field, starts)
-         : solver == "propagate" ? sweeper.propagate_all(field, starts, max_gates)
-                                 : sweeper.predict_all(field, starts, max_gates);
+/// By the names of --solver. Throws UsageError for any other.
+markov::PredictOptions::Solver solver_of(const std::string& name) {
+  using Solver = markov::PredictOptions::Solver;
+  if (name == "auto") return Solver::automatic;
+  if (name == "propagate") return Solver::steps;
+  if (name == "march") return Solver::rows;
+  if (name == "klu") return Solver::klu;
+  throw UsageError("--solver " + name + ": must be auto, propagate, march or klu");
 }
 
 /// What the sampling of the matrices does to each start's prediction; no replicates in fields that
@@ -249,8 +246,7 @@ int run_predict(const std::vector<std::string>& arguments) {
                 "seed of the resampled matrices behind the intervals");
   if (!options.parse(arguments)) return kFine;
   const std::string& solver = options.get<std::string>("solver");
-  if (solver != "auto" && solver != "propagate" && solver != "march" && solver != "klu")
-    throw UsageError("--solver " + solver + ": must be auto, propagate, march or klu");
+  markov::PredictOptions how{.solver = solver_of(solver)};
   const std::vector<lattice::PaperStart> given = given_starts(options);
   const std::vector<OtherRows> others = rows_of(options);
   const auto m =
@@ -266,12 +262,13 @@ int run_predict(const std::vector<std::string>& arguments) {
   for (const ReadyStart& s : starts) places.push_back(s.start.start);
   const markov::Field field{m.scene.field.columns, m.scene.field.rows};
   const int max_gates = m.scene.field.max_gates;
+  how.max_cells = max_gates;
   if ((solver == "klu" || solver == "march") && max_gates != 0)
     throw UsageError("--solver " + solver + " needs field.max_gates = 0 (no limit), it is " +
                      std::to_string(max_gates));
 
   const Stopwatch watch;
-  const std::vector<FinalDistribution> found = solve(rows.chains, solver, field, places, max_gates);
+  const std::vector<FinalDistribution> found = markov::predict(rows.chains, field, places, how);
   const double seconds = watch.seconds();
   const std::deque<lattice::MatrixNoise> noise =
       noise_of(options, rows, field, places, max_gates, found);

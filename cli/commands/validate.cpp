@@ -14,7 +14,7 @@
 #include "cli/render/start.h"
 #include "cli/render/states.h"
 #include "cli/terminal/progress.h"
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -120,7 +120,7 @@ struct StartReport {
 };
 
 StartReport run_start(const Options& options, const lattice::Scene& scene,
-                      const dynamics::Transitions& matrix, const markov::Sweeper& sweeper,
+                      const dynamics::Transitions& matrix, const markov::Predictor& predictor,
                       const markov::Walker& walker,
                       const std::vector<markov::FinalDistribution>& resampled,
                       const lattice::PaperStart& start, std::int64_t trials, std::int64_t walks) {
@@ -130,7 +130,8 @@ StartReport run_start(const Options& options, const lattice::Scene& scene,
   const lattice::ChainStart chain_start = lattice::chain_start(matrix.space, scene.field, body);
 
   const Stopwatch exact_watch;
-  const markov::FinalDistribution exact = sweeper.predict(field, chain_start.start, max_gates);
+  const markov::FinalDistribution exact =
+      predictor.predict(field, chain_start.start, {.max_cells = max_gates});
   const double exact_seconds = exact_watch.seconds();
 
   markov::WalkTally walked;
@@ -541,7 +542,7 @@ int run_validate(const std::vector<std::string>& arguments) {
     require_inside_bins(starts, scene, t.space);
   }
   const markov::Chain chain = lattice::make_chain(t);
-  const markov::Sweeper sweeper(chain);
+  const markov::Predictor predictor(chain);
   const markov::Walker walker(chain);
   const markov::Field field{scene.field.columns, scene.field.rows};
   std::vector<markov::Start> places;
@@ -554,7 +555,7 @@ int run_validate(const std::vector<std::string>& arguments) {
   dynamics::Health health = t.health;
   for (std::size_t k = 0; k < starts.size(); ++k) {
     reports.push_back(
-        run_start(options, scene, t, sweeper, walker, resampled[k], starts[k], trials, walks));
+        run_start(options, scene, t, predictor, walker, resampled[k], starts[k], trials, walks));
     const lattice::FieldTally& d = reports.back().dynamics;
     health += d.health;
     for (int b = 0; b < dynamics::kBoundaries; ++b) {

@@ -14,63 +14,67 @@ std::vector<Move> sideways_only(std::vector<Move> moves) {
 }
 
 constexpr double kFewDigits = 1e-6;
-constexpr double kRoundingOnly = 1e-14;  // another round makes it no better
+constexpr double kRoundingOnly = 1e-14;  // a residual that refinement makes no smaller
 
 [[noreturn]] void refuse() {
-  throw std::runtime_error("march: fewer than 6 digits hold: walks can circle (almost) for ever");
+  throw std::runtime_error(
+      "predict by rows: fewer than 6 digits hold: walks can circle (almost) for ever");
 }
 
-/// A row of cells per start, without limit: what enters it from below, what visits it, what goes
-/// up.
+/// Without limit, one row of the field after the other, all starts side by side: the mass that
+/// enters a row from below, the visits it makes there, and what goes up from them.
 class Rows {
  public:
-  Rows(const SweepPlan& plan, const Field& field, const std::vector<Start>& starts,
-       double tolerance, Sweeper::RowMethod method, int most_sums)
+  Rows(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
+       const PredictOptions& options)
       : plan_(plan),
         field_(field),
-        tolerance_(tolerance / (field.rows + 1)),
-        most_sums_(most_sums),
-        board_(field.columns, 1, sideways_only(plan.moves), 1,
-               std::vector<std::int64_t>(starts.size())),
-        stride_(board_.stride()),
-        all_(plan.inputs * stride_),
-        numbers_((5 + plan.highest) * all_ + (kMoved + std::ssize(plan.moves)) * stride_) {
-    double* next = numbers_.data();
-    for (double** p : {&within_, &visits_, &now_, &next_}) *p = std::exchange(next, next + all_);
-    for (int k = 0; k <= plan.highest; ++k) entering_.push_back(std::exchange(next, next + all_));
-    tally_ = next;
-    board_.cover(0, field.columns - 1, 0, 0, whole_);
+        tolerance_(options.tolerance_of(PredictOptions::Solver::rows) / (field.rows + 1)),
+        most_sums_(options.max_steps),
+        layout_(field.columns, 1, sideways_only(plan.moves), 1,
+                std::vector<std::int64_t>(starts.size())),
+        stride_(layout_.stride()),
+        tallies_(kTallyMoved + std::ssize(plan.moves)),
+        buffer_((5 + plan.highest) * plan.inputs + tallies_, stride_),
+        within_(buffer_.take(plan.inputs)),
+        visits_(buffer_.take(plan.inputs)),
+        now_(buffer_.take(plan.inputs)),
+        next_(buffer_.take(plan.inputs)) {
+    for (int k = 0; k <= plan.highest; ++k) entering_.push_back(buffer_.take(plan.inputs));
+    tally_ = buffer_.take(tallies_);
+    layout_.cover(0, field.columns - 1, 0, 0, whole_);
     first_ = field.rows;
     for (const Start& s : starts) {
-      walks_.emplace_back(field, s);
+      starts_.emplace_back(field, s);
       first_ = std::min<std::int64_t>(first_, s.row);
     }
     passed_.resize(starts.size());
     most_sums_taken_.resize(starts.size());
-    choose(method);
+    choose(options.row_method);
   }
 
-  std::vector<Walks> run() {
+  std::vector<StartTally> run() {
     for (std::int64_t row = first_; row < field_.rows; ++row) {
-      const Rules& rules = plan_.at(row);
-      clear(within_);
-      push_row(rules.first_sideways, entering_.front(), within_);
+      const PreparedChain& chain = plan_.at(0, row);
+      within_.clear();
+      apply_in_row(chain.first_sideways, entering_.front(), within_);
       if (!enter(row)) break;
-      clear(visits_);
-      const auto& columns = columns_[static_cast<std::size_t>(plan_.number_at(row))];
+      visits_.clear();
+      const auto& columns = columns_[static_cast<std::size_t>(plan_.field_chain.type_of(0, row))];
       if (columns.empty())
-        sum(rules, row);
+        sum(chain, row);
       else
-        eliminate(rules, columns);
+        eliminate(chain, columns);
       add(entering_.front(), visits_);
-      count(rules, row);
-      // Rows move down by one; what goes up by k arrives in the k-th.
-      clear(entering_.front());
+      count(chain, row);
+      // On to the next row: entering_[k] is now of the row k above that one, so what goes up by k +
+      // 1 rows from this one is added there.
+      entering_.front().clear();
       std::rotate(entering_.begin(), entering_.begin() + 1, entering_.end());
-      for (std::size_t k = 0; k < rules.upwards.size(); ++k)
-        push_row(rules.upwards[k], visits_, entering_[k]);
+      for (std::size_t k = 0; k < chain.upwards.size(); ++k)
+        apply_in_row(chain.upwards[k], visits_, entering_[k]);
     }
-    return std::move(walks_);
+    return std::move(starts_);
   }
 
   /// Sums of visits, in the row that took most.
@@ -79,38 +83,40 @@ class Rows {
   [[nodiscard]] double passed(std::size_t j) const { return passed_[j]; }
 
  private:
-  [[nodiscard]] std::ptrdiff_t first_of(std::size_t j) const { return board_.place(j, 0, 0).at; }
-  void clear(double* mass) const { std::fill_n(mass, all_, 0.0); }
+  [[nodiscard]] std::ptrdiff_t first_of(std::size_t j) const { return layout_.place(j, 0, 0).at; }
 
-  void push_row(const Table& table, const double* from, double* to) const {
-    push_all(table, board_.ways(0), stride_, nullptr, whole_, from, to, true);
+  /// to += stencil from, all moves within one row: what goes up arrives in the same column of `to`.
+  void apply_in_row(const Stencil& stencil, Planes from, Planes to) const {
+    apply_stencil(stencil, layout_.shifts(0), stride_, nullptr, whole_, from.data(), to.data(),
+                  true);
   }
-  void tally(const Table& table, const double* mass) {
-    std::fill_n(tally_, (kMoved + std::ssize(plan_.moves)) * stride_,
-                0.0);  // not every chain ends all ways
-    push_all(table, board_.still(0), stride_, nullptr, whole_, mass, tally_, false);
+  void tally(const Stencil& stencil, Planes mass) {
+    tally_.clear();  // not every chain ends in all ways
+    apply_stencil(stencil, layout_.identity(0), stride_, nullptr, whole_, mass.data(),
+                  tally_.data(), false);
   }
-  void add(const double* from, double* to) const {
-    for (const Range& r : whole_) accumulate(from, to, plan_.inputs, stride_, r.first, r.last);
+  void add(Planes from, Planes to) const {
+    for (const Range& r : whole_)
+      accumulate(from.data(), to.data(), plan_.inputs, stride_, r.first, r.last);
   }
   /// The tally's totals, per start.
   [[nodiscard]] std::vector<double> totals() const {
     std::vector<double> sums;
-    for (std::size_t j = 0; j < walks_.size(); ++j) {
+    for (std::size_t j = 0; j < starts_.size(); ++j) {
       CompensatedSum sum;
       for (std::ptrdiff_t c = 0; c < field_.columns; ++c)
-        sum += tally_[kTotal * stride_ + first_of(j) + c];
+        sum += tally_.data()[kTallyTotal * stride_ + first_of(j) + c];
       sums.push_back(sum.value());
     }
     return sums;
   }
-  [[nodiscard]] std::vector<double> totals(const Table& table, const double* mass) {
-    tally(table, mass);
+  [[nodiscard]] std::vector<double> totals(const Stencil& stencil, Planes mass) {
+    tally(stencil, mass);
     return totals();
   }
-  void erase(std::size_t j, double* mass) const {
+  void erase(std::size_t j, Planes mass) const {
     for (std::ptrdiff_t input = 0; input < plan_.inputs; ++input)
-      std::fill_n(mass + input * stride_ + first_of(j), field_.columns, 0.0);
+      std::fill_n(mass.data() + input * stride_ + first_of(j), field_.columns, 0.0);
   }
 
   /// Starts in this row begin; those of which (almost) nothing is left are over. False when nothing
@@ -124,22 +130,22 @@ class Rows {
       std::transform(left.begin(), left.end(), above.begin(), left.begin(), std::plus<>());
     }
     bool any = false;
-    for (std::size_t j = 0; j < walks_.size(); ++j) {
-      Walks& w = walks_[j];
+    for (std::size_t j = 0; j < starts_.size(); ++j) {
+      StartTally& w = starts_[j];
       if (w.start.row == row) {
-        w.draw_first(plan_.at(row).chain, field_, false,
+        w.draw_first(plan_.field_chain.at(0, row), field_, false,
                      [&](std::int64_t column, std::int64_t to_row, int input, double p) {
-                       double* const to = to_row == row
-                                              ? within_
-                                              : entering_[static_cast<std::size_t>(to_row - row)];
-                       to[input * stride_ + first_of(j) + column] += p;
+                       const Planes to = to_row == row
+                                             ? within_
+                                             : entering_[static_cast<std::size_t>(to_row - row)];
+                       to.data()[input * stride_ + first_of(j) + column] += p;
                      });
         entered_[j] = 1.0;
       } else if (w.start.row < row && !w.over && left[j] <= std::max(tolerance_, kNothing)) {
         w.remainder += left[j];
         w.over = true;
         erase(j, within_);
-        for (double* mass : entering_) erase(j, mass);
+        for (Planes mass : entering_) erase(j, mass);
       }
       any = any || !w.over;
       passed_[j] += entered_[j];
@@ -148,66 +154,68 @@ class Rows {
   }
 
   /// visits = within + Q within + Q Q within + ...
-  void sum(const Rules& rules, std::int64_t row) {
+  void sum(const PreparedChain& chain, std::int64_t row) {
     std::swap(now_, within_);
-    std::vector<char> done(walks_.size());
+    std::vector<char> done(starts_.size());
     for (int sums = 0;; ++sums) {
       const std::vector<double> walking = totals(plan_.staying, now_);
       bool any = false;
-      for (std::size_t j = 0; j < walks_.size(); ++j) {
+      for (std::size_t j = 0; j < starts_.size(); ++j) {
         if (done[j]) continue;
         done[j] = walking[j] <= std::max(tolerance_ * entered_[j], kNothing);
         if (done[j]) {
           most_sums_taken_[j] = std::max(most_sums_taken_[j], sums);
-          walks_[j].remainder += walking[j];
+          starts_[j].remainder += walking[j];
           erase(j, now_);
           continue;
         }
         if (sums == most_sums_)
-          throw std::runtime_error("march: after " + std::to_string(sums) + " moves within row " +
-                                   std::to_string(row + 1) + " a share of " +
+          throw std::runtime_error("predict by rows: after " + std::to_string(sums) +
+                                   " moves within row " + std::to_string(row + 1) + " a share of " +
                                    std::to_string(walking[j]) +
                                    " still walks there: it can circle (almost) for ever");
-        ++walks_[j].steps;
+        ++starts_[j].steps;
         any = true;
       }
       if (!any) return;
       add(now_, visits_);
-      clear(next_);
-      push_row(rules.sideways, now_, next_);
+      next_.clear();
+      apply_in_row(chain.sideways, now_, next_);
       std::swap(now_, next_);
     }
   }
 
-  /// The same by elimination, as (I - Q)^-1 within. What is still missing then, within + Q visits -
-  /// visits, bounds the error: were it to walk on, it would end somewhere.
-  void eliminate(const Rules& rules, const std::vector<const RowSolver::Column*>& columns) {
+  /// The same by elimination: visits = (I - Q)^-1 within. The residual within + Q visits - visits
+  /// is mass of which the visits are not counted; as it would end once, its sum of magnitudes
+  /// bounds the error. While it shrinks, it is solved for in turn (iterative refinement).
+  void eliminate(const PreparedChain& chain,
+                 const std::vector<const RowElimination::Column*>& columns) {
     constexpr int kMostRounds = 4;
-    workspace_.resize(rules.solver->workspace(field_.columns));
-    std::vector<char> wanted(walks_.size(), 1);
+    workspace_.resize(chain.elimination->workspace(field_.columns));
+    std::vector<char> wanted(starts_.size(), 1);
     std::vector<double> missing;
-    const double* from = within_;
+    const double* from = within_.data();
     for (int round = 0; round < kMostRounds; ++round) {
-      for (std::size_t j = 0; j < walks_.size(); ++j)
-        if (wanted[j] && !walks_[j].over)
-          rules.solver->solve(columns, from + first_of(j), visits_ + first_of(j), stride_,
-                              workspace_.data());
-      std::copy_n(within_, all_, next_);
-      push_row(rules.sideways, visits_, next_);
-      double* const total = tally_ + kTotal * stride_;
+      for (std::size_t j = 0; j < starts_.size(); ++j)
+        if (wanted[j] && !starts_[j].over)
+          chain.elimination->solve(columns, from + first_of(j), visits_.data() + first_of(j),
+                                   stride_, workspace_.data());
+      std::copy_n(within_.data(), within_.size(), next_.data());
+      apply_in_row(chain.sideways, visits_, next_);
+      double* const total = tally_.data() + kTallyTotal * stride_;
       std::fill_n(total, stride_, 0.0);
       for (const int input : plan_.sideways) {
-        double* const after = next_ + input * stride_;
-        const double* const before = visits_ + input * stride_;
+        double* const after = next_.data() + input * stride_;
+        const double* const before = visits_.data() + input * stride_;
         for (std::ptrdiff_t c = whole_.front().first; c < whole_.front().last; ++c) {
           after[c] -= before[c];
           total[c] += std::abs(after[c]);
         }
       }
-      from = next_;
+      from = next_.data();
       const std::vector<double> found = totals();
       bool any = false;
-      for (std::size_t j = 0; j < walks_.size(); ++j) {
+      for (std::size_t j = 0; j < starts_.size(); ++j) {
         const bool better = round == 0 || found[j] < 0.5 * missing[j];
         wanted[j] =
             wanted[j] && better && found[j] > std::max(tolerance_, kRoundingOnly) * entered_[j];
@@ -216,70 +224,74 @@ class Rows {
       missing = found;
       if (!any) break;
     }
-    for (std::size_t j = 0; j < walks_.size(); ++j) {
+    for (std::size_t j = 0; j < starts_.size(); ++j) {
       if (!(missing[j] <= kFewDigits * entered_[j])) refuse();
-      walks_[j].remainder += missing[j];
+      starts_[j].remainder += missing[j];
     }
   }
 
-  void count(const Rules& rules, std::int64_t row) {
-    tally(rules.ends, visits_);
-    for (std::size_t j = 0; j < walks_.size(); ++j)
+  void count(const PreparedChain& chain, std::int64_t row) {
+    tally(chain.ends, visits_);
+    for (std::size_t j = 0; j < starts_.size(); ++j)
       for (std::ptrdiff_t c = 0; c < field_.columns; ++c)
-        walks_[j].count(field_, plan_.moves, c, row, false, tally_ + first_of(j) + c, stride_);
+        starts_[j].count(field_, plan_.moves, c, row, false, tally_.data() + first_of(j) + c,
+                         stride_);
   }
 
   /// Columns to eliminate, per chain; none where sums are chosen.
-  void choose(Sweeper::RowMethod method) {
-    columns_.resize(plan_.rules.size());
-    if (method == Sweeper::RowMethod::sums) return;
-    for (std::size_t k = 0; k < plan_.rules.size(); ++k) {
-      const Rules& rules = plan_.rules[k];
-      if (!rules.solver) continue;
+  void choose(PredictOptions::RowMethod method) {
+    columns_.resize(plan_.chains.size());
+    if (method == PredictOptions::RowMethod::sums) return;
+    for (std::size_t k = 0; k < plan_.chains.size(); ++k) {
+      const PreparedChain& chain = plan_.chains[k];
+      if (!chain.elimination) continue;
       const double width = field_.columns,
                    rows = field_.rows;  // whatever the starts: same bits in any company
       const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) /
-                          std::log(std::clamp(rules.stays, 1e-6, 1.0 - 1e-9));
-      const double by_sums = rows * sums * static_cast<double>(rules.sideways.terms.size()) *
+                          std::log(std::clamp(chain.stays, 1e-6, 1.0 - 1e-9));
+      const double by_sums = rows * sums * static_cast<double>(chain.sideways.terms.size()) *
                              std::ceil(width / kLanes);
-      const double by_elimination = std::min(width, 0.5 * sums) * rules.solver->column_cost() +
-                                    rows * width * rules.solver->solve_cost();
-      if (method == Sweeper::RowMethod::elimination || by_elimination < by_sums)
-        columns_[k] = rules.solver->columns(field_.columns);
+      const double by_elimination = std::min(width, 0.5 * sums) * chain.elimination->column_cost() +
+                                    rows * width * chain.elimination->solve_cost();
+      if (method == PredictOptions::RowMethod::elimination || by_elimination < by_sums)
+        columns_[k] = chain.elimination->columns(field_.columns);
     }
   }
 
-  const SweepPlan& plan_;
+  const PredictionPlan& plan_;
   Field field_;
-  double tolerance_;  // share of a row, and of all rows above together
+  double tolerance_;  // left walking at most: in a row, of what entered it; of all walks, in all
+                      // rows not yet entered
   int most_sums_;
-  Board board_;
-  std::ptrdiff_t stride_, all_;
-  Numbers numbers_;
-  // All stripes of a row. Q: one move within the row.
-  double *within_ = nullptr, *visits_ = nullptr, *now_ = nullptr, *next_ = nullptr;
-  std::vector<double*> entering_;  // this row from below, the row above, ...
-  double* tally_ = nullptr;
+  Layout layout_;  // of one row
+  std::ptrdiff_t stride_, tallies_;
+  PlaneBuffer buffer_;
+  // Planes of a row, by input. With Q, one move within the row: within, what enters the row's
+  // states by a first move within it; visits = within + Q within + Q Q within + ...; now, next: two
+  // following terms of this sum.
+  Planes within_, visits_, now_, next_;
+  std::vector<Planes> entering_;  // from below: this row, the row above, ...
+  Planes tally_;                  // by Tally
   std::vector<Range> whole_;
   std::int64_t first_ = 0;  // row
-  std::vector<Walks> walks_;
+  std::vector<StartTally> starts_;
   std::vector<double> entered_, passed_;  // per start: this row, rows until now
   std::vector<int> most_sums_taken_;      // per start
-  std::vector<std::vector<const RowSolver::Column*>> columns_;  // per chain
+  std::vector<std::vector<const RowElimination::Column*>> columns_;  // per chain
   std::vector<double> workspace_;
 };
 
 }  // namespace
 
-std::vector<FinalDistribution> sweep_rows(const SweepPlan& plan, const Field& field,
-                                          const std::vector<Start>& starts, double tolerance,
-                                          Sweeper::RowMethod method, int most_sums) {
-  Rows rows(plan, field, starts, tolerance, method, most_sums);
-  const std::vector<Walks> walks = rows.run();
+std::vector<FinalDistribution> predict_by_rows(const PredictionPlan& plan, const Field& field,
+                                               const std::vector<Start>& starts,
+                                               const PredictOptions& options) {
+  Rows rows(plan, field, starts, options);
+  const std::vector<StartTally> tallies = rows.run();
   std::vector<FinalDistribution> results;
   // A move is rounded twice: into a row's equations, and in what they still miss.
-  for (std::size_t j = 0; j < walks.size(); ++j) {
-    results.push_back(walks[j].result(
+  for (std::size_t j = 0; j < tallies.size(); ++j) {
+    results.push_back(tallies[j].result(
         2.0 * (plan.most_terms + 4),
         (rows.most_sums_taken(j) + 1) * rows.passed(j) + plan.inputs + plan.outputs + 8));
     if (!(results.back().rounding >= 0.0 && results.back().rounding <= kFewDigits)) refuse();

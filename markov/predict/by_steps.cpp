@@ -16,7 +16,7 @@ struct Window {
 /// Mass per cell and input of several starts, moved one step at a time.
 class Steps {
  public:
-  Steps(const SweepPlan& plan, const Field& field, const std::vector<Start>& starts,
+  Steps(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
         std::int64_t most_moves)
       : plan_(plan), field_(field) {
     const auto reached = [&](const Window& from, std::int64_t moves) {
@@ -29,65 +29,70 @@ class Steps {
     window_ = {starts.front().column, starts.front().column, starts.front().row,
                starts.front().row};
     for (const Start& s : starts) {
-      walks_.emplace_back(field, s);
+      starts_.emplace_back(field, s);
       window_.include({s.column, s.column, s.row, s.row});
       parities.push_back((std::int64_t{s.column} + s.row) % 2);
     }
     box_ = reached(window_, most_moves);
-    board_.emplace(box_.right - box_.left + 1, box_.top - box_.bottom + 1, plan.moves,
-                   plan.is_chequered ? 2 : 1, parities);
-    stride_ = board_->stride();
-    const std::ptrdiff_t all = plan.inputs * stride_, tallies = kMoved + std::ssize(plan.moves),
-                         chains = plan.rules.size() > 1 ? std::ssize(plan.rules) : 0;
-    numbers_.emplace((2 + board_->colours()) * all +
-                     (tallies + chains * board_->colours()) * stride_);
-    now_ = numbers_->data(), next_ = now_ + all, visits_ = next_ + all;
-    tally_ = visits_ + board_->colours() * all, rows_ = tally_ + tallies * stride_;
-    if (chains > 0) mark_rows();
+    layout_.emplace(box_.right - box_.left + 1, box_.top - box_.bottom + 1, plan.moves,
+                    plan.is_chequered ? 2 : 1, parities);
+    stride_ = layout_->stride();
+    const std::ptrdiff_t colours = layout_->colours(),
+                         tallies = kTallyMoved + std::ssize(plan.moves),
+                         types = plan.chains.size() > 1 ? std::ssize(plan.chains) : 0;
+    buffer_.emplace((2 + colours) * plan.inputs + tallies + types * colours, stride_);
+    now_ = buffer_->take(plan.inputs), next_ = buffer_->take(plan.inputs);
+    visits_ = buffer_->take(colours * plan.inputs);
+    tally_ = buffer_->take(tallies);
+    if (types > 0) mark_types(buffer_->take(types * colours));
     colour_ = place(0, starts.front().column, starts.front().row).colour;
   }
 
-  std::vector<Walks> run(int max_cells, double tolerance, int max_steps) {
-    if (board_->colours() == 2) colour_ = 1 - colour_;
+  std::vector<StartTally> run(const PredictOptions& options) {
+    const int max_cells = options.max_cells, max_steps = options.max_steps;
+    const double tolerance = options.tolerance_of(PredictOptions::Solver::steps);
+    if (layout_->colours() == 2) colour_ = 1 - colour_;
     std::vector<std::ptrdiff_t> first_draws;  // where they put mass
-    for (std::size_t j = 0; j < walks_.size(); ++j) {
-      Walks& w = walks_[j];
+    for (std::size_t j = 0; j < starts_.size(); ++j) {
+      StartTally& w = starts_[j];
       if (max_cells == 0 && (max_steps == 0 || tolerance >= 1.0) &&
-          plan_.at(w.start.row).chain.is_sampled(w.start.input)) {
+          plan_.field_chain.at(w.start.column, w.start.row).is_sampled(w.start.input)) {
         w.remainder += 1.0;
         w.over = true;
         continue;
       }
-      w.draw_first(plan_.at(w.start.row).chain, field_, max_cells == 1,
+      w.draw_first(plan_.field_chain.at(w.start.column, w.start.row), field_, max_cells == 1,
                    [&](std::int64_t column, std::int64_t row, int input, double p) {
                      first_draws.push_back(input * stride_ + place(j, column, row).at);
-                     now_[first_draws.back()] += p;
+                     now_.data()[first_draws.back()] += p;
                    });
       w.steps = w.draws.value() > 0.0 ? 1 : 0;
     }
     grow();
     for (int steps = 1; any_left(max_cells, tolerance, steps == max_steps); ++steps) {
-      for (Walks& w : walks_) w.steps += w.over ? 0 : 1;
+      for (StartTally& w : starts_) w.steps += w.over ? 0 : 1;
       if (steps + 1 == max_cells) {
-        count(now_, true);
+        count(now_.data(), true);
         break;
       }
       for (const Range& r : window())
-        accumulate(now_, visits(), plan_.inputs, stride_, r.first, r.last);
+        accumulate(now_.data(), visits(), plan_.inputs, stride_, r.first, r.last);
       step();
-      // Groups overwrite what groups have written, but the first draw may lead where no group does.
-      for (const std::ptrdiff_t at : std::exchange(first_draws, {})) next_[at] = 0.0;
+      // A step overwrites every plane that some move leads to, but the first draws may have put
+      // mass into others (an exit of the start's input alone): these are emptied by hand.
+      for (const std::ptrdiff_t at : std::exchange(first_draws, {})) next_.data()[at] = 0.0;
     }
-    for (colour_ = 0; colour_ < board_->colours(); ++colour_) count(visits(), false);
-    return std::move(walks_);
+    for (colour_ = 0; colour_ < layout_->colours(); ++colour_) count(visits(), false);
+    return std::move(starts_);
   }
 
  private:
-  [[nodiscard]] Board::Place place(std::size_t start, std::int64_t column, std::int64_t row) const {
-    return board_->place(start, column - box_.left, row - box_.bottom);
+  [[nodiscard]] Layout::Place place(std::size_t start, std::int64_t column,
+                                    std::int64_t row) const {
+    return layout_->place(start, column - box_.left, row - box_.bottom);
   }
   /// Of the present colour.
-  [[nodiscard]] double* visits() const { return visits_ + colour_ * plan_.inputs * stride_; }
+  [[nodiscard]] double* visits() { return visits_.data() + colour_ * plan_.inputs * stride_; }
   void grow() {
     Window w = window_;
     for (const Move& m : plan_.moves)
@@ -97,45 +102,48 @@ class Steps {
                std::max(w.bottom, box_.bottom), std::min(w.top, box_.top)};
   }
   void cover(std::int64_t bottom, std::int64_t top, std::vector<Range>& ranges) const {
-    board_->cover(window_.left - box_.left, window_.right - box_.left, bottom - box_.bottom,
-                  top - box_.bottom, ranges);
+    layout_->cover(window_.left - box_.left, window_.right - box_.left, bottom - box_.bottom,
+                   top - box_.bottom, ranges);
   }
   [[nodiscard]] std::vector<Range> window() const {
     std::vector<Range> ranges;
     cover(window_.bottom, window_.top, ranges);
     return ranges;
   }
-  /// Each chain's groups (a table of its rules) in its own rows, to so many stripes.
-  void push_by_rows(Table Rules::*table, const Way* ways, const double* from, double* to,
-                    std::ptrdiff_t stripes) {
-    const Table& first = plan_.rules.front().*table;
-    const bool single = plan_.rules.size() == 1;
+  /// One stencil of each chain, applied in the cells of its type; `to` has `planes` planes.
+  void apply_by_type(Stencil PreparedChain::*stencil, const Shift* shifts, const double* from,
+                     double* to, std::ptrdiff_t planes) {
+    const Stencil& first = plan_.chains.front().*stencil;
+    const bool single = plan_.chains.size() == 1;
     const bool add = !single || first.passes.size() > 1;  // the first pass need not overwrite all
-    if (add) std::fill_n(to, stripes * stride_, 0.0);
+    if (add) std::fill_n(to, planes * stride_, 0.0);
     if (single) {
-      push_all(first, ways, stride_, nullptr, window(), from, to, add);
+      apply_stencil(first, shifts, stride_, nullptr, window(), from, to, add);
       return;
     }
-    for (std::size_t k = 0; k < plan_.rules.size(); ++k) {
+    for (std::size_t type = 0; type < plan_.chains.size(); ++type) {
       std::vector<Range> ranges;
       for (std::int64_t row = window_.bottom; row <= window_.top;) {
         const std::int64_t begin = row;
-        while (row <= window_.top && plan_.number_at(row) == static_cast<int>(k)) ++row;
+        while (row <= window_.top && is_in_row(type, row)) ++row;
         if (row > begin)
           cover(begin, row - 1, ranges);
         else
           ++row;
       }
-      const double* const mine =
-          rows_ + (static_cast<std::ptrdiff_t>(k) * board_->colours() + colour_) * stride_;
-      push_all(plan_.rules[k].*table, ways, stride_, mine, ranges, from, to, true);
+      const double* const source_mask =
+          type_masks_.data() +
+          (static_cast<std::ptrdiff_t>(type) * layout_->colours() + colour_) * stride_;
+      apply_stencil(plan_.chains[type].*stencil, shifts, stride_, source_mask, ranges, from, to,
+                    true);
     }
   }
 
   void step() {
-    push_by_rows(&Rules::moves, board_->ways(colour_), now_, next_, plan_.inputs);
+    apply_by_type(&PreparedChain::moves, layout_->shifts(colour_), now_.data(), next_.data(),
+                  plan_.inputs);
     std::swap(now_, next_);
-    if (board_->colours() == 2) colour_ = 1 - colour_;
+    if (layout_->colours() == 2) colour_ = 1 - colour_;
     grow();
   }
 
@@ -146,22 +154,23 @@ class Steps {
       const std::int64_t other = place(j, window_.left, row).colour == colour_ ? 0 : 1;
       std::ptrdiff_t at = place(j, window_.left + other, row).at;
       for (std::int64_t column = window_.left + other; column <= window_.right;
-           column += board_->colours(), ++at)
+           column += layout_->colours(), ++at)
         act(column, row, at);
     }
   }
 
-  void tally(Table Rules::*table, const double* visitors) {
-    push_by_rows(table, board_->still(colour_), visitors, tally_, kMoved + std::ssize(plan_.moves));
+  void tally(Stencil PreparedChain::*stencil, const double* visitors) {
+    apply_by_type(stencil, layout_->identity(colour_), visitors, tally_.data(),
+                  kTallyMoved + std::ssize(plan_.moves));
   }
 
   /// Counts what visitors draw that are in cells of the present colour.
   void count(const double* visitors, bool is_last) {
-    tally(&Rules::ends, visitors);
-    for (std::size_t j = 0; j < walks_.size(); ++j) {
-      if (is_last && walks_[j].over) continue;
+    tally(&PreparedChain::ends, visitors);
+    for (std::size_t j = 0; j < starts_.size(); ++j) {
+      if (is_last && starts_[j].over) continue;
       each_cell(j, [&](std::int64_t column, std::int64_t row, std::ptrdiff_t at) {
-        walks_[j].count(field_, plan_.moves, column, row, is_last, tally_ + at, stride_);
+        starts_[j].count(field_, plan_.moves, column, row, is_last, tally_.data() + at, stride_);
       });
     }
   }
@@ -169,16 +178,16 @@ class Steps {
   /// Whether anybody walks on; starts from which nobody does are closed.
   bool any_left(int max_cells, double tolerance, bool stop) {
     bool any = false;
-    if (max_cells == 0) tally(&Rules::walking, now_);
-    for (std::size_t j = 0; j < walks_.size(); ++j) {
-      Walks& w = walks_[j];
+    if (max_cells == 0) tally(&PreparedChain::walking, now_.data());
+    for (std::size_t j = 0; j < starts_.size(); ++j) {
+      StartTally& w = starts_[j];
       if (w.over) continue;
       if (max_cells > 0) {
         w.over = !walks_on(j);
       } else {
         CompensatedSum left;
         each_cell(j, [&](std::int64_t, std::int64_t, std::ptrdiff_t at) {
-          left += tally_[kTotal * stride_ + at];
+          left += tally_.data()[kTallyTotal * stride_ + at];
         });
         w.over = stop || left.value() <= std::max(tolerance, kNothing);
       }
@@ -190,59 +199,72 @@ class Steps {
 
   [[nodiscard]] bool walks_on(std::size_t j) const {
     constexpr double kNobody = 1e-30;  // of all walks, in a state of a cell: far below rounding
+    const double* const now = now_.data();
     bool any = false;
-    each_cell(j, [&](std::int64_t, std::int64_t row, std::ptrdiff_t at) {
-      const auto& inputs = plan_.at(row).walking_inputs;
+    each_cell(j, [&](std::int64_t column, std::int64_t row, std::ptrdiff_t at) {
+      const auto& inputs = plan_.at(column, row).walking_inputs;
       any = any || std::any_of(inputs.begin(), inputs.end(),
-                               [&](int input) { return now_[input * stride_ + at] > kNobody; });
+                               [&](int input) { return now[input * stride_ + at] > kNobody; });
     });
     return any;
   }
 
   /// What came into states never sampled has ended; what walks remains.
   void close(std::size_t j) {
-    each_cell(j, [&](std::int64_t, std::int64_t row, std::ptrdiff_t at) {
-      for (const int input : plan_.at(row).unsampled)
-        visits()[input * stride_ + at] += now_[input * stride_ + at];
-      for (const int input : plan_.at(row).walking_inputs)
-        walks_[j].remainder += now_[input * stride_ + at];
-      for (std::ptrdiff_t input = 0; input < plan_.inputs; ++input)
-        now_[input * stride_ + at] = 0.0;
+    double* const now = now_.data();
+    each_cell(j, [&](std::int64_t column, std::int64_t row, std::ptrdiff_t at) {
+      const PreparedChain& chain = plan_.at(column, row);
+      for (const int input : chain.unsampled)
+        visits()[input * stride_ + at] += now[input * stride_ + at];
+      for (const int input : chain.walking_inputs)
+        starts_[j].remainder += now[input * stride_ + at];
+      for (std::ptrdiff_t input = 0; input < plan_.inputs; ++input) now[input * stride_ + at] = 0.0;
     });
   }
 
-  /// Which places lie in a chain's rows.
-  void mark_rows() {
-    for (std::size_t j = 0; j < walks_.size(); ++j)
+  /// Which places and which rows have cells of a type.
+  void mark_types(Planes masks) {
+    type_masks_ = masks;
+    const std::ptrdiff_t types = std::ssize(plan_.chains), colours = layout_->colours();
+    is_in_row_.resize(static_cast<std::size_t>(types * field_.rows));
+    for (std::size_t j = 0; j < starts_.size(); ++j)
       for (std::int64_t row = box_.bottom; row <= box_.top; ++row)
         for (std::int64_t column = box_.left; column <= box_.right; ++column) {
-          const Board::Place p = place(j, column, row);
-          rows_[(plan_.number_at(row) * board_->colours() + p.colour) * stride_ + p.at] = 1.0;
+          const Layout::Place p = place(j, column, row);
+          const std::ptrdiff_t type = plan_.field_chain.type_of(column, row);
+          type_masks_.data()[(type * colours + p.colour) * stride_ + p.at] = 1.0;
+          is_in_row_[static_cast<std::size_t>(type * field_.rows + row)] = 1;
         }
   }
+  [[nodiscard]] bool is_in_row(std::size_t type, std::int64_t row) const {
+    return is_in_row_[type * static_cast<std::size_t>(field_.rows) + static_cast<std::size_t>(row)];
+  }
 
-  const SweepPlan& plan_;
+  const PredictionPlan& plan_;
   Field field_;
-  std::vector<Walks> walks_;
+  std::vector<StartTally> starts_;
   Window box_{}, window_{};  // cells that can be reached at all, until now
-  std::optional<Board> board_;
+  std::optional<Layout> layout_;
   int colour_ = 0;  // of the cells with mass
   std::ptrdiff_t stride_ = 0;
-  std::optional<Numbers> numbers_;
-  double *now_ = nullptr, *next_ = nullptr, *visits_ = nullptr;  // visits of each colour
-  double* tally_ = nullptr;
-  double* rows_ = nullptr;  // (chains x colours) stripes, 1 in the chain's rows
+  std::optional<PlaneBuffer> buffer_;
+  Planes now_, next_;  // by input: mass in cells of the present colour, of the next
+  Planes visits_;      // (colours x inputs)
+  Planes tally_;       // by Tally
+  // Of fields with several types of cell:
+  Planes type_masks_;            // (types x colours): 1 in cells of the type, else 0
+  std::vector<char> is_in_row_;  // (types x rows)
 };
 
 }  // namespace
 
-std::vector<FinalDistribution> sweep_steps(const SweepPlan& plan, const Field& field,
-                                           const std::vector<Start>& starts, int max_cells,
-                                           double tolerance, int max_steps_without_limit) {
-  const int most_moves = max_cells > 0 ? max_cells - 1 : max_steps_without_limit;
+std::vector<FinalDistribution> predict_by_steps(const PredictionPlan& plan, const Field& field,
+                                                const std::vector<Start>& starts,
+                                                const PredictOptions& options) {
+  const int most_moves = options.max_cells > 0 ? options.max_cells - 1 : options.max_steps;
   Steps steps(plan, field, starts, most_moves);
   std::vector<FinalDistribution> results;
-  for (const Walks& w : steps.run(max_cells, tolerance, max_steps_without_limit))
+  for (const StartTally& w : steps.run(options))
     results.push_back(w.result(plan.most_terms + 3, w.steps + plan.inputs + plan.outputs + 8));
   return results;
 }

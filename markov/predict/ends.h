@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "markov/predict/reference.h"
+#include "markov/predict.h"
 #include "markov/sum.h"
 
 namespace gatewalk::markov {
@@ -21,9 +21,11 @@ namespace gatewalk::markov {
   return inside ? row * field.columns + column : -1;
 }
 
-/// What rounding makes at most, in all cells together and to first order. Each move is a sum of
-/// products, all positive, that goes through `per_move` roundings: a share of the mass moved, and
-/// misplaced mass ends but once. The mass that ends, 1, goes through `ending` more.
+/// What rounding makes at most, in all cells together and to first order: u (mean_steps per_move +
+/// ending), u = eps/2. Each move is a sum of positive products that goes through `per_move`
+/// roundings, so of the mass moved at most u per_move comes to the wrong place or is lost, and all
+/// moves of a walk move mean_steps in the mean. Mass in the wrong place ends once, so it is wrong
+/// in one cell and ending. The mass that ends, 1 in all, goes through `ending` more roundings.
 [[nodiscard]] inline double rounding_bound(double mean_steps, double per_move, double ending) {
   return 0.5 * std::numeric_limits<double>::epsilon() * (mean_steps * per_move + ending);
 }

@@ -8,8 +8,8 @@ constexpr std::ptrdiff_t lanes_up(std::ptrdiff_t x) { return lanes_down(x + kLan
 
 }  // namespace
 
-Table::Table(const std::vector<Entry>& entries) {
-  // Sorted by target and move, otherwise in their order: by counting.
+Stencil::Stencil(const std::vector<Entry>& entries) {
+  // Counting sort by target and move; entries of the same target and move keep their order.
   int moves = 0, targets = 0;
   for (const Entry& e : entries) {
     moves = std::max(moves, e.move + 1);
@@ -40,18 +40,20 @@ Table::Table(const std::vector<Entry>& entries) {
   }
 }
 
-void push_all(const Table& table, const Way* ways, std::ptrdiff_t stride, const double* mine,
-              const std::vector<Range>& ranges, const double* from, double* to, bool add) {
-  for (const auto& groups : table.passes) {
+void apply_stencil(const Stencil& stencil, const Shift* shifts, std::ptrdiff_t stride,
+                   const double* source_mask, const std::vector<Range>& ranges, const double* from,
+                   double* to, bool add) {
+  for (const auto& groups : stencil.passes) {
     for (const Range& r : ranges)
-      push({table.terms.data(), groups.data(), static_cast<int>(groups.size()), ways, stride, mine},
-           from, to, r.first, r.last, add);
+      apply_pass({stencil.terms.data(), groups.data(), static_cast<int>(groups.size()), shifts,
+                  stride, source_mask},
+                 from, to, r.first, r.last, add);
     add = true;
   }
 }
 
-Board::Board(std::int64_t columns, std::int64_t rows, const std::vector<Move>& moves, int colours,
-             const std::vector<std::int64_t>& parities)
+Layout::Layout(std::int64_t columns, std::int64_t rows, const std::vector<Move>& moves, int colours,
+               const std::vector<std::int64_t>& parities)
     : colours_(colours) {
   for (const std::int64_t parity : parities) {
     if (colours == 2 && (pitch_ + parity - parities.front()) % 2 != 0) ++pitch_;
@@ -61,18 +63,18 @@ Board::Board(std::int64_t columns, std::int64_t rows, const std::vector<Move>& m
   if (colours == 2 && pitch_ % 2 == 0) ++pitch_;
   std::ptrdiff_t lowest = 0, highest = 0;
   for (const Move& m : moves) {
-    lowest = std::min(lowest, way_of(m));
-    highest = std::max(highest, way_of(m));
+    lowest = std::min(lowest, offset_of(m));
+    highest = std::max(highest, offset_of(m));
   }
   origin_ = (lanes_up(-lowest) + kLanes) * colours;
   stride_ = lanes_up((origin_ + rows * pitch_ + highest) / colours) + 2 * kLanes;
-  // An odd number of registers: equal places of neighbouring stripes do not share cache lines'
+  // An odd number of registers: equal places of neighbouring planes do not share cache lines'
   // sets.
   if (stride_ / kLanes % 2 == 0) stride_ += kLanes;
 
   // A mask per move and one for staying, each for all colours of the cells gone to.
   for (std::size_t m = 0; m <= moves.size(); ++m) {
-    double* const mask = masks_.emplace_back(colours * stride_).data();
+    double* const mask = masks_.emplace_back(colours, stride_).take(colours).data();
     const std::int64_t di_x = m < moves.size() ? moves[m].di_x : 0;
     for (std::size_t j = 0; j < parities.size(); ++j)
       for (std::int64_t row = 0; row < rows; ++row)
@@ -84,18 +86,18 @@ Board::Board(std::int64_t columns, std::int64_t rows, const std::vector<Move>& m
     for (int colour = 0; colour < colours; ++colour) {
       const auto k = static_cast<std::size_t>(colour);
       if (m == moves.size()) {
-        still_[k] = {0, mask + colour * stride_};
+        identity_[k] = {0, mask + colour * stride_};
         continue;
       }
-      const std::ptrdiff_t to = colour + way_of(moves[m]);  // from the colour's place 0
+      const std::ptrdiff_t to = colour + offset_of(moves[m]);  // from the colour's place 0
       const std::ptrdiff_t to_colour = (to % colours + colours) % colours;
-      ways_[k].push_back({(to - to_colour) / colours, mask + to_colour * stride_});
+      shifts_[k].push_back({(to - to_colour) / colours, mask + to_colour * stride_});
     }
   }
 }
 
-void Board::cover(std::int64_t left, std::int64_t right, std::int64_t bottom, std::int64_t top,
-                  std::vector<Range>& ranges) const {
+void Layout::cover(std::int64_t left, std::int64_t right, std::int64_t bottom, std::int64_t top,
+                   std::vector<Range>& ranges) const {
   std::ptrdiff_t done = ranges.empty() ? 0 : ranges.back().last;
   const auto of_rows = [&](std::int64_t low, std::int64_t high) {
     return Range{std::max(done, lanes_down(place(0, left, low).at)),

@@ -1,5 +1,6 @@
 #pragma once
-/// Fields in stripes (stripes.h), and moves from cell to cell in them.
+/// Where the cells of a field lie in planes (stencil.h), and the stencils that move mass between
+/// them.
 
 #include <hwy/aligned_allocator.h>
 
@@ -17,47 +18,72 @@ struct Move {
   int di_x, di_y;
 };
 
-/// Share `p` of the mass in stripe `source` goes to stripe `target` by a move (its number).
+/// Share `p` of the mass in plane `source` goes to plane `target` by a move (its number).
 struct Entry {
   int target, move, source;
   double p;
 };
 
-/// Entries as groups for push(), in passes without two groups of the same target.
-struct Table {
+/// What a cell passes on, and where to: entries as groups for apply_pass(), in passes without two
+/// groups of the same target.
+struct Stencil {
   std::vector<Term> terms;
   std::vector<std::vector<Group>> passes;
   int most_terms = 0;  // of a target
 
-  Table() = default;
-  explicit Table(const std::vector<Entry>& entries);
+  Stencil() = default;
+  explicit Stencil(const std::vector<Entry>& entries);
 };
 
 struct Range {
   std::ptrdiff_t first, last;
 };
 
-/// All passes over all ranges; see push().
-void push_all(const Table& table, const Way* ways, std::ptrdiff_t stride, const double* mine,
-              const std::vector<Range>& ranges, const double* from, double* to, bool add);
+/// All passes of the stencil over all ranges; see apply_pass().
+void apply_stencil(const Stencil& stencil, const Shift* shifts, std::ptrdiff_t stride,
+                   const double* source_mask, const std::vector<Range>& ranges, const double* from,
+                   double* to, bool add);
 
-/// Zeros to begin with, from a register boundary on.
-class Numbers {
+/// Some planes of a PlaneBuffer.
+class Planes {
  public:
-  explicit Numbers(std::ptrdiff_t count)
-      : p_(hwy::AllocateAligned<double>(static_cast<std::size_t>(count))) {
+  Planes() = default;
+  Planes(double* first, std::ptrdiff_t size) : p_(first), size_(size) {}
+  [[nodiscard]] double* data() const { return p_; }
+  [[nodiscard]] std::ptrdiff_t size() const { return size_; }  // numbers
+  void clear() const { std::fill_n(p_, size_, 0.0); }
+
+ private:
+  double* p_ = nullptr;
+  std::ptrdiff_t size_ = 0;
+};
+
+/// The memory of planes, all numbers zero to begin with, from a register boundary on. One piece: to
+/// allocate its parts one by one makes a small prediction three times as long (the allocator gives
+/// the pages back each time, and they are faulted in again).
+class PlaneBuffer {
+ public:
+  PlaneBuffer(std::ptrdiff_t count, std::ptrdiff_t stride)
+      : p_(hwy::AllocateAligned<double>(static_cast<std::size_t>(count * stride))),
+        stride_(stride) {
     if (!p_) throw std::bad_alloc();
-    std::fill_n(p_.get(), count, 0.0);
+    std::fill_n(p_.get(), count * stride, 0.0);
   }
-  [[nodiscard]] double* data() { return p_.get(); }
+  /// The next `count` planes; not more in all than the buffer has.
+  [[nodiscard]] Planes take(std::ptrdiff_t count) {
+    double* const first = p_.get() + taken_ * stride_;
+    taken_ += count;
+    return {first, count * stride_};
+  }
 
  private:
   hwy::AlignedFreeUniquePtr<double[]> p_;
+  std::ptrdiff_t stride_, taken_ = 0;
 };
 
-/// Fields of equal size, side by side, one per start. With two colours, as on a chessboard, a
-/// stripe has only the cells of one: every move leads to the other.
-class Board {
+/// Places of the cells of several fields of equal size, side by side, one field per start. With two
+/// colours, as on a chessboard, a plane holds only the cells of one: every move leads to the other.
+class Layout {
  public:
   struct Place {
     std::ptrdiff_t at;
@@ -65,8 +91,8 @@ class Board {
   };
 
   /// `parities`, one per start: cells with equal column + row + parity have the same colour.
-  Board(std::int64_t columns, std::int64_t rows, const std::vector<Move>& moves, int colours,
-        const std::vector<std::int64_t>& parities);
+  Layout(std::int64_t columns, std::int64_t rows, const std::vector<Move>& moves, int colours,
+         const std::vector<std::int64_t>& parities);
 
   [[nodiscard]] std::ptrdiff_t stride() const { return stride_; }
   [[nodiscard]] int colours() const { return colours_; }
@@ -74,13 +100,13 @@ class Board {
     const std::ptrdiff_t p = origin_ + row * pitch_ + offsets_[start] + column;
     return {p / colours_, static_cast<int>(p % colours_)};
   }
-  /// One per move, from cells of a colour.
-  [[nodiscard]] const Way* ways(int colour) const {
-    return ways_[static_cast<std::size_t>(colour)].data();
+  /// One shift per move, from cells of a colour.
+  [[nodiscard]] const Shift* shifts(int colour) const {
+    return shifts_[static_cast<std::size_t>(colour)].data();
   }
-  /// Stays where it is.
-  [[nodiscard]] const Way* still(int colour) const {
-    return &still_[static_cast<std::size_t>(colour)];
+  /// The shift of a tally: each number stays in its cell (offset 0, mask 1 in every cell).
+  [[nodiscard]] const Shift* identity(int colour) const {
+    return &identity_[static_cast<std::size_t>(colour)];
   }
 
   /// Appends whole registers that hold those columns and rows of all starts, none twice.
@@ -88,15 +114,15 @@ class Board {
              std::vector<Range>& ranges) const;
 
  private:
-  [[nodiscard]] std::ptrdiff_t way_of(const Move& m) const { return m.di_y * pitch_ + m.di_x; }
+  [[nodiscard]] std::ptrdiff_t offset_of(const Move& m) const { return m.di_y * pitch_ + m.di_x; }
 
   int colours_;
   std::vector<std::ptrdiff_t> offsets_;  // of a start's columns
   std::ptrdiff_t pitch_ = 0;             // from row to row; odd with two colours
   std::ptrdiff_t origin_ = 0, stride_ = 0;
-  std::vector<Numbers> masks_;
-  std::array<std::vector<Way>, 2> ways_;
-  std::array<Way, 2> still_{};
+  std::vector<PlaneBuffer> masks_;
+  std::array<std::vector<Shift>, 2> shifts_;
+  std::array<Shift, 2> identity_{};
 };
 
 }  // namespace gatewalk::markov

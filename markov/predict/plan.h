@@ -1,14 +1,14 @@
 #pragma once
-/// What Sweeper's two ways share: prepared chains, and what is known of one start. Step by step:
-/// sweep_steps.cpp; row by row: sweep_rows.cpp.
+/// What the solvers by steps (by_steps.cpp) and by rows (by_rows.cpp) share: prepared chains, and
+/// what has ended of the walks from one start.
 
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "markov/predict.h"
 #include "markov/predict/ends.h"
 #include "markov/predict/layout.h"
-#include "markov/predict/predictor.h"
 #include "markov/predict/row_elimination.h"
 
 namespace gatewalk::markov {
@@ -16,53 +16,52 @@ namespace gatewalk::markov {
 /// A mass that is nothing: products with it must not become denormal numbers, which are slow.
 inline constexpr double kNothing = 1e-280;
 
-/// Stripes of a tally: all mass; what ends in a cell: trapped, in a state never sampled, gone by a
-/// move.
-inline constexpr int kTotal = 0, kTrapped = 1, kUnsampled = 2, kMoved = 3;
+/// Planes of a tally: all mass; then what ends in a cell: trapped, in a state never sampled, gone
+/// by the first move, by the second, ...
+enum Tally : int { kTallyTotal, kTallyTrapped, kTallyUnsampled, kTallyMoved };
 
-/// A chain, ready for push().
-struct Rules {
-  Chain chain;
-  std::vector<int> walking_inputs, unsampled;  // of the inputs that are entered
-  Table moves;                                 // all of them
-  Table first_sideways, sideways;  // within a row: of inputs entered from below, entered sideways
-  std::vector<Table> upwards;      // by 1 row, 2 rows, ...
-  Table ends;                      // to kTrapped, ...
-  Table walking;                   // to kTotal: all that walks on
-  std::unique_ptr<const RowSolver> solver;
+/// A chain as stencils.
+struct PreparedChain {
+  std::vector<int> walking_inputs, unsampled;         // of the inputs that are entered
+  Stencil moves;                                      // all of them
+  Stencil first_sideways;                             // within a row: of inputs entered from below
+  Stencil sideways;                                   // within a row: of inputs entered sideways
+  std::vector<Stencil> upwards;                       // by 1 row, 2 rows, ...
+  Stencil ends;                                       // to the planes of a Tally but the first
+  Stencil walking;                                    // to kTallyTotal: all that walks on
+  std::unique_ptr<const RowElimination> elimination;  // none where it cannot be used
   double stays = 0.0;  // largest chance to stay in the row, of inputs entered sideways
 };
 
-struct SweepPlan {
-  int inputs = 0, outputs = 0;    // outputs: of the chain with most
-  int most_terms = 0;             // of a sum over moves
-  std::vector<Move> moves;        // that some exit makes
-  int widest = 0;                 // largest |di_x|
-  int lowest = 0, highest = 0;    // di_y
-  bool is_chequered = true;       // every move leads to the other colour of a chessboard
-  std::vector<int> from_below;    // inputs entered from a row below
-  std::vector<int> sideways;      // inputs entered within a row
-  Table arriving, staying;        // to kTotal: all mass in from_below, sideways
-  std::vector<Rules> rules;       // a chain each
-  std::vector<int> rules_of_row;  // none: the first chain in all rows
+struct PredictionPlan {
+  FieldChain field_chain;
+  bool has_uniform_rows = true;       // all cells of a row have one type
+  int inputs = 0, outputs = 0;        // outputs: of the chain with most
+  int most_terms = 0;                 // of a sum over moves
+  std::vector<Move> moves;            // that some exit makes
+  int widest = 0;                     // largest |di_x|
+  int lowest = 0, highest = 0;        // di_y
+  bool is_chequered = true;           // every move leads to the other colour of a chessboard
+  std::vector<int> from_below;        // inputs entered from a row below
+  std::vector<int> sideways;          // inputs entered within a row
+  Stencil arriving, staying;          // to kTallyTotal: all mass in from_below, sideways
+  std::vector<PreparedChain> chains;  // by type of cell
 
-  [[nodiscard]] const Rules& at(std::int64_t row) const {
-    return rules[static_cast<std::size_t>(number_at(row))];
-  }
-  [[nodiscard]] int number_at(std::int64_t row) const {
-    return rules_of_row.empty() ? 0 : rules_of_row[static_cast<std::size_t>(row)];
+  explicit PredictionPlan(FieldChain chain) : field_chain(std::move(chain)) {}
+  [[nodiscard]] const PreparedChain& at(std::int64_t column, std::int64_t row) const {
+    return chains[static_cast<std::size_t>(field_chain.type_of(column, row))];
   }
 };
 
 /// What has ended of the walks from a start, and what is left.
-struct Walks {
+struct StartTally {
   Start start;
   Ends ends;
   CompensatedSum draws, remainder;
   int steps = 0;
   bool over = false;
 
-  Walks(const Field& field, const Start& from) : start(from), ends(field) {}
+  StartTally(const Field& field, const Start& from) : start(from), ends(field) {}
 
   /// The first draw; `enter(column, row, input, p)` for what walks on.
   template <class Enter>
@@ -91,17 +90,18 @@ struct Walks {
     }
   }
 
-  /// What visitors of a cell draw: one number per stripe of ends at `tally`. `is_last`: whoever
+  /// What visitors of a cell draw: one number per plane of ends at `tally`. `is_last`: whoever
   /// would go on is cut off.
   void count(const Field& field, const std::vector<Move>& moves, std::int64_t column,
              std::int64_t row, bool is_last, const double* tally, std::ptrdiff_t stride) {
     const std::int64_t cell = row * field.columns + column;
-    const double trapped = tally[kTrapped * stride], unsampled = tally[kUnsampled * stride];
+    const double trapped = tally[kTallyTrapped * stride],
+                 unsampled = tally[kTallyUnsampled * stride];
     if (trapped != 0.0) ends.add(Ending::trapped, cell, trapped);
     if (unsampled != 0.0) ends.add(Ending::unsampled, cell, unsampled);
     double drawn = trapped;
     for (std::size_t m = 0; m < moves.size(); ++m) {
-      const double moved = tally[(kMoved + static_cast<std::ptrdiff_t>(m)) * stride];
+      const double moved = tally[(kTallyMoved + static_cast<std::ptrdiff_t>(m)) * stride];
       if (moved == 0.0) continue;
       drawn += moved;
       if (neighbour_cell(field, column, row, moves[m].di_x, moves[m].di_y) < 0) {
@@ -124,14 +124,14 @@ struct Walks {
   }
 };
 
-/// As Sweeper::propagate and march, arguments checked.
-[[nodiscard]] std::vector<FinalDistribution> sweep_steps(const SweepPlan& plan, const Field& field,
-                                                         const std::vector<Start>& starts,
-                                                         int max_cells, double tolerance,
-                                                         int max_steps_without_limit);
-[[nodiscard]] std::vector<FinalDistribution> sweep_rows(const SweepPlan& plan, const Field& field,
-                                                        const std::vector<Start>& starts,
-                                                        double tolerance, Sweeper::RowMethod method,
-                                                        int most_sums);
+/// Predictor::predict_all by Solver::steps and Solver::rows, arguments checked.
+[[nodiscard]] std::vector<FinalDistribution> predict_by_steps(const PredictionPlan& plan,
+                                                              const Field& field,
+                                                              const std::vector<Start>& starts,
+                                                              const PredictOptions& options);
+[[nodiscard]] std::vector<FinalDistribution> predict_by_rows(const PredictionPlan& plan,
+                                                             const Field& field,
+                                                             const std::vector<Start>& starts,
+                                                             const PredictOptions& options);
 
 }  // namespace gatewalk::markov

@@ -1,4 +1,4 @@
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 
 #include <tbb/parallel_for.h>
 
@@ -12,7 +12,9 @@
 namespace gatewalk::markov {
 namespace {
 
-constexpr int kFarthest = 10'000;  // cells; stripes have room for a move beyond each end
+using Solver = PredictOptions::Solver;
+
+constexpr int kFarthest = 10'000;  // cells; planes have room for a move beyond each end
 
 std::ptrdiff_t number_of(const std::vector<Move>& moves, const Exit& exit) {
   return std::find_if(moves.begin(), moves.end(),
@@ -21,17 +23,18 @@ std::ptrdiff_t number_of(const std::vector<Move>& moves, const Exit& exit) {
 }
 
 /// Prepares a chain; the plan knows what is entered already.
-Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char>& is_entered) {
+PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
+                      const std::vector<char>& is_entered) {
   const auto is_in = [&](const std::vector<int>& inputs) {
     std::vector<char> in(static_cast<std::size_t>(plan.inputs));
     for (const int input : inputs) in[static_cast<std::size_t>(input)] = 1;
     return in;
   };
   const std::vector<char> from_below = is_in(plan.from_below), sideways = is_in(plan.sideways);
-  Rules rules{chain, {}, {}, {}, {}, {}, {}, {}, {}, nullptr, 0.0};
+  PreparedChain prepared;
   std::vector<Entry> moves, first_sideways, further_sideways, ends, walking;
   std::vector<std::vector<Entry>> upwards(static_cast<std::size_t>(plan.highest));
-  std::vector<double> shares(kMoved + plan.moves.size());  // of an input, by ending
+  std::vector<double> shares(kTallyMoved + plan.moves.size());  // of an input, by ending
   for (int input = 0; input < plan.inputs; ++input) {
     const auto i = static_cast<std::size_t>(input);
     std::fill(shares.begin(), shares.end(), 0.0);
@@ -39,21 +42,21 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
     if (!is_entered[i])
       continue;  // no mass but that of a start, of which the first draw is made apart
     if (chain.is_sampled(input)) {
-      rules.walking_inputs.push_back(input);
-      walking.push_back({kTotal, 0, input, 1.0});
+      prepared.walking_inputs.push_back(input);
+      walking.push_back({kTallyTotal, 0, input, 1.0});
     } else {
-      rules.unsampled.push_back(input);
-      shares[kUnsampled] = 1.0;
+      prepared.unsampled.push_back(input);
+      shares[kTallyUnsampled] = 1.0;
     }
     for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
       if (exit.next_input == Exit::kTrapped) {
-        shares[kTrapped] += it.value();
+        shares[kTallyTrapped] += it.value();
         continue;
       }
       const auto move = static_cast<int>(number_of(plan.moves, exit));
       const Entry entry{exit.next_input, move, input, it.value()};
-      shares[static_cast<std::size_t>(kMoved + move)] += it.value();
+      shares[static_cast<std::size_t>(kTallyMoved + move)] += it.value();
       moves.push_back(entry);
       if (exit.di_y > 0) upwards[static_cast<std::size_t>(exit.di_y) - 1].push_back(entry);
       if (exit.di_y == 0 && from_below[i]) first_sideways.push_back(entry);
@@ -62,32 +65,33 @@ Rules rules_of(const SweepPlan& plan, const Chain& chain, const std::vector<char
         stays += it.value();
       }
     }
-    rules.stays = std::max(rules.stays, stays);
+    prepared.stays = std::max(prepared.stays, stays);
     for (std::size_t ending = 0; ending < shares.size(); ++ending)
       if (shares[ending] > 0.0)
         ends.push_back({static_cast<int>(ending), 0, input, shares[ending]});
   }
-  rules.moves = Table(moves);
-  rules.first_sideways = Table(first_sideways);
-  rules.sideways = Table(further_sideways);
-  for (const auto& entries : upwards) rules.upwards.emplace_back(entries);
-  rules.ends = Table(ends);
-  rules.walking = Table(walking);
-  if (RowSolver::suits(chain)) rules.solver = std::make_unique<const RowSolver>(chain);
-  return rules;
+  prepared.moves = Stencil(moves);
+  prepared.first_sideways = Stencil(first_sideways);
+  prepared.sideways = Stencil(further_sideways);
+  for (const auto& entries : upwards) prepared.upwards.emplace_back(entries);
+  prepared.ends = Stencil(ends);
+  prepared.walking = Stencil(walking);
+  if (RowElimination::suits(chain))
+    prepared.elimination = std::make_unique<const RowElimination>(chain);
+  return prepared;
 }
 
-Table totals_of(const std::vector<int>& inputs) {
+Stencil totals_of(const std::vector<int>& inputs) {
   std::vector<Entry> entries;
-  for (const int input : inputs) entries.push_back({kTotal, 0, input, 1.0});
-  return Table(entries);
+  for (const int input : inputs) entries.push_back({kTallyTotal, 0, input, 1.0});
+  return Stencil(entries);
 }
 
-std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains,
-                                         std::vector<int> chain_of_row) {
-  auto plan = std::make_unique<SweepPlan>();
-  plan->inputs = chains.front().inputs();
-  plan->rules_of_row = std::move(chain_of_row);
+std::unique_ptr<const PredictionPlan> plan_of(FieldChain field_chain) {
+  auto plan = std::make_unique<PredictionPlan>(std::move(field_chain));
+  const std::vector<Chain>& chains = plan->field_chain.chains();
+  plan->has_uniform_rows = plan->field_chain.has_uniform_rows();
+  plan->inputs = plan->field_chain.inputs();
   std::vector<char> is_entered(static_cast<std::size_t>(plan->inputs)), from_below(is_entered),
       sideways(is_entered);
   for (const Chain& chain : chains) {
@@ -96,9 +100,9 @@ std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains,
       const Exit& exit = chain.exits()[static_cast<std::size_t>(chain.matrix().innerIndexPtr()[k])];
       if (exit.next_input == Exit::kTrapped) continue;
       if (std::max(exit.di_x, exit.di_y) > kFarthest || std::min(exit.di_x, exit.di_y) < -kFarthest)
-        throw std::invalid_argument("sweep: a move of (" + std::to_string(exit.di_x) + ", " +
+        throw std::invalid_argument("predict: a move of (" + std::to_string(exit.di_x) + ", " +
                                     std::to_string(exit.di_y) + ") cells is more than " +
-                                    std::to_string(kFarthest) + "; propagate (exact.h) takes it");
+                                    std::to_string(kFarthest) + "; solver plain takes it");
       const auto next = static_cast<std::size_t>(exit.next_input);
       is_entered[next] = 1;
       if (exit.di_y > 0) from_below[next] = 1;
@@ -120,18 +124,20 @@ std::unique_ptr<const SweepPlan> plan_of(const std::vector<Chain>& chains,
   plan->arriving = totals_of(plan->from_below);
   plan->staying = totals_of(plan->sideways);
   for (const Chain& chain : chains) {
-    plan->rules.push_back(rules_of(*plan, chain, is_entered));
-    plan->most_terms = std::max(plan->most_terms, plan->rules.back().moves.most_terms);
+    plan->chains.push_back(prepare(*plan, chain, is_entered));
+    plan->most_terms = std::max(plan->most_terms, plan->chains.back().moves.most_terms);
   }
   return plan;
 }
 
-void validate_all(const SweepPlan& plan, const Field& field, const std::vector<Start>& starts,
-                  int max_cells) {
-  for (const Start& s : starts) validate(plan.rules.front().chain, field, s, max_cells);
-  if (!plan.rules_of_row.empty() && std::ssize(plan.rules_of_row) != field.rows)
-    throw std::invalid_argument("rows: chains for " + std::to_string(plan.rules_of_row.size()) +
-                                " rows, the field has " + std::to_string(field.rows));
+/// Whether it is a plain reference, for which nothing is prepared.
+bool is_reference(Solver solver) { return solver == Solver::klu || solver == Solver::plain; }
+
+void require_no_limit(const std::string& solver, const PredictOptions& options) {
+  if (options.max_cells != 0)
+    throw std::invalid_argument("predict: solver " + solver +
+                                " takes no limit of cells, max_cells is " +
+                                std::to_string(options.max_cells));
 }
 
 /// Starts side by side in groups of `size`, groups on all threads.
@@ -150,60 +156,56 @@ std::vector<FinalDistribution> in_groups(const std::vector<Start>& starts, std::
 
 }  // namespace
 
-Sweeper::Sweeper(const Chain& chain) : plan_(plan_of({chain}, {})) {}
+Predictor::Predictor(FieldChain chain) : plan_(plan_of(std::move(chain))) {}
 
-Sweeper::Sweeper(const RowChains& rows) : plan_(plan_of(rows.chains, rows.chain_of_row)) {}
+Predictor::~Predictor() = default;
 
-Sweeper::~Sweeper() = default;
+bool Predictor::can_go_by_rows() const { return plan_->lowest >= 0 && plan_->has_uniform_rows; }
 
-bool Sweeper::can_march() const { return plan_->lowest >= 0; }
-
-std::vector<FinalDistribution> Sweeper::propagate_all(const Field& field,
+std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
                                                       const std::vector<Start>& starts,
-                                                      int max_cells, double tolerance,
-                                                      int max_steps_without_limit) const {
-  validate_all(*plan_, field, starts, max_cells);
-  if (!(tolerance >= 0.0) || max_steps_without_limit < 0)
-    throw std::invalid_argument("propagate: tolerance and step limit must not be negative");
+                                                      const PredictOptions& options) const {
+  if (is_reference(options.solver))
+    return markov::predict(plan_->field_chain, field, starts, options);
+  for (const Start& s : starts) validate(plan_->field_chain, field, s, options.max_cells);
+  const bool by_rows =
+      options.solver == Solver::rows ||
+      (options.solver == Solver::automatic && options.max_cells == 0 && can_go_by_rows());
+  if (!(options.tolerance.value_or(0.0) >= 0.0) || options.max_steps < (by_rows ? 1 : 0))
+    throw std::invalid_argument(
+        "predict: tolerance and max_steps must not be negative, by rows max_steps be positive");
+  if (by_rows) {
+    require_no_limit("rows", options);
+    if (!plan_->has_uniform_rows)
+      throw std::invalid_argument("predict: solver rows needs rows of one type of cell each");
+    if (!can_go_by_rows())
+      throw std::invalid_argument("predict: solver rows: an exit leads to a row below");
+    return in_groups(starts, std::clamp(40 / field.columns, 1, 4), [&](const auto& group) {
+      return predict_by_rows(*plan_, field, group, options);
+    });
+  }
   // Measured: a few small fields together leave fewer lanes empty, more of them leave the cache.
   const std::int64_t cells = std::int64_t{field.columns} * field.rows;
   return in_groups(starts, std::clamp<std::int64_t>(400 / cells, 1, 4), [&](const auto& group) {
-    return sweep_steps(*plan_, field, group, max_cells, tolerance, max_steps_without_limit);
+    return predict_by_steps(*plan_, field, group, options);
   });
 }
 
-std::vector<FinalDistribution> Sweeper::march_all(const Field& field,
-                                                  const std::vector<Start>& starts,
-                                                  double tolerance, RowMethod method,
-                                                  int most_sums) const {
-  validate_all(*plan_, field, starts, 0);
-  if (!can_march()) throw std::invalid_argument("march: an exit leads to a row below");
-  if (!(tolerance >= 0.0) || most_sums < 1)
-    throw std::invalid_argument("march: tolerance must not be negative, most_sums be positive");
-  return in_groups(starts, std::clamp(40 / field.columns, 1, 4), [&](const auto& group) {
-    return sweep_rows(*plan_, field, group, tolerance, method, most_sums);
-  });
+FinalDistribution Predictor::predict(const Field& field, const Start& start,
+                                     const PredictOptions& options) const {
+  return std::move(predict_all(field, {start}, options).front());
 }
 
-std::vector<FinalDistribution> Sweeper::predict_all(const Field& field,
-                                                    const std::vector<Start>& starts,
-                                                    int max_cells) const {
-  return max_cells == 0 && can_march() ? march_all(field, starts)
-                                       : propagate_all(field, starts, max_cells);
-}
-
-FinalDistribution Sweeper::propagate(const Field& field, const Start& start, int max_cells,
-                                     double tolerance, int max_steps_without_limit) const {
-  return propagate_all(field, {start}, max_cells, tolerance, max_steps_without_limit).front();
-}
-
-FinalDistribution Sweeper::march(const Field& field, const Start& start, double tolerance,
-                                 RowMethod method, int most_sums) const {
-  return march_all(field, {start}, tolerance, method, most_sums).front();
-}
-
-FinalDistribution Sweeper::predict(const Field& field, const Start& start, int max_cells) const {
-  return predict_all(field, {start}, max_cells).front();
+std::vector<FinalDistribution> predict(const FieldChain& chain, const Field& field,
+                                       const std::vector<Start>& starts,
+                                       const PredictOptions& options) {
+  if (!is_reference(options.solver)) return Predictor(chain).predict_all(field, starts, options);
+  const bool by_klu = options.solver == Solver::klu;
+  if (by_klu) require_no_limit("klu", options);
+  std::vector<FinalDistribution> all;
+  for (const Start& s : starts)
+    all.push_back(by_klu ? solve_absorption(chain, field, s) : propagate(chain, field, s, options));
+  return all;
 }
 
 }  // namespace gatewalk::markov

@@ -1,5 +1,3 @@
-#include "markov/predict/reference.h"
-
 #include <klu.h>
 
 #include <algorithm>
@@ -26,27 +24,27 @@ struct Neighbour {
   int di_y;
   std::vector<Link> links;
 };
-struct Stencil {
+struct Outputs {
   std::vector<Neighbour> neighbours;
   std::vector<int> trapped;
 };
 
-Stencil stencil_of(const Chain& chain) {
-  Stencil stencil;
+Outputs outputs_of(const Chain& chain) {
+  Outputs outputs;
   for (int output = 0; output < chain.outputs(); ++output) {
     const Exit& exit = chain.exits()[static_cast<std::size_t>(output)];
     if (exit.next_input == Exit::kTrapped) {
-      stencil.trapped.push_back(output);
+      outputs.trapped.push_back(output);
       continue;
     }
-    auto& all = stencil.neighbours;
+    auto& all = outputs.neighbours;
     auto it = std::find_if(all.begin(), all.end(), [&](const Neighbour& n) {
       return n.di_x == exit.di_x && n.di_y == exit.di_y;
     });
     if (it == all.end()) it = all.insert(it, {exit.di_x, exit.di_y, {}});
     it->links.push_back({output, exit.next_input});
   }
-  return stencil;
+  return outputs;
 }
 
 // Walking mass per (cell, input), and which cells hold any.
@@ -89,8 +87,8 @@ struct Transient {
   std::vector<double> value;
 };
 
-Transient reachable(const RowChains& rows, const Field& field, const Start& start) {
-  const std::int64_t n_in = rows.at(0).inputs();
+Transient reachable(const FieldChain& field_chain, const Field& field, const Start& start) {
+  const std::int64_t n_in = field_chain.inputs();
   const std::int64_t cells = std::int64_t{field.columns} * field.rows;
   constexpr std::int64_t kUnknown = -1;
   std::vector<std::int64_t> number(static_cast<std::size_t>(cells * n_in), kUnknown);
@@ -120,13 +118,14 @@ Transient reachable(const RowChains& rows, const Field& field, const Start& star
   for (std::size_t s = 0; s < t.states.size(); ++s) {
     const std::int64_t cell = t.states[s] / n_in;
     add(static_cast<std::int64_t>(s), 1.0);
-    const Chain& chain = rows.at(cell / field.columns);
+    const Chain& chain = field_chain.at(cell % field.columns, cell / field.columns);
     for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
       if (exit.next_input == Exit::kTrapped) continue;
       const std::int64_t next =
           neighbour_cell(field, cell % field.columns, cell / field.columns, exit.di_x, exit.di_y);
-      if (next >= 0 && rows.at(next / field.columns).is_sampled(exit.next_input))
+      if (next >= 0 &&
+          field_chain.at(next % field.columns, next / field.columns).is_sampled(exit.next_input))
         add(visit(next * n_in + exit.next_input), -it.value());
     }
     t.begin.push_back(static_cast<std::int64_t>(t.index.size()));
@@ -216,28 +215,6 @@ double missing(const Transient& t, const std::vector<double>& draws) {
 
 }  // namespace
 
-RowChains::RowChains(std::vector<Chain> distinct, std::vector<int> of_row)
-    : chains(std::move(distinct)), chain_of_row(std::move(of_row)) {
-  if (chains.empty()) throw std::invalid_argument("rows: no chain is given");
-  for (const Chain& chain : chains)
-    if (chain.inputs() != chains.front().inputs())
-      throw std::invalid_argument("rows: chains of " + std::to_string(chains.front().inputs()) +
-                                  " and of " + std::to_string(chain.inputs()) +
-                                  " inputs cannot share a field");
-  for (std::size_t row = 0; row < chain_of_row.size(); ++row)
-    if (chain_of_row[row] < 0 || chain_of_row[row] >= std::ssize(chains))
-      throw std::invalid_argument("rows: row " + std::to_string(row) + " is given chain " +
-                                  std::to_string(chain_of_row[row]) + " of " +
-                                  std::to_string(chains.size()));
-}
-
-void validate(const RowChains& rows, const Field& field, const Start& start, int max_cells) {
-  validate(rows.chains.front(), field, start, max_cells);
-  if (std::ssize(rows.chain_of_row) != field.rows)
-    throw std::invalid_argument("rows: chains for " + std::to_string(rows.chain_of_row.size()) +
-                                " rows, the field has " + std::to_string(field.rows));
-}
-
 CellProbabilities trapped_cells(const FinalDistribution& d) {
   CellProbabilities cells = d.final_cells;
   for (const CellEndings& c : d.mixed_cells)
@@ -253,17 +230,19 @@ CellProbabilities departed_cells(const FinalDistribution& d) {
   return cells;
 }
 
-FinalDistribution propagate(const RowChains& rows, const Field& field, const Start& start,
-                            int max_cells, double tolerance, int max_steps_without_limit) {
-  validate(rows, field, start, max_cells);
-  if (!(tolerance >= 0.0) || max_steps_without_limit < 0) {
+FinalDistribution propagate(const FieldChain& field_chain, const Field& field, const Start& start,
+                            const PredictOptions& options) {
+  const int max_cells = options.max_cells;
+  const double tolerance = options.tolerance_of(PredictOptions::Solver::plain);
+  validate(field_chain, field, start, max_cells);
+  if (!(tolerance >= 0.0) || options.max_steps < 0) {
     throw std::invalid_argument("propagate: tolerance and step limit must not be negative");
   }
-  const int n_in = rows.at(0).inputs();
+  const int n_in = field_chain.inputs();
   int n_out = 0;
-  std::vector<Stencil> stencils;
-  for (const Chain& chain : rows.chains) {
-    stencils.push_back(stencil_of(chain));
+  std::vector<Outputs> outputs_of_type;
+  for (const Chain& chain : field_chain.chains()) {
+    outputs_of_type.push_back(outputs_of(chain));
     n_out = std::max(n_out, chain.outputs());
   }
 
@@ -275,7 +254,7 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
 
   double walking = 1.0;
   const std::int64_t start_cell = std::int64_t{start.row} * field.columns + start.column;
-  if (rows.at(start.row).is_sampled(start.input)) {
+  if (field_chain.at(start.column, start.row).is_sampled(start.input)) {
     now.activate(start_cell);
     now.at(start_cell)[start.input] = walking;
   } else {
@@ -285,16 +264,16 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
 
   int steps = 0;
   while (max_cells > 0 ? steps < max_cells && walking > 0.0
-                       : steps < max_steps_without_limit && walking > tolerance) {
+                       : steps < options.max_steps && walking > tolerance) {
     ++steps;
     draws += walking;
     const bool is_last = steps == max_cells;
     CompensatedSum walks_on;
     for (const std::int64_t cell : now.active()) {
       const std::int64_t column = cell % field.columns, row = cell / field.columns;
-      const Probabilities& p = rows.at(row).matrix();
-      const Stencil& stencil =
-          stencils[static_cast<std::size_t>(rows.chain_of_row[static_cast<std::size_t>(row)])];
+      const Probabilities& p = field_chain.at(column, row).matrix();
+      const Outputs& of_cell =
+          outputs_of_type[static_cast<std::size_t>(field_chain.type_of(column, row))];
       std::fill(out.begin(), out.end(), 0.0);
       const double* const mass = now.at(cell);
       for (int input = 0; input < n_in; ++input) {  // out = mass P, Eq. (16)
@@ -305,10 +284,10 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
       const auto mass_of = [&out](int o) { return out[static_cast<std::size_t>(o)]; };
 
       double trapped = 0.0;
-      for (const int o : stencil.trapped) trapped += mass_of(o);
+      for (const int o : of_cell.trapped) trapped += mass_of(o);
       ends.add(Ending::trapped, cell, trapped);
 
-      for (const Neighbour& n : stencil.neighbours) {
+      for (const Neighbour& n : of_cell.neighbours) {
         double moves = 0.0;
         for (const Link& link : n.links) moves += mass_of(link.output);
         if (moves == 0.0) continue;
@@ -318,7 +297,7 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
         } else if (is_last) {
           ends.add(Ending::cut_off, cell, moves);
         } else {
-          const Chain& there = rows.at(target / field.columns);
+          const Chain& there = field_chain.at(target % field.columns, target / field.columns);
           double* const entering = next.at(target);
           for (const Link& link : n.links) {
             const double m = mass_of(link.output);
@@ -347,33 +326,16 @@ FinalDistribution propagate(const RowChains& rows, const Field& field, const Sta
   return result;
 }
 
-namespace {
-
-RowChains all_rows(const Chain& chain, const Field& field) {
-  return {{chain}, std::vector<int>(static_cast<std::size_t>(std::max(field.rows, 0)), 0)};
-}
-
-}  // namespace
-
-FinalDistribution propagate(const Chain& chain, const Field& field, const Start& start,
-                            int max_cells, double tolerance, int max_steps_without_limit) {
-  return propagate(all_rows(chain, field), field, start, max_cells, tolerance,
-                   max_steps_without_limit);
-}
-
-FinalDistribution solve_absorption(const Chain& chain, const Field& field, const Start& start) {
-  return solve_absorption(all_rows(chain, field), field, start);
-}
-
-FinalDistribution solve_absorption(const RowChains& rows, const Field& field, const Start& start) {
-  validate(rows, field, start, 0);
+FinalDistribution solve_absorption(const FieldChain& field_chain, const Field& field,
+                                   const Start& start) {
+  validate(field_chain, field, start, 0);
   Ends ends(field);
-  const std::int64_t n_in = rows.at(0).inputs();
-  if (!rows.at(start.row).is_sampled(start.input)) {
+  const std::int64_t n_in = field_chain.inputs();
+  if (!field_chain.at(start.column, start.row).is_sampled(start.input)) {
     ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
     return ends.result();
   }
-  Transient t = reachable(rows, field, start);
+  Transient t = reachable(field_chain, field, start);
   const std::vector<double> draws = visits(t);
 
   CompensatedSum mean_steps;
@@ -381,7 +343,7 @@ FinalDistribution solve_absorption(const RowChains& rows, const Field& field, co
   for (std::size_t s = 0; s < draws.size(); ++s) {
     mean_steps += draws[s];
     const std::int64_t cell = t.states[s] / n_in;
-    const Chain& chain = rows.at(cell / field.columns);
+    const Chain& chain = field_chain.at(cell % field.columns, cell / field.columns);
     n_out = std::max(n_out, chain.outputs());
     for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
@@ -394,7 +356,8 @@ FinalDistribution solve_absorption(const RowChains& rows, const Field& field, co
           neighbour_cell(field, cell % field.columns, cell / field.columns, exit.di_x, exit.di_y);
       if (next < 0) {
         ends.depart(cell, cell % field.columns + exit.di_x, cell / field.columns + exit.di_y, mass);
-      } else if (!rows.at(next / field.columns).is_sampled(exit.next_input)) {
+      } else if (!field_chain.at(next % field.columns, next / field.columns)
+                      .is_sampled(exit.next_input)) {
         ends.add(Ending::unsampled, next, mass);
       }
     }

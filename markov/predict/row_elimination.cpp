@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "markov/predict/stencil.h"
 
@@ -11,14 +12,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#ifndef GATEWALK_MARKOV_ROW_SOLVER_ONCE
-#define GATEWALK_MARKOV_ROW_SOLVER_ONCE
+#ifndef GATEWALK_MARKOV_ROW_ELIMINATION_ONCE
+#define GATEWALK_MARKOV_ROW_ELIMINATION_ONCE
 
 namespace gatewalk::markov {
 
 /// One row to solve. Vectors of a column: r's `r.height` numbers, l's `l.height`.
 struct RowSystem {
-  const RowSolver::Column* const* columns;
+  const RowElimination::Column* const* columns;
   int count;
   const Block *rr, *lr, *ll;
   const double *entering_r, *entering_l;  // (count vectors)
@@ -28,7 +29,7 @@ struct RowSystem {
 
 }  // namespace gatewalk::markov
 
-#endif  // GATEWALK_MARKOV_ROW_SOLVER_ONCE
+#endif  // GATEWALK_MARKOV_ROW_ELIMINATION_ONCE
 
 HWY_BEFORE_NAMESPACE();
 namespace gatewalk::markov {
@@ -91,7 +92,8 @@ void multiply_blocks(const Block& a, const Block& b, const Block& from, Block& c
   for (int j = 0; j < b.columns; ++j) multiply(a, b.column(j), from.column(j), c.column(j));
 }
 
-/// a = a^-1 (Gauss and Jordan, no pivoting: a is I less what a walk does). The least pivot.
+/// a = a^-1 by Gauss-Jordan; returns the least pivot. Without pivoting: a = I - Q with Q >= 0 whose
+/// columns sum to 1 at most (an M-matrix), of which all pivots are positive unless it is singular.
 double invert(Block& a) {
   const D d;
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
@@ -118,7 +120,7 @@ double invert(Block& a) {
   return least;
 }
 
-/// r = N (arriving + P Ll l) and l = entering + Lr r + Ll l of the column at the right, solved for
+/// r = N (arriving + G' Ll l) and l = entering + Lr r + Ll l of the column at the right, solved for
 /// all columns: `arriving` from the left first, then l from the right.
 void solve_row(const RowSystem& s) {
   const std::ptrdiff_t r = s.rr->height, l = s.ll->height;
@@ -128,8 +130,9 @@ void solve_row(const RowSystem& s) {
     std::fill_n(u, r, 0.0);
     multiply(s.columns[c]->visits, s.arriving, u, u);  // u = N arriving
     if (c + 1 == s.count) break;
-    // arriving = entering + P entering_l + Rr u
-    multiply(s.columns[c]->back, s.entering_l + c * l, s.entering_r + (c + 1) * r, s.arriving);
+    // arriving = entering + G entering_l + Rr u
+    multiply(s.columns[c]->first_passage, s.entering_l + c * l, s.entering_r + (c + 1) * r,
+             s.arriving);
     multiply(*s.rr, u, s.arriving, s.arriving);
   }
   std::copy_n(s.entering_l + (s.count - 1) * l, l, s.visits_l + (s.count - 1) * l);
@@ -179,7 +182,7 @@ Block::Block(int n_rows, int n_columns)
       height(static_cast<int>((n_rows + kLanes - 1) / kLanes * kLanes)),
       p(static_cast<std::size_t>(height) * static_cast<std::size_t>(n_columns)) {}
 
-bool RowSolver::suits(const Chain& chain) {
+bool RowElimination::suits(const Chain& chain) {
   for (int input = 0; input < chain.inputs(); ++input)
     for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
@@ -189,7 +192,7 @@ bool RowSolver::suits(const Chain& chain) {
   return true;
 }
 
-RowSolver::RowSolver(const Chain& chain) {
+RowElimination::RowElimination(const Chain& chain) {
   const auto each_move = [&](int input, auto&& seen) {
     for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
@@ -225,40 +228,41 @@ RowSolver::RowSolver(const Chain& chain) {
   fill(left_, rl_, ll_);
 }
 
-double RowSolver::solve_cost() const {
+double RowElimination::solve_cost() const {
   return (3.0 * rr_.height * rr_.columns + 2.0 * rl_.height * rl_.columns +
           1.0 * lr_.height * lr_.columns + 1.0 * ll_.height * ll_.columns) /
          kLanes;
 }
 
-double RowSolver::column_cost() const {
+double RowElimination::column_cost() const {
   const double r = rr_.height, l = ll_.height;
   return (r * l * r + r * l * l + r * r * r + 2.0 * r * r * l) / kLanes;
 }
 
-bool RowSolver::append() const {
+bool RowElimination::append() const {
   const int r = rr_.rows, l = ll_.rows;
   Column next{Block(r, r), Block(r, l), rl_};
   if (columns_.empty()) {
     for (int i = 0; i < r; ++i) next.visits.column(i)[i] = 1.0;
   } else {
-    const Block& back = columns_.back().back;
-    next.visits = product(back, lr_);  // N = (I - P Lr)^-1
+    const Block& first_passage = columns_.back().first_passage;
+    next.visits = product(first_passage, lr_);  // N = (I - G' Lr)^-1
     for (double& p : next.visits.p) p = -p;
     for (int i = 0; i < r; ++i) next.visits.column(i)[i] += 1.0;
     if (!(HWY_DYNAMIC_DISPATCH(invert)(next.visits) > 1e-14)) return false;
-    next.turned = product(next.visits, product(back, ll_));                   // M = N P Ll
-    HWY_DYNAMIC_DISPATCH(multiply_blocks)(rr_, next.turned, rl_, next.back);  // P = Rl + Rr M
+    next.turned = product(next.visits, product(first_passage, ll_));  // M = N G' Ll
+    HWY_DYNAMIC_DISPATCH(multiply_blocks)
+    (rr_, next.turned, rl_, next.first_passage);  // G = Rl + Rr M
     double change = 0.0;
-    for (std::size_t i = 0; i < back.p.size(); ++i)
-      change = std::max(change, std::abs(next.back.p[i] - back.p[i]));
+    for (std::size_t i = 0; i < first_passage.p.size(); ++i)
+      change = std::max(change, std::abs(next.first_passage.p[i] - first_passage.p[i]));
     is_settled_ = change <= 1e-17;
   }
   columns_.push_back(std::move(next));
   return true;
 }
 
-std::vector<const RowSolver::Column*> RowSolver::columns(int count) const {
+std::vector<const RowElimination::Column*> RowElimination::columns(int count) const {
   const std::lock_guard lock(growing_);
   const std::size_t numbers = (rr_.p.size() + 2 * rl_.p.size()) + 1;
   std::vector<const Column*> all;
@@ -273,19 +277,22 @@ std::vector<const RowSolver::Column*> RowSolver::columns(int count) const {
   return all;
 }
 
-std::size_t RowSolver::workspace(int count) const {
+std::size_t RowElimination::workspace(int count) const {
   return static_cast<std::size_t>(count) * 2 * (rr_.height + ll_.height) + rr_.height;
 }
 
-void RowSolver::solve(const std::vector<const Column*>& columns, const double* entering,
-                      double* visits, std::ptrdiff_t stride, double* workspace) const {
+void RowElimination::solve(const std::vector<const Column*>& columns, const double* entering,
+                           double* visits, std::ptrdiff_t stride, double* workspace) const {
   const auto count = static_cast<std::ptrdiff_t>(columns.size());
   const std::ptrdiff_t r = rr_.height, l = ll_.height;
-  double *const entering_r = workspace, *const entering_l = entering_r + count * r,
-                *const visits_r = entering_l + count * l, *const visits_l = visits_r + count * r,
-                *const arriving = visits_l + count * l;
-  std::fill(workspace, visits_r, 0.0);
-  // A few columns at a time: they share what is read of the stripes.
+  const auto take = [&workspace](std::ptrdiff_t numbers) {
+    return std::exchange(workspace, workspace + numbers);
+  };
+  double *const entering_r = take(count * r), *const entering_l = take(count * l),
+                *const visits_r = take(count * r), *const visits_l = take(count * l),
+                *const arriving = take(r);
+  std::fill(entering_r, visits_r, 0.0);  // both that enter
+  // A few columns at a time: they share what is read of the planes.
   constexpr std::ptrdiff_t kTogether = 2 * kLanes;
   for (std::ptrdiff_t first = 0; first < count; first += kTogether) {
     const std::ptrdiff_t end = std::min(first + kTogether, count);

@@ -1,6 +1,13 @@
 #pragma once
 /// Visits in a row of equal cells, of walks that move to the neighbour at the right or the left
-/// until they end or leave the row: block elimination from the left, whatever the number of moves.
+/// until they end or leave the row: a quasi-birth-death chain with one level per column. Solved by
+/// block-tridiagonal (Thomas) elimination from the left, whatever the number of moves; in the terms
+/// of matrix-analytic methods, linear level reduction (Latouche and Ramaswami, Introduction to
+/// Matrix Analytic Methods in Stochastic Modeling, SIAM 1999).
+///
+/// r: states entered by a move to the right, l: by a move to the left. One visit of a state in l
+/// makes Rl visits of r in the next column and Ll of l in the column before, one of r makes Rr and
+/// Lr.
 
 #include <cstdint>
 #include <deque>
@@ -21,18 +28,18 @@ struct Block {
   [[nodiscard]] const double* column(int j) const { return p.data() + std::ptrdiff_t{j} * height; }
 };
 
-class RowSolver {
+class RowElimination {
  public:
   /// Whether all moves of the chain within a row go one cell on.
   [[nodiscard]] static bool suits(const Chain& chain);
-  explicit RowSolver(const Chain& chain);
+  explicit RowElimination(const Chain& chain);
 
-  /// What walks do that enter a column from its left (r) or right (l), all columns at its left
-  /// eliminated. With P = `back` of the column before:
+  /// One column, those at its left eliminated. G' is G of the column before, 0 for the first.
   struct Column {
-    Block visits;  // N = (I - P Lr)^-1: visits of r per r entered
-    Block turned;  // M = N P Ll: visits of r per visit of l
-    Block back;    // P = Rl + Rr M: leaves to the right, per visit of l
+    Block visits;         // N = (I - G' Lr)^-1 (r x r): visits of r per r entered from outside
+    Block turned;         // M = N G' Ll (r x l): visits of r per visit of l
+    Block first_passage;  // G = Rl + Rr M (r x l): states in which walks first enter the column at
+                          // the right, per visit of l
   };
 
   /// Operations (products of registers) that solve() takes per column, that a further column()
@@ -47,7 +54,7 @@ class RowSolver {
 
   /// Numbers that solve() needs to work with.
   [[nodiscard]] std::size_t workspace(int count) const;
-  /// visits += (I - Q)^-1 entering, both in stripes (stripes.h) that begin at the first column.
+  /// visits += (I - Q)^-1 entering, both in planes (stencil.h) that begin at the first column.
   void solve(const std::vector<const Column*>& columns, const double* entering, double* visits,
              std::ptrdiff_t stride, double* workspace) const;
 

@@ -17,36 +17,38 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kLanes>;
 
 /// `Width` registers share each p. Loads, one per product, lie on register boundaries where the
-/// stripes do; only what is stored is shifted.
+/// planes do; only what is stored is shifted.
 template <int Width>
-void push_block(const Push& push, const double* HWY_RESTRICT from, double* HWY_RESTRICT to,
-                bool add, std::ptrdiff_t c) {
+void apply_block(const StencilPass& pass, const double* HWY_RESTRICT from, double* HWY_RESTRICT to,
+                 bool add, std::ptrdiff_t c) {
   const D d;
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  for (const Group* g = push.groups; g != push.groups + push.count; ++g) {
+  for (const Group* g = pass.groups; g != pass.groups + pass.count; ++g) {
     hn::Vec<D> s[Width];
     for (int i = 0; i < Width; ++i) s[i] = hn::Zero(d);
-    const Term* const end = push.terms + g->end;
-    for (const Term* k = push.terms + g->begin; k != end; ++k) {
+    const Term* const end = pass.terms + g->end;
+    for (const Term* k = pass.terms + g->begin; k != end; ++k) {
       const auto p = hn::Set(d, k->p);
-      const double* const in = from + k->source * push.stride + c;
+      const double* const in = from + k->source * pass.stride + c;
       for (int i = 0; i < Width; ++i) s[i] = hn::Add(s[i], hn::Mul(p, hn::LoadU(d, in + i * n)));
     }
-    if (push.mine)
-      for (int i = 0; i < Width; ++i) s[i] = hn::Mul(s[i], hn::LoadU(d, push.mine + c + i * n));
+    if (pass.source_mask)
+      for (int i = 0; i < Width; ++i)
+        s[i] = hn::Mul(s[i], hn::LoadU(d, pass.source_mask + c + i * n));
 
-    const Way& way = push.ways[g->way];
-    const std::ptrdiff_t there = c + way.shift, place = g->target * push.stride + there;
+    const Shift& shift = pass.shifts[g->shift];
+    const std::ptrdiff_t there = c + shift.offset, place = g->target * pass.stride + there;
     for (int i = 0; i < Width; ++i) {
-      s[i] = hn::Mul(s[i], hn::LoadU(d, way.mask + there + i * n));
+      s[i] = hn::Mul(s[i], hn::LoadU(d, shift.mask + there + i * n));
       double* const out = to + place + i * n;
       hn::StoreU(add ? hn::Add(hn::LoadU(d, out), s[i]) : s[i], d, out);
     }
   }
 }
 
-void push_all(const Push& push, const double* HWY_RESTRICT from, double* HWY_RESTRICT to,
-              std::ptrdiff_t first, std::ptrdiff_t last, bool add) {
+void apply_in_registers(const StencilPass& pass, const double* HWY_RESTRICT from,
+                        double* HWY_RESTRICT to, std::ptrdiff_t first, std::ptrdiff_t last,
+                        bool add) {
   constexpr std::ptrdiff_t kWidest = 8;
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(D()));
   const std::ptrdiff_t registers = (last - first) / n;
@@ -57,37 +59,37 @@ void push_all(const Push& push, const double* HWY_RESTRICT from, double* HWY_RES
     const std::ptrdiff_t c = first + begin * n;
     switch (width) {
       case 1:
-        push_block<1>(push, from, to, add, c);
+        apply_block<1>(pass, from, to, add, c);
         break;
       case 2:
-        push_block<2>(push, from, to, add, c);
+        apply_block<2>(pass, from, to, add, c);
         break;
       case 3:
-        push_block<3>(push, from, to, add, c);
+        apply_block<3>(pass, from, to, add, c);
         break;
       case 4:
-        push_block<4>(push, from, to, add, c);
+        apply_block<4>(pass, from, to, add, c);
         break;
       case 5:
-        push_block<5>(push, from, to, add, c);
+        apply_block<5>(pass, from, to, add, c);
         break;
       case 6:
-        push_block<6>(push, from, to, add, c);
+        apply_block<6>(pass, from, to, add, c);
         break;
       case 7:
-        push_block<7>(push, from, to, add, c);
+        apply_block<7>(pass, from, to, add, c);
         break;
       default:
-        push_block<8>(push, from, to, add, c);
+        apply_block<8>(pass, from, to, add, c);
         break;
     }
   }
 }
 
-void accumulate_all(const double* HWY_RESTRICT from, double* HWY_RESTRICT to, int count,
-                    std::ptrdiff_t stride, std::ptrdiff_t first, std::ptrdiff_t last) {
+void accumulate_in_registers(const double* HWY_RESTRICT from, double* HWY_RESTRICT to, int count,
+                             std::ptrdiff_t stride, std::ptrdiff_t first, std::ptrdiff_t last) {
   const D d;
-  for (int stripe = 0; stripe < count; ++stripe, from += stride, to += stride)
+  for (int plane = 0; plane < count; ++plane, from += stride, to += stride)
     for (std::ptrdiff_t c = first; c < last; c += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
       hn::StoreU(hn::Add(hn::LoadU(d, to + c), hn::LoadU(d, from + c)), d, to + c);
 }
@@ -98,17 +100,17 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace gatewalk::markov {
-HWY_EXPORT(push_all);
-HWY_EXPORT(accumulate_all);
+HWY_EXPORT(apply_in_registers);
+HWY_EXPORT(accumulate_in_registers);
 
-void push(const Push& p, const double* from, double* to, std::ptrdiff_t first, std::ptrdiff_t last,
-          bool add) {
-  HWY_DYNAMIC_DISPATCH(push_all)(p, from, to, first, last, add);
+void apply_pass(const StencilPass& pass, const double* from, double* to, std::ptrdiff_t first,
+                std::ptrdiff_t last, bool add) {
+  HWY_DYNAMIC_DISPATCH(apply_in_registers)(pass, from, to, first, last, add);
 }
 
 void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,
                 std::ptrdiff_t first, std::ptrdiff_t last) {
-  HWY_DYNAMIC_DISPATCH(accumulate_all)(from, to, count, stride, first, last);
+  HWY_DYNAMIC_DISPATCH(accumulate_in_registers)(from, to, count, stride, first, last);
 }
 
 }  // namespace gatewalk::markov

@@ -1,9 +1,9 @@
 #pragma once
-/// Sums over many cells at once, in vector registers (Google Highway: the instruction set is chosen
-/// when the program runs; the same bits with any).
+/// A stencil applied to many cells at once, in vector registers (Google Highway: the instruction
+/// set is chosen when the program runs; the same bits with any).
 ///
-/// Numbers of all cells lie in stripes, one per input state: a cell has the same place in each, the
-/// next stripe begins `stride` numbers on.
+/// The numbers of all cells lie in planes, one per input state. A cell has the same place in each
+/// plane; the next plane begins `stride` numbers on.
 
 #include <cstddef>
 
@@ -12,43 +12,45 @@ namespace gatewalk::markov {
 /// Ranges begin and end at multiples of this: numbers in the longest register.
 inline constexpr std::ptrdiff_t kLanes = 8;
 
-/// p times the number in stripe `source`.
+/// p times the number in plane `source`.
 struct Term {
   double p;
   int source;
 };
 
-/// The sum of some terms, and the stripe and the way it goes.
+/// The sum of some terms, the plane it goes to, and the shift (its number) by which it goes there.
 struct Group {
   int begin, end;  // terms
-  int target;      // stripe
-  int way;
+  int target;      // plane
+  int shift;
 };
 
-/// From each cell to the one `shift` places on; `mask`, by the place gone to: 1 where a cell can be
-/// entered so, else 0.
-struct Way {
-  std::ptrdiff_t shift;
+/// From each cell to the one `offset` places on. `mask`, by the place gone to: 1 where that place
+/// is a cell of the field, else 0.
+struct Shift {
+  std::ptrdiff_t offset;
   const double* mask;
 };
 
-/// Which groups go which ways. No stripe may be the target of two groups.
-struct Push {
+/// Groups, and the shifts they go by. No plane may be the target of two groups.
+struct StencilPass {
   const Term* terms;
   const Group* groups;
   int count;  // groups
-  const Way* ways;
+  const Shift* shifts;
   std::ptrdiff_t stride;
-  const double* mine = nullptr;  // by the place gone from: 1 for cells that take part, else 0
+  const double* source_mask =
+      nullptr;  // by the place gone from: 1 for cells that take part, else 0
 };
 
 /// For each group and each place c in [first, last), multiples of kLanes:
-/// to[target][c + shift] = mask * sum of p * from[source][c], or, with `add`, that much more. Terms
-/// are summed in their order, rounded after each product and each sum.
-void push(const Push& p, const double* from, double* to, std::ptrdiff_t first, std::ptrdiff_t last,
-          bool add);
+/// to[target][c + offset] = mask[c + offset] * source_mask[c] * sum of p * from[source][c], or,
+/// with `add`, that much more. Terms are summed in their order, rounded after each product and each
+/// sum.
+void apply_pass(const StencilPass& pass, const double* from, double* to, std::ptrdiff_t first,
+                std::ptrdiff_t last, bool add);
 
-/// to += from, in `count` stripes from the first on.
+/// to += from, in `count` planes from the first on.
 void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,
                 std::ptrdiff_t first, std::ptrdiff_t last);
 

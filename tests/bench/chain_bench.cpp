@@ -137,31 +137,32 @@ int run(int argc, char** argv) {
     exits << e.next_input << ',' << e.di_x << ',' << e.di_y << '\n';
   file(folder + "start.txt") << input << '\n';
 
-  const markov::Sweeper sweeper(chain);
+  const markov::Predictor predictor(chain);
   for (const int side : {9, 3}) {
     const Field field{side, side};
     const Start start{side / 2, 0, input};
     const std::string at = "/" + std::to_string(side) + "x" + std::to_string(side);
-    const FinalDistribution limited = markov::propagate(chain, field, start, kGates);
-    const FinalDistribution unlimited = markov::propagate(chain, field, start, 0);
+    const FinalDistribution limited = markov::propagate(chain, field, start, {.max_cells = kGates});
+    const FinalDistribution unlimited = markov::propagate(chain, field, start);
     write_global(folder + "chain_" + std::to_string(side) + ".mtx", chain, field);
     write_answer(folder + "limited_" + std::to_string(side) + ".txt", limited);
     write_answer(folder + "unlimited_" + std::to_string(side) + ".txt", unlimited);
     add_walks("walks/gatewalk walk" + at, chain, field, start, limited);
     if (side == 3) continue;
     add_exact("13 gates/gatewalk predict" + at, limited,
-              [&, field, start] { return sweeper.predict(field, start, kGates); });
-    add_exact("13 gates/gatewalk propagate (plain)" + at, limited,
-              [&, field, start] { return markov::propagate(chain, field, start, kGates); });
+              [&, field, start] { return predictor.predict(field, start, {.max_cells = kGates}); });
+    add_exact("13 gates/gatewalk propagate (plain)" + at, limited, [&, field, start] {
+      return markov::propagate(chain, field, start, {.max_cells = kGates});
+    });
     add_exact("no limit/gatewalk predict" + at, unlimited,
-              [&, field, start] { return sweeper.predict(field, start, 0); });
+              [&, field, start] { return predictor.predict(field, start); });
     add_exact("no limit/gatewalk propagate (plain)" + at, unlimited,
-              [&, field, start] { return markov::propagate(chain, field, start, 0); });
+              [&, field, start] { return markov::propagate(chain, field, start); });
     add_exact("no limit/gatewalk KLU" + at, unlimited,
               [&, field, start] { return markov::solve_absorption(chain, field, start); });
   }
-  benchmark::RegisterBenchmark("prepare/gatewalk Sweeper/9x9", [&](benchmark::State& state) {
-    for (auto _ : state) benchmark::DoNotOptimize(markov::Sweeper(chain).can_march());
+  benchmark::RegisterBenchmark("prepare/gatewalk Predictor/9x9", [&](benchmark::State& state) {
+    for (auto _ : state) benchmark::DoNotOptimize(markov::Predictor(chain).can_go_by_rows());
   })->UseRealTime();
   benchmark::RegisterBenchmark("prepare/gatewalk Walker/9x9", [&](benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(markov::Walker(chain).draw(0, 0));

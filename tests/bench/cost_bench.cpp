@@ -113,10 +113,10 @@ void size_study(const std::vector<std::string>& a) {
     size = a.at(2);
     const int side = std::stoi(size), gates = std::stoi(a.at(3));
     name += gates > 0 ? " limited" : " no limit";
-    const markov::Sweeper sweeper(c.chain);
+    const markov::Predictor predictor(c.chain);
     markov::FinalDistribution d;
     time = best_seconds([&] {
-      d = sweeper.predict({side, side}, {side / 2, 0, c.start.input}, gates);
+      d = predictor.predict({side, side}, {side / 2, 0, c.start.input}, {.max_cells = gates});
     });
     note = std::to_string(d.steps) + " steps, remainder " + std::to_string(d.remainder);
     // The whole must be there, or the time means nothing.
@@ -197,13 +197,13 @@ void budget(const std::string& matrix) {
   line("matrix_seconds", building);
   const auto start = lattice::chain_start(stored.space, bench::kField, bench::kFieldStart).start;
   const Chain chain = lattice::make_chain(stored);
-  const markov::Sweeper sweeper(chain);
+  const markov::Predictor predictor(chain);
   const double prepare = best_seconds(
-      [&] { static_cast<void>(markov::Sweeper(lattice::make_chain(stored)).can_march()); });
+      [&] { static_cast<void>(markov::Predictor(lattice::make_chain(stored)).can_go_by_rows()); });
   line("prepare_seconds", prepare);
   markov::FinalDistribution exact;
   const double predict = best_seconds([&] {
-    exact = sweeper.predict({9, 9}, start, bench::kField.max_gates);
+    exact = predictor.predict({9, 9}, start, {.max_cells = bench::kField.max_gates});
   });
   line("predict_seconds", predict);
   const double chain_error = lattice::total_variation(exact.final_cells, p);

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "lattice/gate_chain.h"
-#include "markov/predict/reference.h"
+#include "markov/predict.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 
@@ -278,7 +278,7 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
     if (revisited) continue;  // one state, two ways on: no chain can follow that
     ++followed;
     const auto walked = markov::propagate(make_chain(path), {field.columns, field.rows},
-                                          first.start, field.max_gates);
+                                          first.start, {.max_cells = field.max_gates});
     EXPECT_NEAR(walked.final_cells(gate / 9, gate % 9), 1.0, 1e-12);
     EXPECT_NEAR(walked.trapped, t.trapped == 5, 1e-12);
     EXPECT_NEAR(walked.left_field, t.left_field == 5, 1e-12);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "markov/predict/reference.h"
+#include "markov/predict.h"
 
 namespace gatewalk::markov::test {
 

@@ -6,12 +6,15 @@
 #include <cmath>
 
 #include "chains.h"
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 #include "markov/walk.h"
 #include "tests/support/long.h"
 
 namespace gatewalk::markov {
 namespace {
+
+using RowMethod = PredictOptions::RowMethod;
+using Solver = PredictOptions::Solver;
 
 const int kSide = gatewalk::test::usual_or_full(301, 1001);
 const std::int64_t kWalks = gatewalk::test::usual_or_full(20'000, 1'000'000);
@@ -64,7 +67,7 @@ TEST(LargeField, IsAsWalked) {
   const Field field{kSide, kSide};
   const Start start{kSide / 2, 0, 12};
   const Chain chain = keeping_on(1e-3);
-  const auto d = Sweeper(chain).predict(field, start, 0);
+  const auto d = Predictor(chain).predict(field, start);
   expect_whole(d);
   // All of the field is reached.
   EXPECT_GT(d.final_cells.row(kSide - 1).sum(), 0.05);
@@ -85,9 +88,12 @@ TEST(LargeField, IsAsWalked) {
 TEST(LargeField, EliminationIsSummation) {
   const Field field{kSide, kSide / 3};
   const Start start{kSide / 3, 0, 3};
-  const Sweeper sweeper(keeping_on(1e-3));
-  const auto a = sweeper.march(field, start, 1e-12, Sweeper::RowMethod::elimination);
-  const auto b = sweeper.march(field, start, 1e-12, Sweeper::RowMethod::sums);
+  const Predictor predictor(keeping_on(1e-3));
+  const auto a = predictor.predict(
+      field, start,
+      {.solver = Solver::rows, .row_method = RowMethod::elimination, .tolerance = 1e-12});
+  const auto b = predictor.predict(
+      field, start, {.solver = Solver::rows, .row_method = RowMethod::sums, .tolerance = 1e-12});
   expect_whole(a);
   expect_whole(b);
   EXPECT_LE((a.final_cells - b.final_cells).abs().sum(),
@@ -100,7 +106,7 @@ TEST(LargeField, EliminationIsSummation) {
 // same one with its moves in the other direction struck out.
 TEST(LargeField, RowsAndColumnsAreChainsOfTheirOwn) {
   const Chain chain = keeping_on(0.3);
-  const auto d = Sweeper(chain).predict({kSide, kSide}, {kSide / 2, 0, 12}, 0);
+  const auto d = Predictor(chain).predict({kSide, kSide}, {kSide / 2, 0, 12});
   expect_whole(d);
   EXPECT_LE(d.left_field, 1e-13);
   const auto without = [&](bool x) {
@@ -108,8 +114,8 @@ TEST(LargeField, RowsAndColumnsAreChainsOfTheirOwn) {
     for (Exit& exit : exits) (x ? exit.di_x : exit.di_y) = 0;
     return Chain::from_probabilities(chain.matrix(), exits);
   };
-  const auto rows = propagate(without(true), {1, kSide}, {0, 0, 12}, 0);
-  const auto columns = propagate(without(false), {kSide, 1}, {kSide / 2, 0, 12}, 0);
+  const auto rows = propagate(without(true), {1, kSide}, {0, 0, 12});
+  const auto columns = propagate(without(false), {kSide, 1}, {kSide / 2, 0, 12});
   EXPECT_LE((d.final_cells.rowwise().sum() - rows.final_cells.col(0)).abs().maxCoeff(), 1e-12);
   EXPECT_LE((d.final_cells.colwise().sum() - columns.final_cells.row(0)).abs().maxCoeff(), 1e-12);
 }

@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "chains.h"
-#include "markov/predict/reference.h"
+#include "markov/predict.h"
 #include "tests/support/instruction_sets.h"
 
 namespace gatewalk::markov {
@@ -382,7 +382,7 @@ TEST(Walk, WhatFitsIntoNoRegisterIsWalkedPlainly) {
 TEST(Walk, TenMillionWalksPassChiSquareAgainstTheExactDistribution) {
   constexpr std::int64_t kWalks = 10'000'000;
   const Chain chain = Chain::from_counts(lattice_counts(8), lattice_exits());
-  const FinalDistribution exact = propagate(chain, kNineByNine, kBottomCentre, 13);
+  const FinalDistribution exact = propagate(chain, kNineByNine, kBottomCentre, {.max_cells = 13});
   const WalkTally tally = Walker(chain).walk(kNineByNine, kBottomCentre, 13, 3, {0, kWalks});
   // Cells of fewer than 20 expected walks count as one.
   double chi2 = 0, rare = 0, rare_expected = 0;

@@ -1,4 +1,4 @@
-#include "markov/predict/predictor.h"
+#include "markov/predict.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,8 @@ using test::lattice_counts;
 using test::lattice_exits;
 using test::matrix;
 
-using RowMethod = Sweeper::RowMethod;
+using RowMethod = PredictOptions::RowMethod;
+using Solver = PredictOptions::Solver;
 constexpr std::array kMethods = {RowMethod::elimination, RowMethod::sums};
 
 void expect_near(const FinalDistribution& a, const FinalDistribution& b, double bound) {
@@ -87,27 +88,34 @@ Chain thin(std::uint64_t seed, std::vector<Exit> exits) {
   return Chain::from_counts(counts, std::move(exits));
 }
 
-TEST(Sweep, PropagatesAsThePlainReferenceWhereFewRowsAreEntered) {
+TEST(Predictor, PropagatesAsThePlainReferenceWhereFewRowsAreEntered) {
   for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
     for (const std::uint64_t seed : {1, 2, 3}) {
       const Chain chain = thin(seed, exits);
-      const Sweeper sweeper(chain);
+      const Predictor predictor(chain);
       for (int input = 0; input < 87; ++input) {
         for (const int limit : {1, 2, 3, 4, 5, 13}) {
           const Start start{2, 1, input};
-          const auto plain = propagate(chain, {6, 5}, start, limit);
-          const auto fast = sweeper.propagate({6, 5}, start, limit);
+          const auto plain = propagate(chain, {6, 5}, start, {.max_cells = limit});
+          const auto fast =
+              predictor.predict({6, 5}, start, {.max_cells = limit, .solver = Solver::steps});
           SCOPED_TRACE(std::to_string(input) + ", limit " + std::to_string(limit));
           expect_near(plain, fast, 1e-15);
           EXPECT_EQ(plain.steps, fast.steps);
         }
-        if (!sweeper.can_march()) continue;
+        if (!predictor.can_go_by_rows()) continue;
         try {
-          const auto marched =
-              sweeper.march({6, 5}, {2, 1, input}, 1e-13, RowMethod::cheapest, 1000);
-          expect_near(marched, propagate(chain, {6, 5}, {2, 1, input}, 0, 1e-13, 1000), 1e-12);
+          const auto by_rows =
+              predictor.predict({6, 5}, {2, 1, input},
+                                {.solver = Solver::rows, .tolerance = 1e-13, .max_steps = 1000});
+          expect_near(
+              by_rows,
+              propagate(chain, {6, 5}, {2, 1, input}, {.tolerance = 1e-13, .max_steps = 1000}),
+              1e-12);
         } catch (const std::runtime_error&) {  // left and right for ever
-          EXPECT_GT(propagate(chain, {6, 5}, {2, 1, input}, 0, 1e-13, 1000).remainder, 0.1);
+          EXPECT_GT(propagate(chain, {6, 5}, {2, 1, input}, {.tolerance = 1e-13, .max_steps = 1000})
+                        .remainder,
+                    0.1);
         }
       }
     }
@@ -132,38 +140,45 @@ Chain random_chain(test::Words& words, bool chequered, bool up) {
   return Chain::from_counts(counts, exits);
 }
 
-TEST(Sweep, RandomChains) {
+TEST(Predictor, RandomChains) {
   test::Words words(1);
   for (int k = 0; k < 600; ++k) {
     SCOPED_TRACE(k);
     const Chain chain = random_chain(words, k % 2 == 0, k % 3 == 0);
-    const Sweeper sweeper(chain);
+    const Predictor predictor(chain);
     const Field field{1 + words.below(12), 1 + words.below(12)};
     std::vector<Start> starts;
     for (int j = 0; j < 1 + k % 5; ++j)
       starts.push_back(
           {words.below(field.columns), words.below(field.rows), words.below(chain.inputs())});
     const int limit = 1 + words.below(15);
-    const auto fast = sweeper.propagate_all(field, starts, limit);
-    const auto free = sweeper.propagate_all(field, starts, 0, 1e-13, 60);
+    const auto fast =
+        predictor.predict_all(field, starts, {.max_cells = limit, .solver = Solver::steps});
+    const auto free = predictor.predict_all(
+        field, starts, {.solver = Solver::steps, .tolerance = 1e-13, .max_steps = 60});
     for (std::size_t j = 0; j < starts.size(); ++j) {
-      const auto plain = propagate(chain, field, starts[j], limit);
+      const auto plain = propagate(chain, field, starts[j], {.max_cells = limit});
       expect_near(plain, fast[j], 1e-14);
       EXPECT_EQ(plain.steps, fast[j].steps);
-      const auto plainly_free = propagate(chain, field, starts[j], 0, 1e-13, 60);
+      const auto plainly_free =
+          propagate(chain, field, starts[j], {.tolerance = 1e-13, .max_steps = 60});
       expect_near(plainly_free, free[j], 1e-14);
       EXPECT_NEAR(plainly_free.remainder, free[j].remainder, 1e-14);
       EXPECT_EQ(plainly_free.steps, free[j].steps);
-      if (!sweeper.can_march()) continue;
-      const auto far = propagate(chain, field, starts[j], 0, 1e-13, 2000);
+      if (!predictor.can_go_by_rows()) continue;
+      const auto far = propagate(chain, field, starts[j], {.tolerance = 1e-13, .max_steps = 2000});
       if (far.remainder > 1e-12) continue;  // circles
       for (const auto method : kMethods)
-        expect_near(far, sweeper.march(field, starts[j], 1e-13, method), 1e-11);
+        expect_near(
+            far,
+            predictor.predict(field, starts[j],
+                              {.solver = Solver::rows, .row_method = method, .tolerance = 1e-13}),
+            1e-11);
     }
   }
 }
 
-TEST(Sweep, RowsThatDifferAreThePlainReference) {
+TEST(Predictor, RowsThatDifferAreThePlainReference) {
   for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
     const std::vector<Chain> chains{with_gaps(1, exits), thin(2, exits),
                                     Chain::from_counts(lattice_counts(3), exits)};
@@ -171,27 +186,62 @@ TEST(Sweep, RowsThatDifferAreThePlainReference) {
                                            {2, 2, 2, 0, 0, 2, 2, 2},
                                            {1, 1, 1, 1, 1, 1, 1, 1},
                                            {0, 0, 0, 0, 0, 0, 0, 2}}) {
-      const RowChains rows(chains, of_row);
-      const Sweeper sweeper(rows);
+      const FieldChain rows = FieldChain::by_row(chains, of_row);
+      const Predictor predictor(rows);
       for (const int columns : {1, 5, 9, 40}) {
         const Field field{columns, 8};
         const std::vector<Start> starts{
             {columns / 2, 0, 12}, {0, 3, 40}, {columns - 1, 7, 60}, {columns / 3, 2, 85}};
         for (const int limit : {1, 2, 13, 0}) {
-          const auto fast = sweeper.propagate_all(field, starts, limit, 1e-13, 300);
+          const auto fast = predictor.predict_all(
+              field, starts,
+              {.max_cells = limit, .solver = Solver::steps, .tolerance = 1e-13, .max_steps = 300});
           for (std::size_t k = 0; k < starts.size(); ++k) {
-            const auto plain = propagate(rows, field, starts[k], limit, 1e-13, 300);
+            const auto plain = propagate(
+                rows, field, starts[k], {.max_cells = limit, .tolerance = 1e-13, .max_steps = 300});
             expect_near(plain, fast[k], 1e-14);
             EXPECT_NEAR(plain.remainder, fast[k].remainder, 1e-14);
             EXPECT_EQ(plain.steps, fast[k].steps);
           }
         }
-        if (!sweeper.can_march()) continue;
+        if (!predictor.can_go_by_rows()) continue;
         for (std::size_t k = 0; k < starts.size(); ++k) {
-          const auto plain = propagate(rows, field, starts[k], 0, 1e-13, 300);
+          const auto plain =
+              propagate(rows, field, starts[k], {.tolerance = 1e-13, .max_steps = 300});
           if (plain.remainder > 1e-12) continue;  // circles in a thin row
           for (const auto method : kMethods)
-            expect_near(plain, sweeper.march(field, starts[k], 1e-13, method), 1e-12);
+            expect_near(plain,
+                        predictor.predict(
+                            field, starts[k],
+                            {.solver = Solver::rows, .row_method = method, .tolerance = 1e-13}),
+                        1e-12);
+        }
+      }
+    }
+  }
+}
+
+TEST(Predictor, CellsThatDifferAreThePlainReference) {
+  test::Words words(9);
+  for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
+    const std::vector<Chain> chains{with_gaps(1, exits), thin(2, exits),
+                                    Chain::from_counts(lattice_counts(3), exits)};
+    for (const int columns : {1, 5, 9, 40}) {
+      const Field field{columns, 8};
+      std::vector<int> types;
+      for (int cell = 0; cell < columns * field.rows; ++cell) types.push_back(words.below(3));
+      const FieldChain cells = FieldChain::by_cell(chains, columns, types);
+      const Predictor predictor(cells);
+      const std::vector<Start> starts{
+          {columns / 2, 0, 12}, {0, 3, 40}, {columns - 1, 7, 60}, {columns / 3, 2, 85}};
+      for (const int limit : {1, 2, 13, 0}) {
+        const PredictOptions options{
+            .max_cells = limit, .solver = Solver::steps, .tolerance = 1e-13, .max_steps = 300};
+        const auto fast = predictor.predict_all(field, starts, options);
+        for (std::size_t k = 0; k < starts.size(); ++k) {
+          const auto plain = propagate(cells, field, starts[k], options);
+          expect_near(plain, fast[k], 1e-14);
+          EXPECT_NEAR(plain.remainder, fast[k].remainder, 1e-14);
         }
       }
     }
@@ -199,35 +249,38 @@ TEST(Sweep, RowsThatDifferAreThePlainReference) {
 }
 
 // Equal chains are prepared twice here, and drawn from in turn: not a bit changes.
-TEST(Sweep, EqualChainsInTurnHaveTheBitsOfOne) {
+TEST(Predictor, EqualChainsInTurnHaveTheBitsOfOne) {
   for (const auto& exits : {never_down(), leaps()}) {
     const Chain chain = with_gaps(5, exits);
-    const Sweeper one(chain), two(RowChains({chain, chain}, {0, 1, 1, 0, 1, 0, 0, 0, 1}));
+    const Predictor one(chain),
+        two(FieldChain::by_row({chain, chain}, {0, 1, 1, 0, 1, 0, 0, 0, 1}));
     const std::vector<Start> starts{{4, 0, 12}, {1, 5, 33}};
     for (const int limit : {2, 13, 0}) {
-      const auto a = one.predict_all(kNineByNine, starts, limit),
-                 b = two.predict_all(kNineByNine, starts, limit);
+      const auto a = one.predict_all(kNineByNine, starts, {.max_cells = limit}),
+                 b = two.predict_all(kNineByNine, starts, {.max_cells = limit});
       for (std::size_t k = 0; k < starts.size(); ++k) EXPECT_TRUE(same_bits(a[k], b[k])) << limit;
     }
-    EXPECT_THROW((void)two.predict({9, 8}, kBottomCentre, 13), std::invalid_argument);
-    EXPECT_THROW((void)two.predict({9, 10}, kBottomCentre, 0), std::invalid_argument);
+    EXPECT_THROW((void)two.predict({9, 8}, kBottomCentre, {.max_cells = 13}),
+                 std::invalid_argument);
+    EXPECT_THROW((void)two.predict({9, 10}, kBottomCentre), std::invalid_argument);
   }
 }
 
-TEST(Sweep, PropagatesAsThePlainReference) {
+TEST(Predictor, PropagatesAsThePlainReference) {
   const std::vector<std::pair<Field, Start>> places{
       {kNineByNine, kBottomCentre}, {{1, 1}, {0, 0, 5}},  {{3, 5}, {2, 4, 80}},
       {{20, 2}, {0, 1, 30}},        {{2, 20}, {1, 7, 0}}, {{64, 64}, {63, 63, 9}}};
   for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
     for (const std::uint64_t seed : {1, 2}) {
       const Chain chain = with_gaps(seed, exits);
-      const Sweeper sweeper(chain);
+      const Predictor predictor(chain);
       for (const auto& [field, start] : places) {
         for (const int limit : {1, 2, 3, 13, 0}) {
           SCOPED_TRACE(std::to_string(field.columns) + " x " + std::to_string(field.rows) +
                        ", limit " + std::to_string(limit));
-          const auto plain = propagate(chain, field, start, limit);
-          const auto fast = sweeper.propagate(field, start, limit);
+          const auto plain = propagate(chain, field, start, {.max_cells = limit});
+          const auto fast =
+              predictor.predict(field, start, {.max_cells = limit, .solver = Solver::steps});
           expect_near(plain, fast, 1e-14);
           expect_whole(fast);
           EXPECT_EQ(plain.steps, fast.steps);
@@ -241,16 +294,17 @@ TEST(Sweep, PropagatesAsThePlainReference) {
 
 // What goes up by two rows and out of the field has left it, and does not remain as well; a loose
 // tolerance shows it.
-TEST(Sweep, LeapsOutOfTheTopAreCountedOnce) {
+TEST(Predictor, LeapsOutOfTheTopAreCountedOnce) {
   const Chain chain = Chain::from_probabilities(
       matrix(2, 4, {{0, 2, 1.0}, {1, 0, 0.05}, {1, 1, 0.01}, {1, 3, 0.94}}),
       {{0, 0, 1}, {1, 0, 2}, {1, 0, 1}, {}});
   for (const RowMethod method : kMethods)
-    expect_whole(Sweeper(chain).march({1, 3}, {0, 0, 0}, 0.3, method));
+    expect_whole(Predictor(chain).predict(
+        {1, 3}, {0, 0, 0}, {.solver = Solver::rows, .row_method = method, .tolerance = 0.3}));
 }
 
 // Two states that hardly ever let go of each other, among many that do at once.
-TEST(Sweep, FindsAFewThatCircleForLong) {
+TEST(Predictor, FindsAFewThatCircleForLong) {
   constexpr int n = 40;
   std::vector<Entry> entries;
   std::vector<Exit> exits;
@@ -261,39 +315,45 @@ TEST(Sweep, FindsAFewThatCircleForLong) {
   }
   exits.push_back({});
   const Chain chain = Chain::from_probabilities(matrix(n, n + 1, entries), exits);
-  const auto d = Sweeper(chain).predict({5, 1}, {2, 0, 0}, 0);
+  const auto d = Predictor(chain).predict({5, 1}, {2, 0, 0});
   EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0,
               d.rounding + 1e-13);  // some 10^6 moves are rounded
   EXPECT_LT(d.rounding, 1e-6);
   expect_near(d, solve_absorption(chain, {5, 1}, {2, 0, 0}), 1e-9);
 }
 
-TEST(Sweep, RefusesMovesBeyondAnyField) {
+TEST(Predictor, RefusesMovesBeyondAnyField) {
   const Chain chain =
       Chain::from_probabilities(matrix(1, 2, {{0, 0, 0.5}, {0, 1, 0.5}}), {{0, 1'000'000, 0}, {}});
-  EXPECT_THROW(Sweeper{chain}, std::invalid_argument);
-  EXPECT_THROW((void)Sweeper(Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{}}))
-                   .march({1, 1}, {}, 0.1, RowMethod::sums, 0),
+  EXPECT_THROW(Predictor{chain}, std::invalid_argument);
+  EXPECT_THROW((void)Predictor(Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{}}))
+                   .predict({1, 1}, {},
+                            {.solver = Solver::rows,
+                             .row_method = RowMethod::sums,
+                             .tolerance = 0.1,
+                             .max_steps = 0}),
                std::invalid_argument);
 }
 
 // A limit far beyond the walks costs no steps: it is as none.
-TEST(Sweep, StopsBeforeALimitThatNobodyReaches) {
+TEST(Predictor, StopsBeforeALimitThatNobodyReaches) {
   const Chain chain = with_gaps(1, never_down());
-  const Sweeper sweeper(chain);
-  const auto d = sweeper.propagate(kNineByNine, kBottomCentre, 1'000'000);
+  const Predictor predictor(chain);
+  const auto d = predictor.predict(kNineByNine, kBottomCentre,
+                                   {.max_cells = 1'000'000, .solver = Solver::steps});
   EXPECT_LT(d.steps, 1000);
   EXPECT_EQ(d.cut_off, 0.0);
   EXPECT_LT(d.remainder, 1e-25);
   expect_near(d, solve_absorption(chain, kNineByNine, kBottomCentre), 1e-13);
 }
 
-TEST(Sweep, StartInARowThatWasNeverSampled) {
+TEST(Predictor, StartInARowThatWasNeverSampled) {
   const Chain chain = with_gaps(1, never_down());
-  const Sweeper sweeper(chain);
+  const Predictor predictor(chain);
   const Start start{4, 2, 40};
   for (const auto& d :
-       {sweeper.propagate(kNineByNine, start, 13), sweeper.march(kNineByNine, start)}) {
+       {predictor.predict(kNineByNine, start, {.max_cells = 13, .solver = Solver::steps}),
+        predictor.predict(kNineByNine, start, {.solver = Solver::rows})}) {
     EXPECT_EQ(d.unsampled, 1.0);
     EXPECT_EQ(d.final_cells(2, 4), 1.0);
     EXPECT_EQ(d.steps, 0);
@@ -318,20 +378,21 @@ Chain weakly_trapping(std::uint64_t seed) {
 }
 
 // Two other routes to the same: step by step until nothing is left, and one factorisation.
-TEST(Sweep, MarchIsTheLimitOfPropagation) {
+TEST(Predictor, ByRowsIsTheLimitOfPropagation) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Chain chain = with_gaps(seed, never_down());
-    const Sweeper sweeper(chain);
-    ASSERT_TRUE(sweeper.can_march());
+    const Predictor predictor(chain);
+    ASSERT_TRUE(predictor.can_go_by_rows());
     for (const auto& [field, start] :
          std::vector<std::pair<Field, Start>>{{kNineByNine, kBottomCentre},
                                               {{9, 9}, {0, 8, 3 + 1}},
                                               {{1, 30}, {0, 0, 2}},
                                               {{40, 3}, {39, 1, 7}}}) {
-      const auto propagated = propagate(chain, field, start, 0);
+      const auto propagated = propagate(chain, field, start);
       const auto solved = solve_absorption(chain, field, start);
       for (const auto method : kMethods) {
-        const auto d = sweeper.march(field, start, 1e-13, method);
+        const auto d = predictor.predict(
+            field, start, {.solver = Solver::rows, .row_method = method, .tolerance = 1e-13});
         expect_whole(d);
         EXPECT_LE(d.remainder, 1.1e-13);
         expect_near(d, propagated, 1e-12);
@@ -342,15 +403,19 @@ TEST(Sweep, MarchIsTheLimitOfPropagation) {
   }
 }
 
-TEST(Sweep, MarchTakesLongWalksWithoutSummingThem) {
+TEST(Predictor, ByRowsTakesLongWalksWithoutSummingThem) {
   for (const std::uint64_t seed : {1, 2}) {
     const Chain chain = weakly_trapping(seed);
-    const Sweeper sweeper(chain);
+    const Predictor predictor(chain);
     for (const Field field : {kNineByNine, Field{60, 4}}) {
       const Start start{field.columns / 2, 0, 12};
       const auto solved = solve_absorption(chain, field, start);
-      const auto eliminated = sweeper.march(field, start, 1e-13, RowMethod::elimination);
-      const auto summed = sweeper.march(field, start, 1e-13, RowMethod::sums);
+      const auto eliminated = predictor.predict(
+          field, start,
+          {.solver = Solver::rows, .row_method = RowMethod::elimination, .tolerance = 1e-13});
+      const auto summed = predictor.predict(
+          field, start,
+          {.solver = Solver::rows, .row_method = RowMethod::sums, .tolerance = 1e-13});
       expect_whole(eliminated);
       EXPECT_GT(solved.mean_steps, 20.0);
       EXPECT_GT(summed.steps, 1000);
@@ -359,14 +424,14 @@ TEST(Sweep, MarchTakesLongWalksWithoutSummingThem) {
       EXPECT_LE(eliminated.remainder, 1e-12);
       expect_near(eliminated, solved, 1e-11);
       expect_near(summed, solved, 1e-11);
-      EXPECT_EQ(sweeper.predict(field, start, 0).steps, 0) << "sums were chosen";
+      EXPECT_EQ(predictor.predict(field, start).steps, 0) << "sums were chosen";
     }
   }
 }
 
 // Each number lies within remainder + rounding of a route with more digits, and the two say
 // something: they are small.
-TEST(Sweep, RemainderAndRoundingBoundTheError) {
+TEST(Predictor, RemainderAndRoundingBoundTheError) {
   const auto expect_bounded = [](const FinalDistribution& d, const FinalDistribution& exact) {
     const double bound = d.remainder + d.rounding;
     EXPECT_LE((d.final_cells - exact.final_cells).abs().sum(), bound);
@@ -377,83 +442,104 @@ TEST(Sweep, RemainderAndRoundingBoundTheError) {
     EXPECT_LE(bound, 1e-11);
   };
   const Chain chain = with_gaps(2, never_down());
-  const Sweeper sweeper(chain);
+  const Predictor predictor(chain);
   for (const int limit : {1, 2, 13, 100}) {
     const auto exact = test::propagate_plainly(chain, kNineByNine, kBottomCentre, limit);
-    expect_bounded(sweeper.propagate(kNineByNine, kBottomCentre, limit), exact);
-    expect_bounded(propagate(chain, kNineByNine, kBottomCentre, limit), exact);
+    expect_bounded(predictor.predict(kNineByNine, kBottomCentre,
+                                     {.max_cells = limit, .solver = Solver::steps}),
+                   exact);
+    expect_bounded(propagate(chain, kNineByNine, kBottomCentre, {.max_cells = limit}), exact);
   }
   const auto exact = test::propagate_plainly(chain, kNineByNine, kBottomCentre, 600);
   EXPECT_LE(exact.cut_off, 1e-25);
-  expect_bounded(sweeper.propagate(kNineByNine, kBottomCentre, 0), exact);
-  expect_bounded(propagate(chain, kNineByNine, kBottomCentre, 0), exact);
+  expect_bounded(predictor.predict(kNineByNine, kBottomCentre, {.solver = Solver::steps}), exact);
+  expect_bounded(propagate(chain, kNineByNine, kBottomCentre), exact);
   expect_bounded(solve_absorption(chain, kNineByNine, kBottomCentre), exact);
   for (const auto method : kMethods)
     for (const double tolerance : {1e-13, 1e-12})
-      expect_bounded(sweeper.march(kNineByNine, kBottomCentre, tolerance, method), exact);
+      expect_bounded(
+          predictor.predict(kNineByNine, kBottomCentre,
+                            {.solver = Solver::rows, .row_method = method, .tolerance = tolerance}),
+          exact);
 }
 
 // The longer the walks, the fewer digits hold; how many is said, or refused.
-TEST(Sweep, RemainderOfEliminationIsHonest) {
+TEST(Predictor, RemainderOfEliminationIsHonest) {
   for (const double escape : {1e-3, 1e-6, 1e-8}) {
     const auto d =
-        Sweeper(test::nearly_closed(escape)).march({2, 1}, {}, 1e-13, RowMethod::elimination);
+        Predictor(test::nearly_closed(escape))
+            .predict(
+                {2, 1}, {},
+                {.solver = Solver::rows, .row_method = RowMethod::elimination, .tolerance = 1e-13});
     const double error = std::abs(d.final_cells(0, 0) - 1 / (2 - escape));
     EXPECT_LE(error, d.remainder + d.rounding);
     EXPECT_LE(d.remainder, 1e-15 / escape);
     EXPECT_LE(d.rounding, 1e-13 / escape);
   }
   for (const double escape : {1e-13, 1e-16, 1e-300})
-    EXPECT_THROW((void)Sweeper(test::nearly_closed(escape))
-                     .march({2, 1}, {}, 1e-13, RowMethod::elimination, 1000),
+    EXPECT_THROW((void)Predictor(test::nearly_closed(escape))
+                     .predict({2, 1}, {},
+                              {.solver = Solver::rows,
+                               .row_method = RowMethod::elimination,
+                               .tolerance = 1e-13,
+                               .max_steps = 1000}),
                  std::runtime_error);
 }
 
 // Starts in other cells and rows, some of which end early, more than go together in a group.
-TEST(Sweep, SeveralStartsHaveTheBitsOfEachAlone) {
+TEST(Predictor, SeveralStartsHaveTheBitsOfEachAlone) {
   for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
     const Chain chain = with_gaps(3, exits);
-    const Sweeper sweeper(chain);
+    const Predictor predictor(chain);
     for (const Field field : {kNineByNine, Field{1, 3}, Field{5, 12}, Field{30, 2}}) {
       std::vector<Start> starts;
       for (int k = 0; k < 11; ++k)
         starts.push_back({k * 3 % field.columns, k * 5 % field.rows, 7 * k % 87});
       starts.push_back({0, 0, 40});  // never sampled
       for (const int limit : {1, 2, 13, 0}) {
-        const auto together = sweeper.predict_all(field, starts, limit);
+        const auto together = predictor.predict_all(field, starts, {.max_cells = limit});
         ASSERT_EQ(together.size(), starts.size());
         for (std::size_t k = 0; k < starts.size(); ++k)
-          EXPECT_TRUE(same_bits(together[k], sweeper.predict(field, starts[k], limit)))
+          EXPECT_TRUE(
+              same_bits(together[k], predictor.predict(field, starts[k], {.max_cells = limit})))
               << field.columns << " x " << field.rows << ", limit " << limit << ", start " << k;
       }
-      if (!sweeper.can_march()) continue;
+      if (!predictor.can_go_by_rows()) continue;
       for (const auto method : kMethods) {
-        const auto together = sweeper.march_all(field, starts, 1e-9, method);
+        const auto together = predictor.predict_all(
+            field, starts, {.solver = Solver::rows, .row_method = method, .tolerance = 1e-9});
         for (std::size_t k = 0; k < starts.size(); ++k)
-          EXPECT_TRUE(same_bits(together[k], sweeper.march(field, starts[k], 1e-9, method)));
+          EXPECT_TRUE(same_bits(
+              together[k], predictor.predict(
+                               field, starts[k],
+                               {.solver = Solver::rows, .row_method = method, .tolerance = 1e-9})));
       }
     }
-    EXPECT_TRUE(sweeper.predict_all(kNineByNine, {}, 13).empty());
-    EXPECT_THROW((void)sweeper.predict_all(kNineByNine, {kBottomCentre, {9, 0, 0}}, 13),
-                 std::invalid_argument);
+    EXPECT_TRUE(predictor.predict_all(kNineByNine, {}, {.max_cells = 13}).empty());
+    EXPECT_THROW(
+        (void)predictor.predict_all(kNineByNine, {kBottomCentre, {9, 0, 0}}, {.max_cells = 13}),
+        std::invalid_argument);
   }
 }
 
-TEST(Sweep, MarchCoversRowsThatJumpAcrossOthers) {
+TEST(Predictor, ByRowsCoversRowsThatJumpAcrossOthers) {
   auto exits = never_down();
   for (std::size_t j = 0; j < 10; ++j) exits[j].di_y = 3;
   const Chain chain = Chain::from_counts(lattice_counts(5), exits);
-  const Sweeper sweeper(chain);
+  const Predictor predictor(chain);
   const Field field{11, 17};
-  expect_near(sweeper.march(field, {5, 1, 3}), solve_absorption(chain, field, {5, 1, 3}), 1e-12);
+  expect_near(predictor.predict(field, {5, 1, 3}, {.solver = Solver::rows}),
+              solve_absorption(chain, field, {5, 1, 3}), 1e-12);
 }
 
-TEST(Sweep, RemainderIsWhatTheToleranceLeaves) {
+TEST(Predictor, RemainderIsWhatTheToleranceLeaves) {
   const Chain chain = Chain::from_counts(lattice_counts(1), never_down());
-  const Sweeper sweeper(chain);
+  const Predictor predictor(chain);
   const auto exact = solve_absorption(chain, kNineByNine, kBottomCentre);
   for (const double tolerance : {1e-2, 1e-4, 1e-8}) {
-    const auto d = sweeper.march(kNineByNine, kBottomCentre, tolerance, RowMethod::sums);
+    const auto d = predictor.predict(
+        kNineByNine, kBottomCentre,
+        {.solver = Solver::rows, .row_method = RowMethod::sums, .tolerance = tolerance});
     EXPECT_GT(d.remainder, 0.0);
     EXPECT_LE(d.remainder, tolerance);
     expect_whole(d);
@@ -461,40 +547,53 @@ TEST(Sweep, RemainderIsWhatTheToleranceLeaves) {
     EXPECT_GE((exact.final_cells - d.final_cells).minCoeff(), -1e-15);
     EXPECT_LE((exact.final_cells - d.final_cells).maxCoeff(), d.remainder + 1e-15);
   }
-  const auto all = sweeper.march(kNineByNine, kBottomCentre, 0.0, RowMethod::sums);
+  const auto all =
+      predictor.predict(kNineByNine, kBottomCentre,
+                        {.solver = Solver::rows, .row_method = RowMethod::sums, .tolerance = 0.0});
   EXPECT_LE(all.remainder, 1e-270);
   expect_near(all, exact, 1e-13);
 }
 
-TEST(Sweep, MarchRefusesWhatItCannotDo) {
+TEST(Predictor, ByRowsRefusesWhatItCannotDo) {
   const Chain down = Chain::from_counts(lattice_counts(1), lattice_exits());
-  EXPECT_FALSE(Sweeper(down).can_march());
-  EXPECT_THROW((void)Sweeper(down).march(kNineByNine, kBottomCentre), std::invalid_argument);
-  EXPECT_THROW((void)Sweeper(down).propagate(kNineByNine, kBottomCentre, 13, -1.0),
+  EXPECT_FALSE(Predictor(down).can_go_by_rows());
+  EXPECT_THROW((void)Predictor(down).predict(kNineByNine, kBottomCentre, {.solver = Solver::rows}),
                std::invalid_argument);
-  EXPECT_THROW((void)Sweeper(down).propagate({0, 9}, kBottomCentre, 13), std::invalid_argument);
+  EXPECT_THROW(
+      (void)Predictor(down).predict(kNineByNine, kBottomCentre,
+                                    {.max_cells = 13, .solver = Solver::steps, .tolerance = -1.0}),
+      std::invalid_argument);
+  EXPECT_THROW((void)Predictor(down).predict({0, 9}, kBottomCentre,
+                                             {.max_cells = 13, .solver = Solver::steps}),
+               std::invalid_argument);
   // Left and right for ever.
   const Chain circle =
       Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}, {1, 0, 1.0}}), {{0, 1, 0}, {1, -1, 0}});
-  EXPECT_THROW((void)Sweeper(circle).march({2, 1}, {1, 0, 0}, 1e-13, RowMethod::cheapest, 1000),
-               std::runtime_error);
-  const auto still = Sweeper(circle).propagate({2, 1}, {1, 0, 0}, 0, 1e-13, 100);
+  EXPECT_THROW(
+      (void)Predictor(circle).predict(
+          {2, 1}, {1, 0, 0}, {.solver = Solver::rows, .tolerance = 1e-13, .max_steps = 1000}),
+      std::runtime_error);
+  const auto still = Predictor(circle).predict(
+      {2, 1}, {1, 0, 0}, {.solver = Solver::steps, .tolerance = 1e-13, .max_steps = 100});
   EXPECT_EQ(still.remainder, 1.0);
   EXPECT_EQ(still.steps, 100);
 }
 
-TEST(Sweep, HasTheSameBitsWithAnyInstructionSet) {
+TEST(Predictor, HasTheSameBitsWithAnyInstructionSet) {
   const Field field{13, 7};
   const std::vector<Start> starts{{6, 0, 11}, {0, 1, 30}, {12, 3, 70}};
   for (const auto& exits : {never_down(), leaps()}) {
     const Chain chain = with_gaps(4, exits);
     const auto all = [&] {
-      const Sweeper sweeper(chain);
-      auto results = sweeper.propagate_all(field, starts, 13);
-      results.push_back(sweeper.propagate({70, 20}, starts.front(), 0));
-      if (sweeper.can_march())
+      const Predictor predictor(chain);
+      auto results =
+          predictor.predict_all(field, starts, {.max_cells = 13, .solver = Solver::steps});
+      results.push_back(predictor.predict({70, 20}, starts.front(), {.solver = Solver::steps}));
+      if (predictor.can_go_by_rows())
         for (const auto method : kMethods)
-          for (const auto& d : sweeper.march_all(field, starts, 1e-13, method))
+          for (const auto& d : predictor.predict_all(
+                   field, starts,
+                   {.solver = Solver::rows, .row_method = method, .tolerance = 1e-13}))
             results.push_back(d);
       return results;
     };

@@ -42,11 +42,12 @@ Eigen::MatrixXd within_row(const Chain& chain, int cells) {
 }
 
 void expect_solves(const Chain& chain, int cells, double bound) {
-  ASSERT_TRUE(RowSolver::suits(chain));
-  const RowSolver solver(chain);
+  ASSERT_TRUE(RowElimination::suits(chain));
+  const RowElimination elimination(chain);
   const int n = chain.inputs();
-  using Stripes = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Stripes entering = Stripes::Zero(n, cells + 3), visits = Stripes::Ones(n, cells + 3);
+  using PlanesOfARow = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  PlanesOfARow entering = PlanesOfARow::Zero(n, cells + 3),
+               visits = PlanesOfARow::Ones(n, cells + 3);
   std::vector<char> sideways(static_cast<std::size_t>(n));
   for (const Exit& exit : chain.exits())
     if (exit.next_input != Exit::kTrapped && exit.di_y == 0)
@@ -57,10 +58,10 @@ void expect_solves(const Chain& chain, int cells, double bound) {
     for (int cell = 0; cell < cells; ++cell)
       if (sideways[static_cast<std::size_t>(input)])
         b(cell * n + input) = entering(input, cell) = 1e-3 * words.below(1000);
-  const auto columns = solver.columns(cells);
+  const auto columns = elimination.columns(cells);
   ASSERT_EQ(columns.size(), static_cast<std::size_t>(cells));
-  std::vector<double> workspace(solver.workspace(cells));
-  solver.solve(columns, entering.data(), visits.data(), cells + 3, workspace.data());
+  std::vector<double> workspace(elimination.workspace(cells));
+  elimination.solve(columns, entering.data(), visits.data(), cells + 3, workspace.data());
 
   const Eigen::MatrixXd q = within_row(chain, cells);
   const Eigen::VectorXd x =
@@ -70,11 +71,11 @@ void expect_solves(const Chain& chain, int cells, double bound) {
       EXPECT_NEAR(visits(input, cell) - 1.0, x(cell * n + input), bound * x.maxCoeff());
 }
 
-TEST(RowSolver, IsTheDenseSolution) {
+TEST(RowElimination, IsTheDenseSolution) {
   for (const int cells : {1, 2, 3, 9, 40, 130}) expect_solves(small(), cells, 1e-12);
 }
 
-TEST(RowSolver, IsTheDenseSolutionForThePapersShape) {
+TEST(RowElimination, IsTheDenseSolutionForThePapersShape) {
   auto exits = test::lattice_exits();
   for (Exit& exit : exits)
     if (exit.di_y < 0) exit.di_y = 1;
@@ -82,27 +83,27 @@ TEST(RowSolver, IsTheDenseSolutionForThePapersShape) {
     expect_solves(Chain::from_counts(test::lattice_counts(1), exits), cells, 1e-12);
 }
 
-TEST(RowSolver, FurtherColumnsAreTheLastOne) {
-  const RowSolver solver(small());
-  const auto few = solver.columns(5), many = solver.columns(3000);
+TEST(RowElimination, FurtherColumnsAreTheLastOne) {
+  const RowElimination elimination(small());
+  const auto few = elimination.columns(5), many = elimination.columns(3000);
   EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
   EXPECT_NE(few[3], few[4]);
   EXPECT_EQ(many[2000], many[2999]);
 }
 
-TEST(RowSolver, TakesNeighboursOnlyAndNoCircles) {
+TEST(RowElimination, TakesNeighboursOnlyAndNoCircles) {
   const auto one = [](int di_x, int di_y) {
     return Chain::from_probabilities(test::matrix(1, 1, {{0, 0, 1.0}}), {{0, di_x, di_y}});
   };
-  EXPECT_FALSE(RowSolver::suits(one(2, 0)));
-  EXPECT_FALSE(RowSolver::suits(one(0, 0)));
-  EXPECT_TRUE(RowSolver::suits(one(-1, 0)));
-  EXPECT_TRUE(RowSolver::suits(one(5, 1)));
-  EXPECT_EQ(RowSolver(one(1, 0)).columns(7).size(), 7u);
+  EXPECT_FALSE(RowElimination::suits(one(2, 0)));
+  EXPECT_FALSE(RowElimination::suits(one(0, 0)));
+  EXPECT_TRUE(RowElimination::suits(one(-1, 0)));
+  EXPECT_TRUE(RowElimination::suits(one(5, 1)));
+  EXPECT_EQ(RowElimination(one(1, 0)).columns(7).size(), 7u);
   const Chain circle = Chain::from_probabilities(test::matrix(2, 2, {{0, 1, 1.0}, {1, 0, 1.0}}),
                                                  {{0, 1, 0}, {1, -1, 0}});
-  EXPECT_EQ(RowSolver(circle).columns(1).size(), 1u);
-  EXPECT_TRUE(RowSolver(circle).columns(2).empty());
+  EXPECT_EQ(RowElimination(circle).columns(1).size(), 1u);
+  EXPECT_TRUE(RowElimination(circle).columns(2).empty());
 }
 
 }  // namespace

@@ -1,0 +1,141 @@
+#pragma once
+/// The exact distribution of the final cell: what infinitely many walks would give.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "markov/chain.h"
+
+namespace gatewalk::markov {
+
+using CellProbabilities = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// What ended in one cell.
+struct CellEndings {
+  std::int64_t cell = 0;                     // row * columns + column
+  std::array<double, kEndings> by_ending{};  // by Ending
+};
+
+/// final_cells.sum() + remainder == 1 and trapped + left_field + cut_off + unsampled + remainder
+/// == 1, both within 1e-12 as long as mean_steps times what a row's sum lacks from 1 (counts: some
+/// 1e-16) stays below that: nothing is normalised.
+struct FinalDistribution {
+  CellProbabilities final_cells;  // (rows x columns)
+  double trapped = 0.0;
+  double left_field = 0.0;
+  double cut_off = 0.0;    // visited max_cells cells and would have gone on
+  double unsampled = 0.0;  // entered a state whose row was never sampled
+  /// The same by Ending; its four edges together are left_field.
+  std::array<double, kEndings> endings{};
+  /// Cells in which walks ended otherwise than trapped, in ascending order. In all others, all of
+  /// final_cells was trapped.
+  std::vector<CellEndings> mixed_cells;
+  /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for.
+  /// As that would end at most once, it bounds the errors of all cells together, and of each number
+  /// above.
+  double remainder = 0.0;
+  /// What rounding adds to these errors at most, to first order in 1e-16 (that of counts into
+  /// probabilities included).
+  double rounding = 0.0;
+  double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; without the remainder's
+  int steps = 0;            // propagation steps done (0 for a solve)
+};
+
+/// Shares of all walks that were trapped in each cell; that left the field from it (rows x
+/// columns).
+[[nodiscard]] CellProbabilities trapped_cells(const FinalDistribution& d);
+[[nodiscard]] CellProbabilities departed_cells(const FinalDistribution& d);
+
+/// How a prediction is made: the limit of cells, the route to the answer, and when it stops. All
+/// defaults stand here.
+struct PredictOptions {
+  /// Cells a walk may visit before it is cut off; 0: no limit.
+  int max_cells = 0;
+
+  /// automatic: `rows` if there is no limit of cells and no exit leads to a row below, and all
+  ///   cells of a row have one type; else `steps`.
+  /// steps: forward propagation of all planes of the field, step by step. Memory per start: 4 n_in
+  ///   numbers per cell that can be reached, half of that when every move leads to the other colour
+  ///   of a chessboard. With a limit it stops once next to nobody walks (1e-30 of all walks in any
+  ///   state of a cell).
+  /// rows: without limit, row by row: what enters a row walks in it until it has left it, then the
+  ///   next row is entered. Memory: a few rows x n_in numbers, whatever the number of rows, and for
+  ///   elimination up to 512 MiB.
+  /// klu: solve_absorption().
+  /// plain: propagate().
+  enum class Solver { automatic, steps, rows, klu, plain };
+  Solver solver = Solver::automatic;
+
+  /// How `rows` finds the visits of a row: by elimination of its columns, which takes as long
+  /// whatever the number of moves, if the chain lets it (no move within a row to any but the next
+  /// column); by `sums` over more and more moves; `cheapest`: what takes fewer operations by
+  /// estimate.
+  enum class RowMethod { cheapest, elimination, sums };
+  RowMethod row_method = RowMethod::cheapest;
+
+  /// Without limit: the share of all walks that may be left walking (`remainder`; elimination may
+  /// leave more where rounding lets it not do better). None: 1e-12 for `rows`, else 1e-13.
+  std::optional<double> tolerance = std::nullopt;
+  /// Without limit: steps after which `steps` and `plain` stop (the caller reads `remainder`), and
+  /// moves within one row after which `rows` by sums gives up.
+  int max_steps = 1'000'000;
+
+  [[nodiscard]] double tolerance_of(Solver used) const {
+    return tolerance.value_or(used == Solver::rows ? 1e-12 : 1e-13);
+  }
+};
+
+struct PredictionPlan;  // predict/plan.h
+
+/// A field's chain, prepared for any starts and any field it fits. May be used from several threads
+/// at a time.
+class Predictor {
+ public:
+  /// Throws std::invalid_argument for moves of more than 10^4 cells.
+  explicit Predictor(FieldChain chain);
+  ~Predictor();
+  Predictor(const Predictor&) = delete;
+  Predictor& operator=(const Predictor&) = delete;
+
+  /// Throws std::invalid_argument when chain, field, start and options cannot belong together
+  /// (`rows` and `klu` with a limit of cells, `rows` unless can_go_by_rows()); std::runtime_error
+  /// when walks can circle (almost) for ever: `rows` takes more than max_steps sums in a row, or
+  /// it or `klu` is left with fewer than 6 digits.
+  [[nodiscard]] FinalDistribution predict(const Field& field, const Start& start,
+                                          const PredictOptions& options = {}) const;
+  /// From several starts side by side, on all threads of the current TBB arena: the same bits as
+  /// one by one, in less time.
+  [[nodiscard]] std::vector<FinalDistribution> predict_all(
+      const Field& field, const std::vector<Start>& starts,
+      const PredictOptions& options = {}) const;
+
+  /// Whether Solver::rows can be used: no exit leads to a row below, rows are uniform.
+  [[nodiscard]] bool can_go_by_rows() const;
+
+ private:
+  std::unique_ptr<const PredictionPlan> plan_;
+};
+
+/// One prediction per start: Predictor(chain).predict_all(field, starts, options).
+[[nodiscard]] std::vector<FinalDistribution> predict(const FieldChain& chain, const Field& field,
+                                                     const std::vector<Start>& starts,
+                                                     const PredictOptions& options = {});
+
+/// The plain reference: forward propagation, Eq. (16) applied once per cell and step. With
+/// options.max_cells: exact after so many steps, fewer if nobody walks any more. Without: steps
+/// until at most the tolerance still walks, or max_steps are done. Memory: 2 cells x n_in numbers.
+[[nodiscard]] FinalDistribution propagate(const FieldChain& chain, const Field& field,
+                                          const Start& start, const PredictOptions& options = {});
+
+/// Without limit, by one sparse LU solve of (I - Q)^T visits = start over the reachable transient
+/// (cell, input) pairs (SuiteSparse KLU). Throws std::runtime_error when the matrix is singular (a
+/// walk can circle for ever) or its estimated condition leaves fewer than 6 digits.
+/// A second route to check the first by, not a faster one: 9 x 9 cells of 87 states take some 0.3
+/// s.
+[[nodiscard]] FinalDistribution solve_absorption(const FieldChain& chain, const Field& field,
+                                                 const Start& start);
+
+}  // namespace gatewalk::markov
