@@ -28,16 +28,4 @@ void Work::in_pieces(std::string_view what, std::int64_t total,
   tell(what, total, total);
 }
 
-Work Work::part(std::string what, std::int64_t before, std::int64_t size,
-                std::int64_t total) const {
-  if (!told) return {};
-  return {[this, what = std::move(what), before, size, total](std::string_view, std::int64_t done,
-                                                              std::int64_t of) {
-    const double share = of > 0 ? static_cast<double>(done) / static_cast<double>(of) : 1.0;
-    // The end of a part is not the end of all.
-    const std::int64_t now = before + std::llround(share * static_cast<double>(size));
-    told(what, std::min(now, total - 1), total);
-  }};
-}
-
 }  // namespace gatewalk::dynamics

@@ -37,10 +37,6 @@ struct Work {
   void tell(std::string_view what, std::int64_t done, std::int64_t total) const {
     if (told) told(what, done, total);
   }
-  /// Work that is one part of this: whatever its own pieces are, they are told as `what`, from
-  /// `before` to `before` + `size` of `total`. This one must outlive it.
-  [[nodiscard]] Work part(std::string what, std::int64_t before, std::int64_t size,
-                          std::int64_t total) const;
 };
 
 /// Seconds since construction.

@@ -39,7 +39,7 @@ int run_build(const std::vector<std::string>& arguments) {
       lattice::build_matrix(scene, states, trials, options.seed(), options.work()), {}};
   const double seconds = watch.seconds();
   lattice::check_outcomes(scene, lattice::RunsFrom::everywhere, options.seed(),
-                          file.transitions.totals().runs, file.transitions.health);
+                          file.transitions.totals().runs, file.transitions.health, options.work());
   const dynamics::Transitions& t = file.transitions;
   file.text = {
       {"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},

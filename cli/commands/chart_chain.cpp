@@ -856,6 +856,13 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
 
   Chart chart;
   const std::vector<double> factors = factors_of(options);
+  for (const double factor : factors) {
+    try {
+      if (from_pilot) (void)lattice::states_for(factor);
+    } catch (const std::invalid_argument& e) {
+      throw UsageError("--bins " + Json(factor).dump() + ": " + e.what());
+    }
+  }
   const lattice::Pilot pilot =
       from_pilot ? lattice::run_pilot(scene, bodies, pilot_trials, options.seed(), options.work())
                  : lattice::Pilot{};

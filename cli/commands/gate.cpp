@@ -23,7 +23,8 @@ int run_gate(const std::vector<std::string>& arguments) {
     tally += dynamics::run_gate_trials(scene.gate, scene.start, options.seed(), {first, n});
   });
 
-  lattice::check_outcomes(scene, lattice::RunsFrom::start, options.seed(), trials, tally.health);
+  lattice::check_outcomes(scene, lattice::RunsFrom::start, options.seed(), trials, tally.health,
+                          options.work());
 
   Json json = to_json(tally);
   if (!settled.is_null()) json["method"] = settled;

@@ -219,7 +219,8 @@ int run_landscape(const std::vector<std::string>& arguments) {
     run_in_batches("gate runs", trials, options.talk(), [&](std::int64_t first, std::int64_t n) {
       tally += dynamics::run_gate_trials(scene.gate, scene.start, options.seed(), {first, n});
     });
-    lattice::check_outcomes(scene, lattice::RunsFrom::start, options.seed(), trials, tally.health);
+    lattice::check_outcomes(scene, lattice::RunsFrom::start, options.seed(), trials, tally.health,
+                            options.work());
     json["measured"] = to_json(tally);
     if (!settled.is_null()) json["measured"]["method"] = settled;
     json["measured"]["status"] = to_json(tally.health);

@@ -29,7 +29,7 @@ int run_lattice(const std::vector<std::string>& arguments) {
     tally.final_gate_of_trial.clear();  // asked for by nobody
   });
   lattice::check_outcomes(scene, lattice::RunsFrom::everywhere, options.seed(), trials,
-                          tally.health);
+                          tally.health, options.work());
 
   Json json;
   const EndingShares shares(tally.endings, tally.trials);

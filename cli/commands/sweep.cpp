@@ -266,7 +266,7 @@ int run_sweep(const std::vector<std::string>& arguments) {
                                                           options.seed(), {first, n});
                    });
     lattice::check_outcomes(p.scene, lattice::RunsFrom::start, options.seed(), trials,
-                            p.tally.health);
+                            p.tally.health, options.work());
     health += p.tally.health;
   }
   progress.finish();

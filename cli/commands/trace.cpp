@@ -68,7 +68,7 @@ std::string table_of(const lattice::Scene& scene, const std::vector<Recording>& 
 /// `only` names one ending, or several by the words they begin with. Who has crossed has left the
 /// field too.
 bool fits(const std::string& ending, const std::string& only) {
-  if (only == "left field" && ending == "crossed") return true;
+  if (ending == "crossed" && fits("left field", only)) return true;
   return ending.starts_with(only) && (ending.size() == only.size() || ending[only.size()] == ' ');
 }
 
@@ -175,7 +175,7 @@ int run_trace(const std::vector<std::string>& arguments) {
 
   lattice::check_outcomes(scene,
                           across_field ? lattice::RunsFrom::everywhere : lattice::RunsFrom::start,
-                          options.seed(), std::max(trials, kCheckedAs), health);
+                          options.seed(), std::max(trials, kCheckedAs), health, options.work());
 
   const bool wanted = options.has("replay") || options.has("video") || options.has("json");
   Json film = wanted ? film_of(scene, runs, across_field) : Json::object();

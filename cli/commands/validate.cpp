@@ -510,7 +510,7 @@ int run_validate(const std::vector<std::string>& arguments) {
     warn_if_poor(made);
     auto built = lattice::build_matrix(scene, made, matrix_trials, options.seed(), options.work());
     lattice::check_outcomes(scene, lattice::RunsFrom::everywhere, options.seed(),
-                            built.totals().runs, built.health);
+                            built.totals().runs, built.health, options.work());
     Json status = gatewalk::cli::to_json(built.health);
     return MatrixAndScene{{std::move(built), {}}, scene, std::move(status)};
   }();

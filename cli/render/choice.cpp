@@ -48,7 +48,7 @@ std::string complaint(const lattice::Settled& settled) {
            std::string(dynamics::name_of(settled.choice.reference_verdict)) +
            "), nothing can be compared with it; took it all the same: " +
            setting_text(to_json(settled));
-  else if (!settled.choice.met)
+  if (!settled.choice.met)
     return "run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance "
            "= " +
            Json(settled.tolerance).dump() +

@@ -226,15 +226,17 @@ double uncertainty_of(const WeakError& e, std::int64_t trials) {
 }
 
 void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
-                    std::uint64_t seed, std::int64_t trials) {
+                    std::uint64_t seed, std::int64_t trials, const Work& work) {
   const GateParams better = checking_setting(p);
   TrialEnds here, there;
   std::vector<TrialRange> parts;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     parts.push_back(share_of(trials, i, starts.size()));
+    work.tell("check by a better method", parts.back().first, trials);
     add_trial_ends(here, p, starts[i], seed, parts.back());
     add_trial_ends(there, better, starts[i], seed, parts.back());
   }
+  work.tell("check by a better method", trials, trials);
   const WeakError e = outcome_error(here.trials, there.trials, parts);
   health.checked_trials += trials;
   health.outcome_error =

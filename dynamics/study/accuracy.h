@@ -18,6 +18,7 @@
 
 #include "dynamics/state_space.h"
 #include "dynamics/study/verdict.h"
+#include "dynamics/work.h"
 
 namespace gatewalk::dynamics {
 
@@ -157,7 +158,7 @@ struct StrongError {
 /// and half the step may be as wrong. On all threads of the current TBB arena, the same for any
 /// number of them. Throws InvalidParameter.
 void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
-                    std::uint64_t seed, std::int64_t trials);
+                    std::uint64_t seed, std::int64_t trials, const Work& work = {});
 
 /// The trials of start i among `trials` that are shared out evenly.
 [[nodiscard]] TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts);

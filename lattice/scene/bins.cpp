@@ -70,15 +70,18 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
   return pilot;
 }
 
+int states_for(double scale) {
+  const double states = std::round(kAutoStates * scale * scale * scale);
+  if (!(states >= 1.0 && states <= kMostStates))
+    throw std::invalid_argument("makes fewer than 1 or more than " + std::to_string(kMostStates) +
+                                " states");
+  return static_cast<int>(states);
+}
+
 SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
   std::vector<Crossing> entries = pilot.entries;
   if (symmetric(scene.gate)) add_mirror_images(entries);
-  const double states = std::round(kAutoStates * scale * scale * scale);
-  if (!(states >= 1.0 && states <= kMostStates))
-    throw std::invalid_argument("bins finer by " + std::to_string(scale) +
-                                ": fewer than 1 or more than " + std::to_string(kMostStates) +
-                                " states");
-  StateSpace space = quantile_space(scene.gate, entries, static_cast<int>(states), pilot.starts);
+  StateSpace space = quantile_space(scene.gate, entries, states_for(scale), pilot.starts);
   Entries of_rows = entries_of(space, entries);
   return {std::move(space), std::move(of_rows)};
 }

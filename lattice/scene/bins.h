@@ -49,6 +49,10 @@ struct Pilot {
 /// Trials per start that bins are made of.
 inline constexpr std::int64_t kPilotTrials = 2000;
 
+/// How many states so many times the usual bins per axis make. Throws std::invalid_argument for
+/// fewer than 1 or too many.
+[[nodiscard]] int states_for(double scale);
+
 /// States of about `scale` times as many bins per axis as usual, from a pilot; and where its rows
 /// start: entries seen, with their mirror images where the gate is symmetric.
 struct SeenStates {

@@ -86,9 +86,9 @@ std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t 
 }
 
 void check_outcomes(const Scene& scene, RunsFrom from, std::uint64_t seed, std::int64_t trials,
-                    dynamics::Health& health) {
+                    dynamics::Health& health, const dynamics::Work& work) {
   dynamics::check_outcomes(health, scene.gate, pilot_starts(scene, from), seed,
-                           dynamics::check_sample(trials));
+                           dynamics::check_sample(trials), work);
 }
 
 }  // namespace gatewalk::lattice

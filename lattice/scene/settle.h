@@ -35,6 +35,6 @@ struct Settled {
 /// Runs a sample of `trials` again by a better method, and puts into `health` what that changes:
 /// see dynamics::check_outcomes.
 void check_outcomes(const Scene& scene, RunsFrom from, std::uint64_t seed, std::int64_t trials,
-                    dynamics::Health& health);
+                    dynamics::Health& health, const dynamics::Work& work = {});
 
 }  // namespace gatewalk::lattice

@@ -50,8 +50,6 @@ TEST(Work, NobodyNeedsToWatch) {
   int calls = 0;
   Work{}.in_pieces("runs", 0, [&](TrialRange) { ++calls; });
   EXPECT_EQ(calls, 0);
-  Work{}.part("part", 0, 1, 2).in_pieces("runs", 1, [&](TrialRange) { ++calls; });
-  EXPECT_EQ(calls, 1);
 }
 
 TEST(Work, StopsBetweenPiecesWhenToldThrows) {
@@ -64,19 +62,6 @@ TEST(Work, StopsBetweenPiecesWhenToldThrows) {
       std::runtime_error);
   EXPECT_GE(done, 5);
   EXPECT_LT(done, 1'000'000'000'000);
-}
-
-// Two parts of three quarters and one quarter, under one name; no part ends the whole.
-TEST(Work, PartsOfLongerWork) {
-  std::vector<std::int64_t> told;
-  const Work work{[&](std::string_view what, std::int64_t done, std::int64_t total) {
-    EXPECT_EQ(what, "grid");
-    EXPECT_EQ(total, 400);
-    told.push_back(done);
-  }};
-  work.part("grid", 0, 300, 400).in_pieces("runs", 1, [](TrialRange) {});
-  work.part("grid", 300, 100, 400).in_pieces("others", 1, [](TrialRange) {});
-  EXPECT_EQ(told, (std::vector<std::int64_t>{0, 300, 300, 399}));
 }
 
 }  // namespace
