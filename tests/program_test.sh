@@ -252,6 +252,7 @@ jq -s '(.[0].runs | map(select(.ending == "crossed"))) == .[1].runs and .[0].rec
 expect 2 '^gatewalk: --video short.avi: a video is FILE.mp4 or FILE.gif$' "$gatewalk" trace "$scenes/soft_left.toml" --video short.avi
 expect 0 '^trial,' "$gatewalk" trace "$scenes/soft_left.toml" --csv -
 expect 2 'a run ends as one of' "$gatewalk" trace "$scenes/soft_left.toml" --only stuck
+expect 2 'bins 100.0: makes fewer than 1' "$gatewalk" chart-chain "$scenes/field.toml" --set beams.length_m=20 -o refused --bins 100 --truth-trials 100
 expect 1 'none of trials 0 to 4' "$gatewalk" trace "$scenes/single_gate.toml" --trials 5 --only 'traversed right'
 expect 2 'at most 1000 runs' "$gatewalk" trace "$scenes/soft_left.toml" --trials 1001
 expect 2 'are the same file' "$gatewalk" trace "$scenes/soft_left.toml" --csv x.csv --json x.csv

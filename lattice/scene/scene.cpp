@@ -17,6 +17,7 @@
 #include <variant>
 
 #include "dynamics/methods/method.h"
+#include "lattice/scene/digits.h"
 #include "lattice/scene/edit_distance.h"
 #include "lattice/scene/scene_bins.h"
 
@@ -163,12 +164,6 @@ std::string unit_of(std::string_view key) {
 }
 
 // ---- Texts
-
-/// The shortest digits that read back as the same double.
-std::string shortest(double v) {
-  std::array<char, 32> buffer;
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), v).ptr};
-}
 
 /// As `shortest`, but never to be taken for a whole number: "8.0", "-0.0".
 std::string float_text(double v) {

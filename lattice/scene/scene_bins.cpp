@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+
+#include "lattice/scene/digits.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -29,17 +30,10 @@ std::string all_keys() {
 }
 
 /// The shortest digits that read back the same, never a whole number: "0.2", "-1.0".
-/// A TOML float: the digits that read back the same.
-std::string text(double v) {
-  std::array<char, 32> buffer{};
-  const std::string digits(buffer.data(),
-                           std::to_chars(buffer.data(), buffer.data() + buffer.size(), v).ptr);
-  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
-}
 
 std::string text(const std::vector<double>& edges) {
   std::string list;
-  for (const double e : edges) list += (list.empty() ? "[" : ", ") + text(e);
+  for (const double e : edges) list += (list.empty() ? "[" : ", ") + toml_float(e);
   return list + "]";
 }
 
@@ -103,7 +97,8 @@ std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<Given
                                                                                       : above;
     if (g.axis == &Bins::d && !(g.edges.front() >= low && g.edges.back() <= high))
       throw SceneError(g.origin + ": " + g.name + " = " + text(g.edges) +
-                       " is not permitted: must lie in [" + text(low) + ", " + text(high) + "] m");
+                       " is not permitted: must lie in [" + toml_float(low) + ", " +
+                       toml_float(high) + "] m");
     bins[g.boundary].*g.axis = g.edges;
   }
   double states = 0.0;

@@ -1,10 +1,9 @@
 #include "lattice/scene/settle.h"
 
-#include <array>
-#include <charconv>
 #include <sstream>
 
 #include "lattice/scene/bins.h"
+#include "lattice/scene/digits.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -23,12 +22,6 @@ std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from)
         dynamics::entry_state(scene.gate, {c.boundary, middle(c.d), middle(c.vx), middle(c.vy)}));
   }
   return starts;
-}
-
-/// The shortest digits that read back the same.
-std::string shortest(double x) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr};
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "lattice/scene/table4.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 #include "lattice/scene/bins.h"
+#include "lattice/scene/digits.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -25,14 +24,6 @@ std::vector<PaperStart> table_iv(const dynamics::GateParams& p) {
   return starts;
 }
 
-/// The digits that read back the same, a whole number with ".0".
-std::string number(double x) {
-  std::array<char, 32> buffer{};
-  const std::string digits(buffer.data(),
-                           std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr);
-  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
-}
-
 }  // namespace
 
 std::vector<PaperStart> usual_starts(const Scene& scene) {
@@ -49,7 +40,7 @@ std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& start
   for (const PaperStart& s : starts) {
     if (s.y != 0.0)
       throw std::invalid_argument(
-          "start.y_m = " + number(s.y) +
+          "start.y_m = " + toml_float(s.y) +
           " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
     bodies.push_back(s.body());
   }
@@ -60,9 +51,9 @@ void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
   const double side = scene.gate.beams.joint_x;
   for (const PaperStart& s : starts)
     if (!(std::abs(s.d) < side))
-      throw std::invalid_argument("--start: d = " + number(s.d) +
-                                  " m must lie inside the gate, (-" + number(side) + ", " +
-                                  number(side) + ")");
+      throw std::invalid_argument("--start: d = " + toml_float(s.d) +
+                                  " m must lie inside the gate, (-" + toml_float(side) + ", " +
+                                  toml_float(side) + ")");
 }
 
 }  // namespace gatewalk::lattice

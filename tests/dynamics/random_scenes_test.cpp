@@ -155,6 +155,25 @@ TEST(RandomScenes, StableAndEventAgreeWhereBothSayClean) {
       scenes, both, said, refused, worst, off);
 }
 
+// Scenes in which a method once was wrong: beams that swing out and back between events (1542) or
+// within a step (5303), which decides between left and right; next to no force, beside which a
+// tolerance is coarse (659).
+TEST(RandomScenes, FastBeamsAndSmallForces) {
+  const std::int64_t trials = 2000;
+  const auto ends_of = [&](const RandomScene& s, const GateParams& p) {
+    TrialEnds ends;
+    add_trial_ends(ends, p, s.start, 1, {0, trials});
+    return ends.trials;
+  };
+  for (const auto& [n, method] : {std::pair{1542, "event"}, {5303, "stable"}, {659, "event"}}) {
+    SCOPED_TRACE(testing::Message() << "scene " << n << ", " << method);
+    const RandomScene s = random_scene(static_cast<std::uint64_t>(n));
+    GateParams fine = by(s.p, "stable");
+    fine.run.step /= 16;
+    EXPECT_LE(outcome_error(ends_of(s, by(s.p, method)), ends_of(s, fine)).total_variation, 0.01);
+  }
+}
+
 // The other methods: what is off says so. `moreau` at its default step may be off by some per cent
 // (dynamics/README.md).
 TEST(RandomScenes, WhatIsOffSaysSo) {
