@@ -1,5 +1,7 @@
 #include "dynamics/study/stability.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include <memory>
 
 #include "dynamics/methods/paper.h"
+#include "dynamics/study/accuracy.h"
 
 namespace gatewalk::dynamics {
 namespace {
@@ -187,6 +190,44 @@ MapPoint run_point(MapKind kind, std::string_view method, double x, double y, st
   point.verdict = judge(point.health, point.cut_short, 0.0);
   if (point.verdict == Verdict::fine && missed) point.verdict = Verdict::missed_hit;
   return point;
+}
+
+std::int64_t FinishedMap::count(Verdict v) const {
+  return std::count_if(points.begin(), points.end(),
+                       [v](const MapPoint& p) { return p.verdict == v; });
+}
+
+FinishedMap run_map(const StabilityMap& map, std::uint64_t seed, const Work& work) {
+  const std::vector<double>&x = map.x.values, &y = map.y.values;
+  FinishedMap done{map, {}, {}};
+  done.points.resize(x.size() * y.size());
+  done.seconds.resize(done.points.size());
+  work.in_pieces(std::string(map.name) + ", " + map.method,
+                 static_cast<std::int64_t>(done.points.size()), [&](TrialRange range) {
+                   tbb::parallel_for(range.first, range.first + range.count, [&](std::int64_t k) {
+                     const auto i = static_cast<std::size_t>(k);
+                     const Stopwatch watch;
+                     done.points[i] =
+                         run_point(map.kind, map.method, x[i % x.size()], y[i / x.size()], seed);
+                     done.seconds[i] = watch.seconds();
+                   });
+                 });
+  return done;
+}
+
+std::vector<StabilityMap> stability_maps(bool quick) {
+  std::vector<StabilityMap> maps;
+  for (int kind = 0; kind < kMapKinds; ++kind)
+    for (const auto method : chart_methods())
+      maps.push_back(stability_map(static_cast<MapKind>(kind), method, quick));
+  return maps;
+}
+
+std::vector<FinishedMap> run_maps(const StabilityOptions& options, const Work& work) {
+  std::vector<FinishedMap> maps;
+  for (const StabilityMap& map : stability_maps(options.quick))
+    maps.push_back(run_map(map, options.seed, work));
+  return maps;
 }
 
 double semi_implicit_bound(const GateParams& p) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dynamics/study/verdict.h"
+#include "dynamics/work.h"
 
 namespace gatewalk::dynamics {
 
@@ -59,6 +60,34 @@ inline constexpr std::int64_t kMostWorkPerPoint = 2'000'000;
 /// Runs the point (x, y) of a map. Trial numbers name the random force: the same at every point.
 [[nodiscard]] MapPoint run_point(MapKind kind, std::string_view method, double x, double y,
                                  std::uint64_t seed);
+
+/// A map with all its points run.
+struct FinishedMap {
+  StabilityMap map;
+  std::vector<MapPoint> points;  // (y x x): row after row
+  std::vector<double> seconds;   // that each point took
+
+  [[nodiscard]] const MapPoint& at(std::size_t ix, std::size_t iy) const {
+    return points[iy * map.x.values.size() + ix];
+  }
+  /// Points of this verdict.
+  [[nodiscard]] std::int64_t count(Verdict v) const;
+};
+
+/// Runs every point of the map, on all threads of the current TBB arena; the same for any number of
+/// them, but for the seconds.
+[[nodiscard]] FinishedMap run_map(const StabilityMap& map, std::uint64_t seed,
+                                  const Work& work = {});
+
+struct StabilityOptions {
+  bool quick = false;  // coarser maps
+  std::uint64_t seed = 1;
+};
+/// Every kind of map, and of each kind one for every method of chart_methods(), in that order.
+[[nodiscard]] std::vector<StabilityMap> stability_maps(bool quick);
+/// Runs them all.
+[[nodiscard]] std::vector<FinishedMap> run_maps(const StabilityOptions& options,
+                                                const Work& work = {});
 
 // ---- Borders known without running anything ----
 

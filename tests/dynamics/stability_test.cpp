@@ -63,6 +63,60 @@ TEST(StabilityMap, PointsCanBeRepeated) {
             run_point(MapKind::step_stiffness, "stable", 0.004, 400.0, 2).health.worst_speed);
 }
 
+// `paper` is stable up to the stiffness d/h. With steps c, 2c, 4c and stiffnesses of 1.5 and 3
+// times d/4c, whose bounds in those units are 4, 2 and 1, by hand:
+//          c     2c    4c
+//   3      in    out   out
+//   1.5    in    in    out
+StabilityMap small_map() {
+  const double c = 0.001, unit = GateParams{}.beams.damping / (4 * c);
+  StabilityMap map;
+  map.kind = MapKind::step_stiffness;
+  map.name = "small";
+  map.method = "paper";
+  map.x.values = {c, 2 * c, 4 * c};
+  map.y.values = {1.5 * unit, 3 * unit};
+  return map;
+}
+
+TEST(RunMap, PutsEveryPointInItsPlace) {
+  const FinishedMap done = run_map(small_map(), 1);
+  ASSERT_EQ(done.points.size(), 6u);
+  ASSERT_EQ(done.seconds.size(), 6u);
+  for (const auto& [ix, iy] : {std::pair{2u, 0u}, {1u, 1u}, {2u, 1u}})
+    EXPECT_EQ(done.at(ix, iy).verdict, Verdict::beyond_bound) << ix << ' ' << iy;
+  EXPECT_EQ(done.count(Verdict::beyond_bound), 3);
+  // The point itself, of that seed.
+  const auto& map = done.map;
+  EXPECT_EQ(
+      done.at(0, 1).health.worst_speed,
+      run_point(map.kind, map.method, map.x.values[0], map.y.values[1], 1).health.worst_speed);
+  for (const double seconds : done.seconds) EXPECT_GT(seconds, 0.0);
+}
+
+TEST(RunMap, CanBeStopped) {
+  struct Enough {};
+  std::int64_t told = 0;
+  const Work work{[&](std::string_view what, std::int64_t done, std::int64_t total) {
+    EXPECT_EQ(what, "small, paper");
+    EXPECT_EQ(total, 6);
+    ++told;
+    if (done > 0) throw Enough{};
+  }};
+  EXPECT_THROW((void)run_map(small_map(), 1, work), Enough);
+  EXPECT_EQ(told, 2);  // before the first point, and after it
+}
+
+TEST(StabilityMaps, AreKindByKindForEveryMethod) {
+  const auto maps = stability_maps(true);
+  const auto methods = chart_methods();
+  ASSERT_EQ(maps.size(), kMapKinds * methods.size());
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(maps[i].kind), i / methods.size());
+    EXPECT_EQ(maps[i].method, methods[i % methods.size()]);
+  }
+}
+
 // ---- Borders that are known ----
 
 // Explicit Euler grows a swinging beam when h > d/k. Both sides of the border, 1 % away.

@@ -1,0 +1,25 @@
+#pragma once
+/// Maps of where methods break, as JSON, CSV, a table and figures.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "dynamics/study/stability.h"
+
+namespace gatewalk::cli {
+
+/// Every map with its axes, verdicts (y x x) and borders, and what its points were granted.
+[[nodiscard]] Json to_json(const std::vector<dynamics::FinishedMap>& maps);
+/// A line for each point.
+[[nodiscard]] std::string csv_of(const std::vector<dynamics::FinishedMap>& maps);
+/// How many points of each map got each verdict.
+[[nodiscard]] std::string table_of(const std::vector<dynamics::FinishedMap>& maps);
+
+/// "step_stiffness.svg"
+[[nodiscard]] std::string figure_name(const dynamics::StabilityMap& map);
+/// The maps of one kind side by side, at most five, into the SVG file `path`.
+void draw(const std::string& path, std::span<const dynamics::FinishedMap> maps);
+
+}  // namespace gatewalk::cli
