@@ -168,4 +168,40 @@ Pass lowest_pass(const Landscape& l, double x, double y) {
   return pass;
 }
 
+namespace {
+
+double lowest_y(const BodyState& start) { return std::min(0.0, start.y); }
+
+GridPasses grid_passes(const GateParams& p, const BodyState& start, double spacing,
+                       BeamsThatPush beams) {
+  GridPasses found{spacing, landscape(p, lowest_y(start), spacing, beams), {}, {}};
+  found.from_start = lowest_pass(found.landscape, start.x, start.y);
+  const auto [x, y] = basin_below(found.landscape, start.x, start.y);
+  found.from_basin = lowest_pass(found.landscape, x, y);
+  return found;
+}
+
+}  // namespace
+
+Spacings spacings_for(const GateParams& p, const BodyState& start) {
+  constexpr double kUsual = 0.5;  // units of length
+  constexpr double kMostAlongASide = 2000;
+  const double most = p.beams.joint_x;
+  const double least = std::max(p.run.traverse_y - lowest_y(start), 2.0 * most) / kMostAlongASide;
+  return {least, std::clamp(kUsual * scale_of(p).length, least, std::max(least, most)), most};
+}
+
+Passes passes(const GateParams& p, const BodyState& start, double spacing, BeamsThatPush beams) {
+  constexpr double kFiner = 10.0;
+  const Spacings permitted = spacings_for(p, start);
+  if (!(spacing >= permitted.least && spacing <= permitted.most))
+    throw std::invalid_argument("passes: no grid can have this spacing");
+  Passes found;
+  found.beams = beams;
+  found.kinetic_energy = 0.5 * p.body.mass * (start.vx * start.vx + start.vy * start.vy);
+  found.coarse = grid_passes(p, start, spacing, beams);
+  found.fine = grid_passes(p, start, std::max(spacing / kFiner, permitted.least), beams);
+  return found;
+}
+
 }  // namespace gatewalk::dynamics

@@ -56,4 +56,39 @@ struct Pass {
 /// side).
 [[nodiscard]] Pass lowest_pass(const Landscape& l, double x, double y);
 
+// ---- The way through, on two grids ----
+
+/// Spacings (m) for a grid over the gate and down to the start.
+struct Spacings {
+  double least;  // 2000 of them along the longer side
+  double usual;  // the paper's, half a unit of length (Scale), but neither below `least` nor above
+                 // `most`
+  double most;   // two from side to side
+};
+[[nodiscard]] Spacings spacings_for(const GateParams& p, const BodyState& start);
+
+/// What one grid shows.
+struct GridPasses {
+  double spacing = 0.0;  // m, at most
+  Landscape landscape;
+  Pass from_start, from_basin;  // of the basin below the start
+
+  /// From the start to the pass out of the basin (J); below zero where the start lies higher.
+  [[nodiscard]] double above_start() const { return from_basin.energy - from_start.start_energy; }
+  /// There is no basin on the way to the far boundary.
+  [[nodiscard]] bool downhill() const { return from_basin.way.size() == 1; }
+};
+
+/// The lowest way through on a grid and on a finer one: the pass may lie between grid points.
+struct Passes {
+  BeamsThatPush beams = kBothBeams;
+  double kinetic_energy = 0.0;  // J, of the start
+  GridPasses coarse;            // of the spacing asked for
+  GridPasses fine;              // ten times finer, or of the least spacing
+};
+/// The grids begin at y = 0, or at the start if that lies lower. Throws std::invalid_argument for a
+/// spacing outside spacings_for, and as landscape and lowest_pass do.
+[[nodiscard]] Passes passes(const GateParams& p, const BodyState& start, double spacing,
+                            BeamsThatPush beams = kBothBeams);
+
 }  // namespace gatewalk::dynamics

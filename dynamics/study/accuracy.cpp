@@ -243,6 +243,15 @@ void check_outcomes(Health& health, const GateParams& p, std::span<const BodySta
       std::max(health.outcome_error, e.total_variation - 2.0 * uncertainty_of(e, trials));
 }
 
+GateTally run_checked_trials(const GateParams& p, const BodyState& start, std::uint64_t seed,
+                             std::int64_t trials, const Work& work) {
+  GateTally tally;
+  work.in_pieces("gate runs", trials,
+                 [&](TrialRange range) { tally += run_gate_trials(p, start, seed, range); });
+  check_outcomes(tally.health, p, {&start, 1}, seed, check_sample(trials), work);
+  return tally;
+}
+
 // ---- Errors ----
 
 WeakError outcome_error(std::span<const TrialEnd> run, std::span<const TrialEnd> reference) {

@@ -160,6 +160,12 @@ struct StrongError {
 void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
                     std::uint64_t seed, std::int64_t trials, const Work& work = {});
 
+/// `trials` runs from one start, a sample of them (check_sample) checked so. Throws
+/// InvalidParameter.
+[[nodiscard]] GateTally run_checked_trials(const GateParams& p, const BodyState& start,
+                                           std::uint64_t seed, std::int64_t trials,
+                                           const Work& work = {});
+
 /// The trials of start i among `trials` that are shared out evenly.
 [[nodiscard]] TrialRange share_of(std::int64_t trials, std::size_t i, std::size_t starts);
 /// One standard error of a total variation of paired trials, from above: a trial that changed moves

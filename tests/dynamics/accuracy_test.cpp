@@ -289,6 +289,25 @@ TEST(TrialEnds, CutShortIsBroken) {
   EXPECT_EQ(end_of(p, space, cut).column, space.size() + 1);
 }
 
+// ---- A check by a better method ----
+
+// The trials are those of the gate; the sample is a fifth of them, not fewer than 100.
+TEST(CheckedTrials, AreThoseOfTheGateAndASampleIsChecked) {
+  const GateParams p = test::study(10.0);
+  const BodyState start{.x = 1.0, .y = 0.0, .vx = 0.0, .vy = 12.0};
+  const GateTally checked = run_checked_trials(p, start, 3, 600);
+  const GateTally plain = run_gate_trials(p, start, 3, {0, 600});
+  EXPECT_EQ(checked.trials, 600);
+  EXPECT_EQ(checked.traversed_left, plain.traversed_left);
+  EXPECT_EQ(checked.trapped, plain.trapped);
+  EXPECT_EQ(checked.health.impacts, plain.health.impacts);
+  EXPECT_EQ(plain.health.checked_trials, 0);
+  EXPECT_EQ(checked.health.checked_trials, 120);
+  Health by_hand = plain.health;
+  check_outcomes(by_hand, p, {&start, 1}, 3, 120);
+  EXPECT_EQ(checked.health.outcome_error, by_hand.outcome_error);
+}
+
 // ---- Order of a method ----
 
 // `stable`, 300 trials, against itself at hold/80: the median exit of trials that have not parted

@@ -180,6 +180,61 @@ TEST(Landscape, ThePassIsTheLowestOfTheHighest) {
   EXPECT_THROW((void)lowest_pass(l, 5.0, 0.0), std::invalid_argument);
 }
 
+// ---- On two grids ----
+
+// Without springs there is only the propulsion: 8 N downhill from y = 20 to 60 m.
+TEST(Passes, WithoutSpringsAreDownhill) {
+  GateParams p = test::free_rods();
+  p.forces.propulsion = 8.0;
+  ASSERT_EQ(p.run.traverse_y, 60.0);
+  const Passes found = passes(p, {.x = 0.0, .y = 20.0, .vx = 3.0, .vy = 4.0}, 5.0);
+  EXPECT_DOUBLE_EQ(found.kinetic_energy, 12.5 * p.body.mass);
+  EXPECT_EQ(found.coarse.spacing, 5.0);
+  EXPECT_EQ(found.fine.spacing, 0.5);
+  for (const GridPasses& grid : {found.coarse, found.fine}) {
+    EXPECT_TRUE(grid.downhill());
+    EXPECT_DOUBLE_EQ(grid.from_start.start_energy, 320.0);
+    EXPECT_EQ(grid.from_start.barrier(), 0.0);
+    EXPECT_NEAR(grid.above_start(), -320.0, 1e-10);  // the far boundary
+    EXPECT_DOUBLE_EQ(grid.landscape.y[1] - grid.landscape.y[0], grid.spacing);
+  }
+}
+
+// Of stiff beams and a start below y = 0: a climb out of the basin in front of them, told from the
+// start and from the basin itself, which lies lower.
+TEST(Passes, OfABasinAreToldFromTheStartAndFromTheBasin) {
+  GateParams p = test::study(10.0);
+  const BodyState start{.x = 1.0, .y = -4.0, .vx = 0.0, .vy = 0.0};
+  const Passes found = passes(p, start, 2.0);
+  for (const GridPasses& grid : {found.coarse, found.fine}) {
+    const Landscape l = landscape(p, -4.0, grid.spacing);
+    EXPECT_EQ(grid.landscape.y, l.y);
+    EXPECT_FALSE(grid.downhill());
+    EXPECT_EQ(grid.from_basin.way.front(), basin_below(l, start.x, start.y));
+    EXPECT_EQ(
+        grid.from_basin.energy,
+        lowest_pass(l, grid.from_basin.way.front()[0], grid.from_basin.way.front()[1]).energy);
+    EXPECT_EQ(grid.above_start(), grid.from_basin.energy - grid.from_start.start_energy);
+    EXPECT_LT(grid.from_basin.start_energy, grid.from_start.start_energy);
+    EXPECT_GT(grid.from_basin.barrier(), grid.above_start());
+  }
+  EXPECT_LT(found.fine.from_basin.energy, found.coarse.from_basin.energy);
+  // One beam alone resists less.
+  EXPECT_LT(passes(p, start, 2.0, {true, false}).coarse.from_basin.barrier(),
+            found.coarse.from_basin.barrier());
+}
+
+TEST(Passes, HaveGridsThatFitTheGate) {
+  const GateParams p;  // 50 m wide, 60 m deep
+  const Spacings from_inside = spacings_for(p, {}), from_below = spacings_for(p, {.y = -40.0});
+  EXPECT_DOUBLE_EQ(from_inside.least, 0.03);
+  EXPECT_DOUBLE_EQ(from_below.least, 0.05);
+  EXPECT_DOUBLE_EQ(from_inside.usual, 0.5);
+  EXPECT_DOUBLE_EQ(from_inside.most, 25.0);
+  for (const double spacing : {0.029, 25.1, std::nan("")})
+    EXPECT_THROW((void)passes(p, {}, spacing), std::invalid_argument);
+}
+
 TEST(Landscape, RefusesWhatIsNoGrid) {
   const GateParams p;
   EXPECT_THROW((void)landscape(p, 0.0, 0.0), std::invalid_argument);
