@@ -18,6 +18,7 @@
 ///   study/verdict.h      one word for how far a method can be trusted
 ///   study/accuracy.h     a method's errors against a reference under the same noise
 ///   study/stability.h    maps of where each method breaks
+///   study/work_precision.h  every method's time against its error
 ///   study/choice.h       the cheapest method and setting that a scene can do with
 // clang-format on
 
@@ -33,5 +34,6 @@
 #include "dynamics/study/choice.h"
 #include "dynamics/study/stability.h"
 #include "dynamics/study/verdict.h"
+#include "dynamics/study/work_precision.h"
 #include "dynamics/trace.h"
 #include "dynamics/transitions.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -86,6 +87,14 @@ GateParams Setting::applied_to(GateParams p) const {
   p.run.method = method;
   info(key).ref(p) = value;
   return p;
+}
+
+const char* Setting::unit() const { return key == kStep ? "s" : "m"; }
+
+std::string Setting::name() const {
+  std::array<char, 32> number;
+  std::snprintf(number.data(), number.size(), "%.7g", value);
+  return method + " " + number.data() + " " + unit();
 }
 
 std::span<const std::string_view> chart_methods() {

@@ -32,6 +32,9 @@ struct Setting {
   bool usual = false;  // what a scene gets that says nothing
 
   [[nodiscard]] GateParams applied_to(GateParams p) const;
+  [[nodiscard]] const char* unit() const;  // "s" or "m"
+  [[nodiscard]] std::string name() const;  // "stable 0.02 s"
+  bool operator==(const Setting&) const = default;
 };
 
 /// Methods that have a list of settings, in the order of a chart.

@@ -1,0 +1,24 @@
+#pragma once
+/// Speed against accuracy of the methods on scenes, as JSON, CSV, a table and a figure.
+
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "dynamics/study/work_precision.h"
+
+namespace gatewalk::cli {
+
+/// A scene's reference and settings.
+[[nodiscard]] Json to_json(const dynamics::WorkPrecision& chart);
+/// A line for each setting of each scene.
+[[nodiscard]] std::string csv_of(const std::vector<dynamics::WorkPrecision>& charts);
+/// The reference, a line for each setting, and the cheapest one that will do.
+[[nodiscard]] std::string table_of(const dynamics::WorkPrecision& chart);
+/// What the columns of such tables mean.
+[[nodiscard]] std::string work_precision_legend(std::int64_t rounds);
+/// A row for each scene into the SVG file `path`: time against the error of the outcomes, and
+/// against where trials end.
+void draw(const std::string& path, const std::vector<dynamics::WorkPrecision>& charts);
+
+}  // namespace gatewalk::cli
