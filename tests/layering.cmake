@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # Who may include whom, folder by folder: a folder's own files, and those of the folders named. Fails naming
 # the file and the line.
-set(libraries dynamics dynamics/methods dynamics/study markov markov/predict markov/formats lattice lattice/scene)
+set(libraries dynamics dynamics/methods dynamics/study markov markov/predict markov/formats lattice lattice/scene lattice/study)
 set(folders ${libraries} cli/terminal cli/web cli/render cli/film cli/paper cli/commands cli)
 
 set(allowed_dynamics dynamics/methods)
@@ -13,6 +13,7 @@ set(allowed_markov/predict markov)
 set(allowed_markov/formats markov)
 set(allowed_lattice dynamics dynamics/methods markov markov/formats)
 set(allowed_lattice/scene dynamics dynamics/methods dynamics/study lattice markov/formats)
+set(allowed_lattice/study dynamics dynamics/methods markov lattice lattice/scene)
 set(allowed_cli/terminal dynamics markov/formats)
 set(allowed_cli/web cli)
 set(allowed_cli/render ${libraries} cli cli/terminal)

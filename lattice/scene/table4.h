@@ -12,7 +12,7 @@ namespace gatewalk::lattice {
 /// prints them.
 struct PaperStart {
   double d = 0.0, vx = 0.0, vy = 0.0;
-  std::optional<double> corrcoef, rmse;
+  std::optional<double> corrcoef{}, rmse{};
   double y = 0.0;  // m
 
   [[nodiscard]] dynamics::BodyState body() const { return {d, y, vx, vy}; }

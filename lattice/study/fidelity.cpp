@@ -1,0 +1,131 @@
+#include "lattice/study/fidelity.h"
+
+#include <tbb/global_control.h>
+
+#include <limits>
+
+#include "dynamics/methods/method.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+constexpr std::int64_t kTimedTrials = 64;
+constexpr std::int64_t kTimedAtOnce = 16;
+
+FieldTally run(const FidelityVariant& v, const PaperStart& start, const dynamics::StateSpace& space,
+               std::uint64_t seed, dynamics::TrialRange range) {
+  return run_field(v.scene.gate, v.scene.field, start.body(), space, seed, range);
+}
+
+/// Seconds per trial of every variant. The same trials by every one in turn, so that a busy moment
+/// of the machine hits them alike.
+std::vector<double> time_trials(const std::vector<FidelityVariant>& variants,
+                                const PaperStart& start, const dynamics::StateSpace& space,
+                                const FidelityOptions& options, const dynamics::Work& work) {
+  const std::int64_t timed = std::min(options.trials, kTimedTrials);
+  const std::int64_t pieces = (timed + kTimedAtOnce - 1) / kTimedAtOnce;
+  const auto kinds = static_cast<std::int64_t>(variants.size());
+  std::vector<double> seconds(kFidelityRepeats * kinds, 0.0);
+  work.in_pieces("timing", kFidelityRepeats * pieces * kinds, [&](dynamics::TrialRange items) {
+    for (std::int64_t item = items.first; item < items.first + items.count; ++item) {
+      const std::int64_t kind = item % kinds, piece = item / kinds % pieces,
+                         repeat = item / kinds / pieces;
+      const std::int64_t from = piece * kTimedAtOnce;
+      const dynamics::Stopwatch watch;
+      (void)run(variants[kind], start, space, options.seed,
+                {from, std::min(kTimedAtOnce, timed - from)});
+      seconds[repeat * kinds + kind] += watch.seconds();
+    }
+  });
+  std::vector<double> least(variants.size(), std::numeric_limits<double>::infinity());
+  for (std::int64_t i = 0; i < kFidelityRepeats * kinds; ++i)
+    least[i % kinds] = std::min(least[i % kinds], seconds[i] / static_cast<double>(timed));
+  return least;
+}
+
+FidelityOfStart run_start(const std::vector<FidelityVariant>& variants, const PaperStart& start,
+                          const FidelityOptions& options, const dynamics::Work& work) {
+  const auto space = dynamics::StateSpace::paper(variants[0].scene.gate);
+  FidelityOfStart all{start, {}};
+  for (const FidelityVariant& v : variants) {
+    FieldTally tally(v.scene.field);
+    work.in_pieces(v.name(), options.trials, [&](dynamics::TrialRange range) {
+      tally += run(v, start, space, options.seed, range);
+    });
+    all.runs.push_back({std::move(tally)});
+  }
+  const std::vector<double> seconds = time_trials(variants, start, space, options, work);
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    all.runs[v].seconds_per_trial = seconds[v];
+    if (v > 0)
+      all.runs[v].change = fidelity_change(all.runs[v].tally, all.runs[0].tally, options.seed);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string FidelityVariant::name() const {
+  return std::string(name_of(scene.field.fidelity)) + " (" + scene.gate.run.method + ")";
+}
+
+std::vector<FidelityVariant> fidelity_variants(const Scene& scene) {
+  std::vector<FidelityVariant> all;
+  const auto add = [&](Fidelity fidelity, const std::string& method) {
+    Scene s = scene;
+    s.field.fidelity = fidelity;
+    s.gate.run.method = method;
+    if (!s.named.contains("run.step_s")) s.gate.run.step = dynamics::default_step(s.gate);
+    validate(s.gate, s.field);
+    (void)dynamics::make_method(s.gate);  // refuses gates that it cannot run
+    all.push_back({std::move(s)});
+  };
+  for (const Fidelity f : {Fidelity::active, Fidelity::remember, Fidelity::all}) add(f, "moreau");
+  add(Fidelity::active, dynamics::GateParams{}.run.method);
+  return all;
+}
+
+Sufficiency FidelityChange::active_is() const {
+  const double tv = apart.total_variation;
+  if (tv + uncertainty() <= kFidelityBound) return Sufficiency::enough;
+  return tv - uncertainty() > kFidelityBound ? Sufficiency::not_enough : Sufficiency::cannot_tell;
+}
+
+FidelityChange fidelity_change(const FieldTally& variant, const FieldTally& base,
+                               std::uint64_t seed) {
+  const auto &after = variant.final_gate_of_trial, &before = base.final_gate_of_trial;
+  std::int64_t changed = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) changed += after[i] != before[i];
+  const std::int64_t null_draws = std::clamp<std::int64_t>(100'000'000 / base.trials, 999, 9999);
+  return {.trials = base.trials,
+          .changed = static_cast<double>(changed) / static_cast<double>(base.trials),
+          .apart = compare(variant.final_gates, base.final_gates, null_draws, seed),
+          .in_pairs = compare_pairs(after, before, static_cast<int>(base.final_gates.rows()),
+                                    static_cast<int>(base.final_gates.cols()), null_draws, seed)};
+}
+
+dynamics::Health FidelityStudy::health(std::size_t variant) const {
+  dynamics::Health sum;
+  for (const FidelityOfStart& s : starts) sum += s.runs[variant].tally.health;
+  return sum;
+}
+
+bool FidelityStudy::clean() const {
+  for (std::size_t v = 0; v < variants.size(); ++v)
+    if (!health(v).clean()) return false;
+  return true;
+}
+
+FidelityStudy compare_fidelities(const std::vector<FidelityVariant>& variants,
+                                 const FidelityOptions& options, const dynamics::Work& work) {
+  FidelityStudy study{variants,
+                      options.trials,
+                      static_cast<int>(tbb::global_control::active_value(
+                          tbb::global_control::max_allowed_parallelism)),
+                      {}};
+  for (const PaperStart& start : options.starts)
+    study.starts.push_back(run_start(variants, start, options, work));
+  return study;
+}
+
+}  // namespace gatewalk::lattice

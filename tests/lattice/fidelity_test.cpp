@@ -1,0 +1,127 @@
+// What memory and neighbours change: counts and verdicts by hand, and the trials that are compared.
+#include "lattice/study/fidelity.h"
+
+#include <gtest/gtest.h>
+
+namespace gatewalk::lattice {
+namespace {
+
+std::vector<std::string> names(const std::vector<FidelityVariant>& variants) {
+  std::vector<std::string> all;
+  for (const FidelityVariant& v : variants) all.push_back(v.name());
+  return all;
+}
+
+TEST(Fidelity, RunsMoreauAtEveryFidelityAndTheDefaultMethod) {
+  Scene scene = parse_scene("run.method = 'paper'\nfield.fidelity = 'active'", "scene");
+  EXPECT_EQ(names(fidelity_variants(scene)),
+            (std::vector<std::string>{"active (moreau)", "remember (moreau)", "all (moreau)",
+                                      "active (stable)"}));
+  for (const FidelityVariant& v : fidelity_variants(scene))
+    EXPECT_EQ(v.scene.gate.run.step, dynamics::default_step(v.scene.gate)) << v.name();
+  scene = parse_scene("run.step_s = 0.001", "scene");
+  for (const FidelityVariant& v : fidelity_variants(scene))
+    EXPECT_EQ(v.scene.gate.run.step, 0.001) << v.name();
+}
+
+/// Trials of a field of 3 x 3 gates that end in these.
+FieldTally ending_in(const std::vector<std::int32_t>& gates) {
+  FieldTally tally({.columns = 3, .rows = 3});
+  tally.final_gate_of_trial = gates;
+  tally.trials = std::ssize(gates);
+  for (const std::int32_t g : gates) ++tally.final_gates(g / 3, g % 3);
+  return tally;
+}
+
+TEST(FidelityChange, CountsTrialsAndDistributionsApart) {
+  // One of four trials ends elsewhere, whichever of the two a draw of the null takes.
+  const FidelityChange one = fidelity_change(ending_in({0, 1, 2, 8}), ending_in({0, 1, 2, 3}), 1);
+  EXPECT_EQ(one.changed, 0.25);
+  EXPECT_EQ(one.apart.total_variation, 0.25);
+  EXPECT_EQ(one.in_pairs.total_variation, 0.25);
+  EXPECT_EQ(one.in_pairs.floor_total_variation_95, 0.25);
+  EXPECT_EQ(one.uncertainty(), 0.25 + 3.0 / 4);
+  // Two trials change places: every trial is another one, the distribution is the same.
+  const FidelityChange swapped = fidelity_change(ending_in({1, 0}), ending_in({0, 1}), 1);
+  EXPECT_EQ(swapped.changed, 1.0);
+  EXPECT_EQ(swapped.apart.total_variation, 0.0);
+  EXPECT_EQ(swapped.in_pairs.floor_total_variation_95, 1.0);  // half of the draws
+}
+
+/// 1000 trials, of which chance makes 0.01: uncertain by 0.013.
+FidelityChange seen(double total_variation) {
+  FidelityChange c{.trials = 1000};
+  c.apart.total_variation = total_variation;
+  c.in_pairs.floor_total_variation_95 = 0.01;
+  return c;
+}
+
+TEST(FidelityChange, IsJudgedWithItsUncertainty) {
+  EXPECT_EQ(seen(0.0169).active_is(), Sufficiency::enough);
+  EXPECT_EQ(seen(0.0171).active_is(), Sufficiency::cannot_tell);
+  EXPECT_EQ(seen(0.0429).active_is(), Sufficiency::cannot_tell);
+  EXPECT_EQ(seen(0.0431).active_is(), Sufficiency::not_enough);
+  // Where no trial changed, a hundred are the fewest that can tell.
+  EXPECT_EQ(FidelityChange{.trials = 100}.active_is(), Sufficiency::enough);
+  EXPECT_EQ(FidelityChange{.trials = 99}.active_is(), Sufficiency::cannot_tell);
+}
+
+TEST(FidelityOfStart, IsWhatTheWorseOfMemoryAndNeighboursSays) {
+  const auto of = [](double remember, double all) {
+    FidelityOfStart s;
+    for (const double tv : {0.0, remember, all, 1.0})  // another integrator has no say
+      s.runs.push_back({ending_in({}), 0.0, seen(tv)});
+    return s.active_is();
+  };
+  EXPECT_EQ(of(0.0, 0.0), Sufficiency::enough);
+  EXPECT_EQ(of(0.02, 0.0), Sufficiency::cannot_tell);
+  EXPECT_EQ(of(0.02, 0.1), Sufficiency::not_enough);
+  EXPECT_EQ(of(0.1, 0.02), Sufficiency::not_enough);
+}
+
+TEST(FidelityStudy, RunsTheTrialsOfTheFullDynamics) {
+  const auto variants =
+      fidelity_variants(parse_scene("field = { rows = 3, columns = 3 }", "scene"));
+  std::vector<std::string> told;
+  const FidelityStudy study =
+      compare_fidelities(variants, {{{0.0, 0.0, 15.0}, {4.0, 5.0, 10.0}}, 10, 7},
+                         {[&](std::string_view what, std::int64_t done, std::int64_t) {
+                           if (done == 0) told.emplace_back(what);
+                         }});
+  ASSERT_EQ(study.starts.size(), 2u);
+  const auto space = dynamics::StateSpace::paper({});
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    dynamics::Health health;
+    for (const FidelityOfStart& s : study.starts) {
+      const Scene& scene = variants[v].scene;
+      const FieldTally plain =
+          run_field(scene.gate, scene.field, s.start.body(), space, 7, {0, 10});
+      EXPECT_EQ(s.runs[v].tally.final_gate_of_trial, plain.final_gate_of_trial);
+      EXPECT_EQ(s.runs[v].change.has_value(), v > 0);
+      EXPECT_GT(s.runs[v].seconds_per_trial, 0.0);
+      health += plain.health;
+    }
+    EXPECT_EQ(study.health(v).runs, health.runs);
+    EXPECT_EQ(study.health(v).steps, health.steps);
+  }
+  std::vector<std::string> wanted;
+  for (std::size_t k = 0; k < study.starts.size(); ++k) {
+    for (const FidelityVariant& v : variants) wanted.push_back(v.name());
+    wanted.emplace_back("timing");
+  }
+  EXPECT_EQ(told, wanted);
+}
+
+// In a single gate there is nothing to remember and no neighbour.
+TEST(FidelityStudy, SeesNoChangeInASingleGate) {
+  const FidelityStudy study = compare_fidelities(
+      fidelity_variants(parse_scene("field = { rows = 1, columns = 1 }", "scene")),
+      {{{0.0, 0.0, 15.0}}, 30, 1});
+  for (const std::size_t v : {1, 2}) {
+    EXPECT_EQ(study.starts[0].runs[v].change->changed, 0.0);
+    EXPECT_EQ(study.starts[0].runs[v].change->apart.total_variation, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
