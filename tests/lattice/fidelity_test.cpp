@@ -12,7 +12,7 @@ std::vector<std::string> names(const std::vector<FidelityVariant>& variants) {
   return all;
 }
 
-TEST(Fidelity, RunsMoreauAtEveryFidelityAndTheDefaultMethod) {
+TEST(FidelityVariants, AreMoreauAtEveryFidelityAndTheDefaultMethod) {
   Scene scene = parse_scene("run.method = 'paper'\nfield.fidelity = 'active'", "scene");
   EXPECT_EQ(names(fidelity_variants(scene)),
             (std::vector<std::string>{"active (moreau)", "remember (moreau)", "all (moreau)",
