@@ -7,6 +7,10 @@
 
 namespace gatewalk::cli {
 
+Json to_json(const lattice::PaperStart& start) {
+  return {{"d_m", start.d}, {"vx_m_per_s", start.vx}, {"vy_m_per_s", start.vy}};
+}
+
 StartTexts::StartTexts(const std::vector<lattice::PaperStart>& starts) : texts(starts.size()) {
   struct Column {
     const char* name;

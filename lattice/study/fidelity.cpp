@@ -82,6 +82,7 @@ std::vector<FidelityVariant> fidelity_variants(const Scene& scene) {
   };
   for (const Fidelity f : {Fidelity::active, Fidelity::remember, Fidelity::all}) add(f, "moreau");
   add(Fidelity::active, dynamics::GateParams{}.run.method);
+  (void)dynamics::StateSpace::paper(scene.gate);  // refuses gates too short for their beams
   return all;
 }
 

@@ -91,7 +91,7 @@ struct FidelityOptions {
 inline constexpr std::int64_t kFidelityRepeats = 5;
 
 /// Runs the variants (fidelity_variants) from every start, and times them. All but the times is the
-/// same for any number of threads. Throws InvalidParameter as StateSpace::paper.
+/// same for any number of threads.
 [[nodiscard]] FidelityStudy compare_fidelities(const std::vector<FidelityVariant>& variants,
                                                const FidelityOptions& options,
                                                const dynamics::Work& work = {});

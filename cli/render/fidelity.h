@@ -1,0 +1,23 @@
+#pragma once
+/// What memory and neighbours change in the final gates, as JSON, CSV, a table and a figure.
+
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "lattice/study/fidelity.h"
+
+namespace gatewalk::cli {
+
+/// {"machine", "trials", "threads", "bound", "starts": one each, with "runs" by variant}
+[[nodiscard]] Json to_json(const lattice::FidelityStudy& study);
+/// A line for each start and variant.
+[[nodiscard]] std::string csv_of(const lattice::FidelityStudy& study);
+/// A line for each start and variant, and a sentence for each start: whether active is enough.
+[[nodiscard]] std::string table_of(const lattice::FidelityStudy& study);
+/// A sentence for each variant in which faults were seen.
+[[nodiscard]] std::vector<std::string> complaints(const lattice::FidelityStudy& study);
+/// Total variation against `active`, and what a trial costs, start by start: gnuplot's script.
+[[nodiscard]] std::string figure_of(const lattice::FidelityStudy& study);
+
+}  // namespace gatewalk::cli
