@@ -1,0 +1,26 @@
+#pragma once
+/// The chain's error against its cost, as JSON, CSV, a table and a figure.
+
+#include <string>
+
+#include "cli/command.h"
+#include "lattice/study/chain_error.h"
+
+namespace gatewalk::cli {
+
+/// {"machine", ..., "starts": truth, direct simulation and summary of each, "curves", "points"}
+[[nodiscard]] Json to_json(const lattice::ChainErrorChart& chart);
+/// For each start a line for each answer of each point (exact, walks), then direct simulation.
+[[nodiscard]] std::string csv_of(const lattice::ChainErrorChart& chart);
+/// For each start a table of points, trials a row by bins, and what it comes to in words.
+[[nodiscard]] std::string table_of(const lattice::ChainErrorChart& chart);
+/// Two panels for each start, total variation and 1 - corrcoef over seconds, into the SVG file
+/// `path`.
+void draw(const std::string& path, const lattice::ChainErrorChart& chart);
+
+/// "start d = 4 m, v = (5, 10) m/s"
+[[nodiscard]] std::string name_of(const lattice::FieldTruth& truth);
+/// "bins x 0.5, visited"
+[[nodiscard]] std::string name_of(const lattice::ChainCurve& curve);
+
+}  // namespace gatewalk::cli
