@@ -2,7 +2,7 @@
 // clang-format off
 /// A single run to be watched: a page with an animation, made of a film.
 ///
-/// A film is JSON:
+/// The page reads the film as JSON:
 ///   {"title": text, "radius_m", "beam_m", "joint_x_m", "joint_y_m": of the body and the beams,
 ///    "scale": {"length_m", "mass_kg", "time_s"}: the scene's own units (dynamics::Scale), in which all that is
 ///    drawn and timed is a plain number; at normal speed one such unit of time takes a second,
@@ -18,8 +18,12 @@
 #include <string>
 
 #include "cli/command.h"
+#include "cli/film/film.h"
 
 namespace gatewalk::cli {
+
+/// The film as above, with lost_in_hits_J.
+[[nodiscard]] Json to_json(const Film& film);
 
 /// A whole page with the animation of all runs of a film; it loads nothing from anywhere. A film
 /// that is not as above makes a page that says so.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -90,6 +91,18 @@ std::string reading(double x, const std::string& unit, double step) {
     text = x > 0.0 ? "<" + least : x < 0.0 ? ">-" + least : printed("%.*f", decimals, 0.0);
   }
   return text + behind;
+}
+
+double seven_digits(double x, double unit) {
+  const double own = x / unit;
+  if (!std::isfinite(own)) return own;
+  std::array<char, 32> text;
+  const char* const end =
+      std::to_chars(text.data(), text.data() + text.size(), own, std::chars_format::scientific, 6)
+          .ptr;
+  double rounded = 0.0;
+  std::from_chars(text.data(), end, rounded);
+  return (rounded + 0.0) * unit;
 }
 
 double step_of(double least, double most) { return std::max(least, 1e-5 * most); }

@@ -26,6 +26,10 @@ struct Sized {
 /// that is nearest to it. What is not zero and less than that reads "<0.1 J" or ">-0.1 J".
 [[nodiscard]] std::string reading(double x, const std::string& unit, double step);
 
+/// x to seven digits of what it is in `unit`, more than a picture shows: rounded in a scene's own
+/// unit, a scene in other units has the same picture. Never -0.
+[[nodiscard]] double seven_digits(double x, double unit);
+
 /// What counts among numbers up to `most`: `least`, but no more than five digits of the largest.
 [[nodiscard]] double step_of(double least, double most);
 

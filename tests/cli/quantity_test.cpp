@@ -21,6 +21,16 @@ TEST(Quantity, IsPlainWhereThatIsShort) {
   EXPECT_EQ(quantity(std::numeric_limits<double>::infinity(), "J"), "-");
 }
 
+TEST(SevenDigits, OfTheUnit) {
+  EXPECT_EQ(seven_digits(123.45678, 1.0), 123.4568);
+  EXPECT_EQ(seven_digits(-1.0 / 3.0, 1.0), -0.3333333);
+  EXPECT_EQ(seven_digits(0.25 / 3.0, 0.25), 0.25 * 0.3333333);
+  EXPECT_FALSE(std::signbit(seven_digits(-0.0, 1.0)));
+  EXPECT_EQ(seven_digits(std::numeric_limits<double>::infinity(), 4.0),
+            std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(seven_digits(std::nan(""), 1.0)));
+}
+
 TEST(Quantity, HasAPrefixElse) {
   EXPECT_EQ(quantity(0.0020123, "J"), "2.012 mJ");
   EXPECT_EQ(quantity(-3e-7, "m/s"), "-300 nm/s");

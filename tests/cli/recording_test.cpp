@@ -5,13 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
+#include "cli/film/replay.h"
 #include "dynamics/landscape.h"
 #include "tests/cli/films.h"
 
 namespace gatewalk::cli {
 namespace {
+
+using lattice::Moment;
+using lattice::Recording;
+using lattice::Recordings;
+using test::Twin;
 
 lattice::Scene scene(const std::string& more = "") {
   return lattice::parse_scene(
@@ -34,26 +41,20 @@ std::vector<std::vector<std::string>> table(const std::string& csv) {
   return rows;
 }
 
-// The endings are those that `gate` counts.
-TEST(Recording, EndsAsTheRunThatIsCounted) {
-  const lattice::Scene s = scene();
-  dynamics::GateTally counted = dynamics::run_gate_trials(s.gate, s.start, 5, {10, 12});
-  std::map<std::string, std::int64_t> ends;
-  for (int i = 10; i < 22; ++i) ++ends[record(s, 5, i, false).ending];
-  EXPECT_EQ(ends["traversed left"], counted.traversed_left);
-  EXPECT_EQ(ends["exited left"], counted.exited_left);
-  EXPECT_EQ(ends["exited right"], counted.exited_right);
-  EXPECT_EQ(ends["trapped"], counted.trapped);
-  EXPECT_GE(ends.size(), 3u);
-  const auto known = endings(false);
-  for (const auto& [ending, n] : ends)
-    EXPECT_NE(std::find(known.begin(), known.end(), ending), known.end());
+Recordings trials(const lattice::Scene& s, std::vector<std::int64_t> numbers, std::uint64_t seed,
+                  bool across_field = false) {
+  Recordings recordings;
+  recordings.across_field = across_field;
+  for (const std::int64_t trial : numbers)
+    recordings.runs.push_back(lattice::record(s, seed, trial, across_field));
+  return recordings;
 }
 
 TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
   const lattice::Scene s = scene();
-  const std::vector<Recording> runs{record(s, 1, 0, false), record(s, 1, 2, false)};
-  const auto rows = table(csv_of(s, runs));
+  const Recordings recordings = trials(s, {0, 2}, 1);
+  const auto& runs = recordings.runs;
+  const auto rows = table(csv_of(s, recordings));
   ASSERT_EQ(rows.size(), 1 + runs[0].moments.size() + runs[1].moments.size());
   const auto column = [&](const char* name) {
     const auto at = std::find(rows[0].begin(), rows[0].end(), name);
@@ -84,144 +85,107 @@ TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
   EXPECT_GT(modes["held"], 3);
 }
 
-// Gate after gate: time and losses go on, the field's frame has no jumps.
-TEST(Recording, GoesOnFromGateToGate) {
-  const lattice::Scene s = lattice::parse_scene("", "field.toml");
-  for (int trial = 0; trial < 5; ++trial) {
-    const Recording r = record(s, 1, trial, true);
-    for (std::size_t i = 1; i < r.moments.size(); ++i) {
-      const Moment &a = r.moments[i - 1], &b = r.moments[i];
-      EXPECT_GE(b.time, a.time);
-      EXPECT_GE(b.energy.lost, a.energy.lost - 0.01);
-      const double ax = a.sample.state.body.x + 50 * a.i_x, bx = b.sample.state.body.x + 50 * b.i_x;
-      const double ay = a.sample.state.body.y + 60 * a.i_y, by = b.sample.state.body.y + 60 * b.i_y;
-      EXPECT_LT(std::hypot(bx - ax, by - ay), 0.02 * 60);
-      const double start = 0.5 * 15 * 15;
-      EXPECT_NEAR(start + b.energy.propulsion_work + b.energy.random_work,
-                  b.energy.mechanical() + b.energy.lost, 1e-6);
-    }
-  }
-}
-
-// A film's force holds until the next entry; a sample's acted before it.
+// A film's force holds until the next step; a sample's acted before it.
 TEST(Recording, FilmHasTheForceThatComes) {
   const lattice::Scene s = scene();
-  const std::vector<Recording> runs{record(s, 1, 0, false)};
-  Json film = film_of(s, runs, false);
-  const Json& run = film["runs"][0];
-  const auto& moments = runs[0].moments;
-  ASSERT_EQ(run["random_N"].size(), moments.size());
-  ASSERT_EQ(run["t"].size(), moments.size());
+  const Recordings recordings = trials(s, {0}, 1);
+  const auto& moments = recordings.runs[0].moments;
+  const Film film = film_of(s, recordings);
+  const std::vector<FilmStep>& steps = film.runs[0].steps;
+  ASSERT_EQ(steps.size(), moments.size());
   for (std::size_t i = 0; i + 1 < moments.size(); ++i)
-    EXPECT_NEAR(run["random_N"][i].get<double>(), moments[i + 1].sample.random_force, 1e-5);
-  EXPECT_FALSE(run.contains("landscape_J"));
-  add_details(film, s, runs);
-  EXPECT_EQ(film["runs"][0]["landscape_J"].size(), moments.size());
-  EXPECT_EQ(film["runs"][0]["hits"], runs[0].health.impacts);
+    EXPECT_NEAR(steps[i].random_force, moments[i + 1].sample.random_force, 1e-5);
+  const Json json = to_json(film)["runs"][0];
+  EXPECT_EQ(json["random_N"].size(), moments.size());
+  EXPECT_FALSE(json.contains("landscape_J"));
+  const Json details = details_of(s, recordings.runs[0]);
+  EXPECT_EQ(details["landscape_J"].size(), moments.size());
+  EXPECT_EQ(details["hits"], recordings.runs[0].health.impacts);
 }
 
-/// The scene in other units: each of its keys times what its unit is made of.
-lattice::Scene in_other_units(const lattice::Scene& s, double length, double mass, double time) {
-  const double force = mass * length / (time * time);
-  lattice::Scene other = s;
-  other.gate.body = {s.gate.body.mass * mass, s.gate.body.radius * length};
-  dynamics::Beams& beams = other.gate.beams;
-  for (double* const x : {&beams.length, &beams.joint_x, &beams.joint_y}) *x *= length;
-  beams.mass *= mass;
-  for (double* const k : {&beams.stiffness_left, &beams.stiffness_right}) *k *= force * length;
-  beams.damping *= force * length * time;
-  dynamics::Forces& forces = other.gate.forces;
-  forces = {forces.propulsion * force, forces.random * force, forces.random_rate / time,
-            forces.drag * mass / time};
-  other.gate.contact.impulse_threshold *= force * time;
-  dynamics::Run& run = other.gate.run;
-  for (double* const t : {&run.step, &run.time_limit}) *t *= time;
-  for (double* const x : {&run.traverse_y, &run.event_tolerance}) *x *= length;
-  other.start = {s.start.x * length, s.start.y * length, s.start.vx * length / time,
-                 s.start.vy * length / time};
-  return other;
+/// The scene in other units.
+lattice::Scene in_other_units(lattice::Scene s, const Twin& twin) {
+  s.gate = twin.of(s.gate);
+  s.start = twin.of(s.start);
+  return s;
 }
 
-/// What a recording is in other units.
-Recording in_other_units(Recording r, double length, double mass, double time) {
-  const double speed = length / time, force = mass * speed / time, joule = force * length;
+/// What recordings are in other units.
+Recordings in_other_units(Recordings recordings, const Twin& twin) {
+  const double time = twin.of(0, 1, 0), force = twin.of(1, -2, 1), joule = twin.of(2, -2, 1);
   const auto scale = [&](dynamics::Energies& e) {
     for (double* const x : {&e.body, &e.beams[0], &e.beams[1], &e.elastic[0], &e.elastic[1],
                             &e.propulsion_work, &e.random_work, &e.hit_loss, &e.lost})
       *x *= joule;
   };
-  r.seconds *= time;
-  for (Moment& m : r.moments) {
-    m.time *= time;
-    m.sample.time *= time;
-    auto& [body, beams] = m.sample.state;
-    body = {body.x * length, body.y * length, body.vx * speed, body.vy * speed};
-    m.sample.random_force *= force;
-    for (std::size_t i = 0; i < 2; ++i) {
-      beams[i].omega /= time;
-      m.sample.beam_force[i] *= force;
-      m.sample.impulse[i] *= force * time;
-      m.sample.gap[i] *= length;
+  for (Recording& r : recordings.runs) {
+    r.seconds *= time;
+    for (Moment& m : r.moments) {
+      m.time *= time;
+      m.sample.time *= time;
+      auto& [body, beams] = m.sample.state;
+      body = twin.of(body);
+      m.sample.random_force *= force;
+      for (std::size_t i = 0; i < 2; ++i) {
+        beams[i].omega /= time;
+        m.sample.beam_force[i] *= force;
+        m.sample.impulse[i] *= force * time;
+        m.sample.gap[i] *= twin.of(1, 0, 0);
+      }
+      scale(m.sample.energy);
+      scale(m.energy);
     }
-    scale(m.sample.energy);
-    scale(m.energy);
   }
-  return r;
+  return recordings;
 }
 
 /// A film without what is said in words, which name numbers with their units.
-Json without_words(Json film) {
-  film.erase("title");
-  for (Json& run : film["runs"]) run.erase("label");
-  return film;
+Json without_words(const Film& film) {
+  Json json = to_json(film);
+  json.erase("title");
+  for (Json& run : json["runs"]) run.erase("label");
+  return json;
 }
 
-// In other units a film has the same numbers times these, to the last bit; the CSV has its seven
-// digits.
+/// Lines of CSV have the numbers of other ones times what their units are, to their seven digits.
+void expect_same_numbers(const std::vector<std::vector<std::string>>& lines,
+                         const std::vector<std::vector<std::string>>& others, const Twin& twin) {
+  ASSERT_EQ(others.size(), lines.size());
+  std::size_t compared = 0;
+  for (std::size_t row = 1; row < lines.size(); row += 7)
+    for (std::size_t c = 0; c < lines[0].size(); ++c) {
+      const std::string& name = lines[0][c];
+      const double factor = twin.of(name);
+      if (name.ends_with("_rad") || name.find('_') == name.npos) {
+        EXPECT_EQ(others[row][c], lines[row][c]) << name;
+        continue;
+      }
+      const double here = std::strtod(lines[row][c].c_str(), nullptr) * factor;
+      ++compared;
+      if (!std::isfinite(here)) continue;
+      EXPECT_NEAR(std::strtod(others[row][c].c_str(), nullptr), here, 1.1e-6 * std::abs(here))
+          << name;
+    }
+  EXPECT_GT(compared, 1000u);
+}
+
+// In other units a film has the same numbers times these, to the last bit.
 TEST(Recording, InOtherUnitsHasTheSameNumbers) {
   for (const auto& [s, across] :
        {std::pair{scene("x_m = 1.5\n"), false}, {lattice::parse_scene("", "field.toml"), true}}) {
-    const std::vector<Recording> runs{record(s, 3, 1, across), record(s, 3, 2, across)};
-    Json film = film_of(s, runs, across);
-    add_details(film, s, runs);
-    const auto lines = table(csv_of(s, runs));
-    for (const auto& [l, m, t] : kTwins) {
-      const double length = power(l), mass = power(m), time = power(t),
-                   force = mass * length / (time * time);
-      const lattice::Scene other = in_other_units(s, length, mass, time);
-      std::vector<Recording> others;
-      for (const Recording& run : runs) others.push_back(in_other_units(run, length, mass, time));
-      Json there = film_of(other, others, across);
-      add_details(there, other, others);
-      EXPECT_TRUE(without_words(there) == without_words(twin(film, length, mass, time)))
-          << l << " " << m << " " << t;
-
-      const auto other_lines = table(csv_of(other, others));
-      ASSERT_EQ(other_lines.size(), lines.size());
-      std::size_t compared = 0;
-      for (std::size_t row = 1; row < lines.size(); row += 7)
-        for (std::size_t c = 0; c < lines[0].size(); ++c) {
-          const std::string& name = lines[0][c];
-          const double factor = name.ends_with("_J")           ? force * length
-                                : name.ends_with("_N")         ? force
-                                : name.ends_with("_Ns")        ? force * time
-                                : name.ends_with("_m_per_s")   ? length / time
-                                : name.ends_with("_rad_per_s") ? 1.0 / time
-                                : name.ends_with("_m")         ? length
-                                : name.ends_with("time_s")     ? time
-                                                               : 0.0;
-          if (factor == 0.0) {
-            EXPECT_EQ(other_lines[row][c], lines[row][c]) << name;
-            continue;
-          }
-          const double here = std::stod(lines[row][c]) * factor;
-          ++compared;
-          if (!std::isfinite(here)) continue;
-          EXPECT_NEAR(std::strtod(other_lines[row][c].c_str(), nullptr), here,
-                      1.1e-6 * std::abs(here))
-              << name;
-        }
-      EXPECT_GT(compared, 1000u);
+    const Recordings here = trials(s, {1, 2}, 3, across);
+    for (const Twin& twin : kOtherUnits) {
+      SCOPED_TRACE(testing::Message() << twin);
+      const lattice::Scene other = in_other_units(s, twin);
+      const Recordings there = in_other_units(here, twin);
+      EXPECT_TRUE(without_words(film_of(other, there)) ==
+                  without_words(in_other_units(film_of(s, here), twin)));
+      Json details = details_of(s, here.runs[0]);
+      for (auto& [name, values] : details.items())
+        for (Json& value : values)
+          if (value.is_number_float()) value = value.get<double>() * twin.of(name);
+      EXPECT_TRUE(details_of(other, there.runs[0]).dump() == details.dump());
+      expect_same_numbers(table(csv_of(s, here)), table(csv_of(other, there)), twin);
     }
   }
 }

@@ -58,10 +58,10 @@ class Video : public testing::Test {
   std::string path_;
 };
 
-std::string complaint_of(const std::string& path, const Json& film = small_film(5), int run = 0,
+std::string complaint_of(const std::string& path, const Film& film = small_film(5),
                          const VideoOptions& options = {}) {
   try {
-    write_video(path, film, run, options);
+    write_video(path, film, options);
   } catch (const std::exception& e) {
     return e.what();
   }
@@ -87,7 +87,7 @@ double number(const std::string& words, const std::string& name) {
 }
 
 TEST_F(Video, IsOneThatPlaysEverywhere) {
-  write_video(path("a.mp4"), small_film(), 0);  // 1 s, then a second that stands
+  write_video(path("a.mp4"), small_film());  // 1 s, then a second that stands
   const std::string words = probed(path("a.mp4"));
   for (const char* fact : {"codec_name=h264", "pix_fmt=yuv420p", "width=1280", "height=720",
                            "r_frame_rate=50/1", "color_space=bt709", "nb_streams=1"})
@@ -100,7 +100,7 @@ TEST_F(Video, IsOneThatPlaysEverywhere) {
 }
 
 TEST_F(Video, IsAGifByTheEndingOfItsName) {
-  write_video(path("a.gif"), small_film(), 0);
+  write_video(path("a.gif"), small_film());
   const std::string words = probed(path("a.gif"));
   for (const char* fact : {"codec_name=gif", "width=800", "height=450"})
     EXPECT_NE(words.find(std::string("\n") + fact + "\n"), words.npos) << fact << "\n" << words;
@@ -110,7 +110,7 @@ TEST_F(Video, IsAGifByTheEndingOfItsName) {
 }
 
 TEST_F(Video, SpeedAndFramesPerSecond) {
-  write_video(path("a.mp4"), small_film(), 0, {.speed = 0.5, .frames_per_second = 10.0});
+  write_video(path("a.mp4"), small_film(), {.speed = 0.5, .frames_per_second = 10.0});
   const std::string words = probed(path("a.mp4"));
   EXPECT_EQ(number(words, "nb_read_frames"), 20 + 1 + 10);
   EXPECT_NEAR(number(words, "duration"), 3.1, 0.001);
@@ -130,7 +130,7 @@ std::array<double, 3> mean_colour(const std::string& path, double time, const st
 }
 
 TEST_F(Video, ShowsTheBodyMovingAndTheBeamsInTheirColours) {
-  write_video(path("a.mp4"), small_film(), 0);
+  write_video(path("a.mp4"), small_film());
   // At rest the beams lie across the stage's middle: blue on the left, red on the right.
   const auto left = mean_colour(path("a.mp4"), 0.0, "60:4:400:327");
   const auto right = mean_colour(path("a.mp4"), 0.0, "60:4:500:327");
@@ -152,20 +152,20 @@ std::size_t differing(const std::string& a, const std::string& b) {
 
 // In other units the same pictures, point by point, but for words and numbers.
 TEST_F(Video, ASceneInOtherUnitsLooksTheSame) {
-  for (const Json& film : {small_film(100), small_field_film()}) {
-    const double end = film["runs"][0]["t"].back();
-    std::vector<Json> twins;
-    for (const auto& [l, m, t] : kTwins) twins.push_back(twin(film, power(l), power(m), power(t)));
+  for (const Film& film : {small_film(100), small_field_film()}) {
+    const double end = film.runs[0].steps.back().time;
+    std::vector<Film> twins;
+    for (const test::Twin& twin : kOtherUnits) twins.push_back(in_other_units(film, twin));
     for (const double part : {0.0, 0.34, 0.62}) {  // before a hit, just after it, and later
       const VideoOptions bare{.labels = false};
-      const std::string paper = video_frame(film, 0, part * end, bare);
+      const std::string paper = video_frame(film, part * end, bare);
       ASSERT_EQ(paper.size(), 1280u * 720u * 4u);
-      EXPECT_GT(differing(paper, video_frame(film, 0, part * end)), 1000u) << "labels are seen";
-      EXPECT_GT(differing(paper, video_frame(film, 0, (part + 0.05) * end, bare)), 1000u)
+      EXPECT_GT(differing(paper, video_frame(film, part * end)), 1000u) << "labels are seen";
+      EXPECT_GT(differing(paper, video_frame(film, (part + 0.05) * end, bare)), 1000u)
           << "it moves";
       for (std::size_t i = 0; i < twins.size(); ++i)
         EXPECT_EQ(
-            differing(paper, video_frame(twins[i], 0, part * end * power(kTwins[i].time), bare)),
+            differing(paper, video_frame(twins[i], part * end * kOtherUnits[i].of(0, 1, 0), bare)),
             0u)
             << "twin " << i << " at " << part;
     }
@@ -174,10 +174,11 @@ TEST_F(Video, ASceneInOtherUnitsLooksTheSame) {
 
 // Unless told otherwise a film takes as long as in the scene's own units; told so, as it is told.
 TEST_F(Video, PaceIsTheScenes) {
-  const Json film = twin(small_film(), 1.0, 1.0, power(-5));
-  write_video(path("a.mp4"), film, 0);
+  const test::Twin slow{.time = -5};
+  const Film film = in_other_units(small_film(), slow);
+  write_video(path("a.mp4"), film);
   EXPECT_EQ(number(probed(path("a.mp4")), "nb_read_frames"), 101);
-  write_video(path("b.mp4"), film, 0, {.speed = 0.5 * power(-5)});
+  write_video(path("b.mp4"), film, {.speed = 0.5 * slow.of(0, 1, 0)});
   EXPECT_EQ(number(probed(path("b.mp4")), "nb_read_frames"), 151);
 }
 
@@ -205,31 +206,21 @@ TEST_F(Video, AFileThatCannotBeWrittenIsSaidAtOnce) {
   EXPECT_NE(complaint_of(path("none/a.mp4")).find("No such file or directory"), std::string::npos);
 }
 
-TEST_F(Video, RefusesAFilmThatIsIncomplete) {
-  Json film = small_film(5);
-  film["runs"][0].erase("left");
-  EXPECT_NE(complaint_of(path("a.mp4"), film).find("key 'left' not found"), std::string::npos);
+TEST_F(Video, RefusesAFilmThatMakesNoSense) {
+  Film film = small_film(5);
+  film.runs[0].steps[2].body.vy = std::nan("");
+  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: a step holds what is no number");
   film = small_film(5);
-  film["runs"][0]["x"].erase(0);
-  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: x has 5 entries, t has 6");
-  film = small_film(5);
-  film["runs"][0]["vy"][2] = nullptr;
-  EXPECT_NE(complaint_of(path("a.mp4"), film).find("film: "), std::string::npos);
-  film = small_film(5);
-  film["runs"][0]["contact_left"][3] = 4;
-  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: a contact is none of 0, 1, 2");
-  film = small_film(5);
-  film["scale"]["time_s"] = 0.0;
-  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: a unit of its scale is not above 0");
-  film = small_film(5);
-  film["runs"][0]["t"][1] = 7.0;
-  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: t goes back in time");
-  for (const int run : {-1, 1})
-    EXPECT_NE(complaint_of(path("a.mp4"), small_film(5), run).find("film: "), std::string::npos);
+  film.runs[0].steps[1].time = 7.0;
+  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: its time goes back");
+  film.runs[0].steps.clear();
+  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: a run without steps");
+  film.runs.clear();
+  EXPECT_EQ(complaint_of(path("a.mp4"), film), "film: without runs");
   for (const double speed : {0.0, -1.0, std::nan("")})
-    EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.speed = speed}),
+    EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), {.speed = speed}),
               "a video's speed must be above 0");
-  EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), 0, {.frames_per_second = 0.0}),
+  EXPECT_EQ(complaint_of(path("a.mp4"), small_film(5), {.frames_per_second = 0.0}),
             "a video has 1 to 240 frames a second");
   EXPECT_EQ(files(), 0);
 }
@@ -248,7 +239,7 @@ TEST_F(VideoDeathTest, CtrlCEndsItAndLeavesNothing) {
             ::kill(::getpid(), SIGINT);
           }).detach();
           try {
-            write_video(path("a.mp4"), small_film(5), 0);
+            write_video(path("a.mp4"), small_film(5));
           } catch (const Interrupted&) {
             ::_exit(7);
           }

@@ -12,28 +12,26 @@ int main(int argc, char** argv) try {
   const auto write = [&](const char* name, const Json& film) {
     write_text_atomically(std::string(argv[1]) + "/" + name, replay_page(film));
   };
-  Json film = small_film(100);
+  Json film = to_json(small_film(100));
   write("gate-one.html", film);
   film["runs"].push_back(film["runs"][0]);
   film["runs"][1]["label"] = "trial 2: </script><b>trapped</b>";
   film["runs"][1]["ending"] = "trapped";
   write("gate.html", film);
-  write("field.html", small_field_film());
+  write("field.html", to_json(small_field_film()));
   int number = 0;
-  for (const auto& [length, mass, time] : kTwins) {
+  for (const auto& twin : kOtherUnits) {
     const auto name = [&](const char* of) { return of + std::to_string(number) + ".html"; };
-    write(name("gate-twin-").c_str(),
-          twin(small_film(100), power(length), power(mass), power(time)));
-    write(name("field-twin-").c_str(),
-          twin(small_field_film(), power(length), power(mass), power(time)));
+    write(name("gate-twin-").c_str(), to_json(in_other_units(small_film(100), twin)));
+    write(name("field-twin-").c_str(), to_json(in_other_units(small_field_film(), twin)));
     ++number;
   }
-  Json broken = small_film(5);
+  Json broken = to_json(small_film(5));
   broken["runs"][0].erase("left");
   broken["runs"][0]["vy"][2] = nullptr;
   broken["runs"][0]["contact_right"].push_back(0);
   write("broken.html", broken);
-  Json unknown = small_film(5);
+  Json unknown = to_json(small_film(5));
   unknown["runs"][0]["heat_J"] = Json::array();
   write("unknown.html", unknown);
 } catch (const std::exception& error) {

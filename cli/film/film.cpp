@@ -1,0 +1,70 @@
+#include "cli/film/film.h"
+
+#include <algorithm>
+
+#include "cli/render/drawing.h"
+#include "cli/render/quantity.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using dynamics::kLeft;
+using dynamics::kRight;
+
+std::string title_of(const lattice::Scene& scene) {
+  const dynamics::GateParams& p = scene.gate;
+  return scene.source + ": F " + quantity(p.forces.propulsion, "N", 7) + ", Rm " +
+         quantity(p.forces.random, "N", 7) + ", k " + digits(p.beams.stiffness_left) + " / " +
+         digits(p.beams.stiffness_right) + ", d " + digits(p.beams.damping) + ", " + p.run.method;
+}
+
+std::string label_of(const lattice::Recording& r, bool across_field, const dynamics::Scale& scale) {
+  return "trial " + std::to_string(r.trial) + ": " + r.ending + " after " +
+         reading(r.seconds, "s", 0.01 * scale.time) +
+         (across_field ? ", " + std::to_string(r.gates) + (r.gates == 1 ? " gate" : " gates") : "");
+}
+
+/// Without the random force, which a moment has had and a step will have.
+FilmStep film_step(const lattice::Moment& m, const dynamics::Scale& scale) {
+  const auto& [body, beams] = m.sample.state;
+  const dynamics::Energies& e = m.energy;
+  const double joule = scale.energy();
+  return {.time = seven_digits(m.time, scale.time),
+          .i_x = m.i_x,
+          .i_y = m.i_y,
+          .body = {seven_digits(body.x, scale.length), seven_digits(body.y, scale.length),
+                   seven_digits(body.vx, scale.speed()), seven_digits(body.vy, scale.speed())},
+          .angle = {seven_digits(beams[kLeft].theta, 1.0), seven_digits(beams[kRight].theta, 1.0)},
+          .contact = m.sample.contact,
+          .body_energy = seven_digits(e.body, joule),
+          .beams_energy = seven_digits(e.beams[kLeft] + e.beams[kRight], joule),
+          .elastic = seven_digits(e.elastic[kLeft] + e.elastic[kRight], joule),
+          .work = seven_digits(e.propulsion_work + e.random_work, joule),
+          .lost = seven_digits(e.lost, joule),
+          .lost_in_hits = seven_digits(e.hit_loss, joule)};
+}
+
+}  // namespace
+
+Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings) {
+  Film film;
+  film.title = title_of(scene);
+  film.gate = scene.gate;
+  if (recordings.across_field) film.field = scene.field;
+  const dynamics::Scale scale = dynamics::scale_of(scene.gate);
+  for (const lattice::Recording& r : recordings.runs) {
+    FilmRun run{label_of(r, recordings.across_field, scale), r.ending, {}};
+    const std::size_t last = r.moments.size() - 1;
+    for (std::size_t i = 0; i <= last; ++i) {
+      run.steps.push_back(film_step(r.moments[i], scale));
+      // A film's force holds until its next step, a sample's acted before it.
+      if (last > 0)
+        run.steps.back().random_force =
+            seven_digits(r.moments[std::min(i + 1, last)].sample.random_force, scale.force());
+    }
+    film.runs.push_back(std::move(run));
+  }
+  return film;
+}
+
+}  // namespace gatewalk::cli

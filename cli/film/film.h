@@ -1,0 +1,45 @@
+#pragma once
+/// What is drawn of runs, by the page that plays them (replay.h) and in videos (video.h).
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "lattice/study/recording.h"
+
+namespace gatewalk::cli {
+
+/// How things stand at the end of a step; work and losses since the run began.
+struct FilmStep {
+  double time = 0.0;                               // s, uneven steps allowed
+  int i_x = 0, i_y = 0;                            // the gate that the body is in
+  dynamics::BodyState body;                        // in that gate's frame
+  std::array<double, 2> angle{};                   // rad, of its beams, > 0 deflected forward
+  std::array<dynamics::ContactMode, 2> contact{};  // holds until the next step
+  double random_force = 0.0;                       // N, the same
+  double body_energy = 0.0, beams_energy = 0.0;    // J, kinetic
+  double elastic = 0.0;                            // J, of both beams
+  double work = 0.0;                               // J, of propulsion and random force
+  double lost = 0.0, lost_in_hits = 0.0;           // J
+};
+
+struct FilmRun {
+  std::string label, ending;
+  std::vector<FilmStep> steps;  // at least one
+};
+
+struct Film {
+  std::string title;
+  dynamics::GateParams gate;
+  lattice::FieldParams field{.columns = 1, .rows = 1};  // 1 x 1: a gate alone
+  std::vector<FilmRun> runs;
+
+  [[nodiscard]] double width() const { return 2.0 * gate.beams.joint_x; }  // m, of a gate
+  [[nodiscard]] double depth() const { return gate.run.traverse_y; }       // m, the same
+  [[nodiscard]] bool is_field() const { return field.columns * field.rows > 1; }
+};
+
+/// All runs as a film, with seven digits in the scene's own units.
+[[nodiscard]] Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,164 @@
+#include "lattice/study/recording.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "lattice/reference.h"
+#include "lattice/scene/settle.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::GateParams;
+
+/// At least so many trials are looked at by a better method: the few that are kept would show
+/// nothing of one.
+constexpr std::int64_t kCheckedAs = 500;
+
+std::string ending_of(const GateParams& p, const dynamics::GateRun& run) {
+  dynamics::GateTally t;
+  t.add(p, run);
+  if (t.traversed_left) return "traversed left";
+  if (t.traversed_right) return "traversed right";
+  if (t.traversed_even) return "traversed evenly";
+  if (t.exited_left) return "exited left";
+  if (t.exited_right) return "exited right";
+  return t.trapped ? "trapped" : "not finite";
+}
+
+std::string field_ending(std::optional<markov::Ending> ending) {
+  if (!ending) return "not finite";
+  switch (*ending) {
+    case markov::Ending::trapped:
+      return "trapped";
+    case markov::Ending::far_edge:
+      return "crossed";
+    case markov::Ending::left_edge:
+      return "left field left side";
+    case markov::Ending::right_edge:
+      return "left field right side";
+    case markov::Ending::near_edge:
+      return "left field near side";
+    case markov::Ending::cut_off:
+      return "cut off";
+    case markov::Ending::unsampled:
+      break;  // of walks only
+  }
+  throw std::logic_error("the dynamics samples no matrix");
+}
+
+/// Energies of the trial when those of this gate are `now`, and what was done before it is
+/// `before`.
+dynamics::Energies together(const dynamics::Energies& before, dynamics::Energies now) {
+  now.propulsion_work += before.propulsion_work;
+  now.random_work += before.random_work;
+  now.hit_loss += before.hit_loss;
+  now.lost += before.lost;
+  return now;
+}
+
+void append(Recording& r, const dynamics::GateTrace& trace, int i_x, int i_y) {
+  dynamics::Energies before;
+  double clock = 0.0;
+  if (!r.moments.empty()) {
+    const Moment& last = r.moments.back();
+    before = last.energy;
+    clock = last.time;
+    // The old gate's beams stay behind with what they had; the new ones are at rest.
+    before.lost += last.energy.mechanical() - trace.samples.front().energy.mechanical();
+  }
+  for (const dynamics::TraceSample& s : trace.samples)
+    r.moments.push_back({i_x, i_y, clock + s.time, s, together(before, s.energy)});
+}
+
+std::string named(std::int64_t first, std::int64_t last) {
+  return "trials " + std::to_string(first) + " to " + std::to_string(last);
+}
+
+std::invalid_argument too_long(const std::string& what, bool across_field) {
+  return std::invalid_argument(what + " more than " + std::to_string(kMostMoments) +
+                               " steps, the most that are recorded; "
+                               "give a longer run.step_s or a shorter run.time_limit_s" +
+                               (across_field ? ", or fewer gates by field.max_gates" : ""));
+}
+
+}  // namespace
+
+std::vector<std::string> endings(bool across_field) {
+  if (!across_field)
+    return {"traversed left", "traversed right", "traversed evenly", "exited left",
+            "exited right",   "trapped",         "not finite"};
+  std::vector<std::string> names;
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    if (const auto ending = static_cast<markov::Ending>(e); ending != markov::Ending::unsampled)
+      names.push_back(field_ending(ending));
+  names.push_back(field_ending({}));
+  return names;
+}
+
+bool ends_so(std::string_view ending, std::string_view only) {
+  if (ending == "crossed" && ends_so("left field", only)) return true;
+  return ending.starts_with(only) && (ending.size() == only.size() || ending[only.size()] == ' ');
+}
+
+Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, bool across_field,
+                 std::size_t most_moments) {
+  Recording r;
+  r.trial = trial;
+  if (across_field) {
+    const FieldTrace t =
+        trace_field(scene.gate, scene.field, scene.start, seed, trial, most_moments);
+    for (const auto& visit : t.visits) {
+      append(r, visit.trace, visit.column - scene.field.start_column(), visit.row);
+      r.health.add(scene.gate, visit.trace.run);
+    }
+    r.gates = static_cast<int>(t.visits.size());
+    r.ending = field_ending(t.ending);
+  } else {
+    const auto method = dynamics::make_method(scene.gate);
+    dynamics::RandomForce force = dynamics::gate_force(scene.gate, seed, trial);
+    const auto t = dynamics::trace_gate(scene.gate, *method, scene.start, force, most_moments);
+    append(r, t, 0, 0);
+    r.health.add(scene.gate, t.run);
+    r.ending = ending_of(scene.gate, t.run);
+  }
+  r.seconds = r.moments.back().time;
+  return r;
+}
+
+Recordings record_trials(const Scene& scene, const RecordingOptions& options,
+                         const dynamics::Work& work) {
+  Recordings kept;
+  kept.across_field = options.across_field;
+  kept.trials = options.trials;
+  std::size_t moments = 0;
+  const auto take = [&](std::int64_t trial) {
+    Recording r;
+    try {
+      r = record(scene, options.seed, trial, options.across_field, kMostMoments);
+    } catch (const dynamics::TraceTooLong&) {
+      throw too_long("trial " + std::to_string(trial) + " alone has", options.across_field);
+    }
+    if (!options.only.empty() && !ends_so(r.ending, options.only)) return;
+    if (static_cast<std::int64_t>(kept.runs.size()) == kMostRecordings)
+      throw std::invalid_argument("more than " + std::to_string(kMostRecordings) +
+                                  " runs end so; ask for fewer --trials");
+    moments += r.moments.size();
+    if (moments > kMostMoments)
+      throw too_long(named(options.first, trial) + " have together", options.across_field);
+    kept.health += r.health;
+    kept.runs.push_back(std::move(r));
+  };
+  work.in_pieces("runs", options.trials, [&](dynamics::TrialRange range) {
+    for (std::int64_t i = 0; i < range.count; ++i) take(options.first + range.first + i);
+  });
+  if (kept.runs.empty())
+    throw std::runtime_error("none of " + named(options.first, options.first + options.trials - 1) +
+                             " ends '" + options.only + "': nothing was written");
+  check_outcomes(scene, options.across_field ? RunsFrom::everywhere : RunsFrom::start, options.seed,
+                 std::max(options.trials, kCheckedAs), kept.health, work);
+  return kept;
+}
+
+}  // namespace gatewalk::lattice
