@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "cli/paper/verdicts.h"
 #include "cli/render/report.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
@@ -21,17 +22,18 @@ constexpr std::array kCharts = {"outcomes",    "right_share",  "landscapes",  "b
                                 "rates",       "speed",        "histogram",   "replay"};
 
 /// How a verdict is shown: never by colour alone.
-struct Verdict {
-  const char *name, *style, *symbol;
+struct Mark {
+  std::string_view name;
+  const char *style, *symbol;
 };
-constexpr std::array<Verdict, 3> kVerdicts = {{{"reproduced", "reproduced", "✓"},
-                                               {"within noise", "noise", "≈"},
-                                               {"differs", "differs", "≠"}}};
+constexpr std::array<Mark, 3> kMarks = {{{kVerdictNames[0], "reproduced", "✓"},
+                                         {kVerdictNames[1], "noise", "≈"},
+                                         {kVerdictNames[2], "differs", "≠"}}};
 
-const Verdict& verdict_of(const Json& claim) {
+const Mark& mark_of(const Json& claim) {
   const auto name = claim.at("verdict").get<std::string>();
-  for (const Verdict& v : kVerdicts) {
-    if (name == v.name) return v;
+  for (const Mark& m : kMarks) {
+    if (name == m.name) return m;
   }
   throw std::invalid_argument("claim " + claim.at("id").get<std::string>() +
                               ": unknown verdict \"" + name + "\"");
@@ -68,17 +70,17 @@ std::string paragraphs(const Json& list) {
   return out;
 }
 
-std::string badge(const Verdict& v) {
+std::string badge(const Mark& v) {
   return element(std::string("span class=\"badge ") + v.style + "\"",
-                 std::string("<i aria-hidden=\"true\">") + v.symbol + "</i>" + v.name);
+                 std::string("<i aria-hidden=\"true\">") + v.symbol + "</i>" + std::string(v.name));
 }
 
 /// How many claims got each verdict, as a bar and in numbers.
 std::string tally_of(const Json& claims) {
   std::string bar, list;
-  for (const Verdict& v : kVerdicts) {
+  for (const Mark& v : kMarks) {
     const auto n = std::count_if(claims.begin(), claims.end(),
-                                 [&](const Json& c) { return &verdict_of(c) == &v; });
+                                 [&](const Json& c) { return &mark_of(c) == &v; });
     if (n == 0) continue;
     bar += "<span class=\"" + std::string(v.style) + "\" style=\"flex-grow:" + std::to_string(n) +
            "\"></span>";
@@ -91,7 +93,7 @@ std::string tally_of(const Json& claims) {
 std::string claim_rows(const Json& claims, const std::map<std::string, std::string>& headings) {
   std::string rows;
   for (const Json& c : claims) {
-    const Verdict& v = verdict_of(c);
+    const Mark& v = mark_of(c);
     const auto see = c.at("see").get<std::string>();
     const auto heading = headings.find(see);
     if (heading == headings.end()) {
@@ -163,7 +165,7 @@ std::string section(const Json& s, const Json& claims) {
   std::string about, commands, files;
   for (const Json& c : claims) {
     if (c.at("see").get<std::string>() != id) continue;
-    about += element("li", "<a href=\"#claim-" + text(c, "id") + "\">" + badge(verdict_of(c)) +
+    about += element("li", "<a href=\"#claim-" + text(c, "id") + "\">" + badge(mark_of(c)) +
                                text(c, "claim") + "</a>");
   }
   for (const Json& c : s.at("commands")) commands += element("code", escaped(c.get<std::string>()));

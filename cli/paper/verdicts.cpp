@@ -20,11 +20,11 @@ std::string percent_text(const Share& s) {
          fixed(100 * s.high, decimals) + "]";
 }
 
-std::string against(std::int64_t paper_count, const Share& ours) {
+Verdict against(std::int64_t paper_count, const Share& ours) {
   const Share paper = share_of(paper_count, kPaperTrials);
-  if (ours.whole == 0) return kWithinNoise;
-  if (ours.high < paper.low || ours.low > paper.high) return kDiffers;
-  return paper.low <= ours.low && ours.high <= paper.high ? kReproduced : kWithinNoise;
+  if (ours.whole == 0) return Verdict::within_noise;
+  return verdict_of(ours.high < paper.low || ours.low > paper.high,
+                    paper.low <= ours.low && ours.high <= paper.high);
 }
 
 bool rises(const Share& a, const Share& b) { return a.whole > 0 && b.whole > 0 && a.high < b.low; }
@@ -59,11 +59,11 @@ void Trend::add(const std::vector<double>& axis, const std::vector<Share>& s,
   }
 }
 
-std::string Trend::verdict(bool wiggles) const {
+Verdict Trend::verdict(bool wiggles) const {
   const bool enough = least_trials_ >= kEnoughTrials;
-  if (more_than_chance(down, series) || (enough && up == 0)) return kDiffers;
-  if (!wiggles && enough && more_than_chance(seen, steps)) return kDiffers;
-  return enough && 2 * up > series && (wiggles || falling == 0) ? kReproduced : kWithinNoise;
+  const bool differs = more_than_chance(down, series) || (enough && up == 0) ||
+                       (!wiggles && enough && more_than_chance(seen, steps));
+  return verdict_of(differs, enough && 2 * up > series && (wiggles || falling == 0));
 }
 
 }  // namespace gatewalk::cli

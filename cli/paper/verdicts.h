@@ -1,16 +1,30 @@
 #pragma once
 /// When a claim of the paper counts as reproduced: fewer trials never make a verdict surer.
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gatewalk::cli {
 
-inline constexpr char kReproduced[] = "reproduced";
-inline constexpr char kWithinNoise[] =
-    "within noise";  // the paper's 100 trials, or ours, cannot tell
-inline constexpr char kDiffers[] = "differs";
+/// From best to worst.
+enum class Verdict : std::uint8_t {
+  reproduced,
+  within_noise,  // the paper's 100 trials, or ours, cannot tell
+  differs,
+};
+inline constexpr std::array<std::string_view, 3> kVerdictNames{"reproduced", "within noise",
+                                                               "differs"};
+[[nodiscard]] inline std::string_view name_of(Verdict v) {
+  return kVerdictNames[static_cast<std::size_t>(v)];
+}
+/// Of a claim that is seen not to hold, or else seen to hold, or neither.
+[[nodiscard]] inline Verdict verdict_of(bool differs, bool reproduced) {
+  return differs ? Verdict::differs : reproduced ? Verdict::reproduced : Verdict::within_noise;
+}
+
 inline constexpr std::int64_t kPaperTrials = 100;
 /// A statement without a number, such as "never falls", is reproduced only by so many trials.
 inline constexpr std::int64_t kEnoughTrials = 1000;
@@ -26,7 +40,7 @@ struct Share {
 
 /// A number that the paper counted in 100 trials: reproduced when all of our interval lies within
 /// that of the paper's count, differs when they do not meet.
-[[nodiscard]] std::string against(std::int64_t paper_count, const Share& ours);
+[[nodiscard]] Verdict against(std::int64_t paper_count, const Share& ours);
 
 /// b lies above a beyond chance: their 95 % intervals do not meet.
 [[nodiscard]] bool rises(const Share& a, const Share& b);
@@ -53,7 +67,7 @@ class Trend {
   /// ends above it or the paper would see more steps down than chance makes. Reproduced, on enough
   /// trials, when most end above their start and no step goes down beyond chance (or the paper
   /// allows that: `wiggles`).
-  [[nodiscard]] std::string verdict(bool wiggles = false) const;
+  [[nodiscard]] Verdict verdict(bool wiggles = false) const;
 
   int series = 0, up = 0, down = 0;  // from end to end, beyond chance
   int steps = 0, falling = 0, seen = 0;

@@ -5,22 +5,22 @@
 namespace gatewalk::cli {
 namespace {
 
-TEST(Verdict, OfANumberCountedIn100Trials) {
+TEST(PaperVerdict, OfANumberCountedIn100Trials) {
   EXPECT_EQ(against(52, share_of(4630, 10000)),
-            kReproduced);  // within [42, 62] whatever our chance
-  EXPECT_EQ(against(52, share_of(500, 10000)), kDiffers);
-  EXPECT_EQ(against(13, share_of(20, 10000)), kDiffers);
-  EXPECT_EQ(against(98, share_of(9800, 10000)), kReproduced);
-  EXPECT_EQ(against(52, share_of(0, 0)), kWithinNoise);
+            Verdict::reproduced);  // within [42, 62] whatever our chance
+  EXPECT_EQ(against(52, share_of(500, 10000)), Verdict::differs);
+  EXPECT_EQ(against(13, share_of(20, 10000)), Verdict::differs);
+  EXPECT_EQ(against(98, share_of(9800, 10000)), Verdict::reproduced);
+  EXPECT_EQ(against(52, share_of(0, 0)), Verdict::within_noise);
 }
 
 // Fewer trials widen our interval: what was reproduced or different becomes unsure, never the other
 // way round.
-TEST(Verdict, FewerTrialsAreNeverSurer) {
-  EXPECT_EQ(against(52, share_of(46, 100)), kWithinNoise);
-  EXPECT_EQ(against(52, share_of(23, 50)), kWithinNoise);
-  EXPECT_EQ(against(13, share_of(0, 20)), kWithinNoise);
-  EXPECT_EQ(against(13, share_of(0, 2000)), kDiffers);
+TEST(PaperVerdict, FewerTrialsAreNeverSurer) {
+  EXPECT_EQ(against(52, share_of(46, 100)), Verdict::within_noise);
+  EXPECT_EQ(against(52, share_of(23, 50)), Verdict::within_noise);
+  EXPECT_EQ(against(13, share_of(0, 20)), Verdict::within_noise);
+  EXPECT_EQ(against(13, share_of(0, 2000)), Verdict::differs);
 }
 
 std::vector<Share> shares(const std::vector<double>& values, std::int64_t trials) {
@@ -29,36 +29,38 @@ std::vector<Share> shares(const std::vector<double>& values, std::int64_t trials
     s.push_back(share_of(static_cast<std::int64_t>(v * static_cast<double>(trials)), trials));
   return s;
 }
-std::string verdict(const std::vector<double>& values, std::int64_t trials, bool wiggles = false) {
+Verdict verdict(const std::vector<double>& values, std::int64_t trials, bool wiggles = false) {
   Trend trend;
   trend.add({4, 5, 6, 7}, shares(values, trials));
   return trend.verdict(wiggles);
 }
 
-TEST(Verdict, OfATrend) {
-  EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 10000), kReproduced);
-  EXPECT_EQ(verdict({0.4, 0.3, 0.2, 0.1}, 10000), kDiffers);
-  EXPECT_EQ(verdict({0.3, 0.3, 0.3, 0.3}, 10000), kDiffers);  // it does not rise
-  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000), kDiffers);  // a fall that 100 trials show
-  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000, true), kReproduced);  // if the paper allows it
-  EXPECT_EQ(verdict({0.01, 0.05, 0.03, 0.6}, 10000), kWithinNoise);    // a fall that they do not
+TEST(PaperVerdict, OfATrend) {
+  EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 10000), Verdict::reproduced);
+  EXPECT_EQ(verdict({0.4, 0.3, 0.2, 0.1}, 10000), Verdict::differs);
+  EXPECT_EQ(verdict({0.3, 0.3, 0.3, 0.3}, 10000), Verdict::differs);  // it does not rise
+  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000), Verdict::differs);  // a fall that 100 trials show
+  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000, true),
+            Verdict::reproduced);  // if the paper allows it
+  EXPECT_EQ(verdict({0.01, 0.05, 0.03, 0.6}, 10000),
+            Verdict::within_noise);  // a fall that they do not
   EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 100),
-            kWithinNoise);  // too few trials to say "never falls"
+            Verdict::within_noise);  // too few trials to say "never falls"
 }
 
 // Shares of few: what 100 trials of all would show of them depends on how few they are.
-TEST(Verdict, OfATrendOfSharesOfFew) {
+TEST(PaperVerdict, OfATrendOfSharesOfFew) {
   const std::vector<Share> s = shares({0.05, 0.6, 0.3, 0.5}, 1000);
   Trend many, few;
   many.add({100, 200, 300, 400}, s, {1, 1, 1, 1});
   few.add({100, 200, 300, 400}, s, {0.02, 0.02, 0.02, 0.02});
   EXPECT_EQ(many.falling, 1);
   EXPECT_EQ(many.at, 200);
-  EXPECT_EQ(many.verdict(), kDiffers);
-  EXPECT_EQ(few.verdict(), kWithinNoise);
+  EXPECT_EQ(many.verdict(), Verdict::differs);
+  EXPECT_EQ(few.verdict(), Verdict::within_noise);
 }
 
-TEST(Verdict, TextHasDigitsAsTheTrialsAllow) {
+TEST(PaperVerdict, TextHasDigitsAsTheTrialsAllow) {
   EXPECT_EQ(percent_text(share_of(46, 100)), "46 % [36, 56]");
   EXPECT_EQ(percent_text(share_of(0, 10000)), "0.00 % [0.00, 0.03]");
   EXPECT_EQ(percent_text(share_of(0, 0)), "none of none");

@@ -1,0 +1,315 @@
+#include "cli/paper/reproduction.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <sstream>
+
+#include "cli/paper/figures.h"
+#include "cli/paper/page.h"
+#include "cli/paper/studies.h"
+#include "cli/render/drawing.h"
+#include "cli/render/gnuplot.h"
+#include "cli/render/report.h"
+#include "cli/terminal/interrupt.h"
+#include "cli/terminal/output.h"
+#include "cli/terminal/progress.h"
+#include "cli/version.h"
+#include "cli/web/embedded.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr char kDone[] = "data/done.json";
+constexpr std::array<const char*, 5> kScenes{"scenes/single_gate.toml", "scenes/soft_left.toml",
+                                             "scenes/fig8.toml", "scenes/fig12.toml",
+                                             "scenes/field.toml"};
+
+/// Which build this is: a commit alone does not tell two builds of changed sources apart.
+std::string build_id() {
+  const char* const self = "/proc/self/exe";
+  std::error_code error;
+  const auto size = std::filesystem::file_size(self, error);
+  const auto time = std::filesystem::last_write_time(self, error).time_since_epoch().count();
+  return std::string(kVersion) + " " + kCommit + " " + std::to_string(size) + " " +
+         std::to_string(time);
+}
+
+/// What is known of a study that was carried out: enough to know whether it is still the same one.
+Json record_of(const Study& s) { return {{"command", s.text()}, {"program", build_id()}}; }
+
+/// Empty when there is none, or none that can be read: then it is made again.
+Json read_json(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) return {};
+  Json j = Json::parse(in, nullptr, false);
+  return j.is_discarded() ? Json() : j;
+}
+
+/// While it lives, what is written to a stream is kept instead.
+class Overheard {
+ public:
+  explicit Overheard(std::ostream& stream) : stream_(stream), usual_(stream.rdbuf(kept_.rdbuf())) {}
+  ~Overheard() { stream_.rdbuf(usual_); }
+  Overheard(const Overheard&) = delete;
+  Overheard& operator=(const Overheard&) = delete;
+  [[nodiscard]] std::string text() const { return kept_.str(); }
+
+ private:
+  std::ostringstream kept_;
+  std::ostream& stream_;
+  std::streambuf* usual_;
+};
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm day{};
+  ::gmtime_r(&now, &day);
+  char text[16];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &day);
+  return text;
+}
+
+/// Throws UsageError when a scene in the working folder, called `folder`, would be replaced that is
+/// neither what the program carries nor what an earlier report was made with.
+void require_no_scene_of_ones_own(const std::string& folder) {
+  const Json old = read_json("report.json");
+  const Json made_by = old.is_object() ? old.value("made_by", Json()) : Json();
+  const Json scenes = made_by.is_object() ? made_by.value("scenes", Json()) : Json();
+  for (const char* name : kScenes) {
+    std::ifstream in(name, std::ios::binary);
+    if (!in) continue;
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    bool known = text == carried_file(name);
+    if (scenes.is_array())
+      for (const Json& s : scenes)
+        known |=
+            s.is_object() && s.value("name", Json()) == name && s.value("text", Json()) == text;
+    if (!known)
+      throw UsageError("-o " + folder + ": its " + name +
+                       " is not the paper's and would be replaced; choose another folder");
+  }
+}
+
+/// Nobody else works in this folder while it lives.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder)
+      : fd_(::open(".", O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (fd_ < 0 || ::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+      const int error = errno;
+      if (fd_ >= 0) ::close(fd_);
+      throw std::runtime_error(folder + (error == EWOULDBLOCK
+                                             ? ": another gatewalk reproduce works in it"
+                                             : std::string(": ") + std::strerror(error)));
+    }
+  }
+  ~FolderLock() { ::close(fd_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int fd_;
+};
+
+/// What the studies gave, by their names.
+struct Results {
+  std::map<std::string, Json> data;
+  double seconds = 0.0;  // of all of them
+};
+
+/// The studies on record. Every finished one is there at once, so a run that is stopped goes on
+/// from there; none is while it is made anew.
+class Records {
+ public:
+  Records() : done_(read_json(kDone)) {
+    if (!done_.is_object()) done_ = Json::object();
+  }
+
+  /// The result of a study; null when it is not done yet, or by another command or program, or
+  /// cannot be read any more.
+  [[nodiscard]] Json result(const Study& s) const {
+    const auto known = done_.find(s.name);
+    if (known == done_.end() || !known->is_object()) return {};
+    const Json wanted = record_of(s);
+    for (const auto& [key, value] : wanted.items())
+      if (known->value(key, Json()) != value) return {};
+    if (!known->value("seconds", Json()).is_number()) return {};
+    Json data = read_json(file_of(s));
+    // A file of another run, or half a one, is no result.
+    return data.is_object() && data.contains("made_by") ? data : Json();
+  }
+  /// Carries a study out and puts it on record.
+  [[nodiscard]] Json make(const Study& s) {
+    if (done_.erase(s.name) > 0) write();
+    const Stopwatch watch;
+    const std::string remarks = run(s);
+    Json data = read_json(file_of(s));
+    if (data.is_null()) throw std::runtime_error(file_of(s) + ": cannot be read again");
+    done_[s.name] = record_of(s);
+    if (!remarks.empty()) done_[s.name]["remarks"] = remarks;
+    done_[s.name]["seconds"] = watch.seconds();
+    write();
+    return data;
+  }
+  [[nodiscard]] double seconds(const Study& s) const {
+    return done_[s.name]["seconds"].get<double>();
+  }
+  [[nodiscard]] bool has_remarks(const Study& s) const { return done_[s.name].contains("remarks"); }
+
+ private:
+  static std::string file_of(const Study& s) { return "data/" + s.name + ".json"; }
+  /// Returns its remarks: the paper's own scheme shows faults and says so; that belongs to the
+  /// study, not to this run.
+  static std::string run(const Study& s) {
+    std::vector<std::string> arguments = s.arguments;
+    arguments.insert(arguments.end(), {"--quiet", "--json", file_of(s)});
+    const Overheard words(std::cerr);
+    if (const int status = s.run(arguments); status != kFine)
+      throw std::runtime_error(s.text() + ": ended with status " + std::to_string(status) + ". " +
+                               words.text());
+    return words.text();
+  }
+  void write() const { write_text_atomically(kDone, text_of(done_) + "\n"); }
+
+  Json done_;
+};
+
+/// Carries out what is not done yet, and takes what all of them gave.
+Results carry_out(const std::vector<Study>& studies, bool talk) {
+  Records records;
+  Results results;
+  std::vector<const Study*> left;
+  std::int64_t cost = 0;
+  for (const Study& s : studies) {
+    if (Json data = records.result(s); !data.is_null()) {
+      results.data[s.name] = std::move(data);
+    } else {
+      left.push_back(&s);
+      cost += s.cost;
+    }
+  }
+  std::size_t number = studies.size() - left.size();
+  if (talk && number > 0)
+    std::cout << number << " of " << studies.size() << " studies are done already\n" << std::flush;
+  Progress progress("studies", cost, talk);
+  for (const Study* s : left) {
+    if (interrupted()) throw Interrupted{};
+    progress.begin_part(s->name, s->cost);
+    results.data[s->name] = records.make(*s);
+    progress.finish();
+    if (talk)
+      std::cout << padded(
+                       "[" + std::to_string(++number) + "/" + std::to_string(studies.size()) + "]",
+                       8)
+                << "  " << padded(s->name, -18) << padded(fixed(records.seconds(*s), 1), 7) << " s"
+                << (records.has_remarks(*s) ? "   (with remarks: data/done.json)" : "") << "\n"
+                << std::flush;
+  }
+  for (const Study& s : studies) results.seconds += records.seconds(s);
+  return results;
+}
+
+/// Writes the scenes that the studies name. Returns them as the report has them.
+Json write_scenes() {
+  Json scenes = Json::array();
+  for (const char* scene : kScenes) {
+    const std::string text(carried_file(scene));
+    write_text_atomically(scene, text);
+    scenes.push_back({{"name", scene}, {"text", text}});
+  }
+  return scenes;
+}
+
+/// What the page begins with.
+std::vector<std::string> lead_of(const Reproduction& r, bool quick) {
+  std::vector<std::string> lead{
+      "The results of the paper, Figs. 5, 6, 8, 9, 11, 12 and Table IV, and what its abstract "
+      "and its Sections II and III claim, made again from the model alone, beside the paper's "
+      "own values.",
+      "Of " + std::to_string(r.claims.size()) + " claims " +
+          std::to_string(r.count(Verdict::reproduced)) + " are reproduced, " +
+          std::to_string(r.count(Verdict::within_noise)) +
+          " agree or differ by no more than the paper's 100 trials (or the trials here) can "
+          "tell, and " +
+          std::to_string(r.count(Verdict::differs)) +
+          " differ; why, as far as it is known, stands beside them. Intervals are 95 % "
+          "(Jeffreys).",
+      "Symbols as in the paper: F_prop propulsive force, Rm random force (N); k_L, k_R stiffness "
+      "of the left and right beam (N m/rad), d their damping (N m s/rad, printed as N s/rad) "
+      "and, of a start, the place where it enters (m); RT, LT: entries through the sides above "
+      "the joints."};
+  if (quick)
+    lead.push_back(
+        "This is the quick version: few trials, wide intervals. The full one, without --quick, "
+        "takes some four minutes.");
+  return lead;
+}
+
+Reproduction report_of(const Results& results, const std::vector<Study>& studies, bool quick,
+                       const Json& scenes) {
+  const Findings findings(results.data);
+  std::map<std::string, std::string> commands;
+  for (const Study& s : studies) commands[s.name] = s.text();
+  Reproduction r{.report = {}, .claims = claims_of(findings), .seconds = results.seconds};
+  r.report = {{"title", "Cluttered obstacle traversal: what gatewalk reproduces"},
+              {"paper",
+               "B. Zheng, Q. Xuan and C. Li, A minimalistic stochastic dynamics model of cluttered "
+               "obstacle traversal, IEEE Robotics and Automation Letters (2022)"},
+              {"quick", quick},
+              {"claims", to_json(r.claims)},
+              {"lead", lead_of(r, quick)},
+              {"sections", sections_of(findings, commands)},
+              {"made_by",
+               {{"program", std::string("gatewalk ") + kVersion + " (" + kCommit + ")"},
+                {"command", std::string("gatewalk reproduce") + (quick ? " --quick" : "")},
+                {"seed", 1},
+                {"machine", machine()},
+                {"seconds", results.seconds},
+                {"date", today()},
+                {"scenes", scenes}}}};
+  return r;
+}
+
+}  // namespace
+
+int Reproduction::count(Verdict verdict) const {
+  return static_cast<int>(std::count_if(claims.begin(), claims.end(),
+                                        [&](const Claim& c) { return c.verdict == verdict; }));
+}
+
+Reproduction reproduce(const ReproductionOptions& options) {
+  const std::string& folder = options.folder;
+  require_folder(folder);
+  require_folder(folder + "/data");
+  require_folder(folder + "/scenes");
+  (void)drawn("print 'gnuplot is there'");  // before minutes of work, not after
+  // The commands are recorded as they work inside the folder.
+  std::filesystem::current_path(folder);
+  const FolderLock lock(folder);
+  if (const Json old = read_json("report.json");
+      options.quick && old.is_object() && old.value("quick", Json()) == false)
+    throw UsageError(folder +
+                     " holds a full report, which --quick would replace; choose another folder");
+  require_no_scene_of_ones_own(folder);
+  const std::vector<Study> studies = paper_studies(options.quick);
+  const Json scenes = write_scenes();
+  Reproduction r = report_of(carry_out(studies, options.talk), studies, options.quick, scenes);
+  write_text_atomically("claims.csv", csv_of(r.claims));
+  write_text_atomically("report.json", text_of(r.report, -1) + "\n");
+  write_text_atomically("report.html", report_page(r.report));
+  return r;
+}
+
+}  // namespace gatewalk::cli

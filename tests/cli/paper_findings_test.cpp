@@ -1,0 +1,104 @@
+#include "cli/paper/findings.h"
+
+#include <gtest/gtest.h>
+
+namespace gatewalk::cli {
+namespace {
+
+Json small_sweep() {
+  return Json::parse(R"({"points": [
+    {"at": {"run.method": "stable", "beams.damping_Nms_per_rad": 50}, "trials": 200,
+     "traversed": 8, "traversed_left": 6, "traversed_right": 2, "exited_left": 10,
+     "exited_right": 20, "trapped": 162, "status": {"worst_penetration_m": 0.5}},
+    {"at": {"run.method": "paper", "beams.damping_Nms_per_rad": 0.5}, "trials": 200,
+     "traversed": 0, "traversed_left": 0, "traversed_right": 0, "exited_left": 0,
+     "exited_right": 0, "trapped": 200, "status": {"worst_penetration_m": 2}}]})");
+}
+
+std::string complaint_of(const Json& json) {
+  try {
+    (void)sweep_of(json, "data/a.json");
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "(read)";
+}
+
+TEST(Findings, APointIsFoundByItsNumbersAndWords) {
+  const Sweep sweep = sweep_of(small_sweep(), "data/a.json");
+  const SweepPoint& p = sweep.at({{"run.method", "stable"}, {"beams.damping_Nms_per_rad", 50}});
+  EXPECT_EQ(p.trapped, 162);
+  EXPECT_EQ(p.traversed_share().value, 0.04);
+  EXPECT_EQ(p.right_share().value, 0.25);
+  EXPECT_EQ(p.right_share().whole, 8);
+  EXPECT_EQ(p.at("beams.damping_Nms_per_rad").text, "50");
+  const SweepPoint& other = sweep.at({{"run.method", "paper"}});
+  EXPECT_EQ(other.at("beams.damping_Nms_per_rad").number, 0.5);
+  EXPECT_EQ(other.worst_penetration, 2.0);
+  EXPECT_THROW((void)sweep.at({{"run.method", "stable"}, {"beams.damping_Nms_per_rad", 10}}),
+               std::out_of_range);
+  EXPECT_THROW((void)sweep.at({{"run.step_s", 0.02}}), std::out_of_range);
+}
+
+TEST(Findings, WhatIsMissingOrOfAnotherKindIsNamed) {
+  Json sweep = small_sweep();
+  sweep["points"][1].erase("trials");
+  EXPECT_EQ(complaint_of(sweep), "data/a.json: points[1].trials is missing");
+  sweep = small_sweep();
+  sweep["points"][0]["trapped"] = 1.5;
+  EXPECT_EQ(complaint_of(sweep), "data/a.json: points[0].trapped is not a whole number");
+  sweep = small_sweep();
+  sweep["points"][0]["status"] = 7;
+  EXPECT_EQ(complaint_of(sweep), "data/a.json: points[0].status.worst_penetration_m is missing");
+  sweep["points"] = Json::array();
+  EXPECT_EQ(complaint_of(sweep), "data/a.json: points is not a list with entries");
+  EXPECT_EQ(complaint_of(Json()), "data/a.json: points is missing");
+  EXPECT_THROW(Findings({}), std::runtime_error);
+}
+
+// Downhill from the place of the basin on: the way from there is that place alone.
+TEST(Findings, AWayDownhillHasNoBarrier) {
+  const Json json = Json::parse(R"({"passes": [
+    {"above_start_J": 3.5, "basin_m": [0, 21], "from_basin": {"barrier_J": 170, "way_m": [[0, 21], [0, 22]]}},
+    {"above_start_J": -1, "basin_m": [1, 65], "from_basin": {"barrier_J": 0.25, "way_m": [[1, 65]]}}]})");
+  const LandscapeStudy study = landscape_of(json, "data/b.json");
+  EXPECT_FALSE(study.coarse.downhill);
+  EXPECT_EQ(study.coarse.above_basin, 170.0);
+  EXPECT_EQ(study.coarse.basin[1], 21.0);
+  EXPECT_TRUE(study.fine.downhill);
+  EXPECT_EQ(study.fine.above_basin, 0.0);
+  EXPECT_EQ(study.measured.trials, 0);
+}
+
+TEST(Findings, ATraceHasAnEntryForEveryStep) {
+  Json json = Json::parse(R"({"trials": 5, "runs": [{"label": "trial 2", "ending": "trapped",
+    "trial": 2, "hits": 4, "t": [0, 1], "x": [0, 1], "y": [2, 3], "potential_J": [1, 2],
+    "elastic_left_J": [0, 0], "elastic_right_J": [0, 0], "landscape_J": [1, null],
+    "landscape_left_J": [0, 0], "landscape_right_J": [1, null]}]})");
+  const Trace trace = trace_of(json, "data/c.json");
+  EXPECT_EQ(trace.runs[0].hits, 4);
+  EXPECT_EQ(trace.runs[0].landscape[0], 1.0);
+  EXPECT_TRUE(std::isnan(trace.runs[0].landscape[1]));
+  json["runs"][0]["y"].erase(0);
+  EXPECT_THROW((void)trace_of(json, "data/c.json"), std::runtime_error);
+}
+
+// Half a second in each of two starts of 100 trials, 30 ms in each of 1000 walks.
+TEST(Findings, SecondsOfATrialAndOfAWalk) {
+  Validation v;
+  v.trials = 100;
+  v.walks = 1000;
+  v.starts.resize(2);
+  for (ValidatedStart& s : v.starts) {
+    s.dynamics_seconds = 0.5;
+    s.walks_seconds = 0.03;
+  }
+  EXPECT_DOUBLE_EQ(v.seconds_per_trial(), 0.005);
+  EXPECT_DOUBLE_EQ(v.seconds_per_walk(), 3e-5);
+  v.crossings = {.rt_and_lt = 0.25, .clamped = 0.5, .between_gates = 40};
+  EXPECT_EQ(v.crossings.rt_and_lt_share().part, 10);
+  EXPECT_EQ(v.crossings.clamped_share().part, 20);
+}
+
+}  // namespace
+}  // namespace gatewalk::cli
