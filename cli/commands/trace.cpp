@@ -33,6 +33,14 @@ void declare(Options& options) {
                 "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
 }
 
+/// What `check` refuses is wrong with the option of that name.
+template <class Check>
+void check_option(const Options& options, const char* name, Check check) try {
+  if (options.has(name)) check(options.text(name));
+} catch (const std::invalid_argument& e) {
+  throw UsageError(std::string("--") + name + " " + e.what());
+}
+
 /// Throws UsageError for words that no scene makes sense of.
 lattice::RecordingOptions recording_options(const Options& options) {
   const lattice::RecordingOptions wanted{.seed = options.seed(),
@@ -40,24 +48,14 @@ lattice::RecordingOptions recording_options(const Options& options) {
                                          .trials = options.count("trials"),
                                          .across_field = options.has("field"),
                                          .only = options.text("only")};
-  if (options.has("only")) {
-    std::string known;
-    bool found = false;
-    for (const std::string& ending : lattice::endings(wanted.across_field)) {
-      known += (known.empty() ? "" : ", ") + ending;
-      found |= lattice::ends_so(ending, wanted.only);
-    }
-    if (!found) throw UsageError("--only '" + wanted.only + "': a run ends as one of: " + known);
-  } else if (wanted.trials > lattice::kMostRecordings) {
+  check_option(options, "only", [&](const std::string& only) {
+    lattice::require_ending(only, wanted.across_field);
+  });
+  if (!options.has("only") && wanted.trials > lattice::kMostRecordings)
     throw UsageError("--trials " + std::to_string(wanted.trials) + ": at most " +
                      std::to_string(lattice::kMostRecordings) +
                      " runs are recorded; pick some with --only");
-  }
-  if (options.has("video")) try {
-      (void)video_format(options.text("video"));
-    } catch (const std::invalid_argument& e) {
-      throw UsageError(std::string("--video ") + e.what());
-    }
+  check_option(options, "video", [](const std::string& path) { (void)video_format(path); });
   return wanted;
 }
 
@@ -96,12 +94,8 @@ int run_trace(const std::vector<std::string>& arguments) {
 
   const Json made_by = manifest(options, scene);
   if (options.has("csv")) write_text_atomically(options.text("csv"), csv_of(scene, recordings));
-  if (options.has("netcdf")) {
-    std::vector<std::pair<std::string, std::string>> about;
-    for (const auto& [key, value] : made_by.items())
-      about.emplace_back(key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
-    write_text_atomically(options.text("netcdf"), netcdf_of(scene, recordings, about));
-  }
+  if (options.has("netcdf"))
+    write_text_atomically(options.text("netcdf"), netcdf_of(scene, recordings, made_by));
   Json json = Json::object();
   if (options.has("replay") || options.has("video") || options.has("json")) {
     const Film film = film_of(scene, recordings);

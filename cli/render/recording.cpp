@@ -148,12 +148,13 @@ std::string csv_of(const lattice::Scene& scene, const Recordings& recordings) {
 }
 
 std::string netcdf_of(const lattice::Scene& scene, const Recordings& recordings,
-                      const std::vector<std::pair<std::string, std::string>>& about) {
+                      const Json& made_by) {
   using namespace markov::netcdf;
   Image nc;
   nc.create();
   put_text(nc, NC_GLOBAL, "format", "gatewalk traces");
-  for (const auto& [name, text] : about) put_text(nc, NC_GLOBAL, name, text);
+  for (const auto& [key, value] : made_by.items())
+    put_text(nc, NC_GLOBAL, key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
   std::size_t samples = 0;
   for (const Recording& r : recordings.runs) samples += r.moments.size();
   const int sample = define_dimension(nc, "sample", samples);

@@ -2,8 +2,6 @@
 /// Recordings as a table to read, as CSV, NetCDF and JSON.
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/command.h"
 #include "lattice/study/recording.h"
@@ -19,10 +17,10 @@ namespace gatewalk::cli {
                                  const lattice::Recordings& recordings);
 
 /// NetCDF-4: dimension sample, all runs one after the other, and run (trial, ending, samples of
-/// each: a contiguous ragged array). `about` are text attributes.
+/// each: a contiguous ragged array). The entries of `made_by` are text
+/// attributes.
 [[nodiscard]] std::string netcdf_of(const lattice::Scene& scene,
-                                    const lattice::Recordings& recordings,
-                                    const std::vector<std::pair<std::string, std::string>>& about);
+                                    const lattice::Recordings& recordings, const Json& made_by);
 
 /// What a film does not show of one of its runs: trial, hits, and the arrays potential_J,
 /// elastic_left_J, elastic_right_J, landscape_J, landscape_left_J, landscape_right_J (null where

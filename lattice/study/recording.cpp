@@ -102,6 +102,15 @@ bool ends_so(std::string_view ending, std::string_view only) {
   return ending.starts_with(only) && (ending.size() == only.size() || ending[only.size()] == ' ');
 }
 
+void require_ending(const std::string& only, bool across_field) {
+  std::string known;
+  for (const std::string& ending : endings(across_field)) {
+    if (ends_so(ending, only)) return;
+    known += (known.empty() ? "" : ", ") + ending;
+  }
+  throw std::invalid_argument("'" + only + "': a run ends as one of: " + known);
+}
+
 Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, bool across_field,
                  std::size_t most_moments) {
   Recording r;
@@ -129,6 +138,7 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
 
 Recordings record_trials(const Scene& scene, const RecordingOptions& options,
                          const dynamics::Work& work) {
+  if (!options.only.empty()) require_ending(options.only, options.across_field);
   Recordings kept;
   kept.across_field = options.across_field;
   kept.trials = options.trials;

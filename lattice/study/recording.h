@@ -50,6 +50,9 @@ struct Recordings {
 /// field too.
 [[nodiscard]] bool ends_so(std::string_view ending, std::string_view only);
 
+/// Throws std::invalid_argument, with all of them, unless an ending is what `only` says.
+void require_ending(const std::string& only, bool across_field);
+
 /// Trial `trial` of run_gate_trials (across_field: of run_field), the same to the last bit. Throws
 /// dynamics::TraceTooLong when it has more moments, InvalidParameter as these do.
 [[nodiscard]] Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial,
@@ -66,8 +69,9 @@ struct RecordingOptions {
   bool across_field = false;
   std::string only = {};  // keep those that end so (ends_so); empty: all
 };
-/// Throws std::invalid_argument for more than kMostRecordings runs or kMostMoments moments to keep,
-/// std::runtime_error when no trial ends as wanted, InvalidParameter as record.
+/// Throws std::invalid_argument for an ending that there is not, more than kMostRecordings runs or
+/// kMostMoments moments to keep, std::runtime_error when no trial ends as wanted, InvalidParameter
+/// as record.
 [[nodiscard]] Recordings record_trials(const Scene& scene, const RecordingOptions& options,
                                        const dynamics::Work& work = {});
 

@@ -82,6 +82,7 @@ TEST(Recording, KeepsTheTrialsThatEndSo) {
   EXPECT_EQ(left.runs.front().moments.size(), record(s, 5, found.front(), false).moments.size());
   EXPECT_THROW((void)record_trials(s, {.seed = 5, .trials = 2, .only = "traversed evenly"}),
                std::runtime_error);
+  EXPECT_THROW((void)record_trials(s, {.only = "stuck"}), std::invalid_argument);
 }
 
 // A moment made by hand: 3 m beside the joint's height in gate (1, 2) of a field of 50 m x 65 m
