@@ -4,6 +4,13 @@
 #include <cmath>
 #include <sstream>
 
+#include "cli/render/choice.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/matrix.h"
+#include "cli/render/start.h"
+#include "dynamics/work.h"
+
 namespace gatewalk::cli {
 namespace {
 
@@ -25,15 +32,12 @@ void add_starts(Options& options, const std::string& by_default) {
       "start at x = D m, y = 0 with this velocity in m/s (may be repeated; "
       "default: " +
       by_default + ")";
-  options.add()("start", po::value<std::vector<std::string>>()->composing()->value_name("D,VX,VY"),
-                help.c_str());
+  options.add_texts("start", "D,VX,VY", help);
 }
 
 std::vector<lattice::PaperStart> given_starts(const Options& options) {
   std::vector<lattice::PaperStart> starts;
-  if (!options.has("start")) return starts;
-  for (const auto& text : options.get<std::vector<std::string>>("start"))
-    starts.push_back(parse_start(text));
+  for (const std::string& text : options.texts("start")) starts.push_back(parse_start(text));
   return starts;
 }
 
@@ -42,20 +46,21 @@ std::vector<lattice::PaperStart> starts_of(const Options& options, const lattice
 }
 
 void add_bins(Options& options) {
-  options.add()("bins", po::value<std::string>()->value_name("paper|auto|FACTOR"),
-                "the chain's states: paper: Table III's, in the scene's own units; FACTOR: these "
-                "with so many times "
-                "the bins per axis (2 makes 696 states, 0.5 makes 23); auto: at the quantiles of "
-                "what bodies do in a "
-                "pilot of the full dynamics. Default: the scene's table [bins], else paper in the "
-                "paper's field and "
-                "auto in any other");
+  options.add_text(
+      "bins", "paper|auto|FACTOR",
+      "the chain's states: paper: Table III's, in the scene's own units; FACTOR: these "
+      "with so many times "
+      "the bins per axis (2 makes 696 states, 0.5 makes 23); auto: at the quantiles of "
+      "what bodies do in a "
+      "pilot of the full dynamics. Default: the scene's table [bins], else paper in the "
+      "paper's field and "
+      "auto in any other");
 }
 
 lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene) {
   using Kind = lattice::BinsChoice::Kind;
   if (!options.has("bins")) return lattice::usual_bins(scene);
-  const std::string& text = options.get<std::string>("bins");
+  const std::string text = options.text("bins");
   if (scene.bins)
     throw UsageError(
         "--bins " + text +
@@ -70,6 +75,76 @@ lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& sc
   (void)dynamics::refined(dynamics::StateSpace::paper(scene.gate),
                           choice.factor);  // refuses other factors
   return choice;
+}
+
+std::optional<lattice::Settled> settle_method(const Options& options, lattice::Scene& scene,
+                                              lattice::RunsFrom from) {
+  for (const std::string& text : lattice::keys_without_effect(scene)) warn(text);
+  if (const std::string text = lattice::derived_keys(scene); !text.empty() && options.talk())
+    warn(text);
+  auto settled = lattice::settle_method(scene, from, options.seed(), options.work());
+  if (settled)
+    if (const std::string text = complaint(*settled); !text.empty()) warn(text);
+  return settled;
+}
+
+lattice::States states_of(const Options& options, const lattice::Scene& scene,
+                          const lattice::BinsChoice& choice,
+                          const std::vector<dynamics::BodyState>& starts) {
+  lattice::States states =
+      lattice::states_of(scene, choice, starts, options.seed(), options.work());
+  if (states.replaced)
+    warn("Table III's bins do not resolve how bodies move in this scene; takes --bins auto");
+  return states;
+}
+
+lattice::SceneMatrix read_matrix(const Options& options) {
+  return read_matrix(options.text("matrix"), options.text("scene"), options.overrides());
+}
+
+lattice::SceneMatrix read_matrix(const std::string& matrix_path, const std::string& scene_path,
+                                 const std::vector<std::string>& overrides) {
+  lattice::SceneMatrix m = lattice::read_scene_matrix(matrix_path, scene_path, overrides);
+  if (const std::string faults = faults_recorded(recorded_status(m.file)); !faults.empty())
+    warn("the runs that made " + matrix_path + ": " + faults);
+  return m;
+}
+
+lattice::ChainStart checked_start(const dynamics::StateSpace& space,
+                                  const lattice::FieldParams& field,
+                                  const dynamics::BodyState& body, const std::string& name) {
+  const lattice::ChainStart start = lattice::start_in_bins(space, field, body, name);
+  if (start.beyond)
+    warn(name + " lies beyond every entry that the bins were made from, " +
+         lattice::entry_bins(space) +
+         "; the prediction is that of the outermost bin. A matrix of a scene with this start suits "
+         "it");
+  return start;
+}
+
+void require_inside_bins(const std::vector<lattice::PaperStart>& starts,
+                         const lattice::Scene& scene, const dynamics::StateSpace& space) {
+  for (const lattice::PaperStart& s : starts)
+    (void)checked_start(space, scene.field, s.body(), "start" + start_text(s));
+}
+
+lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatrix& m,
+                                const dynamics::BodyState& body, const std::string& name) {
+  const dynamics::StateSpace& space = m.file.transitions.space;
+  const lattice::ChainStart start = checked_start(space, m.scene.field, body, name);
+  const dynamics::Cell cell = space.cell(start.start.input);
+  const auto on_edge = [](const std::array<double, 2>& edges, double v) {
+    return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
+  };
+  if (on_edge(cell.d, body.x) || on_edge(cell.vx, body.vx) || on_edge(cell.vy, body.vy))
+    remark(options, name + " lies on an edge of its bin, " + text_of(cell) +
+                        "; its prediction is that of the whole bin");
+  return start;
+}
+
+int status_of(const Options& options, const dynamics::Health& health) {
+  if (!health.clean()) warn(complaint(health));
+  return exit_status(options, health.clean());
 }
 
 }  // namespace gatewalk::cli

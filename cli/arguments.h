@@ -1,11 +1,14 @@
 #pragma once
-/// Options that several commands have, as what the libraries take.
+/// Options that several commands have, as what the libraries take; what is wrong with it is said.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
 #include "lattice/scene/bins.h"
+#include "lattice/scene/matrix.h"
+#include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
 
 namespace gatewalk::cli {
@@ -26,5 +29,38 @@ void add_bins(Options& options);
 /// --bins if given, else lattice::usual_bins. Throws UsageError for anything else, and for --bins
 /// beside a table [bins].
 [[nodiscard]] lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene);
+
+/// lattice::settle_method; warns of keys without effect and of a choice that did not meet the
+/// tolerance, and says what the scene leaves out.
+[[nodiscard]] std::optional<lattice::Settled> settle_method(const Options& options,
+                                                            lattice::Scene& scene,
+                                                            lattice::RunsFrom from);
+/// lattice::states_of; warns when auto takes Table III's place.
+[[nodiscard]] lattice::States states_of(const Options& options, const lattice::Scene& scene,
+                                        const lattice::BinsChoice& choice,
+                                        const std::vector<dynamics::BodyState>& starts);
+/// The file of MATRIX with the scene of SCENE and --set (lattice::read_scene_matrix); warns when it
+/// was made by runs that showed faults.
+[[nodiscard]] lattice::SceneMatrix read_matrix(const Options& options);
+/// The same for any file.
+[[nodiscard]] lattice::SceneMatrix read_matrix(const std::string& matrix_path,
+                                               const std::string& scene_path,
+                                               const std::vector<std::string>& overrides);
+/// lattice::start_in_bins; warns when the start lies beyond every entry that open bins were made
+/// from.
+lattice::ChainStart checked_start(const dynamics::StateSpace& space,
+                                  const lattice::FieldParams& field,
+                                  const dynamics::BodyState& body, const std::string& name);
+/// The same for each of them.
+void require_inside_bins(const std::vector<lattice::PaperStart>& starts,
+                         const lattice::Scene& scene, const dynamics::StateSpace& space);
+/// As checked_start. Remarks when the start lies on an edge of its bin: then another bin would
+/// serve it as well.
+[[nodiscard]] lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatrix& m,
+                                              const dynamics::BodyState& body,
+                                              const std::string& name);
+
+/// exit_status of a result with this health; warns of the faults seen.
+[[nodiscard]] int status_of(const Options& options, const dynamics::Health& health);
 
 }  // namespace gatewalk::cli

@@ -5,17 +5,31 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <boost/program_options.hpp>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <memory>
-#include <sstream>
+#include <optional>
 
+#include "cli/render/json.h"
+#include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
+
+namespace po = boost::program_options;
+
+/// A whole number on the command line, up to kMostCount either way.
+struct Count {
+  std::int64_t value = 0;
+};
+/// A seed on the command line.
+struct Seed {
+  std::uint64_t value = 1;
+};
 namespace {
 
 /// Options that cannot change a result, left out of the recorded command.
@@ -50,6 +64,8 @@ std::string shell_quoted(const std::string& word) {
   return quoted + "'";
 }
 
+using Strings = std::vector<std::string>;
+
 }  // namespace
 
 void validate(boost::any& v, const std::vector<std::string>& values, Count*, int) {
@@ -83,59 +99,144 @@ void validate(boost::any& v, const std::vector<std::string>& values, Seed*, int)
   v = seed;
 }
 
+struct Options::State {
+  std::string synopsis, about, example;
+  po::options_description own{"Options"}, shared{"Shared options"}, hidden;
+  po::positional_options_description positions;
+  std::vector<std::pair<std::string, std::string>> positional_help;
+  std::vector<std::string> required;
+  po::variables_map values;
+  std::vector<po::option> given;
+  std::string canonical;
+  std::string no_scene;  // why there is no --set, if there is none
+
+  struct Output {
+    std::string name;
+    Content content = Content::text;
+  };
+  std::vector<Output> output_files{{"json", Content::text}};
+  std::vector<std::string> folder_files;  // what is written into the folder of --output
+  std::vector<std::pair<std::string, std::function<std::string(const std::string&)>>> reads;
+  std::string needs_output;  // what to call the value of -o, if it must be given
+
+  template <class T>
+  void add(const std::string& name, po::typed_value<T>* value, const std::string& shown,
+           const std::string& help) {
+    own.add_options()(name.c_str(), value->value_name(shown), help.c_str());
+  }
+};
+
 Options::Options(std::string synopsis, std::string about, std::string example)
-    : synopsis_(std::move(synopsis)),
-      about_(std::move(about)),
-      example_(std::move(example)),
-      own_("Options") {
-  shared_.add_options()("json", po::value<std::string>()->value_name("FILE"),
-                        "write the result as JSON; - is standard output")(
+    : state_(std::make_unique<State>()) {
+  state_->synopsis = std::move(synopsis);
+  state_->about = std::move(about);
+  state_->example = std::move(example);
+  state_->shared.add_options()("json", po::value<std::string>()->value_name("FILE"),
+                               "write the result as JSON; - is standard output")(
       "threads", po::value<int>()->default_value(0)->value_name("N"),
       "threads to use, 0: all; never changes a result")(
       "quiet", "no progress, no remarks, no table when there is JSON")("help,h", "this page");
 }
 
+Options::~Options() = default;
+
+// ---- What is declared ----
+
 void Options::positional(const std::string& name, const std::string& help, bool required) {
-  hidden_.add_options()(name.c_str(), po::value<std::string>());
-  positions_.add(name.c_str(), 1);
-  positional_help_.emplace_back(name, help);
-  if (required) required_.push_back(name);
+  state_->hidden.add_options()(name.c_str(), po::value<std::string>());
+  state_->positions.add(name.c_str(), 1);
+  state_->positional_help.emplace_back(name, help);
+  if (required) state_->required.push_back(name);
 }
 
 void Options::positional_list(const std::string& name, const std::string& help) {
-  hidden_.add_options()(name.c_str(), po::value<std::vector<std::string>>());
-  positions_.add(name.c_str(), -1);
-  positional_help_.emplace_back(name, help);
-  required_.push_back(name);
+  state_->hidden.add_options()(name.c_str(), po::value<Strings>());
+  state_->positions.add(name.c_str(), -1);
+  state_->positional_help.emplace_back(name, help);
+  state_->required.push_back(name);
+}
+
+void Options::add_count(const std::string& name, const std::string& shown, const std::string& help,
+                        const std::string& by_default) {
+  auto* value = po::value<Count>();
+  if (!by_default.empty()) {
+    boost::any parsed;
+    validate(parsed, {by_default}, static_cast<Count*>(nullptr), 0);
+    value->default_value(boost::any_cast<Count>(parsed), by_default);
+  }
+  state_->add(name, value, shown, help);
+}
+
+void Options::add_number(const std::string& name, const std::string& shown,
+                         const std::string& help) {
+  state_->add(name, po::value<double>(), shown, help);
+}
+
+void Options::add_text(const std::string& name, const std::string& shown, const std::string& help,
+                       const std::string& by_default) {
+  auto* value = po::value<std::string>();
+  if (!by_default.empty()) value->default_value(by_default);
+  state_->add(name, value, shown, help);
+}
+
+void Options::add_numbers(const std::string& name, const std::string& shown,
+                          const std::string& help) {
+  state_->add(name, po::value<std::vector<double>>()->composing(), shown, help);
+}
+
+void Options::add_texts(const std::string& name, const std::string& shown,
+                        const std::string& help) {
+  state_->add(name, po::value<Strings>()->composing(), shown, help);
+}
+
+void Options::add_flag(const std::string& name, const std::string& help) {
+  state_->own.add_options()(name.c_str(), help.c_str());
+}
+
+void Options::add_seed(const std::string& help) {
+  state_->add("seed", po::value<Seed>()->default_value(Seed{1}, "1"), "S", help);
+}
+
+void Options::add_trials_and_seed(const std::string& trials_help) {
+  add_count("trials", "N", trials_help, "100");
+  add_seed();
+}
+
+void Options::add_strict() {
+  add_flag("strict",
+           "exit status 1 when the result's status is not clean; it is written all the same");
 }
 
 void Options::input_file(const std::string& name, const std::string& help) {
-  own_.add_options()(name.c_str(), po::value<std::string>()->value_name("FILE"), help.c_str());
+  add_text(name, "FILE", help);
   reads(name, [](const std::string& value) { return value; });
 }
 
 void Options::reads(const std::string& name,
                     std::function<std::string(const std::string&)> file_in) {
-  reads_.emplace_back(name, std::move(file_in));
+  state_->reads.emplace_back(name, std::move(file_in));
 }
 
-void Options::output_file(const std::string& name, const std::string& file, const std::string& help,
-                          Content content) {
-  const std::string declared = name == "output" ? "output,o" : name;
-  own_.add_options()(declared.c_str(), po::value<std::string>()->value_name(file), help.c_str());
-  output_files_.push_back({name, content});
+void Options::output_file(const std::string& name, const std::string& shown,
+                          const std::string& help, Content content) {
+  add_text(name == "output" ? "output,o" : name, shown, help);
+  state_->output_files.push_back({name, content});
 }
 
-void Options::main_output_file(const std::string& file, const std::string& help, Content content) {
-  output_file("output", file, help, content);
-  needs_output_ = file;
+void Options::main_output_file(const std::string& shown, const std::string& help, Content content) {
+  output_file("output", shown, help, content);
+  state_->needs_output = shown;
 }
 
 void Options::output_folder(const std::string& help, std::vector<std::string> files) {
-  own_.add_options()("output,o", po::value<std::string>()->value_name("DIR"), help.c_str());
-  folder_files_ = std::move(files);
-  needs_output_ = "DIR";
+  add_text("output,o", "DIR", help);
+  state_->folder_files = std::move(files);
+  state_->needs_output = "DIR";
 }
+
+void Options::without_scene(const std::string& reason) { state_->no_scene = reason; }
+
+// ---- What is given ----
 
 /// A file by how the command line names it.
 struct Options::NamedFile {
@@ -170,27 +271,27 @@ std::vector<Options::NamedFile> Options::inputs() const {
   };
   const auto each = [&](const std::string& option, const auto& take) {
     if (!has(option)) return;
-    const boost::any& value = values_[option].value();
+    const boost::any& value = state_->values[option].value();
     if (const auto* one = boost::any_cast<std::string>(&value)) take(*one);
-    if (const auto* many = boost::any_cast<std::vector<std::string>>(&value))
+    if (const auto* many = boost::any_cast<Strings>(&value))
       for (const std::string& one : *many) take(one);
   };
-  for (const auto& [name, help] : positional_help_)
+  for (const auto& [name, help] : state_->positional_help)
     each(name, [&, &name = name](const std::string& path) { add(upper_case(name), path); });
-  for (const auto& [name, file_in] : reads_)
+  for (const auto& [name, file_in] : state_->reads)
     each(name, [&, &name = name, &file_in = file_in](const std::string& value) {
       add(shown(name), file_in(value));
     });
   return files;
 }
 
-void Options::refuse_forgotten_values(const std::vector<po::option>& given) const {
-  for (const po::option& option : given) {
+void Options::check_values_given() const {
+  for (const po::option& option : state_->given) {
     if (option.position_key >= 0) continue;
     const std::string& name = option.string_key;
-    const bool is_output = (name == "output" && !needs_output_.empty()) ||
-                           std::any_of(output_files_.begin(), output_files_.end(),
-                                       [&](const Output& o) { return o.name == name; });
+    const bool is_output = (name == "output" && !state_->needs_output.empty()) ||
+                           std::any_of(state_->output_files.begin(), state_->output_files.end(),
+                                       [&](const State::Output& o) { return o.name == name; });
     for (const std::string& value : option.value)
       if (value.starts_with("--") || (is_output && value.size() > 1 && value[0] == '-'))
         throw UsageError(shown(name) + " " + value + ": looks like an option, so the value of " +
@@ -200,18 +301,19 @@ void Options::refuse_forgotten_values(const std::vector<po::option>& given) cons
 }
 
 void Options::check_files() {
-  if (!needs_output_.empty() && !has("output"))
-    throw UsageError("missing -o " + needs_output_ + ": gatewalk " + synopsis_);
-  for (const auto& [name, file_in] : reads_)
-    if (has(name) && values_[name].value().type() == typeid(std::string) && text(name).empty())
+  if (!state_->needs_output.empty() && !has("output"))
+    throw UsageError("missing -o " + state_->needs_output + ": gatewalk " + state_->synopsis);
+  for (const auto& [name, file_in] : state_->reads)
+    if (has(name) && state_->values[name].value().type() == typeid(std::string) &&
+        text(name).empty())
       throw UsageError(shown(name) + " needs a file name");
 
   std::vector<NamedFile> outputs;
   std::string takes_stdout;
-  for (const Output& output : output_files_) {
+  for (const State::Output& output : state_->output_files) {
     if (!has(output.name)) continue;
     if (text(output.name) == "/dev/stdout")
-      values_.find(output.name)->second.value() = std::string("-");
+      state_->values.find(output.name)->second.value() = std::string("-");
     const std::string path = text(output.name), option = shown(output.name);
     if (path.empty()) throw UsageError(option + " needs a file name");
     if (path != "-") {
@@ -225,11 +327,11 @@ void Options::check_files() {
                        " -: only one thing can go to standard output");
     takes_stdout = option;
   }
-  const bool has_folder = !needs_output_.empty() && needs_output_ == "DIR";
+  const bool has_folder = !state_->needs_output.empty() && state_->needs_output == "DIR";
   const std::string folder = has_folder ? text("output") : "";
   if (has_folder && (folder.empty() || folder == "-"))
     throw UsageError("-o needs the name of a folder");
-  for (const std::string& file : folder_files_) {
+  for (const std::string& file : state_->folder_files) {
     const std::string path = (std::filesystem::path(folder) / file).string();
     outputs.emplace_back(path + " (in the folder of -o)", path);
   }
@@ -255,88 +357,129 @@ void Options::check_files() {
       throw UsageError(option + ": " + e.what());
     }
   };
-  for (const Output& output : output_files_)
+  for (const State::Output& output : state_->output_files)
     if (has(output.name)) check(shown(output.name), [&] { require_writable(text(output.name)); });
   if (!has_folder) return;
   check("-o", [&] {
     require_possible_folder(folder);
     if (!std::filesystem::is_directory(folder)) return;
-    for (const std::string& file : folder_files_)
+    for (const std::string& file : state_->folder_files)
       require_writable((std::filesystem::path(folder) / file).string());
   });
 }
 
-bool Options::parse(const std::vector<std::string>& arguments) {
-  (no_scene_.empty() ? own_ : hidden_)
-      .add_options()("set",
-                     po::value<std::vector<std::string>>()->composing()->value_name("KEY=VALUE"),
+bool Options::parse(const Arguments& arguments) {
+  (state_->no_scene.empty() ? state_->own : state_->hidden)
+      .add_options()("set", po::value<Strings>()->composing()->value_name("KEY=VALUE"),
                      "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what "
                      "the file leaves out stays as it follows from the file");
   po::options_description all;
-  all.add(own_).add(shared_).add(hidden_);
+  all.add(state_->own).add(state_->shared).add(state_->hidden);
   using namespace po::command_line_style;
   const int style = unix_style & ~allow_guessing;  // an abbreviation is a typing error
   po::parsed_options parsed(&all);
   try {
-    parsed =
-        po::command_line_parser(arguments).options(all).positional(positions_).style(style).run();
-    po::store(parsed, values_);
-    po::notify(values_);
+    parsed = po::command_line_parser(arguments)
+                 .options(all)
+                 .positional(state_->positions)
+                 .style(style)
+                 .run();
+    po::store(parsed, state_->values);
+    po::notify(state_->values);
   } catch (const po::error& e) {
     throw UsageError(std::string(e.what()) + "; see gatewalk " +
-                     synopsis_.substr(0, synopsis_.find(' ')) + " --help");
+                     state_->synopsis.substr(0, state_->synopsis.find(' ')) + " --help");
   }
   if (has("help")) {
-    std::cout << "gatewalk " << synopsis_ << "\n\n" << about_ << "\n\n";
-    for (const auto& [name, help] : positional_help_) {
+    std::cout << "gatewalk " << state_->synopsis << "\n\n" << state_->about << "\n\n";
+    for (const auto& [name, help] : state_->positional_help) {
       const std::string argument = upper_case(name);
       std::cout << "  " << argument
                 << std::string(24 - std::min<std::size_t>(22, argument.size()), ' ') << help
                 << "\n";
     }
-    std::cout << "\n" << own_ << "\n" << shared_ << "\nExample:\n  " << example_ << "\n";
+    std::cout << "\n"
+              << state_->own << "\n"
+              << state_->shared << "\nExample:\n  " << state_->example << "\n";
     if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
     return false;
   }
-  if (!no_scene_.empty() && has("set")) throw UsageError("--set has no meaning here: " + no_scene_);
-  for (const auto& name : required_) {
-    if (!has(name)) throw UsageError("missing " + upper_case(name) + ": gatewalk " + synopsis_);
+  if (!state_->no_scene.empty() && has("set"))
+    throw UsageError("--set has no meaning here: " + state_->no_scene);
+  for (const auto& name : state_->required) {
+    if (!has(name))
+      throw UsageError("missing " + upper_case(name) + ": gatewalk " + state_->synopsis);
   }
-  refuse_forgotten_values(parsed.options);
+  state_->given = parsed.options;
+  check_values_given();
   check_files();
-  const int threads = get<int>("threads");
+  const int threads = state_->values["threads"].as<int>();
   if (threads < 0 || threads > 1024) throw UsageError("--threads must lie in [0, 1024]");
   if (threads > 0) {
     // Lives until the program ends.
     static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   }
 
-  canonical_ = "gatewalk " + synopsis_.substr(0, synopsis_.find(' '));
+  state_->canonical = "gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' '));
   for (const auto& option : parsed.options) {
     if (option.position_key >= 0) {
-      canonical_ += " " + shell_quoted(option.value.front());
+      state_->canonical += " " + shell_quoted(option.value.front());
     } else if (!shapes_nothing(option.string_key)) {
-      canonical_ += " --" + option.string_key;
-      for (const auto& value : option.value) canonical_ += " " + shell_quoted(value);
+      state_->canonical += " --" + option.string_key;
+      for (const auto& value : option.value) state_->canonical += " " + shell_quoted(value);
     }
   }
   return true;
 }
 
+bool Options::has(const std::string& name) const { return state_->values.count(name) > 0; }
+
 std::int64_t Options::count(const std::string& name, std::int64_t low, std::int64_t high) const {
-  const std::int64_t value = get<Count>(name).value;
+  const std::int64_t value = state_->values[name].as<Count>().value;
   if (value < low || value > high)
     throw UsageError("--" + name + " " + std::to_string(value) + ": must be at least " +
                      std::to_string(low) + " and at most " + std::to_string(high));
   return value;
 }
 
-const std::vector<std::string>& Options::overrides() const {
-  static const std::vector<std::string> none;
-  return has("set") ? get<std::vector<std::string>>("set") : none;
+double Options::number(const std::string& name) const { return state_->values[name].as<double>(); }
+
+std::string Options::text(const std::string& name) const {
+  return has(name) ? state_->values[name].as<std::string>() : std::string();
 }
 
-std::string Options::canonical() const { return canonical_; }
+std::vector<double> Options::numbers(const std::string& name) const {
+  return has(name) ? state_->values[name].as<std::vector<double>>() : std::vector<double>();
+}
+
+std::vector<std::string> Options::texts(const std::string& name) const {
+  return has(name) ? state_->values[name].as<Strings>() : Strings();
+}
+
+std::uint64_t Options::seed() const { return state_->values["seed"].as<Seed>().value; }
+
+lattice::Scene Options::read_scene() const {
+  return lattice::read_scene(text("scene"), overrides());
+}
+
+std::string Options::canonical() const { return state_->canonical; }
+
+Provenance Options::provenance() const {
+  Provenance p{.command = canonical(), .seed = {}, .scene = {}, .derived = {}};
+  if (has("seed")) p.seed = seed();
+  return p;
+}
+
+Provenance Options::provenance(const lattice::Scene& scene) const {
+  Provenance p = provenance();
+  p.scene = lattice::to_toml(scene);
+  p.derived = scene.derived;
+  return p;
+}
+
+dynamics::Work Options::work() const { return watched_work(talk()); }
+
+// ---- What is given out ----
 
 void Options::give_out(const Json& json, const std::string& table, int indent) const {
   const std::string target = text("json");
@@ -344,20 +487,30 @@ void Options::give_out(const Json& json, const std::string& table, int indent) c
   if (!target.empty()) write_text_atomically(target, text_of(json, indent) + "\n");
 }
 
-void add_seed(Options& options) {
-  options.add()("seed", po::value<Seed>()->default_value(Seed{1}, "1")->value_name("S"),
-                "seed of all random numbers; the same seed gives the same result");
+ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)
+    : folder_(options.text("output")), files_(files) {
+  require_folder(folder_);
 }
 
-void add_trials_and_seed(Options& options, const char* trials_help) {
-  options.add()("trials", po::value<Count>()->default_value(Count{100}, "100")->value_name("N"),
-                trials_help);
-  add_seed(options);
+void ResultFolder::write(const std::string& csv_file, const std::string& csv,
+                         const std::string& json_file, const Json& json) const {
+  for (const std::string& file : files_)
+    if (file.ends_with(".svg")) std::filesystem::remove(path(file));
+  write_text_atomically(path(csv_file), csv);
+  write_text_atomically(path(json_file), text_of(json) + "\n");
 }
 
-void add_strict(Options& options) {
-  options.add()("strict",
-                "exit status 1 when the result's status is not clean; it is written all the same");
+void ResultFolder::draw(const std::string& file, const Figure& figure) const {
+  try {
+    draw_svg(path(file), figure);
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error("no figure: " + std::string(e.what()) + "; the other files in " +
+                             folder_ + " are written");
+  }
+}
+
+std::string ResultFolder::path(const std::string& file) const {
+  return (std::filesystem::path(folder_) / file).string();
 }
 
 int exit_status(const Options& options, bool clean) {
@@ -365,12 +518,6 @@ int exit_status(const Options& options, bool clean) {
   warn(
       "--strict: the result's status is not clean, so the exit status is 1; the result is written");
   return kFailure;
-}
-
-dynamics::Work Options::work() const { return watched_work(talk()); }
-
-std::string text_of(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 void remark(const Options& options, const std::string& text) {

@@ -1,36 +1,27 @@
 #include <algorithm>
-#include <array>
 #include <exception>
 #include <iostream>
+#include <iterator>
 
-#include "cli/command.h"
+#include "cli/commands.h"
+#include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
-#include "cli/version.h"
 #include "lattice/scene/edit_distance.h"
+#include "lattice/scene/scene.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::array<Command, 16> kCommands{{
-    {"scene", "show every key of a scene, or write a scene of your own", run_scene},
-    {"gate", "run one gate many times and count the outcomes", run_gate},
-    {"sweep", "the same over a grid of scene keys", run_sweep},
-    {"landscape", "potential energy over the gate, the lowest way through", run_landscape},
-    {"trace", "record single runs in full, play them, film them", run_trace},
-    {"build", "fill the input-output matrix from single-gate runs", run_build},
-    {"show", "show what a matrix file holds", run_show},
-    {"walk", "walk the field by drawing from the matrix", run_walk},
-    {"predict", "exact distribution of the final gate", run_predict},
-    {"lattice", "run the full dynamics through the field", run_lattice},
-    {"validate", "compare walks and exact prediction with the full dynamics", run_validate},
-    {"chart", "chart the methods' speed against their accuracy", run_chart},
-    {"stability", "map where each method breaks", run_stability},
-    {"chart-field", "what memory and neighbours change, and what they cost", run_chart_field},
-    {"chart-chain", "chart the chain's error against its cost, beside direct simulation",
-     run_chart_chain},
-    {"reproduce", "the paper's figures, tables and claims, in one report", run_reproduce},
-}};
+struct Command {
+  const char *name, *summary;
+  int (*run)(const Arguments& arguments);
+};
+constexpr Command kCommands[] = {
+#define COMMAND(name, run, summary) {name, summary, run},
+#include "cli/commands.def"
+#undef COMMAND
+};
 
 void print_help(std::ostream& out) {
   out << "gatewalk " << kVersion
@@ -46,14 +37,14 @@ void print_help(std::ostream& out) {
 
 /// The command of that name; without one says so, and which may be meant.
 const Command* find_command(const std::string& name) {
-  const auto named = std::find_if(kCommands.begin(), kCommands.end(),
+  const auto named = std::find_if(std::begin(kCommands), std::end(kCommands),
                                   [&](const Command& c) { return name == c.name; });
-  if (named != kCommands.end()) return &*named;
+  if (named != std::end(kCommands)) return &*named;
   const auto distance = [&](const Command& c) {
     return lattice::edit_distance(name.substr(0, 100), c.name);
   };
   const auto nearest = std::min_element(
-      kCommands.begin(), kCommands.end(),
+      std::begin(kCommands), std::end(kCommands),
       [&](const Command& a, const Command& b) { return distance(a) < distance(b); });
   std::cerr << "gatewalk: no command '" << name << "'";
   // At most every third letter is wrong.
@@ -65,7 +56,7 @@ const Command* find_command(const std::string& name) {
   return nullptr;
 }
 
-int run(const std::vector<std::string>& words) {
+int run(const Arguments& words) {
   if (words.empty()) {
     print_help(std::cerr);
     return kWrongUse;

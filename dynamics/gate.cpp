@@ -1,6 +1,7 @@
 #include "dynamics/gate.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace gatewalk::dynamics {
@@ -13,6 +14,33 @@ bool finite(const GateState& s) {
 }
 
 }  // namespace
+
+Outcome outcome_of(const GateRun& run) {
+  const double left = run.watch.max_theta[kLeft], right = run.watch.max_theta[kRight];
+  if (run.cut_short) return Outcome::broken;
+  switch (run.ending) {
+    case Ending::traversed:
+      return left > right   ? Outcome::traversed_left
+             : right > left ? Outcome::traversed_right
+                            : Outcome::traversed_even;
+    case Ending::exited_left:
+      return Outcome::exited_left;
+    case Ending::exited_right:
+      return Outcome::exited_right;
+    case Ending::trapped:
+      return Outcome::trapped;
+    case Ending::broken:
+      break;
+  }
+  return Outcome::broken;
+}
+
+std::string_view name_of(Outcome outcome) {
+  constexpr std::array<std::string_view, kOutcomes> names{
+      "traversed left", "traversed right", "traversed evenly", "exited left",
+      "exited right",   "trapped",         "not finite"};
+  return names[static_cast<std::size_t>(outcome)];
+}
 
 Ending ending(const GateParams& p, const GateState& s) {
   if (!finite(s)) return Ending::broken;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string_view>
 
 #include "dynamics/contact.h"
 #include "dynamics/methods/method.h"
@@ -21,6 +22,21 @@ struct GateRun {
       false;    // stopped because it took more work than was granted; `ending` means nothing
   Watch watch;  // largest deflections, faults, work done
 };
+
+/// How a run ends, and for one that traversed by which beam.
+enum class Outcome : std::uint8_t {
+  traversed_left,   // the left beam had the larger deflection (Sec. III-B)
+  traversed_right,  // the right beam had
+  traversed_even,   // both deflected equally, to the last bit
+  exited_left,
+  exited_right,
+  trapped,
+  broken,  // not finite, or cut short
+};
+inline constexpr std::size_t kOutcomes = 7;
+[[nodiscard]] Outcome outcome_of(const GateRun& run);
+/// "traversed left", ..., "not finite".
+[[nodiscard]] std::string_view name_of(Outcome outcome);
 
 /// Where a run that stopped in this state has ended; still inside is trapped.
 [[nodiscard]] Ending ending(const GateParams& p, const GateState& s);

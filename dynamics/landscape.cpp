@@ -62,7 +62,7 @@ std::size_t nearest_point(const std::vector<double>& v, double x) {
 
 Landscape landscape(const GateParams& p, double y_low, double spacing, BeamsThatPush beams) {
   validate(p);
-  const double width = 2.0 * p.beams.joint_x, depth = p.run.traverse_y - y_low;
+  const double width = p.gate_width(), depth = p.run.traverse_y - y_low;
   if (!(spacing > 0.0) || !(depth > 0.0))
     throw std::invalid_argument("landscape: spacing must be positive and y_low below traverse_y");
   if (!((width / spacing + 2.0) * (depth / spacing + 2.0) <= 1e8))

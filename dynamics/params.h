@@ -67,6 +67,10 @@ struct GateParams {
   Forces forces;
   Contact contact;
   Run run;
+
+  /// Between the joints, and from gate to gate: a cell of the field.
+  [[nodiscard]] double gate_width() const { return 2.0 * beams.joint_x; }
+  [[nodiscard]] double gate_length() const { return run.traverse_y; }
 };
 
 /// Where and how fast the disc's centre is, in a gate's own frame (joints at (+-joint_x, joint_y)).

@@ -82,7 +82,14 @@ class RandomForce {
  public:
   /// `sign` -1 gives the mirror image of the same sequence.
   RandomForce(const Forces& f, Random random, double sign = 1.0)
-      : random_(random), scale_(sign * f.random), hold_(1.0 / f.random_rate) {}
+      : random_(random), sign_(sign), scale_(sign * f.random), hold_(1.0 / f.random_rate) {}
+
+  /// From now on in a gate with these forces: the same sequence, the draw in force held on.
+  void enter(const Forces& f) {
+    scale_ = sign_ * f.random;
+    hold_ = 1.0 / f.random_rate;
+    value_ = scale_ * normal_;
+  }
 
   /// Force in force now (N), for another left() seconds > 0. Draws when the last one has run out.
   [[nodiscard]] double value() {
@@ -91,7 +98,8 @@ class RandomForce {
         random_.normals(normals_);
         used_ = 0;
       }
-      value_ = scale_ * normals_[used_++];
+      normal_ = normals_[used_++];
+      value_ = scale_ * normal_;
       left_ = hold_;
     }
     return value_;
@@ -103,9 +111,11 @@ class RandomForce {
   // Steps may add up to a hold with a relative error of 1e-6 (see validate): no draw for the rest.
   static constexpr double kSliver = 2e-6;
   Random random_;
+  double sign_;
   double scale_;
   double hold_;
   double left_ = 0.0;
+  double normal_ = 0.0;
   double value_ = 0.0;
   Random::Normals normals_{};
   std::size_t used_ = normals_.size();

@@ -97,7 +97,7 @@ BodyState entry_state(const GateParams& p, const Crossing& c) {
 }
 
 BodyState shifted_into_next(const GateParams& p, Ending ending, BodyState exit) {
-  const double width = 2.0 * p.beams.joint_x;
+  const double width = p.gate_width();
   if (ending == Ending::traversed) exit.y -= p.run.traverse_y;
   if (ending == Ending::exited_left) exit.x += width;
   if (ending == Ending::exited_right) exit.x -= width;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gatewalk::dynamics {
 
@@ -26,6 +27,21 @@ void Work::in_pieces(std::string_view what, std::int64_t total,
     done += count;
   }
   tell(what, total, total);
+}
+
+Work Work::part(std::string what, std::size_t index, std::size_t count) const {
+  constexpr double kEach = 1000.0;  // as fine as a progress line shows
+  return part(std::move(what), kEach * static_cast<double>(index), kEach,
+              std::llround(kEach * static_cast<double>(count)));
+}
+
+Work Work::part(std::string what, double from, double size, std::int64_t total) const {
+  if (!told) return {};
+  return {[whole = told, what = std::move(what), from, size, total](
+              std::string_view, std::int64_t done, std::int64_t of) {
+    const double share = of > 0 ? static_cast<double>(done) / static_cast<double>(of) : 1.0;
+    whole(what, std::llround(from + size * share), total);
+  }};
 }
 
 }  // namespace gatewalk::dynamics

@@ -33,6 +33,12 @@ struct Work {
   void in_pieces(std::string_view what, std::int64_t total,
                  const std::function<void(TrialRange)>& run) const;
 
+  /// Part number `index` of `count` of equal size, all under one name: what is told of it is told
+  /// as that share of the whole.
+  [[nodiscard]] Work part(std::string what, std::size_t index, std::size_t count) const;
+  /// The same for parts of any size: from `from` to `from + size` of `total`.
+  [[nodiscard]] Work part(std::string what, double from, double size, std::int64_t total) const;
+
   /// Tells it, if there is somebody.
   void tell(std::string_view what, std::int64_t done, std::int64_t total) const {
     if (told) told(what, done, total);

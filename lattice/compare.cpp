@@ -170,13 +170,13 @@ Eigen::VectorXd drawn_shares(const Eigen::VectorXd& p, std::int64_t n, Random& r
   return drawn;
 }
 
+}  // namespace
+
 CellProbabilities shares(const CellCounts& counts) {
   const std::int64_t total = counts.sum();
   if (total <= 0) throw std::invalid_argument("compare: a sample without trials");
   return counts.cast<double>() / static_cast<double>(total);
 }
-
-}  // namespace
 
 double corrcoef(const CellProbabilities& a, const CellProbabilities& b) {
   require_same_shape(a.rows(), a.cols(), b.rows(), b.cols());

@@ -14,6 +14,9 @@ namespace gatewalk::lattice {
 using markov::CellCounts;
 using markov::CellProbabilities;
 
+/// Counts as shares of all. Throws std::invalid_argument when there is no trial.
+[[nodiscard]] CellProbabilities shares(const CellCounts& counts);
+
 /// Pearson correlation over the gates; NaN when one of them is the same everywhere.
 [[nodiscard]] double corrcoef(const CellProbabilities& a, const CellProbabilities& b);
 /// Root mean squared difference over the gates, in trials per 100.

@@ -1,6 +1,9 @@
 #include "lattice/field.h"
 
 #include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace gatewalk::lattice {
 namespace {
@@ -21,7 +24,7 @@ void validate(const dynamics::GateParams& p, const FieldParams& field) {
     throw dynamics::InvalidParameter("field.fidelity", text.str());
   }
   const double reach = p.beams.length + p.body.radius;
-  const double gate = std::fmin(2.0 * p.beams.joint_x, p.run.traverse_y);
+  const double gate = std::fmin(p.gate_width(), p.run.traverse_y);
   if (field.fidelity == Fidelity::all && !(reach <= kMostGatesOfReach * gate)) {
     text << "field.fidelity = \"all\" is not permitted with these gates: beams.length_m + "
             "body.radius_m = "
@@ -30,6 +33,40 @@ void validate(const dynamics::GateParams& p, const FieldParams& field) {
          << kMostGatesOfReach * gate;
     throw dynamics::InvalidParameter("field.fidelity", text.str());
   }
+}
+
+FieldGates::FieldGates(dynamics::GateParams everywhere) : types_{std::move(everywhere)} {}
+
+FieldGates FieldGates::by_cell(std::vector<dynamics::GateParams> types, int columns,
+                               std::vector<int> type_of_cell) {
+  if (types.empty()) throw std::invalid_argument("field: no type of gate is given");
+  const dynamics::GateParams& first = types.front();
+  for (const dynamics::GateParams& p : types)
+    if (p.body.mass != first.body.mass || p.body.radius != first.body.radius ||
+        p.gate_width() != first.gate_width() || p.gate_length() != first.gate_length())
+      throw std::invalid_argument(
+          "field: gates of other size or for another body cannot share a field");
+  if (columns < 1 || type_of_cell.empty() || std::ssize(type_of_cell) % columns != 0)
+    throw std::invalid_argument("field: types of " + std::to_string(type_of_cell.size()) +
+                                " cells do not fill rows of " + std::to_string(columns));
+  for (const int type : type_of_cell)
+    if (type < 0 || type >= std::ssize(types))
+      throw std::invalid_argument("field: a cell is given type " + std::to_string(type) + " of " +
+                                  std::to_string(types.size()));
+  FieldGates gates(first);
+  gates.types_ = std::move(types);
+  gates.columns_ = columns;
+  gates.type_of_cell_ = std::move(type_of_cell);
+  return gates;
+}
+
+void FieldGates::require_fits(const FieldParams& field) const {
+  if (type_of_cell_.empty()) return;
+  if (columns_ != field.columns || std::ssize(type_of_cell_) != std::int64_t{columns_} * field.rows)
+    throw std::invalid_argument("field: types for " + std::to_string(columns_) + " columns and " +
+                                std::to_string(std::ssize(type_of_cell_) / columns_) +
+                                " rows, the field has " + std::to_string(field.columns) + " and " +
+                                std::to_string(field.rows));
 }
 
 }  // namespace gatewalk::lattice

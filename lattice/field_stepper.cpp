@@ -12,7 +12,7 @@ using namespace dynamics;
 namespace {
 
 double length_of_gate(const GateParams& p) { return p.run.traverse_y; }
-double width_of_gate(const GateParams& p) { return 2.0 * p.beams.joint_x; }
+double width_of_gate(const GateParams& p) { return p.gate_width(); }
 
 }  // namespace
 

@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "lattice/draws.h"
-
 namespace gatewalk::lattice {
 
 using namespace dynamics;
@@ -23,43 +21,6 @@ std::vector<markov::Exit> exits_of(const StateSpace& space) {
 
 markov::Chain make_chain(const Transitions& t) {
   return markov::Chain::from_counts(t.counts(), exits_of(t.space));
-}
-
-Transitions resampled(const Transitions& t, std::uint64_t seed, std::uint64_t replicate) {
-  Transitions drawn(t.space);
-  std::vector<double> weights;
-  std::vector<std::int64_t> counts;
-  // What a row never saw may yet happen in it. Its probabilities are its counts and one run more,
-  // which ends as those of all rows together: upto[i] runs ended in column[0] .. column[i].
-  std::map<int, std::int64_t> all;
-  for (const auto& row : t.rows)
-    for (const auto& [output, n] : row) all[output] += n;
-  std::vector<int> column;
-  std::vector<std::int64_t> upto;
-  for (const auto& [output, n] : all) {
-    column.push_back(output);
-    upto.push_back((upto.empty() ? 0 : upto.back()) + n);
-  }
-  for (int row = 0; row < t.space.size(); ++row) {
-    drawn.trials[row] = t.trials[row];
-    if (t.rows[row].empty()) continue;
-    weights.clear();
-    for (const auto& [output, n] : t.rows[row]) weights.push_back(static_cast<double>(n));
-    counts.resize(weights.size());
-    Random random(Purpose::resampling, {seed, static_cast<std::uint64_t>(row), replicate});
-    const std::int64_t others =
-        binomial(t.trials[row], 1.0 / static_cast<double>(t.trials[row] + 1), random);
-    multinomial(t.trials[row] - others, weights, counts, random);
-    auto count = counts.begin();
-    for (const auto& [output, n] : t.rows[row])
-      if (const std::int64_t k = *count++; k > 0)
-        drawn.rows[row].emplace_hint(drawn.rows[row].end(), output, k);
-    for (std::int64_t i = 0; i < others; ++i) {
-      const auto at = std::upper_bound(upto.begin(), upto.end(), random.below(upto.back()));
-      ++drawn.rows[row][column[static_cast<std::size_t>(at - upto.begin())]];
-    }
-  }
-  return drawn;
 }
 
 ChainStart chain_start(const StateSpace& space, const FieldParams& field, const BodyState& body) {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "dynamics/random.h"
+#include "lattice/draws.h"
 #include "lattice/gate_chain.h"
 #include "markov/predict.h"
 
@@ -14,21 +16,68 @@ namespace gatewalk::lattice {
 
 using markov::FinalDistribution;
 
+std::int64_t CountedField::runs_at(const markov::Start& start) const {
+  const auto type = static_cast<std::size_t>(chains.type_of(start.column, start.row));
+  return counts[type].row(start.input).sum();
+}
+
+CountedField counted_field(const dynamics::Transitions& matrix) {
+  return {make_chain(matrix), {matrix.counts()}};
+}
+
+markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
+                         std::uint64_t replicate) {
+  using Entry = markov::Counts::InnerIterator;
+  // What a row never saw may yet happen in it. Its probabilities are its counts and one run more,
+  // which ends as those of all rows together: upto[i] runs ended in outputs 0 .. i.
+  std::vector<std::int64_t> upto(static_cast<std::size_t>(counts.cols()), 0);
+  for (int row = 0; row < counts.rows(); ++row)
+    for (Entry entry(counts, row); entry; ++entry)
+      upto[static_cast<std::size_t>(entry.col())] += entry.value();
+  std::partial_sum(upto.begin(), upto.end(), upto.begin());
+
+  std::vector<Eigen::Triplet<std::int64_t>> drawn;
+  std::vector<double> weights;
+  std::vector<std::int64_t> of_entries;
+  for (int row = 0; row < counts.rows(); ++row) {
+    weights.clear();
+    for (Entry entry(counts, row); entry; ++entry)
+      weights.push_back(static_cast<double>(entry.value()));
+    if (weights.empty()) continue;
+    of_entries.resize(weights.size());
+    const std::int64_t trials = counts.row(row).sum();
+    dynamics::Random random(dynamics::Purpose::resampling,
+                            {seed, static_cast<std::uint64_t>(row), replicate});
+    const std::int64_t others = binomial(trials, 1.0 / static_cast<double>(trials + 1), random);
+    multinomial(trials - others, weights, of_entries, random);
+    auto n = of_entries.begin();
+    for (Entry entry(counts, row); entry; ++entry, ++n)
+      if (*n > 0) drawn.emplace_back(row, entry.col(), *n);
+    for (std::int64_t i = 0; i < others; ++i) {
+      const auto at = std::upper_bound(upto.begin(), upto.end(), random.below(upto.back()));
+      drawn.emplace_back(row, at - upto.begin(), 1);
+    }
+  }
+  markov::Counts result(counts.rows(), counts.cols());
+  result.setFromTriplets(drawn.begin(), drawn.end());
+  return result;
+}
+
 std::vector<std::vector<FinalDistribution>> replicate_predictions(
-    const FieldMatrices& rows, const markov::Field& field, const std::vector<markov::Start>& starts,
+    const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
     int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count) {
   std::vector<std::vector<FinalDistribution>> found(
       starts.size(), std::vector<FinalDistribution>(static_cast<std::size_t>(count)));
   tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t k) {
     std::vector<markov::Chain> chains;
-    for (std::size_t m = 0; m < rows.matrices.size(); ++m) {
+    for (std::size_t m = 0; m < gates.counts.size(); ++m) {
       // Another matrix of the same replicate takes another stream.
       const std::uint64_t replicate =
           static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
-      chains.push_back(make_chain(resampled(*rows.matrices[m], seed, replicate)));
+      chains.push_back(markov::Chain::from_counts(resampled(gates.counts[m], seed, replicate),
+                                                  gates.chains.chains()[m].exits()));
     }
-    const markov::Predictor predictor(
-        markov::FieldChain::by_row(std::move(chains), rows.matrix_of_row));
+    const markov::Predictor predictor(gates.chains.with(std::move(chains)));
     std::vector<FinalDistribution> of_starts =
         predictor.predict_all(field, starts, {.max_cells = max_cells});
     for (std::size_t s = 0; s < starts.size(); ++s)

@@ -11,17 +11,29 @@
 
 namespace gatewalk::lattice {
 
-/// The matrices behind a field's rows: row r draws from matrices[matrix_of_row[r]].
-struct FieldMatrices {
-  std::vector<const dynamics::Transitions*> matrices;
-  std::vector<int> matrix_of_row;  // (rows)
-};
+/// What the cells of a field draw from, with the counts behind it.
+struct CountedField {
+  markov::FieldChain chains;
+  std::vector<markov::Counts> counts;  // one per type, as chains.chains()
 
-/// Predictions from replicates first, ... first + count - 1: each matrix resampled() row by row on
-/// its own. (starts x count) by Predictor::predict, on all threads of the current TBB arena; the
-/// same bits for any number of them. Throws as Predictor::predict does.
+  /// Runs of the row that a walk begins in.
+  [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
+};
+/// Every cell draws from the same matrix.
+[[nodiscard]] CountedField counted_field(const dynamics::Transitions& matrix);
+
+/// The counts that another set of runs might have given: every row's trials drawn anew from its own
+/// counts, as one binomial per entry, and of one run more that may end as any of all rows: what a
+/// row never saw may yet happen in it. Chains of such counts show what the sampling of the matrix
+/// alone does to a prediction.
+[[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
+                                       std::uint64_t replicate);
+
+/// Predictions from replicates first, ... first + count - 1: each matrix resampled() on its own.
+/// (starts x count) by Predictor::predict, on all threads of the current TBB arena; the same bits
+/// for any number of them. Throws as Predictor::predict does.
 [[nodiscard]] std::vector<std::vector<markov::FinalDistribution>> replicate_predictions(
-    const FieldMatrices& rows, const markov::Field& field, const std::vector<markov::Start>& starts,
+    const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
     int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count);
 
 /// How many replicates a field of this size lets one make in some seconds: 0 to `most`. Below 50 it

@@ -3,8 +3,11 @@
 #include <tbb/parallel_for.h>
 
 #include <bit>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "dynamics/runs.h"
 #include "lattice/field_stepper.h"
@@ -22,6 +25,8 @@ struct Trial {
   std::array<std::int32_t, kBoundaries> entries{}, clamped{};
   Health health;
   std::vector<Crossing> crossings;
+  BodyState from;     // where its next run begins
+  RandomForce force;  // goes on from gate to gate
 };
 
 /// Takes the result of a trial's run through one gate. The crossing into the next gate; none when
@@ -59,6 +64,25 @@ RandomForce field_force(const GateParams& p, const BodyState& start, std::uint64
   return {p.forces, Random(Purpose::field, stream)};
 }
 
+void tally_trial(FieldTally& tally, const Trial& t) {
+  ++tally.final_gates(t.row, t.column);
+  const bool trapped = t.ending == markov::Ending::trapped,
+             cut_off = t.ending == markov::Ending::cut_off;
+  const bool departed = t.ending && !trapped && !cut_off;
+  tally.trapped_gates(t.row, t.column) += trapped;
+  tally.departed_gates(t.row, t.column) += departed;
+  if (t.ending) ++tally.endings[static_cast<std::size_t>(*t.ending)];
+  tally.trapped += trapped;
+  tally.left_field += departed;
+  tally.cut_off += cut_off;
+  tally.broken += !t.ending;
+  for (int b = 0; b < kBoundaries; ++b) {
+    tally.entries[b] += t.entries[b];
+    tally.clamped[b] += t.clamped[b];
+  }
+  tally.health += t.health;
+}
+
 }  // namespace
 
 std::uint64_t stream_row(const GateParams& p, const BodyState& b) {
@@ -72,6 +96,7 @@ std::uint64_t stream_row(const GateParams& p, const BodyState& b) {
 }
 
 FieldTally& FieldTally::operator+=(const FieldTally& o) {
+  held.add(o.held);
   final_gates += o.final_gates;
   trials += o.trials;
   trapped += o.trapped;
@@ -86,38 +111,87 @@ FieldTally& FieldTally::operator+=(const FieldTally& o) {
     clamped[b] += o.clamped[b];
   }
   health += o.health;
-  final_gate_of_trial.insert(final_gate_of_trial.end(), o.final_gate_of_trial.begin(),
-                             o.final_gate_of_trial.end());
-  crossings.insert(crossings.end(), o.crossings.begin(), o.crossings.end());
   return *this;
 }
 
-FieldTally run_field(const GateParams& p, const FieldParams& field, const BodyState& start,
+namespace {
+
+/// Trials that wait for a run in gates of the same type.
+struct Wave {
+  std::vector<std::int64_t> trials;
+  std::mutex mutex;  // trials join from several threads
+};
+
+/// Carries out all runs of `trials`, each gate fresh: in waves, the trials in gates of one type
+/// together. A trial goes on in its slot while the type stays the same; else it waits for the next
+/// wave of its own.
+void run_active(std::vector<Trial>& trials, const FieldGates& gates, const FieldParams& field,
+                const StateSpace& space, bool keep_crossings) {
+  const std::size_t types = gates.types().size();
+  std::vector<std::unique_ptr<const Method>> methods;
+  for (const GateParams& p : gates.types()) methods.push_back(make_method(p));
+  std::vector<Wave> waves(types);
+  for (std::int64_t i = 0; i < std::ssize(trials); ++i)
+    waves[gates.type_of(trials[i].column, trials[i].row)].trials.push_back(i);
+  for (bool more = true; more;) {
+    more = false;
+    for (std::size_t type = 0; type < types; ++type) {
+      const std::vector<std::int64_t> wave = std::exchange(waves[type].trials, {});
+      if (wave.empty()) continue;
+      more = true;
+      const GateParams& p = gates.types()[type];
+      carry_out_trials(
+          p, *methods[type], std::ssize(wave),
+          [&](RunSlot& slot) {
+            const Trial& t = trials[wave[slot.trial]];
+            slot.start = t.from;
+            slot.force = t.force;
+            slot.force.enter(p.forces);
+          },
+          [&](RunSlot& slot, const GateRun& run) {
+            const std::int64_t i = wave[slot.trial];
+            Trial& t = trials[i];
+            if (!follow(t, p, field, space, run, keep_crossings)) return false;
+            slot.start = shifted_into_next(p, run.ending, run.exit);
+            const auto next = static_cast<std::size_t>(gates.type_of(t.column, t.row));
+            if (next == type) return true;
+            t.from = slot.start;
+            t.force = slot.force;
+            const std::lock_guard lock(waves[next].mutex);
+            waves[next].trials.push_back(i);
+            return false;
+          });
+    }
+  }
+}
+
+}  // namespace
+
+FieldTally run_field(const FieldGates& gates, const FieldParams& field, const BodyState& start,
                      const StateSpace& space, std::uint64_t seed, TrialRange range,
-                     bool keep_crossings) {
-  const auto method = make_method(p);
-  validate(p, field);
-  std::vector<Trial> trials(range.count);
-  for (Trial& t : trials) t.column = field.start_column();
-  const auto force_of = [&](std::int64_t i) {
-    return field_force(p, start, seed, range.first + i);
-  };
+                     FieldTrials* each) {
+  gates.require_fits(field);
+  for (const GateParams& p : gates.types()) validate(p, field);
+  const GateParams& p = gates.types().front();
+  const bool keep_crossings = each != nullptr && each->keep_crossings;
+  std::vector<Trial> trials;
+  trials.reserve(range.count);
+  for (std::int64_t i = 0; i < range.count; ++i)
+    trials.push_back({.column = field.start_column(),
+                      .from = start,
+                      .force = field_force(p, start, seed, range.first + i)});
   if (field.fidelity == Fidelity::active) {
-    carry_out_trials(
-        p, *method, range.count,
-        [&](RunSlot& slot) {
-          slot.start = start;
-          slot.force = force_of(slot.trial);
-        },
-        [&](RunSlot& slot, const GateRun& run) {
-          if (!follow(trials[slot.trial], p, field, space, run, keep_crossings)) return false;
-          slot.start = shifted_into_next(p, run.ending, run.exit);
-          return true;
-        });
+    run_active(trials, gates, field, space, keep_crossings);
   } else {
+    if (gates.types().size() > 1)
+      throw InvalidParameter("field.fidelity", "field.fidelity = \"" +
+                                                   std::string(name_of(field.fidelity)) +
+                                                   "\" is not permitted: gates of several types "
+                                                   "are only run with \"active\"");
+    (void)make_method(p);  // refuses what cannot be run
     tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
-      RandomForce force = force_of(i);
       Crowd crowd(p, field, start);
+      RandomForce& force = trials[i].force;
       for (GateRun run = crowd.run_gate(force);
            follow(trials[i], p, field, space, run, keep_crossings); run = crowd.run_gate(force))
         crowd.go_on(run.ending);
@@ -125,50 +199,40 @@ FieldTally run_field(const GateParams& p, const FieldParams& field, const BodySt
   }
 
   FieldTally tally(field);
+  tally.held.add(range);
   tally.trials = range.count;
-  tally.final_gate_of_trial.reserve(trials.size());
-  for (const Trial& t : trials) {
-    ++tally.final_gates(t.row, t.column);
-    tally.final_gate_of_trial.push_back(t.row * field.columns + t.column);
-    const bool trapped = t.ending == markov::Ending::trapped,
-               cut_off = t.ending == markov::Ending::cut_off;
-    const bool departed = t.ending && !trapped && !cut_off;
-    tally.trapped_gates(t.row, t.column) += trapped;
-    tally.departed_gates(t.row, t.column) += departed;
-    if (t.ending) ++tally.endings[static_cast<std::size_t>(*t.ending)];
-    tally.trapped += trapped;
-    tally.left_field += departed;
-    tally.cut_off += cut_off;
-    tally.broken += !t.ending;
-    for (int b = 0; b < kBoundaries; ++b) {
-      tally.entries[b] += t.entries[b];
-      tally.clamped[b] += t.clamped[b];
+  for (const Trial& t : trials) tally_trial(tally, t);
+  if (each != nullptr)
+    for (const Trial& t : trials) {
+      each->final_gates.push_back(t.row * field.columns + t.column);
+      each->crossings.insert(each->crossings.end(), t.crossings.begin(), t.crossings.end());
     }
-    tally.health += t.health;
-    tally.crossings.insert(tally.crossings.end(), t.crossings.begin(), t.crossings.end());
-  }
   return tally;
 }
 
-FieldTrace trace_field(const GateParams& p, const FieldParams& field, const BodyState& start,
+FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const BodyState& start,
                        std::uint64_t seed, std::int64_t trial, std::size_t most_samples) {
   if (field.fidelity != Fidelity::active)
     throw InvalidParameter("field.fidelity",
                            "field.fidelity = \"" + std::string(name_of(field.fidelity)) +
                                "\" is not permitted: only \"active\" can be traced");
-  const auto method = make_method(p);
-  validate(p, field);
-  const StateSpace space = StateSpace::paper(p);  // `follow` counts with it; nobody asks here
-  Trial t;
-  t.column = field.start_column();
-  RandomForce force = field_force(p, start, seed, trial);
+  gates.require_fits(field);
+  for (const GateParams& p : gates.types()) validate(p, field);
+  const GateParams& base = gates.types().front();
+  const StateSpace space = StateSpace::paper(base);  // `follow` counts with it; nobody asks here
+  Trial t{.column = field.start_column(),
+          .from = start,
+          .force = field_force(base, start, seed, trial)};
   FieldTrace trace;
-  for (BodyState from = start;;) {
-    trace.visits.push_back({t.column, t.row, trace_gate(p, *method, from, force, most_samples)});
+  for (;;) {
+    const GateParams& p = gates.at(t.column, t.row);
+    t.force.enter(p.forces);
+    trace.visits.push_back(
+        {t.column, t.row, trace_gate(p, *make_method(p), t.from, t.force, most_samples)});
     most_samples -= trace.visits.back().trace.samples.size();
     const GateRun& run = trace.visits.back().trace.run;
     if (!follow(t, p, field, space, run, false)) break;
-    from = shifted_into_next(p, run.ending, run.exit);
+    t.from = shifted_into_next(p, run.ending, run.exit);
   }
   trace.ending = t.ending;
   return trace;

@@ -15,9 +15,11 @@
 
 namespace gatewalk::lattice {
 
+/// Counts of trials through the field. Tallies add in any order.
 struct FieldTally {
   markov::CellCounts final_gates;  // (rows x columns), last gate inside the field
   std::int64_t trials = 0;
+  dynamics::TrialSet held;  // which
   std::int64_t trapped = 0;
   std::int64_t left_field = 0;
   std::int64_t cut_off = 0;  // max_gates gates visited, would have gone on
@@ -30,14 +32,20 @@ struct FieldTally {
       entries{};  // crossings between gates, by boundary
   std::array<std::int64_t, dynamics::kBoundaries> clamped{};  // of these, outside every bin
   dynamics::Health health;                                    // over all gate runs
-  std::vector<std::int32_t> final_gate_of_trial;              // row * columns + column, trial order
-  std::vector<dynamics::Crossing> crossings;                  // between gates, if kept, trial order
 
   explicit FieldTally(const FieldParams& f)
       : final_gates(markov::CellCounts::Zero(f.rows, f.columns)),
         trapped_gates(final_gates),
         departed_gates(final_gates) {}
-  FieldTally& operator+=(const FieldTally& other);  // `other` continues this one's trials
+  /// Throws std::invalid_argument, and changes nothing, when a trial would be counted twice.
+  FieldTally& operator+=(const FieldTally& other);
+};
+
+/// What each trial did, in the order of their numbers.
+struct FieldTrials {
+  std::vector<std::int32_t> final_gates;  // row * columns + column
+  bool keep_crossings = false;
+  std::vector<dynamics::Crossing> crossings;  // between gates, if kept
 };
 
 /// The number that names a start in its trials' streams: other starts, other noise. From the start
@@ -49,13 +57,14 @@ struct FieldTally {
 /// rest, whenever the body enters (active), or one of many that go on and act beyond their bounds
 /// (remember, all; crowd.h). The random force goes on from gate to gate; its stream is
 /// {seed, stream_row(p, start), trial} whatever the fidelity. run.time_limit_s counts from the
-/// entry into a gate. `space` only counts what the chain would have clamped; `keep_crossings` keeps
-/// the crossings themselves. On all threads of the current TBB arena, same result for any number of
-/// them. Throws InvalidParameter.
-[[nodiscard]] FieldTally run_field(const dynamics::GateParams& p, const FieldParams& field,
+/// entry into a gate. `space` only counts what the chain would have clamped. What each trial did is
+/// appended to `each`, if given. Trials in gates of one type are run together, in lanes where the
+/// method has them. On all threads of the current TBB arena, same result for any number of them.
+/// Throws InvalidParameter, also for gates of several types with another fidelity than `active`.
+[[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,
                                    const dynamics::BodyState& start,
                                    const dynamics::StateSpace& space, std::uint64_t seed,
-                                   dynamics::TrialRange range, bool keep_crossings = false);
+                                   dynamics::TrialRange range, FieldTrials* each = nullptr);
 
 /// A trial through the field in full.
 struct FieldTrace {
@@ -71,7 +80,7 @@ struct FieldTrace {
 /// Trial number `trial` of run_field, the same to the last bit. Throws InvalidParameter, also for
 /// another fidelity than `active`, and TraceTooLong when all visits together have more samples.
 [[nodiscard]] FieldTrace trace_field(
-    const dynamics::GateParams& p, const FieldParams& field, const dynamics::BodyState& start,
+    const FieldGates& gates, const FieldParams& field, const dynamics::BodyState& start,
     std::uint64_t seed, std::int64_t trial,
     std::size_t most_samples = std::numeric_limits<std::size_t>::max());
 

@@ -138,6 +138,13 @@ FieldChain FieldChain::by_cell(std::vector<Chain> chains, int columns,
   return {std::move(chains), std::move(type_of_cell), columns, 1};
 }
 
+FieldChain FieldChain::with(std::vector<Chain> chains) const {
+  if (chains.size() != chains_.size() || chains.front().inputs() != inputs())
+    refuse("field: " + std::to_string(chains.size()) + " chains cannot take the place of " +
+           std::to_string(chains_.size()) + " others, or have other inputs");
+  return {std::move(chains), types_, row_stride_, column_stride_};
+}
+
 bool FieldChain::has_uniform_rows() const {
   for (std::int64_t row = 0; row < rows(); ++row)
     for (std::int64_t column = 1; column < columns(); ++column)

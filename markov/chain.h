@@ -70,6 +70,10 @@ class FieldChain {
   [[nodiscard]] static FieldChain by_cell(std::vector<Chain> chains, int columns,
                                           std::vector<int> type_of_cell);
 
+  /// The same types of cells with other chains, as many and with as many inputs. Throws
+  /// std::invalid_argument otherwise.
+  [[nodiscard]] FieldChain with(std::vector<Chain> chains) const;
+
   [[nodiscard]] const std::vector<Chain>& chains() const { return chains_; }  // one per type
   [[nodiscard]] int inputs() const { return chains_.front().inputs(); }
   [[nodiscard]] int type_of(std::int64_t column, std::int64_t row) const {

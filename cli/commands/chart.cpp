@@ -1,15 +1,14 @@
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <set>
 #include <sstream>
 
 #include "cli/command.h"
-#include "cli/render/drawing.h"
-#include "cli/render/report.h"
+#include "cli/render/json.h"
 #include "cli/render/work_precision.h"
 #include "cli/terminal/interrupt.h"
-#include "cli/terminal/output.h"
+#include "dynamics/work.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -62,7 +61,7 @@ void require_chartable(const Options& options, const std::vector<std::string>& p
 
 }  // namespace
 
-int run_chart(const std::vector<std::string>& arguments) {
+int run_chart(const Arguments& arguments) {
   Options options(
       "chart SCENE... -o DIR [options]",
       "Charts the methods' speed against their accuracy, each over its own settings: time per\n"
@@ -71,27 +70,22 @@ int run_chart(const std::vector<std::string>& arguments) {
       "ten minutes; --trials 2000 --repeats 3 gives a first look in one.",
       "gatewalk chart scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
   options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");
-  constexpr std::array kFiles{"chart.csv", "chart.json", "chart.svg"};
-  options.output_folder("folder to write to", {kFiles.begin(), kFiles.end()});
-  options.add()("trials", po::value<Count>()->default_value(Count{100'000}, "1e5")->value_name("N"),
-                "trials per setting")(
-      "repeats", po::value<Count>()->default_value(Count{10}, "10")->value_name("N"),
-      "rounds of timing, after one that warms up")("methods",
-                                                   po::value<std::string>()->value_name("A,B,..."),
-                                                   "methods to chart (default: all)");
-  add_seed(options);
-  add_strict(options);
+  const std::vector<std::string> files{"chart.csv", "chart.json", "chart.svg"};
+  options.output_folder("folder to write to", files);
+  options.add_count("trials", "N", "trials per setting", "1e5");
+  options.add_count("repeats", "N", "rounds of timing, after one that warms up", "10");
+  options.add_text("methods", "A,B,...", "methods to chart (default: all)");
+  options.add_seed();
+  options.add_strict();
   if (!options.parse(arguments)) return kFine;
-  const std::vector<std::string> methods = chosen_methods(options);
-  (void)options.count("trials", 1, kMostTrials);
-  const std::int64_t rounds = options.count("repeats");
-  const auto& paths = options.get<std::vector<std::string>>("scene");
+  dynamics::WorkPrecisionOptions how{.label = {},
+                                     .methods = chosen_methods(options),
+                                     .trials = options.count("trials", 1, kMostTrials),
+                                     .rounds = options.count("repeats"),
+                                     .seed = options.seed()};
+  const std::vector<std::string> paths = options.texts("scene");
   require_chartable(options, paths);
-  const std::string folder = options.text("output");
-  const auto file = [&](const char* name) {
-    return (std::filesystem::path(folder) / name).string();
-  };
-  require_folder(folder);
+  const ResultFolder folder(options, files);
 
   std::vector<dynamics::WorkPrecision> charts;
   Json json;
@@ -101,31 +95,23 @@ int run_chart(const std::vector<std::string>& arguments) {
   try {
     for (const std::string& path : paths) {
       const lattice::Scene scene = lattice::read_scene(path, options.overrides());
-      charts.push_back(dynamics::work_precision(scene.gate, scene.start,
-                                                {.label = label_of(path),
-                                                 .methods = methods,
-                                                 .trials = options.count("trials"),
-                                                 .rounds = rounds,
-                                                 .seed = options.seed()},
-                                                options.work()));
+      how.label = label_of(path);
+      charts.push_back(dynamics::work_precision(scene.gate, scene.start, how, options.work()));
       json["scenes"].push_back(to_json(charts.back()));
-      json["scenes"].back()["made_by"] = manifest(options, scene);
+      json["scenes"].back()["made_by"] = to_json(options.provenance(scene));
       table += (table.empty() ? "" : "\n") + table_of(charts.back());
-      std::filesystem::remove(
-          file("chart.svg"));  // an old figure shall not stand beside new numbers
-      write_text_atomically(file("chart.csv"), csv_of(charts));
-      write_text_atomically(file("chart.json"), text_of(json) + "\n");
+      folder.write("chart.csv", csv_of(charts), "chart.json", json);
     }
   } catch (const Interrupted&) {
     if (charts.empty()) throw;
-    draw(file("chart.svg"), charts);
-    warn("stopped before the end; " + file("chart.csv") + ", chart.json and chart.svg hold the " +
-         std::to_string(charts.size()) + " of " + std::to_string(paths.size()) +
-         " scenes that were finished");
+    folder.draw("chart.svg", figure_of(charts));
+    warn("stopped before the end; " + folder.path("chart.csv") +
+         ", chart.json and chart.svg hold the " + std::to_string(charts.size()) + " of " +
+         std::to_string(paths.size()) + " scenes that were finished");
     return kStopped;
   }
-  options.give_out(json, table + "\n" + work_precision_legend(rounds));
-  draw(file("chart.svg"), charts);
+  options.give_out(json, table + "\n" + work_precision_legend(how.rounds));
+  folder.draw("chart.svg", figure_of(charts));
   bool clean = true;
   for (const auto& chart : charts) {
     const auto verdict = chart.reference.verdict;

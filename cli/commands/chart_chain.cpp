@@ -1,12 +1,9 @@
 #include <algorithm>
-#include <filesystem>
 
 #include "cli/arguments.h"
 #include "cli/render/chain_error.h"
 #include "cli/render/choice.h"
-#include "cli/render/matrix.h"
-#include "cli/render/report.h"
-#include "cli/terminal/output.h"
+#include "cli/render/json.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -16,8 +13,8 @@ constexpr std::int64_t kMostPilotTrials =
 
 /// --bins, in ascending order.
 std::vector<double> factors_of(const Options& options, lattice::BinsChoice::Kind kind) {
-  std::vector<double> factors = options.has("bins") ? options.get<std::vector<double>>("bins")
-                                                    : lattice::ChainErrorOptions{}.factors;
+  std::vector<double> factors =
+      options.has("bins") ? options.numbers("bins") : lattice::ChainErrorOptions{}.factors;
   std::sort(factors.begin(), factors.end());
   if (std::adjacent_find(factors.begin(), factors.end()) != factors.end())
     throw UsageError("--bins: the same factor twice");
@@ -33,41 +30,39 @@ std::vector<double> factors_of(const Options& options, lattice::BinsChoice::Kind
 
 }  // namespace
 
-int run_chart_chain(const std::vector<std::string>& arguments) {
+int run_chart_chain(const Arguments& arguments) {
   Options options(
       "chart-chain SCENE -o DIR [options]",
       "Charts the chain's error against its cost: matrices of coarser and finer bins and of\n"
       "10 to 10000 trials a row, against the full dynamics, beside direct simulation at the\n"
       "same cost. Writes chain.csv, chain.json and chain.svg into DIR.",
       "gatewalk chart-chain scenes/field.toml -o results/chain --truth-trials 1e5");
-  options.positional("scene", "scene file (TOML)", true);
-  options.output_folder("folder to write to, made if missing",
-                        {"chain.csv", "chain.json", "chain.svg"});
-  options.add()("truth-trials",
-                po::value<Count>()->default_value(Count{100'000}, "1e5")->value_name("N"),
-                "trials of the full dynamics per start, against which errors are taken")(
-      "runs-limit", po::value<Count>()->default_value(Count{1'000'000}, "1e6")->value_name("N"),
-      "gate runs that one matrix may take")(
-      "bins", po::value<std::vector<double>>()->composing()->value_name("FACTOR"),
-      "bins per axis, as a multiple of those that build has without --bins (may be repeated; "
-      "default: 0.5, 1, 2, 4)")(
-      "visited", po::value<Count>()->value_name("N"),
+  options.scene();
+  const std::vector<std::string> files{"chain.csv", "chain.json", "chain.svg"};
+  options.output_folder("folder to write to, made if missing", files);
+  options.add_count("truth-trials", "N",
+                    "trials of the full dynamics per start, against which errors are taken", "1e5");
+  options.add_count("runs-limit", "N", "gate runs that one matrix may take", "1e6");
+  options.add_numbers("bins", "FACTOR",
+                      "bins per axis, as a multiple of those that build has without --bins (may be "
+                      "repeated; default: 0.5, 1, 2, 4)");
+  options.add_count(
+      "visited", "N",
       "also chart matrices whose rows start not anywhere in their bins but where N full trials per "
       "start were seen to enter; these trials count as cost. Bins that are made from what is seen "
-      "always start so, "
-      "by default from 2000 trials per start");
+      "always start so, by default from 2000 trials per start");
   add_starts(options);
-  add_seed(options);
-  add_strict(options);
+  options.add_seed();
+  options.add_strict();
   if (!options.parse(arguments)) return kFine;
-  lattice::Scene scene = lattice::read_scene(options.text("scene"), options.overrides());
+  lattice::Scene scene = options.read_scene();
   const std::vector<lattice::PaperStart> starts = starts_of(options, scene);
   lattice::require_inside(starts, scene);
   (void)lattice::entries_at(starts);
   const auto bins = lattice::usual_bins(scene).kind;
   if (bins != lattice::BinsChoice::Kind::automatic)
     require_inside_bins(starts, scene, lattice::fixed_space(scene));
-  const Json settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   lattice::ChainErrorOptions chosen{.starts = starts,
                                     .truth_trials = options.count("truth-trials", 100),
                                     .runs_limit = options.count("runs-limit"),
@@ -79,24 +74,17 @@ int run_chart_chain(const std::vector<std::string>& arguments) {
     throw UsageError("--runs-limit " + std::to_string(chosen.runs_limit) + ": too few for " +
                      std::to_string(lattice::kChainTrials.front()) +
                      " trials a row of any of these bins");
-  const std::string folder = options.text("output");
-  const auto file = [&](const char* name) {
-    return (std::filesystem::path(folder) / name).string();
-  };
-  require_folder(folder);
+  const ResultFolder folder(options, files);
 
   remark(options, "measuring the cost of a trial and of a gate run");
   const auto chart = lattice::chart_chain_error(scene, std::move(plan), options.work());
   Json json = to_json(chart);
-  if (!settled.is_null()) json["method"] = settled;
-  json["made_by"] = manifest(options, scene);
-  std::filesystem::remove(file("chain.svg"));  // an old figure shall not stand beside new numbers
-  write_text_atomically(file("chain.csv"), csv_of(chart));
-  write_text_atomically(file("chain.json"), text_of(json) + "\n");
+  if (settled) json["method"] = to_json(*settled);
+  json["made_by"] = to_json(options.provenance(scene));
+  folder.write("chain.csv", csv_of(chart), "chain.json", json);
   options.give_out(json, table_of(chart));
-  draw(file("chain.svg"), chart);
-  if (!chart.health.clean()) warn(complaint(chart.health));
-  return exit_status(options, chart.health.clean());
+  folder.draw("chain.svg", figure_of(chart));
+  return status_of(options, chart.health);
 }
 
 }  // namespace gatewalk::cli

@@ -2,12 +2,14 @@
 
 #include "cli/command.h"
 #include "cli/paper/reproduction.h"
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
 #include "cli/terminal/interrupt.h"
 
 namespace gatewalk::cli {
 
-int run_reproduce(const std::vector<std::string>& arguments) {
+int run_reproduce(const Arguments& arguments) {
   Options options("reproduce -o DIR [options]",
                   "Everything of the paper: runs the studies behind its figures, tables and "
                   "numbers, sets each claim beside\n"
@@ -18,7 +20,7 @@ int run_reproduce(const std::vector<std::string>& arguments) {
                   "gatewalk reproduce -o paper --quick");
   options.without_scene("the studies have scenes of their own, written to DIR/scenes");
   options.output_folder("folder to write to", {"report.html", "report.json", "claims.csv"});
-  options.add()("quick", "fewer trials: half a minute on two cores instead of four");
+  options.add_flag("quick", "fewer trials: half a minute on two cores instead of four");
   if (!options.parse(arguments)) return kFine;
   const std::string folder = options.text("output");
   if (options.has("json") && options.text("json") != "-")

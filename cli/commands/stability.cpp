@@ -1,16 +1,15 @@
 #include <algorithm>
-#include <filesystem>
 
 #include "cli/command.h"
-#include "cli/render/report.h"
+#include "cli/render/json.h"
 #include "cli/render/stability.h"
-#include "cli/terminal/output.h"
-#include "cli/version.h"
+#include "cli/render/text.h"
 #include "dynamics/study/accuracy.h"
+#include "dynamics/work.h"
 
 namespace gatewalk::cli {
 
-int run_stability(const std::vector<std::string>& arguments) {
+int run_stability(const Arguments& arguments) {
   Options options(
       "stability -o DIR [options]",
       "Maps where each method breaks: step and stiffness, step and damping, restitution and\n"
@@ -26,31 +25,20 @@ int run_stability(const std::vector<std::string>& arguments) {
   std::vector<std::string> written{"stability.csv", "stability.json"};
   written.insert(written.end(), figures.begin(), figures.end());
   options.output_folder("folder to write to", written);
-  options.add()("quick", "coarser maps");
-  add_seed(options);
+  options.add_flag("quick", "coarser maps");
+  options.add_seed();
   options.without_scene("the maps have scenes of their own");
   if (!options.parse(arguments)) return kFine;
-  const std::string folder = options.text("output");
-  const auto file = [&](const std::string& name) {
-    return (std::filesystem::path(folder) / name).string();
-  };
-  require_folder(folder);
+  const ResultFolder folder(options, written);
 
   const auto maps =
       dynamics::run_maps({.quick = options.has("quick"), .seed = options.seed()}, options.work());
 
   Json json = to_json(maps);
-  json["made_by"] = {{"program", "gatewalk"},
-                     {"version", kVersion},
-                     {"commit", kCommit},
-                     {"command", options.canonical()},
-                     {"seed", options.seed()}};
-  // Old figures shall not stand beside new numbers.
-  for (const std::string& figure : figures) std::filesystem::remove(file(figure));
-  write_text_atomically(file("stability.csv"), csv_of(maps));
-  write_text_atomically(file("stability.json"), text_of(json) + "\n");
+  json["made_by"] = to_json(options.provenance());
+  folder.write("stability.csv", csv_of(maps), "stability.json", json);
   for (std::size_t kind = 0; kind < figures.size(); ++kind)
-    draw(file(figures[kind]), std::span(maps).subspan(kind * methods, methods));
+    folder.draw(figures[kind], figure_of(std::span(maps).subspan(kind * methods, methods)));
   options.give_out(json, table_of(maps));
   double slowest = 0.0;
   for (const auto& m : maps)

@@ -1,36 +1,36 @@
 #include <optional>
 
-#include "cli/command.h"
+#include "cli/arguments.h"
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
 #include "cli/render/choice.h"
-#include "cli/render/drawing.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
 #include "cli/render/recording.h"
-#include "cli/render/report.h"
+#include "cli/render/text.h"
 #include "cli/terminal/output.h"
 
 namespace gatewalk::cli {
 namespace {
 
 void declare(Options& options) {
-  options.positional("scene", "scene file (TOML)", true);
-  add_seed(options);
-  add_strict(options);
-  options.add()("trial", po::value<Count>()->default_value(Count{0}, "0")->value_name("I"),
-                "number of the first trial")(
-      "trials", po::value<Count>()->default_value(Count{1}, "1")->value_name("N"),
-      "record trials I to I + N - 1")(
-      "only", po::value<std::string>()->value_name("ENDING"),
-      "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with --field crossed, "
-      "'left field' (over any side), trapped, 'cut off'")(
-      "field", "cross the field, gate after gate, instead of one gate");
+  options.scene();
+  options.add_seed();
+  options.add_strict();
+  options.add_count("trial", "I", "number of the first trial", "0");
+  options.add_count("trials", "N", "record trials I to I + N - 1", "1");
+  options.add_text("only", "ENDING",
+                   "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with "
+                   "--field crossed, 'left field' (over any side), trapped, 'cut off'");
+  options.add_flag("field", "cross the field, gate after gate, instead of one gate");
   options.output_file("csv", "FILE", "write all samples as CSV; - is standard output");
   options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
   options.output_file("replay", "FILE.html", "write a page that plays the runs");
   options.output_file("video", "FILE.mp4|gif", "write a film of the first run (needs ffmpeg)",
                       Options::Content::binary);
-  options.add()("video-speed", po::value<double>()->value_name("X"),
-                "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
+  options.add_number(
+      "video-speed", "X",
+      "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
 }
 
 /// What `check` refuses is wrong with the option of that name.
@@ -45,7 +45,7 @@ void check_option(const Options& options, const char* name, Check check) try {
 lattice::RecordingOptions recording_options(const Options& options) {
   const lattice::RecordingOptions wanted{.seed = options.seed(),
                                          .first = options.count("trial", 0),
-                                         .trials = options.count("trials"),
+                                         .trials = options.trials(),
                                          .across_field = options.has("field"),
                                          .only = options.text("only")};
   check_option(options, "only", [&](const std::string& only) {
@@ -61,7 +61,7 @@ lattice::RecordingOptions recording_options(const Options& options) {
 
 std::optional<double> video_speed(const Options& options, const lattice::Scene& scene) {
   if (!options.has("video-speed")) return std::nullopt;
-  const double speed = options.get<double>("video-speed");
+  const double speed = options.number("video-speed");
   const double pace = dynamics::scale_of(scene.gate).time;
   if (!(speed >= 0.01 * pace && speed <= 100.0 * pace))
     throw UsageError("--video-speed: must lie in [" + digits(0.01 * pace) + ", " +
@@ -71,7 +71,7 @@ std::optional<double> video_speed(const Options& options, const lattice::Scene& 
 
 }  // namespace
 
-int run_trace(const std::vector<std::string>& arguments) {
+int run_trace(const Arguments& arguments) {
   Options options("trace SCENE [options]",
                   "Records runs in full: every step of the method with positions, velocities, "
                   "beams, forces, contacts\n"
@@ -85,14 +85,14 @@ int run_trace(const std::vector<std::string>& arguments) {
   declare(options);
   if (!options.parse(arguments)) return kFine;
   const lattice::RecordingOptions wanted = recording_options(options);
-  lattice::Scene scene = lattice::read_scene(options.text("scene"), options.overrides());
+  lattice::Scene scene = options.read_scene();
   const std::optional<double> speed = video_speed(options, scene);
-  const Json settled =
+  const auto settled =
       settle_method(options, scene,
                     wanted.across_field ? lattice::RunsFrom::everywhere : lattice::RunsFrom::start);
   const lattice::Recordings recordings = lattice::record_trials(scene, wanted, options.work());
 
-  const Json made_by = manifest(options, scene);
+  const Json made_by = to_json(options.provenance(scene));
   if (options.has("csv")) write_text_atomically(options.text("csv"), csv_of(scene, recordings));
   if (options.has("netcdf"))
     write_text_atomically(options.text("netcdf"), netcdf_of(scene, recordings, made_by));
@@ -109,13 +109,12 @@ int run_trace(const std::vector<std::string>& arguments) {
   }
   json["recorded"] = recordings.runs.size();
   json["trials"] = recordings.trials;
-  if (!settled.is_null()) json["method"] = settled;
+  if (settled) json["method"] = to_json(*settled);
   json["status"] = to_json(recordings.health);
   json["made_by"] = made_by;
   const bool to_stdout = options.text("csv") == "-" || options.text("replay") == "-";
   options.give_out(json, to_stdout ? "" : table_of(scene, recordings) + method_line(settled), -1);
-  if (!recordings.health.clean()) warn(complaint(recordings.health));
-  return exit_status(options, recordings.health.clean());
+  return status_of(options, recordings.health);
 }
 
 }  // namespace gatewalk::cli

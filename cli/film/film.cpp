@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "cli/render/drawing.h"
 #include "cli/render/quantity.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -34,8 +34,8 @@ struct Film {
   lattice::FieldParams field{.columns = 1, .rows = 1};  // 1 x 1: a gate alone
   std::vector<FilmRun> runs;
 
-  [[nodiscard]] double width() const { return 2.0 * gate.beams.joint_x; }  // m, of a gate
-  [[nodiscard]] double depth() const { return gate.run.traverse_y; }       // m, the same
+  [[nodiscard]] double width() const { return gate.gate_width(); }   // m, of a gate
+  [[nodiscard]] double depth() const { return gate.gate_length(); }  // m, the same
   [[nodiscard]] bool is_field() const { return field.columns * field.rows > 1; }
 };
 

@@ -3,6 +3,8 @@
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
 
+#include "cli/render/json.h"
+
 namespace gatewalk::cli {
 namespace {
 

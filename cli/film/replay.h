@@ -17,8 +17,8 @@
 
 #include <string>
 
-#include "cli/command.h"
 #include "cli/film/film.h"
+#include "cli/render/json_fwd.h"
 
 namespace gatewalk::cli {
 

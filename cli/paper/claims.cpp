@@ -1,7 +1,9 @@
 #include "cli/paper/claims.h"
 
 #include "cli/paper/studies.h"
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 

@@ -68,12 +68,6 @@ Claim table4_row(const Findings& f, std::size_t i, const char* id) {
 
 namespace {
 
-/// No more apart than chance in the trials and in the sampling of the matrix makes.
-bool within_chance(const ValidatedStart& s) {
-  const MeanAndSd& matrix = s.total_variation_of_matrix;
-  return s.total_variation <= std::hypot(s.total_variation_floor_95, matrix.mean + 2 * matrix.sd);
-}
-
 /// An error of the chain that 100 trials show.
 bool shows_at_100(const ValidatedStart& s) {
   return s.exact.rmse.mean - s.exact.rmse_floor > 2 * s.exact.rmse.sd;
@@ -88,7 +82,7 @@ Claim accuracy(const Findings& f) {
     least = std::min(least, s.rmse);
     most = std::max(most, s.rmse);
     ++starts;
-    within += within_chance(s);
+    within += s.finding != lattice::Finding::own_error;
     visible += shows_at_100(s);
   }
   return {

@@ -51,24 +51,6 @@ struct Section {
 /// NAME.svg and NAME.pdf from one script of gnuplot.
 void draw(const std::string& name, int width, int height, const std::string& script);
 
-/// Rows of a CSV file, each value as digits or text.
-class Csv {
- public:
-  explicit Csv(const std::string& header) : text_(header + "\n") {}
-  template <class... T>
-  void row(const T&... value) {
-    std::string line;
-    ((line += (line.empty() ? "" : ",") + field(value)), ...);
-    text_ += line + "\n";
-  }
-  void write(const std::string& name) const;  // NAME.csv
-
- private:
-  static std::string field(double x);  // empty: not a number
-  static std::string field(const std::string& s);
-  std::string text_;
-};
-
 /// Numbers as digits with spaces between them, a line of a table of gnuplot.
 [[nodiscard]] std::string line_of(const std::vector<double>& values);
 

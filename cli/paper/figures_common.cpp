@@ -3,9 +3,12 @@
 #include <cstdlib>
 
 #include "cli/paper/figures.h"
-#include "cli/render/drawing.h"
-#include "cli/render/gnuplot.h"
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/figure.h"
+#include "cli/render/json.h"
+#include "cli/render/provenance.h"
+#include "cli/render/text.h"
+#include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
 #include "cli/web/html.h"
 
@@ -17,16 +20,12 @@ constexpr double kSpacing = 1.0;  // m, of drawn landscapes
 }  // namespace
 
 void draw(const std::string& name, int width, int height, const std::string& script) {
-  draw_svg(name + ".svg", width, height, script);
+  draw_svg(name + ".svg", {width, height, script});
   write_text_atomically(
       name + ".pdf",
       drawn("set terminal pdfcairo size " + digits(width / 100.0) + "," + digits(height / 100.0) +
             " font 'sans,10' background '#ffffff' enhanced\n" + script + "\n"));
 }
-
-void Csv::write(const std::string& name) const { write_text_atomically(name + ".csv", text_); }
-std::string Csv::field(double x) { return std::isnan(x) ? "" : digits(x); }
-std::string Csv::field(const std::string& s) { return csv_text(s); }
 
 std::string line_of(const std::vector<double>& values) {
   std::string line;

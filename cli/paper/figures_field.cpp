@@ -3,7 +3,12 @@
 
 #include "cli/paper/figures.h"
 #include "cli/paper/studies.h"
-#include "cli/render/drawing.h"
+#include "cli/render/csv.h"
+#include "cli/render/figure.h"
+#include "cli/render/provenance.h"
+#include "cli/render/text.h"
+#include "cli/terminal/gnuplot.h"
+#include "cli/terminal/output.h"
 #include "cli/web/html.h"
 
 namespace gatewalk::cli {
@@ -105,7 +110,7 @@ Section fig11(const Findings& f) {
                       {"corrcoef", start.corrcoef},
                       {"rmse", start.rmse}});
   }
-  csv.write("fig11");
+  write_text_atomically("fig11.csv", csv.text());
   return {"fig11",
           "Fig. 11: where bodies end in the field",
           {"9 x 9 gates, " + std::to_string(f.field.trials) +
@@ -166,7 +171,7 @@ Section table4(const Findings& f) {
              line_of({corrcoef.mean, corrcoef.sd, corrcoef_floor, s.paper_corrcoef, rmse.mean,
                       rmse.sd, rmse_floor, s.paper_rmse});
   }
-  csv.write("table4");
+  write_text_atomically("table4.csv", csv.text());
   draw("table4", 1000, 460,
        data_block("$rows", lines) + R"(
 set multiplot layout 1,2
@@ -204,7 +209,7 @@ Section crossings(const Findings& f) {
   }
   for (const auto& [label, c] : scenes)
     rates.push_back({label, "outside Table III's bins", c.clamped_share()});
-  csv.write("crossings");
+  write_text_atomically("crossings.csv", csv.text());
   draw_rates("crossings", rates, 4, "paper: RT and LT fewer than 4 %", "Crossings between gates",
              45);
   return {"crossings",
@@ -244,7 +249,7 @@ Section speed(const Findings& f) {
     lines += std::to_string(names.size()) + " " + digits(seconds) + "\n";
     names.push_back(label);
   }
-  csv.write("speed");
+  write_text_atomically("speed.csv", csv.text());
   draw("speed", 1000, 360,
        data_block("$t", lines) +
            filled(R"(

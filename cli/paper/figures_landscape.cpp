@@ -3,7 +3,12 @@
 
 #include "cli/paper/figures.h"
 #include "cli/paper/studies.h"
-#include "cli/render/drawing.h"
+#include "cli/render/csv.h"
+#include "cli/render/figure.h"
+#include "cli/render/provenance.h"
+#include "cli/render/text.h"
+#include "cli/terminal/gnuplot.h"
+#include "cli/terminal/output.h"
 #include "cli/web/html.h"
 
 namespace gatewalk::cli {
@@ -36,7 +41,7 @@ Section fig5() {
         csv.row(name, p["x"][j].get<double>(), p["y"][i].get<double>(),
                 p["z"][i][j].is_null() ? std::nan("") : p["z"][i][j].get<double>());
   }
-  csv.write("fig5");
+  write_text_atomically("fig5.csv", csv.text());
   draw("fig5", 1100, 900,
        script + kViridis + kSurfaceLook +
            filled(R"(
@@ -97,7 +102,7 @@ Section barriers(const Findings& f) {
           std::to_string(k) + " " + line_of({basin, 100 * s.value, 100 * s.low, 100 * s.high});
     }
   }
-  csv.write("barriers");
+  write_text_atomically("barriers.csv", csv.text());
   draw("barriers", 800, 480, data_block("$d50", lines[0]) + data_block("$d10", lines[1]) + R"(
 set xlabel 'highest point of the lowest way through, above the basin before it (J; 0: no basin)'
 set ylabel 'traversed (%)'

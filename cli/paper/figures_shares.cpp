@@ -3,8 +3,13 @@
 
 #include "cli/paper/figures.h"
 #include "cli/paper/studies.h"
-#include "cli/render/drawing.h"
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/figure.h"
+#include "cli/render/json.h"
+#include "cli/render/provenance.h"
+#include "cli/render/text.h"
+#include "cli/terminal/gnuplot.h"
+#include "cli/terminal/output.h"
 #include "cli/web/html.h"
 
 namespace gatewalk::cli {
@@ -73,7 +78,7 @@ Section fig8(const Findings& f) {
       series[damping == 10] += "\n\n";
     }
   }
-  csv.write("fig8");
+  write_text_atomically("fig8.csv", csv.text());
   draw("fig8", 1200, 950,
        data_block("$map50", map[0]) + data_block("$map10", map[1]) +
            data_block("$series50", series[0]) + data_block("$series10", series[1]) + kViridis +
@@ -137,7 +142,7 @@ plot {{name}} using 1:2:3 with image pixels, \
                        {"name", name},
                        {"few", std::to_string(kFew)}});
     }
-  csv.write("fig12");
+  write_text_atomically("fig12.csv", csv.text());
   draw("fig12", 1200, 950,
        data + filled(R"(
 set palette gray
@@ -191,7 +196,7 @@ Section thirteen_eight(const Findings& f) {
   add(f.tried_start, "starting speed", "start.vy_m_per_s", " m/s");
   add(f.tried_random, "random force", kRandom, " N");
   add(f.tried_propulsion, "propulsion", kPropulsion, " N");
-  csv.write("thirteen_eight");
+  write_text_atomically("thirteen_eight.csv", csv.text());
   draw_rates("thirteen_eight", rates, 21, "paper: 13 + 8 %",
              "Traversal with k_L = k_R = 500 N m/rad, F_{prop} = 7 N, Rm = 10 N unless said", 100);
   const LandscapeStudy& landscape = f.barriers.at(500);

@@ -3,8 +3,13 @@
 
 #include "cli/paper/figures.h"
 #include "cli/paper/studies.h"
-#include "cli/render/drawing.h"
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/figure.h"
+#include "cli/render/json.h"
+#include "cli/render/provenance.h"
+#include "cli/render/text.h"
+#include "cli/terminal/gnuplot.h"
+#include "cli/terminal/output.h"
 #include "cli/web/html.h"
 
 namespace gatewalk::cli {
@@ -43,7 +48,7 @@ Section fig6(const Findings& f) {
     csv.row(run.t[i], run.x[i], run.y[i], run.potential[i], run.landscape[i], one);
     rows += line_of({run.t[i], run.x[i], run.y[i], run.potential[i], run.landscape[i], one});
   }
-  csv.write("fig6");
+  write_text_atomically("fig6.csv", csv.text());
   constexpr double kHigh = 650.0;  // J: 9 N lift the start above kCeiling
   const auto p = gate_of("scenes/single_gate.toml", {set(kPropulsion, 9), set(kRandom, 10)});
   const Json both = surface_of(p, true), alone = surface_of(p, true, {false, true});
@@ -177,7 +182,7 @@ Section fig9(const Findings& f) {
     plots += out.plot;
     panels.push_back(std::move(out.json));
   }
-  csv.write("fig9");
+  write_text_atomically("fig9.csv", csv.text());
   draw("fig9", 1300, 620,
        data + kViridis +
            filled(R"(

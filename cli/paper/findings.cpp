@@ -1,9 +1,10 @@
 #include "cli/paper/findings.h"
+#include "cli/render/csv.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
 
 #include <algorithm>
 #include <stdexcept>
-
-#include "cli/render/report.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -43,6 +44,7 @@ class Reader {
   [[nodiscard]] std::int64_t count() const {
     return as(json_.is_number_integer(), "a whole number").get<std::int64_t>();
   }
+  [[nodiscard]] bool is_true() const { return as(json_.is_boolean(), "true or false").get<bool>(); }
   [[nodiscard]] std::string text() const {
     return as(json_.is_string(), "a text").get<std::string>();
   }
@@ -121,8 +123,8 @@ ValidatedStart start_of(const Reader& from) {
   s.rmse = all["rmse_per_100"].number();
   s.total_variation = all["total_variation"].number();
   s.total_variation_floor = all["total_variation_floor"].number();
-  s.total_variation_floor_95 = all["total_variation_floor_95"].number();
-  s.total_variation_of_matrix = all["total_variation_of_matrix_sampling"].mean_and_sd();
+  s.finding = lattice::finding_of(from["trials_and_matrix"]["differs"].is_true(), s.total_variation,
+                                  all["total_variation_floor_95"].number());
   s.counts = from["final_gates"]["dynamics"].rows();
   s.chain = from["final_gates"]["exact"].rows();
   s.cut_off = from["fates"]["dynamics"]["cut_off"].number();

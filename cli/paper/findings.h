@@ -9,8 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "cli/command.h"
 #include "cli/paper/verdicts.h"
+#include "cli/render/json.h"
+#include "lattice/study/validation.h"
 
 namespace gatewalk::cli {
 
@@ -104,8 +105,8 @@ struct ValidatedStart {
   std::int64_t repeats = 0;                       // of 100 trials
   Repeats exact, walks;
   double corrcoef = 0.0, rmse = 0.0;  // all trials against the exact chain
-  double total_variation = 0.0, total_variation_floor = 0.0, total_variation_floor_95 = 0.0;
-  MeanAndSd total_variation_of_matrix;             // by the sampling of its matrix
+  double total_variation = 0.0, total_variation_floor = 0.0;
+  lattice::Finding finding = lattice::Finding::within_trials;
   std::vector<std::vector<double>> counts, chain;  // (rows x columns): trials; shares
   double cut_off = 0.0;                            // share of the trials
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;

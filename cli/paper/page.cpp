@@ -9,7 +9,9 @@
 #include <string_view>
 
 #include "cli/paper/verdicts.h"
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
 

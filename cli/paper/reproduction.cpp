@@ -16,17 +16,22 @@
 #include <map>
 #include <sstream>
 
+#include "cli/command.h"
 #include "cli/paper/figures.h"
 #include "cli/paper/page.h"
 #include "cli/paper/studies.h"
-#include "cli/render/drawing.h"
-#include "cli/render/gnuplot.h"
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/figure.h"
+#include "cli/render/json.h"
+#include "cli/render/provenance.h"
+#include "cli/render/text.h"
+#include "cli/render/version.h"
+#include "cli/terminal/gnuplot.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
-#include "cli/version.h"
 #include "cli/web/embedded.h"
+#include "dynamics/work.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -153,7 +158,7 @@ class Records {
   /// Carries a study out and puts it on record.
   [[nodiscard]] Json make(const Study& s) {
     if (done_.erase(s.name) > 0) write();
-    const Stopwatch watch;
+    const dynamics::Stopwatch watch;
     const std::string remarks = run(s);
     Json data = read_json(file_of(s));
     if (data.is_null()) throw std::runtime_error(file_of(s) + ": cannot be read again");

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
 #include "cli/paper/claims.h"
+#include "cli/render/json.h"
 
 namespace gatewalk::cli {
 

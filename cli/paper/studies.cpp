@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/render/json.h"
 #include "cli/web/embedded.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
 

@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
+#include "cli/commands.h"
+#include "dynamics/params.h"
 
 namespace gatewalk::cli {
 
 /// One command of this program. Its result goes to data/NAME.json.
 struct Study {
   std::string name;
-  int (*run)(const std::vector<std::string>& arguments) = nullptr;
+  int (*run)(const Arguments& arguments) = nullptr;
   std::string command;                 // "sweep"
   std::vector<std::string> arguments;  // without --json and --quiet
   std::int64_t cost = 1;               // expected seconds times 100, for the time that is left

@@ -3,13 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/gate_runs.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/scene.h"
+#include "cli/render/text.h"
+#include "dynamics/share.h"
+#include "dynamics/work.h"
 
 namespace gatewalk::cli {
 
 Share share_of(std::int64_t part, std::int64_t whole) {
   if (whole == 0) return {std::nan(""), 0.0, 1.0, 0, 0};
-  const auto [low, high] = share_interval(part, whole);
+  const auto [low, high] = dynamics::share_interval(part, whole);
   return {static_cast<double>(part) / static_cast<double>(whole), low, high, part, whole};
 }
 

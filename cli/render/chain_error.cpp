@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
-#include "cli/render/drawing.h"
+#include "cli/render/csv.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
-#include "cli/render/report.h"
 #include "cli/render/start.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -23,6 +28,8 @@ using lattice::FinalGateError;
 using lattice::kChainWalks;
 
 std::string seconds_text(double s) { return fixed(s, s < 1 ? 3 : s < 100 ? 1 : 0); }
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // an empty field
 
 const char* row_starts(const ChainCurve& c) { return c.entries.empty() ? "uniform" : "visited"; }
 
@@ -251,51 +258,37 @@ Json to_json(const ChainErrorChart& chart) {
 }
 
 std::string csv_of(const ChainErrorChart& chart) {
-  std::ostringstream out;
-  out << "d_m,vx_m_per_s,vy_m_per_s,answer,bins,states,row_starts,trials,gate_runs,matrices,build_"
-         "s,answer_s,"
-         "total_s,total_variation,total_variation_sd,corrcoef,sampling_total_variation,bins_total_"
-         "variation,"
-         "formula_total_variation,formula_corrcoef,truth_floor_total_variation,truth_floor_"
-         "corrcoef,"
-         "clamped_share,rows_never_sampled,never_sampled_share\n";
+  Csv csv(
+      "d_m,vx_m_per_s,vy_m_per_s,answer,bins,states,row_starts,trials,gate_runs,matrices,build_s,"
+      "answer_s,total_s,total_variation,total_variation_sd,corrcoef,sampling_total_variation,"
+      "bins_total_variation,formula_total_variation,formula_corrcoef,truth_floor_total_variation,"
+      "truth_floor_corrcoef,clamped_share,rows_never_sampled,never_sampled_share");
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
-    const FieldTruth& truth = chart.truths[s];
-    const auto begin = [&](const std::string& answer) {
-      for (const double x : {truth.start.d, truth.start.vx, truth.start.vy})
-        out << digits(x) << ",";
-      out << answer << ",";
-    };
-    const std::string floors =
-        digits(truth.floor.total_variation) + "," + digits(truth.floor.corrcoef);
+    const lattice::PaperStart& start = chart.truths[s].start;
+    const FinalGateError& floor = chart.truths[s].floor;
     for (const ChainPoint& p : chart.points) {
       const ChainAnswer& a = p.answers[s];
       const ChainCurve& curve = chart.curves[p.curve];
       const auto line = [&](const std::string& answer, double seconds, const FinalGateError& e,
-                            bool exact) {
-        begin(answer);
-        out << digits(curve.factor) << "," << curve.space.size() << "," << row_starts(curve) << ","
-            << p.trials << "," << p.runs << "," << p.matrices << "," << digits(p.build_seconds)
-            << "," << digits(seconds) << "," << digits(p.build_seconds + seconds) << ","
-            << digits(e.total_variation) << ","
-            << (exact && p.matrices > 1 ? digits(a.exact_sd) : "") << "," << digits(e.corrcoef)
-            << "," << (exact ? digits(a.sampling) + "," + digits(a.bins) : std::string(","))
-            << ",,," << floors << "," << digits(p.clamped_share) << ","
-            << digits(p.rows_never_sampled) << "," << digits(a.never_sampled) << "\n";
+                            double sd, double sampling, double bins) {
+        csv.row(start.d, start.vx, start.vy, answer, curve.factor, curve.space.size(),
+                row_starts(curve), p.trials, p.runs, p.matrices, p.build_seconds, seconds,
+                p.build_seconds + seconds, e.total_variation, sd, e.corrcoef, sampling, bins, kNone,
+                kNone, floor.total_variation, floor.corrcoef, p.clamped_share, p.rows_never_sampled,
+                a.never_sampled);
       };
-      line("exact", a.exact_seconds, a.exact, true);
+      line("exact", a.exact_seconds, a.exact, a.exact_sd, a.sampling, a.bins);
       for (std::size_t w = 0; w < kChainWalks.size(); ++w)
-        line(std::to_string(kChainWalks[w]) + " walks", a.walk_seconds[w], a.walks[w], false);
+        line(std::to_string(kChainWalks[w]) + " walks", a.walk_seconds[w], a.walks[w], kNone, kNone,
+             kNone);
     }
-    for (const DirectSimulation& d : chart.direct[s]) {
-      begin("direct simulation");
-      out << ",,," << d.trials << ",,,," << digits(d.seconds) << "," << digits(d.seconds) << ","
-          << digits(d.drawn.total_variation) << ",," << digits(d.drawn.corrcoef) << ",,,"
-          << digits(d.formula.total_variation) << "," << digits(d.formula.corrcoef) << "," << floors
-          << ",,,\n";
-    }
+    for (const DirectSimulation& d : chart.direct[s])
+      csv.row(start.d, start.vx, start.vy, "direct simulation", kNone, kNone, kNone, d.trials,
+              kNone, kNone, kNone, d.seconds, d.seconds, d.drawn.total_variation, kNone,
+              d.drawn.corrcoef, kNone, kNone, d.formula.total_variation, d.formula.corrcoef,
+              floor.total_variation, floor.corrcoef, kNone, kNone, kNone);
   }
-  return out.str();
+  return csv.text();
 }
 
 std::string table_of(const ChainErrorChart& chart) {

@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "cli/command.h"
+#include "cli/render/figure.h"
+#include "cli/render/json_fwd.h"
 #include "lattice/study/chain_error.h"
 
 namespace gatewalk::cli {
@@ -14,9 +15,8 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string csv_of(const lattice::ChainErrorChart& chart);
 /// For each start a table of points, trials a row by bins, and what it comes to in words.
 [[nodiscard]] std::string table_of(const lattice::ChainErrorChart& chart);
-/// Two panels for each start, total variation and 1 - corrcoef over seconds, into the SVG file
-/// `path`.
-void draw(const std::string& path, const lattice::ChainErrorChart& chart);
+/// Two panels for each start, total variation and 1 - corrcoef over seconds.
+[[nodiscard]] Figure figure_of(const lattice::ChainErrorChart& chart);
 
 /// "start d = 4 m, v = (5, 10) m/s"
 [[nodiscard]] std::string name_of(const lattice::FieldTruth& truth);

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "cli/render/chain_error.h"
-#include "cli/render/drawing.h"
+#include "cli/render/figure.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -187,14 +188,14 @@ std::string key_of(const ChainErrorChart& chart, const Layout& layout) {
 
 }  // namespace
 
-void draw(const std::string& path, const ChainErrorChart& chart) {
+Figure figure_of(const ChainErrorChart& chart) {
   const Layout layout(chart);
   const Extent extent = extent_of(chart);
   std::string out = data_of(chart) +
                     "set multiplot\nset logscale xy\nset grid lc rgb '#dddddd' lt 1\nunset key\n" +
                     "set xrange " + extent.seconds_range() + "\n";
   for (std::size_t s = 0; s < chart.truths.size(); ++s) out += panels_of(chart, s, layout, extent);
-  draw_svg(path, layout.width, layout.height, out + key_of(chart, layout) + "unset multiplot\n");
+  return {layout.width, layout.height, out + key_of(chart, layout) + "unset multiplot\n"};
 }
 
 }  // namespace gatewalk::cli

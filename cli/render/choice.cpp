@@ -1,15 +1,15 @@
 #include "cli/render/choice.h"
 
-#include "cli/render/report.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
 
-std::string setting_text(const Json& settled) {
-  const bool event = settled["method"] == "event";
-  return "method " + settled["method"].get<std::string>() +
-         (event ? ", run.event_tolerance_m = " + settled["event_tolerance_m"].dump()
-                : ", run.step_s = " + settled["step_s"].dump());
+std::string setting_text(const dynamics::Run& run) {
+  return "method " + run.method +
+         (run.method == "event" ? ", run.event_tolerance_m = " + Json(run.event_tolerance).dump()
+                                : ", run.step_s = " + Json(run.step).dump());
 }
 
 }  // namespace
@@ -47,39 +47,28 @@ std::string complaint(const lattice::Settled& settled) {
     return "run.method \"auto\": the reference itself shows faults (" +
            std::string(dynamics::name_of(settled.choice.reference_verdict)) +
            "), nothing can be compared with it; took it all the same: " +
-           setting_text(to_json(settled));
+           setting_text(settled.choice.params.run);
   if (!settled.choice.met)
     return "run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance "
            "= " +
            Json(settled.tolerance).dump() +
-           "; took the one they were compared with: " + setting_text(to_json(settled));
+           "; took the one they were compared with: " + setting_text(settled.choice.params.run);
   return {};
 }
 
-std::string method_line(const Json& settled) {
-  if (settled.is_null()) return "";
-  std::string text =
-      setting_text(settled) + ": chosen on " + settled["pilot_trials"].dump() + " pilot trials";
-  if (settled["met"].get<bool>()) {
-    const Json& last = settled["tried"].back();
-    text += ", outcomes off by " + fixed(last["outcome_total_variation"].get<double>(), 4) +
-            " +- " + fixed(last["uncertainty"].get<double>(), 4) + " (total variation)";
+std::string method_line(const std::optional<lattice::Settled>& settled) {
+  if (!settled) return "";
+  const dynamics::Choice& choice = settled->choice;
+  std::string text = setting_text(choice.params.run) + ": chosen on " +
+                     std::to_string(choice.trials) + " pilot trials";
+  if (choice.met) {
+    const auto& last = choice.tried.back();
+    text += ", outcomes off by " + fixed(last.error.total_variation, 4) + " +- " +
+            fixed(last.uncertainty, 4) + " (total variation)";
   } else {
     text += ", not shown to meet run.tolerance";
   }
   return text + "\n";
-}
-
-Json settle_method(const Options& options, lattice::Scene& scene, lattice::RunsFrom from) {
-  for (const std::string& text : lattice::keys_without_effect(scene)) warn(text);
-  static std::string told;  // a sweep settles many scenes
-  if (const std::string text = lattice::derived_keys(scene);
-      !text.empty() && text != told && options.talk())
-    warn(told = text);
-  const auto settled = lattice::settle_method(scene, from, options.seed(), options.work());
-  if (!settled) return nullptr;
-  if (const std::string text = complaint(*settled); !text.empty()) warn(text);
-  return to_json(*settled);
 }
 
 }  // namespace gatewalk::cli

@@ -1,12 +1,16 @@
 #include "cli/render/fidelity.h"
 
-#include <cmath>
+#include <limits>
 #include <sstream>
 
-#include "cli/render/drawing.h"
+#include "cli/render/csv.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
-#include "cli/render/report.h"
 #include "cli/render/start.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -107,35 +111,34 @@ Json to_json(const FidelityStudy& study) {
 }
 
 std::string csv_of(const FidelityStudy& study) {
-  std::string csv =
+  Csv csv(
       "d_m,vx_m_per_s,vy_m_per_s,fidelity,method,step_s,trials,seconds_per_trial,trapped_share,"
       "left_field_share,cut_off_share,broken_share,changed_share,total_variation,"
-      "total_variation_uncertainty,total_variation_floor,total_variation_floor_pairs,p_total_"
-      "variation,p_total_variation_pairs,"
-      "p_energy,p_energy_pairs,corrcoef,corrcoef_floor,rmse_per_100,rmse_per_100_floor,clean\n";
+      "total_variation_uncertainty,total_variation_floor,total_variation_floor_pairs,"
+      "p_total_variation,p_total_variation_pairs,p_energy,p_energy_pairs,corrcoef,corrcoef_floor,"
+      "rmse_per_100,rmse_per_100_floor,clean");
   for (const FidelityOfStart& s : study.starts)
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
       const lattice::Scene& scene = study.variants[v].scene;
       const FidelityRun& run = s.runs[v];
       const FieldTally& t = run.tally;
-      const auto number = [&](double x) { csv += (std::isfinite(x) ? digits(x) : "") + ","; };
-      for (const double x : {s.start.d, s.start.vx, s.start.vy}) number(x);
-      csv += std::string(name_of(scene.field.fidelity)) + "," + scene.gate.run.method + ",";
-      for (const double x :
-           {scene.gate.run.step, static_cast<double>(t.trials), run.seconds_per_trial})
-        number(x);
-      for (const std::int64_t k : {t.trapped, t.left_field, t.cut_off, t.broken})
-        number(share(k, t));
       const FidelityChange c = run.change.value_or(FidelityChange{});
+      const auto changed = [&](double x) {
+        return run.change ? x : std::numeric_limits<double>::quiet_NaN();  // an empty field
+      };
       const lattice::Comparison &a = c.apart, &p = c.in_pairs;
-      for (const double x :
-           {c.changed, a.total_variation, c.uncertainty(), a.floor_total_variation,
-            p.floor_total_variation, a.p_total_variation, p.p_total_variation, a.p_energy,
-            p.p_energy, a.corrcoef, a.floor.corrcoef, a.rmse_per_100, a.floor.rmse_per_100})
-        number(run.change ? x : std::nan(""));
-      csv += t.health.clean() ? "true\n" : "false\n";
+      csv.row(s.start.d, s.start.vx, s.start.vy, std::string(name_of(scene.field.fidelity)),
+              scene.gate.run.method, scene.gate.run.step, static_cast<double>(t.trials),
+              run.seconds_per_trial, share(t.trapped, t), share(t.left_field, t),
+              share(t.cut_off, t), share(t.broken, t), changed(c.changed),
+              changed(a.total_variation), changed(c.uncertainty()),
+              changed(a.floor_total_variation), changed(p.floor_total_variation),
+              changed(a.p_total_variation), changed(p.p_total_variation), changed(a.p_energy),
+              changed(p.p_energy), changed(a.corrcoef), changed(a.floor.corrcoef),
+              changed(a.rmse_per_100), changed(a.floor.rmse_per_100),
+              t.health.clean() ? "true" : "false");
     }
-  return csv;
+  return csv.text();
 }
 
 std::string table_of(const FidelityStudy& study) {

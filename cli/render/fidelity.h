@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
+#include "cli/render/figure.h"
+#include "cli/render/json_fwd.h"
 #include "lattice/study/fidelity.h"
 
 namespace gatewalk::cli {
@@ -17,7 +18,7 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string table_of(const lattice::FidelityStudy& study);
 /// A sentence for each variant in which faults were seen.
 [[nodiscard]] std::vector<std::string> complaints(const lattice::FidelityStudy& study);
-/// Total variation against `active`, and what a trial costs, start by start: gnuplot's script.
-[[nodiscard]] std::string figure_of(const lattice::FidelityStudy& study);
+/// Total variation against `active`, and what a trial costs, start by start.
+[[nodiscard]] Figure figure_of(const lattice::FidelityStudy& study);
 
 }  // namespace gatewalk::cli

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <sstream>
 
-#include "cli/render/drawing.h"
 #include "cli/render/fidelity.h"
-#include "cli/render/report.h"
+#include "cli/render/figure.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -78,12 +78,10 @@ std::string plot_of_times(const FidelityStudy& study) {
 
 }  // namespace
 
-std::string figure_of(const FidelityStudy& study) {
+Figure figure_of(const FidelityStudy& study) {
   std::ostringstream s;
   const std::size_t n = study.starts.size();
-  s << "set terminal svg size " << std::max<std::size_t>(820, 240 + 150 * n)
-    << ",760 font 'sans,13' background '#ffffff' enhanced\n"
-    << table_d(study)
+  s << table_d(study)
     << "array colour[4] = ['#6b7280', '#2a78b5', '#d1662b', '#9aa0a6']\n"
        "set style fill solid 0.85 noborder\n"
        "set boxwidth 0.2\n"
@@ -104,7 +102,7 @@ std::string figure_of(const FidelityStudy& study) {
     << "set ylabel 'ms per trial, " << study.threads
     << (study.threads == 1 ? " thread" : " threads") << "'\n"
     << plot_of_times(study) << "unset multiplot\n";
-  return s.str();
+  return {static_cast<int>(std::max<std::size_t>(820, 240 + 150 * n)), 760, s.str(), 13};
 }
 
 }  // namespace gatewalk::cli

@@ -1,10 +1,10 @@
 #include "cli/render/landscape.h"
 
-#include <sstream>
-
-#include "cli/render/drawing.h"
+#include "cli/render/csv.h"
+#include "cli/render/json.h"
 #include "cli/render/quantity.h"
-#include "cli/render/report.h"
+#include "cli/render/text.h"
+#include "dynamics/share.h"
 
 namespace gatewalk::cli {
 
@@ -44,13 +44,11 @@ Json to_json(const dynamics::Passes& passes) {
 }
 
 std::string csv_of(const dynamics::Landscape& l) {
-  std::ostringstream out;
-  out << "x_m,y_m,elastic_J,total_J\n";
+  Csv csv("x_m,y_m,elastic_J,total_J");
   for (std::size_t i = 0; i < l.y.size(); ++i)
     for (std::size_t j = 0; j < l.x.size(); ++j)
-      out << digits(l.x[j]) << ',' << digits(l.y[i]) << ',' << digits(l.elastic(i, j)) << ','
-          << digits(l.total(i, j)) << '\n';
-  return out.str();
+      csv.row(l.x[j], l.y[i], l.elastic(i, j), l.total(i, j));
+  return csv.text();
 }
 
 std::string table_of(const dynamics::Passes& passes, const dynamics::GateParams& p) {
@@ -82,7 +80,7 @@ std::string table_of(const dynamics::Passes& passes, const dynamics::GateParams&
 }
 
 std::string measured_line(const dynamics::GateTally& tally) {
-  const auto [from, to] = share_interval(tally.traversed(), tally.trials);
+  const auto [from, to] = dynamics::share_interval(tally.traversed(), tally.trials);
   return "measured: " +
          percent(static_cast<double>(tally.traversed()), static_cast<double>(tally.trials)) +
          " of " + std::to_string(tally.trials) + " trials traverse, 95 % [" +

@@ -3,13 +3,14 @@
 
 #include <string>
 
-#include "cli/command.h"
+#include "cli/render/figure.h"
+#include "cli/render/json_fwd.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/landscape.h"
 
 namespace gatewalk::cli {
 
-/// {"spacing_m", "beams", "start_kinetic_energy_J", "passes": one for each grid}
+/// Without "made_by": {"spacing_m", "beams", "start_kinetic_energy_J", "passes": one for each grid}
 [[nodiscard]] Json to_json(const dynamics::Passes& passes);
 /// A line for each point of the grid.
 [[nodiscard]] std::string csv_of(const dynamics::Landscape& landscape);
@@ -18,8 +19,8 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string table_of(const dynamics::Passes& passes, const dynamics::GateParams& p);
 /// Whom the landscape is held against: "measured: 5.1 % of 1000 trials traverse, 95 % [3.9, 6.6]".
 [[nodiscard]] std::string measured_line(const dynamics::GateTally& tally);
-/// The paper's Fig. 5, on the coarse grid, into the SVG file `path`: elastic energy as a surface
+/// The paper's Fig. 5, on the coarse grid: elastic energy as a surface
 /// and from above, with the propulsion as a surface, and, from above, the lowest way through.
-void draw(const std::string& path, const dynamics::Passes& passes, const dynamics::GateParams& p);
+[[nodiscard]] Figure figure_of(const dynamics::Passes& passes, const dynamics::GateParams& p);
 
 }  // namespace gatewalk::cli

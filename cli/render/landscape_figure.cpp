@@ -2,9 +2,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "cli/render/drawing.h"
+#include "cli/render/figure.h"
 #include "cli/render/landscape.h"
 #include "cli/render/quantity.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -91,7 +92,7 @@ double ceiling_of(const dynamics::GateParams& p) {
 
 }  // namespace
 
-void draw(const std::string& path, const dynamics::Passes& passes, const dynamics::GateParams& p) {
+Figure figure_of(const dynamics::Passes& passes, const dynamics::GateParams& p) {
   const dynamics::Landscape& l = passes.coarse.landscape;
   const dynamics::Pass& pass =
       passes.fine.downhill() ? passes.fine.from_start : passes.fine.from_basin;
@@ -99,17 +100,16 @@ void draw(const std::string& path, const dynamics::Passes& passes, const dynamic
   std::string way;
   for (const auto& [x, y] : pass.way) way += drawn.length(x) + " " + drawn.length(y) + "\n";
   const double deep = drawn.in_units(l.y.back() - l.y.front());
-  draw_svg(
-      path, 1100, 950,
-      data_block("$grid", drawn.rows(l)) + data_block("$way", way) + "set multiplot\n" +
-          drawn.axes(l) + surface("elastic energy, Eq. (14)", 3, deep, "0.0,0.49") +
-          from_above("the same from above", deep, "0.52,0.5") +
-          "plot $grid using 1:2:3 with image\n" +
-          surface("with the propulsion, Eq. (15)", 4, deep, "0.0,-0.01") +
-          from_above("lowest way through (white), its highest point", deep, "0.52,0.0") +
-          "plot $grid using 1:2:4 with image, $way using 1:2 with lines lw 2 lc rgb '#ffffff', "
-          "'-' using 1:2 with points pt 7 ps 1 lc rgb '#ff00ff'\n" +
-          drawn.length(pass.x) + " " + drawn.length(pass.y) + "\ne\nunset multiplot\n");
+  return {1100, 950,
+          data_block("$grid", drawn.rows(l)) + data_block("$way", way) + "set multiplot\n" +
+              drawn.axes(l) + surface("elastic energy, Eq. (14)", 3, deep, "0.0,0.49") +
+              from_above("the same from above", deep, "0.52,0.5") +
+              "plot $grid using 1:2:3 with image\n" +
+              surface("with the propulsion, Eq. (15)", 4, deep, "0.0,-0.01") +
+              from_above("lowest way through (white), its highest point", deep, "0.52,0.0") +
+              "plot $grid using 1:2:4 with image, $way using 1:2 with lines lw 2 lc rgb '#ffffff', "
+              "'-' using 1:2 with points pt 7 ps 1 lc rgb '#ff00ff'\n" +
+              drawn.length(pass.x) + " " + drawn.length(pass.y) + "\ne\nunset multiplot\n"};
 }
 
 }  // namespace gatewalk::cli

@@ -1,9 +1,84 @@
 #include "cli/render/matrix.h"
 
-#include "cli/render/report.h"
-#include "cli/render/start.h"
+#include <array>
+#include <sstream>
+
+#include "cli/render/choice.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/states.h"
+#include "cli/render/text.h"
+#include "markov/formats/counts.h"
 
 namespace gatewalk::cli {
+
+namespace {
+
+using namespace dynamics;
+
+/// Share of a row's trials that came out at each boundary of the next gate, and trapped.
+std::array<double, kBoundaries + 1> outcome_shares(const Transitions& t, int row) {
+  std::array<double, kBoundaries + 1> share{};
+  if (t.trials[row] == 0) return share;
+  for (const auto& [column, n] : t.rows[row]) {
+    const int b =
+        column == t.space.trapped() ? kBoundaries : static_cast<int>(t.space.boundary(column));
+    share[b] += static_cast<double>(n) / static_cast<double>(t.trials[row]);
+  }
+  return share;
+}
+
+std::string row_table(const Transitions& t) {
+  std::ostringstream out;
+  out << "\n  in  from d (m)       vx (m/s)    vy (m/s)    trials clamped |   EN    RD    LD    "
+         "RT    LT  trap (%)\n";
+  for (int row = 0; row < t.space.size(); ++row) {
+    const Cell cell = t.space.cell(row);
+    const auto share = outcome_shares(t, row);
+    out << padded(std::to_string(row + 1), 4) << "  "
+        << kBoundaryNames[static_cast<int>(cell.boundary)] << " " << padded(text_of(cell.d), -12)
+        << padded(text_of(cell.vx), -12) << padded(text_of(cell.vy), -12)
+        << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
+        << " |";
+    for (const double s : share) out << padded(fixed(100.0 * s, 1), 6);
+    out << "\n";
+  }
+  return out.str();
+}
+
+std::string outputs_table(const Transitions& t, int row) {
+  std::ostringstream out;
+  out << "\n  outputs of input " << row + 1 << "\n";
+  for (const auto& [column, count] : t.rows[row]) {
+    out << padded(std::to_string(column + 1), 6) << padded(std::to_string(count), 9) << "  ";
+    if (column == t.space.trapped()) {
+      out << "trapped\n";
+      continue;
+    }
+    out << text_of(t.space.cell(column)) << "\n";
+  }
+  return out.str();
+}
+
+}  // namespace
+
+Json recorded(const lattice::MatrixFile& file, const std::string& path, const std::string& key) {
+  const auto text = file.text.find(key);
+  if (text == file.text.end()) return {};
+  Json json = Json::parse(text->second, nullptr, false);
+  if (json.is_discarded())
+    throw markov::BadFile(path + ": its record of the " +
+                          (key == "method"   ? "chosen method"
+                           : key == "status" ? "status"
+                                             : "state space") +
+                          " is damaged");
+  return json;
+}
+
+Json recorded_status(const lattice::MatrixFile& file) {
+  const auto text = file.text.find("status");
+  return text == file.text.end() ? Json() : Json::parse(text->second, nullptr, false);
+}
 
 std::string faults_recorded(const Json& status) {
   try {
@@ -13,52 +88,125 @@ std::string faults_recorded(const Json& status) {
   }
 }
 
-MatrixAndScene read_matrix_and_scene(const std::string& matrix_path, const std::string& scene_path,
-                                     const std::vector<std::string>& overrides) {
-  lattice::SceneMatrix m = lattice::read_scene_matrix(matrix_path, scene_path, overrides);
-  const auto text = m.file.text.find("status");
-  Json status = text == m.file.text.end() ? Json() : Json::parse(text->second, nullptr, false);
-  if (const std::string faults = faults_recorded(status); !faults.empty())
-    warn("the runs that made " + matrix_path + ": " + faults);
-  return {std::move(m.file), std::move(m.scene), std::move(status)};
+namespace {
+
+/// The factor on Table III's bins, or the bins' name.
+Json bins_json(const lattice::States& states) {
+  return states.choice.kind == lattice::BinsChoice::Kind::paper ? Json(states.choice.factor)
+                                                                : Json(states.choice.name());
 }
 
-lattice::ChainStart checked_start(const dynamics::StateSpace& space,
-                                  const lattice::FieldParams& field,
-                                  const dynamics::BodyState& body, const std::string& name) {
-  const lattice::ChainStart start = lattice::start_in_bins(space, field, body, name);
-  if (start.beyond)
-    warn(name + " lies beyond every entry that the bins were made from, " +
-         lattice::entry_bins(space) +
-         "; the prediction is that of the outermost bin. A matrix of a scene with this start suits "
-         "it");
-  return start;
+}  // namespace
+
+std::map<std::string, std::string> record_of(const Transitions& t, const lattice::Scene& scene,
+                                             const lattice::States& states,
+                                             const std::optional<lattice::Settled>& settled,
+                                             std::int64_t trials_per_row,
+                                             const Provenance& provenance) {
+  const Json made_by = to_json(provenance), bins = bins_json(states);
+  std::map<std::string, std::string> text = {
+      {"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},
+      {"scene", lattice::to_toml(scene)},
+      {"seed", made_by.at("seed").dump()},
+      {"trials_per_row", std::to_string(trials_per_row)},
+      {"bins", bins.is_string() ? bins.get<std::string>()
+                                : bins.dump()},  // the shortest digits that read back the same
+      {"state_space", to_json(states).dump()},
+      {"program", "gatewalk " + made_by.at("version").get<std::string>()},
+      {"commit", made_by.at("commit")},
+      {"command", provenance.command},
+      {"status", to_json(t.health).dump()}};
+  if (settled) text["method"] = to_json(*settled).dump();
+  return text;
 }
 
-void require_inside_bins(const std::vector<lattice::PaperStart>& starts,
-                         const lattice::Scene& scene, const dynamics::StateSpace& space) {
-  for (const lattice::PaperStart& s : starts)
-    (void)checked_start(space, scene.field, s.body(), "start" + start_text(s));
+Json summary_json(const Transitions& t, const lattice::States& states,
+                  const std::optional<lattice::Settled>& settled, std::int64_t trials_per_row,
+                  const std::string& path) {
+  const auto total = t.totals();
+  Json json;
+  json["matrix"] = path;
+  json["inputs"] = t.space.size();
+  json["outputs"] = t.space.size() + 1;
+  json["trials_per_row"] = trials_per_row;
+  json["bins"] = bins_json(states);
+  json["nonzeros"] = total.nonzeros;
+  json["clamped_share"] = total.clamped_share();
+  json["state_space"] = to_json(states);
+  if (settled) json["method"] = to_json(*settled);
+  json["status"] = to_json(t.health);
+  return json;
 }
 
-ReadyStart ready_start(const Options& options, const MatrixAndScene& m,
-                       const dynamics::BodyState& body, const std::string& name) {
-  const dynamics::StateSpace& space = m.file.transitions.space;
-  const lattice::ChainStart start = checked_start(space, m.scene.field, body, name);
-  const dynamics::Cell cell = space.cell(start.start.input);
-  const std::string text = text_of(cell);
-  const auto on_edge = [](const std::array<double, 2>& edges, double v) {
-    return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
-  };
-  if (on_edge(cell.d, body.x) || on_edge(cell.vx, body.vx) || on_edge(cell.vy, body.vy))
-    remark(options, name + " lies on an edge of its bin, " + text +
-                        "; its prediction is that of the whole bin");
-  return {start, text};
+std::string summary_table(const Transitions& t, const std::string& path) {
+  const auto total = t.totals();
+  return path + ": " + std::to_string(t.space.size()) + " x " + std::to_string(t.space.size() + 1) +
+         " matrix, " + std::to_string(total.runs) + " gate runs, " +
+         std::to_string(total.nonzeros) + " nonzeros, " + percent(total.clamped_share(), 1.0) +
+         " of the crossings clamped into the nearest bin\n";
 }
 
-ReadyChain ready_chain(const Options& options, const MatrixAndScene& m) {
-  const auto [start, text] = ready_start(options, m, m.scene.start, "the start");
-  return {lattice::make_chain(m.file.transitions), start, text};
+Json to_json(const lattice::MatrixFile& file, const std::string& path) {
+  const Transitions& t = file.transitions;
+  const int n = t.space.size();
+  const auto total = t.totals();
+  const double cells = static_cast<double>(n) * (n + 1);
+
+  Json json;
+  json["inputs"] = n;
+  json["outputs"] = n + 1;
+  json["gate_runs"] = total.runs;
+  json["nonzeros"] = total.nonzeros;
+  json["density"] = static_cast<double>(total.nonzeros) / cells;
+  json["clamped_share"] = total.clamped_share();
+  json["rows_never_sampled"] = total.empty_rows;
+  json["rows"] = Json::array();
+  for (int row = 0; row < n; ++row) {
+    const Cell cell = t.space.cell(row);
+    Json outputs = Json::array();
+    for (const auto& [column, count] : t.rows[row])
+      outputs.push_back({{"output", column + 1}, {"count", count}});
+    json["rows"].push_back({{"input", row + 1},
+                            {"boundary", kBoundaryNames[static_cast<int>(cell.boundary)]},
+                            {"d_m", cell.d},
+                            {"vx_m_per_s", cell.vx},
+                            {"vy_m_per_s", cell.vy},
+                            {"trials", t.trials[row]},
+                            {"clamped", t.clamped[row]},
+                            {"outputs", std::move(outputs)}});
+  }
+  if (Json states = recorded(file, path, "state_space"); !states.is_null())
+    json["state_space"] = std::move(states);
+  json["text"] = Json::object();
+  for (const auto& [key, value] : file.text) json["text"][key] = value;
+  return json;
+}
+
+std::string table_of(const lattice::MatrixFile& file, const std::string& path,
+                     const ShownRows& shown) {
+  const Transitions& t = file.transitions;
+  const int n = t.space.size();
+  const auto total = t.totals();
+  const double cells = static_cast<double>(n) * (n + 1);
+  std::ostringstream out;
+  out << path << "\n"
+      << "  size                " << n << " inputs x " << n + 1 << " outputs (the last: trapped)\n"
+      << "  gate runs           " << total.runs << "\n"
+      << "  nonzeros            " << total.nonzeros << " of " << std::int64_t{n} * (n + 1) << " ("
+      << percent(static_cast<double>(total.nonzeros), cells) << ")\n"
+      << "  clamped crossings   " << percent(total.clamped_share(), 1.0) << "\n"
+      << "  rows never sampled  " << total.empty_rows << "\n";
+  for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins"})
+    if (const auto it = file.text.find(key); it != file.text.end())
+      out << "  " << padded(key, -20) << it->second << "\n";
+  const std::string faults = faults_recorded(recorded_status(file));
+  const Json states = recorded(file, path, "state_space");
+  if (!states.is_null()) out << "  " << states_line(states);
+  out << "  numerical faults    " << (faults.empty() ? "none seen" : faults) << "\n";
+  if (shown.all) out << row_table(t);
+  if (shown.one) out << outputs_table(t, *shown.one);
+  if (file.text.count("scene") > 0) out << "\n" << file.text.at("scene");
+  return out.str();
 }
 
 }  // namespace gatewalk::cli

@@ -1,49 +1,45 @@
 #pragma once
-/// A matrix file with its scene as commands take it: what is wrong with it is said.
+/// A matrix file: what it keeps beside its counts, and all of it as JSON and as a table.
 
-#include "cli/command.h"
-#include "lattice/scene/matrix.h"
-#include "lattice/scene/table4.h"
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
+#include "lattice/gate_chain.h"
+#include "lattice/scene/bins.h"
+#include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {
 
-/// A matrix, the scene to use it with, and the health of the runs that made it.
-struct MatrixAndScene {
-  lattice::MatrixFile file;
-  lattice::Scene scene;
-  Json status;
-};
-/// The faults of the runs behind a stored status, in one sentence; empty when none were seen.
+/// Its record "status", "state_space" or "method"; null where it has none. Throws markov::BadFile
+/// naming `path` when one is damaged; a damaged status is discarded JSON.
+[[nodiscard]] Json recorded(const lattice::MatrixFile& file, const std::string& path,
+                            const std::string& key);
+[[nodiscard]] Json recorded_status(const lattice::MatrixFile& file);
+/// The faults of the runs behind a recorded status, in one sentence; empty when none were seen.
 [[nodiscard]] std::string faults_recorded(const Json& status);
-/// lattice::read_scene_matrix; warns when the matrix was made by runs that showed faults.
-[[nodiscard]] MatrixAndScene read_matrix_and_scene(const std::string& matrix_path,
-                                                   const std::string& scene_path,
-                                                   const std::vector<std::string>& overrides);
 
-/// lattice::start_in_bins; warns when the start lies beyond every entry that open bins were made
-/// from.
-lattice::ChainStart checked_start(const dynamics::StateSpace& space,
-                                  const lattice::FieldParams& field,
-                                  const dynamics::BodyState& body, const std::string& name);
-/// The same for each of them.
-void require_inside_bins(const std::vector<lattice::PaperStart>& starts,
-                         const lattice::Scene& scene, const dynamics::StateSpace& space);
+/// All that a file of this matrix keeps beside its counts, by key.
+[[nodiscard]] std::map<std::string, std::string> record_of(
+    const dynamics::Transitions& t, const lattice::Scene& scene, const lattice::States& states,
+    const std::optional<lattice::Settled>& settled, std::int64_t trials_per_row,
+    const Provenance& provenance);
+/// The matrix written to `path`, without its counts and without "made_by".
+[[nodiscard]] Json summary_json(const dynamics::Transitions& t, const lattice::States& states,
+                                const std::optional<lattice::Settled>& settled,
+                                std::int64_t trials_per_row, const std::string& path);
+[[nodiscard]] std::string summary_table(const dynamics::Transitions& t, const std::string& path);
 
-/// Where the chain starts for a body, as checked_start. Remarks when it lies on an edge of its bin:
-/// then another bin would serve it as well.
-struct ReadyStart {
-  lattice::ChainStart start;
-  std::string text;  // its bin: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
+[[nodiscard]] Json to_json(const lattice::MatrixFile& file, const std::string& path);
+/// What is shown besides the summary: a line per row, all outputs of one row (from 0).
+struct ShownRows {
+  bool all = false;
+  std::optional<int> one;
 };
-[[nodiscard]] ReadyStart ready_start(const Options& options, const MatrixAndScene& m,
-                                     const dynamics::BodyState& body, const std::string& name);
-
-/// Chain and start for that scene.
-struct ReadyChain {
-  markov::Chain chain;
-  lattice::ChainStart start;
-  std::string start_text;
-};
-[[nodiscard]] ReadyChain ready_chain(const Options& options, const MatrixAndScene& m);
+[[nodiscard]] std::string table_of(const lattice::MatrixFile& file, const std::string& path,
+                                   const ShownRows& shown);
 
 }  // namespace gatewalk::cli

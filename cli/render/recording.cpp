@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/render/drawing.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
 #include "cli/render/quantity.h"
-#include "cli/render/report.h"
+#include "cli/render/scene.h"
+#include "cli/render/text.h"
 #include "markov/formats/netcdf.h"
 
 namespace gatewalk::cli {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cli/command.h"
+#include "cli/render/json_fwd.h"
 #include "lattice/study/recording.h"
 
 namespace gatewalk::cli {

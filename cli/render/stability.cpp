@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <sstream>
 
-#include "cli/render/drawing.h"
-#include "cli/render/report.h"
+#include "cli/render/csv.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 
@@ -45,26 +46,24 @@ Json to_json(const std::vector<FinishedMap>& maps) {
 }
 
 std::string csv_of(const std::vector<FinishedMap>& maps) {
-  std::ostringstream out;
-  out << "map,method,x_name,x,y_name,y,status,trials,not_finite,cut_short,penetrating,creating_"
-         "energy,too_fast,"
-         "beyond_bound,contacts_without_formula,forced_holds,steps,evaluations,worst_penetration_m,"
-         "worst_energy_created_J,worst_speed_m_per_s\n";
-  for (const FinishedMap& m : maps)
+  Csv csv(
+      "map,method,x_name,x,y_name,y,status,trials,not_finite,cut_short,penetrating,creating_energy,"
+      "too_fast,beyond_bound,contacts_without_formula,forced_holds,steps,evaluations,"
+      "worst_penetration_m,worst_energy_created_J,worst_speed_m_per_s");
+  for (const FinishedMap& m : maps) {
+    const std::string map(m.map.name), x(m.map.x.name), y(m.map.y.name);
     for (std::size_t iy = 0; iy < m.map.y.values.size(); ++iy)
       for (std::size_t ix = 0; ix < m.map.x.values.size(); ++ix) {
         const dynamics::MapPoint& p = m.at(ix, iy);
         const dynamics::Health& h = p.health;
-        out << m.map.name << ',' << m.map.method << ',' << m.map.x.name << ','
-            << digits(m.map.x.values[ix]) << ',' << m.map.y.name << ','
-            << digits(m.map.y.values[iy]) << ',' << dynamics::name_of(p.verdict) << ',' << h.runs
-            << ',' << h.broken << ',' << p.cut_short << ',' << h.penetrating << ','
-            << h.creating_energy << ',' << h.fast << ',' << h.unstable << ','
-            << h.undefined_contacts << ',' << h.forced_holds << ',' << h.steps << ','
-            << h.evaluations << ',' << digits(h.worst_penetration) << ','
-            << digits(h.worst_energy_created) << ',' << digits(h.worst_speed) << '\n';
+        csv.row(map, m.map.method, x, m.map.x.values[ix], y, m.map.y.values[iy],
+                std::string(dynamics::name_of(p.verdict)), h.runs, h.broken, p.cut_short,
+                h.penetrating, h.creating_energy, h.fast, h.unstable, h.undefined_contacts,
+                h.forced_holds, h.steps, h.evaluations, h.worst_penetration, h.worst_energy_created,
+                h.worst_speed);
       }
-  return out.str();
+  }
+  return csv.text();
 }
 
 std::string table_of(const std::vector<FinishedMap>& maps) {

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
+#include "cli/render/figure.h"
+#include "cli/render/json_fwd.h"
 #include "dynamics/study/stability.h"
 
 namespace gatewalk::cli {
 
-/// Every map with its axes, verdicts (y x x) and borders, and what its points were granted.
+/// Without "made_by": every map with its axes, verdicts (y x x) and borders, and what its points
+/// were granted.
 [[nodiscard]] Json to_json(const std::vector<dynamics::FinishedMap>& maps);
 /// A line for each point.
 [[nodiscard]] std::string csv_of(const std::vector<dynamics::FinishedMap>& maps);
@@ -19,7 +21,7 @@ namespace gatewalk::cli {
 
 /// "step_stiffness.svg"
 [[nodiscard]] std::string figure_name(const dynamics::StabilityMap& map);
-/// The maps of one kind side by side, at most five, into the SVG file `path`.
-void draw(const std::string& path, std::span<const dynamics::FinishedMap> maps);
+/// The maps of one kind side by side, at most five.
+[[nodiscard]] Figure figure_of(std::span<const dynamics::FinishedMap> maps);
 
 }  // namespace gatewalk::cli

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "cli/render/drawing.h"
+#include "cli/render/figure.h"
 #include "cli/render/stability.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -163,7 +164,7 @@ std::string frame(const dynamics::StabilityMap& map, std::size_t i, const DrawnA
 
 }  // namespace
 
-void draw(const std::string& path, std::span<const FinishedMap> maps) {
+Figure figure_of(std::span<const FinishedMap> maps) {
   std::ostringstream out;
   out << "set multiplot\nunset key\nset border 3\nset style fill solid 1.0 noborder\n";
   for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -181,8 +182,7 @@ void draw(const std::string& path, std::span<const FinishedMap> maps) {
         << "unset label\n";
   }
   out << "unset multiplot\n";
-  constexpr int kWidth = 1080, kHeight = 720;
-  draw_svg(path, kWidth, kHeight, out.str());
+  return {.width = 1080, .height = 720, .commands = out.str()};
 }
 
 }  // namespace gatewalk::cli

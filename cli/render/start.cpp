@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "cli/render/report.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 
@@ -33,6 +34,12 @@ StartTexts::StartTexts(const std::vector<lattice::PaperStart>& starts) : texts(s
     header += padded(name, width);
     for (std::size_t k = 0; k < starts.size(); ++k) texts[k] += padded(numbers[k], width);
   }
+}
+
+Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space) {
+  return {{"input", start.start.input + 1},
+          {"bin", text_of(space.cell(start.start.input))},
+          {"clamped", start.clamped}};
 }
 
 std::string start_text(const lattice::PaperStart& s) { return StartTexts({s}).texts.front(); }

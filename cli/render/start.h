@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
+#include "cli/render/json_fwd.h"
+#include "lattice/gate_chain.h"
 #include "lattice/scene/table4.h"
 
 namespace gatewalk::cli {
@@ -19,5 +20,7 @@ struct StartTexts {
   explicit StartTexts(const std::vector<lattice::PaperStart>& starts);
 };
 [[nodiscard]] std::string start_text(const lattice::PaperStart& start);
+/// {"input": from 1, "bin": its edges in words, "clamped"}
+[[nodiscard]] Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space);
 
 }  // namespace gatewalk::cli

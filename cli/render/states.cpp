@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
-#include "cli/render/report.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -65,32 +67,25 @@ std::string states_line(const Json& j) {
   return text;
 }
 
-void warn_if_poor(const lattice::States& s) {
+std::vector<std::string> complaints(const lattice::States& s) {
+  std::vector<std::string> all;
   if (!s.entries.empty() && !s.pilot.health.clean())
-    warn("the pilot: " + complaint(s.pilot.health));
+    all.push_back("the pilot: " + complaint(s.pilot.health));
   if (s.pilot.entries.empty())
-    warn("no body entered a second gate in " + std::to_string(s.pilot.trials) +
-         " pilot trials: bins could not be judged by what bodies do");
-  if (!s.resolution.poor()) return;
-  const std::string what = "the bins resolve too little of how bodies enter gates: " +
-                           percent(static_cast<double>(s.resolution.clamped),
-                                   static_cast<double>(s.resolution.entries)) +
-                           " of the entries seen lie outside, 90 % of them in " +
-                           std::to_string(s.resolution.states_of_90) +
-                           " states; the chain may be far off. ";
-  warn(what + (s.choice.kind == lattice::BinsChoice::Kind::automatic
-                   ? "Only " + std::to_string(s.resolution.entries) +
-                         " entries were seen, too few for more states"
-                   : "--bins auto, without a table [bins] in the scene, makes bins that suit it"));
-}
-
-lattice::States states_of(const Options& options, const lattice::Scene& scene,
-                          const lattice::BinsChoice& choice, const std::vector<BodyState>& starts) {
-  lattice::States states =
-      lattice::states_of(scene, choice, starts, options.seed(), options.work());
-  if (states.replaced)
-    warn("Table III's bins do not resolve how bodies move in this scene; takes --bins auto");
-  return states;
+    all.push_back("no body entered a second gate in " + std::to_string(s.pilot.trials) +
+                  " pilot trials: bins could not be judged by what bodies do");
+  if (s.resolution.poor())
+    all.push_back(
+        "the bins resolve too little of how bodies enter gates: " +
+        percent(static_cast<double>(s.resolution.clamped),
+                static_cast<double>(s.resolution.entries)) +
+        " of the entries seen lie outside, 90 % of them in " +
+        std::to_string(s.resolution.states_of_90) + " states; the chain may be far off. " +
+        (s.choice.kind == lattice::BinsChoice::Kind::automatic
+             ? "Only " + std::to_string(s.resolution.entries) +
+                   " entries were seen, too few for more states"
+             : "--bins auto, without a table [bins] in the scene, makes bins that suit it"));
+  return all;
 }
 
 }  // namespace gatewalk::cli

@@ -4,14 +4,19 @@
 #include <cstdio>
 #include <sstream>
 
-#include "cli/render/drawing.h"
+#include "cli/render/csv.h"
+#include "cli/render/figure.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
-#include "cli/render/report.h"
+#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 
 using dynamics::ChartPoint;
 using dynamics::Errors;
+using dynamics::Outcome;
 using dynamics::StrongError;
 using dynamics::WeakError;
 using dynamics::WorkPrecision;
@@ -104,17 +109,16 @@ Json to_json(const Errors& e, const WorkPrecision& chart, bool of_reference) {
 
 Json reference_json(const WorkPrecision& chart) {
   const dynamics::Reference& r = chart.reference;
-  const auto& n = r.outcomes;
   return {{"setting", r.setting.name()},
           {"status", dynamics::name_of(r.verdict)},
           {"evaluations_per_trial", r.evaluations_per_trial},
           {"outcomes",
-           {{"traversed_left", n[0]},
-            {"traversed_right", n[1]},
-            {"exited_left", n[2]},
-            {"exited_right", n[3]},
-            {"trapped", n[4]},
-            {"not_finite", n[5]}}},
+           {{"traversed_left", r[Outcome::traversed_left]},
+            {"traversed_right", r[Outcome::traversed_right]},
+            {"exited_left", r[Outcome::exited_left]},
+            {"exited_right", r[Outcome::exited_right]},
+            {"trapped", r[Outcome::trapped]},
+            {"not_finite", r[Outcome::broken]}}},
           {"own_error", {{"against", r.second.name()}, {"errors", to_json(r.own, chart, true)}}},
           {"another_method",
            {{"against", r.other_method.name()}, {"errors", to_json(r.other, chart, true)}}}};
@@ -173,8 +177,8 @@ std::string line_of(const ChartPoint& p, const WorkPrecision& chart) {
 std::string reference_text(const WorkPrecision& chart) {
   const dynamics::Reference& r = chart.reference;
   std::ostringstream out;
-  const auto share = [&](std::size_t i) {
-    return percent(static_cast<double>(r.outcomes[i]), static_cast<double>(chart.trials));
+  const auto share = [&](Outcome outcome) {
+    return percent(static_cast<double>(r[outcome]), static_cast<double>(chart.trials));
   };
   const auto against = [&](const dynamics::Setting& setting, const Errors& e) {
     out << "  against " << padded(setting.name(), -20) << " outcomes "
@@ -183,8 +187,10 @@ std::string reference_text(const WorkPrecision& chart) {
         << percent(e.strong.parted_share(), 1.0, 3) << "\n";
   };
   out << "  reference " << r.setting.name() << " (" << dynamics::name_of(r.verdict)
-      << "): traversed left " << share(0) << ", right " << share(1) << ", exited left " << share(2)
-      << ", right " << share(3) << ", trapped " << share(4) << "\n";
+      << "): traversed left " << share(Outcome::traversed_left) << ", right "
+      << share(Outcome::traversed_right) << ", exited left " << share(Outcome::exited_left)
+      << ", right " << share(Outcome::exited_right) << ", trapped " << share(Outcome::trapped)
+      << "\n";
   against(r.second, r.own);
   against(r.other_method, r.other);
   return out.str();

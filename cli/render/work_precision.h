@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
+#include "cli/render/figure.h"
+#include "cli/render/json_fwd.h"
 #include "dynamics/study/work_precision.h"
 
 namespace gatewalk::cli {
 
-/// A scene's reference and settings.
+/// Without "made_by": a scene's reference and settings.
 [[nodiscard]] Json to_json(const dynamics::WorkPrecision& chart);
 /// A line for each setting of each scene.
 [[nodiscard]] std::string csv_of(const std::vector<dynamics::WorkPrecision>& charts);
@@ -17,8 +18,8 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string table_of(const dynamics::WorkPrecision& chart);
 /// What the columns of such tables mean.
 [[nodiscard]] std::string work_precision_legend(std::int64_t rounds);
-/// A row for each scene into the SVG file `path`: time against the error of the outcomes, and
+/// A row for each scene: time against the error of the outcomes, and
 /// against where trials end.
-void draw(const std::string& path, const std::vector<dynamics::WorkPrecision>& charts);
+[[nodiscard]] Figure figure_of(const std::vector<dynamics::WorkPrecision>& charts);
 
 }  // namespace gatewalk::cli

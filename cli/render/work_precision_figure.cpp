@@ -6,7 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "cli/render/drawing.h"
+#include "cli/render/figure.h"
+#include "cli/render/text.h"
 #include "cli/render/work_precision.h"
 
 namespace gatewalk::cli {
@@ -244,7 +245,7 @@ std::string legend(const WorkPrecision& chart, int height) {
 
 }  // namespace
 
-void draw(const std::string& path, const std::vector<WorkPrecision>& charts) {
+Figure figure_of(const std::vector<WorkPrecision>& charts) {
   constexpr int kRow = 395, kHeader = 60;
   const int height = kRow * static_cast<int>(charts.size()) + kHeader;
   std::ostringstream out;
@@ -281,7 +282,7 @@ void draw(const std::string& path, const std::vector<WorkPrecision>& charts) {
     out << strong.text(chart.label + ": where a trial ends, median", "distance (m)");
   }
   out << "unset multiplot\n";
-  draw_svg(path, 1000, height, out.str());
+  return {1000, height, out.str()};
 }
 
 }  // namespace gatewalk::cli

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "cli/render/json.h"
+
 namespace gatewalk::cli {
 
 std::string escaped(std::string_view text) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/command.h"
+#include "cli/render/json_fwd.h"
 
 namespace gatewalk::cli {
 

@@ -136,22 +136,8 @@ Setting second_reference_setting(const GateParams& p) {
 namespace {
 
 TrialEnd end_without_column(const GateRun& run) {
-  TrialEnd end;
-  end.exit = run.exit;
-  end.seconds = run.seconds;
-  if (run.cut_short || run.ending == Ending::broken) return end;
-  if (run.ending == Ending::trapped) {
-    end.outcome = Outcome::trapped;
-    return end;
-  }
-  if (run.ending == Ending::exited_left)
-    end.outcome = Outcome::exited_left;
-  else if (run.ending == Ending::exited_right)
-    end.outcome = Outcome::exited_right;
-  else
-    end.outcome = run.watch.max_theta[kLeft] > run.watch.max_theta[kRight]
-                      ? Outcome::traversed_left
-                      : Outcome::traversed_right;
+  TrialEnd end{.outcome = outcome_of(run), .exit = run.exit, .seconds = run.seconds};
+  if (end.outcome == Outcome::traversed_even) end.outcome = Outcome::traversed_right;
   return end;
 }
 

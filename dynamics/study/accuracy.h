@@ -52,18 +52,10 @@ struct Setting {
 
 // ---- Trials ----
 
-enum class Outcome : std::uint8_t {
-  traversed_left,   // the left beam had the larger deflection
-  traversed_right,  // the right beam, or both the same
-  exited_left,
-  exited_right,
-  trapped,
-  broken,  // not finite, or cut short
-};
-inline constexpr int kOutcomes = 6;
-
 /// What one trial leaves behind.
 struct TrialEnd {
+  /// Compared with another run's: deflections that are equal to the last bit count as
+  /// `traversed_right`, for they are no outcome of its own.
   Outcome outcome = Outcome::broken;
   int column = 0;  // state in which it enters the next gate, trapped() or, broken, trapped() + 1
   BodyState exit;

@@ -55,6 +55,10 @@ struct Reference {
   Errors own;                                      // of the second one
   /// Of the other method; outcomes.total_variation is NaN where it refuses the scene.
   Errors other;
+
+  [[nodiscard]] std::int64_t operator[](Outcome outcome) const {
+    return outcomes[static_cast<std::size_t>(outcome)];
+  }
 };
 
 struct WorkPrecision {

@@ -60,10 +60,11 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
         std::find(pilot.starts.begin(), pilot.starts.end(), entry) == pilot.starts.end())
       pilot.starts.push_back(entry);
     work.in_pieces("pilot", trials, [&](TrialRange range) {
-      const auto part = run_field(scene.gate, field, start, space, seed,
-                                  {kPilotsOwn + range.first, range.count}, true);
-      pilot.entries.insert(pilot.entries.end(), part.crossings.begin(), part.crossings.end());
-      pilot.health += part.health;
+      FieldTrials each{.final_gates = {}, .keep_crossings = true, .crossings = {}};
+      pilot.health += run_field(scene.gate, field, start, space, seed,
+                                {kPilotsOwn + range.first, range.count}, &each)
+                          .health;
+      pilot.entries.insert(pilot.entries.end(), each.crossings.begin(), each.crossings.end());
     });
     pilot.trials += trials;
   }

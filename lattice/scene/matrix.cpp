@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "lattice/scene/settle.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::lattice {
@@ -20,6 +21,7 @@ dynamics::Transitions build_matrix(const Scene& scene, const States& states, std
     dynamics::add_trials(t, scene.gate, seed, range, states.entries);
   });
   require_unbroken(t);
+  check_outcomes(scene, RunsFrom::everywhere, seed, t.totals().runs, t.health, work);
   return t;
 }
 

@@ -14,7 +14,8 @@ namespace gatewalk::lattice {
 void require_unbroken(const dynamics::Transitions& t);
 
 /// A matrix of these states, `trials` runs per row (dynamics::runs_per_trial as many for a single
-/// entry's). Throws std::runtime_error when a run broke.
+/// entry's). A sample is run again by a better method (check_outcomes). Throws std::runtime_error
+/// when a run broke.
 [[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, const States& states,
                                                  std::int64_t trials, std::uint64_t seed,
                                                  const dynamics::Work& work = {});

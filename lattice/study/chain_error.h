@@ -11,93 +11,11 @@
 
 #include "dynamics/transitions.h"
 #include "dynamics/work.h"
-#include "lattice/compare.h"
-#include "lattice/reference.h"
 #include "lattice/scene/bins.h"
 #include "lattice/scene/scene.h"
-#include "lattice/scene/table4.h"
+#include "lattice/study/chain_answers.h"
 
 namespace gatewalk::lattice {
-
-// ---- Against what, and what instead ----
-
-/// How far shares of the final gates are from the truth's.
-struct FinalGateError {
-  double total_variation = 0.0, corrcoef = 0.0;
-};
-
-/// Full dynamics from one start: what every error is taken against.
-struct FieldTruth {
-  PaperStart start{};
-  FieldTally tally;
-  CellProbabilities p{};  // shares of the final gates
-  double seconds_per_trial = 0.0;
-  FinalGateError floor{};  // what a perfect prediction would show, by the noise of `p`
-
-  /// Direct simulation's errors are told from the same noisy truth as the chain's are: n trials
-  /// against these N. Var = 1/n + 1/N, so compare with m = nN/(n + N) trials against an exact
-  /// truth.
-  [[nodiscard]] std::int64_t as_against_exact(std::int64_t trials) const;
-  /// Of direct simulation for as small an error; infinite if this truth cannot tell.
-  [[nodiscard]] double seconds_for(double total_variation) const;
-};
-/// Throws std::runtime_error when trials broke: they are no truth.
-[[nodiscard]] FieldTruth field_truth(const PaperStart& start, FieldTally tally,
-                                     double seconds_per_trial);
-
-/// Direct simulation with n trials, drawn from the truth; errors as_against_exact(n).
-struct DirectSimulation {
-  std::int64_t trials = 0;
-  double seconds = 0.0;
-  FinalGateError drawn;    // mean over many draws
-  FinalGateError formula;  // expected_total_variation and the noise floor
-};
-
-// ---- The chain ----
-
-/// Numbers of walks whose errors stand beside the exact prediction's.
-inline constexpr std::array<std::int64_t, 2> kChainWalks{10'000, 1'000'000};
-/// Matrices drawn anew, whose predictions show what the sampling of a matrix makes.
-inline constexpr std::int64_t kMatricesDrawnAnew = 8;
-
-/// What matrices say about one start; errors are means over them.
-struct ChainAnswer {
-  FinalGateError exact{};
-  double exact_sd = 0.0;  // of the total variation, over the matrices; NaN if there is only one
-  std::array<FinalGateError, kChainWalks.size()> walks{};
-  double exact_seconds = 0.0;
-  std::array<double, kChainWalks.size()> walk_seconds{};
-  double sampling = 0.0;       // total variation that the sampling of the matrix alone makes
-  double bins = 0.0;           // what is left: states too coarse, memory beyond them
-  double never_sampled = 0.0;  // share of the walks that end in a row without trials
-};
-
-/// One way to make a matrix: bins and trials per row.
-struct ChainPoint {
-  std::size_t curve = 0;
-  std::int64_t trials = 0;     // per row
-  std::int64_t runs = 0;       // of one matrix
-  std::int64_t matrices = 0;   // made in this way, each from trials of its own
-  double build_seconds = 0.0;  // one matrix
-  double clamped_share = 0.0;
-  double rows_never_sampled = 0.0;     // mean over the matrices, as clamped_share
-  std::vector<ChainAnswer> answers{};  // by start
-
-  /// One matrix and one prediction.
-  [[nodiscard]] double seconds(std::size_t start) const {
-    return build_seconds + answers[start].exact_seconds;
-  }
-  [[nodiscard]] double error(std::size_t start) const {
-    return answers[start].exact.total_variation;
-  }
-};
-/// What matrices (1 or more) of the same states and trials per row, each from trials of its own,
-/// say about the starts of `truths`: a point without curve and trials, whose build_seconds lack the
-/// runs. The same but for the times on any number of threads.
-[[nodiscard]] ChainPoint ask_matrices(const std::vector<dynamics::Transitions>& matrices,
-                                      const FieldParams& field,
-                                      const std::vector<FieldTruth>& truths, std::uint64_t seed,
-                                      const dynamics::Work& work = {});
 
 /// One space of states, and one way to start the trials of its rows.
 struct ChainCurve {
@@ -114,6 +32,29 @@ struct ChainCurve {
   [[nodiscard]] double seconds_per_trial() const {
     return seconds_per_run * static_cast<double>(dynamics::runs_per_trial(space));
   }
+};
+
+/// One way to make a matrix, bins and trials per row, and what matrices made so say.
+struct ChainPoint : ChainAnswers {
+  std::size_t curve = 0;
+  std::int64_t trials = 0;     // per row
+  double build_seconds = 0.0;  // one matrix, with the trials that saw where its rows start
+
+  /// One matrix and one prediction.
+  [[nodiscard]] double seconds(std::size_t start) const {
+    return build_seconds + answers[start].exact_seconds;
+  }
+  [[nodiscard]] double error(std::size_t start) const {
+    return answers[start].exact.total_variation;
+  }
+};
+
+/// Direct simulation with n trials, drawn from the truth; errors as_against_exact(n).
+struct DirectSimulation {
+  std::int64_t trials = 0;
+  double seconds = 0.0;
+  FinalGateError drawn;    // mean over many draws
+  FinalGateError formula;  // expected_total_variation and the noise floor
 };
 
 // ---- The chart ----

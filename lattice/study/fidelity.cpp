@@ -13,8 +13,8 @@ constexpr std::int64_t kTimedTrials = 64;
 constexpr std::int64_t kTimedAtOnce = 16;
 
 FieldTally run(const FidelityVariant& v, const PaperStart& start, const dynamics::StateSpace& space,
-               std::uint64_t seed, dynamics::TrialRange range) {
-  return run_field(v.scene.gate, v.scene.field, start.body(), space, seed, range);
+               std::uint64_t seed, dynamics::TrialRange range, FieldTrials* each = nullptr) {
+  return run_field(v.scene.gate, v.scene.field, start.body(), space, seed, range, each);
 }
 
 /// Seconds per trial of every variant. The same trials by every one in turn, so that a busy moment
@@ -49,16 +49,16 @@ FidelityOfStart run_start(const std::vector<FidelityVariant>& variants, const Pa
   FidelityOfStart all{start, {}};
   for (const FidelityVariant& v : variants) {
     FieldTally tally(v.scene.field);
+    FieldTrials each;
     work.in_pieces(v.name(), options.trials, [&](dynamics::TrialRange range) {
-      tally += run(v, start, space, options.seed, range);
+      tally += run(v, start, space, options.seed, range, &each);
     });
-    all.runs.push_back({std::move(tally)});
+    all.runs.push_back({std::move(tally), std::move(each.final_gates)});
   }
   const std::vector<double> seconds = time_trials(variants, start, space, options, work);
   for (std::size_t v = 0; v < variants.size(); ++v) {
     all.runs[v].seconds_per_trial = seconds[v];
-    if (v > 0)
-      all.runs[v].change = fidelity_change(all.runs[v].tally, all.runs[0].tally, options.seed);
+    if (v > 0) all.runs[v].change = fidelity_change(all.runs[v], all.runs[0], options.seed);
   }
   return all;
 }
@@ -92,17 +92,19 @@ Sufficiency FidelityChange::active_is() const {
   return tv - uncertainty() > kFidelityBound ? Sufficiency::not_enough : Sufficiency::cannot_tell;
 }
 
-FidelityChange fidelity_change(const FieldTally& variant, const FieldTally& base,
+FidelityChange fidelity_change(const FidelityRun& variant, const FidelityRun& base,
                                std::uint64_t seed) {
-  const auto &after = variant.final_gate_of_trial, &before = base.final_gate_of_trial;
+  const auto &after = variant.final_gates, &before = base.final_gates;
+  const markov::CellCounts &cells = variant.tally.final_gates, &base_cells = base.tally.final_gates;
+  const std::int64_t trials = base.tally.trials;
   std::int64_t changed = 0;
   for (std::size_t i = 0; i < after.size(); ++i) changed += after[i] != before[i];
-  const std::int64_t null_draws = std::clamp<std::int64_t>(100'000'000 / base.trials, 999, 9999);
-  return {.trials = base.trials,
-          .changed = static_cast<double>(changed) / static_cast<double>(base.trials),
-          .apart = compare(variant.final_gates, base.final_gates, null_draws, seed),
-          .in_pairs = compare_pairs(after, before, static_cast<int>(base.final_gates.rows()),
-                                    static_cast<int>(base.final_gates.cols()), null_draws, seed)};
+  const std::int64_t null_draws = std::clamp<std::int64_t>(100'000'000 / trials, 999, 9999);
+  return {.trials = trials,
+          .changed = static_cast<double>(changed) / static_cast<double>(trials),
+          .apart = compare(cells, base_cells, null_draws, seed),
+          .in_pairs = compare_pairs(after, before, static_cast<int>(base_cells.rows()),
+                                    static_cast<int>(base_cells.cols()), null_draws, seed)};
 }
 
 dynamics::Health FidelityStudy::health(std::size_t variant) const {

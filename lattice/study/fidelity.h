@@ -51,16 +51,18 @@ struct FidelityChange {
   /// with that taken off.
   [[nodiscard]] Sufficiency active_is() const;
 };
-/// `variant` against `base`, both as final_gate_of_trial and final_gates of the same trials.
-[[nodiscard]] FidelityChange fidelity_change(const FieldTally& variant, const FieldTally& base,
-                                             std::uint64_t seed);
 
 /// One variant from one start.
 struct FidelityRun {
   FieldTally tally;
+  std::vector<std::int32_t> final_gates;   // of each trial, as FieldTrials has them
   double seconds_per_trial = 0.0;          // wall clock
   std::optional<FidelityChange> change{};  // against the first variant, which has none
 };
+
+/// `variant` against `base`, the same trials.
+[[nodiscard]] FidelityChange fidelity_change(const FidelityRun& variant, const FidelityRun& base,
+                                             std::uint64_t seed);
 
 struct FidelityOfStart {
   PaperStart start;

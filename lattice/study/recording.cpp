@@ -10,22 +10,9 @@
 namespace gatewalk::lattice {
 namespace {
 
-using dynamics::GateParams;
-
 /// At least so many trials are looked at by a better method: the few that are kept would show
 /// nothing of one.
 constexpr std::int64_t kCheckedAs = 500;
-
-std::string ending_of(const GateParams& p, const dynamics::GateRun& run) {
-  dynamics::GateTally t;
-  t.add(p, run);
-  if (t.traversed_left) return "traversed left";
-  if (t.traversed_right) return "traversed right";
-  if (t.traversed_even) return "traversed evenly";
-  if (t.exited_left) return "exited left";
-  if (t.exited_right) return "exited right";
-  return t.trapped ? "trapped" : "not finite";
-}
 
 std::string field_ending(std::optional<markov::Ending> ending) {
   if (!ending) return "not finite";
@@ -86,10 +73,12 @@ std::invalid_argument too_long(const std::string& what, bool across_field) {
 }  // namespace
 
 std::vector<std::string> endings(bool across_field) {
-  if (!across_field)
-    return {"traversed left", "traversed right", "traversed evenly", "exited left",
-            "exited right",   "trapped",         "not finite"};
   std::vector<std::string> names;
+  if (!across_field) {
+    for (std::size_t k = 0; k < dynamics::kOutcomes; ++k)
+      names.emplace_back(name_of(static_cast<dynamics::Outcome>(k)));
+    return names;
+  }
   for (std::size_t e = 0; e < markov::kEndings; ++e)
     if (const auto ending = static_cast<markov::Ending>(e); ending != markov::Ending::unsampled)
       names.push_back(field_ending(ending));
@@ -130,7 +119,7 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
     const auto t = dynamics::trace_gate(scene.gate, *method, scene.start, force, most_moments);
     append(r, t, 0, 0);
     r.health.add(scene.gate, t.run);
-    r.ending = ending_of(scene.gate, t.run);
+    r.ending = dynamics::name_of(dynamics::outcome_of(t.run));
   }
   r.seconds = r.moments.back().time;
   return r;

@@ -150,9 +150,8 @@ void evaluations() {
 
 /// As one row of cells, for lattice::compare.
 markov::CellCounts outcomes(const GateTally& t) {
-  markov::CellCounts counts(1, 7);
-  counts << t.traversed_left, t.traversed_right, t.traversed_even, t.exited_left, t.exited_right,
-      t.trapped, t.broken;
+  markov::CellCounts counts(1, kOutcomes);
+  for (std::size_t k = 0; k < kOutcomes; ++k) counts(0, static_cast<Eigen::Index>(k)) = t.counts[k];
   return counts;
 }
 

@@ -75,9 +75,9 @@ void add(const std::string& name, const char* method, double step, std::int64_t 
           count("trials", tally.trials);
           count("steps", tally.health.steps);
           count("traversed", tally.traversed());
-          count("exited", tally.exited_left + tally.exited_right);
-          count("trapped", tally.trapped);
-          count("broken", tally.broken);
+          count("exited", tally.exited());
+          count("trapped", tally[Outcome::trapped]);
+          count("broken", tally[Outcome::broken]);
         })
         ->Iterations(1)
         ->UseRealTime()

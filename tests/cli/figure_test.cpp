@@ -1,4 +1,4 @@
-#include "cli/render/gnuplot.h"
+#include "cli/terminal/gnuplot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "cli/paper/findings.h"
+#include "cli/render/json.h"
 
 #include <gtest/gtest.h>
 

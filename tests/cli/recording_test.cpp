@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "cli/film/replay.h"
+#include "cli/render/json.h"
 #include "dynamics/landscape.h"
 #include "tests/cli/films.h"
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/render/json.h"
 #include "cli/web/html.h"
 #include "tests/cli/films.h"
 

@@ -1,4 +1,5 @@
 #include "cli/paper/page.h"
+#include "cli/render/json.h"
 
 #include <gtest/gtest.h>
 

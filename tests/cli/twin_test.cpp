@@ -8,7 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "cli/command.h"
+#include "cli/commands.h"
+#include "cli/render/json.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {

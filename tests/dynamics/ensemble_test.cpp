@@ -31,13 +31,7 @@ void expect_same(const Health& a, const Health& b) {
 
 void expect_same(const GateTally& a, const GateTally& b) {
   EXPECT_EQ(a.trials, b.trials);
-  EXPECT_EQ(a.traversed_left, b.traversed_left);
-  EXPECT_EQ(a.traversed_right, b.traversed_right);
-  EXPECT_EQ(a.traversed_even, b.traversed_even);
-  EXPECT_EQ(a.exited_left, b.exited_left);
-  EXPECT_EQ(a.exited_right, b.exited_right);
-  EXPECT_EQ(a.trapped, b.trapped);
-  EXPECT_EQ(a.broken, b.broken);
+  EXPECT_EQ(a.counts, b.counts);
   expect_same(a.health, b.health);
 }
 
@@ -106,14 +100,15 @@ TEST(Health, FewForcedHoldsAreNoFault) {
 TEST(GateTrials, EveryTrialEndsOnce) {
   const GateTally t = run_gate_trials(test::study(10.0), {}, 1, {0, 500});
   EXPECT_EQ(t.trials, 500);
-  EXPECT_EQ(t.traversed() + t.exited_left + t.exited_right + t.trapped + t.broken, 500);
-  EXPECT_EQ(t.traversed(), t.traversed_left + t.traversed_right + t.traversed_even);
+  EXPECT_EQ(t.traversed() + t.exited() + t[Outcome::trapped] + t[Outcome::broken], 500);
+  EXPECT_EQ(t.traversed(),
+            t[Outcome::traversed_left] + t[Outcome::traversed_right] + t[Outcome::traversed_even]);
   EXPECT_EQ(t.health.runs, 500);
-  EXPECT_EQ(t.broken, t.health.broken);
-  EXPECT_GT(t.traversed_left, 0);
-  EXPECT_GT(t.exited_left, 0);
-  EXPECT_GT(t.exited_right, 0);
-  EXPECT_GT(t.trapped, 0);
+  EXPECT_EQ(t[Outcome::broken], t.health.broken);
+  EXPECT_GT(t[Outcome::traversed_left], 0);
+  EXPECT_GT(t[Outcome::exited_left], 0);
+  EXPECT_GT(t[Outcome::exited_right], 0);
+  EXPECT_GT(t[Outcome::trapped], 0);
 }
 
 // Trial i inside any range is the run that anybody makes of stream {seed, 0, i}.
@@ -130,9 +125,9 @@ TEST(GateTrials, TrialsCanBeReplayedAlone) {
       const GateRun run = run_gate(p, *m, {}, force);
       const GateTally alone = run_gate_trials(p, {}, 42, {trial, 1});
       EXPECT_EQ(alone.traversed(), run.ending == Ending::traversed);
-      EXPECT_EQ(alone.exited_left, run.ending == Ending::exited_left);
-      EXPECT_EQ(alone.exited_right, run.ending == Ending::exited_right);
-      EXPECT_EQ(alone.trapped, run.ending == Ending::trapped);
+      EXPECT_EQ(alone[Outcome::exited_left], run.ending == Ending::exited_left);
+      EXPECT_EQ(alone[Outcome::exited_right], run.ending == Ending::exited_right);
+      EXPECT_EQ(alone[Outcome::trapped], run.ending == Ending::trapped);
       EXPECT_TRUE(same_bits(alone.health.worst_speed, run.watch.max_speed));
       EXPECT_TRUE(same_bits(alone.health.worst_energy_created, run.watch.energy_created));
       EXPECT_EQ(alone.health.impacts, run.watch.impacts);
@@ -168,11 +163,11 @@ TEST(GateTrials, LeftMeansTheLeftBeamWasDeflectedMore) {
   p.forces.propulsion = 40.0;  // enough to get through
   p.beams.stiffness_right = 300.0;
   GateTally t = run_gate_trials(p, {0, 0, 0, 0}, 1, {0, 3});
-  EXPECT_EQ(t.traversed_even, 3);  // mirror symmetric: equal to the last bit
+  EXPECT_EQ(t[Outcome::traversed_even], 3);  // mirror symmetric: equal to the last bit
   t = run_gate_trials(p, {-8, 0, 0, 0}, 1, {0, 3});
-  EXPECT_EQ(t.traversed_left, 3);
+  EXPECT_EQ(t[Outcome::traversed_left], 3);
   t = run_gate_trials(p, {8, 0, 0, 0}, 1, {0, 3});
-  EXPECT_EQ(t.traversed_right, 3);
+  EXPECT_EQ(t[Outcome::traversed_right], 3);
 }
 
 TEST(GateTrials, ScenesThatCannotBeRunAreRefused) {
@@ -191,26 +186,24 @@ double percent(std::int64_t n, const GateTally& t) {
 // 0.35 % and 0.5 % at 46 %, together 0.6 %; the tolerance is 2.5 times that.
 TEST(GateTrials, ConvergedFiguresAtDamping10) {
   const GateTally t = run_gate_trials(test::study(10.0), {}, 1, {0, 10'000});
-  EXPECT_NEAR(percent(t.traversed_left, t), 46.0, 1.5);
-  EXPECT_NEAR(percent(t.exited_left + t.exited_right, t), 35.8, 1.5);
-  EXPECT_NEAR(percent(t.trapped, t), 18.0, 1.5);
+  EXPECT_NEAR(percent(t[Outcome::traversed_left], t), 46.0, 1.5);
+  EXPECT_NEAR(percent(t.exited(), t), 35.8, 1.5);
+  EXPECT_NEAR(percent(t[Outcome::trapped], t), 18.0, 1.5);
   EXPECT_TRUE(t.health.clean());
 }
 
 TEST(GateTrials, ConvergedFiguresAtDamping50) {
   const GateTally t = run_gate_trials(test::study(50.0), {}, 1, {0, 10'000});
-  EXPECT_NEAR(percent(t.traversed_left, t), 5.5, 0.8);
-  EXPECT_NEAR(percent(t.exited_left + t.exited_right, t), 53.4, 1.5);
-  EXPECT_NEAR(percent(t.trapped, t), 41.0, 1.5);
+  EXPECT_NEAR(percent(t[Outcome::traversed_left], t), 5.5, 0.8);
+  EXPECT_NEAR(percent(t.exited(), t), 53.4, 1.5);
+  EXPECT_NEAR(percent(t[Outcome::trapped], t), 41.0, 1.5);
   EXPECT_TRUE(t.health.clean());
 }
 
 double total_variation(const GateTally& a, const GateTally& b) {
   double distance = 0.0;
-  for (const auto outcome :
-       {&GateTally::traversed_left, &GateTally::traversed_right, &GateTally::traversed_even,
-        &GateTally::exited_left, &GateTally::exited_right, &GateTally::trapped, &GateTally::broken})
-    distance += 0.5 * std::abs(static_cast<double>(a.*outcome - b.*outcome)) /
+  for (std::size_t k = 0; k < kOutcomes; ++k)
+    distance += 0.5 * std::abs(static_cast<double>(a.counts[k] - b.counts[k])) /
                 static_cast<double>(a.trials);
   return distance;
 }

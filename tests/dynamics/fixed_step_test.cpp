@@ -176,11 +176,7 @@ TEST_P(FixedStep, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_GT(one.traversed(), 0);
   for (const int threads : {2, 8}) {
     const GateTally t = tally(threads);
-    EXPECT_EQ(t.traversed_left, one.traversed_left);
-    EXPECT_EQ(t.traversed_right, one.traversed_right);
-    EXPECT_EQ(t.exited_left, one.exited_left);
-    EXPECT_EQ(t.exited_right, one.exited_right);
-    EXPECT_EQ(t.trapped, one.trapped);
+    EXPECT_EQ(t.counts, one.counts);
     EXPECT_EQ(t.health.steps, one.health.steps);
     EXPECT_EQ(t.health.impacts, one.health.impacts);
     EXPECT_EQ(t.health.evaluations, one.health.evaluations);

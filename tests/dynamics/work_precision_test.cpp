@@ -128,7 +128,7 @@ TEST(WorkPrecision, RunsEverySettingAgainstTheReference) {
   EXPECT_EQ(std::accumulate(chart.reference.outcomes.begin(), chart.reference.outcomes.end(),
                             std::int64_t{0}),
             kTrials);
-  EXPECT_EQ(chart.reference.outcomes[static_cast<std::size_t>(Outcome::trapped)],
+  EXPECT_EQ(chart.reference[Outcome::trapped],
             std::count_if(reference.trials.begin(), reference.trials.end(),
                           [](const TrialEnd& e) { return e.outcome == Outcome::trapped; }));
 }

@@ -70,7 +70,7 @@ TEST(AskMatrices, GivesTheErrorsOfOne) {
   // The middle column: 1/4 is trapped in each row that is reached, and 1/8 leaves above; as many
   // end left of it.
   const FieldTruth right = truth_of({16, 16, 0, 8, 8, 0, 4, 12, 0}), wrong = truth_of({0, 64});
-  const ChainPoint p = ask_matrices({t}, kField, {right, wrong}, 1);
+  const ChainAnswers p = ask_matrices({t}, kField, {right, wrong}, 1);
   EXPECT_EQ(p.matrices, 1);
   EXPECT_EQ(p.runs, 1000);
   EXPECT_EQ(p.clamped_share, 0.1);
@@ -96,7 +96,7 @@ TEST(AskMatrices, GivesMeansOverSeveral) {
   // One traps all in the first gate, as the truth does; of the other half go on.
   const std::vector<Transitions> both{matrix(0, 0), matrix(500, 0)};
   const std::vector<FieldTruth> truths{truth_of({0, 8})};
-  const ChainPoint p = ask_matrices(both, kField, truths, 1);
+  const ChainAnswers p = ask_matrices(both, kField, truths, 1);
   EXPECT_EQ(p.matrices, 2);
   EXPECT_EQ(p.runs, 1000);
   const ChainAnswer& a = p.answers[0];
@@ -125,7 +125,7 @@ ChainErrorChart chart_of(const std::vector<std::array<double, 2>>& uniform,
   chart.truths = {truth_of({500'000'000, 500'000'000}, seconds_per_trial)};
   for (const std::size_t curve : {0, 1})
     for (const auto& [build, error] : curve == 0 ? uniform : visited) {
-      ChainPoint p{.curve = curve, .build_seconds = build};
+      ChainPoint p{{}, curve, 0, build};
       p.answers.push_back({.exact = {.total_variation = error}, .exact_seconds = 0.1});
       chart.points.push_back(std::move(p));
     }

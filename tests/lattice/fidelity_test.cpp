@@ -25,12 +25,11 @@ TEST(FidelityVariants, AreMoreauAtEveryFidelityAndTheDefaultMethod) {
 }
 
 /// Trials of a field of 3 x 3 gates that end in these.
-FieldTally ending_in(const std::vector<std::int32_t>& gates) {
-  FieldTally tally({.columns = 3, .rows = 3});
-  tally.final_gate_of_trial = gates;
-  tally.trials = std::ssize(gates);
-  for (const std::int32_t g : gates) ++tally.final_gates(g / 3, g % 3);
-  return tally;
+FidelityRun ending_in(const std::vector<std::int32_t>& gates) {
+  FidelityRun run{FieldTally({.columns = 3, .rows = 3}), gates};
+  run.tally.trials = std::ssize(gates);
+  for (const std::int32_t g : gates) ++run.tally.final_gates(g / 3, g % 3);
+  return run;
 }
 
 TEST(FidelityChange, CountsTrialsAndDistributionsApart) {
@@ -70,7 +69,7 @@ TEST(FidelityOfStart, IsWhatTheWorseOfMemoryAndNeighboursSays) {
   const auto of = [](double remember, double all) {
     FidelityOfStart s;
     for (const double tv : {0.0, remember, all, 1.0})  // another integrator has no say
-      s.runs.push_back({ending_in({}), 0.0, seen(tv)});
+      s.runs.push_back({ending_in({}).tally, {}, 0.0, seen(tv)});
     return s.active_is();
   };
   EXPECT_EQ(of(0.0, 0.0), Sufficiency::enough);
@@ -94,9 +93,10 @@ TEST(FidelityStudy, RunsTheTrialsOfTheFullDynamics) {
     dynamics::Health health;
     for (const FidelityOfStart& s : study.starts) {
       const Scene& scene = variants[v].scene;
+      FieldTrials each;
       const FieldTally plain =
-          run_field(scene.gate, scene.field, s.start.body(), space, 7, {0, 10});
-      EXPECT_EQ(s.runs[v].tally.final_gate_of_trial, plain.final_gate_of_trial);
+          run_field(scene.gate, scene.field, s.start.body(), space, 7, {0, 10}, &each);
+      EXPECT_EQ(s.runs[v].final_gates, each.final_gates);
       EXPECT_EQ(s.runs[v].change.has_value(), v > 0);
       EXPECT_GT(s.runs[v].seconds_per_trial, 0.0);
       health += plain.health;

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "lattice/matrix_noise.h"
 #include "markov/chain.h"
 #include "markov/predict.h"
 #include "tests/support/numbers.h"
@@ -90,11 +91,12 @@ TEST(Resampled, KeepsTrialsAndVariesAsAMultinomial) {
   constexpr int kReplicates = 2000;
   std::vector<std::map<int, double>> sum(t.space.size()), squares(t.space.size());
   for (int k = 0; k < kReplicates; ++k) {
-    const Transitions drawn = resampled(t, 1, static_cast<std::uint64_t>(k));
-    ASSERT_EQ(drawn.trials, t.trials);
+    const markov::Counts drawn = resampled(t.counts(), 1, static_cast<std::uint64_t>(k));
     for (int row = 0; row < t.space.size(); ++row) {
       std::int64_t total = 0;
-      for (const auto& [column, n] : drawn.rows[row]) {
+      for (markov::Counts::InnerIterator entry(drawn, row); entry; ++entry) {
+        const auto column = static_cast<int>(entry.col());
+        const std::int64_t n = entry.value();
         ASSERT_TRUE(all.contains(column));  // nothing out of nothing
         ASSERT_FALSE(t.rows[row].empty());
         total += n;
@@ -126,15 +128,18 @@ TEST(Resampled, KnowsThatNotSeenIsNotImpossible) {
   t.rows[0] = {{3, 100}};
   t.trials[0] = 100;
   int seen = 0;
-  for (std::uint64_t k = 0; k < 500; ++k) seen += resampled(t, 1, k).rows[0].size() > 1;
+  for (std::uint64_t k = 0; k < 500; ++k) seen += resampled(t.counts(), 1, k).row(0).nonZeros() > 1;
   EXPECT_GT(seen, 200);
 }
 
 TEST(Resampled, IsNamedBySeedAndReplicate) {
-  const Transitions t = made_up();
-  EXPECT_EQ(resampled(t, 1, 2).rows, resampled(t, 1, 2).rows);
-  EXPECT_NE(resampled(t, 1, 2).rows, resampled(t, 1, 3).rows);
-  EXPECT_NE(resampled(t, 1, 2).rows, resampled(t, 2, 2).rows);
+  const markov::Counts counts = made_up().counts();
+  const auto drawn = [&](std::uint64_t seed, std::uint64_t replicate) {
+    return Eigen::MatrixX<std::int64_t>(resampled(counts, seed, replicate));
+  };
+  EXPECT_EQ(drawn(1, 2), drawn(1, 2));
+  EXPECT_NE(drawn(1, 2), drawn(1, 3));
+  EXPECT_NE(drawn(1, 2), drawn(2, 2));
 }
 
 TEST(ChainStart, IsTheStateOfTheBody) {

@@ -62,15 +62,14 @@ Transitions simulated(std::int64_t trials, std::uint64_t number) {
   return t;
 }
 
-FieldMatrices all_rows(const Transitions& t) { return {{&t}, std::vector<int>(kField.rows)}; }
-
 FinalDistribution predicted(const Transitions& t) {
   return markov::Predictor(make_chain(t)).predict(kField, kStart, {.max_cells = kMaxGates});
 }
 
 std::vector<FinalDistribution> replicates(const Transitions& t, std::uint64_t seed,
                                           std::int64_t count) {
-  return replicate_predictions(all_rows(t), kField, {kStart}, kMaxGates, seed, 0, count).front();
+  return replicate_predictions(counted_field(t), kField, {kStart}, kMaxGates, seed, 0, count)
+      .front();
 }
 
 constexpr std::array<Ending, 5> kAll{Ending::far_edge, Ending::left_edge, Ending::right_edge,
@@ -135,7 +134,8 @@ TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
 
 TEST(Replicates, SameBitsForAnyThreadsAndAnySplit) {
   const Transitions t = simulated(50, 3), other = simulated(50, 4);
-  FieldMatrices rows{{&t, &other}, {0, 1, 1, 0}};
+  CountedField rows{markov::FieldChain::by_row({make_chain(t), make_chain(other)}, {0, 1, 1, 0}),
+                    {t.counts(), other.counts()}};
   const std::vector<markov::Start> starts{kStart, {1, 2, 3}};
   const auto on = [&](int threads, std::int64_t first, std::int64_t count) {
     return test::on_threads(threads, [&] {
@@ -150,9 +150,11 @@ TEST(Replicates, SameBitsForAnyThreadsAndAnySplit) {
     EXPECT_NE(whole[s][0].endings, whole[s][1].endings);
   }
   // A second matrix has draws of its own, though it may hold the same counts.
-  rows = {{&t, &t}, {0, 1, 1, 0}};
-  EXPECT_NE(replicate_predictions(rows, kField, {kStart}, kMaxGates, 8, 0, 1)[0][0].endings,
-            replicate_predictions(all_rows(t), kField, {kStart}, kMaxGates, 8, 0, 1)[0][0].endings);
+  rows = {markov::FieldChain::by_row({make_chain(t), make_chain(t)}, {0, 1, 1, 0}),
+          {t.counts(), t.counts()}};
+  EXPECT_NE(
+      replicate_predictions(rows, kField, {kStart}, kMaxGates, 8, 0, 1)[0][0].endings,
+      replicate_predictions(counted_field(t), kField, {kStart}, kMaxGates, 8, 0, 1)[0][0].endings);
 }
 
 TEST(Replicates, FewerInLargeFields) {

@@ -25,10 +25,10 @@ TEST(Recording, EndsAsTheRunThatIsCounted) {
   dynamics::GateTally counted = dynamics::run_gate_trials(s.gate, s.start, 5, {10, 12});
   std::map<std::string, std::int64_t> ends;
   for (int i = 10; i < 22; ++i) ++ends[record(s, 5, i, false).ending];
-  EXPECT_EQ(ends["traversed left"], counted.traversed_left);
-  EXPECT_EQ(ends["exited left"], counted.exited_left);
-  EXPECT_EQ(ends["exited right"], counted.exited_right);
-  EXPECT_EQ(ends["trapped"], counted.trapped);
+  EXPECT_EQ(ends["traversed left"], counted[dynamics::Outcome::traversed_left]);
+  EXPECT_EQ(ends["exited left"], counted[dynamics::Outcome::exited_left]);
+  EXPECT_EQ(ends["exited right"], counted[dynamics::Outcome::exited_right]);
+  EXPECT_EQ(ends["trapped"], counted[dynamics::Outcome::trapped]);
   EXPECT_GE(ends.size(), 3u);
   const auto known = endings(false);
   for (const auto& [ending, n] : ends)

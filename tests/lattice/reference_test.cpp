@@ -17,12 +17,28 @@ using namespace dynamics;
 
 const BodyState kStart{0, 0, 0, 15};  // Sec. III-C
 
-FieldTally run(const GateParams& p, const FieldParams& field, TrialRange range,
-               std::uint64_t seed = 1, const BodyState& start = kStart) {
-  return run_field(p, field, start, StateSpace::paper(p), seed, range);
+/// A tally with the final gate of each trial.
+struct Ran : FieldTally {
+  FieldTrials each;
+
+  explicit Ran(const FieldParams& field) : FieldTally(field) {}
+  Ran& operator+=(const Ran& other) {
+    FieldTally::operator+=(other);
+    each.final_gates.insert(each.final_gates.end(), other.each.final_gates.begin(),
+                            other.each.final_gates.end());
+    return *this;
+  }
+};
+
+Ran run(const FieldGates& gates, const FieldParams& field, TrialRange range, std::uint64_t seed = 1,
+        const BodyState& start = kStart) {
+  Ran ran(field);
+  static_cast<FieldTally&>(ran) =
+      run_field(gates, field, start, StateSpace::paper(gates.types()[0]), seed, range, &ran.each);
+  return ran;
 }
 
-void expect_same(const FieldTally& a, const FieldTally& b) {
+void expect_same(const Ran& a, const Ran& b) {
   EXPECT_TRUE((a.final_gates == b.final_gates).all());
   EXPECT_EQ(a.trials, b.trials);
   EXPECT_EQ(a.trapped, b.trapped);
@@ -34,14 +50,14 @@ void expect_same(const FieldTally& a, const FieldTally& b) {
   EXPECT_TRUE((a.departed_gates == b.departed_gates).all());
   EXPECT_EQ(a.entries, b.entries);
   EXPECT_EQ(a.clamped, b.clamped);
-  EXPECT_EQ(a.final_gate_of_trial, b.final_gate_of_trial);
+  EXPECT_EQ(a.each.final_gates, b.each.final_gates);
   EXPECT_EQ(a.health.runs, b.health.runs);
   EXPECT_EQ(a.health.impacts, b.health.impacts);
   EXPECT_TRUE(test::same_bits(a.health.worst_speed, b.health.worst_speed));
   EXPECT_TRUE(test::same_bits(a.health.worst_energy_created, b.health.worst_energy_created));
 }
 
-void expect_adds_up(const FieldTally& t, const FieldParams& field) {
+void expect_adds_up(const Ran& t, const FieldParams& field) {
   EXPECT_EQ(t.final_gates.rows(), field.rows);
   EXPECT_EQ(t.final_gates.cols(), field.columns);
   EXPECT_EQ(t.final_gates.sum(), t.trials);
@@ -60,9 +76,9 @@ void expect_adds_up(const FieldTally& t, const FieldParams& field) {
   if (field.rows > 2 && field.columns > 2) {
     EXPECT_EQ(t.departed_gates.block(0, 1, field.rows - 1, field.columns - 2).sum(), 0);
   }
-  EXPECT_EQ(static_cast<std::int64_t>(t.final_gate_of_trial.size()), t.trials);
+  EXPECT_EQ(static_cast<std::int64_t>(t.each.final_gates.size()), t.trials);
   markov::CellCounts again = markov::CellCounts::Zero(field.rows, field.columns);
-  for (const std::int32_t gate : t.final_gate_of_trial)
+  for (const std::int32_t gate : t.each.final_gates)
     ++again(gate / field.columns, gate % field.columns);
   EXPECT_TRUE((again == t.final_gates).all());
   // One run per trial and one more per crossing between gates.
@@ -93,7 +109,7 @@ TEST(RunField, TalliesAddUp) {
         FieldParams{1, 5, 0}, FieldParams{4, 1, 2}}) {
     SCOPED_TRACE(testing::Message()
                  << field.columns << " x " << field.rows << ", at most " << field.max_gates);
-    const FieldTally t = run(p, field, {0, 200});
+    const Ran t = run(p, field, {0, 200});
     expect_adds_up(t, field);
     EXPECT_TRUE(t.health.clean());
     if (field.max_gates == 0) {
@@ -104,7 +120,7 @@ TEST(RunField, TalliesAddUp) {
 
 TEST(RunField, OneGateIsTheStartGate) {
   const FieldParams field{9, 9, 1};
-  const FieldTally t = run({}, field, {0, 200});
+  const Ran t = run(GateParams(), field, {0, 200});
   expect_adds_up(t, field);
   EXPECT_EQ(t.final_gates(0, 4), 200);
   EXPECT_EQ(t.left_field, 0);
@@ -115,7 +131,7 @@ TEST(RunField, OneGateIsTheStartGate) {
 
 TEST(RunField, FieldOfOneGateIsLeftOrKept) {
   const FieldParams field{1, 1, 13};
-  const FieldTally t = run({}, field, {0, 200});
+  const Ran t = run(GateParams(), field, {0, 200});
   expect_adds_up(t, field);
   EXPECT_EQ(t.final_gates(0, 0), 200);
   EXPECT_EQ(t.cut_off, 0);
@@ -123,7 +139,7 @@ TEST(RunField, FieldOfOneGateIsLeftOrKept) {
   EXPECT_GT(t.left_field, 100);
   EXPECT_EQ(t.health.runs, 200);
   // The same trials as those cut off after one gate: who would go on there leaves here.
-  EXPECT_EQ(t.left_field, run({}, {9, 9, 1}, {0, 200}).cut_off);
+  EXPECT_EQ(t.left_field, run(GateParams(), {9, 9, 1}, {0, 200}).cut_off);
 }
 
 TEST(StreamRow, NamesAStart) {
@@ -140,7 +156,7 @@ TEST(RunField, TrialsCanBeReplayedAlone) {
   const GateParams p;
   const FieldParams field;
   const auto method = make_method(p);
-  const FieldTally t = run(p, field, {100, 60}, 8);
+  const Ran t = run(p, field, {100, 60}, 8);
   std::array<std::int64_t, kBoundaries> entries{};
   for (int i = 0; i < 60; ++i) {
     RandomForce force(p.forces, Random(Purpose::field, {8, stream_row(p, kStart),
@@ -163,7 +179,7 @@ TEST(RunField, TrialsCanBeReplayedAlone) {
       ix = to_x;
       iy = to_y;
     }
-    EXPECT_EQ(t.final_gate_of_trial[i], iy * 9 + ix + 4) << i;
+    EXPECT_EQ(t.each.final_gates[i], iy * 9 + ix + 4) << i;
   }
   EXPECT_EQ(t.entries, entries);
 }
@@ -174,10 +190,10 @@ TEST(RunField, SameTallyOnAnyNumberOfThreadsAndForAnySplit) {
   const auto on = [&](int threads) {
     return test::on_threads(threads, [&] { return run(p, field, {0, 100}); });
   };
-  const FieldTally whole = on(1);
+  const Ran whole = on(1);
   expect_same(on(2), whole);
   expect_same(on(8), whole);
-  FieldTally split(field);
+  Ran split(field);
   for (const TrialRange part : {TrialRange{0, 1}, {1, 0}, {1, 66}, {67, 33}})
     split += run(p, field, part);
   expect_same(split, whole);
@@ -188,28 +204,87 @@ TEST(RunField, KeepsCrossingsWhenAsked) {
   const FieldParams field;
   const BodyState start{0, 0, 0, 15};
   const StateSpace space = StateSpace::paper(p);
-  EXPECT_TRUE(run_field(p, field, start, space, 1, {0, 20}).crossings.empty());
-  FieldTally tally = run_field(p, field, start, space, 1, {0, 15}, true);
-  tally += run_field(p, field, start, space, 1, {15, 5}, true);
-  const FieldTally whole = test::on_threads(3, [&] {
-    return run_field(p, field, start, space, 1, {0, 20}, true);
-  });
+  const auto kept = [&](std::initializer_list<TrialRange> ranges) {
+    FieldTrials each{.keep_crossings = true};
+    FieldTally tally(field);
+    for (const TrialRange range : ranges)
+      tally += run_field(p, field, start, space, 1, range, &each);
+    return std::pair(tally, each.crossings);
+  };
+  EXPECT_TRUE(run(p, field, {0, 20}).each.crossings.empty());
+  const auto [split, in_pieces] = kept({{0, 15}, {15, 5}});
+  const auto [whole, crossings] = test::on_threads(3, [&] { return kept({{0, 20}}); });
   std::array<std::int64_t, kBoundaries> entries{}, clamped{};
-  for (const Crossing& c : whole.crossings) {
+  for (const Crossing& c : crossings) {
     ++entries[static_cast<int>(c.boundary)];
     clamped[static_cast<int>(c.boundary)] += space.index_of(c).clamped;
   }
-  EXPECT_GT(whole.crossings.size(), 20u);
+  EXPECT_GT(crossings.size(), 20u);
   EXPECT_EQ(entries, whole.entries);
   EXPECT_EQ(clamped, whole.clamped);
-  ASSERT_EQ(tally.crossings.size(), whole.crossings.size());
-  for (std::size_t i = 0; i < whole.crossings.size(); ++i)
-    EXPECT_TRUE(test::same_bits(tally.crossings[i].vx, whole.crossings[i].vx)) << i;
+  EXPECT_EQ(split.entries, whole.entries);
+  ASSERT_EQ(in_pieces.size(), crossings.size());
+  for (std::size_t i = 0; i < crossings.size(); ++i)
+    EXPECT_TRUE(test::same_bits(in_pieces[i].vx, crossings[i].vx)) << i;
+}
+
+TEST(RunField, TalliesAddInAnyOrderAndNoTrialTwice) {
+  const GateParams p;
+  const FieldParams field;
+  const StateSpace space = StateSpace::paper(p);
+  const auto part = [&](TrialRange range) { return run_field(p, field, kStart, space, 1, range); };
+  FieldTally tally = part({30, 20});
+  tally += part({0, 30});
+  EXPECT_EQ(tally.held, TrialSet({0, 50}));
+  EXPECT_TRUE((tally.final_gates == part({0, 50}).final_gates).all());
+  EXPECT_THROW(tally += part({49, 3}), std::invalid_argument);
+  EXPECT_EQ(tally.trials, 50);
+}
+
+// Gates of two types: the reference is one run_gate after the other, each by its own gate's
+// parameters, under one force that goes on.
+TEST(RunField, GatesOfSeveralTypes) {
+  GateParams soft, strong;
+  soft.beams.stiffness_left = soft.beams.stiffness_right = 150.0;
+  strong.forces.propulsion = 14.0;
+  strong.forces.random = 60.0;
+  strong.run.method = "moreau";  // each by its own method
+  strong.run.step = 0.002;
+  const FieldParams field{5, 6, 13};
+  std::vector<int> types(30);
+  for (int i = 0; i < 30; ++i) types[i] = (i * 7 % 5) % 2;
+  const FieldGates gates = FieldGates::by_cell({soft, strong}, 5, types);
+  const Ran whole = run(gates, field, {0, 60}, 4);
+  for (std::int64_t i = 0; i < 60; ++i) {
+    RandomForce force(soft.forces,
+                      Random(Purpose::field, {4, stream_row(soft, kStart), std::uint64_t(i)}));
+    BodyState body = kStart;
+    int column = 2, row = 0;
+    for (int visited = 1;; ++visited) {
+      const GateParams& p = types[row * 5 + column] == 0 ? soft : strong;
+      force.enter(p.forces);
+      const GateRun r = run_gate(p, *make_method(p), body, force);
+      if (r.ending == Ending::trapped) break;
+      const Move move = move_into(crossing_of(p, r.ending, r.exit).boundary);
+      if (!field.contains(column + move.di_x, row + move.di_y) || visited == 13) break;
+      column += move.di_x;
+      row += move.di_y;
+      body = shifted_into_next(p, r.ending, r.exit);
+    }
+    EXPECT_EQ(whole.each.final_gates[i], row * 5 + column) << i;
+  }
+  const auto on_four = test::on_threads(4, [&] { return run(gates, field, {0, 60}, 4); });
+  expect_same(on_four, whole);
+  // The same gates under two names are the gates of one type.
+  expect_same(run(FieldGates::by_cell({soft, soft}, 5, types), field, {0, 60}, 4),
+              run(soft, field, {0, 60}, 4));
+  EXPECT_THROW((void)run(gates, {9, 9, 13}, {0, 1}), std::invalid_argument);
+  EXPECT_THROW((void)run(gates, {5, 6, 13, Fidelity::remember}, {0, 1}), InvalidParameter);
 }
 
 TEST(RunField, OtherSeedOtherTrials) {
-  EXPECT_NE(run({}, {}, {0, 100}, 1).final_gate_of_trial,
-            run({}, {}, {0, 100}, 2).final_gate_of_trial);
+  EXPECT_NE(run(GateParams(), {}, {0, 100}, 1).each.final_gates,
+            run(GateParams(), {}, {0, 100}, 2).each.final_gates);
 }
 
 // A mirrored start with mirrored beams: the field is symmetric, so without noise is the path.
@@ -223,10 +298,10 @@ TEST(RunField, QuietFieldsAreMirrorSymmetric) {
   const FieldParams field{9, 9, 0};
   int moved_sideways = 0;
   for (const double x : {-12.0, -4.0, 3.0, 9.0, 16.0}) {
-    const FieldTally a = run(p, field, {0, 1}, 1, {x, 0, 12, 15});
-    const FieldTally b = run(m, field, {0, 1}, 1, {-x, 0, -12, 15});
-    const int gate = a.final_gate_of_trial[0];
-    EXPECT_EQ(b.final_gate_of_trial[0], gate / 9 * 9 + 8 - gate % 9);
+    const Ran a = run(p, field, {0, 1}, 1, {x, 0, 12, 15});
+    const Ran b = run(m, field, {0, 1}, 1, {-x, 0, -12, 15});
+    const int gate = a.each.final_gates[0];
+    EXPECT_EQ(b.each.final_gates[0], gate / 9 * 9 + 8 - gate % 9);
     EXPECT_EQ(a.entries[1], b.entries[2]);
     EXPECT_EQ(a.entries[3], b.entries[4]);
     moved_sideways += gate % 9 != 4;
@@ -250,8 +325,8 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
   for (const double x : {-17.0, -9.0, -2.0, 0.0, 6.0, 13.0, 21.0}) {
     SCOPED_TRACE(x);
     const BodyState start{x, 0, 2, 15};
-    const FieldTally t = run(p, field, {0, 5}, 1, start);
-    const int gate = t.final_gate_of_trial[0];
+    const Ran t = run(p, field, {0, 5}, 1, start);
+    const int gate = t.each.final_gates[0];
     EXPECT_EQ(t.final_gates(gate / 9, gate % 9), 5);
 
     // The path's states, one transition each.
@@ -306,7 +381,7 @@ TEST(Fidelity, ActiveIsGateByGate) {
     p.run.method = name;
     const auto method = make_method(p);
     const StateSpace space = StateSpace::paper(p);
-    FieldTally plain(field);
+    Ran plain(field);
     for (std::uint64_t trial = 0; trial < 60; ++trial) {
       RandomForce force(p.forces, Random(Purpose::field, {6, stream_row(p, kStart), trial}));
       BodyState body = kStart;
@@ -340,7 +415,7 @@ TEST(Fidelity, ActiveIsGateByGate) {
       ++plain.trials;
       ++plain.endings[static_cast<std::size_t>(why)];
       ++plain.final_gates(row, column);
-      plain.final_gate_of_trial.push_back(row * 9 + column);
+      plain.each.final_gates.push_back(row * 9 + column);
     }
     expect_same(run(p, field, {0, 60}, 6), plain);
   }
@@ -352,7 +427,7 @@ TEST(Fidelity, TalliesAddUp) {
     for (const FieldParams& field : {FieldParams{9, 9, 13, f}, FieldParams{3, 2, 0, f},
                                      FieldParams{1, 5, 0, f}, FieldParams{4, 1, 2, f}}) {
       SCOPED_TRACE(testing::Message() << field.columns << " x " << field.rows);
-      const FieldTally t = run(p, field, {0, 60});
+      const Ran t = run(p, field, {0, 60});
       expect_adds_up(t, field);
       EXPECT_EQ(t.broken, 0);
       EXPECT_GT(t.trapped + t.left_field, 0);
@@ -366,12 +441,12 @@ TEST(Fidelity, OneGateHasNoMemory) {
   p.forces.propulsion = 7.0;
   p.forces.random = 20.0;
   const auto tally = [&](Fidelity f) { return run(p, {1, 1, 0, f}, {0, 150}); };
-  const FieldTally remember = tally(Fidelity::remember);
+  const Ran remember = tally(Fidelity::remember);
   expect_same(tally(Fidelity::all), remember);
   EXPECT_GT(remember.trapped, 0);
   EXPECT_GT(remember.left_field, 0);
   // Two ways to write one stepper: round-off may part a few trials near grazing.
-  const FieldTally active = tally(Fidelity::active);
+  const Ran active = tally(Fidelity::active);
   EXPECT_LE(std::abs(active.trapped - remember.trapped), 5);
   EXPECT_LE(std::abs(active.left_field - remember.left_field), 5);
 }
@@ -380,7 +455,7 @@ TEST(Fidelity, OneGateHasNoMemory) {
 TEST(Fidelity, SharesTheNoise) {
   const GateParams p = moreau();
   const auto gates = [&](Fidelity f, std::uint64_t seed) {
-    return run(p, {9, 9, 13, f}, {0, 100}, seed).final_gate_of_trial;
+    return run(p, {9, 9, 13, f}, {0, 100}, seed).each.final_gates;
   };
   const auto changed = [](const auto& a, const auto& b) {
     int n = 0;
@@ -403,10 +478,10 @@ TEST(Fidelity, SameTallyOnAnyNumberOfThreadsAndForAnySplit) {
     const auto on = [&](int threads) {
       return test::on_threads(threads, [&] { return run(p, field, {0, 50}); });
     };
-    const FieldTally whole = on(1);
+    const Ran whole = on(1);
     expect_same(on(2), whole);
     expect_same(on(8), whole);
-    FieldTally split(field);
+    Ran split(field);
     for (const TrialRange part : {TrialRange{0, 1}, {1, 32}, {33, 17}})
       split += run(p, field, part);
     expect_same(split, whole);
@@ -423,10 +498,10 @@ TEST(Fidelity, QuietFieldsAreMirrorSymmetric) {
   for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
     int moved_sideways = 0;
     for (const double x : {-12.0, -4.0, 3.0, 9.0, 16.0}) {
-      const FieldTally a = run(p, {9, 9, 0, f}, {0, 1}, 1, {x, 0, 12, 15});
-      const FieldTally b = run(m, {9, 9, 0, f}, {0, 1}, 1, {-x, 0, -12, 15});
-      const int gate = a.final_gate_of_trial[0];
-      EXPECT_EQ(b.final_gate_of_trial[0], gate / 9 * 9 + 8 - gate % 9);
+      const Ran a = run(p, {9, 9, 0, f}, {0, 1}, 1, {x, 0, 12, 15});
+      const Ran b = run(m, {9, 9, 0, f}, {0, 1}, 1, {-x, 0, -12, 15});
+      const int gate = a.each.final_gates[0];
+      EXPECT_EQ(b.each.final_gates[0], gate / 9 * 9 + 8 - gate % 9);
       EXPECT_EQ(a.entries[0], b.entries[0]);
       EXPECT_EQ(a.entries[1], b.entries[2]);
       EXPECT_EQ(a.entries[3], b.entries[4]);
@@ -471,12 +546,12 @@ TEST(FieldTrace, IsTheTrialItself) {
   const GateParams p;
   const FieldParams field;
   std::map<std::optional<markov::Ending>, std::int64_t> endings;
-  const FieldTally tally = run(p, field, {0, 40}, 3);
+  const Ran tally = run(p, field, {0, 40}, 3);
   for (std::int64_t i = 0; i < 40; ++i) {
     const FieldTrace t = trace_field(p, field, kStart, 3, i);
     ++endings[t.ending];
     EXPECT_EQ(t.visits.back().row * field.columns + t.visits.back().column,
-              tally.final_gate_of_trial[i]);
+              tally.each.final_gates[i]);
     for (std::size_t v = 1; v < t.visits.size(); ++v) {
       const auto &from = t.visits[v - 1], &to = t.visits[v];
       EXPECT_EQ(std::abs(from.column - to.column) + to.row - from.row, 1);

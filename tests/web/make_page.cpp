@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "cli/paper/page.h"
+#include "cli/render/json.h"
 #include "cli/terminal/output.h"
 
 int main(int argc, char** argv) try {

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "cli/film/replay.h"
+#include "cli/render/json.h"
 #include "cli/terminal/output.h"
 #include "tests/cli/films.h"
 

@@ -1,11 +1,15 @@
-#include "cli/render/report.h"
+#include "cli/render/final_gates.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "cli/arguments.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
 #include "cli/render/start.h"
+#include "cli/render/text.h"
+#include "dynamics/share.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -45,23 +49,26 @@ Printed printed(const CellProbabilities& shares) {
 TEST(Endings, AreNamedWithTheirIntervals) {
   const std::array<std::int64_t, markov::kEndings> counts{700, 1,  120, 119,
                                                           0,   60, 0};  // by markov::Ending
-  const EndingShares shares(counts, 1000);
+  const lattice::EndingShares shares(counts, 1000);
   EXPECT_EQ(endings(counts).dump(),
             R"({"crossed":1,"left_side":120,"right_side":119,"trapped":700,"cut_off":60})");
   const Json intervals = endings_95(shares);
-  EXPECT_EQ(intervals["trapped"][0], share_interval(700, 1000)[0]);
+  EXPECT_EQ(intervals["trapped"][0], dynamics::share_interval(700, 1000)[0]);
   EXPECT_LT(intervals["crossed"][0].get<double>(), 0.001);
   EXPECT_GT(intervals["crossed"][1].get<double>(), 0.001);
   for (const int k : {0, 1})
-    EXPECT_NEAR(interval_of_share(0.7, 1000.0)[k], share_interval(700, 1000)[k], 1e-12);
+    EXPECT_NEAR(dynamics::interval_of_share(0.7, 1000.0)[k], dynamics::share_interval(700, 1000)[k],
+                1e-12);
   const std::string text = endings_text(shares, "of 1000 trials");
   EXPECT_EQ(text.substr(0, text.find('\n')), "crossed       0.10 %  [0.01, 0.47]  of 1000 trials");
   EXPECT_NE(text.find("\nleft side    12.00 %  [10.10, 14.12]\n"), std::string::npos) << text;
   // Without intervals, and shares that two decimals would hide.
-  EXPECT_EQ(endings_text(EndingShares({0.5, 1.23e-7, 0, 0, 0, 0, 0}), "x").substr(0, 23),
+  EXPECT_EQ(endings_text(lattice::EndingShares({0.5, 1.23e-7, 0, 0, 0, 0, 0}), "x").substr(0, 23),
             "crossed    1.2e-05 %  x");
-  EXPECT_TRUE(endings_95(EndingShares({0.5, 0.5, 0, 0, 0, 0, 0}))["crossed"][0].is_number_float());
-  EXPECT_EQ(endings_95(EndingShares({0.5, 0.5, 0, 0, 0, 0, 0}))["crossed"].dump(), "[null,null]");
+  EXPECT_TRUE(
+      endings_95(lattice::EndingShares({0.5, 0.5, 0, 0, 0, 0, 0}))["crossed"][0].is_number_float());
+  EXPECT_EQ(endings_95(lattice::EndingShares({0.5, 0.5, 0, 0, 0, 0, 0}))["crossed"].dump(),
+            "[null,null]");
 }
 
 TEST(Endings, LabelsOfStartsKeepTheirDigits) {

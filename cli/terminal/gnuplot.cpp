@@ -1,10 +1,11 @@
-#include "cli/render/gnuplot.h"
+#include "cli/terminal/gnuplot.h"
 
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
 
 #include "cli/terminal/child.h"
+#include "cli/terminal/output.h"
 
 namespace gatewalk::cli {
 
@@ -19,6 +20,13 @@ std::string drawn(const std::string& script) {
   Child gnuplot({"gnuplot", "/dev/stdin"}, ::fileno(in.get()),
                 "gnuplot was not found; it draws the figures (Debian: gnuplot-nox)");
   return gnuplot.output();
+}
+
+void draw_svg(const std::string& path, const Figure& f) {
+  write_text_atomically(path,
+                        drawn("set terminal svg size " + std::to_string(f.width) + "," +
+                              std::to_string(f.height) + " font 'sans," + std::to_string(f.font) +
+                              "' background '#ffffff' enhanced\n" + f.commands + "\n"));
 }
 
 }  // namespace gatewalk::cli

@@ -1,19 +1,23 @@
 #pragma once
-/// What the figures of several commands share: text for gnuplot, one look, whole files.
+/// What the figures of several commands share: text for gnuplot, one look.
 
 #include <string>
 #include <string_view>
 
 namespace gatewalk::cli {
 
+/// A figure as gnuplot draws it: its size in points of the screen, and the script without terminal.
+struct Figure {
+  int width = 0, height = 0;
+  std::string commands;
+  int font = 12;  // its size
+};
+
 /// Text for titles and labels of gnuplot, with nothing in it that gnuplot would understand.
 [[nodiscard]] std::string literal(std::string_view text);
 
 /// "name << EOD ... EOD", the rows of a table that `plot` can read as name.
 [[nodiscard]] std::string data_block(std::string_view name, const std::string& rows);
-
-/// Seven digits: more than a figure shows.
-[[nodiscard]] std::string digits(double x);
 
 /// Tics of a logarithmic axis from low to high: 1, 2 and 5 times the powers of ten, or these alone.
 [[nodiscard]] std::string tics_1_2_5(double low, double high);
@@ -24,11 +28,5 @@ struct Look {
   int marker;  // gnuplot's number, filled
 };
 [[nodiscard]] Look look_of(std::string_view method);
-
-/// Runs `commands` into the SVG file `path`, which is replaced as a whole or left as it was.
-void draw_svg(const std::string& path, int width, int height, const std::string& commands);
-
-/// "AMD EPYC, 2 cores": what times were measured on.
-[[nodiscard]] std::string machine();
 
 }  // namespace gatewalk::cli

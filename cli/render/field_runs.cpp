@@ -1,0 +1,94 @@
+#include "cli/render/field_runs.h"
+
+#include "cli/render/choice.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/scene.h"
+#include "cli/render/start.h"
+#include "cli/render/text.h"
+#include "dynamics/share.h"
+
+namespace gatewalk::cli {
+
+using dynamics::share_interval;
+
+Json to_json(const lattice::FieldTally& tally, const lattice::Scene& scene,
+             const std::optional<lattice::Settled>& settled) {
+  Json json;
+  json["endings"] = endings(tally.endings);
+  json["endings_95"] = endings_95(lattice::EndingShares(tally.endings, tally.trials));
+  json["final_gates"] = grid(tally.final_gates);
+  json["trapped_gates"] = grid(tally.trapped_gates);
+  json["departed_gates"] = grid(tally.departed_gates);
+  json["trials"] = tally.trials;
+  json["trapped"] = tally.trapped;
+  json["left_field"] = tally.left_field;
+  json["cut_off"] = tally.cut_off;
+  json["not_finite"] = tally.broken;
+  json["intervals_95"] = {{"trapped", share_interval(tally.trapped, tally.trials)},
+                          {"left_field", share_interval(tally.left_field, tally.trials)},
+                          {"cut_off", share_interval(tally.cut_off, tally.trials)}};
+  Json entries;
+  for (int b = 0; b < dynamics::kBoundaries; ++b)
+    entries[std::string(dynamics::kBoundaryNames[b])] = {{"count", tally.entries[b]},
+                                                         {"outside_bins", tally.clamped[b]}};
+  json["entries_between_gates"] = std::move(entries);
+  json["bins"] = scene.bins ? "scene" : "paper";  // what outside_bins counts by
+  if (settled) json["method"] = to_json(*settled);
+  json["status"] = to_json(tally.health);
+  return json;
+}
+
+std::string table_of(const lattice::FieldTally& tally, const lattice::Scene& scene,
+                     const std::optional<lattice::Settled>& settled) {
+  const auto n = static_cast<double>(tally.trials);
+  std::string table =
+      endings_text(lattice::EndingShares(tally.endings, tally.trials),
+                   "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
+      limits_text(scene) + scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) +
+      map_of_trapped(tally.trapped_gates.cast<double>() / n) + "left the field " +
+      percent(static_cast<double>(tally.left_field), n, 2) + "\n";
+  if (tally.broken > 0)
+    table +=
+        "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
+  return table + method_line(settled);
+}
+
+Json to_json(const markov::WalkTally& tally, const lattice::ChainStart& start,
+             const dynamics::StateSpace& space) {
+  Json json;
+  json["endings"] = endings(tally.endings);
+  json["endings_95"] = endings_95(lattice::EndingShares(tally.endings, tally.walks));
+  json["final_gates"] = grid(tally.final_cells);
+  json["trapped_gates"] = grid(tally.trapped_cells);
+  json["departed_gates"] = grid(tally.departed_cells);
+  json["walks"] = tally.walks;
+  json["trapped"] = tally.trapped;
+  json["left_field"] = tally.left_field;
+  json["cut_off"] = tally.cut_off;
+  json["never_sampled"] = tally.unsampled;
+  json["gates_visited"] = tally.steps;
+  json["start_state"] = to_json(start, space);
+  return json;
+}
+
+std::string table_of(const markov::WalkTally& tally, const lattice::ChainStart& start,
+                     const dynamics::StateSpace& space, const lattice::Scene& scene) {
+  const auto n = static_cast<double>(tally.walks);
+  std::string table =
+      endings_text(lattice::EndingShares(tally.endings, tally.walks),
+                   "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
+      limits_text(scene) + map_of(tally.final_cells.cast<double>() / n) +
+      map_of_trapped(tally.trapped_cells.cast<double>() / n) + "left the field " +
+      percent(static_cast<double>(tally.left_field), n, 2) +
+      "\nstart: " + text_of(space.cell(start.start.input)) +
+      "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has, "
+      "the chain's own error (bins, memory) gatewalk validate measures.\n";
+  if (tally.unsampled > 0)
+    table += "reached a row that was never sampled: " +
+             percent(static_cast<double>(tally.unsampled), n, 4) + "\n";
+  return table;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,161 @@
+#include "cli/render/final_gates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "cli/render/json.h"
+#include "cli/render/text.h"
+#include "lattice/compare.h"
+
+namespace gatewalk::cli {
+
+Json to_json(const lattice::Comparison& c) {
+  Json j;
+  j["corrcoef"] = c.corrcoef;
+  j["corrcoef_floor"] = c.floor.corrcoef;
+  j["rmse_per_100"] = c.rmse_per_100;
+  j["rmse_per_100_floor"] = c.floor.rmse_per_100;
+  j["total_variation"] = c.total_variation;
+  j["total_variation_floor"] = c.floor_total_variation;
+  j["total_variation_floor_95"] = c.floor_total_variation_95;
+  j["p_values"] = {{"chi_squared", c.p_chi_squared},
+                   {"total_variation", c.p_total_variation},
+                   {"energy_distance", c.p_energy},
+                   {"null_draws", c.null_draws}};
+  return j;
+}
+
+namespace {
+
+template <class Cells>
+Json rows_of(const Cells& cells) {
+  Json rows = Json::array();
+  for (Eigen::Index r = 0; r < cells.rows(); ++r) {
+    Json row = Json::array();
+    for (Eigen::Index c = 0; c < cells.cols(); ++c) row.push_back(cells(r, c));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Json grid(const markov::CellCounts& cells) { return rows_of(cells); }
+Json grid(const markov::CellProbabilities& cells) { return rows_of(cells); }
+
+namespace {
+
+/// Places from `first` on, `count` of them, printed in blocks of `block`.
+struct Span {
+  Eigen::Index first, count, block;
+};
+
+/// All of them if they can be printed; else those between ends that hold next to nothing, in blocks
+/// if they are still too many.
+Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
+  constexpr double kNextToNothing = 5e-5;  // prints as 0.00 %
+  Span span{0, shares.size(), 1};
+  if (span.count <= most) return span;
+  const double small = kNextToNothing * shares.sum();
+  Eigen::Index low = 0, high = shares.size() - 1;
+  for (double left = shares(low); left < small && low < high; left += shares(low)) ++low;
+  for (double left = shares(high); left < small && high > low; left += shares(high)) --high;
+  span = {low, high - low + 1, (high - low) / most + 1};
+  return span;
+}
+
+}  // namespace
+
+std::string map_of(const markov::CellProbabilities& shares, const std::string& what) {
+  const Span rows = span_of(shares.rowwise().sum(), 40);
+  Span columns = span_of(shares.colwise().sum().transpose(), 15);
+  const Eigen::Index half = shares.cols() / 2;
+  std::string text = what + ", % of trials (i_y upwards, i_x to the right";
+  if (rows.block > 1 || columns.block > 1) {
+    // The start's column in the middle of a block, so that left and right can be compared.
+    columns.block |= 1;
+    const Eigen::Index end = columns.first + columns.count;
+    const Eigen::Index to_left = half - columns.block / 2 - columns.first;  // from the middle block
+    columns.first +=
+        to_left - (to_left + (to_left > 0 ? columns.block - 1 : 0)) / columns.block * columns.block;
+    columns.count = end - columns.first;
+    text += "; blocks of " + std::to_string(columns.block) + " x " + std::to_string(rows.block) +
+            " gates: i_x in their middle, i_y at their lower end";
+  }
+  text += ")\n";
+  double shown = 0.0;
+  for (Eigen::Index r = (rows.count - 1) / rows.block * rows.block; r >= 0; r -= rows.block) {
+    text += padded(std::to_string(rows.first + r), 4) + " |";
+    for (Eigen::Index c = columns.first; c < columns.first + columns.count; c += columns.block) {
+      const Eigen::Index left = std::max<Eigen::Index>(0, c),
+                         right = std::min(shares.cols(), c + columns.block);
+      const double share =
+          shares.block(rows.first + r, left, std::min(rows.block, rows.count - r), right - left)
+              .sum();
+      shown += share;
+      text += share == 0.0 ? padded(".", 7) : padded(fixed(100.0 * share, 2), 7);
+    }
+    text += "\n";
+  }
+  text += "  i_x ";
+  for (Eigen::Index c = columns.first; c < columns.first + columns.count; c += columns.block)
+    text += padded(std::to_string(c + columns.block / 2 - half), 7);
+  text += "\n";
+  if (rows.count < shares.rows() || columns.count < shares.cols())
+    text += "elsewhere in the " + std::to_string(shares.cols()) + " x " +
+            std::to_string(shares.rows()) +
+            " gates: " + percent(std::max(0.0, shares.sum() - shown), 1.0, 4) + "\n";
+  return text;
+}
+
+namespace {
+
+template <class Values>
+Json by_name(const Values& values) {
+  Json j;
+  for (const EndingName& e : kEndingNames) j[e.key] = values[static_cast<std::size_t>(e.ending)];
+  return j;
+}
+
+/// A share in % with two decimals, or two digits if that would be 0.
+std::string percents(double share) {
+  if (!(share > 0.0 && share < 5e-5)) return fixed(100.0 * share, 2);
+  std::ostringstream text;
+  text.precision(2);
+  text << 100.0 * share;
+  return text.str();
+}
+
+}  // namespace
+
+Json endings(const std::array<std::int64_t, markov::kEndings>& counts) { return by_name(counts); }
+Json endings(const std::array<double, markov::kEndings>& shares) { return by_name(shares); }
+Json endings_95(const lattice::EndingShares& shares) { return by_name(shares.interval); }
+
+std::string with_interval(double share, const std::array<double, 2>& interval) {
+  if (std::isnan(interval[0])) return percents(share);
+  return percents(share) + " [" + percents(interval[0]) + ", " + percents(interval[1]) + "]";
+}
+
+std::string endings_text(const lattice::EndingShares& shares, const std::string& of) {
+  std::string text;
+  for (const EndingName& e : kEndingNames) {
+    const auto at = static_cast<std::size_t>(e.ending);
+    text += padded(e.name, -11) + padded(percents(shares.share[at]), 7) + " %";
+    if (!std::isnan(shares.interval[at][0]))
+      text +=
+          "  [" + percents(shares.interval[at][0]) + ", " + percents(shares.interval[at][1]) + "]";
+    if (at == static_cast<std::size_t>(kEndingNames.front().ending)) text += "  " + of;
+    text += "\n";
+  }
+  return text;
+}
+
+std::string map_of_trapped(const markov::CellProbabilities& shares) {
+  constexpr Eigen::Index kMost = 15;
+  if (shares.rows() > kMost || shares.cols() > kMost || shares.sum() == 0.0) return "";
+  return map_of(shares, "of these trapped");
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,51 @@
+#pragma once
+/// Where and how trials, walks and predictions through a field end, as JSON and as tables.
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "cli/render/json_fwd.h"
+#include "lattice/ending_shares.h"
+#include "markov/walk.h"
+
+namespace gatewalk::lattice {
+struct Comparison;
+}
+
+namespace gatewalk::cli {
+
+[[nodiscard]] Json to_json(const lattice::Comparison& c);
+[[nodiscard]] Json grid(const markov::CellCounts& cells);
+[[nodiscard]] Json grid(const markov::CellProbabilities& cells);
+
+/// The field seen from above, farthest row on top, in percent. Of fields too large to print: where
+/// all but next to nothing lies, in blocks if need be.
+[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares,
+                                 const std::string& what = "final gate");
+/// The map of the trapped, below the first one; empty for fields too large to print and where none
+/// is.
+[[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares);
+
+/// The five that a gate chain has, with their names in JSON and in tables. (It has no way out
+/// backwards; states never sampled are told apart.)
+struct EndingName {
+  markov::Ending ending;
+  const char *key, *name;
+};
+inline constexpr std::array<EndingName, 5> kEndingNames{
+    {{markov::Ending::far_edge, "crossed", "crossed"},
+     {markov::Ending::left_edge, "left_side", "left side"},
+     {markov::Ending::right_edge, "right_side", "right side"},
+     {markov::Ending::trapped, "trapped", "trapped"},
+     {markov::Ending::cut_off, "cut_off", "cut off"}}};
+/// {"crossed": ..., "left_side": ..., ...}: counts, shares, or [low, high] (null: no interval).
+[[nodiscard]] Json endings(const std::array<std::int64_t, markov::kEndings>& counts);
+[[nodiscard]] Json endings(const std::array<double, markov::kEndings>& shares);
+[[nodiscard]] Json endings_95(const lattice::EndingShares& shares);
+/// A line each: "crossed      0.02 %  [0.00, 0.05]"; `of` ends the first one.
+[[nodiscard]] std::string endings_text(const lattice::EndingShares& shares, const std::string& of);
+/// "17.61 [16.87, 18.37]", in %; "17.61" without an interval.
+[[nodiscard]] std::string with_interval(double share, const std::array<double, 2>& interval);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,65 @@
+#include "cli/render/health.h"
+
+#include "cli/render/json.h"
+#include "cli/render/quantity.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+
+Json to_json(const dynamics::Health& h) {
+  Json j;
+  j["clean"] = h.clean();
+  for (const dynamics::HealthNumber& n : dynamics::kHealthNumbers)
+    if (n.count != nullptr)
+      j[n.key] = h.*n.count;
+    else
+      j[n.key] = h.*n.largest;
+  return j;
+}
+
+dynamics::Health health_from(const Json& j) {
+  dynamics::Health h;
+  for (const dynamics::HealthNumber& n : dynamics::kHealthNumbers) {
+    if (n.is_recent && !j.contains(n.key)) continue;
+    if (n.count != nullptr)
+      h.*n.count = j.at(n.key);
+    else
+      h.*n.largest = j.at(n.key);
+  }
+  return h;
+}
+
+std::string complaint(const dynamics::Health& h) {
+  if (h.clean()) return "";
+  const auto of_runs = [&](std::int64_t n) {
+    return std::to_string(n) + " of " + std::to_string(h.runs) + " gate runs";
+  };
+  std::string text = "the method showed faults:";
+  if (h.penetrating > 0)
+    text += " the disc sank into a beam in " + of_runs(h.penetrating) + " (worst " +
+            quantity(h.worst_penetration, "m") + ");";
+  if (h.creating_energy > 0)
+    text += " energy appeared from nothing in " + of_runs(h.creating_energy) + " (worst " +
+            quantity(h.worst_energy_created, "J") + ");";
+  if (h.fast > 0)
+    text += " disc or beam moved over half a radius in one step in " + of_runs(h.fast) +
+            ", hits may have been missed: take a smaller run.step_s;";
+  if (h.unstable > 0)
+    text += " the step is longer than the method's stability bound for these beams in " +
+            of_runs(h.unstable) + ": take a smaller run.step_s or another run.method;";
+  if (h.outcomes_off())
+    text += " a better method gives other outcomes for at least " + percent(h.outcome_error, 1.0) +
+            " of " + std::to_string(h.checked_trials) +
+            " trials that were run again: take a smaller run.step_s, or run.method = \"auto\";";
+  if (h.undefined_contacts > 0)
+    text += " " + std::to_string(h.undefined_contacts) +
+            " steps overlapped a joint, for which it has no formula;";
+  if (h.piled_up())
+    text += " hits piled up and were forced to end in " + std::to_string(h.forced_holds) + " of " +
+            std::to_string(h.steps) + " steps;";
+  if (h.broken > 0) text += " " + std::to_string(h.broken) + " runs stopped being finite numbers;";
+  text.back() = '.';
+  return text;
+}
+
+}  // namespace gatewalk::cli

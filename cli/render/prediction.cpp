@@ -1,0 +1,109 @@
+#include "cli/render/prediction.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "cli/render/final_gates.h"
+#include "cli/render/json.h"
+#include "cli/render/matrix.h"
+#include "cli/render/scene.h"
+#include "cli/render/start.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// What is predicted for one start.
+void add_to(Json& json, const lattice::StartPrediction& s) {
+  const markov::FinalDistribution& f = s.final;
+  json["endings"] = endings(f.endings);
+  json["endings_95"] = endings_95(s.shares);
+  json["matrix_sampling"] = {{"replicates", s.replicates},
+                             {"total_variation_mean", s.mean_total_variation},
+                             {"total_variation_95", s.total_variation_95}};
+  json["final_gates"] = grid(f.final_cells);
+  json["trapped_gates"] = grid(markov::trapped_cells(f));
+  json["departed_gates"] = grid(markov::departed_cells(f));
+  json["trapped"] = f.trapped;
+  json["left_field"] = f.left_field;
+  json["cut_off"] = f.cut_off;
+  json["never_sampled"] = f.unsampled;
+  json["still_walking"] = f.remainder;
+  json["rounding_at_most"] = f.rounding;
+  json["error_at_most"] = f.remainder + f.rounding;
+  json["steps"] = f.steps;
+}
+
+std::string table_of(const lattice::StartPrediction& s, const PredictedField& of) {
+  const markov::FinalDistribution& f = s.final;
+  const lattice::EndingShares& shares = s.shares;
+  const bool intervals = !std::isnan(shares.interval.front().front());
+  std::string table =
+      endings_text(shares,
+                   intervals
+                       ? "of all walks, 95 % intervals for the sampling of the matrix"
+                       : "of all walks; no intervals: the field is too large for many predictions, "
+                         "or a resampled matrix failed") +
+      limits_text(of.matrix.scene) + map_of(f.final_cells) +
+      map_of_trapped(markov::trapped_cells(f)) + "left the field " + percent(f.left_field, 1.0, 2) +
+      "\nstart: " + text_of(of.matrix.file.transitions.space.cell(s.start.start.input)) + "\n";
+  if (f.unsampled > 0.0)
+    table += "reaches a row that was never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
+  if (f.remainder > 1e-8)
+    table += "still walking when the sum was stopped: " + percent(f.remainder, 1.0, 6) + "\n";
+  std::ostringstream bound;
+  bound.precision(2);
+  bound << "The chain's own error (bins, memory, and with bins from a pilot where its rows start) "
+           "is not in the intervals:\n"
+        << "gatewalk validate measures it.\n"
+        << "Rounding and walks not finished, which are not the error of the prediction: at most "
+        << f.remainder + f.rounding << " in all shares together\n";
+  return table + bound.str();
+}
+
+}  // namespace
+
+std::string title_of(const lattice::PaperStart& s) {
+  std::ostringstream title;
+  title << "start d " << s.d << " m, vx " << s.vx << " m/s, vy " << s.vy << " m/s";
+  return title.str();
+}
+
+Json to_json(const lattice::Prediction& prediction, const PredictedField& of,
+             const std::string& solver) {
+  const dynamics::StateSpace& space = of.matrix.file.transitions.space;
+  Json json;
+  if (of.starts.empty()) add_to(json, prediction.starts.front());
+  for (std::size_t k = 0; k < of.starts.size(); ++k) {
+    const lattice::PaperStart& s = of.starts[k];
+    Json one;
+    one["start"] = {{"d_m", s.d}, {"vx_m_per_s", s.vx}, {"vy_m_per_s", s.vy}};
+    add_to(one, prediction.starts[k]);
+    one["start_state"] = to_json(prediction.starts[k].start, space);
+    json["starts"].push_back(std::move(one));
+  }
+  json["solver"] = solver;
+  if (of.starts.empty()) json["start_state"] = to_json(prediction.starts.front().start, space);
+  json["matrix_status"] = recorded_status(of.matrix.file);
+  for (const lattice::RowMatrix& o : of.other_rows)
+    json["rows"].push_back({{"first", o.first},
+                            {"last", o.last},
+                            {"matrix", o.path},
+                            {"matrix_status", recorded_status(o.matrix.file)},
+                            {"scene", lattice::to_toml(o.matrix.scene)}});
+  return json;
+}
+
+std::string table_of(const lattice::Prediction& prediction, const PredictedField& of) {
+  std::string table;
+  if (of.starts.empty()) table = table_of(prediction.starts.front(), of);
+  for (std::size_t k = 0; k < of.starts.size(); ++k)
+    table +=
+        (k > 0 ? "\n" : "") + title_of(of.starts[k]) + "\n" + table_of(prediction.starts[k], of);
+  for (const lattice::RowMatrix& o : of.other_rows)
+    table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " +
+             o.path + "\n";
+  return table;
+}
+
+}  // namespace gatewalk::cli

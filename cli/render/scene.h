@@ -1,0 +1,25 @@
+#pragma once
+/// What a scene says, in words.
+
+#include <string>
+#include <vector>
+
+#include "cli/render/json_fwd.h"
+#include "lattice/scene/scene.h"
+
+namespace gatewalk::cli {
+
+/// What is run, in one line: start, body, forces, beams, method.
+[[nodiscard]] std::string scene_line(const lattice::Scene& scene);
+/// What two of the endings mean in this scene, below them.
+[[nodiscard]] std::string limits_text(const lattice::Scene& scene);
+/// That no body can cross the field within the gates it may visit; empty if one can.
+[[nodiscard]] std::string too_few_gates(const lattice::Scene& scene);
+
+/// Every key with its value, unit, range, meaning and source.
+[[nodiscard]] Json to_json(const std::vector<lattice::KeyInfo>& keys);
+[[nodiscard]] std::string table_of(const std::vector<lattice::KeyInfo>& keys);
+/// The scene as a file to edit: every key with its value, unit, range and meaning.
+[[nodiscard]] std::string commented(const lattice::Scene& scene);
+
+}  // namespace gatewalk::cli

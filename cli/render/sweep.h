@@ -1,0 +1,21 @@
+#pragma once
+/// A sweep as JSON, CSV and table.
+
+#include <string>
+#include <vector>
+
+#include "cli/render/json_fwd.h"
+#include "lattice/study/sweep.h"
+
+namespace gatewalk::cli {
+
+/// Without "made_by".
+[[nodiscard]] Json to_json(const std::vector<lattice::SweepAxis>& axes,
+                           const std::vector<lattice::SweepPoint>& points);
+[[nodiscard]] std::string csv_of(const std::vector<lattice::SweepAxis>& axes,
+                                 const std::vector<lattice::SweepPoint>& points);
+[[nodiscard]] std::string table_of(const lattice::Scene& scene,
+                                   const std::vector<lattice::SweepAxis>& axes,
+                                   const std::vector<lattice::SweepPoint>& points);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,19 @@
+#pragma once
+/// Numbers and words of tables.
+
+#include <string>
+
+namespace gatewalk::cli {
+
+/// Fixed-point text of x with `digits` decimals; "-" for a value that is not a number.
+[[nodiscard]] std::string fixed(double x, int digits);
+/// "12.3 %"
+[[nodiscard]] std::string percent(double part, double whole, int digits = 1);
+/// A p-value with 3 decimals, or "<0.001".
+[[nodiscard]] std::string p_text(double p);
+/// Seven digits: for files and figures.
+[[nodiscard]] std::string digits(double x);
+/// Text padded on the left or (negative width) on the right.
+[[nodiscard]] std::string padded(const std::string& text, int width);
+
+}  // namespace gatewalk::cli

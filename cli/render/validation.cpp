@@ -1,0 +1,291 @@
+#include "cli/render/validation.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/start.h"
+#include "cli/render/states.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+Json to_json(const lattice::MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; }
+
+std::string verdict(const lattice::StartValidation& r) {
+  const lattice::Judgement& j = r.judgement;
+  const std::string p = j.p < 0.001 ? "p < 0.001" : "p = " + fixed(j.p, 3);
+  if (r.finding() != lattice::Finding::own_error)
+    return "the chain agrees with the dynamics as far as these trials and this matrix can tell (" +
+           p + ")";
+  std::string text =
+      "the chain differs from the dynamics by more than chance in trials and matrix makes (" + p +
+      "):";
+  const char* separator = " ";
+  const auto say = [&](const std::string& what) {
+    text += separator + what;
+    separator = "; ";
+  };
+  for (const EndingName& e : kEndingNames) {
+    if (!j.differs(e.ending)) continue;
+    const auto at = static_cast<std::size_t>(e.ending);
+    say(std::string(e.name) + " " +
+        with_interval(r.dynamics_endings.share[at], r.dynamics_endings.interval[at]) +
+        " % in the dynamics, " +
+        with_interval(r.exact_endings.share[at], r.exact_endings.interval[at]) + " % by the chain");
+  }
+  if (j.differs(markov::Ending::unsampled))
+    say("states never sampled, " + percent(r.exact.unsampled, 1.0, 2) + " by the chain");
+  const auto gates = {j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted};
+  if (std::any_of(gates.begin(), gates.end(),
+                  [](double x) { return x <= lattice::Judgement::kLevel; }))
+    say("final gates, total variation " + fixed(j.total_variation.seen, 3) +
+        " (chance: " + fixed(j.chance_total_variation, 3) + ")");
+  return text;
+}
+
+/// What the one test counted.
+Json to_json(const lattice::Judgement& j, std::int64_t resampled) {
+  Json adjusted = {{"total_variation", j.total_variation.p_adjusted},
+                   {"energy_distance", j.energy.p_adjusted},
+                   {"chi_squared", j.chi_squared.p_adjusted}};
+  for (const EndingName& e : kEndingNames)
+    adjusted["endings"][e.key] = j.endings[static_cast<std::size_t>(e.ending)].p_adjusted;
+  adjusted["endings"]["never_sampled"] =
+      j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted;
+  return {{"differs", j.differs()},
+          {"p", j.p},
+          {"level", lattice::Judgement::kLevel},
+          {"p_adjusted", adjusted},
+          {"total_variation_by_chance",
+           {{"mean", j.chance_total_variation}, {"at_95", j.chance_total_variation_95}}},
+          {"null_draws", j.null_draws},
+          {"resampled_matrices", resampled}};
+}
+
+Json to_json(const lattice::StartValidation& r) {
+  Json j;
+  j["verdict"] = verdict(r);
+  j["trials_and_matrix"] = to_json(r.judgement, r.resampled);
+  j["start"] = {{"d_m", r.start.d},
+                {"vx_m_per_s", r.start.vx},
+                {"vy_m_per_s", r.start.vy},
+                {"clamped", r.chain_start.clamped}};
+  if (r.start.corrcoef)
+    j["paper"] = {{"corrcoef", *r.start.corrcoef}, {"rmse_per_100", *r.start.rmse}};
+  j["exact"] = cli::to_json(r.exact_against);
+  j["exact"]["total_variation_of_matrix_sampling"] = {{"mean", r.matrix_noise_mean},
+                                                      {"sd", r.matrix_noise_sd}};
+  j["walks"] = cli::to_json(r.walks_against);
+  const lattice::PaperSized& p = r.paper_sized;
+  j["at_100_trials"] = {{"repeats", p.exact_rmse.n},
+                        {"exact_corrcoef", to_json(p.exact_corrcoef)},
+                        {"exact_corrcoef_floor", r.floor_100_exact.corrcoef},
+                        {"exact_rmse_per_100", to_json(p.exact_rmse)},
+                        {"exact_rmse_per_100_floor", r.floor_100_exact.rmse_per_100},
+                        {"exact_corrcoef_rmse_correlation", p.exact_correlation()},
+                        {"walks_corrcoef", to_json(p.walks_corrcoef)},
+                        {"walks_corrcoef_floor", r.floor_100_walks.corrcoef},
+                        {"walks_rmse_per_100", to_json(p.walks_rmse)},
+                        {"walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100}};
+  j["seconds"] = {
+      {"dynamics", r.dynamics_seconds}, {"walks", r.walks_seconds}, {"exact", r.exact_seconds}};
+  const double per_trial = r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
+  const double per_walk = r.walks_seconds / static_cast<double>(r.walks.walks);
+  j["speed_ratio"] = {{"dynamics_trial_over_walk", per_trial / per_walk},
+                      {"dynamics_over_exact", r.dynamics_seconds / r.exact_seconds}};
+  j["endings"] = {{"dynamics", endings(r.dynamics.endings)},
+                  {"walks", endings(r.walks.endings)},
+                  {"exact", endings(r.exact.endings)}};
+  j["endings_95"] = {{"dynamics", endings_95(r.dynamics_endings)},
+                     {"walks", endings_95(r.walks_endings)},
+                     {"exact", endings_95(r.exact_endings)}};
+  const auto fates = [](double trapped, double left, double cut) {
+    return Json{{"trapped", trapped}, {"left_field", left}, {"cut_off", cut}};
+  };
+  const auto n = static_cast<double>(r.dynamics.trials);
+  j["fates"] = {{"dynamics", fates(static_cast<double>(r.dynamics.trapped) / n,
+                                   static_cast<double>(r.dynamics.left_field) / n,
+                                   static_cast<double>(r.dynamics.cut_off) / n)},
+                {"exact", fates(r.exact.trapped, r.exact.left_field, r.exact.cut_off)}};
+  j["final_gates"] = {{"dynamics", grid(r.dynamics.final_gates)},
+                      {"walks", grid(r.walks.final_cells)},
+                      {"exact", grid(r.exact.final_cells)}};
+  j["trapped_gates"] = {{"dynamics", grid(r.dynamics.trapped_gates)},
+                        {"walks", grid(r.walks.trapped_cells)},
+                        {"exact", grid(markov::trapped_cells(r.exact))}};
+  j["departed_gates"] = {{"dynamics", grid(r.dynamics.departed_gates)},
+                         {"walks", grid(r.walks.departed_cells)},
+                         {"exact", grid(markov::departed_cells(r.exact))}};
+  j["never_sampled"] = r.exact.unsampled;
+  return j;
+}
+
+std::string with_sd(const lattice::MeanAndSd& m) {
+  return fixed(m.mean(), 3) + " (" + fixed(m.sd(), 3) + ")";
+}
+
+/// How trials ended, by the dynamics and by the chain, and the verdicts.
+std::string endings_table(const lattice::Validation& v, const StartTexts& labels) {
+  std::ostringstream out;
+  // Each column as wide as its widest cell: "17.61 [16.87, 18.37]*".
+  std::array<std::size_t, kEndingNames.size()> width{};
+  const auto cell = [](const lattice::StartValidation& r, const lattice::EndingShares& shares,
+                       const EndingName& e) {
+    const auto at = static_cast<std::size_t>(e.ending);
+    const bool marked = &shares == &r.exact_endings && r.judgement.differs(e.ending);
+    return with_interval(shares.share[at], shares.interval[at]) + (marked ? "*" : " ");
+  };
+  for (const lattice::StartValidation& r : v.starts)
+    for (std::size_t e = 0; e < width.size(); ++e)
+      width[e] = std::max({width[e], cell(r, r.dynamics_endings, kEndingNames[e]).size(),
+                           cell(r, r.exact_endings, kEndingNames[e]).size()});
+  const auto line = [&](const auto& text_of) {
+    std::string text;
+    for (std::size_t e = 0; e < width.size(); ++e)
+      text += "  " + padded(text_of(kEndingNames[e]), static_cast<int>(width[e]));
+    return text;
+  };
+  out << "Endings, % of " << v.trials
+      << " trials of the full dynamics and by the exact chain, with 95 % intervals: chance in the\n"
+         "trials, in the sampling of the matrix. p: how often chance in both together would make "
+         "any ending\n"
+         "or the final gates look as different; *: this ending differs.\n\n"
+      << labels.header << "  |         ";
+  out << line([](const EndingName& e) { return std::string(e.name) + " "; }) << "       p\n";
+  for (std::size_t k = 0; k < v.starts.size(); ++k) {
+    const lattice::StartValidation& r = v.starts[k];
+    out << labels.texts[k] << "  | dynamics"
+        << line([&](const EndingName& e) { return cell(r, r.dynamics_endings, e); }) << "\n"
+        << labels.texts[k] << "  | chain   "
+        << line([&](const EndingName& e) { return cell(r, r.exact_endings, e); })
+        << padded(p_text(r.judgement.p), 8) << "\n";
+  }
+  out << "\n";
+  for (std::size_t k = 0; k < v.starts.size(); ++k)
+    out << labels.texts[k] << "  | " << verdict(v.starts[k]) << "\n";
+  return out.str();
+}
+
+/// Beside what the paper prints, where these are its starts.
+std::string table4_table(const lattice::Validation& v, const StartTexts& labels, bool papers) {
+  std::ostringstream out;
+  const std::string blank(labels.header.size(), ' ');
+  out << "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean "
+         "(sd) over\n"
+         "repeats. Floor: what chance alone gives if the chain were perfect.\n\n"
+      << blank << "  |            corrcoef                      |        RMSE, trials per 100\n"
+      << labels.header
+      << "  | paper  exact chain    floor  100 walks   | paper  exact chain    floor  100 walks\n";
+  for (std::size_t k = 0; k < v.starts.size(); ++k) {
+    const lattice::StartValidation& r = v.starts[k];
+    const lattice::PaperSized& p = r.paper_sized;
+    const auto printed = [&](const std::optional<double>& x) {
+      return padded(papers && x ? fixed(*x, 3) : "-", 6);
+    };
+    out << labels.texts[k] << "  |" << printed(r.start.corrcoef) << "  "
+        << padded(with_sd(p.exact_corrcoef), -15) << padded(fixed(r.floor_100_exact.corrcoef, 3), 5)
+        << "  " << padded(with_sd(p.walks_corrcoef), -15) << "|" << printed(r.start.rmse) << "  "
+        << padded(with_sd(p.exact_rmse), -15) << padded(fixed(r.floor_100_exact.rmse_per_100, 3), 5)
+        << "  " << with_sd(p.walks_rmse) << "\n";
+  }
+  return out.str();
+}
+
+/// Of all trials.
+std::string final_gates_table(const lattice::Validation& v, const StartTexts& labels) {
+  std::ostringstream out;
+  out << "\nFinal gates of all " << v.trials
+      << " trials per start. Floor: chance in these trials (and walks) alone; matrix:\n"
+         "total variation (TV) that the sampling of the matrix alone makes; chance: that both "
+         "together make.\n\n"
+      << labels.header
+      << "  | against         corrcoef  floor    RMSE   floor      TV   floor  matrix  chance\n";
+  for (std::size_t k = 0; k < v.starts.size(); ++k) {
+    const lattice::StartValidation& r = v.starts[k];
+    const auto compared = [&](const std::string& name, const lattice::Comparison& c,
+                              const std::string& chance) {
+      out << labels.texts[k] << "  | " << padded(name, -15) << padded(fixed(c.corrcoef, 4), 9)
+          << padded(fixed(c.floor.corrcoef, 4), 8) << padded(fixed(c.rmse_per_100, 3), 8)
+          << padded(fixed(c.floor.rmse_per_100, 3), 8) << padded(fixed(c.total_variation, 3), 8)
+          << padded(fixed(c.floor_total_variation, 3), 8)
+          << padded(fixed(r.matrix_noise_mean, 3), 8) << padded(chance, 8) << "\n";
+    };
+    compared("exact chain", r.exact_against, fixed(r.judgement.chance_total_variation, 3));
+    compared(std::to_string(v.walks) + " walks", r.walks_against, "-");
+  }
+  return out.str();
+}
+
+std::string seconds_table(const lattice::Validation& v, const StartTexts& labels) {
+  std::ostringstream out;
+  out << "\nSeconds: " << v.trials << " trials and " << v.walks << " walks on " << v.threads
+      << (v.threads == 1 ? " thread" : " threads") << ", one exact prediction on one.\n"
+      << "\n"
+      << labels.header
+      << "  |           dynamics      walks      exact | dynamics/exact  trial/walk\n";
+  for (std::size_t k = 0; k < v.starts.size(); ++k) {
+    const lattice::StartValidation& r = v.starts[k];
+    const double per_trial = r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
+    const double per_walk = r.walks_seconds / static_cast<double>(r.walks.walks);
+    out << labels.texts[k] << "  |" << padded(fixed(r.dynamics_seconds, 2), 19)
+        << padded(fixed(r.walks_seconds, 4), 11) << padded(fixed(r.exact_seconds, 6), 11) << " |"
+        << padded(fixed(r.dynamics_seconds / r.exact_seconds, 0), 15)
+        << padded(fixed(per_trial / per_walk, 0), 12) << "\n";
+  }
+  return out.str();
+}
+
+double share(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+}  // namespace
+
+Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix) {
+  Json json;
+  json["trials"] = v.trials;
+  json["walks"] = v.walks;
+  json["starts"] = Json::array();
+  for (const lattice::StartValidation& r : v.starts) json["starts"].push_back(to_json(r));
+  json["crossings"] = {{"between_gates", v.entries},
+                       {"RT_and_LT_share", share(v.traverse_sides, v.entries)},
+                       {"clamped_share", share(v.clamped, v.entries)}};
+  const auto total = matrix.transitions.totals();
+  json["matrix"] = {{"gate_runs", total.runs},
+                    {"clamped_share", total.clamped_share()},
+                    {"rows_never_sampled", total.empty_rows},
+                    {"status", matrix.status},
+                    {"seconds", matrix.seconds}};
+  if (!matrix.states.is_null()) json["state_space"] = matrix.states;
+  json["threads"] = v.threads;
+  json["status"] = to_json(v.health);
+  if (!matrix.settled.is_null()) json["method"] = matrix.settled;
+  return json;
+}
+
+std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
+                     const ValidatedMatrix& matrix) {
+  const bool papers = lattice::like_table4(scene);
+  std::vector<lattice::PaperStart> starts;
+  for (const lattice::StartValidation& r : v.starts) starts.push_back(r.start);
+  const StartTexts labels(starts);
+  const auto crossings = static_cast<double>(v.entries);
+  std::string table = endings_table(v, labels) + table4_table(v, labels, papers) +
+                      final_gates_table(v, labels) + seconds_table(v, labels);
+  table += "\nMatrix: " + std::to_string(matrix.transitions.totals().runs) + " gate runs, " +
+           (matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path) +
+           ". Crossings between gates in the dynamics: " +
+           percent(static_cast<double>(v.traverse_sides), crossings) + " through RT or LT" +
+           (papers ? " (paper: fewer than 4 %), " : ", ") +
+           percent(static_cast<double>(v.clamped), crossings) + " outside the bins.\n" +
+           states_line(matrix.states);
+  if (v.entries == 0) table += "No trial ever reached a second gate.\n";
+  return table;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,25 @@
+#pragma once
+/// The chain against the full dynamics, as JSON and as tables.
+
+#include <string>
+
+#include "cli/render/json_fwd.h"
+#include "dynamics/transitions.h"
+#include "lattice/study/validation.h"
+
+namespace gatewalk::cli {
+
+/// The matrix whose chain was validated, with what its file or its making says of it.
+struct ValidatedMatrix {
+  const dynamics::Transitions& transitions;
+  std::string path;                       // empty: it was built for this
+  double seconds = 0.0;                   // to build or read it
+  const Json &status, &settled, &states;  // null where there is none
+};
+
+/// Without "made_by".
+[[nodiscard]] Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix);
+[[nodiscard]] std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
+                                   const ValidatedMatrix& matrix);
+
+}  // namespace gatewalk::cli

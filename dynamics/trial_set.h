@@ -1,0 +1,35 @@
+#pragma once
+/// Which trials a tally holds.
+
+#include <cstdint>
+#include <map>
+
+namespace gatewalk::dynamics {
+
+/// Trials first, first + 1, ... first + count - 1. A trial is named by its number, so any split
+/// over calls, threads or machines gives the same trials.
+struct TrialRange {
+  std::int64_t first = 0;
+  std::int64_t count = 0;
+};
+
+/// Trials by their numbers, as ranges that neither touch nor overlap: sums over them add in any
+/// order, and no trial twice.
+class TrialSet {
+ public:
+  TrialSet() = default;
+  explicit TrialSet(TrialRange range) { add(range); }
+
+  /// Throws std::invalid_argument naming a trial that is held already.
+  void add(TrialRange range);
+  void add(const TrialSet& other);
+
+  [[nodiscard]] std::int64_t count() const;
+  [[nodiscard]] const std::map<std::int64_t, std::int64_t>& ranges() const { return ends_; }
+  friend bool operator==(const TrialSet&, const TrialSet&) = default;
+
+ private:
+  std::map<std::int64_t, std::int64_t> ends_;  // first -> one past the last
+};
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,27 @@
+#pragma once
+/// How trials through the field ended, as shares with intervals.
+
+#include <array>
+#include <cstdint>
+
+#include "lattice/matrix_noise.h"
+#include "markov/predict.h"
+
+namespace gatewalk::lattice {
+
+/// Shares of all, with 95 % intervals (NaN: none), by markov::Ending.
+struct EndingShares {
+  std::array<double, markov::kEndings> share{};
+  std::array<std::array<double, 2>, markov::kEndings> interval;
+
+  /// Without intervals.
+  explicit EndingShares(const std::array<double, markov::kEndings>& shares);
+  /// Jeffreys' intervals of these counts.
+  EndingShares(const std::array<std::int64_t, markov::kEndings>& counts, std::int64_t trials);
+  /// A prediction's, with what the sampling of its matrix makes. Without a limit of gates nothing
+  /// is cut off.
+  EndingShares(const markov::FinalDistribution& prediction, const MatrixNoise& noise,
+               int max_gates);
+};
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,52 @@
+#pragma once
+/// Exact predictions from matrices, with what the sampling of the matrices leaves open.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/work.h"
+#include "lattice/ending_shares.h"
+#include "lattice/matrix_noise.h"
+#include "lattice/scene/matrix.h"
+#include "lattice/scene/table4.h"
+
+namespace gatewalk::lattice {
+
+/// Rows i_y = first to last whose gates are those of another matrix.
+struct RowMatrix {
+  int first = 0, last = 0;
+  std::string path;
+  SceneMatrix matrix;
+};
+
+/// What the cells of base's field draw from. Throws std::invalid_argument, whose message begins
+/// "--row FIRST-LAST=PATH", when rows lie outside the field or are given twice, or when a matrix
+/// has another body, gates of another size or other states than `base`, which is called
+/// `base_path`.
+[[nodiscard]] CountedField field_of(const SceneMatrix& base, const std::string& base_path,
+                                    const std::vector<RowMatrix>& others);
+
+struct StartPrediction {
+  ChainStart start;
+  markov::FinalDistribution final;
+  EndingShares shares;  // with 95 % intervals where there are replicates
+  /// Predictions from resampled matrices, and their total variation from this one (NaN without).
+  std::int64_t replicates = 0;
+  double mean_total_variation = 0.0, total_variation_95 = 0.0;
+};
+
+struct Prediction {
+  std::vector<StartPrediction> starts;
+  double seconds = 0.0;               // of the predictions alone
+  std::optional<std::string> failed;  // why a resampled matrix could not be predicted from
+};
+
+/// One prediction per start. `how.max_cells` is the field's max_gates. Replicates are 200 in small
+/// fields, none where 50 would take too long or where one fails. Throws as markov::predict.
+[[nodiscard]] Prediction predict(const CountedField& gates, const FieldParams& field,
+                                 const std::vector<ChainStart>& starts, markov::PredictOptions how,
+                                 std::uint64_t seed, const dynamics::Work& work = {});
+
+}  // namespace gatewalk::lattice

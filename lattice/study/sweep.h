@@ -1,0 +1,49 @@
+#pragma once
+/// One gate over a grid of scene keys.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/ensemble.h"
+#include "dynamics/work.h"
+#include "lattice/scene/settle.h"
+
+namespace gatewalk::lattice {
+
+/// A varied key and its values as text, as an override of the scene takes them.
+struct SweepAxis {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+/// The scene's own variations, completed and replaced by `given`, each "KEY=4:1:9" (4, 5, ... 9),
+/// "KEY=4:9" (in steps of 1) or "KEY=4,7,9". Throws SceneError for what cannot be read, a key
+/// varied twice and more than 100 000 points; std::invalid_argument when nothing is varied.
+[[nodiscard]] std::vector<SweepAxis> sweep_axes(const std::vector<Variation>& own,
+                                                const std::vector<std::string>& given);
+
+struct SweepPoint {
+  std::vector<std::string> values;  // (axes)
+  Scene scene;
+  std::optional<Settled> settled;  // where the point's method is "auto"
+  dynamics::GateTally tally;
+};
+
+/// A scene as text and how it is varied.
+struct SweepPlan {
+  std::string text, source;  // of the scene file, and what messages call it
+  std::vector<std::string> overrides;
+  std::vector<SweepAxis> axes;
+};
+
+/// Every combination, the last axis running fastest, not yet run. Throws SceneError for values that
+/// a key cannot have.
+[[nodiscard]] std::vector<SweepPoint> sweep_points(const SweepPlan& plan);
+
+/// Runs the gate at each point, under the same noise.
+void run_sweep(std::vector<SweepPoint>& points, std::int64_t trials, std::uint64_t seed,
+               const dynamics::Work& work = {});
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,31 @@
+#include "lattice/study/trials.h"
+
+#include "lattice/scene/bins.h"
+#include "lattice/scene/settle.h"
+
+namespace gatewalk::lattice {
+
+FieldTally field_trials(const Scene& scene, std::int64_t trials, std::uint64_t seed,
+                        const dynamics::Work& work) {
+  const dynamics::StateSpace space = fixed_space(scene);
+  FieldTally tally(scene.field);
+  work.in_pieces("field trials", trials, [&](dynamics::TrialRange range) {
+    tally += run_field(scene.gate, scene.field, scene.start, space, seed, range);
+  });
+  check_outcomes(scene, RunsFrom::everywhere, seed, trials, tally.health, work);
+  return tally;
+}
+
+markov::WalkTally walks(const markov::Chain& chain, const FieldParams& field,
+                        const ChainStart& start, std::int64_t count, std::uint64_t seed,
+                        const dynamics::Work& work) {
+  const markov::Walker walker(chain);
+  markov::WalkTally tally;
+  work.in_pieces("walks", count, [&](dynamics::TrialRange range) {
+    tally += walker.walk({field.columns, field.rows}, start.start, field.max_gates, seed,
+                         {range.first, range.count});
+  });
+  return tally;
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,256 @@
+#include "lattice/study/validation.h"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <stdexcept>
+
+#include "dynamics/transitions.h"
+#include "lattice/gate_chain.h"
+#include "lattice/matrix_noise.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Stopwatch;
+using dynamics::TrialRange;
+
+/// Fills a PaperSized from final gates in the order of the trials, handed over in any pieces; keeps
+/// no more than a block.
+class BlocksOf100 {
+ public:
+  /// `walks_of(first, count)`: final cells of those walks.
+  using Walks = std::function<std::vector<std::int32_t>(std::int64_t first, std::int64_t count)>;
+  BlocksOf100(const markov::CellProbabilities& exact, std::int64_t walks, Walks walks_of)
+      : exact_(exact), walks_(walks), walks_of_(std::move(walks_of)) {}
+
+  void add(const std::vector<std::int32_t>& dynamics) {
+    for (const std::int32_t cell : dynamics) {
+      waiting_.push_back(cell);
+      if (waiting_.size() == kBlock) finish_block();
+    }
+  }
+  [[nodiscard]] const PaperSized& result() const { return result_; }
+
+ private:
+  static constexpr std::size_t kBlock = 100;
+
+  [[nodiscard]] markov::CellProbabilities shares(const std::vector<std::int32_t>& cells) const {
+    markov::CellProbabilities p = markov::CellProbabilities::Zero(exact_.rows(), exact_.cols());
+    for (const std::int32_t cell : cells) p.data()[cell] += 1.0 / kBlock;
+    return p;
+  }
+  void finish_block() {
+    const auto seen = shares(waiting_);
+    const double corr = corrcoef(seen, exact_), rmse = rmse_per_100(seen, exact_);
+    result_.exact_corrcoef.add(corr);
+    result_.exact_rmse.add(rmse);
+    result_.exact_products += corr * rmse;
+    if (done_ + static_cast<std::int64_t>(kBlock) <= walks_) {
+      const auto walked = shares(walks_of_(done_, kBlock));
+      result_.walks_corrcoef.add(corrcoef(seen, walked));
+      result_.walks_rmse.add(rmse_per_100(seen, walked));
+    }
+    done_ += kBlock;
+    waiting_.clear();
+  }
+
+  const markov::CellProbabilities& exact_;
+  std::int64_t walks_, done_ = 0;  // done_: trials in finished blocks
+  Walks walks_of_;
+  std::vector<std::int32_t> waiting_;
+  PaperSized result_;
+};
+
+/// What all starts share.
+struct Setup {
+  const Scene& scene;
+  const dynamics::Transitions& matrix;
+  const ValidationOptions& options;
+  std::int64_t walks;
+  CountedField gates;
+  markov::Predictor predictor;
+  markov::Walker walker;
+  const dynamics::Work& work;
+
+  [[nodiscard]] markov::Field field() const { return {scene.field.columns, scene.field.rows}; }
+};
+
+/// Predictions from resampled matrices, (starts x replicates): fewer for large fields, which cost
+/// time and memory.
+std::vector<std::vector<markov::FinalDistribution>> resampled_predictions(
+    const Setup& setup, const std::vector<markov::Start>& starts) {
+  constexpr std::int64_t kMost = 999, kAtLeast = 50, kTogether = 8, kMostNumbers = 25'000'000;
+  const markov::Field field = setup.field();
+  const int max_gates = setup.scene.field.max_gates;
+  const std::int64_t numbers = std::int64_t{field.columns} * field.rows * std::ssize(starts);
+  const std::int64_t count = std::max(
+      kAtLeast, affordable_replicates(field, max_gates, std::min(kMost, kMostNumbers / numbers)));
+  std::vector<std::vector<markov::FinalDistribution>> all(starts.size());
+  setup.work.in_pieces(
+      "resampled matrices", (count + kTogether - 1) / kTogether, [&](TrialRange batches) {
+        const std::int64_t begin = batches.first * kTogether;
+        auto found =
+            replicate_predictions(setup.gates, field, starts, max_gates, setup.options.seed, begin,
+                                  std::min(batches.count * kTogether, count - begin));
+        for (std::size_t k = 0; k < starts.size(); ++k)
+          std::move(found[k].begin(), found[k].end(), std::back_inserter(all[k]));
+      });
+  return all;
+}
+
+struct TimedWalks {
+  markov::WalkTally tally;
+  double seconds = 0.0;
+};
+
+TimedWalks walk(const Setup& setup, const markov::Start& start) {
+  TimedWalks walked;
+  const Stopwatch watch;
+  setup.work.in_pieces("walks", setup.walks, [&](TrialRange range) {
+    walked.tally += setup.walker.walk(setup.field(), start, setup.scene.field.max_gates,
+                                      setup.options.seed, {range.first, range.count});
+  });
+  walked.seconds = watch.seconds();
+  return walked;
+}
+
+struct TimedTrials {
+  FieldTally tally;
+  PaperSized paper_sized;
+  double seconds = 0.0;
+};
+
+TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov::Start& place,
+                       const markov::FinalDistribution& exact) {
+  TimedTrials seen{FieldTally(setup.scene.field), {}};
+  BlocksOf100 blocks(exact.final_cells, setup.walks, [&](std::int64_t first, std::int64_t n) {
+    std::vector<std::int32_t> cells;
+    (void)setup.walker.walk(setup.field(), place, setup.scene.field.max_gates, setup.options.seed,
+                            {first, n}, &cells);
+    return cells;
+  });
+  setup.work.in_pieces("full dynamics", setup.options.trials, [&](TrialRange range) {
+    const Stopwatch watch;
+    FieldTrials each;
+    seen.tally += run_field(setup.scene.gate, setup.scene.field, start.body(), setup.matrix.space,
+                            setup.options.seed, range, &each);
+    seen.seconds += watch.seconds();
+    blocks.add(each.final_gates);
+  });
+  seen.paper_sized = blocks.result();
+  return seen;
+}
+
+/// As many as fit a fixed amount of work, 999 to 9999: each draw deals out the trials and
+/// multiplies with a matrix of gates x gates.
+std::int64_t null_draws_for(const Setup& setup) {
+  const std::int64_t cells = std::int64_t{setup.scene.field.columns} * setup.scene.field.rows;
+  const std::int64_t gates = std::min<std::int64_t>(cells, kMostEnergyGates);
+  return setup.options.null_draws.value_or(std::clamp<std::int64_t>(
+      100'000'000 / (setup.options.trials + setup.walks + gates * gates / 8), 999, 9999));
+}
+
+StartValidation validate_start(const Setup& setup, const PaperStart& start,
+                               const std::vector<markov::FinalDistribution>& resampled) {
+  const int max_gates = setup.scene.field.max_gates;
+  const ChainStart chain_start =
+      lattice::chain_start(setup.matrix.space, setup.scene.field, start.body());
+  const Stopwatch exact_watch;
+  const markov::FinalDistribution exact =
+      setup.predictor.predict(setup.field(), chain_start.start, {.max_cells = max_gates});
+  const double exact_seconds = exact_watch.seconds();
+  const TimedWalks walked = walk(setup, chain_start.start);
+  const TimedTrials seen = run_trials(setup, start, chain_start.start, exact);
+
+  MatrixNoise noise(exact, setup.gates.runs_at(chain_start.start));
+  for (const markov::FinalDistribution& other : resampled) noise.add(other);
+  const markov::CellCounts& final_gates = seen.tally.final_gates;
+  const std::int64_t draws = null_draws_for(setup);
+  const std::uint64_t seed = setup.options.seed;
+  const double s = concentration(final_gates);
+  return {.start = start,
+          .chain_start = chain_start,
+          .dynamics = seen.tally,
+          .walks = walked.tally,
+          .exact = exact,
+          .walks_against = compare(final_gates, walked.tally.final_cells, draws, seed),
+          .exact_against = compare(final_gates, exact.final_cells, draws, seed),
+          .paper_sized = seen.paper_sized,
+          .floor_100_exact = noise_floor(s, exact.final_cells.size(), 100, 0),
+          .floor_100_walks = noise_floor(s, exact.final_cells.size(), 100, 100),
+          .judgement = judge({final_gates, seen.tally.endings}, exact, resampled, draws, seed),
+          .resampled = noise.replicates(),
+          .matrix_noise_mean = noise.mean_total_variation(),
+          .matrix_noise_sd = noise.sd_total_variation(),
+          .dynamics_endings = EndingShares(seen.tally.endings, seen.tally.trials),
+          .walks_endings = EndingShares(walked.tally.endings, walked.tally.walks),
+          .exact_endings = EndingShares(exact, noise, max_gates),
+          .dynamics_seconds = seen.seconds,
+          .walks_seconds = walked.seconds,
+          .exact_seconds = exact_seconds};
+}
+
+}  // namespace
+
+Finding finding_of(bool differs, double total_variation, double floor_95) {
+  if (differs) return Finding::own_error;
+  return total_variation <= floor_95 ? Finding::within_trials : Finding::within_trials_and_matrix;
+}
+
+Validation validate_chain(const Scene& scene, const dynamics::Transitions& matrix,
+                          const std::vector<PaperStart>& starts, const ValidationOptions& options,
+                          const dynamics::Work& work) {
+  constexpr std::int64_t kMostGates = 100'000;
+  if (std::int64_t{scene.field.columns} * scene.field.rows > kMostGates)
+    throw std::invalid_argument("validate compares fields of up to " + std::to_string(kMostGates) +
+                                " gates; field.columns = " + std::to_string(scene.field.columns) +
+                                " and field.rows = " + std::to_string(scene.field.rows));
+  const markov::Chain chain = make_chain(matrix);
+  const Setup setup{scene,
+                    matrix,
+                    options,
+                    options.walks.value_or(options.trials),
+                    counted_field(matrix),
+                    markov::Predictor(chain),
+                    markov::Walker(chain),
+                    work};
+  std::vector<markov::Start> places;
+  for (const PaperStart& start : starts)
+    places.push_back(chain_start(matrix.space, scene.field, start.body()).start);
+  const auto resampled = resampled_predictions(setup, places);
+
+  Validation v{
+      .trials = options.trials, .walks = setup.walks, .starts = {}, .health = matrix.health};
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    v.starts.push_back(validate_start(setup, starts[k], resampled[k]));
+    const FieldTally& d = v.starts.back().dynamics;
+    v.health += d.health;
+    for (int b = 0; b < dynamics::kBoundaries; ++b) {
+      v.entries += d.entries[b];
+      v.clamped += d.clamped[b];
+    }
+    v.traverse_sides += d.entries[static_cast<int>(dynamics::Boundary::right_traverse)] +
+                        d.entries[static_cast<int>(dynamics::Boundary::left_traverse)];
+  }
+  v.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return v;
+}
+
+bool like_table4(const Scene& scene) {
+  const dynamics::GateParams paper;
+  for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
+    const bool free = info.key == "forces.propulsion_N" || info.key == "forces.random_N" ||
+                      info.key.substr(0, 4) == "run.";
+    if (!free && info.get(scene.gate) != info.get(paper)) return false;
+  }
+  const FieldParams field;
+  return scene.gate.run.time_limit == paper.run.time_limit &&
+         scene.gate.run.traverse_y == paper.run.traverse_y &&
+         scene.field.columns == field.columns && scene.field.rows == field.rows &&
+         scene.field.max_gates == field.max_gates;
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,113 @@
+#pragma once
+/// The chain against the full dynamics, start by start.
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "dynamics/work.h"
+#include "lattice/compare.h"
+#include "lattice/ending_shares.h"
+#include "lattice/gate_chain.h"
+#include "lattice/reference.h"
+#include "lattice/scene/scene.h"
+#include "lattice/scene/table4.h"
+#include "markov/predict.h"
+#include "markov/walk.h"
+
+namespace gatewalk::lattice {
+
+struct MeanAndSd {
+  double sum = 0.0, squares = 0.0;
+  std::int64_t n = 0;
+  void add(double x) {
+    if (!std::isfinite(x)) return;
+    sum += x;
+    squares += x * x;
+    ++n;
+  }
+  [[nodiscard]] double mean() const { return n > 0 ? sum / static_cast<double>(n) : std::nan(""); }
+  [[nodiscard]] double sd() const {
+    if (n < 2) return std::nan("");
+    const double m = mean();
+    return std::sqrt(
+        std::max(0.0, (squares - static_cast<double>(n) * m * m) / static_cast<double>(n - 1)));
+  }
+};
+
+/// What the paper did: 100 trials of each, over and over, from the trials at hand in blocks of 100.
+struct PaperSized {
+  MeanAndSd exact_corrcoef, exact_rmse, walks_corrcoef, walks_rmse;
+  double exact_products = 0.0;  // sum of corrcoef * rmse over the blocks
+
+  /// Correlation, over the blocks, of the exact chain's corrcoef with its RMSE.
+  [[nodiscard]] double exact_correlation() const {
+    const auto n = static_cast<double>(exact_corrcoef.n);
+    return (exact_products - n * exact_corrcoef.mean() * exact_rmse.mean()) /
+           ((n - 1) * exact_corrcoef.sd() * exact_rmse.sd());
+  }
+};
+
+/// What the comparison of one start finds.
+enum class Finding {
+  within_trials,             // chance in the trials alone makes as much (95 % of the time)
+  within_trials_and_matrix,  // chance in the trials and in the sampling of the matrix does
+  own_error,                 // more than both: the chain itself is off (bins, memory)
+};
+/// `differs`: what the one test of trials and matrix says (Judgement); the total variation of the
+/// final gates from the exact chain's, and what 95 % of samples of that chain have no more than.
+[[nodiscard]] Finding finding_of(bool differs, double total_variation, double floor_95);
+
+struct ValidationOptions {
+  std::int64_t trials = 100;          // of the full dynamics, per start
+  std::optional<std::int64_t> walks;  // per start; as many as trials
+  std::optional<std::int64_t>
+      null_draws;  // behind each p-value; 999 to 9999, by the size of the work
+  std::uint64_t seed = 1;
+};
+
+/// Everything about one start. Trials, walks and p-values belong to the options' seed.
+struct StartValidation {
+  PaperStart start;
+  ChainStart chain_start;
+  FieldTally dynamics;
+  markov::WalkTally walks;
+  markov::FinalDistribution exact;
+  Comparison walks_against, exact_against;  // the dynamics' final gates against these
+  PaperSized paper_sized;
+  NoiseFloor floor_100_exact, floor_100_walks;  // of 100 trials, against exact and 100 walks
+  Judgement judgement;
+  std::int64_t resampled = 0;                             // matrices behind the two:
+  double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;  // total variation of their predictions
+  EndingShares dynamics_endings, walks_endings, exact_endings;
+  double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
+
+  [[nodiscard]] Finding finding() const {
+    return finding_of(judgement.differs(), exact_against.total_variation,
+                      exact_against.floor_total_variation_95);
+  }
+};
+
+struct Validation {
+  std::int64_t trials = 0, walks = 0;  // per start
+  std::vector<StartValidation> starts;
+  dynamics::Health health;  // of the matrix's runs and the trials
+  // Crossings between gates of all trials, through RT or LT, and outside every bin.
+  std::int64_t entries = 0, traverse_sides = 0, clamped = 0;
+  std::size_t threads = 0;
+};
+
+/// Compares the chain of `matrix` with the full dynamics from each start. Some 50 predictions of
+/// every gate are kept: throws std::invalid_argument for fields of more than 100 000 gates, and as
+/// chain_start and run_field do.
+[[nodiscard]] Validation validate_chain(const Scene& scene, const dynamics::Transitions& matrix,
+                                        const std::vector<PaperStart>& starts,
+                                        const ValidationOptions& options,
+                                        const dynamics::Work& work = {});
+
+/// Body, beams, drag and field of the paper's Table IV, whatever the forces (it does not print
+/// them): only then do its numbers belong beside these.
+[[nodiscard]] bool like_table4(const Scene& scene);
+
+}  // namespace gatewalk::lattice
