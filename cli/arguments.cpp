@@ -79,12 +79,10 @@ lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& sc
 
 std::optional<lattice::Settled> settle_method(const Options& options, lattice::Scene& scene,
                                               lattice::RunsFrom from) {
-  for (const std::string& text : lattice::keys_without_effect(scene)) warn(text);
-  if (const std::string text = lattice::derived_keys(scene); !text.empty() && options.talk())
-    warn(text);
+  for (const std::string& text : lattice::keys_without_effect(scene)) options.warn(text);
+  if (options.talk()) options.warn(lattice::derived_keys(scene));
   auto settled = lattice::settle_method(scene, from, options.seed(), options.work());
-  if (settled)
-    if (const std::string text = complaint(*settled); !text.empty()) warn(text);
+  if (settled) options.warn(complaint(*settled));
   return settled;
 }
 
@@ -94,56 +92,59 @@ lattice::States states_of(const Options& options, const lattice::Scene& scene,
   lattice::States states =
       lattice::states_of(scene, choice, starts, options.seed(), options.work());
   if (states.replaced)
-    warn("Table III's bins do not resolve how bodies move in this scene; takes --bins auto");
+    options.warn(
+        "Table III's bins do not resolve how bodies move in this scene; takes --bins auto");
   return states;
 }
 
 lattice::SceneMatrix read_matrix(const Options& options) {
-  return read_matrix(options.text("matrix"), options.text("scene"), options.overrides());
+  return read_matrix(options, options.text("matrix"), options.text("scene"), options.overrides());
 }
 
-lattice::SceneMatrix read_matrix(const std::string& matrix_path, const std::string& scene_path,
+lattice::SceneMatrix read_matrix(const Options& options, const std::string& matrix_path,
+                                 const std::string& scene_path,
                                  const std::vector<std::string>& overrides) {
   lattice::SceneMatrix m = lattice::read_scene_matrix(matrix_path, scene_path, overrides);
   if (const std::string faults = faults_recorded(recorded_status(m.file)); !faults.empty())
-    warn("the runs that made " + matrix_path + ": " + faults);
+    options.warn("the runs that made " + matrix_path + ": " + faults);
   return m;
 }
 
-lattice::ChainStart checked_start(const dynamics::StateSpace& space,
+lattice::ChainStart checked_start(const Options& options, const dynamics::StateSpace& space,
                                   const lattice::FieldParams& field,
                                   const dynamics::BodyState& body, const std::string& name) {
   const lattice::ChainStart start = lattice::start_in_bins(space, field, body, name);
   if (start.beyond)
-    warn(name + " lies beyond every entry that the bins were made from, " +
-         lattice::entry_bins(space) +
-         "; the prediction is that of the outermost bin. A matrix of a scene with this start suits "
-         "it");
+    options.warn(
+        name + " lies beyond every entry that the bins were made from, " +
+        lattice::entry_bins(space) +
+        "; the prediction is that of the outermost bin. A matrix of a scene with this start suits "
+        "it");
   return start;
 }
 
-void require_inside_bins(const std::vector<lattice::PaperStart>& starts,
+void require_inside_bins(const Options& options, const std::vector<lattice::PaperStart>& starts,
                          const lattice::Scene& scene, const dynamics::StateSpace& space) {
   for (const lattice::PaperStart& s : starts)
-    (void)checked_start(space, scene.field, s.body(), "start" + start_text(s));
+    (void)checked_start(options, space, scene.field, s.body(), "start" + start_text(s));
 }
 
 lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatrix& m,
                                 const dynamics::BodyState& body, const std::string& name) {
   const dynamics::StateSpace& space = m.file.transitions.space;
-  const lattice::ChainStart start = checked_start(space, m.scene.field, body, name);
+  const lattice::ChainStart start = checked_start(options, space, m.scene.field, body, name);
   const dynamics::Cell cell = space.cell(start.start.input);
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
     return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
   };
   if (on_edge(cell.d, body.x) || on_edge(cell.vx, body.vx) || on_edge(cell.vy, body.vy))
-    remark(options, name + " lies on an edge of its bin, " + text_of(cell) +
-                        "; its prediction is that of the whole bin");
+    options.remark(name + " lies on an edge of its bin, " + text_of(cell) +
+                   "; its prediction is that of the whole bin");
   return start;
 }
 
 int status_of(const Options& options, const dynamics::Health& health) {
-  if (!health.clean()) warn(complaint(health));
+  options.warn(complaint(health));
   return exit_status(options, health.clean());
 }
 

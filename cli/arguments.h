@@ -43,16 +43,17 @@ void add_bins(Options& options);
 /// was made by runs that showed faults.
 [[nodiscard]] lattice::SceneMatrix read_matrix(const Options& options);
 /// The same for any file.
-[[nodiscard]] lattice::SceneMatrix read_matrix(const std::string& matrix_path,
+[[nodiscard]] lattice::SceneMatrix read_matrix(const Options& options,
+                                               const std::string& matrix_path,
                                                const std::string& scene_path,
                                                const std::vector<std::string>& overrides);
 /// lattice::start_in_bins; warns when the start lies beyond every entry that open bins were made
 /// from.
-lattice::ChainStart checked_start(const dynamics::StateSpace& space,
+lattice::ChainStart checked_start(const Options& options, const dynamics::StateSpace& space,
                                   const lattice::FieldParams& field,
                                   const dynamics::BodyState& body, const std::string& name);
 /// The same for each of them.
-void require_inside_bins(const std::vector<lattice::PaperStart>& starts,
+void require_inside_bins(const Options& options, const std::vector<lattice::PaperStart>& starts,
                          const lattice::Scene& scene, const dynamics::StateSpace& space);
 /// As checked_start. Remarks when the start lies on an edge of its bin: then another bin would
 /// serve it as well.

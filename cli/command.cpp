@@ -109,6 +109,8 @@ struct Options::State {
   std::vector<po::option> given;
   std::string canonical;
   std::string no_scene;  // why there is no --set, if there is none
+  std::optional<dynamics::Work> work;
+  std::function<void(const std::string&)> warned;
 
   struct Output {
     std::string name;
@@ -369,6 +371,8 @@ void Options::check_files() {
 }
 
 bool Options::parse(const Arguments& arguments) {
+  state_->work = arguments.work;
+  state_->warned = arguments.warned;
   (state_->no_scene.empty() ? state_->own : state_->hidden)
       .add_options()("set", po::value<Strings>()->composing()->value_name("KEY=VALUE"),
                      "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what "
@@ -379,7 +383,7 @@ bool Options::parse(const Arguments& arguments) {
   const int style = unix_style & ~allow_guessing;  // an abbreviation is a typing error
   po::parsed_options parsed(&all);
   try {
-    parsed = po::command_line_parser(arguments)
+    parsed = po::command_line_parser(arguments.words)
                  .options(all)
                  .positional(state_->positions)
                  .style(style)
@@ -477,7 +481,19 @@ Provenance Options::provenance(const lattice::Scene& scene) const {
   return p;
 }
 
-dynamics::Work Options::work() const { return watched_work(talk()); }
+dynamics::Work Options::work() const { return state_->work.value_or(watched_work(talk())); }
+
+void Options::warn(const std::string& text) const {
+  if (text.empty()) return;
+  if (state_->warned)
+    state_->warned(text);
+  else
+    std::cerr << "gatewalk: " << text << "\n";
+}
+
+void Options::remark(const std::string& text) const {
+  if (talk() && ::isatty(STDERR_FILENO) == 1) warn(text);
+}
 
 // ---- What is given out ----
 
@@ -515,15 +531,9 @@ std::string ResultFolder::path(const std::string& file) const {
 
 int exit_status(const Options& options, bool clean) {
   if (clean || !options.has("strict")) return kFine;
-  warn(
+  options.warn(
       "--strict: the result's status is not clean, so the exit status is 1; the result is written");
   return kFailure;
 }
-
-void remark(const Options& options, const std::string& text) {
-  if (options.talk() && ::isatty(STDERR_FILENO) == 1) warn(text);
-}
-
-void warn(const std::string& text) { std::cerr << "gatewalk: " << text << "\n"; }
 
 }  // namespace gatewalk::cli

@@ -3,25 +3,35 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/provenance.h"
+#include "dynamics/work.h"
 
-namespace gatewalk::dynamics {
-struct Work;
-}
 namespace gatewalk::lattice {
 struct Scene;
 }
 
 namespace gatewalk::cli {
 
-using Arguments = std::vector<std::string>;
+/// The words behind a command's name; and who is told how far it is and what it warns of, where
+/// that is not the user at the terminal.
+struct Arguments {
+  Arguments(std::vector<std::string> given) : words(std::move(given)) {}  // NOLINT: the usual case
+  Arguments(std::initializer_list<std::string> given) : words(given) {}
+
+  std::vector<std::string> words;
+  std::optional<dynamics::Work> work = std::nullopt;
+  std::function<void(const std::string&)> warned = nullptr;
+};
 
 /// Exit statuses, a contract for scripts.
 enum ExitCode : int { kFine = 0, kFailure = 1, kWrongUse = 2, kStopped = 130 };
@@ -112,8 +122,12 @@ class Options {
 
   /// Progress lines and remarks are wanted.
   [[nodiscard]] bool talk() const { return !has("quiet"); }
-  /// Long work of this command: shown unless --quiet, stopped by a signal.
+  /// Long work of this command: shown unless --quiet, stopped by a signal; or as the arguments say.
   [[nodiscard]] dynamics::Work work() const;
+  /// A warning, always: the result cannot be taken at face value. Nothing for an empty text.
+  void warn(const std::string& text) const;
+  /// A remark, if wanted and if somebody is there to read it (a terminal).
+  void remark(const std::string& text) const;
 
   /// The command as it shaped the result, without what cannot change it (threads, output names).
   [[nodiscard]] std::string canonical() const;
@@ -158,10 +172,5 @@ class ResultFolder {
 /// The exit status of a command whose result is written: with --strict, kFailure when the result's
 /// status is not clean, which is said.
 [[nodiscard]] int exit_status(const Options& options, bool clean);
-
-/// A remark on standard error, if wanted and if somebody is there to read it (a terminal).
-void remark(const Options& options, const std::string& text);
-/// A warning on standard error, always: the result cannot be taken at face value.
-void warn(const std::string& text);
 
 }  // namespace gatewalk::cli

@@ -56,7 +56,7 @@ const Command* find_command(const std::string& name) {
   return nullptr;
 }
 
-int run(const Arguments& words) {
+int run(const std::vector<std::string>& words) {
   if (words.empty()) {
     print_help(std::cerr);
     return kWrongUse;
@@ -74,7 +74,7 @@ int run(const Arguments& words) {
     return std::cout.flush() ? kFine : kFailure;
   }
   const Command* const command = find_command(words[0]);
-  return command ? command->run({words.begin() + 1, words.end()}) : kWrongUse;
+  return command ? command->run(std::vector(words.begin() + 1, words.end())) : kWrongUse;
 }
 
 }  // namespace

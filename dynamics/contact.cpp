@@ -96,8 +96,8 @@ Coupling coupling(const GateParams& p, const std::array<Touch, 2>& touch) {
           (l.nx * r.nx + l.ny * r.ny) / p.body.mass};
 }
 
-std::array<double, 2> push_or_pull(const Coupling& w, const std::array<double, 2>& b,
-                                   const std::array<bool, 2>& active) {
+std::array<double, 2> bilateral_impulses(const Coupling& w, const std::array<double, 2>& b,
+                                         const std::array<bool, 2>& active) {
   if (active[kLeft] && active[kRight]) {
     // det > 0 unless both contacts coincide (two pins in one place); then share equally.
     const double det = w.left * w.right - w.cross * w.cross;
@@ -113,8 +113,8 @@ std::array<double, 2> push_or_pull(const Coupling& w, const std::array<double, 2
   return {0.0, 0.0};
 }
 
-std::array<double, 2> push_only(const Coupling& w, const std::array<double, 2>& b,
-                                const std::array<bool, 2>& active) {
+std::array<double, 2> unilateral_impulses(const Coupling& w, const std::array<double, 2>& b,
+                                          const std::array<bool, 2>& active) {
   const bool need_left = active[kLeft] && b[kLeft] < 0.0;
   const bool need_right = active[kRight] && b[kRight] < 0.0;
   if (!need_left && !need_right) return {0.0, 0.0};
@@ -127,7 +127,7 @@ std::array<double, 2> push_only(const Coupling& w, const std::array<double, 2>& 
     const double z = -b[kRight] / w.right;
     if (!active[kLeft] || b[kLeft] + w.cross * z >= 0.0) return {0.0, z};
   }
-  const auto z = push_or_pull(w, b, {true, true});
+  const auto z = bilateral_impulses(w, b, {true, true});
   return {std::max(0.0, z[kLeft]), std::max(0.0, z[kRight])};
 }
 

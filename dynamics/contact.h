@@ -144,19 +144,21 @@ struct Coupling {
 
 /// Solves z >= 0, W z + b >= 0, z.(W z + b) = 0 over the contacts marked `active` (others z = 0).
 /// W is positive definite, so there is exactly one answer; 2 x 2, so it is found by cases.
-[[nodiscard]] std::array<double, 2> push_only(const Coupling& w, const std::array<double, 2>& b,
-                                              const std::array<bool, 2>& active);
+[[nodiscard]] std::array<double, 2> unilateral_impulses(const Coupling& w,
+                                                        const std::array<double, 2>& b,
+                                                        const std::array<bool, 2>& active);
 
 /// Solves W z = -b over the contacts marked `active`, z of either sign.
-[[nodiscard]] std::array<double, 2> push_or_pull(const Coupling& w, const std::array<double, 2>& b,
-                                                 const std::array<bool, 2>& active);
+[[nodiscard]] std::array<double, 2> bilateral_impulses(const Coupling& w,
+                                                       const std::array<double, 2>& b,
+                                                       const std::array<bool, 2>& active);
 
 /// d^2 gap / dt^2 (m/s^2) without contact forces: Newton's law Eqs. (2), (3) in Eq. (11) or (13).
 [[nodiscard]] double free_gap_acceleration(const GateParams& p, Side side, const Touch& t,
                                            const GateState& s, double force_x);
 
 /// Contact forces (N, along n) that keep the `active` contacts from closing: Newton's law Eqs. (2),
-/// (3) with the constraint Eq. (11) or (13). `push` is push_only or push_or_pull.
+/// (3) with the constraint Eq. (11) or (13). `push` is unilateral_impulses or bilateral_impulses.
 template <class Solve>
 [[nodiscard]] std::array<double, 2> contact_forces(const GateParams& p, const GateState& s,
                                                    const std::array<Touch, 2>& touch,

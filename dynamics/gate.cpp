@@ -17,7 +17,7 @@ bool finite(const GateState& s) {
 
 Outcome outcome_of(const GateRun& run) {
   const double left = run.watch.max_theta[kLeft], right = run.watch.max_theta[kRight];
-  if (run.cut_short) return Outcome::broken;
+  if (run.out_of_work) return Outcome::broken;
   switch (run.ending) {
     case Ending::traversed:
       return left > right   ? Outcome::traversed_left
@@ -57,8 +57,8 @@ GateRun run_gate(const GateParams& p, const Method& method, const BodyState& sta
   EnergyLedger ledger(p, s, std::move(follow));
   const double nearly_over = p.run.time_limit - 1e-6 * p.run.step;
   while (!outside(p, s.body) && run.seconds < nearly_over) {
-    run.cut_short = std::max(run.watch.steps, run.watch.evaluations) > most_work;
-    if (run.cut_short) break;
+    run.out_of_work = std::max(run.watch.steps, run.watch.evaluations) > most_work;
+    if (run.out_of_work) break;
     const double f = force.value();
     const double spell = std::min(force.left(), p.run.time_limit - run.seconds);
     const double passed = method.advance(s, f, spell, ledger, run.watch);

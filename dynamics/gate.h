@@ -18,7 +18,7 @@ struct GateRun {
   Ending ending = Ending::broken;
   BodyState exit;        // state at the end, in this gate's frame
   double seconds = 0.0;  // simulated time
-  bool cut_short =
+  bool out_of_work =
       false;    // stopped because it took more work than was granted; `ending` means nothing
   Watch watch;  // largest deflections, faults, work done
 };

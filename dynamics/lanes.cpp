@@ -292,8 +292,8 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
     t[side] = touch_of(p, side, at);
   }
 
-  // Both beams at once, with push_only of contact.h: one alone if that leaves the other open, else
-  // both.
+  // Both beams at once, with unilateral_impulses of contact.h: one alone if that leaves the other
+  // open, else both.
   const Wide inv_mass = load(k.inv_mass);
   Wide before[2], rate[2], give[2], impulse[2];  // give: 1/M + l^2/I
   WideMask need[2], alone[2];

@@ -155,7 +155,7 @@ Scale scale_of(const GateParams& p) {
 
 double default_step(const GateParams& p) {
   const bool stable = p.run.method == "stable" || p.run.method == "auto";
-  const double wanted = (stable ? Run{}.step : kPaperStep) * scale_of(p).time;
+  const double wanted = (stable ? RunParams{}.step : kPaperStep) * scale_of(p).time;
   return 1.0 / (p.forces.random_rate * std::ceil(1.0 / (p.forces.random_rate * wanted) - 1e-9));
 }
 
@@ -168,18 +168,18 @@ double gentleness(const GateParams& p) {
   const Scale scale = scale_of(p);
   const double force =
       std::max(p.forces.propulsion, 0.1 * p.forces.random);  // the random one for a hold only
-  const double usual = Contact{}.impulse_threshold * scale.impulse();
+  const double usual = ContactParams{}.impulse_threshold * scale.impulse();
   return force > 0.0 ? std::min(1.0, 3.0 * force * (kPaperStep * scale.time) / usual) : 1.0;
 }
 
 }  // namespace
 
 double default_impulse_threshold(const GateParams& p) {
-  return Contact{}.impulse_threshold * scale_of(p).impulse() * gentleness(p);
+  return ContactParams{}.impulse_threshold * scale_of(p).impulse() * gentleness(p);
 }
 
 double default_event_tolerance(const GateParams& p) {
-  return Run{}.event_tolerance * scale_of(p).length * gentleness(p);
+  return RunParams{}.event_tolerance * scale_of(p).length * gentleness(p);
 }
 
 namespace {

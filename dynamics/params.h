@@ -43,7 +43,7 @@ struct Forces {
   double drag = 0.06;         // N s / m, D of Sec. III-C
 };
 
-struct Contact {
+struct ContactParams {
   double restitution = 0.8;         // -, interior of a beam and joint pin, Sec. II-A
   double tip_restitution = 1.0;     // -, free end, Eq. (6): elastic
   double impulse_threshold = 0.04;  // N s, epsilon of Sec. II-B: below it contact is a constraint
@@ -51,7 +51,7 @@ struct Contact {
 
 inline constexpr double kPaperStep = 0.004;  // s, Sec. II-B; units of time (Scale) in other scenes
 
-struct Run {
+struct RunParams {
   std::string method = "stable";  // a name of method_names()
   double step = 0.02;  // s, one per draw of the random force; the paper's own is kPaperStep
   double time_limit =
@@ -65,8 +65,8 @@ struct GateParams {
   Body body;
   Beams beams;
   Forces forces;
-  Contact contact;
-  Run run;
+  ContactParams contact;
+  RunParams run;
 
   /// Between the joints, and from gate to gate: a cell of the field.
   [[nodiscard]] double gate_width() const { return 2.0 * beams.joint_x; }

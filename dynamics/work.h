@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "dynamics/ensemble.h"
+#include "dynamics/trial_set.h"
 
 namespace gatewalk::dynamics {
 

@@ -45,14 +45,14 @@ bool solve(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const std::vector
 
 }  // namespace
 
-Eigen::VectorXd push_only(const Eigen::MatrixXd& w, const Eigen::VectorXd& b) {
+Eigen::VectorXd solve_lcp(const Eigen::MatrixXd& w, const Eigen::VectorXd& b) {
   const auto n = static_cast<int>(b.size());
   Eigen::VectorXd z = Eigen::VectorXd::Zero(n);
   if (n == 0) return z;
   if (n <= 2) {
     const bool two = n == 2;
-    const auto pair = dynamics::push_only({w(0, 0), two ? w(1, 1) : 1.0, two ? w(0, 1) : 0.0},
-                                          {b[0], two ? b[1] : 0.0}, {true, two});
+    const auto pair = dynamics::unilateral_impulses(
+        {w(0, 0), two ? w(1, 1) : 1.0, two ? w(0, 1) : 0.0}, {b[0], two ? b[1] : 0.0}, {true, two});
     z[0] = pair[0];
     if (two) z[1] = pair[1];
     return z;
@@ -96,11 +96,11 @@ Eigen::VectorXd push_only(const Eigen::MatrixXd& w, const Eigen::VectorXd& b) {
       in = stay;
       // Fewer contacts have larger pivots; half the bound leaves room for round-off.
       if (!solve(w, b, in, 0.5 * kDependent, tried))
-        throw std::logic_error("push_only: contacts became dependent");
+        throw std::logic_error("solve_lcp: contacts became dependent");
     }
     for (std::size_t i = 0; i < in.size(); ++i) z[in[i]] = tried[i];
   }
-  throw std::logic_error("push_only: no end");
+  throw std::logic_error("solve_lcp: no end");
 }
 
 }  // namespace gatewalk::lattice

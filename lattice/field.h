@@ -65,8 +65,8 @@ class FieldGates {
 };
 
 /// Throws dynamics::InvalidParameter when this fidelity cannot be run in these gates: `remember`
-/// and `all` have a stepper of their own (crowd.h), which is that of method moreau; `all` looks at
-/// a few neighbours only, so beams must not reach over many gates.
+/// and `all` have a stepper of their own (field_stepper.h), which is that of method moreau; `all`
+/// looks at a few neighbours only, so beams must not reach over many gates.
 void validate(const dynamics::GateParams& p, const FieldParams& field);
 
 }  // namespace gatewalk::lattice

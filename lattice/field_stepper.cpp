@@ -16,20 +16,20 @@ double width_of_gate(const GateParams& p) { return p.gate_width(); }
 
 }  // namespace
 
-Crowd::Crowd(const GateParams& p, const FieldParams& field, const BodyState& start)
+FieldStepper::FieldStepper(const GateParams& p, const FieldParams& field, const BodyState& start)
     : p_(p), field_(field), usual_(p, p.run.step), body_(start) {
   current_ = last_ = find(field.start_column(), 0);
   awake_.push_back(current_);
   lowest_ = energy();
 }
 
-BodyState Crowd::seen_from(const Gate& gate, BodyState body) const {
+BodyState FieldStepper::seen_from(const Gate& gate, BodyState body) const {
   body.x -= width_of_gate(p_) * (gate.column - gates_[current_].column);
   body.y -= length_of_gate(p_) * (gate.row - gates_[current_].row);
   return body;
 }
 
-bool Crowd::in_reach(const Gate& gate, double slack) const {
+bool FieldStepper::in_reach(const Gate& gate, double slack) const {
   const BodyState b = seen_from(gate, body_);
   const double px = std::abs(b.x) - p_.beams.joint_x;  // from the nearer of the two joints
   const double py = b.y - p_.beams.joint_y;
@@ -37,14 +37,14 @@ bool Crowd::in_reach(const Gate& gate, double slack) const {
   return px * px + py * py <= reach * reach;
 }
 
-std::size_t Crowd::find(int column, int row) {
+std::size_t FieldStepper::find(int column, int row) {
   for (std::size_t i = 0; i < gates_.size(); ++i)
     if (gates_[i].column == column && gates_[i].row == row) return i;
   gates_.push_back({column, row, {}, now_, 0.0});
   return gates_.size() - 1;
 }
 
-std::array<BeamState, 2> Crowd::beams_now(const Gate& gate) const {
+std::array<BeamState, 2> FieldStepper::beams_now(const Gate& gate) const {
   auto beams = gate.beams;
   const double inertia = p_.beams.inertia();
   for (const Side side : {kLeft, kRight})
@@ -53,7 +53,7 @@ std::array<BeamState, 2> Crowd::beams_now(const Gate& gate) const {
   return beams;
 }
 
-std::array<BeamState, 2> Crowd::beams(int column, int row) const {
+std::array<BeamState, 2> FieldStepper::beams(int column, int row) const {
   for (std::size_t i = 0; i < gates_.size(); ++i) {
     const Gate& gate = gates_[i];
     if (gate.column != column || gate.row != row) continue;
@@ -63,7 +63,7 @@ std::array<BeamState, 2> Crowd::beams(int column, int row) const {
   return {};
 }
 
-void Crowd::set_beams(int column, int row, const std::array<BeamState, 2>& beams) {
+void FieldStepper::set_beams(int column, int row, const std::array<BeamState, 2>& beams) {
   const std::size_t i = find(column, row);
   const bool awake = std::find(awake_.begin(), awake_.end(), i) != awake_.end();
   gates_[i].beams = beams;
@@ -75,11 +75,11 @@ void Crowd::set_beams(int column, int row, const std::array<BeamState, 2>& beams
   lowest_ = energy() - work_;
 }
 
-double Crowd::beam_energy(const std::array<BeamState, 2>& beams) const {
+double FieldStepper::beam_energy(const std::array<BeamState, 2>& beams) const {
   return dynamics::energy(p_, {BodyState{}, beams});
 }
 
-double Crowd::energy() const {
+double FieldStepper::energy() const {
   double sum = dynamics::energy(p_, {body_, {}});
   for (std::size_t i = 0; i < gates_.size(); ++i) {
     const bool awake = std::find(awake_.begin(), awake_.end(), i) != awake_.end();
@@ -88,7 +88,7 @@ double Crowd::energy() const {
   return sum;
 }
 
-GateRun Crowd::run_gate(RandomForce& force) {
+GateRun FieldStepper::run_gate(RandomForce& force) {
   GateRun run;
   const double nearly_over = p_.run.time_limit - 1e-6 * p_.run.step;
   while (!outside(p_, body_) && run.seconds < nearly_over) {
@@ -104,7 +104,7 @@ GateRun Crowd::run_gate(RandomForce& force) {
   return run;
 }
 
-void Crowd::go_on(Ending ending) {
+void FieldStepper::go_on(Ending ending) {
   const Move move = move_into(crossing_of(p_, ending, body_).boundary);
   const std::size_t next = find(column() + move.di_x, row() + move.di_y);
   body_ = shifted_into_next(p_, ending, body_);
@@ -112,7 +112,7 @@ void Crowd::go_on(Ending ending) {
   current_ = next;
 }
 
-void Crowd::choose_awake(double h) {
+void FieldStepper::choose_awake(double h) {
   // What the disc may travel within the step; beams do not come nearer than their length.
   const double slack = h * (std::abs(body_.vx) + std::abs(body_.vy));
   next_.assign(1, current_);
@@ -160,7 +160,7 @@ void Crowd::choose_awake(double h) {
       asleep_energy_ += gates_[i].energy;
 }
 
-double Crowd::advance(double force_x, double duration, Watch& watch) {
+double FieldStepper::advance(double force_x, double duration, Watch& watch) {
   // A spell that is no whole number of steps (the rest of a hold) is cut into equal, shorter ones.
   const double wanted = duration / p_.run.step;
   const auto steps = std::max<long>(1, std::lround(std::ceil(wanted - 1e-6)));
@@ -181,7 +181,7 @@ double Crowd::advance(double force_x, double duration, Watch& watch) {
   return duration;
 }
 
-void Crowd::step(const Step& k, double force_x, Watch& watch) {
+void FieldStepper::step(const Step& k, double force_x, Watch& watch) {
   ++watch.evaluations;
   const double half = 0.5 * k.h;
   const BodyState middle{body_.x + half * body_.vx, body_.y + half * body_.vy, 0.0, 0.0};
@@ -223,8 +223,8 @@ void Crowd::step(const Step& k, double force_x, Watch& watch) {
     }
 }
 
-void Crowd::resolve(const Step& k, double& vx, double& vy) {
-  // W and b of push_only: u+ + e u- = W J + b.
+void FieldStepper::resolve(const Step& k, double& vx, double& vy) {
+  // W and b of solve_lcp: u+ + e u- = W J + b.
   const auto own = [&](const Contact& c) {
     return compliance(k.mass, k.inertia[c.side], c.touch.lever);
   };
@@ -241,8 +241,8 @@ void Crowd::resolve(const Step& k, double& vx, double& vy) {
     Contact& a = contacts_.front();
     Contact& b = contacts_.back();
     const bool two = n == 2;
-    const auto impulse = dynamics::push_only({own(a), own(b), two ? cross(a, b) : 0.0},
-                                             {rate(a), two ? rate(b) : 0.0}, {true, two});
+    const auto impulse = dynamics::unilateral_impulses({own(a), own(b), two ? cross(a, b) : 0.0},
+                                                       {rate(a), two ? rate(b) : 0.0}, {true, two});
     b.impulse = impulse[1];
     a.impulse = impulse[0];  // last: without a second contact both are the same
     vx += (impulse[0] * a.touch.nx + impulse[1] * b.touch.nx) / k.mass;
@@ -269,7 +269,7 @@ void Crowd::resolve(const Step& k, double& vx, double& vy) {
       w(i, i) = own(contacts_[i]);
       for (Eigen::Index j = 0; j < i; ++j) w(i, j) = w(j, i) = cross(contacts_[i], contacts_[j]);
     }
-    return push_only(w, b);
+    return solve_lcp(w, b);
   };
   struct Sum {
     double x = 0.0, y = 0.0;
@@ -299,7 +299,7 @@ void Crowd::resolve(const Step& k, double& vx, double& vy) {
   vy += 0.5 * (one_way.y + other_way.y) / k.mass;
 }
 
-double Crowd::back_to_exit(const BodyState& before, double h) {
+double FieldStepper::back_to_exit(const BodyState& before, double h) {
   GateState here{body_, gates_[current_].beams};
   const double passed = dynamics::back_to_exit(p_, {before, before_[0]}, here, h);
   for (std::size_t i = 0; i < awake_.size(); ++i) {
@@ -310,7 +310,7 @@ double Crowd::back_to_exit(const BodyState& before, double h) {
   return passed;
 }
 
-void Crowd::watch_all(const BodyState& before, double force_x, double h, Watch& watch) {
+void FieldStepper::watch_all(const BodyState& before, double force_x, double h, Watch& watch) {
   work_ += force_x * (body_.x - before.x) + p_.forces.propulsion * (body_.y - before.y);
   double now = dynamics::energy(p_, {body_, {}}) + asleep_energy_;
   const std::int64_t fast_before = watch.fast_steps;
@@ -332,7 +332,7 @@ void Crowd::watch_all(const BodyState& before, double force_x, double h, Watch& 
   lowest_ = std::fmin(lowest_, now - work_);
 }
 
-bool Crowd::finite() const {
+bool FieldStepper::finite() const {
   double sum = body_.x + body_.y + body_.vx + body_.vy;
   for (const std::size_t i : awake_)
     for (const BeamState& beam : gates_[i].beams) sum += beam.theta + beam.omega;

@@ -6,7 +6,7 @@
 /// decide which contacts are active (gap <= 0) and where they touch; springs, dampers and drag are
 /// taken by the implicit midpoint rule, which keeps the energy of a free beam exactly; over the
 /// step every active contact obeys u+ + e u- >= 0, J >= 0, one of them zero, all contacts together
-/// (push_only.h). There are no held contacts and no search for hits: a step is a step.
+/// (complementarity.h). There are no held contacts and no search for hits: a step is a step.
 ///
 /// Which gates take part is field.fidelity. A gate that takes no part sleeps: its beams swing on by
 /// themselves and are brought up to date in closed form when they are next asked for.
@@ -23,13 +23,15 @@
 
 namespace gatewalk::lattice {
 
-class Crowd {
+class FieldStepper {
  public:
-  /// The body starts in the field's start gate, all beams at rest. `p` must outlive the crowd.
-  Crowd(const dynamics::GateParams& p, const FieldParams& field, const dynamics::BodyState& start);
+  /// The body starts in the field's start gate, all beams at rest. `p` must outlive the stepper.
+  FieldStepper(const dynamics::GateParams& p, const FieldParams& field,
+               const dynamics::BodyState& start);
 
   /// Runs until the body leaves the gate it is in, or run.time_limit_s is over: as
-  /// dynamics::run_gate, but with all the beams that this fidelity has. The crowd's clock goes on.
+  /// dynamics::run_gate, but with all the beams that this fidelity has. The stepper's clock goes
+  /// on.
   [[nodiscard]] dynamics::GateRun run_gate(dynamics::RandomForce& force);
 
   /// After a run that left its gate: the body is in the neighbour from now on. That gate must
@@ -59,7 +61,7 @@ class Crowd {
   struct Gate {
     int column = 0, row = 0;
     std::array<dynamics::BeamState, 2> beams;
-    double time = 0.0;    // s, of the crowd's clock: when `beams` was true, if the gate sleeps
+    double time = 0.0;    // s, of the stepper's clock: when `beams` was true, if the gate sleeps
     double energy = 0.0;  // J, of `beams`, if the gate sleeps
   };
   using Step = dynamics::MoreauMethod::Step;

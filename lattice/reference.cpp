@@ -190,11 +190,11 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
                                                    "are only run with \"active\"");
     (void)make_method(p);  // refuses what cannot be run
     tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
-      Crowd crowd(p, field, start);
+      FieldStepper stepper(p, field, start);
       RandomForce& force = trials[i].force;
-      for (GateRun run = crowd.run_gate(force);
-           follow(trials[i], p, field, space, run, keep_crossings); run = crowd.run_gate(force))
-        crowd.go_on(run.ending);
+      for (GateRun run = stepper.run_gate(force);
+           follow(trials[i], p, field, space, run, keep_crossings); run = stepper.run_gate(force))
+        stepper.go_on(run.ending);
     });
   }
 

@@ -55,7 +55,7 @@ struct FieldTrials {
 
 /// Runs trials `range` through the field. field.fidelity says what a gate is: fresh, with beams at
 /// rest, whenever the body enters (active), or one of many that go on and act beyond their bounds
-/// (remember, all; crowd.h). The random force goes on from gate to gate; its stream is
+/// (remember, all; field_stepper.h). The random force goes on from gate to gate; its stream is
 /// {seed, stream_row(p, start), trial} whatever the fidelity. run.time_limit_s counts from the
 /// entry into a gate. `space` only counts what the chain would have clamped. What each trial did is
 /// appended to `each`, if given. Trials in gates of one type are run together, in lanes where the

@@ -44,8 +44,8 @@ int run_build(const Arguments& arguments) {
   json["made_by"] = to_json(options.provenance(scene));
   options.give_out(
       json, summary_table(t, path) + states_line(json["state_space"]) + method_line(settled));
-  remark(options, "built in " + fixed(seconds, 2) + " s, pilot " + fixed(pilot_seconds, 2) + " s");
-  for (const std::string& text : complaints(states)) warn(text);
+  options.remark("built in " + fixed(seconds, 2) + " s, pilot " + fixed(pilot_seconds, 2) + " s");
+  for (const std::string& text : complaints(states)) options.warn(text);
   return status_of(options, t.health);
 }
 

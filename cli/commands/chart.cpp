@@ -105,9 +105,9 @@ int run_chart(const Arguments& arguments) {
   } catch (const Interrupted&) {
     if (charts.empty()) throw;
     folder.draw("chart.svg", figure_of(charts));
-    warn("stopped before the end; " + folder.path("chart.csv") +
-         ", chart.json and chart.svg hold the " + std::to_string(charts.size()) + " of " +
-         std::to_string(paths.size()) + " scenes that were finished");
+    options.warn("stopped before the end; " + folder.path("chart.csv") +
+                 ", chart.json and chart.svg hold the " + std::to_string(charts.size()) + " of " +
+                 std::to_string(paths.size()) + " scenes that were finished");
     return kStopped;
   }
   options.give_out(json, table + "\n" + work_precision_legend(how.rounds));
@@ -117,8 +117,8 @@ int run_chart(const Arguments& arguments) {
     const auto verdict = chart.reference.verdict;
     if (verdict == dynamics::Verdict::fine) continue;
     clean = false;
-    warn(chart.label +
-         ": the reference itself shows faults: " + std::string(dynamics::name_of(verdict)));
+    options.warn(chart.label +
+                 ": the reference itself shows faults: " + std::string(dynamics::name_of(verdict)));
   }
   return exit_status(options, clean);
 }

@@ -61,7 +61,7 @@ int run_chart_chain(const Arguments& arguments) {
   (void)lattice::entries_at(starts);
   const auto bins = lattice::usual_bins(scene).kind;
   if (bins != lattice::BinsChoice::Kind::automatic)
-    require_inside_bins(starts, scene, lattice::fixed_space(scene));
+    require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   lattice::ChainErrorOptions chosen{.starts = starts,
                                     .truth_trials = options.count("truth-trials", 100),
@@ -76,7 +76,7 @@ int run_chart_chain(const Arguments& arguments) {
                      " trials a row of any of these bins");
   const ResultFolder folder(options, files);
 
-  remark(options, "measuring the cost of a trial and of a gate run");
+  options.remark("measuring the cost of a trial and of a gate run");
   const auto chart = lattice::chart_chain_error(scene, std::move(plan), options.work());
   Json json = to_json(chart);
   if (settled) json["method"] = to_json(*settled);

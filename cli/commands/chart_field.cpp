@@ -40,7 +40,7 @@ int run_chart_field(const Arguments& arguments) {
   json["made_by"] = to_json(options.provenance(scene));
   folder.write("fidelity.csv", csv_of(study), "fidelity.json", json);
   options.give_out(json, table_of(study));
-  for (const std::string& text : complaints(study)) warn(text);
+  for (const std::string& text : complaints(study)) options.warn(text);
   folder.draw("fidelity.svg", figure_of(study));
   return exit_status(options, study.clean());
 }

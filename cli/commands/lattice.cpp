@@ -26,8 +26,8 @@ int run_lattice(const Arguments& arguments) {
   Json json = to_json(tally, scene, settled);
   json["made_by"] = to_json(options.provenance(scene));
   options.give_out(json, table_of(tally, scene, settled));
-  remark(options, fixed(watch.seconds(), 2) + " s");
-  if (const std::string text = too_few_gates(scene); !text.empty()) warn(text);
+  options.remark(fixed(watch.seconds(), 2) + " s");
+  options.warn(too_few_gates(scene));
   return status_of(options, tally.health);
 }
 

@@ -12,7 +12,7 @@ namespace gatewalk::cli {
 namespace {
 
 /// "4-6=other.nc": rows whose gates are those of another matrix.
-lattice::RowMatrix parse_rows(const std::string& text) {
+lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
   const auto wrong = [&] {
     return UsageError("--row " + text +
                       ": must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc");
@@ -34,12 +34,12 @@ lattice::RowMatrix parse_rows(const std::string& text) {
   }
   if (at != end) throw wrong();
   const std::string path = text.substr(equals + 1);
-  return {first, last, path, read_matrix(path, "", {})};
+  return {first, last, path, read_matrix(options, path, "", {})};
 }
 
 std::vector<lattice::RowMatrix> other_rows(const Options& options) {
   std::vector<lattice::RowMatrix> rows;
-  for (const std::string& text : options.texts("row")) rows.push_back(parse_rows(text));
+  for (const std::string& text : options.texts("row")) rows.push_back(parse_rows(options, text));
   return rows;
 }
 
@@ -95,16 +95,16 @@ int run_predict(const Arguments& arguments) {
   const auto prediction =
       lattice::predict(gates, m.scene.field, starts, how, options.seed(), options.work());
   if (prediction.failed)
-    warn("no interval counts the sampling of the matrix: a resampled one fails: " +
-         *prediction.failed);
+    options.warn("no interval counts the sampling of the matrix: a resampled one fails: " +
+                 *prediction.failed);
 
   const Json status = recorded_status(m.file);
   const PredictedField shown{m, given, others};
   Json json = to_json(prediction, shown, solver);
   json["made_by"] = to_json(options.provenance(m.scene));
   options.give_out(json, table_of(prediction, shown));
-  if (const std::string text = too_few_gates(m.scene); !text.empty()) warn(text);
-  remark(options, fixed(1e3 * prediction.seconds, 3) + " ms");
+  options.warn(too_few_gates(m.scene));
+  options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
   return exit_status(options, faults_recorded(status).empty());
 }
 

@@ -43,7 +43,7 @@ int run_stability(const Arguments& arguments) {
   double slowest = 0.0;
   for (const auto& m : maps)
     slowest = std::max(slowest, *std::max_element(m.seconds.begin(), m.seconds.end()));
-  remark(options, "the slowest point took " + fixed(slowest, 2) + " s");
+  options.remark("the slowest point took " + fixed(slowest, 2) + " s");
   return kFine;
 }
 

@@ -61,7 +61,7 @@ int run_sweep(const Arguments& arguments) {
   const auto axes = lattice::sweep_axes(scene.sweep, options.texts("vary"));
   refuse_overridden(axes, options.overrides());
   auto points = lattice::sweep_points({text, source, options.overrides(), axes});
-  for (const std::string& remark : remarks_on(points, options.talk())) warn(remark);
+  for (const std::string& remark : remarks_on(points, options.talk())) options.warn(remark);
 
   lattice::run_sweep(points, trials, options.seed(), options.work());
 
@@ -78,9 +78,9 @@ int run_sweep(const Arguments& arguments) {
   for (const lattice::SweepPoint& p : points) {
     health += p.tally.health;
     if (const std::string wrong = p.settled ? complaint(*p.settled) : ""; !wrong.empty())
-      warn(wrong);
+      options.warn(wrong);
   }
-  if (!health.clean()) warn(complaint(health));
+  if (!health.clean()) options.warn(complaint(health));
   return exit_status(options, std::all_of(points.begin(), points.end(),
                                           [](const auto& p) { return p.tally.health.clean(); }));
 }

@@ -18,11 +18,11 @@ struct Subject {
 
 Subject read_subject(const Options& options) {
   const std::string path = options.text("matrix");
-  lattice::SceneMatrix m = read_matrix(path, options.text("scene"), options.overrides());
+  lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
   auto starts = starts_of(options, m.scene);
   lattice::require_inside(starts, m.scene);
   (void)lattice::entries_at(starts);
-  require_inside_bins(starts, m.scene, m.file.transitions.space);
+  require_inside_bins(options, starts, m.scene, m.file.transitions.space);
   Json status = recorded_status(m.file), settled = recorded(m.file, path, "method"),
        states = recorded(m.file, path, "state_space");
   return {std::move(m), std::move(starts), std::move(status), std::move(settled),
@@ -37,10 +37,10 @@ Subject build_subject(const Options& options) {
   lattice::require_inside(starts, scene);
   const auto bodies = lattice::entries_at(starts);
   if (choice.kind != lattice::BinsChoice::Kind::automatic)
-    require_inside_bins(starts, scene, lattice::fixed_space(scene));
+    require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   const lattice::States states = states_of(options, scene, choice, bodies);
-  for (const std::string& text : complaints(states)) warn(text);
+  for (const std::string& text : complaints(states)) options.warn(text);
   auto built = lattice::build_matrix(scene, states, trials, options.seed(), options.work());
   Json status = to_json(built.health);
   return {{{std::move(built), {}}, std::move(scene)},

@@ -35,10 +35,9 @@ int run_walk(const Arguments& arguments) {
   json["matrix_status"] = status;
   json["made_by"] = to_json(options.provenance(m.scene));
   options.give_out(json, table_of(tally, start, t.space, m.scene));
-  if (const std::string text = too_few_gates(m.scene); !text.empty()) warn(text);
-  remark(options, fixed(seconds, 3) + " s, " +
-                      fixed(static_cast<double>(walks) / seconds / 1e6, 2) +
-                      " million walks a second");
+  options.warn(too_few_gates(m.scene));
+  options.remark(fixed(seconds, 3) + " s, " + fixed(static_cast<double>(walks) / seconds / 1e6, 2) +
+                 " million walks a second");
   return exit_status(options, faults_recorded(status).empty());
 }
 

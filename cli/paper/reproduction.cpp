@@ -62,21 +62,6 @@ Json read_json(const std::string& path) {
   return j.is_discarded() ? Json() : j;
 }
 
-/// While it lives, what is written to a stream is kept instead.
-class Overheard {
- public:
-  explicit Overheard(std::ostream& stream) : stream_(stream), usual_(stream.rdbuf(kept_.rdbuf())) {}
-  ~Overheard() { stream_.rdbuf(usual_); }
-  Overheard(const Overheard&) = delete;
-  Overheard& operator=(const Overheard&) = delete;
-  [[nodiscard]] std::string text() const { return kept_.str(); }
-
- private:
-  std::ostringstream kept_;
-  std::ostream& stream_;
-  std::streambuf* usual_;
-};
-
 std::string today() {
   const std::time_t now = std::time(nullptr);
   std::tm day{};
@@ -156,10 +141,10 @@ class Records {
     return data.is_object() && data.contains("made_by") ? data : Json();
   }
   /// Carries a study out and puts it on record.
-  [[nodiscard]] Json make(const Study& s) {
+  [[nodiscard]] Json make(const Study& s, const dynamics::Work& work) {
     if (done_.erase(s.name) > 0) write();
     const dynamics::Stopwatch watch;
-    const std::string remarks = run(s);
+    const std::string remarks = run(s, work);
     Json data = read_json(file_of(s));
     if (data.is_null()) throw std::runtime_error(file_of(s) + ": cannot be read again");
     done_[s.name] = record_of(s);
@@ -177,14 +162,16 @@ class Records {
   static std::string file_of(const Study& s) { return "data/" + s.name + ".json"; }
   /// Returns its remarks: the paper's own scheme shows faults and says so; that belongs to the
   /// study, not to this run.
-  static std::string run(const Study& s) {
-    std::vector<std::string> arguments = s.arguments;
-    arguments.insert(arguments.end(), {"--quiet", "--json", file_of(s)});
-    const Overheard words(std::cerr);
+  static std::string run(const Study& s, const dynamics::Work& work) {
+    std::string remarks;
+    Arguments arguments = s.arguments;
+    arguments.words.insert(arguments.words.end(), {"--quiet", "--json", file_of(s)});
+    arguments.work = work;
+    arguments.warned = [&](const std::string& text) { remarks += "gatewalk: " + text + "\n"; };
     if (const int status = s.run(arguments); status != kFine)
       throw std::runtime_error(s.text() + ": ended with status " + std::to_string(status) + ". " +
-                               words.text());
-    return words.text();
+                               remarks);
+    return remarks;
   }
   void write() const { write_text_atomically(kDone, text_of(done_) + "\n"); }
 
@@ -209,10 +196,17 @@ Results carry_out(const std::vector<Study>& studies, bool talk) {
   if (talk && number > 0)
     std::cout << number << " of " << studies.size() << " studies are done already\n" << std::flush;
   Progress progress("studies", cost, talk);
+  std::int64_t done = 0;
   for (const Study* s : left) {
-    if (interrupted()) throw Interrupted{};
-    progress.begin_part(s->name, s->cost);
-    results.data[s->name] = records.make(*s);
+    progress.name(s->name);
+    const dynamics::Work whole{[&](std::string_view, std::int64_t now, std::int64_t) {
+      if (interrupted()) throw Interrupted{};
+      progress.update(now);
+    }};
+    whole.tell(s->name, done, cost);
+    results.data[s->name] = records.make(
+        *s, whole.part(s->name, static_cast<double>(done), static_cast<double>(s->cost), cost));
+    done += s->cost;
     progress.finish();
     if (talk)
       std::cout << padded(

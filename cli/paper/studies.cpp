@@ -35,7 +35,7 @@ struct Studies {
   bool quick;
   std::vector<Study> list = {};
 
-  void add(const std::string& name, int (*run)(const Words&), const std::string& command,
+  void add(const std::string& name, int (*run)(const Arguments&), const std::string& command,
            const Words& arguments, double seconds) {
     list.push_back(
         {name, run, command, arguments, std::max<std::int64_t>(1, std::llround(100 * seconds))});

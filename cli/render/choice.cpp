@@ -6,7 +6,7 @@
 namespace gatewalk::cli {
 namespace {
 
-std::string setting_text(const dynamics::Run& run) {
+std::string setting_text(const dynamics::RunParams& run) {
   return "method " + run.method +
          (run.method == "event" ? ", run.event_tolerance_m = " + Json(run.event_tolerance).dump()
                                 : ", run.step_s = " + Json(run.step).dump());

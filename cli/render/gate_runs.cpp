@@ -19,11 +19,13 @@ Json to_json(const dynamics::GateTally& tally) {
   json["exited_right"] = tally[Outcome::exited_right];
   json["trapped"] = tally[Outcome::trapped];
   json["not_finite"] = tally[Outcome::broken];
-  json["intervals_95"] = Json::object();
-  for (const char* outcome :
-       {"traversed", "traversed_left", "traversed_right", "exited_left", "exited_right", "trapped"})
-    json["intervals_95"][outcome] =
-        dynamics::share_interval(json[outcome].get<std::int64_t>(), tally.trials);
+  const auto interval = [&](std::int64_t n) { return dynamics::share_interval(n, tally.trials); };
+  json["intervals_95"] = {{"traversed", interval(tally.traversed())},
+                          {"traversed_left", interval(tally[Outcome::traversed_left])},
+                          {"traversed_right", interval(tally[Outcome::traversed_right])},
+                          {"exited_left", interval(tally[Outcome::exited_left])},
+                          {"exited_right", interval(tally[Outcome::exited_right])},
+                          {"trapped", interval(tally[Outcome::trapped])}};
   return json;
 }
 

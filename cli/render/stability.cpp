@@ -57,7 +57,7 @@ std::string csv_of(const std::vector<FinishedMap>& maps) {
         const dynamics::MapPoint& p = m.at(ix, iy);
         const dynamics::Health& h = p.health;
         csv.row(map, m.map.method, x, m.map.x.values[ix], y, m.map.y.values[iy],
-                std::string(dynamics::name_of(p.verdict)), h.runs, h.broken, p.cut_short,
+                std::string(dynamics::name_of(p.verdict)), h.runs, h.broken, p.out_of_work,
                 h.penetrating, h.creating_energy, h.fast, h.unstable, h.undefined_contacts,
                 h.forced_holds, h.steps, h.evaluations, h.worst_penetration, h.worst_energy_created,
                 h.worst_speed);

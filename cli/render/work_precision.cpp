@@ -64,7 +64,7 @@ std::string csv_of(const ChartPoint& p, const WorkPrecision& chart) {
       << (position.below ? number(chart.position_limit()) : "");
   for (const auto what : {&StrongError::velocity, &StrongError::time, &StrongError::energy})
     out << ',' << number(shown(strong.*what, chart.strong_limit(what)).value);
-  out << ',' << h.broken << ',' << p.cut_short << ',' << h.penetrating << ',' << h.creating_energy
+  out << ',' << h.broken << ',' << p.out_of_work << ',' << h.penetrating << ',' << h.creating_energy
       << ',' << h.fast << ',' << h.unstable << ',' << h.undefined_contacts << ',' << h.forced_holds
       << ',' << number(h.worst_penetration) << ',' << number(h.worst_energy_created) << ",\n";
   return out.str();
@@ -140,7 +140,7 @@ Json to_json(const ChartPoint& p, const WorkPrecision& chart) {
                                  {"rounds", p.microseconds}};
   s["steps_per_trial"] = p.steps_per_trial();
   s["evaluations_per_trial"] = p.evaluations_per_trial();
-  s["runs_cut_short"] = p.cut_short;
+  s["runs_cut_short"] = p.out_of_work;
   s["errors"] = to_json(p.errors, chart, false);
   s["health"] = gatewalk::cli::to_json(p.health);
   return s;

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -44,36 +43,13 @@ std::size_t terminal_columns() {
 }  // namespace
 
 Progress::Progress(std::string label, std::int64_t total, bool enabled)
-    : outer_(innermost_),
-      label_(std::move(label)),
+    : label_(std::move(label)),
       total_(total),
-      visible_(enabled && total > 0 && outer_ == nullptr && ::isatty(STDERR_FILENO) == 1),
+      visible_(enabled && total > 0 && ::isatty(STDERR_FILENO) == 1),
       start_(Clock::now()),
-      last_drawn_(start_) {
-  innermost_ = this;
-}
-
-Progress::~Progress() {
-  finish();
-  innermost_ = outer_;
-}
-
-void Progress::begin_part(std::string label, std::int64_t size) {
-  before_ += part_;
-  part_ = size;
-  label_ = std::move(label);
-  draw(static_cast<double>(before_));
-}
+      last_drawn_(start_) {}
 
 void Progress::update(std::int64_t done) {
-  if (outer_ != nullptr && total_ > 0)
-    outer_->draw(static_cast<double>(outer_->before_) + static_cast<double>(outer_->part_) *
-                                                            static_cast<double>(done) /
-                                                            static_cast<double>(total_));
-  draw(static_cast<double>(done));
-}
-
-void Progress::draw(double done) {
   if (!visible_) return;
   const auto now = Clock::now();
   if (now - last_drawn_ < kRedraw) return;
@@ -81,11 +57,12 @@ void Progress::draw(double done) {
   drawn_ = true;
 
   const double elapsed = seconds_between(start_, now);
-  const double rate = done / elapsed;
-  const double left = (static_cast<double>(total_) - done) / rate;  // inf while nothing is done
+  const double rate = static_cast<double>(done) / elapsed;
+  const double left = static_cast<double>(total_ - done) / rate;  // inf while nothing is done
   char figures[48];
   std::snprintf(figures, sizeof figures, " %3d%%  %.3g/s  ",
-                static_cast<int>(100.0 * done / static_cast<double>(total_)), rate);
+                static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_)),
+                rate);
   std::string line =
       label_ + figures + clock_text(elapsed) + " elapsed, " + clock_text(left) + " left";
   line.resize(std::min(line.size(), terminal_columns() - 1));
@@ -101,6 +78,7 @@ void Progress::finish() {
 dynamics::Work watched_work(bool show_progress) {
   struct Line {
     std::string what;
+    std::int64_t most = 0;  // done; checks at the end of a part begin at its start again
     std::optional<Progress> progress;
   };
   const auto line = std::make_shared<Line>();
@@ -110,26 +88,12 @@ dynamics::Work watched_work(bool show_progress) {
       return;
     }
     if (interrupted()) throw Interrupted{};
-    if (!line->progress || what != line->what)
+    if (!line->progress || what != line->what) {
       line->progress.emplace(line->what = what, total, show_progress);
-    line->progress->update(done);
+      line->most = 0;
+    }
+    line->progress->update(line->most = std::max(line->most, done));
   }};
-}
-
-void run_in_batches(const std::string& label, std::int64_t total, bool show_progress,
-                    const std::function<void(std::int64_t, std::int64_t)>& run) {
-  watched_work(show_progress).in_pieces(label, total, [&](dynamics::TrialRange range) {
-    run(range.first, range.count);
-  });
-}
-
-void run_in_batches(Progress& progress, double before, double each, std::int64_t total,
-                    const std::function<void(std::int64_t, std::int64_t)>& run) {
-  const dynamics::Work work{[&](std::string_view, std::int64_t done, std::int64_t of) {
-    if (done < of && interrupted()) throw Interrupted{};
-    progress.update(std::llround(before + each * static_cast<double>(done)));
-  }};
-  work.in_pieces("", total, [&](dynamics::TrialRange range) { run(range.first, range.count); });
 }
 
 }  // namespace gatewalk::cli

@@ -42,7 +42,7 @@ struct Motion {
 
   Motion(const GateParams& p, const GateState& s, double force_x)
       : touch(touches(p, s, held_of(s))),
-        force(contact_forces(p, s, touch, force_x, held_of(s), push_or_pull)),
+        force(contact_forces(p, s, touch, force_x, held_of(s), bilateral_impulses)),
         push(p, touch, force) {
     const double inertia = p.beams.inertia();
     const auto beta = [&](Side side, double k) {
@@ -356,7 +356,7 @@ double EventMethod::slide_on(GateState& s, double force_x, double duration, Watc
   Motion start(p_, s, force_x);
   ++watch.evaluations;
   if (start.force[kLeft] < 0.0 || start.force[kRight] < 0.0) {
-    const auto force = contact_forces(p_, s, start.touch, force_x, held_of(s), push_only);
+    const auto force = contact_forces(p_, s, start.touch, force_x, held_of(s), unilateral_impulses);
     for (const Side side : {kLeft, kRight}) s.beams[side].held &= force[side] > 0.0;
     if (!s.beams[kLeft].held && !s.beams[kRight].held) return 0.0;
     start = Motion(p_, s, force_x);

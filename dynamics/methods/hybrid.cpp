@@ -46,7 +46,7 @@ std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool
                                     contacts[kRight] ? touch[kRight].gap : 0.0};
     if (std::max(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p.body.radius) break;
     // Shift along the mass metric: the same 2 x 2 system as for impulses, with gaps for rates.
-    const auto shift = push_or_pull(coupling(p, touch), gap, contacts);
+    const auto shift = bilateral_impulses(coupling(p, touch), gap, contacts);
     s.body.x += (shift[kLeft] * touch[kLeft].nx + shift[kRight] * touch[kRight].nx) / p.body.mass;
     s.body.y += (shift[kLeft] * touch[kLeft].ny + shift[kRight] * touch[kRight].ny) / p.body.mass;
     for (const Side side : {kLeft, kRight})
@@ -55,7 +55,7 @@ std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool
   }
   const std::array<double, 2> rate{gap_rate(touch[kLeft], s.body, s.beams[kLeft]),
                                    gap_rate(touch[kRight], s.body, s.beams[kRight])};
-  apply_impulses(p, touch, push_or_pull(coupling(p, touch), rate, contacts), s);
+  apply_impulses(p, touch, bilateral_impulses(coupling(p, touch), rate, contacts), s);
   return touch;
 }
 

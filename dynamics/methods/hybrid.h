@@ -77,7 +77,7 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, double res
     const auto done = [&](Side side) { return !active[side] || u[side] >= -rest; };
     if (done(kLeft) && done(kRight)) return;
 
-    auto impulse = push_only(w, b, active);
+    auto impulse = unilateral_impulses(w, b, active);
     // A weak hit ends the bouncing: perfectly inelastic, then a constraint. Asked of both before
     // either is held: the answer may look at the other beam, and a mirror image must not change it.
     std::array<bool, 2> ends{};
@@ -89,7 +89,7 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, double res
       s.beams[side].held = true;
       b[side] = u[side];
     }
-    impulse = push_only(w, b, active);
+    impulse = unilateral_impulses(w, b, active);
     // A held beam that the other side's hit throws off is free again; but not if it would be back
     // at once: two contacts would free each other without end. Then both stay shut.
     for (const Side side : {kLeft, kRight}) {
@@ -98,7 +98,7 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, double res
       if (opens <= 0.0) continue;
       const double stop = opens / (side == kLeft ? w.left : w.right);
       if (ends_bouncing(side, stop, opens))
-        impulse = push_or_pull(w, b, active);
+        impulse = bilateral_impulses(w, b, active);
       else
         s.beams[side].held = false;
     }

@@ -68,7 +68,7 @@ void MoreauMethod::one_step(GateState& s, double force_x, const Step& step, Watc
     const Coupling w{compliance(step.mass, step.inertia[kLeft], l.lever),
                      compliance(step.mass, step.inertia[kRight], r.lever),
                      (l.nx * r.nx + l.ny * r.ny) / step.mass};
-    const auto impulse = push_only(w, b, active);
+    const auto impulse = unilateral_impulses(w, b, active);
     body.vx += (impulse[kLeft] * l.nx + impulse[kRight] * r.nx) / step.mass;
     body.vy += (impulse[kLeft] * l.ny + impulse[kRight] * r.ny) / step.mass;
     for (const Side side : {kLeft, kRight}) {

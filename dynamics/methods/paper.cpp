@@ -69,13 +69,13 @@ void PaperMethod::euler(GateState& s, double force_x, double dt, Watch& watch) c
          nearest(p_, kRight, s.body, s.beams[kRight].theta)};
     watch.evaluations += 2;
     std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
-    force = contact_forces(p_, s, t, force_x, held, push_or_pull);
+    force = contact_forces(p_, s, t, force_x, held, bilateral_impulses);
     // A force that would pull releases its contact; then the other is solved alone.
     const bool pulls_left = held[kLeft] && force[kLeft] < 0.0;
     const bool pulls_right = held[kRight] && force[kRight] < 0.0;
     if (pulls_left || pulls_right) {
       held = {held[kLeft] && !pulls_left, held[kRight] && !pulls_right};
-      force = contact_forces(p_, s, t, force_x, held, push_only);
+      force = contact_forces(p_, s, t, force_x, held, unilateral_impulses);
       for (const Side side : {kLeft, kRight}) s.beams[side].held = held[side];
     }
   }

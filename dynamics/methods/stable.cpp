@@ -200,11 +200,11 @@ StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const
   const auto held = held_of(s);
   // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
   const auto start = touches(p_, s, held);
-  const Push first(p_, start, contact_forces(p_, s, start, force_x, held, push_only));
+  const Push first(p_, start, contact_forces(p_, s, start, force_x, held, unilateral_impulses));
   GateState mid = s;
   fly(p_, half_flow, force_x, first, mid);
   const auto middle = touches(p_, mid, held, start);
-  const auto force = contact_forces(p_, mid, middle, force_x, held, push_only);
+  const auto force = contact_forces(p_, mid, middle, force_x, held, unilateral_impulses);
   const Push second(p_, middle, force);
   fly(p_, flow, force_x, second, s);
 

@@ -152,7 +152,7 @@ TrialEnd end_of(const GateParams& p, const StateSpace& space, const GateRun& run
   return end;
 }
 
-Verdict TrialEnds::verdict() const { return judge(health, cut_short, kPermittedFaults); }
+Verdict TrialEnds::verdict() const { return judge(health, out_of_work, kPermittedFaults); }
 
 void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start,
                     std::uint64_t seed, TrialRange range) {
@@ -164,7 +164,7 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
   ends.trials.resize(before + static_cast<std::size_t>(range.count));
   struct Faults {
     Health health;
-    std::int64_t cut_short = 0;
+    std::int64_t out_of_work = 0;
   };
   tbb::enumerable_thread_specific<Faults> faults;  // whole numbers and maxima: any order will do
   carry_out_trials(
@@ -176,7 +176,7 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
       [&](RunSlot& slot, const GateRun& run) {
         Faults& f = faults.local();
         f.health.add(p, run);
-        f.cut_short += run.cut_short;
+        f.out_of_work += run.out_of_work;
         ends.trials[before + static_cast<std::size_t>(slot.trial)] =
             space ? end_of(p, *space, run) : end_without_column(run);
         return false;
@@ -184,7 +184,7 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
       kMostWork);
   for (const Faults& f : faults) {
     ends.health += f.health;
-    ends.cut_short += f.cut_short;
+    ends.out_of_work += f.out_of_work;
   }
 }
 

@@ -66,7 +66,7 @@ struct TrialEnd {
 struct TrialEnds {
   std::vector<TrialEnd> trials;
   Health health;
-  std::int64_t cut_short = 0;  // runs that took more than kMostWork
+  std::int64_t out_of_work = 0;  // runs that took more than kMostWork
 
   [[nodiscard]] Verdict verdict() const;
 };
@@ -88,8 +88,8 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
 /// Total variation between two histograms of the same trials.
 struct WeakError {
   double total_variation = 0.0;
-  /// Of it, from the spread of the paired differences; too small by as much as chance has had a say
-  /// in which columns count as too high.
+  /// Its own standard error, from the spread of the paired differences. Too small where chance
+  /// decides which columns count as too high.
   double standard_error = std::numeric_limits<double>::quiet_NaN();
   /// What chance alone would show: the trials that changed columns, each as likely forth as back.
   double chance = 0.0;

@@ -34,7 +34,7 @@ struct Choice {
   bool met = false;                           // false: nothing was shown to fit
 };
 
-/// Told after every 100 trials of a pilot; may throw to stop.
+/// Told after each piece of a pilot; may throw to stop.
 using PilotProgress =
     std::function<void(const Setting& setting, std::int64_t done, std::int64_t trials)>;
 

@@ -183,11 +183,11 @@ MapPoint run_point(MapKind kind, std::string_view method, double x, double y, st
     const GateRun run = run_gate_trial(scene.p, *stepper, start, seed, trial,
                                        std::max<std::int64_t>(0, kMostWorkPerPoint - spent));
     point.health.add(scene.p, run);
-    point.cut_short += run.cut_short;
+    point.out_of_work += run.out_of_work;
     // Nothing but a hit pushes it sideways.
     if (scene.hit_expected >= 0) missed |= (run.exit.vx != 0.0) != (scene.hit_expected == 1);
   }
-  point.verdict = judge(point.health, point.cut_short, 0.0);
+  point.verdict = judge(point.health, point.out_of_work, 0.0);
   if (point.verdict == Verdict::fine && missed) point.verdict = Verdict::missed_hit;
   return point;
 }

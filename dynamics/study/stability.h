@@ -49,7 +49,7 @@ struct StabilityMap {
 struct MapPoint {
   Verdict verdict = Verdict::refused;
   Health health;
-  std::int64_t cut_short = 0;  // trials that took more than kMostWorkPerPoint between them
+  std::int64_t out_of_work = 0;  // trials that took more than kMostWorkPerPoint between them
 };
 
 /// Trials of a point, and the steps or evaluations granted to all of them together: below 1 s of

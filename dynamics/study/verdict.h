@@ -33,6 +33,6 @@ inline constexpr std::array<std::string_view, 11> kVerdictNames{
 
 /// The worst fault that more than `permitted` (a share) of the runs showed. No run may break or be
 /// cut short; contacts without a formula are compared with the number of steps.
-[[nodiscard]] Verdict judge(const Health& health, std::int64_t cut_short, double permitted);
+[[nodiscard]] Verdict judge(const Health& health, std::int64_t out_of_work, double permitted);
 
 }  // namespace gatewalk::dynamics

@@ -92,7 +92,7 @@ class Charting {
       const TrialEnds ends = run(setting);
       point.verdict = ends.verdict();
       point.health = ends.health;
-      point.cut_short = ends.cut_short;
+      point.out_of_work = ends.out_of_work;
       point.errors = errors_of(ends, reference);
     } catch (const InvalidParameter& e) {
       point.refusal = e.what();

@@ -32,7 +32,7 @@ struct ChartPoint {
   Verdict verdict = Verdict::refused;
   std::string refusal;  // why, if it was refused; then nothing else is known
   Health health;
-  std::int64_t cut_short = 0;
+  std::int64_t out_of_work = 0;
   Errors errors;                     // against the reference
   std::vector<double> microseconds;  // per trial, one value per round
 

@@ -24,51 +24,15 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// ---- Batches
+// ---- Stopping
 
-TEST(RunInBatches, CoversEachIndexOnceAndInOrder) {
-  for (const std::int64_t total : {0, 1, 2, 3, 5, 7, 97, 4095, 4096, 100003}) {
-    std::vector<int> visits(static_cast<std::size_t>(total));
-    std::int64_t next = 0;
-    run_in_batches("test", total, false, [&](std::int64_t first, std::int64_t count) {
-      EXPECT_EQ(first, next);
-      ASSERT_GT(count, 0);
-      ASSERT_LE(first + count, total);
-      for (std::int64_t i = first; i < first + count; ++i) ++visits[static_cast<std::size_t>(i)];
-      next = first + count;
-    });
-    EXPECT_EQ(next, total);
-    EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), total);
-  }
-}
-
-TEST(RunInBatches, StartsWithOneAndGrowsFourfoldAtMost) {
-  std::vector<std::int64_t> counts;
-  run_in_batches("test", 100000, false,
-                 [&](std::int64_t, std::int64_t count) { counts.push_back(count); });
-  EXPECT_EQ(counts.front(), 1);
-  for (std::size_t i = 1; i < counts.size(); ++i) EXPECT_LE(counts[i], 4 * counts[i - 1]);
-  EXPECT_LT(counts.size(), 1000u);  // and does grow
-}
-
-TEST(RunInBatches, PassesOnWhatTheWorkThrows) {
-  int calls = 0;
-  EXPECT_THROW(run_in_batches("test", 100, false,
-                              [&](std::int64_t, std::int64_t) {
-                                ++calls;
-                                throw std::runtime_error("broken");
-                              }),
-               std::runtime_error);
-  EXPECT_EQ(calls, 1);
-}
-
-TEST(RunInBatchesDeathTest, StopsBetweenBatchesAfterASignal) {
+TEST(WatchedWorkDeathTest, StopsBetweenBatchesAfterASignal) {
   EXPECT_EXIT(
       {
         install_interrupt_handler();
         int calls = 0;
         try {
-          run_in_batches("test", 1000, false, [&](std::int64_t, std::int64_t) {
+          watched_work(false).in_pieces("test", 1000, [&](dynamics::TrialRange) {
             if (++calls == 3) std::raise(SIGINT);
           });
         } catch (const Interrupted&) {
@@ -79,11 +43,11 @@ TEST(RunInBatchesDeathTest, StopsBetweenBatchesAfterASignal) {
       testing::ExitedWithCode(7), "");
 }
 
-TEST(RunInBatchesDeathTest, WorkThatIsDoneStaysDone) {
+TEST(WatchedWorkDeathTest, WorkThatIsDoneStaysDone) {
   EXPECT_EXIT(
       {
         install_interrupt_handler();
-        run_in_batches("test", 1, false, [](std::int64_t, std::int64_t) { std::raise(SIGINT); });
+        watched_work(false).in_pieces("test", 1, [](dynamics::TrialRange) { std::raise(SIGINT); });
         std::_Exit(7);
       },
       testing::ExitedWithCode(7), "");

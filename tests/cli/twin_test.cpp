@@ -51,7 +51,7 @@ class TwinCommands : public testing::Test {
     return path(name);
   }
 
-  Json result(int (*run)(const std::vector<std::string>&), std::vector<std::string> words) const {
+  Json result(int (*run)(const Arguments&), std::vector<std::string> words) const {
     const std::string file = path("result.json");
     words.insert(words.end(), {"--json", file, "--quiet"});
     EXPECT_EQ(run(words), 0);
@@ -98,7 +98,7 @@ TEST_F(TwinCommands, GiveTheSameNumbersInOtherUnits) {
   const std::string matrix = path("m.nc"), other_matrix = path("n.nc");
   struct Line {
     const char* name;
-    int (*run)(const std::vector<std::string>&);
+    int (*run)(const Arguments&);
     std::vector<std::string> words;  // behind the scene or matrix
     bool of_matrix;
   };

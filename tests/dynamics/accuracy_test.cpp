@@ -276,8 +276,8 @@ TEST(TrialEnds, CutShortIsBroken) {
   const auto method = make_method(p);
   const GateRun whole = run_gate_trial(p, *method, {}, 1, 0);
   const GateRun cut = run_gate_trial(p, *method, {}, 1, 0, 100);
-  EXPECT_FALSE(whole.cut_short);
-  EXPECT_TRUE(cut.cut_short);
+  EXPECT_FALSE(whole.out_of_work);
+  EXPECT_TRUE(cut.out_of_work);
   EXPECT_LT(cut.watch.steps, 100 + 2 * steps_per_hold(p));
   const StateSpace space = StateSpace::paper(p);
   EXPECT_EQ(end_of(p, space, cut).outcome, Outcome::broken);

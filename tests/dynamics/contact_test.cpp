@@ -521,7 +521,7 @@ TEST(DoubleImpact, OfTheKnownAnswersIsSymmetric) {
   GateState s;
   s.body.vy = 15.0;
   const double u = gap_rate(t, s.body, s.beams[kLeft]);
-  const auto j = push_only(coupling(p, {t, t}), {1.8 * u, 1.8 * u}, {true, true});
+  const auto j = unilateral_impulses(coupling(p, {t, t}), {1.8 * u, 1.8 * u}, {true, true});
   apply_impulses(p, {t, t}, j, s);
   EXPECT_TRUE(same_bits(j[kLeft], j[kRight]));
   EXPECT_NEAR(j[kLeft], 2.109375, 16 * kEps);
@@ -563,7 +563,7 @@ TEST(PushOnly, MeetsItsConditions) {
     const std::array<double, 2> b{draw.sign() * draw.log_uniform(1e-3, 1e3),
                                   draw.sign() * draw.log_uniform(1e-3, 1e3)};
     const std::array<bool, 2> active{draw.below(8) != 0, draw.below(8) != 0};
-    const auto z = push_only(w, b, active);
+    const auto z = unilateral_impulses(w, b, active);
     const std::array<double, 2> y{w.left * z[kLeft] + w.cross * z[kRight] + b[kLeft],
                                   w.cross * z[kLeft] + w.right * z[kRight] + b[kRight]};
     const double bound = residual_bound(w, b, z);
@@ -592,7 +592,7 @@ TEST(PushOrPull, Solves) {
     if (w.left * w.right - w.cross * w.cross < 1e-10 * w.left * w.right) continue;
     const std::array<double, 2> b{draw.uniform(-10, 10), draw.uniform(-10, 10)};
     const std::array<bool, 2> active{draw.below(8) != 0, draw.below(8) != 0};
-    const auto z = push_or_pull(w, b, active);
+    const auto z = bilateral_impulses(w, b, active);
     const std::array<double, 2> y{w.left * z[kLeft] + w.cross * z[kRight] + b[kLeft],
                                   w.cross * z[kLeft] + w.right * z[kRight] + b[kRight]};
     for (const Side side : {kLeft, kRight}) {
@@ -617,20 +617,20 @@ TEST(PushOnly, SwappedSidesGiveSwappedBits) {
     const auto same = [](const std::array<double, 2>& a, const std::array<double, 2>& b) {
       return same_bits(a[kLeft], b[kRight]) && same_bits(a[kRight], b[kLeft]);
     };
-    ASSERT_TRUE(same(push_only(w, {first, second}, active),
-                     push_only(m, {second, first}, {active[1], active[0]})));
-    ASSERT_TRUE(same(push_or_pull(w, {first, second}, active),
-                     push_or_pull(m, {second, first}, {active[1], active[0]})));
+    ASSERT_TRUE(same(unilateral_impulses(w, {first, second}, active),
+                     unilateral_impulses(m, {second, first}, {active[1], active[0]})));
+    ASSERT_TRUE(same(bilateral_impulses(w, {first, second}, active),
+                     bilateral_impulses(m, {second, first}, {active[1], active[0]})));
   }
 }
 
 // Two contacts in one place: W is singular, b the same twice, and any split of 6 solves it.
 TEST(PushOrPull, SharesEquallyBetweenCoincidingContacts) {
   const Coupling w{0.5, 0.5, 0.5};
-  const auto z = push_or_pull(w, {-3.0, -3.0}, {true, true});
+  const auto z = bilateral_impulses(w, {-3.0, -3.0}, {true, true});
   EXPECT_EQ(z[kLeft], 3.0);
   EXPECT_EQ(z[kRight], 3.0);
-  const auto pushed = push_only(w, {-3.0, -3.0}, {true, true});
+  const auto pushed = unilateral_impulses(w, {-3.0, -3.0}, {true, true});
   EXPECT_EQ(pushed[kLeft] + pushed[kRight], 6.0);
 }
 
@@ -648,7 +648,7 @@ TEST(Impulses, MirroredScenesGiveMirroredBits) {
                                    nearest(p, kRight, g.body, g.beams[kRight].theta)};
       const std::array<double, 2> u{gap_rate(t[kLeft], g.body, g.beams[kLeft]),
                                     gap_rate(t[kRight], g.body, g.beams[kRight])};
-      apply_impulses(p, t, push_only(coupling(p, t), u, {true, true}), g);
+      apply_impulses(p, t, unilateral_impulses(coupling(p, t), u, {true, true}), g);
     };
     push(s);
     push(m);
@@ -672,7 +672,7 @@ Accelerations accelerations(const GateParams& p, Side side, const GateState& s, 
   std::array<bool, 2> active{false, false};
   touch[side] = t;
   active[side] = true;
-  const double f = contact_forces(p, s, touch, force_x, active, push_or_pull)[side];
+  const double f = contact_forces(p, s, touch, force_x, active, bilateral_impulses)[side];
   const double inwards = side == kLeft ? 1.0 : -1.0;
   const double ax = (force_x - p.forces.drag * s.body.vx + f * t.nx) / p.body.mass;
   const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy + f * t.ny) / p.body.mass;
@@ -753,8 +753,8 @@ TEST(ContactForces, PushOnlyNeverPulls) {
   s.body = {-10, 20, 0, -8};
   s.beams[kLeft] = {0.0, -8.0 / 15, true};
   const std::array<Touch, 2> t{nearest(p, kLeft, s.body, 0.0), Touch{}};
-  EXPECT_LT(contact_forces(p, s, t, 0.0, {true, false}, push_or_pull)[kLeft], -1.0);
-  EXPECT_EQ(contact_forces(p, s, t, 0.0, {true, false}, push_only)[kLeft], 0.0);
+  EXPECT_LT(contact_forces(p, s, t, 0.0, {true, false}, bilateral_impulses)[kLeft], -1.0);
+  EXPECT_EQ(contact_forces(p, s, t, 0.0, {true, false}, unilateral_impulses)[kLeft], 0.0);
 }
 
 // ---- Direction ----

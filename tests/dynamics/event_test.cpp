@@ -455,7 +455,7 @@ TEST(Event, HeldContactsNeitherDriftNorPull) {
           w.gap = std::max(w.gap, std::abs(t.gap));
           w.rate = std::max(w.rate, std::abs(gap_rate(t, ride.s.body, ride.s.beams[side])));
         }
-        const auto push = contact_forces(p, ride.s, touch, f, held, push_or_pull);
+        const auto push = contact_forces(p, ride.s, touch, f, held, bilateral_impulses);
         for (const Side side : {kLeft, kRight})
           if (held[side]) w.pull = std::max(w.pull, -push[side]);
       }
@@ -1048,7 +1048,7 @@ TEST(Grazing, EventHitsTheSideOnlyBelowTheRadius) {
 TEST(Event, RunsAnySceneItAccepts) {
   const int kScenes = usual_or_full(2000, 100'000);
   struct Seen {
-    bool refused = false, broken = false, cut_short = false, finite = true;
+    bool refused = false, broken = false, out_of_work = false, finite = true;
     double overlap = 0.0, seconds = 0.0;
   };
   std::vector<Seen> seen(kScenes);
@@ -1079,7 +1079,7 @@ TEST(Event, RunsAnySceneItAccepts) {
       const BodyState& b = run.exit;
       seen[i] = {false,
                  run.ending == Ending::broken,
-                 run.cut_short,
+                 run.out_of_work,
                  std::isfinite(b.x + b.y + b.vx + b.vy),
                  run.watch.max_penetration,
                  seconds};
@@ -1094,7 +1094,7 @@ TEST(Event, RunsAnySceneItAccepts) {
   for (int i = 0; i < kScenes; ++i) {
     refused += seen[i].refused;
     broken += seen[i].broken;
-    hung += seen[i].cut_short;
+    hung += seen[i].out_of_work;
     escaped += !seen[i].finite && !seen[i].broken;
     slowest = std::max(slowest, seen[i].seconds);
     ASSERT_LE(seen[i].overlap, 1e-4 * 10.0) << i;

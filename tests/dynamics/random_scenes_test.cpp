@@ -82,7 +82,7 @@ GateParams by(GateParams p, std::string_view method) {
 /// Clean as a command says it: the runs' own faults, and the sample by a better method.
 struct Result {
   TrialEnds ends;
-  [[nodiscard]] bool clean() const { return ends.health.clean() && ends.cut_short == 0; }
+  [[nodiscard]] bool clean() const { return ends.health.clean() && ends.out_of_work == 0; }
 };
 
 std::optional<Result> result(const RandomScene& s, const GateParams& p, std::int64_t trials) {

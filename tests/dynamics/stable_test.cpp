@@ -345,8 +345,8 @@ Contacts contacts_of_trial(const GateParams& p, int trial) {
     if (left) c.exit_speed = std::hypot(ride.s.body.vx, ride.s.body.vy);
     const auto held = held_of(ride.s);
     if (!left && (held[kLeft] || held[kRight])) {
-      const auto push =
-          contact_forces(p, ride.s, {ride.touch(kLeft), ride.touch(kRight)}, f, held, push_or_pull);
+      const auto push = contact_forces(p, ride.s, {ride.touch(kLeft), ride.touch(kRight)}, f, held,
+                                       bilateral_impulses);
       for (const Side side : {kLeft, kRight})
         if (held[side]) c.pull = std::max(c.pull, -push[side]);
     }

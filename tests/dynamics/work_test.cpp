@@ -64,5 +64,20 @@ TEST(Work, StopsBetweenPiecesWhenToldThrows) {
   EXPECT_LT(done, 1'000'000'000'000);
 }
 
+TEST(Work, PartsAreToldAsTheirShareOfTheWhole) {
+  std::vector<std::int64_t> told;
+  const Work whole{[&](std::string_view what, std::int64_t done, std::int64_t total) {
+    EXPECT_EQ(what, "sweep");
+    EXPECT_EQ(total, 4000);
+    told.push_back(done);
+  }};
+  whole.part("sweep", 1, 4).tell("runs", 30, 60);
+  whole.part("sweep", 3, 4).tell("runs", 60, 60);
+  whole.part("sweep", 2, 4).part("inner", 1, 2).tell("runs", 1, 2);
+  whole.part("sweep", 1000.0, 500.0, 4000).tell("runs", 1, 5);
+  EXPECT_EQ(told, (std::vector<std::int64_t>{1500, 4000, 2750, 1100}));
+  Work{}.part("sweep", 0, 1).tell("runs", 0, 1);  // nobody watches
+}
+
 }  // namespace
 }  // namespace gatewalk::dynamics

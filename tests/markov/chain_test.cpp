@@ -132,5 +132,21 @@ TEST(Chain, RefusesAStartThatDoesNotBelong) {
   EXPECT_REFUSED(validate(chain, {1 << 16, 1 << 15}, {0, 0, 0}, 1), "field");
 }
 
+TEST(FieldChain, TakesOtherChainsForTheSameCells) {
+  const auto chain = [](std::int64_t up) {
+    Counts counts(1, 2);
+    counts.coeffRef(0, 0) = up;
+    counts.coeffRef(0, 1) = 1;
+    return Chain::from_counts(counts, kTwoExits);
+  };
+  const FieldChain field = FieldChain::by_cell({chain(1), chain(3)}, 2, {0, 1, 1, 0});
+  const FieldChain other = field.with({chain(7), chain(9)});
+  for (const auto& [column, row] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+    EXPECT_EQ(other.type_of(column, row), field.type_of(column, row));
+  EXPECT_EQ(other.at(1, 0).matrix().coeff(0, 0), 0.9);
+  EXPECT_EQ(other.columns(), 2);
+  EXPECT_REFUSED((void)field.with({chain(1)}), "1 chains cannot take the place of 2");
+}
+
 }  // namespace
 }  // namespace gatewalk::markov

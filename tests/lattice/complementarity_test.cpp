@@ -75,12 +75,12 @@ Eigen::VectorXd by_enumeration(const Problem& p) {
 // then opens at 1 + 1/2.
 TEST(PushOnly, ThreeByHand) {
   Eigen::MatrixXd w = Eigen::MatrixXd::Identity(3, 3) + Eigen::MatrixXd::Constant(3, 3, 0.5);
-  const Eigen::VectorXd z = push_only(w, Eigen::Vector3d(-1, -1, 1));
+  const Eigen::VectorXd z = solve_lcp(w, Eigen::Vector3d(-1, -1, 1));
   EXPECT_NEAR(z[0], 0.5, 4 * test::kEps);
   EXPECT_NEAR(z[1], 0.5, 4 * test::kEps);
   EXPECT_EQ(z[2], 0.0);
-  EXPECT_EQ(push_only(w, Eigen::Vector3d(1, 0, 2)), Eigen::Vector3d::Zero());
-  EXPECT_EQ(push_only(Eigen::MatrixXd(0, 0), Eigen::VectorXd(0)).size(), 0);
+  EXPECT_EQ(solve_lcp(w, Eigen::Vector3d(1, 0, 2)), Eigen::Vector3d::Zero());
+  EXPECT_EQ(solve_lcp(Eigen::MatrixXd(0, 0), Eigen::VectorXd(0)).size(), 0);
 }
 
 // The fastest closing contact joins first and has to leave again: alone it is in the way of nobody,
@@ -90,7 +90,7 @@ TEST(PushOnly, AContactMayHaveToLeave) {
   normals << 0.0, 1.0, 0.8, 0.6, -0.8, 0.6;
   const Eigen::MatrixXd w = normals * normals.transpose() + 0.01 * Eigen::MatrixXd::Identity(3, 3);
   const Eigen::Vector3d b(-1.0, -0.99, -0.99);
-  const Eigen::VectorXd z = push_only(w, b);
+  const Eigen::VectorXd z = solve_lcp(w, b);
   EXPECT_EQ(z[0], 0.0);
   EXPECT_GT(z[1], 0.0);
   EXPECT_DOUBLE_EQ(z[1], z[2]);
@@ -102,9 +102,10 @@ TEST(PushOnly, OneAndTwoAreThoseOfTheGate) {
   for (int run = 0; run < 2000; ++run) {
     const Problem p = contacts(draw, 1 + run % 2, false);
     const bool two = run % 2 == 1;
-    const auto gate = dynamics::push_only({p.w(0, 0), two ? p.w(1, 1) : 1.0, two ? p.w(0, 1) : 0.0},
-                                          {p.b[0], two ? p.b[1] : 0.0}, {true, two});
-    const Eigen::VectorXd z = push_only(p.w, p.b);
+    const auto gate =
+        dynamics::unilateral_impulses({p.w(0, 0), two ? p.w(1, 1) : 1.0, two ? p.w(0, 1) : 0.0},
+                                      {p.b[0], two ? p.b[1] : 0.0}, {true, two});
+    const Eigen::VectorXd z = solve_lcp(p.w, p.b);
     EXPECT_EQ(z[0], gate[0]);
     if (two) {
       EXPECT_EQ(z[1], gate[1]);
@@ -119,11 +120,11 @@ TEST(PushOnly, AgreesWithEnumeration) {
   for (int run = 0; run < 6000; ++run) {
     const int n = 3 + run % 5;
     const Problem p = contacts(draw, n, run % 3 == 0);
-    const Eigen::VectorXd z = push_only(p.w, p.b), slow = by_enumeration(p);
+    const Eigen::VectorXd z = solve_lcp(p.w, p.b), slow = by_enumeration(p);
     const Eigen::VectorXd after = p.w * z + p.b;
     const double scale = p.b.cwiseAbs().maxCoeff();
-    // push_only leaves open what closes slower than 1e-12 of the fastest; solving W z = -b by
-    // Cholesky leaves a residual of some n eps |W| |z|.
+    // unilateral_impulses leaves open what closes slower than 1e-12 of the fastest; solving W z =
+    // -b by Cholesky leaves a residual of some n eps |W| |z|.
     const double rounding =
         1.01e-12 * scale + 20 * n * test::kEps * (p.w.cwiseAbs() * z).maxCoeff();
     EXPECT_GE(z.minCoeff(), 0.0);
@@ -142,7 +143,7 @@ TEST(PushOnly, AgreesWithEnumeration) {
 // Eight equal pins in one place act as one.
 TEST(PushOnly, PinsInOnePlaceActAsOne) {
   const Eigen::MatrixXd w = Eigen::MatrixXd::Constant(8, 8, 2.0);
-  const Eigen::VectorXd z = push_only(w, Eigen::VectorXd::Constant(8, -3.0));
+  const Eigen::VectorXd z = solve_lcp(w, Eigen::VectorXd::Constant(8, -3.0));
   EXPECT_DOUBLE_EQ(z.sum(), 1.5);
 }
 

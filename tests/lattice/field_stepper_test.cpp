@@ -43,41 +43,41 @@ BeamState swung(double k, double d, double inertia, const BeamState& s, double t
 // ---- Free motion
 
 // Beams so short that the body never meets one: a parabola, which the midpoint rule has exactly.
-TEST(Crowd, PassesGatesWithoutContactOnAParabola) {
+TEST(FieldStepper, PassesGatesWithoutContactOnAParabola) {
   GateParams p = moreau();
   p.beams.length = 1.0;
   p.body.radius = 1.0;
   p.forces.random = 0.0;
   p.forces.drag = 0.0;
   for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
-    Crowd crowd(p, field(f), {3, 0, 2, 15});
+    FieldStepper stepper(p, field(f), {3, 0, 2, 15});
     RandomForce force(p.forces, Random(Purpose::field, {}));
     double impacts = 0.0;
     for (int gate = 0; gate < 4; ++gate) {
-      const GateRun run = crowd.run_gate(force);
+      const GateRun run = stepper.run_gate(force);
       ASSERT_EQ(run.ending, Ending::traversed);
       impacts += static_cast<double>(run.watch.impacts);
-      crowd.go_on(run.ending);
-      const double t = crowd.seconds();
+      stepper.go_on(run.ending);
+      const double t = stepper.seconds();
       // Some 5000 steps of round-off in numbers up to 240.
-      EXPECT_NEAR(60.0 * crowd.row() + crowd.body().y, 15 * t + 4 * t * t, 1e-9);
-      EXPECT_NEAR(crowd.body().x, 3 + 2 * t, 1e-9);
-      EXPECT_EQ(crowd.row(), gate + 1);
+      EXPECT_NEAR(60.0 * stepper.row() + stepper.body().y, 15 * t + 4 * t * t, 1e-9);
+      EXPECT_NEAR(stepper.body().x, 3 + 2 * t, 1e-9);
+      EXPECT_EQ(stepper.row(), gate + 1);
     }
     EXPECT_EQ(impacts, 0.0);
   }
 }
 
 // Drag by the midpoint rule: second order in the step.
-TEST(Crowd, DragIsOfSecondOrder) {
+TEST(FieldStepper, DragIsOfSecondOrder) {
   GateParams p = test::free_rods();
   p.forces.drag = 2.0;
   const auto error = [&](double step) {
     GateParams q = moreau(p, step);
-    Crowd crowd(q, field(Fidelity::all), {0, 0, 4, 10});
+    FieldStepper stepper(q, field(Fidelity::all), {0, 0, 4, 10});
     Watch watch;
-    for (int i = 0; i < 25; ++i) (void)crowd.advance(0.0, 0.02, watch);
-    return std::abs(crowd.body().vy - 10 * std::exp(-2.0 * 0.5));
+    for (int i = 0; i < 25; ++i) (void)stepper.advance(0.0, 0.02, watch);
+    return std::abs(stepper.body().vy - 10 * std::exp(-2.0 * 0.5));
   };
   EXPECT_NEAR(std::log2(error(0.004) / error(0.002)), 2.0, 0.02);
 }
@@ -86,26 +86,26 @@ TEST(Crowd, DragIsOfSecondOrder) {
 
 /// Disc near the joint place that its gate shares with the right neighbour, beams of three gates
 /// turned towards it and in motion; most overlap the disc, so several contacts act at once.
-Crowd scramble(const GateParams& p, Fidelity f, Draw& draw) {
-  Crowd crowd(
+FieldStepper scramble(const GateParams& p, Fidelity f, Draw& draw) {
+  FieldStepper stepper(
       p, field(f),
       {draw.uniform(0, 24), draw.uniform(5, 55), draw.uniform(-10, 10), draw.uniform(-10, 10)});
   for (int column = kMiddle - 1; column <= kMiddle + 1; ++column) {
     std::array<BeamState, 2> beams;
     for (const Side side : {kLeft, kRight}) {
       const double joint = 50.0 * (column - kMiddle) + (side == kLeft ? -25.0 : 25.0);
-      const double across = side == kLeft ? crowd.body().x - joint : joint - crowd.body().x;
-      beams[side] = {std::atan2(crowd.body().y - 30.0, across) + draw.uniform(-0.4, 0.4),
+      const double across = side == kLeft ? stepper.body().x - joint : joint - stepper.body().x;
+      beams[side] = {std::atan2(stepper.body().y - 30.0, across) + draw.uniform(-0.4, 0.4),
                      draw.uniform(-2, 2)};
     }
-    crowd.set_beams(column, 0, beams);
+    stepper.set_beams(column, 0, beams);
   }
-  return crowd;
+  return stepper;
 }
 
 // e = 1, no damping, no drag: the midpoint rule keeps the energy of the springs, u+ = -u- that of
 // body and beams, at any step and for any number of contacts.
-TEST(Crowd, KeepsEnergyOverAllBeams) {
+TEST(FieldStepper, KeepsEnergyOverAllBeams) {
   Draw draw(3);
   GateParams p = moreau();
   p.forces = {.propulsion = 0.0, .random = 0.0, .random_rate = 50.0, .drag = 0.0};
@@ -114,19 +114,20 @@ TEST(Crowd, KeepsEnergyOverAllBeams) {
   for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
     int one = 0, two = 0, more = 0;
     for (int scene = 0; scene < 200; ++scene) {
-      Crowd crowd = scramble(p, f, draw);
-      const double start = crowd.energy();
+      FieldStepper stepper = scramble(p, f, draw);
+      const double start = stepper.energy();
       // Some 300 steps, each a few roundings of the energy.
       const double rounding = 300 * 8 * test::kEps * start;
       Watch watch;
       for (int step = 0; step < 300; ++step) {
         const std::int64_t before = watch.impacts;
-        if (crowd.advance(0.0, p.run.step, watch) < p.run.step || outside(p, crowd.body())) break;
+        if (stepper.advance(0.0, p.run.step, watch) < p.run.step || outside(p, stepper.body()))
+          break;
         const std::int64_t impacts = watch.impacts - before;
         one += impacts == 1;
         two += impacts == 2;
         more += impacts > 2;
-        ASSERT_NEAR(crowd.energy(), start, rounding);
+        ASSERT_NEAR(stepper.energy(), start, rounding);
         ASSERT_LE(watch.energy_created, rounding);
       }
     }
@@ -139,41 +140,42 @@ TEST(Crowd, KeepsEnergyOverAllBeams) {
 // Rods without springs: contacts with beams that hinge on one joint place, of two gates, keep the
 // angular momentum about it. The midpoint's lever is exact: the disc's displacement over the step
 // differs from the predicted one along the sum of the impulses only.
-TEST(Crowd, KeepsAngularMomentumAboutASharedJoint) {
+TEST(FieldStepper, KeepsAngularMomentumAboutASharedJoint) {
   Draw draw(4);
   GateParams p = moreau(test::free_rods());
   p.contact.restitution = 0.8;  // not only for elastic ones
   int neighbours = 0, own = 0;
   for (int scene = 0; scene < 400; ++scene) {
     // Above the joint (25, 30), between the gate's right beam and the neighbour's left beam.
-    Crowd crowd(p, field(Fidelity::all), {draw.uniform(10, 24), draw.uniform(45, 56), 0, 0});
-    const double up = std::atan2(crowd.body().y - 30.0, 25.0 - crowd.body().x);
-    const double distance = std::hypot(crowd.body().y - 30.0, 25.0 - crowd.body().x);
+    FieldStepper stepper(p, field(Fidelity::all),
+                         {draw.uniform(10, 24), draw.uniform(45, 56), 0, 0});
+    const double up = std::atan2(stepper.body().y - 30.0, 25.0 - stepper.body().x);
+    const double distance = std::hypot(stepper.body().y - 30.0, 25.0 - stepper.body().x);
     const double half = std::asin(10.0 / distance);  // half the angle under which the disc is seen
-    crowd.set_beams(
+    stepper.set_beams(
         kMiddle, 0,
         {BeamState{-1.5, 0.0}, {up - half - draw.uniform(0.01, 0.3), draw.uniform(0, 2)}});
-    crowd.set_beams(
+    stepper.set_beams(
         kMiddle + 1, 0,
         {BeamState{std::numbers::pi - up - half - draw.uniform(0.01, 0.3), draw.uniform(0, 2)},
          {}});
     const auto momentum = [&] {
-      const BodyState& b = crowd.body();
+      const BodyState& b = stepper.body();
       return p.body.mass * ((b.x - 25.0) * b.vy - (b.y - 30.0) * b.vx) +
-             p.beams.inertia() *
-                 (crowd.beams(kMiddle + 1, 0)[kLeft].omega - crowd.beams(kMiddle, 0)[kRight].omega);
+             p.beams.inertia() * (stepper.beams(kMiddle + 1, 0)[kLeft].omega -
+                                  stepper.beams(kMiddle, 0)[kRight].omega);
     };
     const double start = momentum();
     const double scale = 25.0 * 60.0 + p.beams.inertia() * 4.0;
-    const double right = crowd.beams(kMiddle, 0)[kRight].omega;
-    const double left = crowd.beams(kMiddle + 1, 0)[kLeft].omega;
+    const double right = stepper.beams(kMiddle, 0)[kRight].omega;
+    const double left = stepper.beams(kMiddle + 1, 0)[kLeft].omega;
     Watch watch;
     for (int step = 0; step < 150; ++step) {
-      if (crowd.advance(0.0, p.run.step, watch) < p.run.step || outside(p, crowd.body())) break;
+      if (stepper.advance(0.0, p.run.step, watch) < p.run.step || outside(p, stepper.body())) break;
       ASSERT_NEAR(momentum(), start, 150 * test::kEps * scale);
     }
-    own += crowd.beams(kMiddle, 0)[kRight].omega != right;
-    neighbours += crowd.beams(kMiddle + 1, 0)[kLeft].omega != left;
+    own += stepper.beams(kMiddle, 0)[kRight].omega != right;
+    neighbours += stepper.beams(kMiddle + 1, 0)[kLeft].omega != left;
   }
   EXPECT_GT(own, 100);
   EXPECT_GT(neighbours, 100);
@@ -182,14 +184,14 @@ TEST(Crowd, KeepsAngularMomentumAboutASharedJoint) {
 // Against MODEL.md's converged figures of Sec. III-B's study (F 7, Rm 10, k 300/500, d 50): 5.5 %
 // traversed left, 53.4 % exited, 41.0 % trapped. Four standard deviations of 1500 trials, and 1 %
 // for the step, which at 4 ms costs `stable` half of that.
-TEST(Crowd, OneGateHasTheConvergedOutcomes) {
+TEST(FieldStepper, OneGateHasTheConvergedOutcomes) {
   const GateParams p = moreau(test::study(50.0), 0.004);
   constexpr int kTrials = 1500;
   std::array<int, 5> seen{};
   for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
-    Crowd crowd(p, field(Fidelity::all, 1, 1), {});
+    FieldStepper stepper(p, field(Fidelity::all, 1, 1), {});
     RandomForce force(p.forces, Random(Purpose::gate, {11, 0, trial}));
-    ++seen[static_cast<int>(crowd.run_gate(force).ending)];
+    ++seen[static_cast<int>(stepper.run_gate(force).ending)];
   }
   const auto expect_share = [&](int count, double share) {
     EXPECT_NEAR(static_cast<double>(count) / kTrials, share,
@@ -204,7 +206,7 @@ TEST(Crowd, OneGateHasTheConvergedOutcomes) {
 
 // The same law written for two beams: method moreau, run by run. Round-off grows with every hit, so
 // states are compared early (up to some dozen steps of contact), endings as shares.
-TEST(Crowd, OneGateIsMethodMoreau) {
+TEST(FieldStepper, OneGateIsMethodMoreau) {
   const GateParams p = moreau();
   const auto method = make_method(p);
   constexpr int kTrials = 300;
@@ -216,22 +218,22 @@ TEST(Crowd, OneGateIsMethodMoreau) {
     GateState s{start, {}};
     EnergyLedger ledger(p, s);
     Watch watch, other;
-    Crowd crowd(p, field(Fidelity::remember, 1, 1), start);
+    FieldStepper stepper(p, field(Fidelity::remember, 1, 1), start);
     RandomForce force = noise();
     for (int hold = 0; hold < 65; ++hold) {  // 1.3 s: contact begins after 1.1 s
       const double f = force.value();
       (void)method->advance(s, f, 0.02, ledger, watch);
-      (void)crowd.advance(f, 0.02, other);
+      (void)stepper.advance(f, 0.02, other);
       force.pass(0.02);
     }
     touched += other.impacts > 0;
-    const BodyState& b = crowd.body();
+    const BodyState& b = stepper.body();
     close += std::abs(b.x - s.body.x) + std::abs(b.y - s.body.y) + std::abs(b.vx - s.body.vx) +
                  std::abs(b.vy - s.body.vy) <
              1e-9;
     RandomForce again = noise(), once_more = noise();
     ++theirs[static_cast<int>(run_gate(p, *method, start, again).ending)];
-    Crowd all(p, field(Fidelity::all, 1, 1), start);
+    FieldStepper all(p, field(Fidelity::all, 1, 1), start);
     ++ours[static_cast<int>(all.run_gate(once_more).ending)];
   }
   EXPECT_GT(touched, kTrials / 2);
@@ -247,74 +249,74 @@ TEST(Crowd, OneGateIsMethodMoreau) {
 
 // A gate left behind goes on in closed form, is met again where it is by then, and not before its
 // beams are within reach. The beams ahead are stiff: the body bounces off them and comes back.
-TEST(Crowd, RememberedBeamsSwingOnInClosedForm) {
+TEST(FieldStepper, RememberedBeamsSwingOnInClosedForm) {
   GateParams p = moreau();
   p.forces = {.propulsion = 0.0, .random = 0.0, .random_rate = 50.0, .drag = 0.0};
   p.beams.stiffness_left = 4e4;
   p.beams.stiffness_right = 3e4;
   p.beams.damping = 4.0;  // so that something is left after seconds
-  Crowd crowd(p, field(Fidelity::remember), {-20, 50, 0, 25});
-  crowd.set_beams(kMiddle, 0, {BeamState{0.4, -3.0}, {-0.2, 1.0}});
+  FieldStepper stepper(p, field(Fidelity::remember), {-20, 50, 0, 25});
+  stepper.set_beams(kMiddle, 0, {BeamState{0.4, -3.0}, {-0.2, 1.0}});
   Watch watch;
   const auto step = [&] {
-    (void)crowd.advance(0.0, p.run.step, watch);
-    if (outside(p, crowd.body())) crowd.go_on(Ending::traversed);
+    (void)stepper.advance(0.0, p.run.step, watch);
+    if (outside(p, stepper.body())) stepper.go_on(Ending::traversed);
   };
-  while (crowd.row() == 0) step();
-  EXPECT_EQ(crowd.awake(), 1U);  // the last choice was made before the step out
+  while (stepper.row() == 0) step();
+  EXPECT_EQ(stepper.awake(), 1U);  // the last choice was made before the step out
   step();
-  EXPECT_EQ(crowd.awake(), 2U);
-  while (crowd.awake() == 2U) step();
+  EXPECT_EQ(stepper.awake(), 2U);
+  while (stepper.awake() == 2U) step();
   // Reach is a circle of 35 m about the joint at (-25, -30), plus what one step travels.
-  EXPECT_NEAR(crowd.body().y, std::sqrt(35.0 * 35.0 - 5.0 * 5.0) - 30.0, 3 * 25 * p.run.step);
-  const auto left = crowd.beams(kMiddle, 0);
-  const double then = crowd.seconds();
+  EXPECT_NEAR(stepper.body().y, std::sqrt(35.0 * 35.0 - 5.0 * 5.0) - 30.0, 3 * 25 * p.run.step);
+  const auto left = stepper.beams(kMiddle, 0);
+  const double then = stepper.seconds();
   EXPECT_GT(std::abs(left[kLeft].theta) + std::abs(left[kRight].theta), 0.01);
 
   const auto expect_swung = [&](double tolerance) {
-    const auto now = crowd.beams(kMiddle, 0);
+    const auto now = stepper.beams(kMiddle, 0);
     for (const Side side : {kLeft, kRight}) {
       const double k = p.beams.stiffness(side);
       const BeamState s =
-          swung(k, p.beams.damping, p.beams.inertia(), left[side], crowd.seconds() - then);
+          swung(k, p.beams.damping, p.beams.inertia(), left[side], stepper.seconds() - then);
       EXPECT_NEAR(now[side].theta, s.theta, tolerance);
       EXPECT_NEAR(now[side].omega, s.omega, 50 * tolerance);  // rates are some 40 1/s
     }
   };
   int steps = 0;
-  while (crowd.awake() == 1U) {
+  while (stepper.awake() == 1U) {
     ASSERT_LT(++steps, 5000);
     step();
     // A phase of some 100 rad, each with a rounding or two.
-    if (crowd.awake() == 1U) expect_swung(1e-12);
+    if (stepper.awake() == 1U) expect_swung(1e-12);
   }
-  EXPECT_GT(crowd.seconds() - then, 1.0);
-  EXPECT_LT(crowd.body().vy, 0.0);
-  EXPECT_EQ(crowd.row(), 1);  // below its lower edge a body still counts in its gate
+  EXPECT_GT(stepper.seconds() - then, 1.0);
+  EXPECT_LT(stepper.body().vy, 0.0);
+  EXPECT_EQ(stepper.row(), 1);  // below its lower edge a body still counts in its gate
   // One step of the midpoint rule since: h^3 w^3 theta / 12.
   expect_swung(std::pow(p.run.step * 44.0, 3) * 0.4 / 12);
-  while (crowd.body().y > 0.0) step();
-  EXPECT_EQ(crowd.row(), 1);
+  while (stepper.body().y > 0.0) step();
+  EXPECT_EQ(stepper.row(), 1);
 }
 
 // The gate just left pushes from behind until it is out of reach.
-TEST(Crowd, TheGateJustLeftStillPushes) {
+TEST(FieldStepper, TheGateJustLeftStillPushes) {
   GateParams p = moreau();
   p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
       1.0;  // beams that keep swinging
   const auto pushed = [&](Fidelity f) {
-    Crowd crowd(p, field(f), {-20, 59.9, 0, 8});
-    crowd.set_beams(kMiddle, 0, {BeamState{0.9, 2.0}, {}});
+    FieldStepper stepper(p, field(f), {-20, 59.9, 0, 8});
+    stepper.set_beams(kMiddle, 0, {BeamState{0.9, 2.0}, {}});
     Watch before, after;
-    while (!outside(p, crowd.body())) (void)crowd.advance(0.0, p.run.step, before);
+    while (!outside(p, stepper.body())) (void)stepper.advance(0.0, p.run.step, before);
     EXPECT_EQ(before.impacts, 0);
-    crowd.go_on(Ending::traversed);
-    for (int i = 0; i < 150; ++i) (void)crowd.advance(0.0, p.run.step, after);
+    stepper.go_on(Ending::traversed);
+    for (int i = 0; i < 150; ++i) (void)stepper.advance(0.0, p.run.step, after);
     EXPECT_GT(after.impacts, 0);
-    EXPECT_EQ(crowd.row(), 1);
+    EXPECT_EQ(stepper.row(), 1);
     EXPECT_LT(after.max_penetration, 0.1);  // seen by the watch, though of another gate
     EXPECT_GT(after.max_penetration, 0.0);
-    return crowd.body();
+    return stepper.body();
   };
   const BodyState b = pushed(Fidelity::remember);
   EXPECT_GT(b.vy, 11.4);  // 8 m/s and 0.3 s of 8 N alone: 10.4
@@ -323,52 +325,52 @@ TEST(Crowd, TheGateJustLeftStillPushes) {
 }
 
 // A body on its way out through a side goes on touching the beam it has been leaning on.
-TEST(Crowd, ASideLeftBehindStillPushes) {
+TEST(FieldStepper, ASideLeftBehindStillPushes) {
   GateParams p = moreau();
   p.forces.propulsion = 0.0;
   p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
       1.0;  // beams that keep swinging
-  Crowd crowd(p, field(Fidelity::remember), {24.9, 45, 6, 0});
+  FieldStepper stepper(p, field(Fidelity::remember), {24.9, 45, 6, 0});
   // The right beam stands beside the disc, left of it, and swings after it.
-  crowd.set_beams(kMiddle, 0, {BeamState{}, {0.7, 2.0}});
+  stepper.set_beams(kMiddle, 0, {BeamState{}, {0.7, 2.0}});
   Watch watch;
-  while (!outside(p, crowd.body())) (void)crowd.advance(0.0, p.run.step, watch);
-  crowd.go_on(Ending::exited_right);
-  const double before = crowd.body().vx;
-  for (int i = 0; i < 100; ++i) (void)crowd.advance(0.0, p.run.step, watch);
-  EXPECT_EQ(crowd.column(), kMiddle + 1);
-  EXPECT_GT(crowd.body().vx, before + 1.0);
+  while (!outside(p, stepper.body())) (void)stepper.advance(0.0, p.run.step, watch);
+  stepper.go_on(Ending::exited_right);
+  const double before = stepper.body().vx;
+  for (int i = 0; i < 100; ++i) (void)stepper.advance(0.0, p.run.step, watch);
+  EXPECT_EQ(stepper.column(), kMiddle + 1);
+  EXPECT_GT(stepper.body().vx, before + 1.0);
 }
 
 // Only `all` has the beams of a gate that the body has never been in.
-TEST(Crowd, NeighboursPushInAllOnly) {
+TEST(FieldStepper, NeighboursPushInAllOnly) {
   GateParams p = moreau();
   p.forces.propulsion = 0.0;
   p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
       1.0;  // beams that keep swinging
   for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
-    Crowd crowd(p, field(f), {15, 46, 0, 0});
-    crowd.set_beams(kMiddle + 1, 0, {BeamState{1.2, 3.0}, {}});  // swings over from the right
+    FieldStepper stepper(p, field(f), {15, 46, 0, 0});
+    stepper.set_beams(kMiddle + 1, 0, {BeamState{1.2, 3.0}, {}});  // swings over from the right
     Watch watch;
-    for (int i = 0; i < 200; ++i) (void)crowd.advance(0.0, p.run.step, watch);
+    for (int i = 0; i < 200; ++i) (void)stepper.advance(0.0, p.run.step, watch);
     EXPECT_EQ(watch.impacts > 0, f == Fidelity::all);
-    EXPECT_EQ(crowd.body().vx < -0.5, f == Fidelity::all);
+    EXPECT_EQ(stepper.body().vx < -0.5, f == Fidelity::all);
   }
 }
 
 // Gates outside the field do not exist, those inside are awake where their joints are within reach:
 // at most four, in the paper's field.
-TEST(Crowd, FourGatesAtMostAreWithinReach) {
+TEST(FieldStepper, FourGatesAtMostAreWithinReach) {
   const GateParams p = moreau();
   Watch watch;
-  Crowd alone(p, field(Fidelity::all, 1, 1), {24, 10, 0, 0});
+  FieldStepper alone(p, field(Fidelity::all, 1, 1), {24, 10, 0, 0});
   (void)alone.advance(0.0, 0.02, watch);
   EXPECT_EQ(alone.awake(), 1U);
   // (24, 2): within 35 m of the joint at (25, 30), in row 1 also of the one at (25, -30).
-  Crowd first(p, field(Fidelity::all), {24, 2, 0, 0});
+  FieldStepper first(p, field(Fidelity::all), {24, 2, 0, 0});
   (void)first.advance(0.0, 0.02, watch);
   EXPECT_EQ(first.awake(), 2U);
-  Crowd second(p, field(Fidelity::all), {24, 59.9, 0, 20});
+  FieldStepper second(p, field(Fidelity::all), {24, 59.9, 0, 20});
   while (!outside(p, second.body())) (void)second.advance(0.0, p.run.step, watch);
   second.go_on(Ending::traversed);
   (void)second.advance(0.0, 0.02, watch);
@@ -376,15 +378,15 @@ TEST(Crowd, FourGatesAtMostAreWithinReach) {
 
   std::size_t most = 0;
   for (std::uint64_t trial = 0; trial < 10; ++trial) {
-    Crowd crowd(p, field(Fidelity::all), {0, 0, 0, 15});
+    FieldStepper stepper(p, field(Fidelity::all), {0, 0, 0, 15});
     RandomForce force(p.forces, Random(Purpose::field, {13, 0, trial}));
-    for (int hold = 0; hold < 600 && crowd.row() < 8 && std::abs(crowd.column() - kMiddle) < 4;
+    for (int hold = 0; hold < 600 && stepper.row() < 8 && std::abs(stepper.column() - kMiddle) < 4;
          ++hold) {
-      const double passed = crowd.advance(force.value(), force.left(), watch);
+      const double passed = stepper.advance(force.value(), force.left(), watch);
       force.pass(passed);
-      most = std::max(most, crowd.awake());
-      const Ending end = ending(p, {crowd.body(), {}});
-      if (end != Ending::trapped) crowd.go_on(end);
+      most = std::max(most, stepper.awake());
+      const Ending end = ending(p, {stepper.body(), {}});
+      if (end != Ending::trapped) stepper.go_on(end);
     }
   }
   EXPECT_EQ(most, 4U);
@@ -393,7 +395,7 @@ TEST(Crowd, FourGatesAtMostAreWithinReach) {
 // ---- Whole runs
 
 // To the last bit, with crowded contacts: gates so narrow that beams of four gates overlap.
-TEST(Crowd, MirroredFieldsGiveMirroredTrials) {
+TEST(FieldStepper, MirroredFieldsGiveMirroredTrials) {
   GateParams wide = moreau();
   GateParams narrow = wide;
   narrow.beams.joint_x = 10.0;
@@ -405,7 +407,7 @@ TEST(Crowd, MirroredFieldsGiveMirroredTrials) {
       int crowded = 0, moved = 0;
       for (std::uint64_t trial = 0; trial < 12; ++trial) {
         const BodyState start{-3, 0, 4, 15};
-        Crowd a(p, field(f), start), b(m, field(f), test::mirrored(start));
+        FieldStepper a(p, field(f), start), b(m, field(f), test::mirrored(start));
         RandomForce fa(p.forces, Random(Purpose::field, {14, 0, trial}));
         RandomForce fb(m.forces, Random(Purpose::field, {14, 0, trial}), -1.0);
         for (int step = 0; step < 4000 && a.row() < 8 && std::abs(a.column() - kMiddle) < 4;
@@ -440,35 +442,35 @@ TEST(Crowd, MirroredFieldsGiveMirroredTrials) {
 }
 
 // 12 s count from the entry into a gate, not from the start.
-TEST(Crowd, TheTimeLimitIsThatOfAGate) {
+TEST(FieldStepper, TheTimeLimitIsThatOfAGate) {
   GateParams p = moreau();
   p.forces.random = 0.0;
   p.beams.stiffness_left = p.beams.stiffness_right = 1e5;  // nothing gets through
-  Crowd crowd(p, field(Fidelity::all), {0, 45, 0, 5});
+  FieldStepper stepper(p, field(Fidelity::all), {0, 45, 0, 5});
   RandomForce force(p.forces, Random(Purpose::field, {}));
-  const GateRun out = crowd.run_gate(force);
+  const GateRun out = stepper.run_gate(force);
   ASSERT_EQ(out.ending, Ending::traversed);
-  crowd.go_on(out.ending);
-  const GateRun held = crowd.run_gate(force);
+  stepper.go_on(out.ending);
+  const GateRun held = stepper.run_gate(force);
   EXPECT_EQ(held.ending, Ending::trapped);
   EXPECT_NEAR(held.seconds, 12.0, 1e-6);
-  EXPECT_NEAR(crowd.seconds(), out.seconds + held.seconds, 1e-9);
+  EXPECT_NEAR(stepper.seconds(), out.seconds + held.seconds, 1e-9);
 }
 
 // The ledger sees all beams: damping and impacts take energy, nothing adds any, and a step too long
 // is said to be one.
-TEST(Crowd, HealthIsKept) {
+TEST(FieldStepper, HealthIsKept) {
   for (const double step : {0.001, 0.02}) {
     const GateParams p = moreau({}, step);
     Health health;
     for (std::uint64_t trial = 0; trial < 25; ++trial) {
-      Crowd crowd(p, field(Fidelity::all), {0, 0, 0, 15});
+      FieldStepper stepper(p, field(Fidelity::all), {0, 0, 0, 15});
       RandomForce force(p.forces, Random(Purpose::field, {15, 0, trial}));
       for (int gate = 0; gate < 3; ++gate) {
-        const GateRun run = crowd.run_gate(force);
+        const GateRun run = stepper.run_gate(force);
         health.add(p, run);
-        if (run.ending == Ending::trapped || crowd.row() == 8) break;
-        crowd.go_on(run.ending);
+        if (run.ending == Ending::trapped || stepper.row() == 8) break;
+        stepper.go_on(run.ending);
       }
     }
     EXPECT_GT(health.runs, 30);
@@ -483,12 +485,12 @@ TEST(Crowd, HealthIsKept) {
 }
 
 // Broken numbers end a run and are called so.
-TEST(Crowd, BrokenRunsAreCalledBroken) {
+TEST(FieldStepper, BrokenRunsAreCalledBroken) {
   const GateParams p = moreau();
-  Crowd crowd(p, field(Fidelity::all), {0, 0, 0, 15});
-  crowd.set_beams(kMiddle, 0, {BeamState{std::numeric_limits<double>::quiet_NaN(), 0.0}, {}});
+  FieldStepper stepper(p, field(Fidelity::all), {0, 0, 0, 15});
+  stepper.set_beams(kMiddle, 0, {BeamState{std::numeric_limits<double>::quiet_NaN(), 0.0}, {}});
   RandomForce force(p.forces, Random(Purpose::field, {}));
-  EXPECT_EQ(crowd.run_gate(force).ending, Ending::broken);
+  EXPECT_EQ(stepper.run_gate(force).ending, Ending::broken);
 }
 
 }  // namespace

@@ -1,0 +1,99 @@
+// Predictions from matrices of two outcomes, by hand.
+#include "lattice/study/prediction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Boundary;
+using markov::Ending;
+
+/// From every entry so many of 1000 runs go on upwards, into the same state; the others are
+/// trapped.
+SceneMatrix matrix(std::int64_t up, const std::string& keys = "") {
+  Scene scene = parse_scene("field = { columns = 3, rows = 3, max_gates = 9 }\n" + keys, "scene");
+  dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
+  const int state = t.space.index_of({Boundary::enter, 0.0, 0.0, 15.0}).state;
+  for (std::size_t row = 0; row < t.rows.size(); ++row) {
+    if (up > 0) t.rows[row][state] = up;
+    if (up < 1000) t.rows[row][t.space.trapped()] = 1000 - up;
+    t.trials[row] = 1000;
+  }
+  return {{std::move(t), {}}, std::move(scene)};
+}
+
+Prediction predicted(const SceneMatrix& m, const std::vector<RowMatrix>& others = {}) {
+  const ChainStart start =
+      chain_start(m.file.transitions.space, m.scene.field, {0.0, 0.0, 0.0, 15.0});
+  return predict(field_of(m, "base.nc", others), m.scene.field, {start}, {}, 1);
+}
+
+double share(const Prediction& p, Ending e) {
+  return p.starts.front().shares.share[static_cast<std::size_t>(e)];
+}
+
+TEST(Prediction, OfThreeRowsIsAPower) {
+  const Prediction p = predicted(matrix(750));
+  EXPECT_NEAR(share(p, Ending::far_edge), 27.0 / 64, 1e-15);
+  EXPECT_NEAR(share(p, Ending::trapped), 37.0 / 64, 1e-15);
+  EXPECT_NEAR(p.starts[0].final.final_cells(1, 1), 0.75 * 0.25, 1e-15);
+  EXPECT_FALSE(p.failed);
+  // 1000 runs a row, all rows alike but resampled each on its own: the walk uses one of them.
+  EXPECT_EQ(p.starts[0].replicates, 200);
+  const auto [low, high] = p.starts[0].shares.interval[static_cast<std::size_t>(Ending::far_edge)];
+  const double sd = 3.0 * 0.75 * 0.75 * std::sqrt(0.75 * 0.25 / 1000);  // of q^3
+  EXPECT_NEAR(27.0 / 64 - low, 1.96 * sd, 0.4 * sd);
+  EXPECT_NEAR(high - 27.0 / 64, 1.96 * sd, 0.4 * sd);
+  EXPECT_GT(p.starts[0].total_variation_95, p.starts[0].mean_total_variation);
+}
+
+TEST(Prediction, RowsOfOtherMatrices) {
+  const SceneMatrix base = matrix(750);
+  const std::vector<RowMatrix> trap{{1, 1, "trap.nc", matrix(0)}};
+  const Prediction p = predicted(base, trap);
+  EXPECT_EQ(share(p, Ending::far_edge), 0.0);
+  EXPECT_NEAR(p.starts[0].final.final_cells(1, 1), 0.75, 1e-15);
+  const std::vector<RowMatrix> open{{0, 1, "open.nc", matrix(1000)},
+                                    {2, 2, "open.nc", matrix(1000)}};
+  EXPECT_EQ(field_of(base, "base.nc", open).counts.size(), 2u);  // one file, one type
+  EXPECT_DOUBLE_EQ(share(predicted(base, open), Ending::far_edge), 1.0);
+}
+
+TEST(FieldOf, RefusesWhatMakesNoField) {
+  const SceneMatrix base = matrix(750);
+  const auto message = [&](std::vector<RowMatrix> others) {
+    try {
+      (void)field_of(base, "base.nc", others);
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message({{2, 1, "a.nc", base}}), "--row 2-1=a.nc: the lower row comes first");
+  EXPECT_EQ(message({{1, 3, "a.nc", base}}), "--row 1-3=a.nc: the rows of this field are 0 to 2");
+  EXPECT_EQ(message({{1, 2, "a.nc", base}, {2, 2, "b.nc", base}}),
+            "--row 2=b.nc: row 2 is given twice");
+  EXPECT_EQ(message({{1, 1, "a.nc", matrix(1, "body.radius_m = 9.0")}}),
+            "--row 1=a.nc: it was built with another body than base.nc");
+  EXPECT_EQ(
+      message({{1, 1, "a.nc", matrix(1, "beams.joint_x_m = 26.0")}}),
+      "--row 1=a.nc: its gates are 52.000 m wide and 60.000 m long, those of base.nc 50.000 and "
+      "60.000 m: they make no field");
+}
+
+TEST(Prediction, OfManyStartsIsOneEach) {
+  const SceneMatrix m = matrix(600);
+  const ChainStart a = chain_start(m.file.transitions.space, m.scene.field, {0.0, 0.0, 0.0, 15.0}),
+                   b = chain_start(m.file.transitions.space, m.scene.field, {9.0, 0.0, 3.0, 5.0});
+  const Prediction p = predict(field_of(m, "base.nc", {}), m.scene.field, {a, b}, {}, 1);
+  ASSERT_EQ(p.starts.size(), 2u);
+  EXPECT_EQ(p.starts[1].start.start.input, b.start.input);
+  for (const StartPrediction& s : p.starts) EXPECT_NEAR(s.final.trapped, 1 - 0.216, 1e-14);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice

@@ -1,0 +1,37 @@
+#include "lattice/study/trials.h"
+
+#include <gtest/gtest.h>
+
+#include "lattice/scene/bins.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+TEST(FieldTrials, AreThoseOfRunFieldAndChecked) {
+  const Scene scene = parse_scene("field = { columns = 3, rows = 3 }", "scene");
+  const FieldTally tally = field_trials(scene, 150, 4);
+  const FieldTally plain =
+      run_field(scene.gate, scene.field, scene.start, fixed_space(scene), 4, {0, 150});
+  EXPECT_TRUE((tally.final_gates == plain.final_gates).all());
+  EXPECT_EQ(tally.entries, plain.entries);
+  EXPECT_EQ(tally.held, plain.held);
+  EXPECT_EQ(tally.health.steps, plain.health.steps);
+  EXPECT_GT(tally.health.checked_trials, 0);
+}
+
+TEST(Walks, AreThoseOfTheWalker) {
+  // Up, or trapped: a coin.
+  dynamics::Transitions t(dynamics::StateSpace::paper({}));
+  for (auto& row : t.rows) row = {{0, 1}, {t.space.trapped(), 1}};
+  for (auto& n : t.trials) n = 2;
+  const FieldParams field{.columns = 3, .rows = 3, .max_gates = 9};
+  const ChainStart start = chain_start(t.space, field, {0.0, 0.0, 0.0, 15.0});
+  const markov::WalkTally tally = walks(make_chain(t), field, start, 1000, 2);
+  const markov::WalkTally plain =
+      markov::Walker(make_chain(t)).walk({3, 3}, start.start, 9, 2, {0, 1000});
+  EXPECT_EQ(tally.endings, plain.endings);
+  EXPECT_NEAR(static_cast<double>(tally.trapped) / 1000, 7.0 / 8, 5 * std::sqrt(7.0 / 64 / 1000));
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
