@@ -9,7 +9,8 @@
 ///   random.h       counter-based random streams, the held lateral force of Eq. (1)
 ///   gate.h         one run of one gate
 ///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
-///   ensemble.h     many runs, their outcomes and their health
+///   ensemble.h     many runs and their outcomes; trial_set.h: which trials they are
+///   health.h       how far runs can be trusted
 ///   state_space.h  how a body enters a gate, as a number: Table III or other bins
 ///   quantile_bins.h  bins from entries that were seen, and how well bins resolve them
 ///   trace.h        one run in full, step by step

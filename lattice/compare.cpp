@@ -395,7 +395,25 @@ namespace {
 struct Outcome {
   Eigen::Index place;  // of the gate in the support
   std::size_t ending;
+  double probability;
 };
+
+/// What a trial of the predicted chain may come to. Where a gate is not mixed, all were trapped.
+std::vector<Outcome> outcomes_of(const markov::FinalDistribution& prediction,
+                                 const Support& support, const Eigen::VectorXd& expected) {
+  std::vector<Outcome> outcomes;
+  auto mixed = prediction.mixed_cells.begin();
+  for (Eigen::Index i = 0; i < expected.size(); ++i) {
+    while (mixed != prediction.mixed_cells.end() && mixed->cell < support.gates[i]) ++mixed;
+    if (mixed == prediction.mixed_cells.end() || mixed->cell != support.gates[i]) {
+      outcomes.push_back({i, static_cast<std::size_t>(markov::Ending::trapped), expected[i]});
+      continue;
+    }
+    for (std::size_t e = 0; e < markov::kEndings; ++e)
+      if (mixed->by_ending[e] > 0.0) outcomes.push_back({i, e, mixed->by_ending[e]});
+  }
+  return outcomes;
+}
 
 constexpr std::size_t kGateTests = 3;
 using Tests =
@@ -419,6 +437,40 @@ std::vector<std::array<std::int64_t, std::tuple_size_v<Tests>>> ranks(
   return rank;
 }
 
+/// The verdict on the last row, which was seen; the rows before it are the null's.
+Judgement judgement_of(const std::vector<Tests>& all) {
+  std::vector<double> tv;
+  for (std::size_t k = 0; k + 1 < all.size(); ++k) tv.push_back(all[k][0]);
+  const auto [mean_tv, tv_at_95] = mean_and_95(tv);
+  const auto rank = ranks(all);
+  std::vector<std::int64_t> least;  // rank of each row, over its statistics
+  for (const auto& r : rank) least.push_back(*std::min_element(r.begin(), r.end()));
+  std::sort(least.begin(), least.end());
+  const auto of_all = static_cast<double>(all.size());
+  Judgement j;
+  j.null_draws = std::ssize(all) - 1;
+  j.chance_total_variation = mean_tv;
+  j.chance_total_variation_95 = tv_at_95;
+  const auto fill = [&](Judgement::Test& test, std::size_t t) {
+    test.seen = all.back()[t];
+    if (std::isnan(test.seen)) {
+      test.p = test.p_adjusted = test.seen;
+      return;
+    }
+    test.p = static_cast<double>(rank.back()[t]) / of_all;
+    test.p_adjusted =
+        static_cast<double>(std::upper_bound(least.begin(), least.end(), rank.back()[t]) -
+                            least.begin()) /
+        of_all;
+    j.p = std::min(j.p, test.p_adjusted);
+  };
+  fill(j.total_variation, 0);
+  fill(j.energy, 1);
+  fill(j.chi_squared, 2);
+  for (std::size_t e = 0; e < markov::kEndings; ++e) fill(j.endings[e], kGateTests + e);
+  return j;
+}
+
 }  // namespace
 
 Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
@@ -439,22 +491,9 @@ Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& predic
   const Support support = affordable_support_of(reached);
   const Eigen::VectorXd expected = on_support(base, support);
   const double rare = rare_share(expected, n);
-  std::vector<Outcome> outcomes;
+  const std::vector<Outcome> outcomes = outcomes_of(prediction, support, expected);
   std::vector<double> weights;
-  auto mixed = prediction.mixed_cells.begin();
-  for (Eigen::Index i = 0; i < expected.size(); ++i) {
-    while (mixed != prediction.mixed_cells.end() && mixed->cell < support.gates[i]) ++mixed;
-    if (mixed == prediction.mixed_cells.end() || mixed->cell != support.gates[i]) {
-      outcomes.push_back({i, static_cast<std::size_t>(markov::Ending::trapped)});
-      weights.push_back(expected[i]);
-      continue;
-    }
-    for (std::size_t e = 0; e < markov::kEndings; ++e) {
-      if (!(mixed->by_ending[e] > 0.0)) continue;
-      outcomes.push_back({i, e});
-      weights.push_back(mixed->by_ending[e]);
-    }
-  }
+  for (const Outcome& o : outcomes) weights.push_back(o.probability);
 
   const auto tests = [&](const Eigen::VectorXd& gates,
                          const std::array<double, markov::kEndings>& endings,
@@ -487,36 +526,7 @@ Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& predic
         tests(gates, endings, replicates[static_cast<std::size_t>(k) % replicates.size()]);
   });
 
-  std::vector<double> tv;
-  for (std::size_t k = 0; k + 1 < all.size(); ++k) tv.push_back(all[k][0]);
-  const auto [mean_tv, tv_at_95] = mean_and_95(tv);
-  const auto rank = ranks(all);
-  std::vector<std::int64_t> least;  // rank of each row, over its statistics
-  for (const auto& r : rank) least.push_back(*std::min_element(r.begin(), r.end()));
-  std::sort(least.begin(), least.end());
-  const auto of_all = static_cast<double>(all.size());
-  Judgement j;
-  j.null_draws = null_draws;
-  j.chance_total_variation = mean_tv;
-  j.chance_total_variation_95 = tv_at_95;
-  const auto fill = [&](Judgement::Test& test, std::size_t t) {
-    test.seen = all.back()[t];
-    if (std::isnan(test.seen)) {
-      test.p = test.p_adjusted = test.seen;
-      return;
-    }
-    test.p = static_cast<double>(rank.back()[t]) / of_all;
-    test.p_adjusted =
-        static_cast<double>(std::upper_bound(least.begin(), least.end(), rank.back()[t]) -
-                            least.begin()) /
-        of_all;
-    j.p = std::min(j.p, test.p_adjusted);
-  };
-  fill(j.total_variation, 0);
-  fill(j.energy, 1);
-  fill(j.chi_squared, 2);
-  for (std::size_t e = 0; e < markov::kEndings; ++e) fill(j.endings[e], kGateTests + e);
-  return j;
+  return judgement_of(all);
 }
 
 }  // namespace gatewalk::lattice

@@ -2,17 +2,20 @@
 // clang-format off
 /// gatewalk::lattice: a field of gates, walked both ways and compared.
 ///
-///   field.h       the field's size, where a trial starts, which beams act (fidelity)
-///   field_stepper.h  one disc among the beams of many gates; complementarity.h, its contact problem
+///   field.h       the field's size and gates, where a trial starts, which beams act (fidelity)
 ///   reference.h   the full dynamics through the field, gate by gate
 ///   gate_chain.h  counts + state space -> markov::Chain, and the matrix file
 ///   compare.h     corrcoef, RMSE, total variation, noise floors, p-values
 ///   matrix_noise.h  what the sampling of a matrix does to its predictions
+///   ending_shares.h how trials, walks or a prediction end, with intervals
 ///   draws.h       binomial and multinomial counts
+///
+/// Included by name: scene/ (scene files, bins, matrices of a scene), study/ (what commands compute).
 // clang-format on
 
 #include "lattice/compare.h"
 #include "lattice/draws.h"
+#include "lattice/ending_shares.h"
 #include "lattice/field.h"
 #include "lattice/gate_chain.h"
 #include "lattice/matrix_noise.h"
