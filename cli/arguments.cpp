@@ -52,9 +52,9 @@ void add_bins(Options& options) {
       "with so many times "
       "the bins per axis (2 makes 696 states, 0.5 makes 23); auto: at the quantiles of "
       "what bodies do in a "
-      "pilot of the full dynamics. Default: the scene's table [bins], else paper in the "
-      "paper's field and "
-      "auto in any other");
+      "pilot of the full dynamics. Default: the scene's table [bins], else paper where the gate "
+      "has "
+      "the paper's proportions and these bins resolve what bodies do, else auto");
 }
 
 lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene) {

@@ -16,8 +16,8 @@ namespace gatewalk::cli {
 /// Declares --start; `by_default` says where to start without it.
 void add_starts(Options& options,
                 const std::string& by_default =
-                    "the scene's start; in the paper's field with the paper's start "
-                    "(0,0,15), the four of Table IV");
+                    "the scene's start; in the paper's field, in whatever units, with "
+                    "the paper's start, the four of Table IV");
 /// The starts given; none without --start. Throws UsageError for a malformed one.
 [[nodiscard]] std::vector<lattice::PaperStart> given_starts(const Options& options);
 /// The starts given, else lattice::usual_starts. Throws UsageError for a malformed one.

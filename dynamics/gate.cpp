@@ -1,7 +1,6 @@
 #include "dynamics/gate.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace gatewalk::dynamics {
@@ -33,13 +32,6 @@ Outcome outcome_of(const GateRun& run) {
       break;
   }
   return Outcome::broken;
-}
-
-std::string_view name_of(Outcome outcome) {
-  constexpr std::array<std::string_view, kOutcomes> names{
-      "traversed left", "traversed right", "traversed evenly", "exited left",
-      "exited right",   "trapped",         "not finite"};
-  return names[static_cast<std::size_t>(outcome)];
 }
 
 Ending ending(const GateParams& p, const GateState& s) {

@@ -1,6 +1,7 @@
 #pragma once
 /// One run of one gate: flow until an exit, and what was seen on the way.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -33,10 +34,26 @@ enum class Outcome : std::uint8_t {
   trapped,
   broken,  // not finite, or cut short
 };
-inline constexpr std::size_t kOutcomes = 7;
+/// Its name in files and in words.
+struct OutcomeName {
+  Outcome outcome;
+  std::string_view key, words;
+};
+/// All of them, in the order of Outcome, which is that of tallies, files and tables.
+inline constexpr std::array kOutcomeNames{
+    OutcomeName{Outcome::traversed_left, "traversed_left", "traversed left"},
+    OutcomeName{Outcome::traversed_right, "traversed_right", "traversed right"},
+    OutcomeName{Outcome::traversed_even, "traversed_even", "traversed evenly"},
+    OutcomeName{Outcome::exited_left, "exited_left", "exited left"},
+    OutcomeName{Outcome::exited_right, "exited_right", "exited right"},
+    OutcomeName{Outcome::trapped, "trapped", "trapped"},
+    OutcomeName{Outcome::broken, "not_finite", "not finite"},
+};
+inline constexpr std::size_t kOutcomes = kOutcomeNames.size();
 [[nodiscard]] Outcome outcome_of(const GateRun& run);
-/// "traversed left", ..., "not finite".
-[[nodiscard]] std::string_view name_of(Outcome outcome);
+[[nodiscard]] constexpr std::string_view name_of(Outcome outcome) {
+  return kOutcomeNames[static_cast<std::size_t>(outcome)].words;
+}
 
 /// Where a run that stopped in this state has ended; still inside is trapped.
 [[nodiscard]] Ending ending(const GateParams& p, const GateState& s);

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace gatewalk::dynamics {
 
@@ -27,7 +28,9 @@ void TrialSet::add(TrialRange range) {
 }
 
 void TrialSet::add(const TrialSet& other) {
-  for (const auto& [first, end] : other.ends_) add({first, end - first});
+  TrialSet both = *this;
+  for (const auto& [first, end] : other.ends_) both.add({first, end - first});
+  *this = std::move(both);
 }
 
 std::int64_t TrialSet::count() const {

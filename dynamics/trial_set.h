@@ -20,7 +20,7 @@ class TrialSet {
   TrialSet() = default;
   explicit TrialSet(TrialRange range) { add(range); }
 
-  /// Throws std::invalid_argument naming a trial that is held already.
+  /// Throw std::invalid_argument naming a trial that is held already, and change nothing then.
   void add(TrialRange range);
   void add(const TrialSet& other);
 

@@ -1,5 +1,6 @@
 #include "lattice/field.h"
 
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>

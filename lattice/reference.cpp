@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <bit>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,8 +26,12 @@ struct Trial {
   std::array<std::int32_t, kBoundaries> entries{}, clamped{};
   Health health;
   std::vector<Crossing> crossings;
-  BodyState from;     // where its next run begins
-  RandomForce force;  // goes on from gate to gate
+  /// Where its next run begins and under which force, while it waits for gates of another type.
+  struct Waiting {
+    BodyState from;
+    RandomForce force;
+  };
+  std::unique_ptr<Waiting> waiting;
 };
 
 /// Takes the result of a trial's run through one gate. The crossing into the next gate; none when
@@ -126,6 +131,7 @@ struct Wave {
 /// together. A trial goes on in its slot while the type stays the same; else it waits for the next
 /// wave of its own.
 void run_active(std::vector<Trial>& trials, const FieldGates& gates, const FieldParams& field,
+                const BodyState& start, const std::function<RandomForce(std::int64_t)>& force_of,
                 const StateSpace& space, bool keep_crossings) {
   const std::size_t types = gates.types().size();
   std::vector<std::unique_ptr<const Method>> methods;
@@ -143,9 +149,10 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
       carry_out_trials(
           p, *methods[type], std::ssize(wave),
           [&](RunSlot& slot) {
-            const Trial& t = trials[wave[slot.trial]];
-            slot.start = t.from;
-            slot.force = t.force;
+            const std::int64_t i = wave[slot.trial];
+            const auto waiting = std::move(trials[i].waiting);
+            slot.start = waiting ? waiting->from : start;
+            slot.force = waiting ? waiting->force : force_of(i);
             slot.force.enter(p.forces);
           },
           [&](RunSlot& slot, const GateRun& run) {
@@ -155,8 +162,7 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
             slot.start = shifted_into_next(p, run.ending, run.exit);
             const auto next = static_cast<std::size_t>(gates.type_of(t.column, t.row));
             if (next == type) return true;
-            t.from = slot.start;
-            t.force = slot.force;
+            t.waiting = std::make_unique<Trial::Waiting>(slot.start, slot.force);
             const std::lock_guard lock(waves[next].mutex);
             waves[next].trials.push_back(i);
             return false;
@@ -172,16 +178,15 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
                      FieldTrials* each) {
   gates.require_fits(field);
   for (const GateParams& p : gates.types()) validate(p, field);
-  const GateParams& p = gates.types().front();
+  const GateParams& p = gates.at(field.start_column(), 0);
   const bool keep_crossings = each != nullptr && each->keep_crossings;
-  std::vector<Trial> trials;
-  trials.reserve(range.count);
-  for (std::int64_t i = 0; i < range.count; ++i)
-    trials.push_back({.column = field.start_column(),
-                      .from = start,
-                      .force = field_force(p, start, seed, range.first + i)});
+  std::vector<Trial> trials(range.count);
+  for (Trial& t : trials) t.column = field.start_column();
+  const auto force_of = [&](std::int64_t i) {
+    return field_force(p, start, seed, range.first + i);
+  };
   if (field.fidelity == Fidelity::active) {
-    run_active(trials, gates, field, space, keep_crossings);
+    run_active(trials, gates, field, start, force_of, space, keep_crossings);
   } else {
     if (gates.types().size() > 1)
       throw InvalidParameter("field.fidelity", "field.fidelity = \"" +
@@ -191,7 +196,7 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
     (void)make_method(p);  // refuses what cannot be run
     tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
       FieldStepper stepper(p, field, start);
-      RandomForce& force = trials[i].force;
+      RandomForce force = force_of(i);
       for (GateRun run = stepper.run_gate(force);
            follow(trials[i], p, field, space, run, keep_crossings); run = stepper.run_gate(force))
         stepper.go_on(run.ending);
@@ -218,21 +223,21 @@ FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const 
                                "\" is not permitted: only \"active\" can be traced");
   gates.require_fits(field);
   for (const GateParams& p : gates.types()) validate(p, field);
-  const GateParams& base = gates.types().front();
-  const StateSpace space = StateSpace::paper(base);  // `follow` counts with it; nobody asks here
-  Trial t{.column = field.start_column(),
-          .from = start,
-          .force = field_force(base, start, seed, trial)};
+  const GateParams& first = gates.at(field.start_column(), 0);
+  const StateSpace space = StateSpace::paper(first);  // `follow` counts with it; nobody asks here
+  Trial t;
+  t.column = field.start_column();
+  RandomForce force = field_force(first, start, seed, trial);
   FieldTrace trace;
-  for (;;) {
+  for (BodyState from = start;;) {
     const GateParams& p = gates.at(t.column, t.row);
-    t.force.enter(p.forces);
+    force.enter(p.forces);
     trace.visits.push_back(
-        {t.column, t.row, trace_gate(p, *make_method(p), t.from, t.force, most_samples)});
+        {t.column, t.row, trace_gate(p, *make_method(p), from, force, most_samples)});
     most_samples -= trace.visits.back().trace.samples.size();
     const GateRun& run = trace.visits.back().trace.run;
     if (!follow(t, p, field, space, run, false)) break;
-    t.from = shifted_into_next(p, run.ending, run.exit);
+    from = shifted_into_next(p, run.ending, run.exit);
   }
   trace.ending = t.ending;
   return trace;

@@ -56,11 +56,12 @@ struct FieldTrials {
 /// Runs trials `range` through the field. field.fidelity says what a gate is: fresh, with beams at
 /// rest, whenever the body enters (active), or one of many that go on and act beyond their bounds
 /// (remember, all; field_stepper.h). The random force goes on from gate to gate; its stream is
-/// {seed, stream_row(p, start), trial} whatever the fidelity. run.time_limit_s counts from the
-/// entry into a gate. `space` only counts what the chain would have clamped. What each trial did is
-/// appended to `each`, if given. Trials in gates of one type are run together, in lanes where the
-/// method has them. On all threads of the current TBB arena, same result for any number of them.
-/// Throws InvalidParameter, also for gates of several types with another fidelity than `active`.
+/// {seed, stream_row(p, start), trial} whatever the fidelity, p the gate that trials start in.
+/// run.time_limit_s counts from the entry into a gate. `space` only counts what the chain would
+/// have clamped. What each trial did is appended to `each`, if given. Trials in gates of one type
+/// are run together, in lanes where the method has them. On all threads of the current TBB arena,
+/// same result for any number of them. Throws InvalidParameter, also for gates of several types
+/// with another fidelity than `active`.
 [[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,
                                    const dynamics::BodyState& start,
                                    const dynamics::StateSpace& space, std::uint64_t seed,

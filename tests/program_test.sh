@@ -26,7 +26,7 @@ expect 0 'usage: gatewalk' "$gatewalk" --help
 expect 0 '^gatewalk [0-9]' "$gatewalk" --version
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
-for command in gate build show walk predict lattice validate chart chart-field chart-chain stability trace reproduce; do
+for command in $("$gatewalk" --help | awk '/^usage/ { list = 1; next } list && /^  [a-z]/ { print $1 }'); do
   expect 0 'Example:' "$gatewalk" $command --help
   expect 2 'unrecognised option' "$gatewalk" $command --no-such-option
 done

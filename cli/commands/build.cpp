@@ -12,9 +12,10 @@ int run_build(const Arguments& arguments) {
   Options options(
       "build SCENE -o MATRIX.nc [options]",
       "Fills the input-output matrix of one gate: for every input state (--bins says which)\n"
-      "N short runs, counted by where they come out. In the paper's field states are the 87 of\n"
-      "Table III, in any other they are made from what bodies do in a pilot of the full\n"
-      "dynamics from the scene's start, which is a state of its own with more runs.",
+      "N short runs, counted by where they come out. Where the gate has the paper's proportions\n"
+      "and Table III's 87 bins resolve what bodies do, those are the states; else they are made\n"
+      "from what bodies do in a pilot of the full dynamics from the scene's start, which is a\n"
+      "state of its own with more runs.",
       "gatewalk build scenes/field.toml --trials 100 --seed 1 -o matrix.nc");
   options.scene();
   options.add_trials_and_seed("runs per input state");

@@ -63,7 +63,8 @@ int run_sweep(const Arguments& arguments) {
   auto points = lattice::sweep_points({text, source, options.overrides(), axes});
   for (const std::string& remark : remarks_on(points, options.talk())) options.warn(remark);
 
-  lattice::run_sweep(points, trials, options.seed(), options.work());
+  lattice::run_sweep(points, trials, options.seed(), options.work(),
+                     [&](const auto& p) { options.warn(complaint(*p.settled)); });
 
   Json json = to_json(axes, points);
   json["made_by"] = to_json(options.provenance(scene));
@@ -75,12 +76,8 @@ int run_sweep(const Arguments& arguments) {
     options.give_out(json, table_of(scene, axes, points));
   }
   dynamics::Health health;
-  for (const lattice::SweepPoint& p : points) {
-    health += p.tally.health;
-    if (const std::string wrong = p.settled ? complaint(*p.settled) : ""; !wrong.empty())
-      options.warn(wrong);
-  }
-  if (!health.clean()) options.warn(complaint(health));
+  for (const lattice::SweepPoint& p : points) health += p.tally.health;
+  options.warn(complaint(health));
   return exit_status(options, std::all_of(points.begin(), points.end(),
                                           [](const auto& p) { return p.tally.health.clean(); }));
 }

@@ -7,8 +7,6 @@
 #include "cli/film/picture.h"
 #include "cli/terminal/output.h"
 
-#include "cli/render/json.h"
-
 namespace gatewalk::cli {
 namespace {
 

@@ -21,7 +21,8 @@ struct VideoOptions {
 /// 1280 x 720) or as GIF (800 x 450, repeats for ever), by the ending of `path`. The last picture
 /// stands for a second. `path` is replaced as a whole or left as it was. Throws
 /// std::invalid_argument for a film, a name or options that make no sense, std::runtime_error when
-/// ffmpeg is missing or fails or the file cannot be written, Interrupted after a signal.
+/// ffmpeg is missing or fails or the file cannot be written; `work` is told of every picture and
+/// may stop it.
 void write_video(const std::string& path, const Film& film, const VideoOptions& options = {},
                  const dynamics::Work& work = {});
 

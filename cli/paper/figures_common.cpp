@@ -3,7 +3,6 @@
 #include <cstdlib>
 
 #include "cli/paper/figures.h"
-#include "cli/render/csv.h"
 #include "cli/render/figure.h"
 #include "cli/render/json.h"
 #include "cli/render/provenance.h"

@@ -1,5 +1,4 @@
 #include "cli/paper/findings.h"
-#include "cli/render/csv.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 
@@ -52,7 +51,9 @@ class Reader {
     if (json_.is_string()) return {std::nan(""), text()};
     return {number(), json_.dump()};
   }
-  [[nodiscard]] std::vector<double> numbers() const {
+  /// So many of them, if said.
+  [[nodiscard]] std::vector<double> numbers(std::size_t count = 0) const {
+    as(count == 0 || json_.size() == count, "a list of so many numbers");
     std::vector<double> list;
     list.reserve(json_.size());
     for (const Json& item : as(json_.is_array(), "a list"))
@@ -93,7 +94,7 @@ Outcomes outcomes_of(const Reader& from) {
 }
 
 LowestWay lowest_way(const Reader& pass) {
-  const auto basin = pass["basin_m"].numbers();
+  const auto basin = pass["basin_m"].numbers(2);
   const bool downhill = pass["from_basin"]["way_m"].items().size() == 1;
   return {.above_start = pass["above_start_J"].number(),
           .above_basin = downhill ? 0.0 : pass["from_basin"]["barrier_J"].number(),

@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "cli/paper/verdicts.h"
-#include "cli/render/csv.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/web/embedded.h"

@@ -3,15 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/render/csv.h"
-#include "cli/render/final_gates.h"
-#include "cli/render/gate_runs.h"
-#include "cli/render/health.h"
-#include "cli/render/json.h"
-#include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "dynamics/share.h"
-#include "dynamics/work.h"
 
 namespace gatewalk::cli {
 

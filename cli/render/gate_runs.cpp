@@ -12,25 +12,18 @@ Json to_json(const dynamics::GateTally& tally) {
   Json json;
   json["trials"] = tally.trials;
   json["traversed"] = tally.traversed();
-  json["traversed_left"] = tally[Outcome::traversed_left];
-  json["traversed_right"] = tally[Outcome::traversed_right];
-  json["traversed_even"] = tally[Outcome::traversed_even];
-  json["exited_left"] = tally[Outcome::exited_left];
-  json["exited_right"] = tally[Outcome::exited_right];
-  json["trapped"] = tally[Outcome::trapped];
-  json["not_finite"] = tally[Outcome::broken];
+  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
+    json[std::string(key)] = tally[outcome];
   const auto interval = [&](std::int64_t n) { return dynamics::share_interval(n, tally.trials); };
-  json["intervals_95"] = {{"traversed", interval(tally.traversed())},
-                          {"traversed_left", interval(tally[Outcome::traversed_left])},
-                          {"traversed_right", interval(tally[Outcome::traversed_right])},
-                          {"exited_left", interval(tally[Outcome::exited_left])},
-                          {"exited_right", interval(tally[Outcome::exited_right])},
-                          {"trapped", interval(tally[Outcome::trapped])}};
+  json["intervals_95"] = {{"traversed", interval(tally.traversed())}};
+  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
+    if (outcome != Outcome::traversed_even && outcome != Outcome::broken)
+      json["intervals_95"][std::string(key)] = interval(tally[outcome]);
   return json;
 }
 
 std::string table_of(const dynamics::GateTally& tally) {
-  const auto line = [&](const char* name, std::int64_t n) {
+  const auto line = [&](const std::string& name, std::int64_t n) {
     const auto [low, high] = dynamics::share_interval(n, tally.trials);
     return padded(name, -18) + padded(std::to_string(n), 10) +
            padded(percent(static_cast<double>(n), static_cast<double>(tally.trials), 2), 11) +
@@ -42,10 +35,9 @@ std::string table_of(const dynamics::GateTally& tally) {
                       line("  right beam", tally[Outcome::traversed_right]);
   if (tally[Outcome::traversed_even] > 0)
     table += line("  both evenly", tally[Outcome::traversed_even]);
-  table += line("exited left", tally[Outcome::exited_left]) +
-           line("exited right", tally[Outcome::exited_right]) +
-           line("trapped", tally[Outcome::trapped]);
-  if (tally[Outcome::broken] > 0) table += line("not finite", tally[Outcome::broken]);
+  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
+    if (outcome > Outcome::traversed_even && (outcome != Outcome::broken || tally[outcome] > 0))
+      table += line(std::string(words), tally[outcome]);
   return table;
 }
 

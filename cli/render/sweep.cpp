@@ -67,19 +67,16 @@ std::string csv_of(const std::vector<SweepAxis>& axes, const std::vector<SweepPo
   std::ostringstream out;
   out.precision(8);
   for (const SweepAxis& axis : axes) out << axis.key << ',';
-  out << "method,trials,traversed_left_count,traversed_right_count,traversed_even_count,exited_"
-         "left_count,"
-         "exited_right_count,trapped_count,not_finite_count";
+  out << "method,trials";
+  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) out << ',' << key << "_count";
   for (const Share& s : shares_of({}))
     out << ',' << s.name << ',' << s.name << "_low," << s.name << "_high";
   out << ",clean\n";
   for (const SweepPoint& p : points) {
     const dynamics::GateTally& t = p.tally;
     for (const std::string& value : p.values) out << csv_text(value) << ',';
-    out << p.scene.gate.run.method << ',' << t.trials << ',' << t[Outcome::traversed_left] << ','
-        << t[Outcome::traversed_right] << ',' << t[Outcome::traversed_even] << ','
-        << t[Outcome::exited_left] << ',' << t[Outcome::exited_right] << ',' << t[Outcome::trapped]
-        << ',' << t[Outcome::broken];
+    out << p.scene.gate.run.method << ',' << t.trials;
+    for (const std::int64_t n : t.counts) out << ',' << n;
     for (const Share& s : shares_of(t)) {
       if (s.whole == 0) {
         out << ",,,";  // of none there is no share

@@ -109,16 +109,13 @@ Json to_json(const Errors& e, const WorkPrecision& chart, bool of_reference) {
 
 Json reference_json(const WorkPrecision& chart) {
   const dynamics::Reference& r = chart.reference;
+  Json outcomes;  // those that are even count as right (accuracy.h)
+  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
+    if (outcome != Outcome::traversed_even) outcomes[std::string(key)] = r[outcome];
   return {{"setting", r.setting.name()},
           {"status", dynamics::name_of(r.verdict)},
           {"evaluations_per_trial", r.evaluations_per_trial},
-          {"outcomes",
-           {{"traversed_left", r[Outcome::traversed_left]},
-            {"traversed_right", r[Outcome::traversed_right]},
-            {"exited_left", r[Outcome::exited_left]},
-            {"exited_right", r[Outcome::exited_right]},
-            {"trapped", r[Outcome::trapped]},
-            {"not_finite", r[Outcome::broken]}}},
+          {"outcomes", outcomes},
           {"own_error", {{"against", r.second.name()}, {"errors", to_json(r.own, chart, true)}}},
           {"another_method",
            {{"against", r.other_method.name()}, {"errors", to_json(r.other, chart, true)}}}};

@@ -36,27 +36,32 @@ void require_same_kind(const RowMatrix& other, const SceneMatrix& base,
                                 " (other bins): what leaves one row could not enter the next");
 }
 
-/// Replicates' spread around the predictions, a noise per start.
+/// Replicates' spread around the predictions, a noise per start; none, and prediction.failed, where
+/// a resampled matrix cannot be predicted from.
 std::vector<MatrixNoise> noise_of(const CountedField& gates, const markov::Field& field,
-                                  const std::vector<markov::Start>& starts,
-                                  const Prediction& prediction, int max_cells, std::uint64_t seed,
-                                  const dynamics::Work& work) {
+                                  const std::vector<markov::Start>& starts, Prediction& prediction,
+                                  int max_cells, std::uint64_t seed, const dynamics::Work& work) {
   constexpr std::int64_t kMost = 200, kTogether = 8;
   std::vector<MatrixNoise> noise;
   for (std::size_t k = 0; k < starts.size(); ++k)
     noise.emplace_back(prediction.starts[k].final, gates.runs_at(starts[k]));
   const std::int64_t replicates = affordable_replicates(field, max_cells, kMost);
+  const auto add = [&](std::int64_t begin) {
+    const auto found = replicate_predictions(gates, field, starts, max_cells, seed, begin,
+                                             std::min(kTogether, replicates - begin));
+    for (std::size_t k = 0; k < starts.size(); ++k)
+      for (const markov::FinalDistribution& f : found[k]) noise[k].add(f);
+  };
   work.in_pieces("resampled matrices", (replicates + kTogether - 1) / kTogether,
                  [&](dynamics::TrialRange batches) {
-                   for (std::int64_t i = 0; i < batches.count; ++i) {
-                     const std::int64_t begin = (batches.first + i) * kTogether;
-                     const auto found =
-                         replicate_predictions(gates, field, starts, max_cells, seed, begin,
-                                               std::min(kTogether, replicates - begin));
-                     for (std::size_t k = 0; k < starts.size(); ++k)
-                       for (const markov::FinalDistribution& f : found[k]) noise[k].add(f);
+                   try {
+                     for (std::int64_t i = 0; i < batches.count && !prediction.failed; ++i)
+                       add((batches.first + i) * kTogether);
+                   } catch (const std::runtime_error& e) {
+                     prediction.failed = e.what();
                    }
                  });
+  if (prediction.failed) noise.clear();
   return noise;
 }
 
@@ -105,12 +110,8 @@ Prediction predict(const CountedField& gates, const FieldParams& field_params,
     EndingShares shares(found[k].endings);
     result.starts.push_back({starts[k], std::move(found[k]), shares});
   }
-  std::vector<MatrixNoise> noise;
-  try {
-    noise = noise_of(gates, field, places, result, how.max_cells, seed, work);
-  } catch (const std::runtime_error& e) {
-    result.failed = e.what();
-  }
+  const std::vector<MatrixNoise> noise =
+      noise_of(gates, field, places, result, how.max_cells, seed, work);
   for (std::size_t k = 0; k < starts.size(); ++k) {
     StartPrediction& s = result.starts[k];
     const MatrixNoise none(s.final, 0);

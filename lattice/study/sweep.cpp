@@ -121,10 +121,11 @@ std::vector<SweepPoint> sweep_points(const SweepPlan& plan) {
 }
 
 void run_sweep(std::vector<SweepPoint>& points, std::int64_t trials, std::uint64_t seed,
-               const dynamics::Work& work) {
+               const dynamics::Work& work, const std::function<void(const SweepPoint&)>& settled) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const dynamics::Work part = work.part("sweep", i, points.size());
     points[i].settled = settle_method(points[i].scene, RunsFrom::start, seed, part);
+    if (points[i].settled && settled) settled(points[i]);
     const Scene& scene = points[i].scene;
     points[i].tally = dynamics::run_checked_trials(scene.gate, scene.start, seed, trials, part);
   }

@@ -2,6 +2,7 @@
 /// One gate over a grid of scene keys.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,8 +43,10 @@ struct SweepPlan {
 /// a key cannot have.
 [[nodiscard]] std::vector<SweepPoint> sweep_points(const SweepPlan& plan);
 
-/// Runs the gate at each point, under the same noise.
+/// Runs the gate at each point, under the same noise. `settled` is told of each point whose method
+/// has been chosen, before it is run.
 void run_sweep(std::vector<SweepPoint>& points, std::int64_t trials, std::uint64_t seed,
-               const dynamics::Work& work = {});
+               const dynamics::Work& work = {},
+               const std::function<void(const SweepPoint&)>& settled = {});
 
 }  // namespace gatewalk::lattice

@@ -203,6 +203,8 @@ Finding finding_of(bool differs, double total_variation, double floor_95) {
 Validation validate_chain(const Scene& scene, const dynamics::Transitions& matrix,
                           const std::vector<PaperStart>& starts, const ValidationOptions& options,
                           const dynamics::Work& work) {
+  if (options.trials < 1 || options.walks.value_or(1) < 1)
+    throw std::invalid_argument("validate: needs a trial and a walk at least");
   constexpr std::int64_t kMostGates = 100'000;
   if (std::int64_t{scene.field.columns} * scene.field.rows > kMostGates)
     throw std::invalid_argument("validate compares fields of up to " + std::to_string(kMostGates) +

@@ -1,6 +1,7 @@
 #pragma once
 /// The chain against the full dynamics, start by start.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>

@@ -30,6 +30,13 @@ TEST(TrialSet, HoldsNoTrialTwice) {
   }
 }
 
+TEST(TrialSet, ChangesNothingWhereItRefuses) {
+  TrialSet set({10, 5}), others({0, 2});
+  others.add({12, 1});
+  EXPECT_THROW(set.add(others), std::invalid_argument);
+  EXPECT_EQ(set, TrialSet({10, 5}));
+}
+
 TEST(GateTally, RefusesATrialItHoldsAlready) {
   const GateParams p;
   GateTally tally = run_gate_trials(p, {.vy = 15.0}, 1, {4, 4});

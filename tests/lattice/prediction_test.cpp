@@ -85,6 +85,15 @@ TEST(FieldOf, RefusesWhatMakesNoField) {
       "60.000 m: they make no field");
 }
 
+TEST(Prediction, IsStoppedByWhoWatches) {
+  const SceneMatrix m = matrix(600);
+  const ChainStart a = chain_start(m.file.transitions.space, m.scene.field, {0.0, 0.0, 0.0, 15.0});
+  const dynamics::Work work{
+      [](std::string_view, std::int64_t, std::int64_t) { throw std::runtime_error("enough"); }};
+  EXPECT_THROW((void)predict(field_of(m, "base.nc", {}), m.scene.field, {a}, {}, 1, work),
+               std::runtime_error);
+}
+
 TEST(Prediction, OfManyStartsIsOneEach) {
   const SceneMatrix m = matrix(600);
   const ChainStart a = chain_start(m.file.transitions.space, m.scene.field, {0.0, 0.0, 0.0, 15.0}),

@@ -34,7 +34,8 @@ Ran run(const FieldGates& gates, const FieldParams& field, TrialRange range, std
         const BodyState& start = kStart) {
   Ran ran(field);
   static_cast<FieldTally&>(ran) =
-      run_field(gates, field, start, StateSpace::paper(gates.types()[0]), seed, range, &ran.each);
+      run_field(gates, field, start, StateSpace::paper(gates.at(field.start_column(), 0)), seed,
+                range, &ran.each);
   return ran;
 }
 
@@ -244,39 +245,55 @@ TEST(RunField, TalliesAddInAnyOrderAndNoTrialTwice) {
 // Gates of two types: the reference is one run_gate after the other, each by its own gate's
 // parameters, under one force that goes on.
 TEST(RunField, GatesOfSeveralTypes) {
-  GateParams soft, strong;
+  GateParams soft, strong, slow;
   soft.beams.stiffness_left = soft.beams.stiffness_right = 150.0;
   strong.forces.propulsion = 14.0;
   strong.forces.random = 60.0;
-  strong.run.method = "moreau";  // each by its own method
-  strong.run.step = 0.002;
+  strong.run.method = "event";     // each by its own method
+  slow.forces.random_rate = 25.0;  // each by its own rate
   const FieldParams field{5, 6, 13};
   std::vector<int> types(30);
-  for (int i = 0; i < 30; ++i) types[i] = (i * 7 % 5) % 2;
-  const FieldGates gates = FieldGates::by_cell({soft, strong}, 5, types);
-  const Ran whole = run(gates, field, {0, 60}, 4);
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 5; ++column) types[row * 5 + column] = (row + 2 * column) % 3;
+  const FieldGates gates = FieldGates::by_cell({soft, strong, slow}, 5, types);
+  const GateParams& first = gates.at(2, 0);
+  FieldTrials each{.keep_crossings = true};
+  (void)run_field(gates, field, kStart, StateSpace::paper(first), 4, {0, 60}, &each);
+  std::vector<Crossing> crossings;
+  int upward = 0, sideways = 0;
   for (std::int64_t i = 0; i < 60; ++i) {
-    RandomForce force(soft.forces,
-                      Random(Purpose::field, {4, stream_row(soft, kStart), std::uint64_t(i)}));
+    RandomForce force(first.forces,
+                      Random(Purpose::field, {4, stream_row(first, kStart), std::uint64_t(i)}));
     BodyState body = kStart;
     int column = 2, row = 0;
     for (int visited = 1;; ++visited) {
-      const GateParams& p = types[row * 5 + column] == 0 ? soft : strong;
+      const GateParams& p = gates.at(column, row);
       force.enter(p.forces);
       const GateRun r = run_gate(p, *make_method(p), body, force);
       if (r.ending == Ending::trapped) break;
-      const Move move = move_into(crossing_of(p, r.ending, r.exit).boundary);
+      const Crossing crossing = crossing_of(p, r.ending, r.exit);
+      const Move move = move_into(crossing.boundary);
       if (!field.contains(column + move.di_x, row + move.di_y) || visited == 13) break;
+      crossings.push_back(crossing);
       column += move.di_x;
       row += move.di_y;
+      ++(move.di_y != 0 ? upward : sideways);  // every move leads to another type
       body = shifted_into_next(p, r.ending, r.exit);
     }
-    EXPECT_EQ(whole.each.final_gates[i], row * 5 + column) << i;
+    EXPECT_EQ(each.final_gates[i], row * 5 + column) << i;
   }
+  EXPECT_GT(upward, 10);
+  EXPECT_GT(sideways, 10);
+  EXPECT_TRUE(each.crossings == crossings);  // to the last bit
+  const Ran whole = run(gates, field, {0, 60}, 4);
+  // The names of the types do not matter.
+  std::vector<int> others = types;
+  for (int& type : others) type = (type + 1) % 3;
+  expect_same(run(FieldGates::by_cell({slow, soft, strong}, 5, others), field, {0, 60}, 4), whole);
   const auto on_four = test::on_threads(4, [&] { return run(gates, field, {0, 60}, 4); });
   expect_same(on_four, whole);
   // The same gates under two names are the gates of one type.
-  expect_same(run(FieldGates::by_cell({soft, soft}, 5, types), field, {0, 60}, 4),
+  expect_same(run(FieldGates::by_cell({soft, soft, soft}, 5, types), field, {0, 60}, 4),
               run(soft, field, {0, 60}, 4));
   EXPECT_THROW((void)run(gates, {9, 9, 13}, {0, 1}), std::invalid_argument);
   EXPECT_THROW((void)run(gates, {5, 6, 13, Fidelity::remember}, {0, 1}), InvalidParameter);
