@@ -11,8 +11,9 @@
 ///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
 ///   ensemble.h     many runs and their outcomes; trial_set.h: which trials they are
 ///   health.h       how far runs can be trusted
-///   state_space.h  how a body enters a gate, as a number: Table III or other bins
+///   state_space.h  how a body enters a gate, as a number: Table III's bins, others, or trees
 ///   quantile_bins.h  bins from entries that were seen, and how well bins resolve them
+///   tree_space.h   trees grown over entries that were seen
 ///   trace.h        one run in full, step by step
 ///   landscape.h    potential energy Eqs. (14), (15), the lowest way through
 ///   transitions.h  runs -> counts, the matrix of Eq. (16)
@@ -38,3 +39,4 @@
 #include "dynamics/study/work_precision.h"
 #include "dynamics/trace.h"
 #include "dynamics/transitions.h"
+#include "dynamics/tree_space.h"

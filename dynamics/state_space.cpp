@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace gatewalk::dynamics {
 namespace {
@@ -118,9 +119,88 @@ StateSpace::StateSpace(std::array<Bins, kBoundaries> bins, bool open, std::vecto
     }
     offset_[b + 1] = offset_[b] + count(g.d) * count(g.vx) * count(g.vy);
   }
+  require_points();
+}
+
+namespace {
+
+/// Follows a tree in preorder.
+struct TreeReader {
+  const Tree& tree;
+  Boundary boundary;
+  int first_state;
+  std::vector<int> next{};   // as StateSpace::next_
+  std::vector<Cell>& cells;  // of the leaves, appended
+
+  [[noreturn]] void refuse(const char* what) const {
+    throw std::invalid_argument("state space: the tree of boundary " +
+                                std::string(kBoundaryNames[static_cast<int>(boundary)]) + " " +
+                                what);
+  }
+  /// Takes the nodes of one part, whose range is `cell`.
+  void read(Cell cell, int depth = 0) {
+    constexpr int kDeepest = 64;
+    constexpr std::array<std::array<double, 2> Cell::*, 3> kRanges{&Cell::d, &Cell::vx, &Cell::vy};
+    const std::size_t at = next.size();
+    if (at >= tree.nodes.size()) refuse("is not complete");
+    if (depth > kDeepest) refuse("is deeper than 64 cuts");
+    const Tree::Node& node = tree.nodes[at];
+    if (node.axis == Tree::kLeaf) {
+      next.push_back(first_state++);
+      cells.push_back(cell);
+      return;
+    }
+    if (node.axis < 0 || node.axis >= std::ssize(kRanges) || !std::isfinite(node.cut))
+      refuse("has a cut that is none");
+    std::array<double, 2>& range = cell.*kRanges[static_cast<std::size_t>(node.axis)];
+    if (!(range[0] < node.cut && node.cut < range[1])) refuse("has a cut outside its range");
+    next.push_back(0);
+    const double top = std::exchange(range[1], node.cut);
+    read(cell, depth + 1);
+    next[at] = static_cast<int>(next.size());
+    range = {node.cut, top};
+    read(cell, depth + 1);
+  }
+};
+
+}  // namespace
+
+StateSpace::StateSpace(std::array<Tree, kBoundaries> trees, std::vector<Crossing> points)
+    : trees_(std::move(trees)), open_(true), points_(std::move(points)) {
+  for (int b = 0; b < kBoundaries; ++b) {
+    TreeReader reader{.tree = trees_[b],
+                      .boundary = static_cast<Boundary>(b),
+                      .first_state = offset_[b],
+                      .cells = cells_};
+    const auto& seen = trees_[b].seen;
+    for (const auto& range : seen)
+      if (!std::isfinite(range[1] - range[0]) || !(range[0] <= range[1]))
+        reader.refuse("has no range");
+    reader.read({static_cast<Boundary>(b), seen[0], seen[1], seen[2]});
+    if (reader.next.size() != trees_[b].nodes.size()) reader.refuse("has nodes behind its end");
+    next_[b] = std::move(reader.next);
+    offset_[b + 1] = static_cast<int>(cells_.size());
+  }
+  if (cells_.size() > kMostStates)
+    throw std::invalid_argument("state space: trees of more than " + std::to_string(kMostStates) +
+                                " leaves");
+  require_points();
+}
+
+void StateSpace::require_points() const {
   for (auto c = points_.begin(); c != points_.end(); ++c)
     if (!std::isfinite(c->d + c->vx + c->vy) || std::find(points_.begin(), c, *c) != c)
       throw std::invalid_argument("state space: single entries must be finite and different");
+}
+
+int StateSpace::leaf_of(int boundary, const Crossing& c) const {
+  const std::vector<Tree::Node>& nodes = trees_[boundary].nodes;
+  std::size_t at = 0;
+  while (nodes[at].axis != Tree::kLeaf) {
+    const double v = c.*kCrossingAxes[static_cast<std::size_t>(nodes[at].axis)];
+    at = v <= nodes[at].cut ? at + 1 : static_cast<std::size_t>(next_[boundary][at]);
+  }
+  return next_[boundary][at];
 }
 
 StateSpace StateSpace::paper(const GateParams& p) {
@@ -149,12 +229,21 @@ StateSpace StateSpace::paper(const GateParams& p) {
 
 StateSpace::Index StateSpace::index_of(const Crossing& c) const {
   const int b = static_cast<int>(c.boundary);
-  const Bins& g = bins_[b];
   Index index;
   if (const auto point = std::find(points_.begin(), points_.end(), c); point != points_.end()) {
     index.state = offset_[kBoundaries] + static_cast<int>(point - points_.begin());
     return index;
   }
+  if (has_trees()) {
+    for (std::size_t axis = 0; axis < kCrossingAxes.size(); ++axis) {
+      const auto& [low, high] = trees_[b].seen[axis];
+      const double v = c.*kCrossingAxes[axis];
+      if (v < low || v > high) index.beyond = true;
+    }
+    index.state = leaf_of(b, c);
+    return index;
+  }
+  const Bins& g = bins_[b];
   const int d = bin_of(g.d, c.d, index.beyond);
   const int vx = bin_of(g.vx, c.vx, index.beyond);
   const int vy = bin_of(g.vy, c.vy, index.beyond);
@@ -175,6 +264,7 @@ Cell StateSpace::cell(int state) const {
     const Crossing& c = points_[state - offset_[kBoundaries]];
     return {b, {c.d, c.d}, {c.vx, c.vx}, {c.vy, c.vy}};
   }
+  if (has_trees()) return cells_[static_cast<std::size_t>(state)];
   const Bins& g = bins_[static_cast<int>(b)];
   const int in_boundary = state - first(b);
   const int vy = in_boundary % count(g.vy);
@@ -199,6 +289,8 @@ StateSpace refined(const StateSpace& space, double factor) {
   if (!(factor > 0.0) || !std::isfinite(factor))
     throw std::invalid_argument("bins: factor " + std::to_string(factor) +
                                 " is not permitted: must be finite and > 0");
+  if (space.has_trees())
+    throw std::invalid_argument("bins: a tree has none that a factor could refine");
   std::array<Bins, kBoundaries> bins = space.bins();
   double states = 0.0;
   for (Bins& b : bins) {

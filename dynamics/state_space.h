@@ -1,7 +1,8 @@
 #pragma once
-/// The discrete states of the chain: how a body enters a gate, as data. Table III's, or others.
+/// The discrete states of the chain: how a body enters a gate, as data. A space is of one of two
+/// kinds: bins on a grid of d, vx and vy (Table III's, or others), or the leaves of trees of cuts.
 /// A crossing out of one gate is an entry into the next; `index_of` turns it into a state, says so
-/// when it lay outside every bin, and `sample` puts a body back into a state's bin.
+/// when it lay outside every bin, and `sample` puts a body back into a state's range.
 
 #include <array>
 #include <string_view>
@@ -51,11 +52,33 @@ struct Bins {
   friend bool operator==(const Bins&, const Bins&) = default;
 };
 
-/// One state's bin.
+/// One state's range: its bin, or its leaf.
 struct Cell {
   Boundary boundary = Boundary::enter;
   std::array<double, 2> d{}, vx{}, vy{};
+  friend bool operator==(const Cell&, const Cell&) = default;
 };
+
+/// The axes of a crossing.
+inline constexpr std::array<double Crossing::*, 3> kCrossingAxes{&Crossing::d, &Crossing::vx,
+                                                                 &Crossing::vy};
+
+/// A tree of cuts over the entries at one boundary (k-d tree); its leaves are states. Leaves at the
+/// rim reach as far as entries may lie: nothing is outside.
+struct Tree {
+  static constexpr int kLeaf = -1;
+  /// In preorder: behind a node comes the part up to its cut, then the part above.
+  struct Node {
+    int axis = kLeaf;  // of kCrossingAxes
+    double cut = 0.0;  // m or m/s; 0 in a leaf
+    friend bool operator==(const Node&, const Node&) = default;
+  };
+  std::vector<Node> nodes{Node{}};
+  std::array<std::array<double, 2>, 3> seen{};  // by axis, between what the entries seen lay
+  friend bool operator==(const Tree&, const Tree&) = default;
+};
+
+inline constexpr int kMostStates = 1'000'000;
 
 class StateSpace {
  public:
@@ -67,6 +90,11 @@ class StateSpace {
   explicit StateSpace(std::array<Bins, kBoundaries> bins, bool open = false,
                       std::vector<Crossing> points = {});
 
+  /// States are the leaves of every boundary's tree, within each in preorder, then `points`. Open.
+  /// Throws std::invalid_argument unless every tree is complete with finite cuts that leave both
+  /// sides room, and all points are finite and different.
+  explicit StateSpace(std::array<Tree, kBoundaries> trees, std::vector<Crossing> points = {});
+
   /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size, velocities the
   /// scene's own unit of speed: the table's in the paper's scenes. RT and LT are one state each;
   /// their bin is what "Departures" in README.md says: y from joint + R up, velocities of RD and
@@ -76,7 +104,11 @@ class StateSpace {
   [[nodiscard]] int size() const { return offset_[kBoundaries] + static_cast<int>(points_.size()); }
   /// Column of "trapped", one past the states.
   [[nodiscard]] int trapped() const { return size(); }
+  [[nodiscard]] bool has_trees() const { return !cells_.empty(); }
+  /// Of a space of bins; else without any edges.
   [[nodiscard]] const std::array<Bins, kBoundaries>& bins() const { return bins_; }
+  /// Of a space of trees; else trees of a single leaf.
+  [[nodiscard]] const std::array<Tree, kBoundaries>& trees() const { return trees_; }
   [[nodiscard]] bool open() const { return open_; }
   [[nodiscard]] const std::vector<Crossing>& points() const { return points_; }
   [[nodiscard]] int first(Boundary b) const { return offset_[static_cast<int>(b)]; }
@@ -90,24 +122,30 @@ class StateSpace {
   [[nodiscard]] Cell cell(int state) const;
   [[nodiscard]] Boundary boundary(int state) const;
 
-  /// Uniform in the state's bin; a point itself.
+  /// Uniform in the state's range; a point itself.
   [[nodiscard]] Crossing sample(int state, Random& random) const;
 
   friend bool operator==(const StateSpace&, const StateSpace&) = default;
 
  private:
+  void require_points() const;
+  [[nodiscard]] int leaf_of(int boundary, const Crossing& c) const;
+
   std::array<Bins, kBoundaries> bins_;
+  std::array<Tree, kBoundaries> trees_;
+  std::array<std::vector<int>, kBoundaries> next_;  // of a tree's node: where the part above its
+                                                    // cut is; of a leaf: its state
+  std::vector<Cell> cells_;                         // of the leaves
   std::array<int, kBoundaries + 1> offset_{};
   bool open_ = false;
   std::vector<Crossing> points_;
 };
 
-/// The same ranges in finer (factor > 1) or coarser bins: an axis of n bins gets
+/// The ranges of bins in finer (factor > 1) or coarser bins: an axis of n bins gets
 /// max(1, round(n * factor)) equal ones; where that is n again, its edges stay as they are, so
 /// factor 1 is the same space bit for bit; open and points stay as they are. Throws
-/// std::invalid_argument unless the factor is finite and > 0 and the result has at most kMostStates
-/// states.
-inline constexpr int kMostStates = 1'000'000;
+/// std::invalid_argument unless the space has bins, the factor is finite and > 0, and the result
+/// has at most kMostStates states.
 [[nodiscard]] StateSpace refined(const StateSpace& space, double factor);
 
 /// A state's bin: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"

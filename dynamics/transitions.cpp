@@ -75,7 +75,7 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
     return entries[row][random.below(static_cast<std::int64_t>(entries[row].size()))];
   };
   const auto method = make_method(p);
-  struct Outcome {
+  struct Arrival {
     int column = -1;
     bool clamped = false;
   };
@@ -87,7 +87,7 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
                             first_run.begin()) -
            1;
   };
-  std::vector<Outcome> outcomes(static_cast<std::size_t>(first_run.back()));
+  std::vector<Arrival> outcomes(static_cast<std::size_t>(first_run.back()));
   tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do
   carry_out_trials(
       p, *method, static_cast<std::int64_t>(outcomes.size()),
@@ -102,7 +102,7 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
       },
       [&](RunSlot& slot, const GateRun& run) {
         health.local().add(p, run);
-        Outcome& out = outcomes[static_cast<std::size_t>(slot.trial)];
+        Arrival& out = outcomes[static_cast<std::size_t>(slot.trial)];
         if (run.ending == Ending::trapped) {
           out.column = t.space.trapped();
         } else if (run.ending != Ending::broken) {
@@ -115,7 +115,7 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
   for (const Health& part : health) t.health += part;
   for (int row = 0; row < t.space.size(); ++row) {
     for (std::int64_t i = first_run[row]; i < first_run[row + 1]; ++i) {
-      const Outcome& out = outcomes[static_cast<std::size_t>(i)];
+      const Arrival& out = outcomes[static_cast<std::size_t>(i)];
       if (out.column < 0) continue;
       ++t.rows[row][out.column];
       ++t.trials[row];

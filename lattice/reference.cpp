@@ -25,7 +25,7 @@ struct Trial {
   int gates = 0;  // visited
   std::array<std::int32_t, kBoundaries> entries{}, clamped{};
   Health health;
-  std::vector<Crossing> crossings;
+  std::vector<GatePassage> passages;
   /// Where its next run begins and under which force, while it waits for gates of another type.
   struct Waiting {
     BodyState from;
@@ -37,14 +37,16 @@ struct Trial {
 /// Takes the result of a trial's run through one gate. The crossing into the next gate; none when
 /// the trial ends here.
 std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams& field,
-                               const StateSpace& space, const GateRun& run, bool keep_crossings) {
+                               const StateSpace& space, const GateRun& run, bool keep_passages) {
   t.health.add(p, run);
   ++t.gates;
   if (run.ending == Ending::broken || run.ending == Ending::trapped) {
     if (run.ending == Ending::trapped) t.ending = markov::Ending::trapped;
+    if (keep_passages) t.passages.push_back({run.ending, {}});
     return {};
   }
   const Crossing crossing = crossing_of(p, run.ending, run.exit);
+  if (keep_passages) t.passages.push_back({run.ending, crossing});
   const Move move = move_into(crossing.boundary);
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
     t.ending =
@@ -55,7 +57,6 @@ std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams&
     t.ending = markov::Ending::cut_off;
     return {};
   }
-  if (keep_crossings) t.crossings.push_back(crossing);
   ++t.entries[static_cast<int>(crossing.boundary)];
   t.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
   t.column += move.di_x;
@@ -100,6 +101,15 @@ std::uint64_t stream_row(const GateParams& p, const BodyState& b) {
   return r123::Philox4x64()(state, {{0, 0}})[0] >> 8;  // the top byte of a key is its purpose
 }
 
+std::vector<Crossing> FieldTrials::entries() const {
+  std::vector<Crossing> all;
+  for (std::size_t i = 0; i < passed.size(); ++i) {
+    const auto of = of_trial(i);
+    for (const GatePassage& p : of.first(of.size() - 1)) all.push_back(p.entry);
+  }
+  return all;
+}
+
 FieldTally& FieldTally::operator+=(const FieldTally& o) {
   held.add(o.held);
   final_gates += o.final_gates;
@@ -132,7 +142,7 @@ struct Wave {
 /// wave of its own.
 void run_active(std::vector<Trial>& trials, const FieldGates& gates, const FieldParams& field,
                 const BodyState& start, const std::function<RandomForce(std::int64_t)>& force_of,
-                const StateSpace& space, bool keep_crossings) {
+                const StateSpace& space, bool keep_passages) {
   const std::size_t types = gates.types().size();
   std::vector<std::unique_ptr<const Method>> methods;
   for (const GateParams& p : gates.types()) methods.push_back(make_method(p));
@@ -158,7 +168,7 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
           [&](RunSlot& slot, const GateRun& run) {
             const std::int64_t i = wave[slot.trial];
             Trial& t = trials[i];
-            if (!follow(t, p, field, space, run, keep_crossings)) return false;
+            if (!follow(t, p, field, space, run, keep_passages)) return false;
             slot.start = shifted_into_next(p, run.ending, run.exit);
             const auto next = static_cast<std::size_t>(gates.type_of(t.column, t.row));
             if (next == type) return true;
@@ -179,14 +189,14 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
   gates.require_fits(field);
   for (const GateParams& p : gates.types()) validate(p, field);
   const GateParams& p = gates.at(field.start_column(), 0);
-  const bool keep_crossings = each != nullptr && each->keep_crossings;
+  const bool keep_passages = each != nullptr && each->keep_passages;
   std::vector<Trial> trials(range.count);
   for (Trial& t : trials) t.column = field.start_column();
   const auto force_of = [&](std::int64_t i) {
     return field_force(p, start, seed, range.first + i);
   };
   if (field.fidelity == Fidelity::active) {
-    run_active(trials, gates, field, start, force_of, space, keep_crossings);
+    run_active(trials, gates, field, start, force_of, space, keep_passages);
   } else {
     if (gates.types().size() > 1)
       throw InvalidParameter("field.fidelity", "field.fidelity = \"" +
@@ -198,7 +208,7 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
       FieldStepper stepper(p, field, start);
       RandomForce force = force_of(i);
       for (GateRun run = stepper.run_gate(force);
-           follow(trials[i], p, field, space, run, keep_crossings); run = stepper.run_gate(force))
+           follow(trials[i], p, field, space, run, keep_passages); run = stepper.run_gate(force))
         stepper.go_on(run.ending);
     });
   }
@@ -210,7 +220,10 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
   if (each != nullptr)
     for (const Trial& t : trials) {
       each->final_gates.push_back(t.row * field.columns + t.column);
-      each->crossings.insert(each->crossings.end(), t.crossings.begin(), t.crossings.end());
+      each->endings.push_back(t.ending);
+      if (!keep_passages) continue;
+      each->passages.insert(each->passages.end(), t.passages.begin(), t.passages.end());
+      each->passed.push_back(std::ssize(each->passages));
     }
   return tally;
 }

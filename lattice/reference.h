@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "dynamics/ensemble.h"
@@ -41,11 +42,28 @@ struct FieldTally {
   FieldTally& operator+=(const FieldTally& other);
 };
 
+/// How a trial's run through one gate ended, and with which entry into the next gate, inside the
+/// field or outside; no entry where it did not leave its gate.
+struct GatePassage {
+  dynamics::Ending ending = dynamics::Ending::trapped;
+  dynamics::Crossing entry{};
+};
+
 /// What each trial did, in the order of their numbers.
 struct FieldTrials {
-  std::vector<std::int32_t> final_gates;  // row * columns + column
-  bool keep_crossings = false;
-  std::vector<dynamics::Crossing> crossings;  // between gates, if kept
+  std::vector<std::int32_t> final_gates;                 // row * columns + column
+  std::vector<std::optional<markov::Ending>> endings{};  // none: a run stopped being finite
+  bool keep_passages = false;
+  std::vector<GatePassage> passages{};  // of all trials, if kept, ...
+  std::vector<std::int64_t> passed{};   // ... and how many of them each trial and those before
+                                        // it have
+  /// Passages of trial number `at` in this order, from the first gate on.
+  [[nodiscard]] std::span<const GatePassage> of_trial(std::size_t at) const {
+    const std::int64_t begin = at == 0 ? 0 : passed[at - 1];
+    return {passages.data() + begin, static_cast<std::size_t>(passed[at] - begin)};
+  }
+  /// Those into gates that trials then ran through, in their order.
+  [[nodiscard]] std::vector<dynamics::Crossing> entries() const;
 };
 
 /// The number that names a start in its trials' streams: other starts, other noise. From the start

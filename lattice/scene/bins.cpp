@@ -60,11 +60,12 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
         std::find(pilot.starts.begin(), pilot.starts.end(), entry) == pilot.starts.end())
       pilot.starts.push_back(entry);
     work.in_pieces("pilot", trials, [&](TrialRange range) {
-      FieldTrials each{.final_gates = {}, .keep_crossings = true, .crossings = {}};
+      FieldTrials each{.final_gates = {}, .keep_passages = true};
       pilot.health += run_field(scene.gate, field, start, space, seed,
                                 {kPilotsOwn + range.first, range.count}, &each)
                           .health;
-      pilot.entries.insert(pilot.entries.end(), each.crossings.begin(), each.crossings.end());
+      const std::vector<Crossing> entries = each.entries();
+      pilot.entries.insert(pilot.entries.end(), entries.begin(), entries.end());
     });
     pilot.trials += trials;
   }

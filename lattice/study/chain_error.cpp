@@ -118,11 +118,12 @@ void see_entries(ChainErrorChart& chart, const Scene& scene, const Work& work) {
   std::vector<dynamics::Crossing> seen;
   for (const PaperStart& start : chart.options.starts) {
     work.in_pieces("pilot", chart.pilot_trials, [&](TrialRange range) {
-      FieldTrials each{.final_gates = {}, .keep_crossings = true, .crossings = {}};
+      FieldTrials each{.final_gates = {}, .keep_passages = true};
       chart.health += run_field(scene.gate, scene.field, start.body(), space, chart.options.seed,
                                 {chart.options.truth_trials + range.first, range.count}, &each)
                           .health;
-      seen.insert(seen.end(), each.crossings.begin(), each.crossings.end());
+      const auto entries = each.entries();
+      seen.insert(seen.end(), entries.begin(), entries.end());
     });
     seen.insert(seen.end(), chart.pilot_trials,
                 {dynamics::Boundary::enter, start.d, start.vx, start.vy});

@@ -191,15 +191,15 @@ class Rows {
   void eliminate(const PreparedChain& chain,
                  const std::vector<const RowElimination::Column*>& columns) {
     constexpr int kMostRounds = 4;
-    workspace_.resize(chain.elimination->workspace(field_.columns));
+    workspace_.resize(chain.elimination->get().workspace(field_.columns));
     std::vector<char> wanted(starts_.size(), 1);
     std::vector<double> missing;
     const double* from = within_.data();
     for (int round = 0; round < kMostRounds; ++round) {
       for (std::size_t j = 0; j < starts_.size(); ++j)
         if (wanted[j] && !starts_[j].over)
-          chain.elimination->solve(columns, from + first_of(j), visits_.data() + first_of(j),
-                                   stride_, workspace_.data());
+          chain.elimination->get().solve(columns, from + first_of(j), visits_.data() + first_of(j),
+                                         stride_, workspace_.data());
       std::copy_n(within_.data(), within_.size(), next_.data());
       apply_in_row(chain.sideways, visits_, next_);
       double* const total = tally_.data() + kTallyTotal * stride_;
@@ -245,16 +245,17 @@ class Rows {
     for (std::size_t k = 0; k < plan_.chains.size(); ++k) {
       const PreparedChain& chain = plan_.chains[k];
       if (!chain.elimination) continue;
+      const RowElimination& elimination = chain.elimination->get();
       const double width = field_.columns,
                    rows = field_.rows;  // whatever the starts: same bits in any company
       const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) /
                           std::log(std::clamp(chain.stays, 1e-6, 1.0 - 1e-9));
       const double by_sums = rows * sums * static_cast<double>(chain.sideways.terms.size()) *
                              std::ceil(width / kLanes);
-      const double by_elimination = std::min(width, 0.5 * sums) * chain.elimination->column_cost() +
-                                    rows * width * chain.elimination->solve_cost();
+      const double by_elimination = std::min(width, 0.5 * sums) * elimination.column_cost() +
+                                    rows * width * elimination.solve_cost();
       if (method == PredictOptions::RowMethod::elimination || by_elimination < by_sums)
-        columns_[k] = chain.elimination->columns(field_.columns);
+        columns_[k] = elimination.columns(field_.columns);
     }
   }
 

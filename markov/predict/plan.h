@@ -22,14 +22,14 @@ enum Tally : int { kTallyTotal, kTallyTrapped, kTallyUnsampled, kTallyMoved };
 
 /// A chain as stencils.
 struct PreparedChain {
-  std::vector<int> walking_inputs, unsampled;         // of the inputs that are entered
-  Stencil moves;                                      // all of them
-  Stencil first_sideways;                             // within a row: of inputs entered from below
-  Stencil sideways;                                   // within a row: of inputs entered sideways
-  std::vector<Stencil> upwards;                       // by 1 row, 2 rows, ...
-  Stencil ends;                                       // to the planes of a Tally but the first
-  Stencil walking;                                    // to kTallyTotal: all that walks on
-  std::unique_ptr<const RowElimination> elimination;  // none where it cannot be used
+  std::vector<int> walking_inputs, unsampled;  // of the inputs that are entered
+  Stencil moves;                               // all of them
+  Stencil first_sideways;                      // within a row: of inputs entered from below
+  Stencil sideways;                            // within a row: of inputs entered sideways
+  std::vector<Stencil> upwards;                // by 1 row, 2 rows, ...
+  Stencil ends;                                // to the planes of a Tally but the first
+  Stencil walking;                             // to kTallyTotal: all that walks on
+  std::unique_ptr<const LazyRowElimination> elimination;  // none where it cannot be used
   double stays = 0.0;  // largest chance to stay in the row, of inputs entered sideways
 };
 

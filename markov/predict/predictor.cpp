@@ -77,7 +77,7 @@ PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
   prepared.ends = Stencil(ends);
   prepared.walking = Stencil(walking);
   if (RowElimination::suits(chain))
-    prepared.elimination = std::make_unique<const RowElimination>(chain);
+    prepared.elimination = std::make_unique<const LazyRowElimination>(chain);
   return prepared;
 }
 

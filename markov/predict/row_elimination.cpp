@@ -183,13 +183,16 @@ Block::Block(int n_rows, int n_columns)
       p(static_cast<std::size_t>(height) * static_cast<std::size_t>(n_columns)) {}
 
 bool RowElimination::suits(const Chain& chain) {
+  constexpr int kMostStates = 2000;
+  std::vector<char> is_entered(static_cast<std::size_t>(chain.inputs()));
   for (int input = 0; input < chain.inputs(); ++input)
     for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
       const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-      if (exit.next_input != Exit::kTrapped && exit.di_y == 0 && std::abs(exit.di_x) != 1)
-        return false;
+      if (exit.next_input == Exit::kTrapped || exit.di_y != 0) continue;
+      if (std::abs(exit.di_x) != 1) return false;
+      is_entered[static_cast<std::size_t>(exit.next_input)] = 1;
     }
-  return true;
+  return std::count(is_entered.begin(), is_entered.end(), 1) <= kMostStates;
 }
 
 RowElimination::RowElimination(const Chain& chain) {

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <vector>
 
@@ -30,7 +31,8 @@ struct Block {
 
 class RowElimination {
  public:
-  /// Whether all moves of the chain within a row go one cell on.
+  /// Whether all moves of the chain within a row go one cell on, and are into so few states that
+  /// dense matrices of them pay (2000).
   [[nodiscard]] static bool suits(const Chain& chain);
   explicit RowElimination(const Chain& chain);
 
@@ -67,6 +69,22 @@ class RowElimination {
   mutable std::mutex growing_;
   mutable std::deque<Column> columns_;
   mutable bool is_settled_ = false, is_singular_ = false;
+};
+
+/// A RowElimination that is made when it is first asked for. Thread-safe.
+class LazyRowElimination {
+ public:
+  /// `chain` must live as long.
+  explicit LazyRowElimination(const Chain& chain) : chain_(chain) {}
+  [[nodiscard]] const RowElimination& get() const {
+    std::call_once(made_, [this] { elimination_ = std::make_unique<RowElimination>(chain_); });
+    return *elimination_;
+  }
+
+ private:
+  const Chain& chain_;
+  mutable std::once_flag made_;
+  mutable std::unique_ptr<const RowElimination> elimination_;
 };
 
 }  // namespace gatewalk::markov

@@ -206,13 +206,13 @@ TEST(RunField, KeepsCrossingsWhenAsked) {
   const BodyState start{0, 0, 0, 15};
   const StateSpace space = StateSpace::paper(p);
   const auto kept = [&](std::initializer_list<TrialRange> ranges) {
-    FieldTrials each{.keep_crossings = true};
+    FieldTrials each{.keep_passages = true};
     FieldTally tally(field);
     for (const TrialRange range : ranges)
       tally += run_field(p, field, start, space, 1, range, &each);
-    return std::pair(tally, each.crossings);
+    return std::pair(tally, each.entries());
   };
-  EXPECT_TRUE(run(p, field, {0, 20}).each.crossings.empty());
+  EXPECT_TRUE(run(p, field, {0, 20}).each.entries().empty());
   const auto [split, in_pieces] = kept({{0, 15}, {15, 5}});
   const auto [whole, crossings] = test::on_threads(3, [&] { return kept({{0, 20}}); });
   std::array<std::int64_t, kBoundaries> entries{}, clamped{};
@@ -257,7 +257,7 @@ TEST(RunField, GatesOfSeveralTypes) {
     for (int column = 0; column < 5; ++column) types[row * 5 + column] = (row + 2 * column) % 3;
   const FieldGates gates = FieldGates::by_cell({soft, strong, slow}, 5, types);
   const GateParams& first = gates.at(2, 0);
-  FieldTrials each{.keep_crossings = true};
+  FieldTrials each{.keep_passages = true};
   (void)run_field(gates, field, kStart, StateSpace::paper(first), 4, {0, 60}, &each);
   std::vector<Crossing> crossings;
   int upward = 0, sideways = 0;
@@ -284,7 +284,7 @@ TEST(RunField, GatesOfSeveralTypes) {
   }
   EXPECT_GT(upward, 10);
   EXPECT_GT(sideways, 10);
-  EXPECT_TRUE(each.crossings == crossings);  // to the last bit
+  EXPECT_TRUE(each.entries() == crossings);  // to the last bit
   const Ran whole = run(gates, field, {0, 60}, 4);
   // The names of the types do not matter.
   std::vector<int> others = types;

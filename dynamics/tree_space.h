@@ -1,0 +1,27 @@
+#pragma once
+/// State spaces whose states are the leaves of trees grown over entries that were seen: many small
+/// leaves where bodies enter often, few large ones elsewhere.
+/// Cuts are midpoints of data and axes are compared in the scene's own units: a scene whose
+/// lengths, times and masses are multiplied by powers of 4 gets the same trees times these powers,
+/// bit for bit.
+
+#include <vector>
+
+#include "dynamics/state_space.h"
+
+namespace gatewalk::dynamics {
+
+/// Entries in a leaf, at least, unless somebody says otherwise. A leaf's row is noisy, but
+/// predictions average over all leaves: from 5 to 20 all are as good (markov/README.md).
+inline constexpr int kEntriesPerLeaf = 7;
+
+/// Open; and `points`. Per boundary the entries are halved at the median of the axis along which
+/// they spread most (largest standard deviation, d in Scale::length, velocities in Scale::speed())
+/// until a half would have fewer than `per_leaf`; equal values stay together. A boundary where
+/// nothing was seen is one state, StateSpace::paper's range. Throws std::invalid_argument unless
+/// per_leaf >= 1, and for more than kMostStates leaves.
+[[nodiscard]] StateSpace tree_space(const GateParams& p, std::vector<Crossing> seen,
+                                    int per_leaf = kEntriesPerLeaf,
+                                    std::vector<Crossing> points = {});
+
+}  // namespace gatewalk::dynamics
