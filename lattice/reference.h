@@ -85,6 +85,12 @@ struct FieldTrials {
                                    const dynamics::StateSpace& space, std::uint64_t seed,
                                    dynamics::TrialRange range, FieldTrials* each = nullptr);
 
+/// The same with a start of its own for each trial, (range.count) of them.
+[[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,
+                                   const std::vector<dynamics::BodyState>& starts,
+                                   const dynamics::StateSpace& space, std::uint64_t seed,
+                                   dynamics::TrialRange range, FieldTrials* each = nullptr);
+
 /// A trial through the field in full.
 struct FieldTrace {
   struct Visit {
