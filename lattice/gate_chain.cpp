@@ -49,6 +49,21 @@ std::string array_name(int boundary, const Axis& axis) {
   return std::string(kBoundaryNames[boundary]) + "_" + axis.name + "_edges";
 }
 
+/// A table of a tree: by node, in preorder, but `seen`: low and high by axis.
+struct TreeArray {
+  const char *name, *unit, *meaning;
+};
+constexpr TreeArray kTreeAxis{"tree_axis", "1",
+                              "axis of each node's cut: 0 d, 1 vx, 2 vy; -1: a leaf, which is a "
+                              "state"};
+constexpr TreeArray kTreeCut{"tree_cut", "m or m s-1", "place of each node's cut"};
+constexpr TreeArray kTreeSeen{"tree_seen", "m or m s-1",
+                              "between what entries were seen: d low, d high, vx, vy"};
+
+std::string array_name(int boundary, const TreeArray& array) {
+  return std::string(kBoundaryNames[boundary]) + "_" + array.name;
+}
+
 // Only a space that is open, or has points, has these.
 constexpr const char* kOpen = "outermost_bins_are_open";
 constexpr const char* kPointBoundary = "point_boundary";
@@ -82,6 +97,72 @@ std::vector<Crossing> points_in(const markov::CountsFile& in, const std::string&
   return points;
 }
 
+void add_tree(markov::CountsFile& out, int boundary, const Tree& tree) {
+  const auto add = [&](const TreeArray& array, std::vector<double> values) {
+    out.arrays.push_back({array_name(boundary, array), array.unit,
+                          std::string(kBoundaryNames[boundary]) + ": " + array.meaning +
+                              "; nodes in preorder, states are the leaves of EN, RD, LD, RT, LT",
+                          std::move(values)});
+  };
+  std::vector<double> axis, cut, seen;
+  for (const Tree::Node& node : tree.nodes) {
+    axis.push_back(node.axis);
+    cut.push_back(node.cut);
+  }
+  for (const auto& range : tree.seen) seen.insert(seen.end(), range.begin(), range.end());
+  add(kTreeAxis, std::move(axis));
+  add(kTreeCut, std::move(cut));
+  add(kTreeSeen, std::move(seen));
+}
+
+Tree tree_in(const markov::CountsFile& in, int boundary, const std::string& path) {
+  const auto find = [&](const TreeArray& array) -> const std::vector<double>& {
+    if (const auto* values = find_array(in, array_name(boundary, array))) return *values;
+    throw markov::BadFile(path + ": no " + array_name(boundary, array));
+  };
+  const std::vector<double>&axis = find(kTreeAxis), &cut = find(kTreeCut), &seen = find(kTreeSeen);
+  Tree tree;
+  if (axis.size() != cut.size() || seen.size() != 2 * tree.seen.size())
+    throw markov::BadFile(path + ": tables of the tree of " +
+                          std::string(kBoundaryNames[boundary]) + " do not fit each other");
+  tree.nodes.clear();
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    if (!(axis[i] >= Tree::kLeaf && axis[i] < std::ssize(kAxes) && axis[i] == std::floor(axis[i])))
+      throw markov::BadFile(path + ": " + array_name(boundary, kTreeAxis) + " names no axis");
+    tree.nodes.push_back({static_cast<int>(axis[i]), cut[i]});
+  }
+  for (std::size_t k = 0; k < seen.size(); ++k) tree.seen[k / 2][k % 2] = seen[k];
+  return tree;
+}
+
+StateSpace bins_in(const markov::CountsFile& in, const std::string& path) {
+  std::array<Bins, kBoundaries> bins;
+  for (int b = 0; b < kBoundaries; ++b)
+    for (const Axis& axis : kAxes) {
+      const std::string name = array_name(b, axis);
+      if (const auto* values = find_array(in, name)) bins[b].*axis.edges = *values;
+      if ((bins[b].*axis.edges).empty()) throw markov::BadFile(path + ": no bin edges " + name);
+    }
+  return StateSpace(std::move(bins), find_array(in, kOpen) != nullptr, points_in(in, path));
+}
+
+StateSpace trees_in(const markov::CountsFile& in, const std::string& path) {
+  std::array<Tree, kBoundaries> trees;
+  for (int b = 0; b < kBoundaries; ++b) trees[b] = tree_in(in, b, path);
+  return StateSpace(std::move(trees), points_in(in, path));
+}
+
+/// Tables that do not belong to the state space.
+std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays) {
+  std::erase_if(arrays, [](const markov::NamedArray& a) {
+    const bool of_boundary =
+        std::any_of(kBoundaryNames.begin(), kBoundaryNames.end(),
+                    [&](std::string_view b) { return a.name.starts_with(std::string(b) + "_"); });
+    return of_boundary || a.name == kOpen || a.name.starts_with("point_");
+  });
+  return arrays;
+}
+
 }  // namespace
 
 void write_matrix(const std::string& path, const MatrixFile& file) {
@@ -91,14 +172,16 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
   out.trials = t.trials;
   out.clamped = t.clamped;
   out.exits = exits_of(t.space);
-  for (int b = 0; b < kBoundaries; ++b)
+  out.arrays = file.arrays;
+  for (int b = 0; b < kBoundaries && t.space.has_trees(); ++b) add_tree(out, b, t.space.trees()[b]);
+  for (int b = 0; b < kBoundaries && !t.space.has_trees(); ++b)
     for (const Axis& axis : kAxes)
       out.arrays.push_back({array_name(b, axis), axis.unit,
                             std::string(kBoundaryNames[b]) + ": " + axis.meaning +
                                 "; states are numbered EN, RD, LD, RT, LT, within each by d, then "
                                 "vx, then vy",
                             t.space.bins()[b].*axis.edges});
-  if (t.space.open())
+  if (t.space.open() && !t.space.has_trees())
     out.arrays.push_back(
         {kOpen, "1", "the outermost bins take what lies beyond their edges", {1.0}});
   if (!t.space.points().empty()) {
@@ -126,29 +209,21 @@ MatrixFile read_matrix(const std::string& path) {
       throw markov::BadFile(std::string(e.what()) + "; " + markov::diagnose_counts(path));
     }
   }();
-  std::array<Bins, kBoundaries> bins;
-  for (int b = 0; b < kBoundaries; ++b) {
-    for (const Axis& axis : kAxes) {
-      const std::string name = array_name(b, axis);
-      if (const auto* values = find_array(in, name)) bins[b].*axis.edges = *values;
-      if ((bins[b].*axis.edges).empty()) throw markov::BadFile(path + ": no bin edges " + name);
-    }
-  }
   try {
-    Transitions t{
-        StateSpace(std::move(bins), find_array(in, kOpen) != nullptr, points_in(in, path))};
+    const bool has_trees = find_array(in, array_name(0, kTreeAxis)) != nullptr;
+    Transitions t{has_trees ? trees_in(in, path) : bins_in(in, path)};
     if (t.space.size() != in.counts.rows())
-      throw markov::BadFile(path + ": bins make " + std::to_string(t.space.size()) +
+      throw markov::BadFile(path + ": its state space makes " + std::to_string(t.space.size()) +
                             " states, the counts have " + std::to_string(in.counts.rows()) +
                             " rows");
     if (in.exits != exits_of(t.space))
-      throw markov::BadFile(path + ": exits are not those of its bins");
+      throw markov::BadFile(path + ": exits are not those of its states");
     for (int row = 0; row < t.space.size(); ++row)
       for (markov::Counts::InnerIterator it(in.counts, row); it; ++it)
         t.rows[row][static_cast<int>(it.col())] = it.value();
     t.trials = in.trials;
     t.clamped = in.clamped;
-    return {std::move(t), in.text};
+    return {std::move(t), in.text, others_in(in.arrays)};
   } catch (const std::invalid_argument& e) {
     throw markov::BadFile(path + ": " + e.what());
   }

@@ -31,6 +31,7 @@ struct ChainStart {
 struct MatrixFile {
   dynamics::Transitions transitions;
   std::map<std::string, std::string> text;
+  std::vector<markov::NamedArray> arrays{};  // beside those of the state space
 };
 
 /// As markov::write_counts.

@@ -110,6 +110,19 @@ std::vector<std::int64_t> first_row(const GateParams& p, const StateSpace& space
   return row;
 }
 
+std::vector<std::int64_t> first_row(const GateParams& p, const StateSpace& space,
+                                    const ScatteredTrials& trials) {
+  const bool mirror = symmetric(p);
+  std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
+  for (std::size_t i = 0; i < trials.starts.size(); ++i) {
+    const GatePassage& passage = trials.each.of_trial(i).front();
+    if (passage.ending == Ending::broken) continue;
+    ++row[static_cast<std::size_t>(output_of(space, passage, passage.entry))];
+    if (mirror) ++row[static_cast<std::size_t>(output_of(space, passage, mirrored(passage.entry)))];
+  }
+  return row;
+}
+
 markov::Chain chain_of(const Kernel& kernel,
                        const std::vector<std::vector<std::int64_t>>& first_rows) {
   const markov::Counts& k = kernel.counts;

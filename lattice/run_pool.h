@@ -19,6 +19,7 @@ struct StartTrials {
   dynamics::Crossing start{};
   FieldTrials full{.final_gates = {}, .keep_passages = true};
   FieldTrials first{.final_gates = {}, .keep_passages = true};  // that ran through one gate only
+  bool knows_endings = true;  // full trials were run in the field at hand, and kept how they ended
 
   /// Runs through the first gate.
   [[nodiscard]] std::int64_t first_runs() const {
@@ -63,6 +64,11 @@ struct Kernel {
 [[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::GateParams& p,
                                                   const dynamics::StateSpace& space,
                                                   const StartTrials& start, TrialGroup group = {});
+
+/// The same of trials that start anywhere: how often their first runs ended so.
+[[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::GateParams& p,
+                                                  const dynamics::StateSpace& space,
+                                                  const ScatteredTrials& trials);
 
 /// The kernel's rows, and behind them `first_rows`, which nothing leads to.
 [[nodiscard]] markov::Chain chain_of(const Kernel& kernel,

@@ -70,16 +70,20 @@ struct StartRange {
 /// What trials from all over a range of starts make of a pool.
 struct PooledRange {
   StartRange range;
-  double kernel_error_95 = 0.0;  // total variation, the worst of the starts it was tried on
-  int tried_on = 0;              // starts
+  int tried_on = 0;  // starts
+  /// Total variation, with endlessly many first runs, at the last size tried, by 1 / sqrt(runs) to
+  /// the size made: of the start in the middle, and of the
+  /// worst. Bodies from some starts all enter the second gate in the same way: these need trials of
+  /// their own, and get them when they are predicted.
+  double kernel_error_95 = 0.0, worst_kernel_error_95 = 0.0;
   bool reached = true;
   std::int64_t gate_runs = 0;  // made now
   double seconds = 0.0;
   dynamics::Health health;
 };
 /// Adds trials that start uniformly in the range until the chain's own part of the error bar, with
-/// endlessly many first runs, is below options.accuracy at all starts that it is tried on. Throws
-/// as predict_pooled, and std::invalid_argument for an empty range.
+/// endlessly many first runs, is below options.accuracy at half of the starts that it is tried on.
+/// Throws as predict_pooled, and std::invalid_argument for an empty range.
 [[nodiscard]] PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& range,
                                      const AccuracyOptions& options,
                                      const dynamics::Work& work = {});
