@@ -1,7 +1,10 @@
 #include "cli/arguments.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <sstream>
 
 #include "cli/render/choice.h"
@@ -9,6 +12,7 @@
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/start.h"
+#include "cli/render/text.h"
 #include "dynamics/work.h"
 
 namespace gatewalk::cli {
@@ -47,19 +51,21 @@ std::vector<lattice::PaperStart> starts_of(const Options& options, const lattice
 
 void add_bins(Options& options) {
   options.add_text(
-      "bins", "paper|auto|FACTOR",
-      "the chain's states: paper: Table III's, in the scene's own units; FACTOR: these "
-      "with so many times "
-      "the bins per axis (2 makes 696 states, 0.5 makes 23); auto: at the quantiles of "
-      "what bodies do in a "
-      "pilot of the full dynamics. Default: the scene's table [bins], else paper where the gate "
-      "has "
-      "the paper's proportions and these bins resolve what bodies do, else auto");
+      "bins", "paper|FACTOR|auto|tree",
+      "the chain's states: tree: grown over the entries that full trials make, until --accuracy is "
+      "reached; paper: Table III's, in the scene's own units; FACTOR: these with so many times the "
+      "bins per axis (2 makes 696 states, 0.5 makes 23); auto: bins at the quantiles of what "
+      "bodies do in a pilot. Default: the scene's table [bins], else tree; with runs per state "
+      "asked for: paper where the gate has the paper's proportions and these bins resolve what "
+      "bodies do, else auto");
 }
 
-lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene) {
+lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene,
+                                bool runs_per_state) {
   using Kind = lattice::BinsChoice::Kind;
-  if (!options.has("bins")) return lattice::usual_bins(scene);
+  if (!options.has("bins"))
+    return scene.bins || runs_per_state ? lattice::usual_bins(scene)
+                                        : lattice::BinsChoice{Kind::tree};
   const std::string text = options.text("bins");
   if (scene.bins)
     throw UsageError(
@@ -67,14 +73,93 @@ lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& sc
         ": the scene has a table [bins], which says what the bins are; leave out one of both");
   if (text == "auto") return {Kind::automatic};
   if (text == "paper") return {Kind::paper};
+  if (text == "tree") return {Kind::tree};
   lattice::BinsChoice choice;
   const char* end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, choice.factor);
   if (read.ec != std::errc() || read.ptr != end)
-    throw UsageError("--bins " + text + ": must be paper, auto, or a factor > 0 such as 2");
+    throw UsageError("--bins " + text + ": must be paper, tree, auto, or a factor > 0 such as 2");
   (void)dynamics::refined(dynamics::StateSpace::paper(scene.gate),
                           choice.factor);  // refuses other factors
   return choice;
+}
+
+void add_accuracy(Options& options, const std::string& by_default) {
+  options.add_number("accuracy", "A",
+                     "trials are added until the final gates are right within a total variation of "
+                     "A, 95 times in 100 (default: " +
+                         by_default + ")");
+  options.add_count("gate-runs", "N", "but not many more gate runs than N, whatever the accuracy");
+}
+
+lattice::AccuracyOptions accuracy_of(const Options& options) {
+  lattice::AccuracyOptions how;
+  if (options.has("accuracy")) how.accuracy = options.number("accuracy");
+  if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
+    throw UsageError("--accuracy " + digits(how.accuracy) +
+                     ": must lie between 0 and 1, such as 0.01");
+  if (options.has("gate-runs")) how.most_runs = options.count("gate-runs");
+  how.seed = options.seed();
+  return how;
+}
+
+void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy) {
+  if (prediction.reached) return;
+  double worst = 0.0;
+  for (const lattice::StartAnswer& a : prediction.starts)
+    worst = std::max(worst, a.error.total_variation);
+  options.warn("the accuracy asked for, " + digits(accuracy) +
+               ", was not reached: the error bar is " + fixed(worst, 4));
+}
+
+std::optional<lattice::StartRange> range_of(const Options& options, const lattice::Scene& scene) {
+  if (!options.has("starts")) return std::nullopt;
+  const std::string text = options.text("starts");
+  if (text == "all") return lattice::usual_range(scene);
+  lattice::StartRange range;
+  std::istringstream in(text);
+  char between = ',';
+  for (auto* axis : {&range.d, &range.vx, &range.vy}) {
+    char colon = 0;
+    if (between != ',' || !(in >> (*axis)[0] >> colon >> (*axis)[1]) || colon != ':' ||
+        !((*axis)[0] <= (*axis)[1]) || !std::isfinite((*axis)[1] - (*axis)[0]))
+      throw UsageError("--starts " + text +
+                       ": must be all, or three ranges of d, vx, vy in m and m/s, e.g. "
+                       "-5:5,-10:10,10:20");
+    between = 0;
+    in >> between;
+  }
+  if (between != 0) throw UsageError("--starts " + text + ": has more than three ranges");
+  const double side = scene.gate.beams.joint_x;
+  if (!(range.d[0] >= -side && range.d[1] <= side))
+    throw UsageError("--starts " + text + ": d must lie inside the gate, [" + digits(-side) + ", " +
+                     digits(side) + "]");
+  return range;
+}
+
+double accuracy_of(const lattice::MatrixFile& file, const std::string& path) {
+  const Json states = recorded(file, path, "state_space");
+  if (states.is_null() || !states.contains("accuracy")) return lattice::AccuracyOptions{}.accuracy;
+  return states.at("accuracy").get<double>() *
+         (states.at("range").is_null() ? 1.0 : lattice::kPartForOne);
+}
+
+void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
+                   const std::vector<dynamics::BodyState>& bodies) {
+  if (!lattice::has_runs(m.file)) return;
+  lattice::RunPool pool = lattice::pool_of(m.file, path);
+  const lattice::AccuracyOptions how{.accuracy = accuracy_of(m.file, path), .seed = options.seed()};
+  const auto prediction = lattice::predict_pooled(m.scene, pool, bodies, how, options.work());
+  const Json states = recorded(m.file, path, "state_space");
+  m.file.transitions =
+      lattice::matrix_of(m.scene, pool, bodies, states.at("entries_per_leaf").get<int>());
+  m.file.transitions.health = prediction.health;
+}
+
+bool is_matrix(const std::string& path) {
+  std::array<char, 8> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == "\x89HDF\r\n\x1a\n";
 }
 
 std::optional<lattice::Settled> settle_method(const Options& options, lattice::Scene& scene,

@@ -10,6 +10,7 @@
 #include "lattice/scene/matrix.h"
 #include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
+#include "lattice/study/tree_chain.h"
 
 namespace gatewalk::cli {
 
@@ -26,9 +27,32 @@ void add_starts(Options& options,
 
 /// Declares --bins.
 void add_bins(Options& options);
-/// --bins if given, else lattice::usual_bins. Throws UsageError for anything else, and for --bins
+/// --bins if given; else the scene's table [bins]; else a tree, or lattice::usual_bins where
+/// `runs_per_state` of them are asked for. Throws UsageError for anything else, and for --bins
 /// beside a table [bins].
-[[nodiscard]] lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene);
+[[nodiscard]] lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene,
+                                              bool runs_per_state);
+
+/// Declares --accuracy and --gate-runs.
+void add_accuracy(Options& options, const std::string& by_default = "0.02");
+/// Of these. Throws UsageError for an accuracy outside (0, 1).
+[[nodiscard]] lattice::AccuracyOptions accuracy_of(const Options& options);
+/// Warns where it was not reached.
+void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy);
+
+/// --starts: a range of starts; none without it. Throws UsageError for a malformed one.
+[[nodiscard]] std::optional<lattice::StartRange> range_of(const Options& options,
+                                                          const lattice::Scene& scene);
+
+/// The accuracy for one start that a matrix of trees was made for.
+[[nodiscard]] double accuracy_of(const lattice::MatrixFile& file, const std::string& path);
+/// A matrix of trees, in which each of these bodies' starts is a state of its own: trials are added
+/// where need be. Other matrices stay as they are.
+void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
+                   const std::vector<dynamics::BodyState>& bodies);
+
+/// Whether the file begins as a matrix does (HDF5).
+[[nodiscard]] bool is_matrix(const std::string& path);
 
 /// lattice::settle_method; warns of keys without effect and of a choice that did not meet the
 /// tolerance, and says what the scene leaves out.

@@ -22,11 +22,11 @@ std::int64_t CountedField::runs_at(const markov::Start& start) const {
 }
 
 CountedField counted_field(const dynamics::Transitions& matrix) {
-  return {make_chain(matrix), {matrix.counts()}};
+  return {make_chain(matrix), {matrix.counts()}, matrix.space.has_trees()};
 }
 
-markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
-                         std::uint64_t replicate) {
+markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::uint64_t replicate,
+                         bool small_rows) {
   using Entry = markov::Counts::InnerIterator;
   // What a row never saw may yet happen in it. Its probabilities are its counts and one run more,
   // which ends as those of all rows together: upto[i] runs ended in outputs 0 .. i.
@@ -48,7 +48,8 @@ markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
     const std::int64_t trials = counts.row(row).sum();
     dynamics::Random random(dynamics::Purpose::resampling,
                             {seed, static_cast<std::uint64_t>(row), replicate});
-    const std::int64_t others = binomial(trials, 1.0 / static_cast<double>(trials + 1), random);
+    const std::int64_t others =
+        small_rows ? 0 : binomial(trials, 1.0 / static_cast<double>(trials + 1), random);
     multinomial(trials - others, weights, of_entries, random);
     auto n = of_entries.begin();
     for (Entry entry(counts, row); entry; ++entry, ++n)
@@ -74,8 +75,9 @@ std::vector<std::vector<FinalDistribution>> replicate_predictions(
       // Another matrix of the same replicate takes another stream.
       const std::uint64_t replicate =
           static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
-      chains.push_back(markov::Chain::from_counts(resampled(gates.counts[m], seed, replicate),
-                                                  gates.chains.chains()[m].exits()));
+      chains.push_back(
+          markov::Chain::from_counts(resampled(gates.counts[m], seed, replicate, gates.small_rows),
+                                     gates.chains.chains()[m].exits()));
     }
     const markov::Predictor predictor(gates.chains.with(std::move(chains)));
     std::vector<FinalDistribution> of_starts =
@@ -86,15 +88,19 @@ std::vector<std::vector<FinalDistribution>> replicate_predictions(
   return found;
 }
 
-std::int64_t affordable_replicates(const markov::Field& field, int max_cells, std::int64_t most) {
-  // Measured: some 40 ns a cell without limit, and a cell and step with one.
-  constexpr double kCellSteps = 1e8;
+std::int64_t affordable_replicates(const markov::Field& field, int max_cells, std::int64_t nonzeros,
+                                   std::int64_t most) {
+  // Measured: some 40 ns a cell without limit, and a cell and step with one, of a matrix of 300
+  // nonzeros.
+  constexpr double kCellSteps = 1e8, kNonzeros = 300.0;
   constexpr std::int64_t kTooFew = 50;
   const double steps = std::max(1, max_cells);
   const double cells =
       std::min(static_cast<double>(field.columns) * field.rows,
                max_cells > 0 ? 2.0 * steps * steps : std::numeric_limits<double>::infinity());
-  const double replicates = std::min(static_cast<double>(most), kCellSteps / (cells * steps));
+  const double replicates = std::min(
+      static_cast<double>(most),
+      kCellSteps / (cells * steps * std::max(1.0, static_cast<double>(nonzeros) / kNonzeros)));
   return replicates < kTooFew ? 0 : static_cast<std::int64_t>(replicates);
 }
 

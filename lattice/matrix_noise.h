@@ -15,6 +15,7 @@ namespace gatewalk::lattice {
 struct CountedField {
   markov::FieldChain chains;
   std::vector<markov::Counts> counts;  // one per type, as chains.chains()
+  bool small_rows = false;             // trees': rows of a few runs
 
   /// Runs of the row that a walk begins in.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
@@ -24,10 +25,11 @@ struct CountedField {
 
 /// The counts that another set of runs might have given: every row's trials drawn anew from its own
 /// counts, as one binomial per entry, and of one run more that may end as any of all rows: what a
-/// row never saw may yet happen in it. Chains of such counts show what the sampling of the matrix
+/// row never saw may yet happen in it. (Not in small rows, of which one run is a large part; there,
+/// predictions average over many rows.) Chains of such counts show what the sampling of the matrix
 /// alone does to a prediction.
 [[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
-                                       std::uint64_t replicate);
+                                       std::uint64_t replicate, bool small_rows = false);
 
 /// Predictions from replicates first, ... first + count - 1: each matrix resampled() on its own.
 /// (starts x count) by Predictor::predict, on all threads of the current TBB arena; the same bits
@@ -36,10 +38,11 @@ struct CountedField {
     const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
     int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count);
 
-/// How many replicates a field of this size lets one make in some seconds: 0 to `most`. Below 50 it
-/// is 0: so few say too little.
+/// How many replicates a field and a matrix of this size let one make in some seconds: 0 to `most`.
+/// Below 50 it is 0: so few say too little.
+/// `nonzeros` of the matrix.
 [[nodiscard]] std::int64_t affordable_replicates(const markov::Field& field, int max_cells,
-                                                 std::int64_t most);
+                                                 std::int64_t nonzeros, std::int64_t most);
 
 /// The spread of predictions that the sampling of the matrix makes.
 class MatrixNoise {

@@ -2,52 +2,100 @@
 #include "cli/render/choice.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
+#include "cli/render/prediction.h"
 #include "cli/render/states.h"
 #include "cli/render/text.h"
 #include "dynamics/work.h"
 
 namespace gatewalk::cli {
+namespace {
+
+using Settled = std::optional<lattice::Settled>;
+
+/// Writes the file, and says what was made.
+int give_out(const Options& options, const lattice::Scene& scene, const MadeMatrix& made,
+             std::vector<markov::NamedArray> runs) {
+  const std::string path = options.text("output");
+  lattice::write_matrix(
+      path, {made.transitions, record_of(made, scene, options.provenance(scene)), std::move(runs)});
+  Json json = summary_json(made, path);
+  json["made_by"] = to_json(options.provenance(scene));
+  options.give_out(json, summary_table(made.transitions, path) + states_line(json["state_space"]) +
+                             method_line(made.settled));
+  return status_of(options, made.transitions.health);
+}
+
+int build_bins(const Options& options, const lattice::Scene& scene,
+               const lattice::BinsChoice& choice, const Settled& settled) {
+  for (const char* other : {"accuracy", "gate-runs", "starts", "start", "states"})
+    if (options.has(other))
+      throw UsageError(std::string("--") + other +
+                       " has no meaning for bins: it is for --bins tree");
+  const std::int64_t trials = options.has("trials") ? options.count("trials") : 100;
+  const dynamics::Stopwatch watch;
+  const lattice::States states = states_of(options, scene, choice, {scene.start});
+  const auto matrix = lattice::build_matrix(scene, states, trials, options.seed(), options.work());
+  const Json bins = bins_json(states.choice), space = to_json(states);
+  const int status = give_out(options, scene, {matrix, bins, space, settled, trials}, {});
+  options.remark("built in " + fixed(watch.seconds(), 2) + " s");
+  for (const std::string& text : complaints(states)) options.warn(text);
+  return status;
+}
+
+int build_tree(const Options& options, const lattice::Scene& scene, const Settled& settled) {
+  if (options.has("trials"))
+    throw UsageError(
+        "--trials is of runs per state, and a tree grows from full trials: take "
+        "--accuracy, or other --bins");
+  lattice::TreeOptions how{.accuracy = accuracy_of(options)};
+  how.range = range_of(options, scene);
+  if (options.has("states"))
+    how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
+  for (const lattice::PaperStart& s : given_starts(options)) how.starts.push_back(s.body());
+  lattice::require_inside(given_starts(options), scene);
+  if (how.starts.empty() && !how.range) how.starts = {scene.start};
+  const dynamics::Stopwatch watch;
+  const lattice::TreeChain chain = lattice::make_tree_chain(scene, how, options.work());
+  const Json bins = "tree", space = to_json(chain, how.accuracy.accuracy);
+  const int status = give_out(options, scene, {chain.transitions, bins, space, settled, {}},
+                              lattice::arrays_of(chain.pool));
+  options.remark("built in " + fixed(watch.seconds(), 2) + " s");
+  if (chain.prediction) warn_of(options, *chain.prediction, how.accuracy.accuracy);
+  if (chain.range && !chain.range->reached)
+    options.warn("starts of the range need more runs than these for the accuracy asked for, " +
+                 digits(how.accuracy.accuracy) + ": predict adds trials of their own");
+  return status;
+}
+
+}  // namespace
 
 int run_build(const Arguments& arguments) {
   Options options(
       "build SCENE -o MATRIX.nc [options]",
-      "Fills the input-output matrix of one gate: for every input state (--bins says which)\n"
-      "N short runs, counted by where they come out. Where the gate has the paper's proportions\n"
-      "and Table III's 87 bins resolve what bodies do, those are the states; else they are made\n"
-      "from what bodies do in a pilot of the full dynamics from the scene's start, which is a\n"
-      "state of its own with more runs.",
-      "gatewalk build scenes/field.toml --trials 100 --seed 1 -o matrix.nc");
+      "Makes the transition matrix of one gate. By default its states are the leaves of trees,\n"
+      "grown over the gate runs of full trials from the scene's start (or --start, --starts)\n"
+      "until predictions are as accurate as --accuracy says. With --bins paper it is the\n"
+      "paper's: N short runs from each of Table III's 87 bins, counted by where they come out.",
+      "gatewalk build scenes/field.toml --bins paper --trials 100 --seed 1 -o matrix.nc");
   options.scene();
-  options.add_trials_and_seed("runs per input state");
+  add_accuracy(options);
+  options.add_count("trials", "N", "bins: runs per input state (default: 100)");
+  options.add_seed();
   options.add_strict();
   options.main_output_file("MATRIX.nc", "matrix file to write (NetCDF-4)",
                            Options::Content::binary);
   add_bins(options);
+  add_starts(options, "the scene's start; tree only: each is a state of its own");
+  options.add_text("starts", "all|D,VX,VY",
+                   "tree: good for any start of a range, each axis LOW:HIGH; all: what Table III's "
+                   "entries from below span, in the scene's own units");
+  options.add_count("states", "S", "tree: at most S states beside the starts");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
-  const std::int64_t trials = options.trials();
-  const lattice::BinsChoice choice = bins_choice(options, scene);
+  const lattice::BinsChoice choice = bins_choice(options, scene, options.has("trials"));
+  const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
-
-  const dynamics::Stopwatch pilot_watch;
-  const lattice::States states = states_of(options, scene, choice, {scene.start});
-  const double pilot_seconds = pilot_watch.seconds();
-  const dynamics::Stopwatch watch;
-  lattice::MatrixFile file{
-      lattice::build_matrix(scene, states, trials, options.seed(), options.work()), {}};
-  const double seconds = watch.seconds();
-  const dynamics::Transitions& t = file.transitions;
-  const std::string path = options.text("output");
-  file.text = record_of(t, scene, states, settled, trials, options.provenance(scene));
-  lattice::write_matrix(path, file);
-
-  Json json = summary_json(t, states, settled, trials, path);
-  json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(
-      json, summary_table(t, path) + states_line(json["state_space"]) + method_line(settled));
-  options.remark("built in " + fixed(seconds, 2) + " s, pilot " + fixed(pilot_seconds, 2) + " s");
-  for (const std::string& text : complaints(states)) options.warn(text);
-  return status_of(options, t.health);
+  return tree ? build_tree(options, scene, settled) : build_bins(options, scene, choice, settled);
 }
 
 }  // namespace gatewalk::cli

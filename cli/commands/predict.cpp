@@ -1,8 +1,10 @@
 #include <charconv>
 
 #include "cli/arguments.h"
+#include "cli/render/choice.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
+#include "cli/render/pooled_prediction.h"
 #include "cli/render/prediction.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
@@ -53,18 +55,72 @@ markov::PredictOptions::Solver solver_of(const std::string& name) {
   throw UsageError("--solver " + name + ": must be auto, propagate, march or klu");
 }
 
+/// Starts given, else the scene's.
+std::vector<dynamics::BodyState> bodies_of(const std::vector<lattice::PaperStart>& given,
+                                           const lattice::Scene& scene) {
+  lattice::require_inside(given, scene);
+  return given.empty() ? std::vector{scene.start} : lattice::entries_at(given);
+}
+
+/// Until the error bar says enough, with the runs that a pool has already.
+int predict_accurately(const Options& options, const lattice::Scene& scene,
+                       const std::optional<lattice::Settled>& settled, lattice::RunPool pool,
+                       const lattice::AccuracyOptions& how) {
+  const std::vector<lattice::PaperStart> given = given_starts(options);
+  const auto bodies = bodies_of(given, scene);
+  const auto prediction = lattice::predict_pooled(scene, pool, bodies, how, options.work());
+  Json json = to_json(prediction, how.accuracy, !given.empty());
+  if (settled) json["method"] = to_json(*settled);
+  json["made_by"] = to_json(options.provenance(scene));
+  options.give_out(json, table_of(prediction, scene, !given.empty()) + method_line(settled));
+  options.warn(too_few_gates(scene));
+  warn_of(options, prediction, how.accuracy);
+  return status_of(options, prediction.health);
+}
+
+int predict_scene(const Options& options) {
+  const std::string path = options.text("matrix");
+  for (const char* other : {"scene", "row", "first-runs"})
+    if (options.has(other))
+      throw UsageError(path + ": is no matrix, so it is read as a scene; " +
+                       (std::string_view(other) == "scene" ? "" : "--") + other +
+                       " has no meaning beside it");
+  if (options.text("solver") != "auto")
+    throw UsageError("--solver has no meaning for a scene: it is for a matrix");
+  lattice::Scene scene = lattice::read_scene(path, options.overrides());
+  const lattice::AccuracyOptions how = accuracy_of(options);
+  (void)bodies_of(given_starts(options), scene);
+  const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  return predict_accurately(options, scene, settled, {}, how);
+}
+
+/// From the gate runs that a matrix file keeps, with first runs of starts that it does not know.
+int predict_from_runs(const Options& options, const lattice::SceneMatrix& m) {
+  lattice::AccuracyOptions how = accuracy_of(options);
+  const std::string path = options.text("matrix");
+  if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
+  if (options.has("first-runs")) how.first_runs = options.count("first-runs", 8);
+  return predict_accurately(options, m.scene, {}, lattice::pool_of(m.file, path), how);
+}
+
 }  // namespace
 
 int run_predict(const Arguments& arguments) {
   Options options(
-      "predict MATRIX.nc [SCENE] [options]",
-      "The exact distribution of endings and final gate: what infinitely many walks with this\n"
-      "matrix would give. The 95 % intervals count that the matrix is a sample of gate runs;\n"
-      "how far the chain itself (bins, memory) is off, gatewalk validate measures.",
-      "gatewalk predict matrix.nc scenes/field.toml --start 0,0,15 --start 4,5,10 --json "
-      "prediction.json");
-  options.positional("matrix", "matrix file written by gatewalk build", true);
-  options.positional("scene", "scene file; without it the matrix's own scene", false);
+      "predict SCENE|MATRIX.nc [SCENE] [options]",
+      "The distribution of endings and final gate. From a scene: full trials are run, and their\n"
+      "gate runs pooled into a chain, until the error bar keeps --accuracy; never dearer than\n"
+      "direct simulation by more than the bar costs. From a matrix with trees: the same with the\n"
+      "runs that it keeps, and some first runs of a start that it does not know. From a matrix\n"
+      "of bins: what infinitely many walks with it would give; its intervals count that the\n"
+      "matrix is a sample of gate runs, the chain's own error gatewalk validate measures.",
+      "gatewalk predict scenes/field.toml --accuracy 0.01 --json prediction.json");
+  options.positional("matrix", "a scene, or a matrix file written by gatewalk build", true);
+  options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
+  add_accuracy(options, "0.02, or that of the matrix");
+  options.add_count("first-runs", "N",
+                    "matrix of trees: N first runs of a start that it does not know, and no other "
+                    "trials; 0: none, such a start is one of its leaf");
   add_starts(options, "the scene's start");
   options.add_texts("row", "A-B=FILE",
                     "gates of rows i_y = A to B as in another matrix of the same bins (may be "
@@ -77,12 +133,21 @@ int run_predict(const Arguments& arguments) {
   options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
   options.add_seed("seed of the resampled matrices behind the intervals");
   if (!options.parse(arguments)) return kFine;
+  if (!is_matrix(options.text("matrix"))) return predict_scene(options);
   const std::string solver = options.text("solver"), path = options.text("matrix");
   const markov::PredictOptions how{.solver = solver_of(solver)};
   const std::vector<lattice::PaperStart> given = given_starts(options);
   const std::vector<lattice::RowMatrix> others = other_rows(options);
   const lattice::SceneMatrix m = read_matrix(options);
   lattice::require_inside(given, m.scene);
+  const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0;
+  if (lattice::has_runs(m.file) && others.empty() && solver == "auto" && !no_runs)
+    return predict_from_runs(options, m);
+  for (const char* other : {"accuracy", "gate-runs"})
+    if (options.has(other))
+      throw UsageError(std::string("--") + other + ": " + path +
+                       " keeps no gate runs that could be added to (or --row, --solver, "
+                       "--first-runs 0 asks for the matrix as it is)");
   const lattice::CountedField gates = lattice::field_of(m, path, others);
   std::vector<lattice::ChainStart> starts;
   for (const lattice::PaperStart& s : given)

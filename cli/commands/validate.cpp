@@ -22,6 +22,7 @@ Subject read_subject(const Options& options) {
   auto starts = starts_of(options, m.scene);
   lattice::require_inside(starts, m.scene);
   (void)lattice::entries_at(starts);
+  add_starts_to(m, path, options, lattice::entries_at(starts));
   require_inside_bins(options, starts, m.scene, m.file.transitions.space);
   Json status = recorded_status(m.file), settled = recorded(m.file, path, "method"),
        states = recorded(m.file, path, "state_space");
@@ -32,13 +33,27 @@ Subject read_subject(const Options& options) {
 Subject build_subject(const Options& options) {
   const std::int64_t trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
   lattice::Scene scene = options.read_scene();
-  const lattice::BinsChoice choice = bins_choice(options, scene);
+  const lattice::BinsChoice choice = bins_choice(options, scene, options.has("matrix-trials"));
   auto starts = starts_of(options, scene);
   lattice::require_inside(starts, scene);
   const auto bodies = lattice::entries_at(starts);
-  if (choice.kind != lattice::BinsChoice::Kind::automatic)
+  const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
+  if (tree && options.has("matrix-trials"))
+    throw UsageError("--matrix-trials is of runs per state of bins: --bins tree takes --accuracy");
+  if (!tree && choice.kind != lattice::BinsChoice::Kind::automatic)
     require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  if (tree) {
+    lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = bodies};
+    lattice::TreeChain chain = lattice::make_tree_chain(scene, how, options.work());
+    warn_of(options, *chain.prediction, how.accuracy.accuracy);
+    Json status = to_json(chain.transitions.health), states = to_json(chain, how.accuracy.accuracy);
+    return {{{std::move(chain.transitions), {}}, std::move(scene)},
+            std::move(starts),
+            std::move(status),
+            settled ? to_json(*settled) : Json(),
+            std::move(states)};
+  }
   const lattice::States states = states_of(options, scene, choice, bodies);
   for (const std::string& text : complaints(states)) options.warn(text);
   auto built = lattice::build_matrix(scene, states, trials, options.seed(), options.work());
@@ -70,7 +85,8 @@ int run_validate(const Arguments& arguments) {
   options.add_strict();
   options.input_file("matrix", "matrix to validate; without it one is built from the scene");
   options.add_count("matrix-trials", "N",
-                    "runs per input state of the matrix that is built (default: 100)");
+                    "bins: runs per input state of the matrix that is built (default: 100)");
+  add_accuracy(options);
   options.add_count("walks", "N", "walks per start (default: as many as trials)");
   options.add_count("null-draws", "N",
                     "draws behind each p-value (default: 999 to 9999, by the size of the work)");
@@ -83,11 +99,11 @@ int run_validate(const Arguments& arguments) {
   if (options.has("walks")) how.walks = options.count("walks");
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
   if (options.has("matrix"))
-    for (const char* other : {"bins", "matrix-trials"})
+    for (const char* other : {"bins", "matrix-trials", "accuracy", "gate-runs"})
       if (options.has(other))
         throw UsageError(
             std::string("--") + other + " has no meaning beside --matrix: that one " +
-            (std::string_view(other) == "bins" ? "has its bins already" : "is built already"));
+            (std::string_view(other) == "bins" ? "has its states already" : "is built already"));
   const dynamics::Stopwatch watch;
   const Subject subject = options.has("matrix") ? read_subject(options) : build_subject(options);
   const lattice::Scene& scene = subject.matrix.scene;

@@ -20,7 +20,8 @@ int run_walk(const Arguments& arguments) {
   options.add_seed();
   options.add_strict();
   if (!options.parse(arguments)) return kFine;
-  const lattice::SceneMatrix m = read_matrix(options);
+  lattice::SceneMatrix m = read_matrix(options);
+  add_starts_to(m, options.text("matrix"), options, {m.scene.start});
   const dynamics::Transitions& t = m.file.transitions;
   const lattice::ChainStart start = ready_start(options, m, m.scene.start, "the start");
   const std::int64_t walks = options.count("walks");

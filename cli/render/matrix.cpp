@@ -88,61 +88,55 @@ std::string faults_recorded(const Json& status) {
   }
 }
 
-namespace {
-
-/// The factor on Table III's bins, or the bins' name.
-Json bins_json(const lattice::States& states) {
-  return states.choice.kind == lattice::BinsChoice::Kind::paper ? Json(states.choice.factor)
-                                                                : Json(states.choice.name());
+Json bins_json(const lattice::BinsChoice& choice) {
+  return choice.kind == lattice::BinsChoice::Kind::paper ? Json(choice.factor)
+                                                         : Json(choice.name());
 }
 
-}  // namespace
-
-std::map<std::string, std::string> record_of(const Transitions& t, const lattice::Scene& scene,
-                                             const lattice::States& states,
-                                             const std::optional<lattice::Settled>& settled,
-                                             std::int64_t trials_per_row,
+std::map<std::string, std::string> record_of(const MadeMatrix& made, const lattice::Scene& scene,
                                              const Provenance& provenance) {
-  const Json made_by = to_json(provenance), bins = bins_json(states);
+  const Json made_by = to_json(provenance);
   std::map<std::string, std::string> text = {
       {"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},
       {"scene", lattice::to_toml(scene)},
       {"seed", made_by.at("seed").dump()},
-      {"trials_per_row", std::to_string(trials_per_row)},
-      {"bins", bins.is_string() ? bins.get<std::string>()
-                                : bins.dump()},  // the shortest digits that read back the same
-      {"state_space", to_json(states).dump()},
+      {"bins", made.bins.is_string()
+                   ? made.bins.get<std::string>()
+                   : made.bins.dump()},  // the shortest digits that read back the same
+      {"state_space", made.states.dump()},
       {"program", "gatewalk " + made_by.at("version").get<std::string>()},
       {"commit", made_by.at("commit")},
       {"command", provenance.command},
-      {"status", to_json(t.health).dump()}};
-  if (settled) text["method"] = to_json(*settled).dump();
+      {"status", to_json(made.transitions.health).dump()}};
+  if (made.trials_per_row) text["trials_per_row"] = std::to_string(*made.trials_per_row);
+  if (made.settled) text["method"] = to_json(*made.settled).dump();
   return text;
 }
 
-Json summary_json(const Transitions& t, const lattice::States& states,
-                  const std::optional<lattice::Settled>& settled, std::int64_t trials_per_row,
-                  const std::string& path) {
+Json summary_json(const MadeMatrix& made, const std::string& path) {
+  const Transitions& t = made.transitions;
   const auto total = t.totals();
   Json json;
   json["matrix"] = path;
   json["inputs"] = t.space.size();
   json["outputs"] = t.space.size() + 1;
-  json["trials_per_row"] = trials_per_row;
-  json["bins"] = bins_json(states);
+  if (made.trials_per_row) json["trials_per_row"] = *made.trials_per_row;
+  json["bins"] = made.bins;
   json["nonzeros"] = total.nonzeros;
   json["clamped_share"] = total.clamped_share();
-  json["state_space"] = to_json(states);
-  if (settled) json["method"] = to_json(*settled);
+  json["state_space"] = made.states;
+  if (made.settled) json["method"] = to_json(*made.settled);
   json["status"] = to_json(t.health);
   return json;
 }
 
 std::string summary_table(const Transitions& t, const std::string& path) {
   const auto total = t.totals();
-  return path + ": " + std::to_string(t.space.size()) + " x " + std::to_string(t.space.size() + 1) +
-         " matrix, " + std::to_string(total.runs) + " gate runs, " +
-         std::to_string(total.nonzeros) + " nonzeros, " + percent(total.clamped_share(), 1.0) +
+  const std::string size = path + ": " + std::to_string(t.space.size()) + " x " +
+                           std::to_string(t.space.size() + 1) + " matrix, ";
+  if (t.space.has_trees()) return size + std::to_string(total.nonzeros) + " nonzeros\n";
+  return size + std::to_string(total.runs) + " gate runs, " + std::to_string(total.nonzeros) +
+         " nonzeros, " + percent(total.clamped_share(), 1.0) +
          " of the crossings clamped into the nearest bin\n";
 }
 

@@ -22,15 +22,22 @@ namespace gatewalk::cli {
 /// The faults of the runs behind a recorded status, in one sentence; empty when none were seen.
 [[nodiscard]] std::string faults_recorded(const Json& status);
 
+/// What is said of a matrix that was made: "bins" is the factor on Table III's or their name, and
+/// `states` the state space as JSON. A tree has no number of trials per row.
+struct MadeMatrix {
+  const dynamics::Transitions& transitions;
+  const Json &bins, &states;
+  const std::optional<lattice::Settled>& settled;
+  std::optional<std::int64_t> trials_per_row;
+};
+/// The factor on Table III's bins, or the bins' name.
+[[nodiscard]] Json bins_json(const lattice::BinsChoice& choice);
 /// All that a file of this matrix keeps beside its counts, by key.
-[[nodiscard]] std::map<std::string, std::string> record_of(
-    const dynamics::Transitions& t, const lattice::Scene& scene, const lattice::States& states,
-    const std::optional<lattice::Settled>& settled, std::int64_t trials_per_row,
-    const Provenance& provenance);
+[[nodiscard]] std::map<std::string, std::string> record_of(const MadeMatrix& made,
+                                                           const lattice::Scene& scene,
+                                                           const Provenance& provenance);
 /// The matrix written to `path`, without its counts and without "made_by".
-[[nodiscard]] Json summary_json(const dynamics::Transitions& t, const lattice::States& states,
-                                const std::optional<lattice::Settled>& settled,
-                                std::int64_t trials_per_row, const std::string& path);
+[[nodiscard]] Json summary_json(const MadeMatrix& made, const std::string& path);
 [[nodiscard]] std::string summary_table(const dynamics::Transitions& t, const std::string& path);
 
 [[nodiscard]] Json to_json(const lattice::MatrixFile& file, const std::string& path);

@@ -45,8 +45,61 @@ Json to_json(const lattice::States& s) {
   return j;
 }
 
+namespace {
+
+std::string text_of_range(const Json& r) {
+  return dynamics::text_of(std::array<double, 2>{r.at(0).get<double>(), r.at(1).get<double>()});
+}
+
+std::string tree_line(const Json& j) {
+  std::string text = "states: " + j.at("states").dump() + " (leaves of trees with " +
+                     j.at("entries_per_leaf").dump() + " entries or more, " +
+                     std::to_string(j.at("starts_of_their_own").size()) +
+                     " starts of their own) from " + j.at("gate_runs").dump() + " gate runs\n";
+  if (const auto& range = j.at("range"); !range.is_null())
+    text += "for starts d " + text_of_range(range.at("d_m")) + " m, vx " +
+            text_of_range(range.at("vx_m_per_s")) + " m/s, vy " +
+            text_of_range(range.at("vy_m_per_s")) + " m/s\n";
+  if (const double bias = j.at("states_bias").get<double>(); bias > 0.0)
+    text += "fewer states than the runs allow: total variation " + fixed(bias, 4) +
+            " of the final gates\n";
+  return text +
+         "a row has few runs and is noisy by itself: a prediction averages over all of them\n";
+}
+
+}  // namespace
+
+Json to_json(const lattice::TreeChain& c, double accuracy) {
+  Json j;
+  j["bins"] = "tree";
+  j["states"] = c.transitions.space.size();
+  j["outermost_bins"] = "open";
+  j["entries_per_leaf"] = c.per_leaf;
+  j["gate_runs"] = c.pool.gate_runs();
+  j["accuracy"] = accuracy;
+  j["starts_of_their_own"] = Json::array();
+  for (const Crossing& s : c.transitions.space.points())
+    j["starts_of_their_own"].push_back(to_json(s));
+  if (c.prediction) {
+    j["error_95"] = Json::array();
+    for (const lattice::StartAnswer& a : c.prediction->starts)
+      j["error_95"].push_back(a.error.total_variation);
+  }
+  j["range"] = nullptr;
+  if (c.range)
+    j["range"] = {{"d_m", c.range->range.d},
+                  {"vx_m_per_s", c.range->range.vx},
+                  {"vy_m_per_s", c.range->range.vy},
+                  {"tried_on_starts", c.range->tried_on},
+                  {"kernel_error_95", c.range->kernel_error_95},
+                  {"worst_kernel_error_95", c.range->worst_kernel_error_95}};
+  j["states_bias"] = c.states_bias;
+  return j;
+}
+
 std::string states_line(const Json& j) {
   if (j.is_null()) return "";
+  if (j.at("bins") == "tree") return tree_line(j);
   const Json &r = j.at("resolution"), &pilot = j.at("pilot"),
              &unresolved = r.at("unresolved_variance");
   const std::string kind = j.at("bins");

@@ -6,10 +6,12 @@
 
 #include "cli/render/json_fwd.h"
 #include "lattice/scene/bins.h"
+#include "lattice/study/tree_chain.h"
 
 namespace gatewalk::cli {
 
 [[nodiscard]] Json to_json(const lattice::States& states);
+[[nodiscard]] Json to_json(const lattice::TreeChain& chain, double accuracy);
 /// A line of a table about a state space as to_json describes it; empty for null.
 [[nodiscard]] std::string states_line(const Json& states);
 /// What is wrong with them, a sentence each: too little of what was seen is resolved, faults in a

@@ -32,7 +32,10 @@ bool papers_field(const Scene& scene) {
 }
 
 std::string BinsChoice::name() const {
-  return kind == Kind::paper ? "paper" : kind == Kind::automatic ? "auto" : "scene";
+  return kind == Kind::paper       ? "paper"
+         : kind == Kind::automatic ? "auto"
+         : kind == Kind::tree      ? "tree"
+                                   : "scene";
 }
 
 BinsChoice usual_bins(const Scene& scene) {
@@ -92,6 +95,8 @@ States states_of(const Scene& scene, const BinsChoice& choice, const std::vector
                  std::uint64_t seed, const Work& work) {
   using Kind = BinsChoice::Kind;
   (void)StateSpace::paper(scene.gate);  // refuses gates too short for their beams
+  if (choice.kind == Kind::tree)
+    throw std::invalid_argument("bins: a tree is grown from runs (make_tree_chain)");
   Pilot pilot = run_pilot(scene, starts, choice.kind == Kind::paper ? kJudgingTrials : kPilotTrials,
                           seed, work);
   SeenStates seen{fixed_space(scene), {}};

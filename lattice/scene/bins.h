@@ -20,16 +20,17 @@ namespace gatewalk::lattice {
 
 /// Which states a chain has.
 struct BinsChoice {
-  enum class Kind { paper, automatic, scene };
+  enum class Kind { paper, automatic, scene, tree };
   Kind kind = Kind::paper;
   double factor = 1.0;  // bins per axis as a multiple of Table III's, kind paper
   bool by_default =
       false;  // nobody asked for it: auto takes its place where it does not resolve the scene
 
-  [[nodiscard]] std::string name() const;  // "paper", "auto", "scene"
+  [[nodiscard]] std::string name() const;  // "paper", "auto", "scene", "tree"
 };
 
-/// The scene's own table [bins]; else Table III in the paper's field, and auto in any other.
+/// For chains of bins: the scene's own table [bins]; else Table III in the paper's field, and auto in
+/// any other.
 [[nodiscard]] BinsChoice usual_bins(const Scene& scene);
 /// The scene's table [bins], else Table III in the scene's own units: for counting, no pilot is
 /// run.

@@ -260,9 +260,19 @@ void add_trials_of(StartTrials& s, const StartAnswer& a, double accuracy, Runner
   runner.run_full(s, static_cast<std::int64_t>(n * (times_more(error, accuracy) - 1.0)));
 }
 
+/// What direct simulation would take for the same error bar, by this run's speed.
+double direct_seconds(const StartAnswer& a, const Runner& runner, std::uint64_t seed) {
+  if (runner.gate_runs == 0) return std::nan("");
+  constexpr std::int64_t kTrials = 10'000;
+  const CellCounts drawn = sampled(a.final.final_cells, kTrials, seed, 0);
+  const double times = error_of_shares(drawn, seed).total_variation / a.error.total_variation;
+  return times * times * static_cast<double>(kTrials) * a.final.mean_steps *
+         runner.seconds_per_gate_run();
+}
+
 /// Places of the starts in the pool, put there if need be; each has some trials.
 std::vector<std::size_t> places_of(const std::vector<BodyState>& starts, RunPool& pool,
-                                   Runner& runner) {
+                                   std::optional<std::int64_t> first_runs, Runner& runner) {
   const bool has_kernel = pool.gate_runs() > 0;
   std::vector<std::size_t> places;
   for (const BodyState& body : starts) {
@@ -278,7 +288,7 @@ std::vector<std::size_t> places_of(const std::vector<BodyState>& starts, RunPool
     StartTrials& s = pool.starts.emplace_back();
     s.start = entry;
     if (has_kernel)
-      runner.run_first(s, kLeastFirstRuns);
+      runner.run_first(s, first_runs.value_or(kLeastFirstRuns));
     else
       runner.run_full(s, std::max(kLeastTrials, kFirstRound / std::ssize(starts)));
   }
@@ -306,6 +316,7 @@ FinalDistribution shares_of(const FieldTrials& trials, const FieldParams& field)
   d.cut_off = d.endings[static_cast<std::size_t>(markov::Ending::cut_off)];
   for (const markov::Ending edge : markov::kEdges)
     d.left_field += d.endings[static_cast<std::size_t>(edge)];
+  d.mean_steps = static_cast<double>(trials.passages.size()) / n;
   return d;
 }
 
@@ -317,7 +328,7 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
   Runner runner(scene, options, work);
   PooledPrediction result;
   const bool has_others = pool.gate_runs() > 0;
-  const std::vector<std::size_t> places = places_of(starts, pool, runner);
+  const std::vector<std::size_t> places = places_of(starts, pool, options.first_runs, runner);
   result.starts.resize(starts.size());
   std::vector<std::size_t> open(starts.size());  // those that are not certain enough yet
   std::iota(open.begin(), open.end(), 0);
@@ -338,7 +349,7 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
       if (result.starts[k].error.total_variation > options.accuracy) left.push_back(k);
     }
     result.reached = left.empty();
-    if (!runner.may_go_on()) break;
+    if (!runner.may_go_on() || options.first_runs) break;
     open = std::move(left);
     for (const std::size_t k : open)
       if (runner.may_go_on())
@@ -347,12 +358,7 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
   result.gate_runs = runner.gate_runs;
   result.run_seconds = runner.seconds;
   result.seconds = watch.seconds();
-  for (StartAnswer& a : result.starts) {
-    if (a.trials == 0) continue;
-    const double of_error = a.trials_error_95 / a.error.total_variation;
-    a.direct_seconds = of_error * of_error * static_cast<double>(a.trials) *
-                       runner.gates_per_trial() * runner.seconds_per_gate_run();
-  }
+  for (StartAnswer& a : result.starts) a.direct_seconds = direct_seconds(a, runner, options.seed);
   runner.finish();
   result.health = runner.health;
   return result;

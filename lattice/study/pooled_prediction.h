@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "dynamics/work.h"
@@ -17,6 +18,8 @@ namespace gatewalk::lattice {
 struct AccuracyOptions {
   double accuracy = 0.02;  // total variation of the final gates that 95 % of answers keep
   std::int64_t most_runs = std::numeric_limits<std::int64_t>::max();  // new gate runs, about
+  /// None are added but these: so many first runs of a start that the pool does not know.
+  std::optional<std::int64_t> first_runs{};
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;
 };
@@ -33,7 +36,8 @@ struct StartAnswer {
   EndingShares endings{std::array<double, markov::kEndings>{}};
   std::array<CellProbabilities, 2> gates_95;  // low, high
   std::int64_t trials = 0, first_runs = 0;    // full ones; those through the first gate
-  double direct_seconds = 0.0;                // direct simulation's for the same error, here
+  double direct_seconds = 0.0;  // of direct simulation for the same error bar; NaN where nothing
+                                // was run that would tell
 };
 
 struct PooledPrediction {

@@ -45,7 +45,8 @@ std::vector<MatrixNoise> noise_of(const CountedField& gates, const markov::Field
   std::vector<MatrixNoise> noise;
   for (std::size_t k = 0; k < starts.size(); ++k)
     noise.emplace_back(prediction.starts[k].final, gates.runs_at(starts[k]));
-  const std::int64_t replicates = affordable_replicates(field, max_cells, kMost);
+  const std::int64_t replicates =
+      affordable_replicates(field, max_cells, gates.counts.front().nonZeros(), kMost);
   const auto add = [&](std::int64_t begin) {
     const auto found = replicate_predictions(gates, field, starts, max_cells, seed, begin,
                                              std::min(kTogether, replicates - begin));

@@ -87,7 +87,8 @@ std::vector<std::vector<markov::FinalDistribution>> resampled_predictions(
   const int max_gates = setup.scene.field.max_gates;
   const std::int64_t numbers = std::int64_t{field.columns} * field.rows * std::ssize(starts);
   const std::int64_t count = std::max(
-      kAtLeast, affordable_replicates(field, max_gates, std::min(kMost, kMostNumbers / numbers)));
+      kAtLeast, affordable_replicates(field, max_gates, setup.gates.counts.front().nonZeros(),
+                                      std::min(kMost, kMostNumbers / numbers)));
   std::vector<std::vector<markov::FinalDistribution>> all(starts.size());
   setup.work.in_pieces(
       "resampled matrices", (count + kTogether - 1) / kTogether, [&](TrialRange batches) {

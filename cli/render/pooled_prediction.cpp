@@ -1,0 +1,108 @@
+#include "cli/render/pooled_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/prediction.h"
+#include "cli/render/scene.h"
+#include "cli/render/start.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+void add_to(Json& json, const lattice::StartAnswer& a) {
+  const markov::FinalDistribution& f = a.final;
+  json["endings"] = endings(f.endings);
+  json["endings_95"] = endings_95(a.endings);
+  json["final_gates"] = grid(f.final_cells);
+  json["final_gates_95"] = {{"low", grid(a.gates_95[0])}, {"high", grid(a.gates_95[1])}};
+  json["trapped_gates"] = grid(markov::trapped_cells(f));
+  json["departed_gates"] = grid(markov::departed_cells(f));
+  json["trapped"] = f.trapped;
+  json["left_field"] = f.left_field;
+  json["cut_off"] = f.cut_off;
+  json["never_sampled"] = f.unsampled;
+  json["answer_from"] = a.from_trials ? "trials" : "chain";
+  json["error_95"] = a.error.total_variation;
+  json["corrcoef_95"] = a.error.corrcoef;
+  json["rmse_per_100_95"] = a.error.rmse_per_100;
+  json["kernel_error_95"] = a.kernel_error_95;
+  json["full_trials"] = a.trials;
+  json["first_runs"] = a.first_runs;
+  json["direct_seconds"] = std::isfinite(a.direct_seconds) ? Json(a.direct_seconds) : Json();
+}
+
+std::string table_of(const lattice::StartAnswer& a, const lattice::Scene& scene) {
+  const markov::FinalDistribution& f = a.final;
+  std::string table =
+      endings_text(a.endings, "of all bodies, 95 % intervals that count everything") +
+      limits_text(scene) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
+      "left the field " + percent(f.left_field, 1.0, 2) + "\n" + "error: at most " +
+      fixed(a.error.total_variation, 4) +
+      " in total variation of the final gates, corrcoef at least " + fixed(a.error.corrcoef, 4) +
+      ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
+      " per 100, each 95 times in 100 (sampling, states and memory)\n";
+  if (a.from_trials) table += "the trials' own shares: they are more certain here than the chain\n";
+  if (f.unsampled > 0.0)
+    table += "reaches a state that no run left: " + percent(f.unsampled, 1.0, 4) + "\n";
+  return table;
+}
+
+double worst_error(const lattice::PooledPrediction& p) {
+  double worst = 0.0;
+  for (const lattice::StartAnswer& a : p.starts) worst = std::max(worst, a.error.total_variation);
+  return worst;
+}
+
+Json direct_seconds(const lattice::PooledPrediction& p) {
+  double sum = 0.0;
+  for (const lattice::StartAnswer& a : p.starts) sum += a.direct_seconds;
+  return std::isfinite(sum) ? Json(sum) : Json();
+}
+
+lattice::PaperStart start_of(const lattice::StartAnswer& a) {
+  return {a.start.d, a.start.vx, a.start.vy, {}, {}};
+}
+
+}  // namespace
+
+Json to_json(const lattice::PooledPrediction& p, double accuracy, bool given) {
+  Json json;
+  if (!given) add_to(json, p.starts.front());
+  for (std::size_t k = 0; given && k < p.starts.size(); ++k) {
+    Json one;
+    one["start"] = to_json(start_of(p.starts[k]));
+    add_to(one, p.starts[k]);
+    json["starts"].push_back(std::move(one));
+  }
+  json["accuracy"] = accuracy;
+  json["reached"] = p.reached;
+  json["error_95"] = worst_error(p);
+  json["gate_runs"] = p.gate_runs;
+  json["states"] = p.states;
+  json["nonzeros"] = p.nonzeros;
+  json["seconds"] = p.seconds;
+  json["run_seconds"] = p.run_seconds;
+  json["direct_seconds"] = direct_seconds(p);
+  json["status"] = to_json(p.health);
+  return json;
+}
+
+std::string table_of(const lattice::PooledPrediction& p, const lattice::Scene& scene, bool given) {
+  std::string table;
+  for (std::size_t k = 0; k < p.starts.size(); ++k)
+    table += (k > 0 ? "\n" : "") + (given ? title_of(start_of(p.starts[k])) + "\n" : "") +
+             table_of(p.starts[k], scene);
+  const Json direct = direct_seconds(p);
+  table += std::to_string(p.gate_runs) + " gate runs, " + std::to_string(p.states) + " states, " +
+           fixed(p.seconds, 2) + " s";
+  if (!direct.is_null())
+    table += "; direct simulation would take some " + fixed(direct.get<double>(), 2) + " s";
+  return table + "\n";
+}
+
+}  // namespace gatewalk::cli
