@@ -12,7 +12,7 @@ started=$(date +%s)
 say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
 
 say "1. The matrix: 100 short runs of one gate for each of 87 input states"
-build/gatewalk build scenes/field.toml --trials 100 --seed 1 -o demo-out/matrix.nc
+build/gatewalk build scenes/field.toml --bins paper --trials 100 --seed 1 -o demo-out/matrix.nc
 
 say "2. A million walks through the field, each gate one draw from the matrix"
 build/gatewalk walk demo-out/matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json demo-out/walks.json

@@ -51,7 +51,7 @@ struct GatePassage {
 
 /// What each trial did, in the order of their numbers.
 struct FieldTrials {
-  std::vector<std::int32_t> final_gates;                 // row * columns + column
+  std::vector<std::int32_t> final_gates{};               // row * columns + column
   std::vector<std::optional<markov::Ending>> endings{};  // none: a run stopped being finite
   bool keep_passages = false;
   std::vector<GatePassage> passages{};  // of all trials, if kept, ...

@@ -359,7 +359,7 @@ expect 0 'beyond every entry that the bins were made from' "$gatewalk" predict a
 expect 0 'resolve too little.*--bins auto' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-90, 90]" --set "bins.RD_vx_m_per_s=[-90, 0]" --set "bins.LD_vx_m_per_s=[0, 90]" --trials 1 -o own.nc --quiet
 expect 2 'has a table \[bins\]' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-1, 1]" --bins auto -o x.nc
 expect 2 'no meaning beside --matrix' "$gatewalk" validate cm.toml --matrix auto.nc --bins auto
-expect 2 'must be paper, auto' "$gatewalk" build cm.toml --bins many -o x.nc
+expect 2 'must be paper, tree, auto' "$gatewalk" build cm.toml --bins many -o x.nc
 # validate without --start: a scene's own start, but for the paper's field with the paper's start.
 "$gatewalk" validate cm.toml --trials 100 --matrix-trials 2 --json own.json --quiet
 holds '(.starts | map(.start.vy_m_per_s)) == [0.4] and .state_space.bins == "auto"' own.json
@@ -406,7 +406,7 @@ expect 2 'field.toml.*run.step_s' "$gatewalk" gate "$scenes/field.toml" --set be
 # What cannot be taken at face value is said, even under --quiet.
 for command in walk predict; do expect 2 'the start lies outside the chain' "$gatewalk" $command m.nc --set start.vy_m_per_s=-5; done
 expect 2 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --start 0,0,-15 --start 0,0,15
-expect 2 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --trials 20 --start 0,0,-15
+expect 2 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --bins paper --trials 20 --start 0,0,-15
 "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --quiet --json out.json
 holds '[.starts[].start.clamped] == [false, false, false, false]' out.json
 holds '[.starts[].verdict | test("^the chain (agrees with|differs from) the dynamics .*p [=<] ")] | all' out.json

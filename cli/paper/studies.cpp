@@ -61,7 +61,8 @@ struct Studies {
     add(name, run_landscape, "landscape", arguments, 1.5);
   }
   void validate(const std::string& name, std::int64_t trials, Words arguments, double seconds) {
-    arguments.insert(arguments.end(), {"--trials", std::to_string(trials), "--seed", "1"});
+    arguments.insert(arguments.end(),
+                     {"--bins", "paper", "--trials", std::to_string(trials), "--seed", "1"});
     add(name, run_validate, "validate", arguments, seconds);
   }
 };

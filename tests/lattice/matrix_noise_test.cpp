@@ -158,12 +158,13 @@ TEST(Replicates, SameBitsForAnyThreadsAndAnySplit) {
 }
 
 TEST(Replicates, FewerInLargeFields) {
-  EXPECT_EQ(affordable_replicates({9, 9}, 13, 200), 200);
-  EXPECT_EQ(affordable_replicates({9, 9}, 0, 999), 999);
-  EXPECT_EQ(affordable_replicates({301, 301}, 0, 200), 200);
-  EXPECT_EQ(affordable_replicates({1001, 1001}, 0, 200), 99);
-  EXPECT_EQ(affordable_replicates({1001, 1001}, 1446, 200), 0);
-  EXPECT_EQ(affordable_replicates({9, 9}, 13, 49), 0);  // too few to say anything
+  EXPECT_EQ(affordable_replicates({9, 9}, 13, 2000, 200), 200);
+  EXPECT_EQ(affordable_replicates({9, 9}, 0, 2000, 999), 999);
+  EXPECT_EQ(affordable_replicates({301, 301}, 0, 300, 200), 200);
+  EXPECT_EQ(affordable_replicates({1001, 1001}, 0, 300, 200), 99);
+  EXPECT_EQ(affordable_replicates({1001, 1001}, 1446, 300, 200), 0);
+  EXPECT_EQ(affordable_replicates({9, 9}, 13, 2000, 49), 0);
+  EXPECT_LT(affordable_replicates({9, 9}, 13, 60'000, 999), 999);  // too few to say anything
 }
 
 // ---- One test of trials and matrix ----

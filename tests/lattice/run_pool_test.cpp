@@ -1,0 +1,249 @@
+#include "lattice/run_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "dynamics/quantile_bins.h"
+#include "lattice/group_spread.h"
+#include "lattice/study/pooled_prediction.h"
+#include "lattice/study/tree_chain.h"
+#include "tests/support/threads.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+using markov::Ending;
+
+constexpr BodyState kStart{4, 0, 5, 10};
+
+Scene fast_scene() {
+  Scene scene;
+  scene.gate.run.method = "moreau";
+  scene.gate.run.step = 0.02;
+  scene.start = kStart;
+  return scene;
+}
+
+StartTrials some_trials(const Scene& scene, std::int64_t n, BodyState from = kStart) {
+  StartTrials s;
+  s.start = {Boundary::enter, from.x, from.vx, from.vy};
+  (void)run_field(scene.gate, scene.field, from, StateSpace::paper(scene.gate), 9, {0, n}, &s.full);
+  return s;
+}
+
+// With a leaf for each run nothing is pooled: the chain repeats the trials.
+TEST(RunPool, LeavesOfOneRunGiveTheTrialsThemselves) {
+  Scene scene = fast_scene();
+  scene.gate.beams.stiffness_left = 300.0;  // no mirror images
+  RunPool pool;
+  pool.starts.push_back(some_trials(scene, 200));
+  const Kernel kernel = kernel_of(scene.gate, pool, 1);
+  const auto row = first_row(scene.gate, kernel.space, pool.starts[0]);
+  const auto p = markov::predict(chain_of(kernel, {row}), {9, 9}, {{4, 0, kernel.space.size()}},
+                                 {.max_cells = 13});
+  const auto own = shares_of(pool.starts[0].full, scene.field);
+  EXPECT_LT(total_variation(p[0].final_cells, own.final_cells), 1e-12);
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    EXPECT_NEAR(p[0].endings[e], own.endings[e], 1e-12) << e;
+}
+
+// Rows and columns counted by index_of, run by run.
+TEST(RunPool, CountsAreThoseOfTheRuns) {
+  for (const double left : {400.0, 300.0}) {
+    Scene scene = fast_scene();
+    scene.gate.beams.stiffness_left = left;
+    const bool mirror = symmetric(scene.gate);
+    RunPool pool;
+    pool.starts.push_back(some_trials(scene, 150));
+    pool.scattered.starts = {{Boundary::enter, 1, 2, 12}, {Boundary::enter, -3, 0, 14}};
+    (void)run_field(scene.gate, scene.field, std::vector<BodyState>{{1, 0, 2, 12}, {-3, 0, 0, 14}},
+                    StateSpace::paper(scene.gate), 9, {0, 2}, &pool.scattered.each);
+    for (const TrialGroup group : {TrialGroup{}, TrialGroup{1, 3}}) {
+      const Kernel kernel = kernel_of(scene.gate, pool, 7, group);
+      Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(kernel.space.size(), kernel.space.size() + 1);
+      const auto count = [&](const Crossing& from, const GatePassage& to) {
+        for (const bool image : {false, true}) {
+          if (image && !mirror) continue;
+          const auto turned = [&](const Crossing& c) { return image ? mirrored(c) : c; };
+          const int column = to.ending == dynamics::Ending::trapped
+                                 ? kernel.space.trapped()
+                                 : kernel.space.index_of(turned(to.entry)).state;
+          wanted(kernel.space.index_of(turned(from)).state, column) += 1.0;
+        }
+      };
+      const StartTrials& s = pool.starts[0];
+      for (auto i = static_cast<std::size_t>(group.group); i < 150;
+           i += static_cast<std::size_t>(group.of)) {
+        const auto runs = s.full.of_trial(i);
+        for (std::size_t k = 1; k < runs.size(); ++k) count(runs[k - 1].entry, runs[k]);
+      }
+      for (auto i = static_cast<std::size_t>(group.group); i < 2;
+           i += static_cast<std::size_t>(group.of)) {
+        Crossing entry = pool.scattered.starts[i];
+        for (const GatePassage& run : pool.scattered.each.of_trial(i)) {
+          count(entry, run);
+          entry = run.entry;
+        }
+      }
+      EXPECT_TRUE(Eigen::MatrixXd(kernel.counts.cast<double>()) == wanted);
+    }
+  }
+}
+
+TEST(RunPool, AStartInTheMiddleHasMirrorImagesInItsRow) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  pool.starts.push_back(some_trials(scene, 100, {0, 0, 0, 15}));
+  const Kernel kernel = kernel_of(scene.gate, pool);
+  const auto row = first_row(scene.gate, kernel.space, pool.starts[0]);
+  EXPECT_EQ(std::accumulate(row.begin(), row.end(), std::int64_t{0}), 200);
+  EXPECT_EQ(pool.gate_runs(), std::ssize(pool.starts[0].full.passages));
+}
+
+// ---- Error bars ----
+
+markov::FinalDistribution of_shares(double left, double right) {
+  markov::FinalDistribution d;
+  d.final_cells = CellProbabilities::Zero(1, 2);
+  d.final_cells << left, right;
+  d.endings[0] = left;
+  d.endings[1] = right;
+  return d;
+}
+
+TEST(GroupSpread, SamplingAndBiasByHand) {
+  const auto whole = of_shares(0.5, 0.5);
+  const std::vector<markov::FinalDistribution> same(8, whole);
+  EXPECT_NEAR(GroupSpread(whole, same).error(1).total_variation, 0.0, 1e-15);
+  // All groups alike but off: a bias alone, half of which the whole one is thought to have.
+  const std::vector<markov::FinalDistribution> biased(8, of_shares(0.4, 0.6));
+  EXPECT_NEAR(GroupSpread(whole, biased).error(1).total_variation, 0.05, 1e-12);
+  EXPECT_NEAR(GroupSpread(whole, biased).endings_95(100).interval[0][0], 0.45, 1e-12);
+  // +-0.1 in turn: a standard error of 0.1 / sqrt(7), whose |error| has its 95 % point at 1.96.
+  std::vector<markov::FinalDistribution> spread;
+  for (int k = 0; k < 8; ++k) spread.push_back(of_shares(k % 2 ? 0.4 : 0.6, k % 2 ? 0.6 : 0.4));
+  EXPECT_NEAR(GroupSpread(whole, spread).error(1).total_variation, 1.96 * 0.1 / std::sqrt(7.0),
+              0.01);
+  EXPECT_THROW(GroupSpread(whole, {whole}), std::invalid_argument);
+}
+
+TEST(GroupSpread, OfSharesIsBinomialNoise) {
+  CellCounts counts(1, 2);
+  counts << 5000, 5000;
+  EXPECT_NEAR(error_of_shares(counts, 3).total_variation, 1.96 * 0.005, 0.001);
+}
+
+// ---- Until the bar says enough ----
+
+TEST(PooledPrediction, IsAsAccurateAsItSaysAndTheSameOnAnyThreads) {
+  const Scene scene = fast_scene();
+  const auto run = [&] {
+    RunPool pool;
+    return predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05, .seed = 4});
+  };
+  const PooledPrediction one = test::on_threads(1, run), three = test::on_threads(3, run);
+  EXPECT_TRUE((one.starts[0].final.final_cells == three.starts[0].final.final_cells).all());
+  EXPECT_EQ(one.starts[0].error.total_variation, three.starts[0].error.total_variation);
+  EXPECT_EQ(one.gate_runs, three.gate_runs);
+  EXPECT_TRUE(one.reached);
+  EXPECT_LE(one.starts[0].error.total_variation, 0.05);
+  const FieldTally truth =
+      run_field(scene.gate, scene.field, kStart, StateSpace::paper(scene.gate), 77, {0, 20'000});
+  EXPECT_LE(total_variation(one.starts[0].final.final_cells, shares(truth.final_gates)), 0.055);
+  EXPECT_LT(one.gate_runs, 20'000);
+}
+
+TEST(PooledPrediction, StopsAtTheLimitOfRunsAndSaysSo) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  const auto p = predict_pooled(scene, pool, {kStart}, {.accuracy = 1e-4, .most_runs = 3000});
+  EXPECT_FALSE(p.reached);
+  EXPECT_GT(p.starts[0].error.total_variation, 1e-4);
+  EXPECT_LT(p.gate_runs, 6000);
+  EXPECT_EQ(p.gate_runs, pool.gate_runs());
+}
+
+TEST(PooledPrediction, UsesWhatThePoolHolds) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  const auto first = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05});
+  const auto again = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05});
+  EXPECT_GT(first.gate_runs, 0);
+  EXPECT_EQ(again.gate_runs, 0);
+  EXPECT_TRUE((first.starts[0].final.final_cells == again.starts[0].final.final_cells).all());
+}
+
+TEST(PooledPrediction, RefusesNonsense) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  for (const double accuracy : {0.0, 1.0, -1.0, std::nan("")})
+    EXPECT_THROW((void)predict_pooled(scene, pool, {kStart}, {.accuracy = accuracy}),
+                 std::invalid_argument);
+  EXPECT_THROW((void)predict_pooled(scene, pool, {{0, 1, 0, 15}}, {}), std::invalid_argument);
+  EXPECT_THROW((void)pool_range(scene, pool, {{1, 0}, {0, 0}, {10, 20}}, {}),
+               std::invalid_argument);
+}
+
+// ---- Chains in files ----
+
+TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
+  const Scene scene = fast_scene();
+  const TreeChain chain =
+      make_tree_chain(scene, {.accuracy = {.accuracy = 0.05}, .starts = {kStart, {0, 0, 0, 15}}});
+  const std::string path = testing::TempDir() + "tree_chain.nc";
+  write_matrix(path, {chain.transitions, {{"scene", to_toml(scene)}}, arrays_of(chain.pool)});
+  const MatrixFile file = read_matrix(path);
+  EXPECT_EQ(file.transitions.space, chain.transitions.space);
+  EXPECT_EQ(file.transitions.rows, chain.transitions.rows);
+  ASSERT_TRUE(has_runs(file));
+  RunPool pool = pool_of(file, path);
+  EXPECT_EQ(pool.gate_runs(), chain.pool.gate_runs());
+  EXPECT_EQ(matrix_of(scene, pool, {kStart, {0, 0, 0, 15}}, chain.per_leaf).rows,
+            chain.transitions.rows);
+  const auto answer = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05});
+  EXPECT_EQ(answer.gate_runs, 0);
+  EXPECT_LT(total_variation(answer.starts[0].final.final_cells,
+                            chain.prediction->starts[0].final.final_cells),
+            1e-12);
+  // A start that the file does not know gets runs of its own.
+  const auto other = predict_pooled(scene, pool, {{-17, 0, 13, 12}}, {.accuracy = 0.06});
+  EXPECT_GT(other.gate_runs, 0);
+  EXPECT_TRUE(other.reached);
+}
+
+TEST(TreeChain, LimitOfStatesSaysWhatItCosts) {
+  const Scene scene = fast_scene();
+  const TreeChain all =
+      make_tree_chain(scene, {.accuracy = {.accuracy = 0.05}, .starts = {kStart}});
+  const TreeChain few = make_tree_chain(
+      scene, {.accuracy = {.accuracy = 0.05}, .starts = {kStart}, .most_states = 60});
+  EXPECT_GT(all.kernel.space.size(), 200);
+  EXPECT_LE(few.kernel.space.size(), 60);
+  EXPECT_EQ(all.states_bias, 0.0);
+  EXPECT_GT(few.states_bias, 0.0);
+  EXPECT_THROW((void)make_tree_chain(scene, {.starts = {kStart}, .most_states = 4}),
+               std::invalid_argument);
+  EXPECT_THROW((void)make_tree_chain(scene, {}), std::invalid_argument);
+}
+
+TEST(TreeChain, DamagedRunsAreRefused) {
+  const Scene scene = fast_scene();
+  const TreeChain chain =
+      make_tree_chain(scene, {.accuracy = {.accuracy = 0.2}, .starts = {kStart}});
+  MatrixFile file{chain.transitions, {}, arrays_of(chain.pool)};
+  EXPECT_NO_THROW((void)pool_of(file, "x.nc"));
+  for (markov::NamedArray& array : file.arrays) {
+    MatrixFile bad = file;
+    for (markov::NamedArray& other : bad.arrays)
+      if (other.name == array.name) other.values.pop_back();
+    EXPECT_THROW((void)pool_of(bad, "x.nc"), markov::BadFile) << array.name;
+  }
+  for (markov::NamedArray& array : file.arrays)
+    if (array.name == "run_boundary") array.values[0] = 7.0;
+  EXPECT_THROW((void)pool_of(file, "x.nc"), markov::BadFile);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
