@@ -81,49 +81,72 @@ std::vector<Table> powers(const StateWalks& w, const Outcomes& outcomes, int mos
   return ahead;
 }
 
-/// Counts of runs by where their walks are: (gates ahead from 0 to most x ways + 1).
+/// Counts of runs by the way now and where their walks are then: (gates ahead from 0 to most) times
+/// (ways x ways + 1).
+using Counts = std::vector<Table>;
+
 class Seen {
  public:
   Seen(const StateWalks& w, const std::vector<Table>& ahead)
       : w_(w),
         ahead_(ahead),
         most_(static_cast<int>(ahead.size()) - 1),
-        counts_(Table::Zero(most_ + 1, w.ways + 1)) {}
+        counts_(ahead.size(), Table::Zero(w.ways, w.ways + 1)) {}
 
   /// A walk through these states, all of whose runs count; `last`: outcome of its last run.
   void add(const std::vector<std::int32_t>& states, std::int32_t last) {
     const auto length = static_cast<int>(states.size());
     for (int at = 0; at < length; ++at)
-      for (int k = 0; k <= std::min(at, most_); ++k) counts_(k, w_.way[states[at]]) += 1.0;
+      for (int k = 0; k <= std::min(at, most_); ++k)
+        counts_[k](w_.way[states[at - k]], w_.way[states[at]]) += 1.0;
     const std::int32_t end = Outcomes::entered(last);
     // From its i-th last run it gets to the end in i gates.
     for (int i = 1; i <= std::min(length, most_); ++i)
       for (int k = i; k <= most_; ++k) {
+        const std::int32_t from = w_.way[states[length - i]];
         if (end == Outcomes::kTrapped)
-          counts_(k, w_.ways) += 1.0;
+          counts_[k](from, w_.ways) += 1.0;
         else
-          counts_.row(k) += ahead_[static_cast<std::size_t>(k - i)].row(end);
+          counts_[k].row(from) += ahead_[k - i].row(end);
       }
   }
-  [[nodiscard]] const Table& counts() const { return counts_; }
+  [[nodiscard]] const Counts& counts() const { return counts_; }
 
  private:
   const StateWalks& w_;
   const std::vector<Table>& ahead_;
   int most_;
-  Table counts_;
+  Counts counts_;
 };
 
+/// What the kernel's powers say of as many runs in each state (`runs`).
+Counts predicted(const StateWalks& w, const std::vector<Table>& ahead,
+                 const std::vector<std::int64_t>& runs) {
+  Counts counts(ahead.size(), Table::Zero(w.ways, w.ways + 1));
+  for (std::size_t s = 0; s < runs.size(); ++s)
+    for (std::size_t k = 0; runs[s] > 0 && k < ahead.size(); ++k)
+      counts[k].row(w.way[s]) +=
+          static_cast<double>(runs[s]) * ahead[k].row(static_cast<Eigen::Index>(s));
+  return counts;
+}
+
+/// Differences as shares of all runs.
+Counts excess(Counts seen, const Counts& predicted, const std::vector<std::int64_t>& runs) {
+  const double all =
+      static_cast<double>(std::accumulate(runs.begin(), runs.end(), std::int64_t{0}));
+  for (std::size_t k = 0; k < seen.size(); ++k) seen[k] = (seen[k] - predicted[k]) / all;
+  return seen;
+}
+
 /// Walks from the same first states, every state's outcomes dealt out anew: seen less predicted,
-/// as shares of the runs (gates ahead x ways + 1). Runs in circles that no walk gets into are left.
-Table dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, Outcomes outcomes,
-                   dynamics::Random random) {
+/// as shares of the runs. Runs in circles that no walk gets into are left out.
+Counts dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, Outcomes outcomes,
+                    dynamics::Random random) {
   for (std::size_t s = 0; s < w.way.size(); ++s)
     for (auto i = outcomes.first[s]; i + 1 < outcomes.first[s + 1]; ++i)
       std::swap(outcomes.all[i], outcomes.all[i + random.below(outcomes.first[s + 1] - i)]);
   std::vector<std::int64_t> at(outcomes.first.begin(), outcomes.first.end() - 1);
   Seen seen(w, ahead);
-  Table predicted = Table::Zero(std::ssize(ahead), w.ways + 1);
   std::vector<std::int32_t> states;
   for (std::int64_t walk = 0; walk < w.walks(); ++walk) {
     states.assign(1, w.state[w.begin(walk)]);
@@ -134,29 +157,32 @@ Table dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, Outcome
     }
     seen.add(states, outcome);
   }
-  double runs = 0.0;
-  for (std::size_t s = 0; s < w.way.size(); ++s) {
-    const auto n = static_cast<double>(at[s] - outcomes.first[s]);
-    runs += n;
-    for (std::size_t k = 0; n > 0.0 && k < ahead.size(); ++k)
-      predicted.row(static_cast<Eigen::Index>(k)) += n * ahead[k].row(static_cast<Eigen::Index>(s));
-  }
-  return (seen.counts() - predicted) / runs;
+  std::vector<std::int64_t> runs;
+  for (std::size_t s = 0; s < w.way.size(); ++s) runs.push_back(at[s] - outcomes.first[s]);
+  return excess(seen.counts(), predicted(w, ahead, runs), runs);
 }
 
-/// Fills in what chance makes of one step; `null`: the excess of every draw.
-void judge_step(GatesAhead::Step& step, const std::vector<Table>& null) {
+/// Between two tables of one step.
+double total_variation(const Table& excess) { return 0.5 * excess.cwiseAbs().sum(); }
+
+/// Step number `gates`, with what chance makes of it; `null`: the excess of every draw.
+GatesAhead::Step step_of(int gates, const Table& seen, const Table& predicted,
+                         const std::vector<Counts>& null) {
+  GatesAhead::Step step;
+  step.gates = gates;
+  step.seen.assign(seen.data(), seen.data() + seen.size());
+  step.predicted.assign(predicted.data(), predicted.data() + predicted.size());
   std::vector<double> distances, values(null.size());
-  for (const Table& t : null) distances.push_back(0.5 * t.row(step.gates).cwiseAbs().sum());
+  for (const Counts& n : null) distances.push_back(total_variation(n[gates]));
   std::tie(step.chance, step.chance_95) = mean_and_95(distances);
   for (std::size_t c = 0; c < step.seen.size(); ++c) {
-    for (std::size_t k = 0; k < null.size(); ++k)
-      values[k] = null[k](step.gates, static_cast<Eigen::Index>(c));
+    for (std::size_t k = 0; k < null.size(); ++k) values[k] = null[k][gates].data()[c];
     std::sort(values.begin(), values.end());
     const auto rim = static_cast<std::size_t>(0.025 * static_cast<double>(values.size()));
     const double excess = step.seen[c] - step.predicted[c];
     step.excess_95.push_back({excess - values[values.size() - 1 - rim], excess - values[rim]});
   }
+  return step;
 }
 
 }  // namespace
@@ -212,29 +238,26 @@ GatesAhead gates_ahead(const StateWalks& walks, int most, std::int64_t null_draw
                              ? StateWalks::kTrapped
                              : -2 - walks.next[walks.passed[walk] - 1]);
   }
-  std::vector<Table> null(static_cast<std::size_t>(null_draws));
+  std::vector<Counts> null(static_cast<std::size_t>(null_draws));
   tbb::parallel_for(std::size_t{0}, null.size(), [&](std::size_t k) {
     null[k] = dealt_excess(walks, ahead, outcomes,
                            dynamics::Random(dynamics::Purpose::memory, {seed, kDeals, k}));
   });
 
-  GatesAhead result{.runs = std::ssize(walks.state), .steps = {}, .null_draws = null_draws};
+  GatesAhead result;
+  result.runs = std::ssize(walks.state);
+  result.null_draws = null_draws;
+  std::vector<std::int64_t> runs;
+  for (std::size_t s = 0; s < walks.way.size(); ++s) runs.push_back(outcomes.runs(s));
+  const Counts expected = predicted(walks, ahead, runs);
+  const auto all = static_cast<double>(result.runs);
   std::vector<double> distances;  // (draws + 1 x steps)
-  for (const Table& t : null)
-    for (int k = 2; k <= most; ++k) distances.push_back(0.5 * t.row(k).cwiseAbs().sum());
-  const auto runs = static_cast<double>(result.runs);
+  for (const Counts& n : null)
+    for (int k = 2; k <= most; ++k) distances.push_back(total_variation(n[k]));
   for (int k = 2; k <= most; ++k) {
-    GatesAhead::Step step;
-    step.gates = k;
-    Eigen::RowVectorXd predicted = Eigen::RowVectorXd::Zero(walks.ways + 1);
-    for (const std::int32_t s : walks.state) predicted += ahead[static_cast<std::size_t>(k)].row(s);
-    predicted /= runs;
-    const Eigen::RowVectorXd shares = seen.counts().row(k) / runs;
-    step.seen.assign(shares.begin(), shares.end());
-    step.predicted.assign(predicted.begin(), predicted.end());
-    judge_step(step, null);
-    distances.push_back(0.5 * (shares - predicted).cwiseAbs().sum());
-    result.steps.push_back(std::move(step));
+    const Table shares = seen.counts()[k] / all, powers_say = expected[k] / all;
+    distances.push_back(total_variation(shares - powers_say));
+    result.steps.push_back(step_of(k, shares, powers_say, null));
   }
   const LookedAt looked(distances, result.steps.size());
   for (std::size_t i = 0; i < result.steps.size(); ++i)

@@ -38,11 +38,14 @@ struct StateWalks {
 inline constexpr int kMostGatesAhead = 8;
 
 /// Where walks are some gates after each of their runs has begun: trapped before, or by which way
-/// they enter that gate. Walks that were stopped go on by the kernel from where they were stopped.
+/// they enter that gate; told apart by the way in which the run's own gate was entered. (All runs
+/// together would say little: they are what the kernel was made of.) Walks that were stopped
+/// go on by the kernel from where they were stopped.
 struct GatesAhead {
   struct Step {
     int gates = 0;                                   // ahead
-    std::vector<double> seen, predicted;             // (ways + 1) shares of all runs; last: trapped
+    std::vector<double> seen, predicted;             // (ways x ways + 1) shares of all runs, by the
+                                                     // way now and the way then; last: trapped
     std::vector<std::array<double, 2>> excess_95{};  // of seen - predicted; chance as in the null
     LookedAt::Test total_variation;                  // of the two
     double chance = 0.0, chance_95 = 0.0;  // the null's total variation: mean, and 95 % of it

@@ -64,12 +64,11 @@ StateWalks no_walks(const StateSpace& space) {
   return walks;
 }
 
-void add_walks(StateWalks& walks, const StateSpace& space, const dynamics::Crossing& start,
-               const FieldTrials& each) {
+void add_walks(StateWalks& walks, const StateSpace& space, int first, const FieldTrials& each) {
   std::vector<std::int32_t> states;
   for (std::size_t trial = 0; trial < each.passed.size(); ++trial) {
     states.clear();
-    std::int32_t at = space.index_of(start).state;
+    std::int32_t at = first;
     for (const GatePassage& passage : each.of_trial(trial)) {
       if (passage.ending == dynamics::Ending::broken) break;
       states.push_back(at);
@@ -133,6 +132,11 @@ PairedDifference paired_difference(std::int64_t only_first, std::int64_t only_se
   const auto unlike = static_cast<double>(only_first + only_second) + 1.0;
   const double half = 1.959963984540054 * std::sqrt(unlike - more * more / n) / n;
   return {more / static_cast<double>(trials), more / n - half, more / n + half};
+}
+
+void keep_endings(FieldTrials& all, const FieldTrials& more) {
+  all.final_gates.insert(all.final_gates.end(), more.final_gates.begin(), more.final_gates.end());
+  all.endings.insert(all.endings.end(), more.endings.begin(), more.endings.end());
 }
 
 ForceMemory force_memory(const RunTrials& held, const RunTrials& anew, std::uint64_t seed) {

@@ -23,9 +23,9 @@ namespace gatewalk::lattice {
 [[nodiscard]] StateWalks no_walks(const dynamics::StateSpace& space);
 
 /// Appends the trials of `each`, which has kept their passages, as walks of the space; they begin
-/// with the entry `start`. A walk ends before a run that broke.
-void add_walks(StateWalks& walks, const dynamics::StateSpace& space,
-               const dynamics::Crossing& start, const FieldTrials& each);
+/// in state `first`. A walk ends before a run that broke.
+void add_walks(StateWalks& walks, const dynamics::StateSpace& space, int first,
+               const FieldTrials& each);
 
 /// The coarse state that a body came from, of the gate before.
 inline constexpr std::array<std::string_view, 4> kOrigins{"from below in the left half",
@@ -93,6 +93,8 @@ struct RunTrials {
   FieldTally tally;
   FieldTrials each;
 };
+/// Appends where trials ended and how, without their passages.
+void keep_endings(FieldTrials& all, const FieldTrials& more);
 
 /// The same trials with the random force held over crossings, as the model has it, and drawn anew.
 struct ForceMemory {
