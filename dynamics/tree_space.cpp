@@ -9,63 +9,82 @@
 namespace gatewalk::dynamics {
 namespace {
 
-using Entries = std::span<Crossing>;
+/// An entry with its place among all.
+struct Seen {
+  std::array<double, 3> at;  // by axis of kCrossingAxes
+  int place;
+};
+using Entries = std::span<Seen>;
 
 auto less_along(std::size_t axis) {
-  return [by = kCrossingAxes[axis]](const Crossing& a, const Crossing& b) { return a.*by < b.*by; };
+  return [axis](const Seen& a, const Seen& b) { return a.at[axis] < b.at[axis]; };
 }
 
-/// Grows one tree, in preorder.
+/// Grows trees, in preorder.
 class Grower {
  public:
-  Grower(const Scale& scale, std::size_t per_leaf)
-      : unit_{scale.length, scale.speed(), scale.speed()}, per_leaf_(per_leaf) {}
+  Grower(const Scale& scale, std::size_t per_leaf, std::vector<int>& state_of)
+      : per_unit_{1.0 / scale.length, 1.0 / scale.speed(), 1.0 / scale.speed()},
+        per_leaf_(per_leaf),
+        state_of_(state_of) {}
 
   [[nodiscard]] Tree grow(Entries entries) {
     tree_ = {.nodes = {}, .seen = {}};
-    for (std::size_t axis = 0; axis < kCrossingAxes.size(); ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto [low, high] =
           std::minmax_element(entries.begin(), entries.end(), less_along(axis));
-      tree_.seen[axis][0] = (*low).*kCrossingAxes[axis];
-      tree_.seen[axis][1] = (*high).*kCrossingAxes[axis];
+      tree_.seen[axis][0] = low->at[axis];
+      tree_.seen[axis][1] = high->at[axis];
     }
     add(entries);
     return std::move(tree_);
+  }
+  /// A tree of one state, for which nothing was seen.
+  [[nodiscard]] Tree unseen(const Bins& bins) {
+    ++states_;
+    return {.nodes = {Tree::Node{}},
+            .seen = {{{bins.d.front(), bins.d.back()},
+                      {bins.vx.front(), bins.vx.back()},
+                      {bins.vy.front(), bins.vy.back()}}}};
   }
 
  private:
   /// Axes by how far the entries spread along them, in the scene's own units, the most first.
   [[nodiscard]] std::array<std::size_t, 3> axes_by_spread(Entries entries) const {
-    std::array<double, 3> squares{};
-    for (std::size_t axis = 0; axis < squares.size(); ++axis) {
-      double mean = 0.0;
-      for (const Crossing& c : entries) mean += c.*kCrossingAxes[axis] / unit_[axis];
-      mean /= static_cast<double>(entries.size());
-      for (const Crossing& c : entries) {
-        const double from_mean = c.*kCrossingAxes[axis] / unit_[axis] - mean;
-        squares[axis] += from_mean * from_mean;
+    const auto n = static_cast<double>(entries.size());
+    const std::array<double, 3> origin = entries.front().at;
+    std::array<double, 3> sum{}, squares{};
+    for (const Seen& e : entries)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double x = e.at[axis] - origin[axis];
+        sum[axis] += x;
+        squares[axis] += x * x;
       }
-    }
+    std::array<double, 3> variance{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      variance[axis] =
+          (squares[axis] - sum[axis] * sum[axis] / n) * per_unit_[axis] * per_unit_[axis];
     std::array<std::size_t, 3> axes{0, 1, 2};
     std::stable_sort(axes.begin(), axes.end(),
-                     [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
+                     [&](std::size_t a, std::size_t b) { return variance[a] > variance[b]; });
     return axes;
   }
 
   /// Puts entries below a cut near the median of an axis before those above it, and returns how
   /// many they are; 0 where equal values leave no cut with enough entries on both sides.
   [[nodiscard]] std::size_t halve(Entries entries, std::size_t axis) const {
-    const auto middle = entries.begin() + std::ssize(entries) / 2;
-    std::nth_element(entries.begin(), middle, entries.end(), less_along(axis));
-    const double median = (*middle).*kCrossingAxes[axis];
-    const auto equal = std::partition(entries.begin(), middle, [&](const Crossing& c) {
-      return c.*kCrossingAxes[axis] < median;
-    });
-    const auto above = std::partition(
-        middle, entries.end(), [&](const Crossing& c) { return c.*kCrossingAxes[axis] <= median; });
-    const auto low = static_cast<std::size_t>(equal - entries.begin());
-    const auto high = static_cast<std::size_t>(above - entries.begin());
     const std::size_t n = entries.size();
+    const auto middle = entries.begin() + static_cast<std::ptrdiff_t>(n / 2);
+    std::nth_element(entries.begin(), middle, entries.end(), less_along(axis));
+    const double median = middle->at[axis];
+    if (std::max_element(entries.begin(), middle, less_along(axis))->at[axis] < median)
+      return n / 2;
+    const auto from =
+        std::partition(entries.begin(), middle, [&](const Seen& e) { return e.at[axis] < median; });
+    const auto to =
+        std::partition(middle, entries.end(), [&](const Seen& e) { return e.at[axis] <= median; });
+    const auto low = static_cast<std::size_t>(from - entries.begin());
+    const auto high = static_cast<std::size_t>(to - entries.begin());
     const auto fits = [&](std::size_t below) {
       return below >= per_leaf_ && n - below >= per_leaf_;
     };
@@ -80,10 +99,8 @@ class Grower {
         const std::size_t below = halve(entries, axis);
         if (below == 0) continue;
         const Entries low = entries.first(below), high = entries.subspan(below);
-        const double from = (*std::max_element(low.begin(), low.end(), less_along(axis))).*
-                            kCrossingAxes[axis],
-                     to = (*std::min_element(high.begin(), high.end(), less_along(axis))).*
-                          kCrossingAxes[axis];
+        const double from = std::max_element(low.begin(), low.end(), less_along(axis))->at[axis],
+                     to = std::min_element(high.begin(), high.end(), less_along(axis))->at[axis];
         const double cut = 0.5 * from + 0.5 * to;
         if (!(from < cut && cut < to)) continue;  // neighbours among the doubles
         tree_.nodes.push_back({static_cast<int>(axis), cut});
@@ -91,40 +108,36 @@ class Grower {
         add(high);
         return;
       }
+    for (const Seen& e : entries) state_of_[static_cast<std::size_t>(e.place)] = states_;
+    ++states_;
     tree_.nodes.push_back({});
   }
 
-  std::array<double, 3> unit_;
+  std::array<double, 3> per_unit_;
   std::size_t per_leaf_;
+  std::vector<int>& state_of_;
+  int states_ = 0;  // leaves so far, of all trees
   Tree tree_;
 };
 
 }  // namespace
 
-StateSpace tree_space(const GateParams& p, std::vector<Crossing> seen, int per_leaf,
-                      std::vector<Crossing> points) {
+StateSpace tree_space(const GateParams& p, const std::vector<Crossing>& seen, int per_leaf,
+                      std::vector<Crossing> points, std::vector<int>* state_of) {
   if (per_leaf < 1)
     throw std::invalid_argument("tree: " + std::to_string(per_leaf) +
                                 " entries per leaf are not permitted: must be 1 or more");
   const StateSpace unseen = StateSpace::paper(p);
-  std::stable_sort(seen.begin(), seen.end(),
-                   [](const Crossing& a, const Crossing& b) { return a.boundary < b.boundary; });
-  Grower grower(scale_of(p), static_cast<std::size_t>(per_leaf));
+  std::array<std::vector<Seen>, kBoundaries> at;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    at[static_cast<std::size_t>(seen[i].boundary)].push_back(
+        {{seen[i].d, seen[i].vx, seen[i].vy}, static_cast<int>(i)});
+  std::vector<int> states(seen.size());
+  Grower grower(scale_of(p), static_cast<std::size_t>(per_leaf), states);
   std::array<Tree, kBoundaries> trees;
-  auto first = seen.begin();
-  for (int b = 0; b < kBoundaries; ++b) {
-    const auto last = std::find_if(first, seen.end(), [&](const Crossing& c) {
-      return c.boundary != static_cast<Boundary>(b);
-    });
-    const Bins& bins = unseen.bins()[b];
-    if (first == last)
-      trees[b].seen = {{{bins.d.front(), bins.d.back()},
-                        {bins.vx.front(), bins.vx.back()},
-                        {bins.vy.front(), bins.vy.back()}}};
-    else
-      trees[b] = grower.grow(Entries(first, last));
-    first = last;
-  }
+  for (int b = 0; b < kBoundaries; ++b)
+    trees[b] = at[b].empty() ? grower.unseen(unseen.bins()[b]) : grower.grow(at[b]);
+  if (state_of != nullptr) *state_of = std::move(states);
   return StateSpace(std::move(trees), std::move(points));
 }
 

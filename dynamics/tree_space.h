@@ -19,9 +19,11 @@ inline constexpr int kEntriesPerLeaf = 7;
 /// they spread most (largest standard deviation, d in Scale::length, velocities in Scale::speed())
 /// until a half would have fewer than `per_leaf`; equal values stay together. A boundary where
 /// nothing was seen is one state, StateSpace::paper's range. Throws std::invalid_argument unless
-/// per_leaf >= 1, and for more than kMostStates leaves.
-[[nodiscard]] StateSpace tree_space(const GateParams& p, std::vector<Crossing> seen,
+/// per_leaf >= 1, and for more than kMostStates leaves. `state_of`, if given: the state of each
+/// entry, as index_of says it.
+[[nodiscard]] StateSpace tree_space(const GateParams& p, const std::vector<Crossing>& seen,
                                     int per_leaf = kEntriesPerLeaf,
-                                    std::vector<Crossing> points = {});
+                                    std::vector<Crossing> points = {},
+                                    std::vector<int>* state_of = nullptr);
 
 }  // namespace gatewalk::dynamics

@@ -141,8 +141,9 @@ struct Wave {
 /// together. A trial goes on in its slot while the type stays the same; else it waits for the next
 /// wave of its own.
 void run_active(std::vector<Trial>& trials, const FieldGates& gates, const FieldParams& field,
-                const BodyState& start, const std::function<RandomForce(std::int64_t)>& force_of,
-                const StateSpace& space, bool keep_passages, HeldForce held) {
+                const std::function<const BodyState&(std::int64_t)>& start_of,
+                const std::function<RandomForce(std::int64_t)>& force_of, const StateSpace& space,
+                bool keep_passages, HeldForce held) {
   const std::size_t types = gates.types().size();
   std::vector<std::unique_ptr<const Method>> methods;
   for (const GateParams& p : gates.types()) methods.push_back(make_method(p));
@@ -161,7 +162,7 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
           [&](RunSlot& slot) {
             const std::int64_t i = wave[slot.trial];
             const auto waiting = std::move(trials[i].waiting);
-            slot.start = waiting ? waiting->from : start;
+            slot.start = waiting ? waiting->from : start_of(i);
             slot.force = waiting ? waiting->force : force_of(i);
             slot.force.enter(p.forces);
           },
@@ -182,11 +183,10 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
   }
 }
 
-}  // namespace
-
-FieldTally run_field(const FieldGates& gates, const FieldParams& field, const BodyState& start,
-                     const StateSpace& space, std::uint64_t seed, TrialRange range,
-                     FieldTrials* each, HeldForce held) {
+FieldTally run_from(const FieldGates& gates, const FieldParams& field,
+                    const std::function<const BodyState&(std::int64_t)>& start_of,
+                    const StateSpace& space, std::uint64_t seed, TrialRange range,
+                    FieldTrials* each, HeldForce held) {
   gates.require_fits(field);
   for (const GateParams& p : gates.types()) validate(p, field);
   const GateParams& p = gates.at(field.start_column(), 0);
@@ -194,10 +194,10 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
   std::vector<Trial> trials(range.count);
   for (Trial& t : trials) t.column = field.start_column();
   const auto force_of = [&](std::int64_t i) {
-    return field_force(p, start, seed, range.first + i);
+    return field_force(p, start_of(i), seed, range.first + i);
   };
   if (field.fidelity == Fidelity::active) {
-    run_active(trials, gates, field, start, force_of, space, keep_passages, held);
+    run_active(trials, gates, field, start_of, force_of, space, keep_passages, held);
   } else {
     if (gates.types().size() > 1)
       throw InvalidParameter("field.fidelity", "field.fidelity = \"" +
@@ -206,7 +206,7 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
                                                    "are only run with \"active\"");
     (void)make_method(p);  // refuses what cannot be run
     tbb::parallel_for(std::int64_t{0}, range.count, [&](std::int64_t i) {
-      FieldStepper stepper(p, field, start);
+      FieldStepper stepper(p, field, start_of(i));
       RandomForce force = force_of(i);
       for (GateRun run = stepper.run_gate(force);
            follow(trials[i], p, field, space, run, keep_passages); run = stepper.run_gate(force)) {
@@ -229,6 +229,28 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
       each->passed.push_back(std::ssize(each->passages));
     }
   return tally;
+}
+
+}  // namespace
+
+FieldTally run_field(const FieldGates& gates, const FieldParams& field, const BodyState& start,
+                     const StateSpace& space, std::uint64_t seed, TrialRange range,
+                     FieldTrials* each, HeldForce held) {
+  return run_from(
+      gates, field, [&](std::int64_t) -> const BodyState& { return start; }, space, seed, range,
+      each, held);
+}
+
+FieldTally run_field(const FieldGates& gates, const FieldParams& field,
+                     const std::vector<BodyState>& starts, const StateSpace& space,
+                     std::uint64_t seed, TrialRange range, FieldTrials* each) {
+  if (std::ssize(starts) != range.count)
+    throw std::invalid_argument("run_field: " + std::to_string(starts.size()) + " starts for " +
+                                std::to_string(range.count) + " trials");
+  return run_from(
+      gates, field,
+      [&](std::int64_t i) -> const BodyState& { return starts[static_cast<std::size_t>(i)]; },
+      space, seed, range, each, HeldForce::goes_on);
 }
 
 FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const BodyState& start,

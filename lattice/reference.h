@@ -92,6 +92,12 @@ enum class HeldForce : std::uint8_t { goes_on, drawn_anew };
                                    dynamics::TrialRange range, FieldTrials* each = nullptr,
                                    HeldForce held = HeldForce::goes_on);
 
+/// The same with a start of its own for each trial, (range.count) of them.
+[[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,
+                                   const std::vector<dynamics::BodyState>& starts,
+                                   const dynamics::StateSpace& space, std::uint64_t seed,
+                                   dynamics::TrialRange range, FieldTrials* each = nullptr);
+
 /// A trial through the field in full.
 struct FieldTrace {
   struct Visit {

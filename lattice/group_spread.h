@@ -1,0 +1,54 @@
+#pragma once
+/// How far off a prediction may be that was made from trials: predictions from groups of the
+/// trials, each with states of its own, differ from each other by sampling, and their mean from the
+/// whole one's by what larger states cost (a group of an eighth of the trials has states eight
+/// times as large). Both are counted, at the cost of one prediction more.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lattice/compare.h"
+#include "lattice/ending_shares.h"
+#include "markov/predict.h"
+
+namespace gatewalk::lattice {
+
+inline constexpr int kTrialGroups = 8;
+
+/// 95 % of predictions like this one are no further from the truth.
+struct Error95 {
+  double total_variation = 0.0;  // of the final gates, at most
+  double corrcoef = 1.0;         // with the true shares, at least
+  double rmse_per_100 = 0.0;     // at most
+};
+
+class GroupSpread {
+ public:
+  /// `groups`: two or more, from disjoint parts of the trials of equal size. Throws
+  /// std::invalid_argument for fewer, and for other fields.
+  GroupSpread(const markov::FinalDistribution& whole,
+              const std::vector<markov::FinalDistribution>& groups);
+
+  /// From errors drawn as the groups differ.
+  [[nodiscard]] Error95 error(std::uint64_t seed) const;
+  /// Final gates: low and high (rows x columns).
+  [[nodiscard]] std::array<CellProbabilities, 2> gates_95() const;
+  /// `trials`: behind the prediction. They say what a share can be that no group sees.
+  [[nodiscard]] EndingShares endings_95(std::int64_t trials) const;
+
+ private:
+  struct Moments {
+    double error, bias;  // standard error by sampling; what larger states would change
+  };
+  template <class Value>
+  [[nodiscard]] Moments moments(Value value) const;
+
+  const markov::FinalDistribution& whole_;
+  const std::vector<markov::FinalDistribution>& groups_;
+};
+
+/// The same of the shares of `trials` themselves, which `counts` (rows x columns) are.
+[[nodiscard]] Error95 error_of_shares(const CellCounts& counts, std::uint64_t seed);
+
+}  // namespace gatewalk::lattice

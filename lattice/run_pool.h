@@ -1,0 +1,76 @@
+#pragma once
+/// Gate runs of full trials, pooled over all gates, since one gate is like the other; and the chain
+/// that they make: a start's own first runs are its row, all later runs fill the rows of trees
+/// grown over the entries that were seen (dynamics/tree_space.h), their mirror images too where the
+/// gate is symmetric.
+
+#include <cstdint>
+#include <vector>
+
+#include "dynamics/state_space.h"
+#include "dynamics/tree_space.h"
+#include "lattice/gate_chain.h"
+#include "lattice/reference.h"
+
+namespace gatewalk::lattice {
+
+/// Trials from one start (y = 0) with their passages; field.fidelity "active".
+struct StartTrials {
+  dynamics::Crossing start{};
+  FieldTrials full{.final_gates = {}, .keep_passages = true};
+  FieldTrials first{.final_gates = {}, .keep_passages = true};  // that ran through one gate only
+
+  /// Runs through the first gate.
+  [[nodiscard]] std::int64_t first_runs() const {
+    return std::ssize(full.final_gates) + std::ssize(first.final_gates);
+  }
+  [[nodiscard]] std::int64_t gate_runs() const {
+    return std::ssize(full.passages) + std::ssize(first.passages);
+  }
+};
+
+/// Trials that start anywhere: all their runs are pooled.
+struct ScatteredTrials {
+  std::vector<dynamics::Crossing> starts;  // (trials)
+  FieldTrials each{.final_gates = {}, .keep_passages = true};
+};
+
+struct RunPool {
+  std::vector<StartTrials> starts;
+  ScatteredTrials scattered;
+
+  [[nodiscard]] std::int64_t gate_runs() const;
+};
+
+/// Trials number group, group + of, group + 2 of, ... of every start.
+struct TrialGroup {
+  std::int64_t group = 0, of = 1;
+};
+
+/// Counts of trees' states, none of which is a start's own.
+struct Kernel {
+  dynamics::StateSpace space;
+  markov::Counts counts;  // (n x n+1), the last column: trapped
+};
+
+/// From the runs of one group of the trials but the starts' own first ones. With mirror images a
+/// run makes two counts. Runs that broke are left out.
+[[nodiscard]] Kernel kernel_of(const dynamics::GateParams& p, const RunPool& pool,
+                               int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {});
+
+/// How often the start's own first runs of one group ended in each of the kernel's outputs (n + 1).
+/// A start in the middle of a symmetric gate has mirror images too.
+[[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::GateParams& p,
+                                                  const dynamics::StateSpace& space,
+                                                  const StartTrials& start, TrialGroup group = {});
+
+/// The kernel's rows, and behind them `first_rows`, which nothing leads to.
+[[nodiscard]] markov::Chain chain_of(const Kernel& kernel,
+                                     const std::vector<std::vector<std::int64_t>>& first_rows);
+
+/// The same as a matrix, in which the starts are states of their own.
+[[nodiscard]] dynamics::Transitions transitions_of(
+    const Kernel& kernel, const std::vector<dynamics::Crossing>& starts,
+    const std::vector<std::vector<std::int64_t>>& first_rows);
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,415 @@
+#include "lattice/study/pooled_prediction.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "dynamics/share.h"
+#include "lattice/scene/settle.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+using markov::FinalDistribution;
+
+// Numbers of first trials, so that no other command runs these: full ones, those through one gate,
+// scattered ones.
+constexpr std::int64_t kFullOwn = std::int64_t{1} << 41, kFirstOwn = std::int64_t{1} << 42,
+                       kScatteredOwn = std::int64_t{1} << 43;
+constexpr std::int64_t kLeastTrials = 2 * kTrialGroups;  // per start
+constexpr std::int64_t kFirstRound = 20 * kTrialGroups;  // trials of all starts together
+constexpr std::int64_t kLeastFirstRuns = 500;            // of a start that meets a pool
+
+Crossing entry_of(const BodyState& b) { return {Boundary::enter, b.x, b.vx, b.vy}; }
+
+BodyState body_of(const Crossing& c) { return {c.d, 0.0, c.vx, c.vy}; }
+
+void require_fine(const AccuracyOptions& options) {
+  if (!(options.accuracy > 0.0 && options.accuracy < 1.0))
+    throw std::invalid_argument("accuracy " + std::to_string(options.accuracy) +
+                                " is not permitted: must lie in (0, 1)");
+}
+
+/// Predictions from the start rows that stand behind a kernel's.
+std::vector<FinalDistribution> predictions(const Kernel& kernel,
+                                           const std::vector<std::vector<std::int64_t>>& first_rows,
+                                           const FieldParams& field) {
+  std::vector<markov::Start> places;
+  for (std::size_t i = 0; i < first_rows.size(); ++i)
+    places.push_back({field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
+  return markov::predict(chain_of(kernel, first_rows), {field.columns, field.rows}, places,
+                         {.max_cells = field.max_gates});
+}
+
+/// What the pool says of some of its starts.
+struct Said {
+  std::vector<FinalDistribution> whole;                // (starts)
+  std::vector<std::vector<FinalDistribution>> groups;  // (starts x kTrialGroups)
+  /// The same with the first runs of all trials in every group: what the kernel alone makes. Empty
+  /// if not asked for.
+  std::vector<std::vector<FinalDistribution>> kernels{};
+  int states = 0;
+  std::int64_t nonzeros = 0;
+};
+
+Said ask(const Scene& scene, const RunPool& pool, const std::vector<std::size_t>& starts,
+         int per_leaf, bool with_kernels) {
+  const std::size_t n = starts.size();
+  Said said{.whole = {}, .groups = {n, std::vector<FinalDistribution>(kTrialGroups)}};
+  if (with_kernels) said.kernels = said.groups;
+  const auto rows = [&](const StateSpace& space, TrialGroup group) {
+    std::vector<std::vector<std::int64_t>> all;
+    for (const std::size_t s : starts)
+      all.push_back(first_row(scene.gate, space, pool.starts[s], group));
+    return all;
+  };
+  tbb::parallel_for(-1, kTrialGroups, [&](int g) {
+    if (g < 0) {
+      const Kernel kernel = kernel_of(scene.gate, pool, per_leaf);
+      said.whole = predictions(kernel, rows(kernel.space, {}), scene.field);
+      said.states = kernel.space.size();
+      said.nonzeros = kernel.counts.nonZeros();
+      return;
+    }
+    const TrialGroup group{g, kTrialGroups};
+    const Kernel kernel = kernel_of(scene.gate, pool, per_leaf, group);
+    auto first = rows(kernel.space, group);
+    if (with_kernels) {
+      auto all = rows(kernel.space, {});
+      first.insert(first.end(), all.begin(), all.end());
+    }
+    auto found = predictions(kernel, first, scene.field);
+    for (std::size_t i = 0; i < n; ++i) {
+      said.groups[i][static_cast<std::size_t>(g)] = std::move(found[i]);
+      if (with_kernels) said.kernels[i][static_cast<std::size_t>(g)] = std::move(found[n + i]);
+    }
+  });
+  return said;
+}
+
+/// Runs trials into a pool and keeps count.
+class Runner {
+ public:
+  Runner(const Scene& scene, const AccuracyOptions& options, const Work& work)
+      : scene_(scene),
+        field_(scene.field),
+        space_(StateSpace::paper(scene.gate)),
+        options_(options),
+        work_(work) {
+    field_.fidelity = Fidelity::active;
+  }
+
+  void run_full(StartTrials& s, std::int64_t count) {
+    const std::int64_t done = std::ssize(s.full.final_gates);
+    run("full trials", count, [&](TrialRange range) {
+      return run_field(scene_.gate, field_, body_of(s.start), space_, options_.seed,
+                       {kFullOwn + done + range.first, range.count}, &s.full);
+    });
+  }
+  void run_first(StartTrials& s, std::int64_t count) {
+    FieldParams one_gate = field_;
+    one_gate.max_gates = 1;
+    const std::int64_t done = std::ssize(s.first.final_gates);
+    run("first runs", count, [&](TrialRange range) {
+      return run_field(scene_.gate, one_gate, body_of(s.start), space_, options_.seed,
+                       {kFirstOwn + done + range.first, range.count}, &s.first);
+    });
+  }
+  void run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count) {
+    const std::int64_t done = std::ssize(s.starts);
+    run("scattered trials", count, [&](TrialRange range) {
+      std::vector<BodyState> bodies;
+      for (std::int64_t i = 0; i < range.count; ++i) {
+        bodies.push_back(drawn(starts, done + range.first + i));
+        s.starts.push_back(entry_of(bodies.back()));
+      }
+      return run_field(scene_.gate, field_, bodies, space_, options_.seed,
+                       {kScatteredOwn + done + range.first, range.count}, &s.each);
+    });
+  }
+  /// Start number `i` in the range.
+  [[nodiscard]] BodyState drawn(const StartRange& starts, std::int64_t i) const {
+    Random random(Purpose::resampling, {options_.seed, static_cast<std::uint64_t>(kScatteredOwn),
+                                        static_cast<std::uint64_t>(i)});
+    const auto within = [&](const std::array<double, 2>& r) {
+      return r[0] + (r[1] - r[0]) * random.uniform();
+    };
+    BodyState b;
+    b.x = within(starts.d);
+    b.vx = within(starts.vx);
+    b.vy = within(starts.vy);
+    return b;
+  }
+
+  [[nodiscard]] bool may_go_on() const { return gate_runs < options_.most_runs; }
+  /// Gate runs of a full trial, in the mean of those so far.
+  [[nodiscard]] double gates_per_trial() const {
+    return trials_ > 0 ? static_cast<double>(trial_runs_) / static_cast<double>(trials_) : 1.0;
+  }
+  [[nodiscard]] double seconds_per_gate_run() const {
+    return seconds / static_cast<double>(std::max<std::int64_t>(1, gate_runs));
+  }
+  /// Throws when a run broke; checks a sample by a better method.
+  void finish() {
+    if (health.broken > 0)
+      throw std::runtime_error("prediction: " + std::to_string(health.broken) +
+                               " gate runs stopped being finite numbers; try method stable or a "
+                               "smaller run.step_s");
+    if (gate_runs > 0)
+      check_outcomes(scene_, RunsFrom::everywhere, options_.seed, std::max(trials_, gate_runs / 10),
+                     health, work_);
+  }
+
+  std::int64_t gate_runs = 0;
+  double seconds = 0.0;
+  Health health;
+
+ private:
+  void run(const char* what, std::int64_t count,
+           const std::function<FieldTally(TrialRange)>& carry_out) {
+    const Stopwatch watch;
+    const auto most = static_cast<double>(options_.most_runs - gate_runs);
+    count = std::max<std::int64_t>(
+        kLeastTrials, static_cast<std::int64_t>(
+                          std::min(static_cast<double>(count), most / gates_per_trial() + 1.0)));
+    work_.in_pieces(what, count, [&](TrialRange range) {
+      const FieldTally tally = carry_out(range);
+      health += tally.health;
+      gate_runs += tally.health.runs;
+      trials_ += tally.trials;
+      trial_runs_ += tally.health.runs;
+    });
+    seconds += watch.seconds();
+  }
+
+  const Scene& scene_;
+  FieldParams field_;
+  StateSpace space_;
+  const AccuracyOptions& options_;
+  const Work& work_;
+  std::int64_t trials_ = 0, trial_runs_ = 0;
+};
+
+/// Error bars of one start.
+StartAnswer answer_of(const Scene& scene, const StartTrials& s, FinalDistribution whole,
+                      const std::vector<FinalDistribution>& groups,
+                      const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
+  StartAnswer a;
+  a.start = s.start;
+  a.trials = std::ssize(s.full.final_gates);
+  a.first_runs = s.first_runs();
+  const GroupSpread spread(whole, groups);
+  a.error = spread.error(seed);
+  a.kernel_error_95 = kernels.empty() ? a.error.total_variation
+                                      : GroupSpread(whole, kernels).error(seed).total_variation;
+  Error95 of_trials{1.0, 0.0, 100.0};
+  if (a.trials > 0) {
+    CellCounts counts = CellCounts::Zero(scene.field.rows, scene.field.columns);
+    for (const std::int32_t cell : s.full.final_gates) ++counts.data()[cell];
+    of_trials = error_of_shares(counts, seed);
+    a.trials_error_95 = of_trials.total_variation;
+    a.from_trials = a.trials_error_95 < a.error.total_variation;
+  }
+  if (!a.from_trials) {
+    a.endings = spread.endings_95(a.trials > 0 ? a.trials : a.first_runs);
+    a.gates_95 = spread.gates_95();
+    a.final = std::move(whole);
+    return a;
+  }
+  a.error = of_trials;
+  a.final = shares_of(s.full, scene.field);
+  std::array<std::int64_t, markov::kEndings> endings{};
+  for (const auto& e : s.full.endings)
+    if (e) ++endings[static_cast<std::size_t>(*e)];
+  a.endings = EndingShares(endings, a.trials);
+  a.gates_95 = {a.final.final_cells, a.final.final_cells};
+  for (Eigen::Index i = 0; i < a.final.final_cells.size(); ++i) {
+    const auto interval =
+        interval_of_share(a.final.final_cells.data()[i], static_cast<double>(a.trials));
+    for (std::size_t side = 0; side < 2; ++side) a.gates_95[side].data()[i] = interval[side];
+  }
+  return a;
+}
+
+/// So many times the trials make the square of the error as small as is wanted. A long way is gone
+/// in two steps: the error is known the better the nearer it is.
+double times_more(double error, double wanted) {
+  const double times = (error / wanted) * (error / wanted);
+  return times > 2.5 ? std::min(0.6 * times, 16.0) : std::max(1.1 * times, 1.2);
+}
+
+/// Adds trials of a start whose answer is not certain enough: first runs where these make most of
+/// the error, else full ones.
+void add_trials_of(StartTrials& s, const StartAnswer& a, double accuracy, Runner& runner) {
+  const double error = a.error.total_variation, kernel = a.kernel_error_95;
+  const double first = std::sqrt(std::max(0.0, error * error - kernel * kernel));
+  if (kernel < 0.85 * accuracy && first > 1.2 * kernel) {
+    const double left = std::sqrt(accuracy * accuracy - kernel * kernel);
+    const auto n = static_cast<double>(a.first_runs);
+    runner.run_first(s, static_cast<std::int64_t>(n * (times_more(first, left) - 1.0)));
+    return;
+  }
+  const auto n = static_cast<double>(std::max(a.trials, kFirstRound / 2));
+  runner.run_full(s, static_cast<std::int64_t>(n * (times_more(error, accuracy) - 1.0)));
+}
+
+/// Places of the starts in the pool, put there if need be; each has some trials.
+std::vector<std::size_t> places_of(const std::vector<BodyState>& starts, RunPool& pool,
+                                   Runner& runner) {
+  const bool has_kernel = pool.gate_runs() > 0;
+  std::vector<std::size_t> places;
+  for (const BodyState& body : starts) {
+    if (body.y != 0.0)
+      throw std::invalid_argument(
+          "start.y_m = " + std::to_string(body.y) +
+          " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
+    const Crossing entry = entry_of(body);
+    const auto known = std::find_if(pool.starts.begin(), pool.starts.end(),
+                                    [&](const StartTrials& s) { return s.start == entry; });
+    places.push_back(static_cast<std::size_t>(known - pool.starts.begin()));
+    if (known != pool.starts.end()) continue;
+    StartTrials& s = pool.starts.emplace_back();
+    s.start = entry;
+    if (has_kernel)
+      runner.run_first(s, kLeastFirstRuns);
+    else
+      runner.run_full(s, std::max(kLeastTrials, kFirstRound / std::ssize(starts)));
+  }
+  return places;
+}
+
+}  // namespace
+
+FinalDistribution shares_of(const FieldTrials& trials, const FieldParams& field) {
+  const auto n = static_cast<double>(trials.final_gates.size());
+  FinalDistribution d;
+  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
+  std::map<std::int64_t, markov::CellEndings> mixed;
+  for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
+    const std::int32_t cell = trials.final_gates[i];
+    const auto ending = static_cast<std::size_t>(trials.endings[i].value());
+    d.final_cells.data()[cell] += 1.0 / n;
+    d.endings[ending] += 1.0 / n;
+    auto& of_cell = mixed.try_emplace(cell, markov::CellEndings{cell}).first->second;
+    of_cell.by_ending[ending] += 1.0 / n;
+  }
+  for (const auto& [cell, endings] : mixed)
+    if (endings.by_ending.front() < d.final_cells.data()[cell]) d.mixed_cells.push_back(endings);
+  d.trapped = d.endings[static_cast<std::size_t>(markov::Ending::trapped)];
+  d.cut_off = d.endings[static_cast<std::size_t>(markov::Ending::cut_off)];
+  for (const markov::Ending edge : markov::kEdges)
+    d.left_field += d.endings[static_cast<std::size_t>(edge)];
+  return d;
+}
+
+PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
+                                const std::vector<BodyState>& starts,
+                                const AccuracyOptions& options, const Work& work) {
+  require_fine(options);
+  const Stopwatch watch;
+  Runner runner(scene, options, work);
+  PooledPrediction result;
+  const bool has_others = pool.gate_runs() > 0;
+  const std::vector<std::size_t> places = places_of(starts, pool, runner);
+  result.starts.resize(starts.size());
+  std::vector<std::size_t> open(starts.size());  // those that are not certain enough yet
+  std::iota(open.begin(), open.end(), 0);
+  while (!open.empty()) {
+    std::vector<std::size_t> asked;
+    for (const std::size_t k : open) asked.push_back(places[k]);
+    // A single start's full trials make both its row and the kernel, in good proportion.
+    const bool with_kernels = starts.size() > 1 || has_others;
+    Said said = ask(scene, pool, asked, options.per_leaf, with_kernels);
+    result.states = said.states;
+    result.nonzeros = said.nonzeros;
+    std::vector<std::size_t> left;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const std::size_t k = open[i];
+      result.starts[k] = answer_of(
+          scene, pool.starts[places[k]], std::move(said.whole[i]), said.groups[i],
+          with_kernels ? said.kernels[i] : std::vector<FinalDistribution>{}, options.seed);
+      if (result.starts[k].error.total_variation > options.accuracy) left.push_back(k);
+    }
+    result.reached = left.empty();
+    if (!runner.may_go_on()) break;
+    open = std::move(left);
+    for (const std::size_t k : open)
+      if (runner.may_go_on())
+        add_trials_of(pool.starts[places[k]], result.starts[k], options.accuracy, runner);
+  }
+  result.gate_runs = runner.gate_runs;
+  result.run_seconds = runner.seconds;
+  result.seconds = watch.seconds();
+  for (StartAnswer& a : result.starts) {
+    if (a.trials == 0) continue;
+    const double of_error = a.trials_error_95 / a.error.total_variation;
+    a.direct_seconds = of_error * of_error * static_cast<double>(a.trials) *
+                       runner.gates_per_trial() * runner.seconds_per_gate_run();
+  }
+  runner.finish();
+  result.health = runner.health;
+  return result;
+}
+
+StartRange usual_range(const Scene& scene) {
+  const Bins bins = StateSpace::paper(scene.gate).bins().front();
+  const auto holding = [](const std::vector<double>& edges, double own) {
+    return std::array<double, 2>{std::min(edges.front(), own), std::max(edges.back(), own)};
+  };
+  return {holding(bins.d, scene.start.x), holding(bins.vx, scene.start.vx),
+          holding(bins.vy, scene.start.vy)};
+}
+
+PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& range,
+                       const AccuracyOptions& options, const Work& work) {
+  require_fine(options);
+  for (const auto* r : {&range.d, &range.vx, &range.vy})
+    if (!((*r)[0] <= (*r)[1])) throw std::invalid_argument("range of starts: is empty");
+  constexpr int kTried = 12;
+  constexpr std::int64_t kFirstRuns = 400, kBegin = 2000;
+  const Stopwatch watch;
+  Runner runner(scene, options, work);
+  PooledRange result;
+  result.range = range;
+  result.tried_on = kTried;
+  // The starts that it is tried on; their runs are not kept.
+  RunPool tried;
+  for (int k = 0; k < kTried; ++k) {
+    StartTrials& s = tried.starts.emplace_back();
+    s.start = entry_of(runner.drawn(range, -1 - k));
+    runner.run_first(s, kFirstRuns);
+  }
+  std::vector<std::size_t> all(kTried);
+  std::iota(all.begin(), all.end(), 0);
+  runner.run_scattered(pool.scattered, range, kBegin);
+  for (;;) {
+    tried.scattered = std::move(pool.scattered);
+    const Said said = ask(scene, tried, all, options.per_leaf, true);
+    pool.scattered = std::move(tried.scattered);
+    result.kernel_error_95 = 0.0;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      result.kernel_error_95 =
+          std::max(result.kernel_error_95,
+                   GroupSpread(said.whole[k], said.kernels[k]).error(options.seed).total_variation);
+    result.reached = result.kernel_error_95 <= options.accuracy;
+    if (result.reached || !runner.may_go_on()) break;
+    const auto n = static_cast<double>(pool.scattered.starts.size());
+    runner.run_scattered(pool.scattered, range,
+                         static_cast<std::int64_t>(
+                             n * (times_more(result.kernel_error_95, options.accuracy) - 1.0)));
+  }
+  result.gate_runs = runner.gate_runs;
+  result.seconds = watch.seconds();
+  runner.finish();
+  result.health = runner.health;
+  return result;
+}
+
+}  // namespace gatewalk::lattice
