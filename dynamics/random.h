@@ -21,7 +21,14 @@ struct Stream {
 };
 
 /// Which experiment a stream belongs to, so that no two experiments share their randomness.
-enum class Purpose : std::uint64_t { gate = 1, row = 2, field = 3, comparison = 4, resampling = 5 };
+enum class Purpose : std::uint64_t {
+  gate = 1,
+  row = 2,
+  field = 3,
+  comparison = 4,
+  resampling = 5,
+  memory = 6
+};
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.
 [[nodiscard]] inline double open_uniform(std::uint64_t word) {
@@ -106,6 +113,8 @@ class RandomForce {
   }
   [[nodiscard]] double left() const { return left_; }
   void pass(double seconds) { left_ -= seconds; }
+  /// Drops the rest of the hold: the next draw of the sequence comes now.
+  void drop_hold() { left_ = 0.0; }
 
  private:
   // Steps may add up to a hold with a relative error of 1e-6 (see validate): no draw for the rest.

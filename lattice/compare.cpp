@@ -115,15 +115,6 @@ Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
   return s;
 }
 
-/// Mean, and what 95 % of the values do not exceed.
-std::pair<double, double> mean_and_95(std::vector<double> values) {
-  const auto n = std::ssize(values);
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n);
-  const auto at_95 = values.begin() + (95 * n + 99) / 100 - 1;
-  std::nth_element(values.begin(), at_95, values.end());
-  return {mean, *at_95};
-}
-
 /// p-values and the null's total variation over `null_draws` calls of draw(k), in any order.
 template <class Draw>
 void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draws, Draw draw) {
@@ -419,55 +410,20 @@ constexpr std::size_t kGateTests = 3;
 using Tests =
     std::array<double, kGateTests + markov::kEndings>;  // statistics, as Judgement lists them
 
-/// For each statistic, in how many of all rows of `all` it is at least as large as in row k; NaN
-/// counts as the least.
-std::vector<std::array<std::int64_t, std::tuple_size_v<Tests>>> ranks(
-    const std::vector<Tests>& all) {
-  std::vector<std::array<std::int64_t, std::tuple_size_v<Tests>>> rank(all.size());
-  std::vector<double> sorted(all.size());
-  for (std::size_t t = 0; t < std::tuple_size_v<Tests>; ++t) {
-    const auto value = [&](const Tests& x) { return std::isnan(x[t]) ? -1.0 : x[t]; };
-    std::transform(all.begin(), all.end(), sorted.begin(), value);
-    std::sort(sorted.begin(), sorted.end());
-    for (std::size_t k = 0; k < all.size();
-         ++k)  // equal results of different rounding count as equal
-      rank[k][t] = sorted.end() - std::lower_bound(sorted.begin(), sorted.end(),
-                                                   value(all[k]) - 1e-12 * std::abs(value(all[k])));
-  }
-  return rank;
-}
-
 /// The verdict on the last row, which was seen; the rows before it are the null's.
 Judgement judgement_of(const std::vector<Tests>& all) {
-  std::vector<double> tv;
+  std::vector<double> tv, rows;
   for (std::size_t k = 0; k + 1 < all.size(); ++k) tv.push_back(all[k][0]);
-  const auto [mean_tv, tv_at_95] = mean_and_95(tv);
-  const auto rank = ranks(all);
-  std::vector<std::int64_t> least;  // rank of each row, over its statistics
-  for (const auto& r : rank) least.push_back(*std::min_element(r.begin(), r.end()));
-  std::sort(least.begin(), least.end());
-  const auto of_all = static_cast<double>(all.size());
+  for (const Tests& t : all) rows.insert(rows.end(), t.begin(), t.end());
+  const LookedAt looked(rows, std::tuple_size_v<Tests>);
   Judgement j;
   j.null_draws = std::ssize(all) - 1;
-  j.chance_total_variation = mean_tv;
-  j.chance_total_variation_95 = tv_at_95;
-  const auto fill = [&](Judgement::Test& test, std::size_t t) {
-    test.seen = all.back()[t];
-    if (std::isnan(test.seen)) {
-      test.p = test.p_adjusted = test.seen;
-      return;
-    }
-    test.p = static_cast<double>(rank.back()[t]) / of_all;
-    test.p_adjusted =
-        static_cast<double>(std::upper_bound(least.begin(), least.end(), rank.back()[t]) -
-                            least.begin()) /
-        of_all;
-    j.p = std::min(j.p, test.p_adjusted);
-  };
-  fill(j.total_variation, 0);
-  fill(j.energy, 1);
-  fill(j.chi_squared, 2);
-  for (std::size_t e = 0; e < markov::kEndings; ++e) fill(j.endings[e], kGateTests + e);
+  std::tie(j.chance_total_variation, j.chance_total_variation_95) = mean_and_95(tv);
+  j.p = looked.p;
+  j.total_variation = looked.tests[0];
+  j.energy = looked.tests[1];
+  j.chi_squared = looked.tests[2];
+  std::copy_n(looked.tests.begin() + kGateTests, markov::kEndings, j.endings.begin());
   return j;
 }
 

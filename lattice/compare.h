@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lattice/looked_at.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 
@@ -94,12 +95,7 @@ struct SeenEndings {
 /// by more than chance in the trials and in the matrix together makes? Draw k of the null takes as
 /// many trials from the prediction, and sets them against what a resampled matrix predicts.
 struct Judgement {
-  /// Of one statistic: what was seen, how often the null reaches it, and that p-value adjusted for
-  /// looking at all of them (single-step minP of Westfall and Young, from the same draws): how
-  /// often the null makes any of the p-values as small. At least 1 / (null_draws + 1).
-  struct Test {
-    double seen = 0.0, p = 1.0, p_adjusted = 1.0;
-  };
+  using Test = LookedAt::Test;
   static constexpr double kLevel = 0.05;
 
   Test total_variation, energy,

@@ -7,6 +7,8 @@
 ///   gate_chain.h  counts + state space -> markov::Chain, and the matrix file
 ///   compare.h     corrcoef, RMSE, total variation, noise floors, p-values
 ///   matrix_noise.h  what the sampling of a matrix does to its predictions
+///   looked_at.h   several statistics judged together
+///   independence.h, gates_ahead.h  does a chain forget what matters?
 ///   ending_shares.h how trials, walks or a prediction end, with intervals
 ///   draws.h       binomial and multinomial counts
 ///
@@ -18,5 +20,8 @@
 #include "lattice/ending_shares.h"
 #include "lattice/field.h"
 #include "lattice/gate_chain.h"
+#include "lattice/gates_ahead.h"
+#include "lattice/independence.h"
+#include "lattice/looked_at.h"
 #include "lattice/matrix_noise.h"
 #include "lattice/reference.h"

@@ -143,7 +143,7 @@ struct Wave {
 void run_active(std::vector<Trial>& trials, const FieldGates& gates, const FieldParams& field,
                 const std::function<const BodyState&(std::int64_t)>& start_of,
                 const std::function<RandomForce(std::int64_t)>& force_of, const StateSpace& space,
-                bool keep_passages) {
+                bool keep_passages, HeldForce held) {
   const std::size_t types = gates.types().size();
   std::vector<std::unique_ptr<const Method>> methods;
   for (const GateParams& p : gates.types()) methods.push_back(make_method(p));
@@ -171,6 +171,7 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
             Trial& t = trials[i];
             if (!follow(t, p, field, space, run, keep_passages)) return false;
             slot.start = shifted_into_next(p, run.ending, run.exit);
+            if (held == HeldForce::drawn_anew) slot.force.drop_hold();
             const auto next = static_cast<std::size_t>(gates.type_of(t.column, t.row));
             if (next == type) return true;
             t.waiting = std::make_unique<Trial::Waiting>(slot.start, slot.force);
@@ -185,7 +186,7 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
 FieldTally run_from(const FieldGates& gates, const FieldParams& field,
                     const std::function<const BodyState&(std::int64_t)>& start_of,
                     const StateSpace& space, std::uint64_t seed, TrialRange range,
-                    FieldTrials* each) {
+                    FieldTrials* each, HeldForce held) {
   gates.require_fits(field);
   for (const GateParams& p : gates.types()) validate(p, field);
   const GateParams& p = gates.at(field.start_column(), 0);
@@ -196,7 +197,7 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
     return field_force(p, start_of(i), seed, range.first + i);
   };
   if (field.fidelity == Fidelity::active) {
-    run_active(trials, gates, field, start_of, force_of, space, keep_passages);
+    run_active(trials, gates, field, start_of, force_of, space, keep_passages, held);
   } else {
     if (gates.types().size() > 1)
       throw InvalidParameter("field.fidelity", "field.fidelity = \"" +
@@ -208,8 +209,10 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
       FieldStepper stepper(p, field, start_of(i));
       RandomForce force = force_of(i);
       for (GateRun run = stepper.run_gate(force);
-           follow(trials[i], p, field, space, run, keep_passages); run = stepper.run_gate(force))
+           follow(trials[i], p, field, space, run, keep_passages); run = stepper.run_gate(force)) {
         stepper.go_on(run.ending);
+        if (held == HeldForce::drawn_anew) force.drop_hold();
+      }
     });
   }
 
@@ -232,10 +235,10 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
 
 FieldTally run_field(const FieldGates& gates, const FieldParams& field, const BodyState& start,
                      const StateSpace& space, std::uint64_t seed, TrialRange range,
-                     FieldTrials* each) {
+                     FieldTrials* each, HeldForce held) {
   return run_from(
       gates, field, [&](std::int64_t) -> const BodyState& { return start; }, space, seed, range,
-      each);
+      each, held);
 }
 
 FieldTally run_field(const FieldGates& gates, const FieldParams& field,
@@ -247,7 +250,7 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field,
   return run_from(
       gates, field,
       [&](std::int64_t i) -> const BodyState& { return starts[static_cast<std::size_t>(i)]; },
-      space, seed, range, each);
+      space, seed, range, each, HeldForce::goes_on);
 }
 
 FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const BodyState& start,

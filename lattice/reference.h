@@ -66,6 +66,11 @@ struct FieldTrials {
   [[nodiscard]] std::vector<dynamics::Crossing> entries() const;
 };
 
+/// What becomes of the draw in force when a body enters the next gate: it is held for the rest of
+/// its time, as in the model, or dropped, and the next one of the same sequence drawn: a force
+/// without memory from gate to gate.
+enum class HeldForce : std::uint8_t { goes_on, drawn_anew };
+
 /// The number that names a start in its trials' streams: other starts, other noise. From the start
 /// in the scene's own units (Scale), so that a rescaled scene has the same noise.
 [[nodiscard]] std::uint64_t stream_row(const dynamics::GateParams& p,
@@ -75,6 +80,7 @@ struct FieldTrials {
 /// rest, whenever the body enters (active), or one of many that go on and act beyond their bounds
 /// (remember, all; field_stepper.h). The random force goes on from gate to gate; its stream is
 /// {seed, stream_row(p, start), trial} whatever the fidelity, p the gate that trials start in.
+/// `held` says what goes on of the draw in force.
 /// run.time_limit_s counts from the entry into a gate. `space` only counts what the chain would
 /// have clamped. What each trial did is appended to `each`, if given. Trials in gates of one type
 /// are run together, in lanes where the method has them. On all threads of the current TBB arena,
@@ -83,7 +89,8 @@ struct FieldTrials {
 [[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,
                                    const dynamics::BodyState& start,
                                    const dynamics::StateSpace& space, std::uint64_t seed,
-                                   dynamics::TrialRange range, FieldTrials* each = nullptr);
+                                   dynamics::TrialRange range, FieldTrials* each = nullptr,
+                                   HeldForce held = HeldForce::goes_on);
 
 /// The same with a start of its own for each trial, (range.count) of them.
 [[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,

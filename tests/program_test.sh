@@ -503,6 +503,11 @@ grep -q '^   d   vx    vy  |  *crossed  *left side  *right side  *trapped  *cut 
 holds '[.starts[] | (.endings.dynamics | add) == 300 and (.endings.walks | add) + .never_sampled == 500 and ((.endings.exact | add) + .never_sampled - 1 | fabs) < 1e-12] | all' ends-validate.json
 holds '[.starts[].trials_and_matrix | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .differs == (.p <= .level) and .null_draws >= 999 and .resampled_matrices == 999] | all' ends-validate.json
 holds '[.starts[] | (.verdict | test("differs")) == .trials_and_matrix.differs] | all' ends-validate.json
+# Is it Markov? Every question has its p and its sentence; the held force only when asked for.
+holds '.markov | .walks == 600 and (.verdict | test("chain forgets")) and ([.gates_ahead, .gate_before, .visit, .row | .p > 0 and .p <= .p_adjusted and (.sentence | length > 20)] | all) and (.gates_ahead.steps | length == 7)' ends-validate.json
+holds '[.starts[] | has("force_memory")] | any | not' ends-validate.json
+grep -q '^Is it Markov?' ends-validate.txt || fail "validate: does not say whether it is Markov"
+expect 0 'drawn anew at every crossing' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 30 --start 0,0,15 --memory --null-draws 99
 # Beyond what is sensible: refused by name, with the range, before any work.
 for value in 0 1e15; do expect 2 "null-draws.*at least 1 and at most 100000" "$gatewalk" validate "$scenes/field.toml" --null-draws $value --matrix-trials 1e12; done
 expect 2 'walks 0: must be at least 1' "$gatewalk" validate "$scenes/field.toml" --walks 0 --matrix-trials 1e12

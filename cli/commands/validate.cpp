@@ -78,7 +78,8 @@ int run_validate(const Arguments& arguments) {
       "takes.\n"
       "In JSON, trials_and_matrix is that verdict; p_values count chance in the trials (and "
       "walks)\n"
-      "alone.",
+      "alone. Last it asks whether the gate before, the visit or the row tell more than the "
+      "state.",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.scene();
   options.add_trials_and_seed("trials of the full dynamics per start");
@@ -90,12 +91,17 @@ int run_validate(const Arguments& arguments) {
   options.add_count("walks", "N", "walks per start (default: as many as trials)");
   options.add_count("null-draws", "N",
                     "draws behind each p-value (default: 999 to 9999, by the size of the work)");
+  options.add_flag("memory",
+                   "also run the trials with the random force drawn anew at every crossing");
   add_starts(options);
   add_bins(options);
   if (!options.parse(arguments)) return kFine;
   constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
-  lattice::ValidationOptions how{
-      .trials = options.trials(), .walks = {}, .null_draws = {}, .seed = options.seed()};
+  lattice::ValidationOptions how{.trials = options.trials(),
+                                 .walks = {},
+                                 .null_draws = {},
+                                 .seed = options.seed(),
+                                 .force_memory = options.has("memory")};
   if (options.has("walks")) how.walks = options.count("walks");
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
   if (options.has("matrix"))

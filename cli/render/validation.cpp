@@ -7,6 +7,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/memory.h"
 #include "cli/render/start.h"
 #include "cli/render/states.h"
 #include "cli/render/text.h"
@@ -122,6 +123,7 @@ Json to_json(const lattice::StartValidation& r) {
                          {"walks", grid(r.walks.departed_cells)},
                          {"exact", grid(markov::departed_cells(r.exact))}};
   j["never_sampled"] = r.exact.unsampled;
+  if (r.force) j["force_memory"] = cli::to_json(*r.force);
   return j;
 }
 
@@ -262,6 +264,7 @@ Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix) {
                     {"status", matrix.status},
                     {"seconds", matrix.seconds}};
   if (!matrix.states.is_null()) json["state_space"] = matrix.states;
+  json["markov"] = to_json(v.memory);
   json["threads"] = v.threads;
   json["status"] = to_json(v.health);
   if (!matrix.settled.is_null()) json["method"] = matrix.settled;
@@ -284,6 +287,9 @@ std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
            (papers ? " (paper: fewer than 4 %), " : ", ") +
            percent(static_cast<double>(v.clamped), crossings) + " outside the bins.\n" +
            states_line(matrix.states);
+  table += text_of(v.memory);
+  for (std::size_t k = 0; k < v.starts.size(); ++k)
+    if (v.starts[k].force) table += labels.texts[k] + "  | " + text_of(*v.starts[k].force) + "\n";
   if (v.entries == 0) table += "No trial ever reached a second gate.\n";
   return table;
 }

@@ -119,14 +119,15 @@ TimedWalks walk(const Setup& setup, const markov::Start& start) {
 }
 
 struct TimedTrials {
-  FieldTally tally;
+  RunTrials trials;  // `each` only for a study of the force
   PaperSized paper_sized;
   double seconds = 0.0;
 };
 
+/// Their walks through the states are added to `remembered`.
 TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov::Start& place,
-                       const markov::FinalDistribution& exact) {
-  TimedTrials seen{FieldTally(setup.scene.field), {}};
+                       const markov::FinalDistribution& exact, StateWalks& remembered) {
+  TimedTrials seen{{FieldTally(setup.scene.field), {}}, {}};
   BlocksOf100 blocks(exact.final_cells, setup.walks, [&](std::int64_t first, std::int64_t n) {
     std::vector<std::int32_t> cells;
     (void)setup.walker.walk(setup.field(), place, setup.scene.field.max_gates, setup.options.seed,
@@ -136,13 +137,28 @@ TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov
   setup.work.in_pieces("full dynamics", setup.options.trials, [&](TrialRange range) {
     const Stopwatch watch;
     FieldTrials each;
-    seen.tally += run_field(setup.scene.gate, setup.scene.field, start.body(), setup.matrix.space,
-                            setup.options.seed, range, &each);
+    each.keep_passages = range.first < kMostRemembered;
+    seen.trials.tally += run_field(setup.scene.gate, setup.scene.field, start.body(),
+                                   setup.matrix.space, setup.options.seed, range, &each);
     seen.seconds += watch.seconds();
     blocks.add(each.final_gates);
+    each.passed.resize(
+        std::clamp<std::int64_t>(kMostRemembered - range.first, 0, std::ssize(each.passed)));
+    add_walks(remembered, setup.matrix.space, place.input, each);
+    if (setup.options.force_memory) keep_endings(seen.trials.each, each);
   });
   seen.paper_sized = blocks.result();
   return seen;
+}
+
+/// The same trials with the force drawn anew at crossings, against these.
+ForceMemory run_anew(const Setup& setup, const PaperStart& start, const RunTrials& held) {
+  RunTrials anew{FieldTally(setup.scene.field), {}};
+  setup.work.in_pieces("force drawn anew", setup.options.trials, [&](TrialRange range) {
+    anew.tally += run_field(setup.scene.gate, setup.scene.field, start.body(), setup.matrix.space,
+                            setup.options.seed, range, &anew.each, HeldForce::drawn_anew);
+  });
+  return force_memory(held, anew, setup.options.seed);
 }
 
 /// As many as fit a fixed amount of work, 999 to 9999: each draw deals out the trials and
@@ -155,7 +171,8 @@ std::int64_t null_draws_for(const Setup& setup) {
 }
 
 StartValidation validate_start(const Setup& setup, const PaperStart& start,
-                               const std::vector<markov::FinalDistribution>& resampled) {
+                               const std::vector<markov::FinalDistribution>& resampled,
+                               StateWalks& remembered) {
   const int max_gates = setup.scene.field.max_gates;
   const ChainStart chain_start =
       lattice::chain_start(setup.matrix.space, setup.scene.field, start.body());
@@ -164,17 +181,18 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
       setup.predictor.predict(setup.field(), chain_start.start, {.max_cells = max_gates});
   const double exact_seconds = exact_watch.seconds();
   const TimedWalks walked = walk(setup, chain_start.start);
-  const TimedTrials seen = run_trials(setup, start, chain_start.start, exact);
+  const TimedTrials seen = run_trials(setup, start, chain_start.start, exact, remembered);
 
   MatrixNoise noise(exact, setup.gates.runs_at(chain_start.start));
   for (const markov::FinalDistribution& other : resampled) noise.add(other);
-  const markov::CellCounts& final_gates = seen.tally.final_gates;
+  const FieldTally& tally = seen.trials.tally;
+  const markov::CellCounts& final_gates = tally.final_gates;
   const std::int64_t draws = null_draws_for(setup);
   const std::uint64_t seed = setup.options.seed;
   const double s = concentration(final_gates);
   return {.start = start,
           .chain_start = chain_start,
-          .dynamics = seen.tally,
+          .dynamics = tally,
           .walks = walked.tally,
           .exact = exact,
           .walks_against = compare(final_gates, walked.tally.final_cells, draws, seed),
@@ -182,16 +200,18 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
           .paper_sized = seen.paper_sized,
           .floor_100_exact = noise_floor(s, exact.final_cells.size(), 100, 0),
           .floor_100_walks = noise_floor(s, exact.final_cells.size(), 100, 100),
-          .judgement = judge({final_gates, seen.tally.endings}, exact, resampled, draws, seed),
+          .judgement = judge({final_gates, tally.endings}, exact, resampled, draws, seed),
           .resampled = noise.replicates(),
           .matrix_noise_mean = noise.mean_total_variation(),
           .matrix_noise_sd = noise.sd_total_variation(),
-          .dynamics_endings = EndingShares(seen.tally.endings, seen.tally.trials),
+          .dynamics_endings = EndingShares(tally.endings, tally.trials),
           .walks_endings = EndingShares(walked.tally.endings, walked.tally.walks),
           .exact_endings = EndingShares(exact, noise, max_gates),
           .dynamics_seconds = seen.seconds,
           .walks_seconds = walked.seconds,
-          .exact_seconds = exact_seconds};
+          .exact_seconds = exact_seconds,
+          .force = setup.options.force_memory ? std::optional(run_anew(setup, start, seen.trials))
+                                              : std::nullopt};
 }
 
 }  // namespace
@@ -227,8 +247,9 @@ Validation validate_chain(const Scene& scene, const dynamics::Transitions& matri
 
   Validation v{
       .trials = options.trials, .walks = setup.walks, .starts = {}, .health = matrix.health};
+  StateWalks remembered = no_walks(matrix.space);
   for (std::size_t k = 0; k < starts.size(); ++k) {
-    v.starts.push_back(validate_start(setup, starts[k], resampled[k]));
+    v.starts.push_back(validate_start(setup, starts[k], resampled[k], remembered));
     const FieldTally& d = v.starts.back().dynamics;
     v.health += d.health;
     for (int b = 0; b < dynamics::kBoundaries; ++b) {
@@ -238,6 +259,8 @@ Validation validate_chain(const Scene& scene, const dynamics::Transitions& matri
     v.traverse_sides += d.entries[static_cast<int>(dynamics::Boundary::right_traverse)] +
                         d.entries[static_cast<int>(dynamics::Boundary::left_traverse)];
   }
+  v.memory = study_memory(remembered, matrix.space,
+                          {.null_draws = options.null_draws, .seed = options.seed}, work);
   v.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return v;
 }

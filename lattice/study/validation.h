@@ -14,6 +14,7 @@
 #include "lattice/reference.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/table4.h"
+#include "lattice/study/memory.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 
@@ -66,6 +67,8 @@ struct ValidationOptions {
   std::optional<std::int64_t>
       null_draws;  // behind each p-value; 999 to 9999, by the size of the work
   std::uint64_t seed = 1;
+  /// Runs the trials again with the random force drawn anew at crossings (ForceMemory).
+  bool force_memory = false;
 };
 
 /// Everything about one start. Trials, walks and p-values belong to the options' seed.
@@ -83,6 +86,7 @@ struct StartValidation {
   double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;  // total variation of their predictions
   EndingShares dynamics_endings, walks_endings, exact_endings;
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
+  std::optional<ForceMemory> force{};  // if asked for
 
   [[nodiscard]] Finding finding() const {
     return finding_of(judgement.differs(), exact_against.total_variation,
@@ -97,7 +101,10 @@ struct Validation {
   // Crossings between gates of all trials, through RT or LT, and outside every bin.
   std::int64_t entries = 0, traverse_sides = 0, clamped = 0;
   std::size_t threads = 0;
+  MemoryStudy memory{};  // of the first kMostRemembered trials of each start
 };
+
+inline constexpr std::int64_t kMostRemembered = 100'000;
 
 /// Compares the chain of `matrix` with the full dynamics from each start. Some 50 predictions of
 /// every gate are kept: throws std::invalid_argument for fields of more than 100 000 gates, and as

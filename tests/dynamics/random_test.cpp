@@ -259,6 +259,18 @@ TEST(RandomForce, AskingDoesNotDraw) {
   EXPECT_EQ(a.value(), b.value());
 }
 
+TEST(RandomForce, DropsTheRestOfAHoldAndGoesOnInTheSequence) {
+  RandomForce whole = force_of(7), dropped = force_of(7);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(whole.value(), dropped.value());
+    EXPECT_NEAR(dropped.left(), 0.02, 1e-15);
+    whole.pass(0.02);
+    dropped.pass(0.013);
+    dropped.drop_hold();
+    dropped.drop_hold();  // once more changes nothing
+  }
+}
+
 TEST(RandomForce, NegativeSignIsTheMirrorImage) {
   RandomForce a = force_of(6), b = force_of(6, -1.0);
   for (int i = 0; i < 1000; ++i) {

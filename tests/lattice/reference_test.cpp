@@ -185,6 +185,34 @@ TEST(RunField, TrialsCanBeReplayedAlone) {
   EXPECT_EQ(t.entries, entries);
 }
 
+// Second route: gate by gate, the hold dropped at every crossing. Lanes (moreau) round differently.
+TEST(RunField, DrawsTheForceAnewWhenAsked) {
+  for (const char* const name : {"stable", "moreau"}) {
+    GateParams p;
+    p.run.method = name;
+    const auto method = make_method(p);
+    FieldTrials each;
+    each.keep_passages = true;
+    (void)run_field(p, {9, 9, 4}, kStart, StateSpace::paper(p), 8, {0, 20}, &each,
+                    HeldForce::drawn_anew);
+    for (std::size_t i = 0; i < 20; ++i) {
+      RandomForce force(p.forces, Random(Purpose::field, {8, stream_row(p, kStart), i}));
+      BodyState body = kStart;
+      for (const GatePassage& passage : each.of_trial(i)) {
+        const GateRun r = run_gate(p, *method, body, force);
+        ASSERT_EQ(r.ending, passage.ending) << name << ' ' << i;
+        if (r.ending == Ending::trapped) break;
+        const Crossing expected = crossing_of(p, r.ending, r.exit);
+        EXPECT_EQ(expected.boundary, passage.entry.boundary) << name << ' ' << i;
+        for (const auto axis : kCrossingAxes)
+          EXPECT_NEAR(expected.*axis, passage.entry.*axis, p.run.method == "moreau" ? 1e-6 : 0.0);
+        body = shifted_into_next(p, r.ending, r.exit);
+        force.drop_hold();
+      }
+    }
+  }
+}
+
 TEST(RunField, SameTallyOnAnyNumberOfThreadsAndForAnySplit) {
   const GateParams p;
   const FieldParams field;

@@ -1,0 +1,37 @@
+#pragma once
+/// Several statistics of the same data, judged together by the same draws of the null.
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace gatewalk::lattice {
+
+/// Mean, and what 95 % of the values do not exceed.
+[[nodiscard]] std::pair<double, double> mean_and_95(std::vector<double> values);
+
+/// What looking at several statistics finds.
+struct LookedAt {
+  /// Of one statistic: what was seen, how often the null reaches it, and that p-value adjusted for
+  /// looking at all of them (single-step minP of Westfall and Young, from the same draws): how
+  /// often the null makes any of the p-values as small. At least 1 / (draws + 1); NaN where it is
+  /// no number.
+  struct Test {
+    double seen = 0.0, p = 1.0, p_adjusted = 1.0;
+  };
+  std::vector<Test> tests;
+  double p = 1.0;  // of all together: the smallest adjusted one
+
+  /// `all`: (draws + 1 x statistics) row by row, the null's draws and in the last row what was
+  /// seen. Statistics grow with the difference.
+  LookedAt(const std::vector<double>& all, std::size_t statistics);
+
+  /// The largest p-value of a single statistic that is found at `level` when all are looked at; 0:
+  /// there are too few draws for any.
+  [[nodiscard]] double single_level(double level) const;
+
+ private:
+  std::vector<std::int64_t> least_;  // (draws + 1) rank of each row, over its statistics; sorted
+};
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,162 @@
+#include "lattice/study/memory.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Boundary;
+using dynamics::StateSpace;
+
+/// Of a state, as kOrigins lists them.
+int origin_of(const StateSpace& space, int state) {
+  const dynamics::Cell cell = space.cell(state);
+  switch (cell.boundary) {
+    case Boundary::enter:
+      return cell.d[0] + cell.d[1] < 0.0 ? 0 : 1;
+    case Boundary::right_deflect:
+    case Boundary::right_traverse:
+      return 2;
+    case Boundary::left_deflect:
+    case Boundary::left_traverse:
+      break;
+  }
+  return 3;
+}
+
+/// The runs with each kind of label. Those of a walk's first gate have no gate before.
+struct Labelled {
+  std::vector<LabelledRun> gate_before, visit, row;
+};
+
+Labelled labelled(const StateWalks& w, const StateSpace& space) {
+  std::vector<int> origins;
+  for (int s = 0; s < space.size(); ++s) origins.push_back(origin_of(space, s));
+  Labelled all;
+  for (std::int64_t walk = 0; walk < w.walks(); ++walk) {
+    int row = 0;
+    for (std::int64_t i = w.begin(walk); i < w.passed[walk]; ++i) {
+      const std::int32_t state = w.state[i], next = w.next[i];
+      const std::int32_t outcome =
+          next == StateWalks::kTrapped ? dynamics::kBoundaries : w.way[next];
+      const std::int64_t visit = i - w.begin(walk);
+      if (visit > 0) {
+        row += dynamics::move_into(space.boundary(state)).di_y;
+        all.gate_before.push_back({state, origins[w.state[i - 1]], outcome});
+      }
+      all.visit.push_back(
+          {state, static_cast<std::int32_t>(std::min<std::int64_t>(visit, kVisits - 1)), outcome});
+      all.row.push_back({state, std::clamp(row, 0, kRows - 1), outcome});
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+StateWalks no_walks(const StateSpace& space) {
+  StateWalks walks;
+  walks.ways = dynamics::kBoundaries;
+  for (int s = 0; s < space.size(); ++s)
+    walks.way.push_back(static_cast<std::int32_t>(space.boundary(s)));
+  return walks;
+}
+
+void add_walks(StateWalks& walks, const StateSpace& space, int first, const FieldTrials& each) {
+  std::vector<std::int32_t> states;
+  for (std::size_t trial = 0; trial < each.passed.size(); ++trial) {
+    states.clear();
+    std::int32_t at = first;
+    for (const GatePassage& passage : each.of_trial(trial)) {
+      if (passage.ending == dynamics::Ending::broken) break;
+      states.push_back(at);
+      at = passage.ending == dynamics::Ending::trapped ? StateWalks::kTrapped
+                                                       : space.index_of(passage.entry).state;
+    }
+    walks.add(states, at);
+  }
+}
+
+double MemoryStudy::p_adjusted(Question q) const {
+  // Holm: the k-th smallest p times the number of those not smaller, never less than one before.
+  double adjusted = 0.0;
+  for (int other = 0; other < kQuestions; ++other) {
+    const double p_other = p(static_cast<Question>(other));
+    if (p_other > p(q)) continue;
+    int not_smaller = 0;
+    for (int k = 0; k < kQuestions; ++k) not_smaller += p(static_cast<Question>(k)) >= p_other;
+    adjusted = std::max(adjusted, p_other * not_smaller);
+  }
+  return std::min(1.0, adjusted);
+}
+
+bool MemoryStudy::remembers() const {
+  for (int q = 0; q < kQuestions; ++q)
+    if (remembers(static_cast<Question>(q))) return true;
+  return false;
+}
+
+MemoryStudy study_memory(const StateWalks& walks, const StateSpace& space,
+                         const MemoryOptions& options, const dynamics::Work& work) {
+  walks.validate();
+  if (walks.walks() == 0) throw std::invalid_argument("memory: no walks");
+  const auto runs = std::ssize(walks.state);
+  const std::int64_t draws =
+      options.null_draws.value_or(std::clamp<std::int64_t>(100'000'000 / runs, 399, 999));
+  const auto begin = [&](Question q) { work.tell("memory", static_cast<int>(q), kQuestions); };
+  const Labelled runs_with = labelled(walks, space);
+  const auto independence = [&](Question q, const std::vector<LabelledRun>& labelled_runs) {
+    begin(q);
+    return test_independence(labelled_runs, {.level = MemoryStudy::kLevel / kQuestions,
+                                             .null_draws = draws,
+                                             .seed = options.seed,
+                                             .number = static_cast<std::uint64_t>(q)});
+  };
+  begin(Question::gates_ahead);
+  MemoryStudy study{.walks = walks.walks(),
+                    .runs = runs,
+                    .ahead = gates_ahead(walks, kMostGatesAhead, draws, options.seed),
+                    .gate_before = independence(Question::gate_before, runs_with.gate_before),
+                    .visit = independence(Question::visit, runs_with.visit),
+                    .row = independence(Question::row, runs_with.row)};
+  work.tell("memory", kQuestions, kQuestions);
+  return study;
+}
+
+PairedDifference paired_difference(std::int64_t only_first, std::int64_t only_second,
+                                   std::int64_t trials) {
+  const double n = static_cast<double>(trials) + 2.0;
+  const auto more = static_cast<double>(only_second - only_first);
+  const auto unlike = static_cast<double>(only_first + only_second) + 1.0;
+  const double half = 1.959963984540054 * std::sqrt(unlike - more * more / n) / n;
+  return {more / static_cast<double>(trials), more / n - half, more / n + half};
+}
+
+void keep_endings(FieldTrials& all, const FieldTrials& more) {
+  all.final_gates.insert(all.final_gates.end(), more.final_gates.begin(), more.final_gates.end());
+  all.endings.insert(all.endings.end(), more.endings.begin(), more.endings.end());
+}
+
+ForceMemory force_memory(const RunTrials& held, const RunTrials& anew, std::uint64_t seed) {
+  const std::size_t trials = held.each.endings.size();
+  if (trials == 0 || anew.each.endings.size() != trials)
+    throw std::invalid_argument("force_memory: the same trials are needed in both");
+  std::array<std::int64_t, markov::kEndings> only_held{}, only_anew{};
+  for (std::size_t i = 0; i < trials; ++i) {
+    const auto a = held.each.endings[i], b = anew.each.endings[i];
+    if (a == b) continue;
+    if (a) ++only_held[static_cast<std::size_t>(*a)];
+    if (b) ++only_anew[static_cast<std::size_t>(*b)];
+  }
+  ForceMemory memory{fidelity_change({anew.tally, anew.each.final_gates},
+                                     {held.tally, held.each.final_gates}, seed),
+                     {}};
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    memory.endings[e] =
+        paired_difference(only_held[e], only_anew[e], std::ssize(held.each.endings));
+  return memory;
+}
+
+}  // namespace gatewalk::lattice
