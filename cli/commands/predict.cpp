@@ -90,6 +90,11 @@ int predict_scene(const Options& options) {
   lattice::Scene scene = lattice::read_scene(path, options.overrides());
   const lattice::AccuracyOptions how = accuracy_of(options);
   (void)bodies_of(given_starts(options), scene);
+  if (scene.field.fidelity != lattice::Fidelity::active)
+    throw UsageError(path + ": field.fidelity = \"" +
+                     std::string(lattice::name_of(scene.field.fidelity)) +
+                     "\" is not permitted for a chain: it has \"active\", gatewalk lattice the "
+                     "others");
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   return predict_accurately(options, scene, settled, {}, how);
 }

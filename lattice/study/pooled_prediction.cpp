@@ -37,15 +37,65 @@ void require_fine(const AccuracyOptions& options) {
                                 " is not permitted: must lie in (0, 1)");
 }
 
-/// Predictions from the start rows that stand behind a kernel's.
+/// Multiplications that exact predictions take, of one start, about.
+double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
+  constexpr double kStepsWithoutLimit = 50.0;
+  const double cells = static_cast<double>(field.columns) * field.rows;
+  const double steps = field.max_gates;
+  return static_cast<double>(nonzeros) * (field.max_gates == 0
+                                              ? cells * kStepsWithoutLimit
+                                              : std::min(cells, 2.0 * steps * steps) * steps / 2.0);
+}
+
+/// What walks say, as a prediction. Over which edge bodies left from a corner cell is not known:
+/// they count as having crossed there.
+FinalDistribution shares_of(const markov::WalkTally& tally) {
+  const auto n = static_cast<double>(tally.walks);
+  FinalDistribution d;
+  d.final_cells = tally.final_cells.cast<double>() / n;
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    d.endings[e] = static_cast<double>(tally.endings[e]) / n;
+  d.trapped = static_cast<double>(tally.trapped) / n;
+  d.left_field = static_cast<double>(tally.left_field) / n;
+  d.cut_off = static_cast<double>(tally.cut_off) / n;
+  d.unsampled = static_cast<double>(tally.unsampled) / n;
+  d.mean_steps = static_cast<double>(tally.steps) / n;
+  const Eigen::Index columns = tally.final_cells.cols(), rows = tally.final_cells.rows();
+  for (Eigen::Index i = 0; i < tally.final_cells.size(); ++i) {
+    const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
+    const std::int64_t trapped = tally.trapped_cells.data()[i],
+                       departed = tally.departed_cells.data()[i], all = tally.final_cells.data()[i];
+    if (trapped == all) continue;
+    const markov::Ending edge = i / columns == rows - 1 ? markov::Ending::far_edge
+                                : i % columns == 0      ? markov::Ending::left_edge
+                                                        : markov::Ending::right_edge;
+    markov::CellEndings cell{i};
+    cell.by_ending[static_cast<std::size_t>(markov::Ending::trapped)] = share(trapped);
+    cell.by_ending[static_cast<std::size_t>(edge)] = share(departed);
+    cell.by_ending[static_cast<std::size_t>(markov::Ending::cut_off)] =
+        share(all - trapped - departed);
+    d.mixed_cells.push_back(cell);
+  }
+  return d;
+}
+
+/// Predictions from the start rows that stand behind a kernel's: exact, or by `walks` where there
+/// is a number.
 std::vector<FinalDistribution> predictions(const Kernel& kernel,
                                            const std::vector<std::vector<std::int64_t>>& first_rows,
-                                           const FieldParams& field) {
+                                           const FieldParams& field, std::int64_t walks,
+                                           std::uint64_t seed) {
   std::vector<markov::Start> places;
   for (std::size_t i = 0; i < first_rows.size(); ++i)
     places.push_back({field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
-  return markov::predict(chain_of(kernel, first_rows), {field.columns, field.rows}, places,
-                         {.max_cells = field.max_gates});
+  const markov::Field cells{field.columns, field.rows};
+  const markov::Chain chain = chain_of(kernel, first_rows);
+  if (walks == 0) return markov::predict(chain, cells, places, {.max_cells = field.max_gates});
+  const markov::Walker walker(chain);
+  std::vector<FinalDistribution> all;
+  for (const markov::Start& start : places)
+    all.push_back(shares_of(walker.walk(cells, start, field.max_gates, seed, {0, walks})));
+  return all;
 }
 
 /// What the pool says of some of its starts.
@@ -57,10 +107,14 @@ struct Said {
   std::vector<std::vector<FinalDistribution>> kernels{};
   int states = 0;
   std::int64_t nonzeros = 0;
+  std::int64_t walks = 0;  // behind each of `whole`; 0: they are exact
 };
 
 Said ask(const Scene& scene, const RunPool& pool, const std::vector<std::size_t>& starts,
-         int per_leaf, bool with_kernels) {
+         const AccuracyOptions& options, bool with_kernels) {
+  // Where exact predictions take longer, walks do: so many, of a group a part of them.
+  constexpr double kMostExact = 1e9;
+  constexpr std::int64_t kWalks = std::int64_t{1} << 22, kWalksOfGroup = std::int64_t{1} << 18;
   const std::size_t n = starts.size();
   Said said{.whole = {}, .groups = {n, std::vector<FinalDistribution>(kTrialGroups)}};
   if (with_kernels) said.kernels = said.groups;
@@ -70,22 +124,27 @@ Said ask(const Scene& scene, const RunPool& pool, const std::vector<std::size_t>
       all.push_back(first_row(scene.gate, space, pool.starts[s], group));
     return all;
   };
+  const bool by_walks =
+      exact_cost(2 * pool.gate_runs(), scene.field) > kMostExact;  // some nonzeros a run
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     if (g < 0) {
-      const Kernel kernel = kernel_of(scene.gate, pool, per_leaf);
-      said.whole = predictions(kernel, rows(kernel.space, {}), scene.field);
+      const Kernel kernel = kernel_of(scene.gate, pool, options.per_leaf);
+      said.walks = by_walks ? kWalks : 0;
+      said.whole =
+          predictions(kernel, rows(kernel.space, {}), scene.field, said.walks, options.seed);
       said.states = kernel.space.size();
       said.nonzeros = kernel.counts.nonZeros();
       return;
     }
     const TrialGroup group{g, kTrialGroups};
-    const Kernel kernel = kernel_of(scene.gate, pool, per_leaf, group);
+    const Kernel kernel = kernel_of(scene.gate, pool, options.per_leaf, group);
     auto first = rows(kernel.space, group);
     if (with_kernels) {
       auto all = rows(kernel.space, {});
       first.insert(first.end(), all.begin(), all.end());
     }
-    auto found = predictions(kernel, first, scene.field);
+    auto found = predictions(kernel, first, scene.field, by_walks ? kWalksOfGroup : 0,
+                             options.seed + 1 + static_cast<std::uint64_t>(g));
     for (std::size_t i = 0; i < n; ++i) {
       said.groups[i][static_cast<std::size_t>(g)] = std::move(found[i]);
       if (with_kernels) said.kernels[i][static_cast<std::size_t>(g)] = std::move(found[n + i]);
@@ -197,9 +256,15 @@ class Runner {
   std::int64_t trials_ = 0, trial_runs_ = 0;
 };
 
-/// Error bars of one start.
+/// Total variation that so many walks keep from what endlessly many would give, 95 times in 100.
+double chance_of_walks(const FinalDistribution& d, std::int64_t walks) {
+  constexpr double kToQuantile = 1.3;
+  return walks == 0 ? 0.0 : kToQuantile * expected_total_variation(d.final_cells, walks);
+}
+
+/// Error bars of one start; `chance` is that of the walks behind `whole`.
 StartAnswer answer_of(const Scene& scene, const StartTrials& s, FinalDistribution whole,
-                      const std::vector<FinalDistribution>& groups,
+                      double chance, const std::vector<FinalDistribution>& groups,
                       const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
   StartAnswer a;
   a.start = s.start;
@@ -207,6 +272,7 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, FinalDistributio
   a.first_runs = s.first_runs();
   const GroupSpread spread(whole, groups);
   a.error = spread.error(seed);
+  a.error.total_variation = std::hypot(a.error.total_variation, chance);
   a.kernel_error_95 = kernels.empty() ? a.error.total_variation
                                       : GroupSpread(whole, kernels).error(seed).total_variation;
   Error95 of_trials{1.0, 0.0, 100.0};
@@ -337,14 +403,15 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
     for (const std::size_t k : open) asked.push_back(places[k]);
     // A single start's full trials make both its row and the kernel, in good proportion.
     const bool with_kernels = starts.size() > 1 || has_others;
-    Said said = ask(scene, pool, asked, options.per_leaf, with_kernels);
+    Said said = ask(scene, pool, asked, options, with_kernels);
     result.states = said.states;
     result.nonzeros = said.nonzeros;
     std::vector<std::size_t> left;
     for (std::size_t i = 0; i < open.size(); ++i) {
       const std::size_t k = open[i];
+      const double chance = chance_of_walks(said.whole[i], said.walks);
       result.starts[k] = answer_of(
-          scene, pool.starts[places[k]], std::move(said.whole[i]), said.groups[i],
+          scene, pool.starts[places[k]], std::move(said.whole[i]), chance, said.groups[i],
           with_kernels ? said.kernels[i] : std::vector<FinalDistribution>{}, options.seed);
       if (result.starts[k].error.total_variation > options.accuracy) left.push_back(k);
     }
@@ -397,7 +464,7 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
   runner.run_scattered(pool.scattered, range, kBegin);
   for (;;) {
     tried.scattered = std::move(pool.scattered);
-    const Said said = ask(scene, tried, all, options.per_leaf, true);
+    const Said said = ask(scene, tried, all, options, true);
     pool.scattered = std::move(tried.scattered);
     std::vector<double> errors;
     for (std::size_t k = 0; k < all.size(); ++k)

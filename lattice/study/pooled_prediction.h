@@ -51,10 +51,12 @@ struct PooledPrediction {
   dynamics::Health health;
 };
 
-/// Answers for `starts` (y = 0, different). The pool keeps all runs; what it holds already is used.
-/// Trials are those of the seed that no other command runs. The same but for the seconds on any
-/// number of threads. Throws std::invalid_argument for a start inside the gate and an accuracy
-/// outside (0, 1), as run_field, and std::runtime_error when a run broke.
+/// Answers for `starts` (y = 0, different): exact for the chain, or from 4 million walks where that
+/// would take long (large fields, very many runs), whose chance is in the error bar. The pool keeps
+/// all runs; what it holds already is used. Trials are those of the seed that no other command
+/// runs. The same but for the seconds on any number of threads. Throws std::invalid_argument for a
+/// start inside the gate and an accuracy outside (0, 1), as run_field, and std::runtime_error when
+/// a run broke.
 [[nodiscard]] PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
                                               const std::vector<dynamics::BodyState>& starts,
                                               const AccuracyOptions& options,

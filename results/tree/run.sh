@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Chains of trees: error against cost beside direct simulation, and whether their error bars hold.
+#   results/tree/run.sh [GATEWALK]      about 40 minutes on two cores, needs python3
+# Writes points.csv, summary.txt, manifest.txt.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+gatewalk=$(realpath "${1:-$root/build/gatewalk}")
+. "$root/results/manifest.sh"
+python3 "$here/study.py" "$gatewalk" "$here"
+manifest "results/tree/run.sh" >"$here/manifest.txt"
