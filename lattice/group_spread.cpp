@@ -13,7 +13,8 @@ namespace {
 
 /// Of what states of a group (eight times as large) cost more than the whole one's, the part that
 /// the whole one's cost too. Errors of small states go with the 2/3rd power of their size: 1/3;
-/// measured 1/3 to 1/2 (results/tree).
+/// 1/2 is on the safe side, and error bars hold as often as they
+/// should (results/tree).
 constexpr double kBiasLeft = 0.5;
 
 /// Draws behind a quantile, fewer for large fields.

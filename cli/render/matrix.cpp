@@ -16,6 +16,15 @@ namespace {
 
 using namespace dynamics;
 
+/// Gate runs behind the counts: of a tree, those that its record says (mirror images count twice,
+/// and first runs of trials are rows of their own).
+std::int64_t gate_runs_of(const lattice::MatrixFile& file, const std::string& path) {
+  const Json states = recorded(file, path, "state_space");
+  if (file.transitions.space.has_trees() && states.contains("gate_runs"))
+    return states.at("gate_runs").get<std::int64_t>();
+  return file.transitions.totals().runs;
+}
+
 /// Share of a row's trials that came out at each boundary of the next gate, and trapped.
 std::array<double, kBoundaries + 1> outcome_shares(const Transitions& t, int row) {
   std::array<double, kBoundaries + 1> share{};
@@ -149,7 +158,8 @@ Json to_json(const lattice::MatrixFile& file, const std::string& path) {
   Json json;
   json["inputs"] = n;
   json["outputs"] = n + 1;
-  json["gate_runs"] = total.runs;
+  json["gate_runs"] = gate_runs_of(file, path);
+  json["counts"] = total.runs;
   json["nonzeros"] = total.nonzeros;
   json["density"] = static_cast<double>(total.nonzeros) / cells;
   json["clamped_share"] = total.clamped_share();
@@ -185,10 +195,13 @@ std::string table_of(const lattice::MatrixFile& file, const std::string& path,
   std::ostringstream out;
   out << path << "\n"
       << "  size                " << n << " inputs x " << n + 1 << " outputs (the last: trapped)\n"
-      << "  gate runs           " << total.runs << "\n"
+      << "  gate runs           " << gate_runs_of(file, path)
+      << (t.space.has_trees() ? ", counts " + std::to_string(total.runs) : "") << "\n"
       << "  nonzeros            " << total.nonzeros << " of " << std::int64_t{n} * (n + 1) << " ("
       << percent(static_cast<double>(total.nonzeros), cells) << ")\n"
-      << "  clamped crossings   " << percent(total.clamped_share(), 1.0) << "\n"
+      << (t.space.has_trees()
+              ? ""
+              : "  clamped crossings   " + percent(total.clamped_share(), 1.0) + "\n")
       << "  rows never sampled  " << total.empty_rows << "\n";
   for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins"})
     if (const auto it = file.text.find(key); it != file.text.end())
