@@ -52,7 +52,12 @@ SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string&
 }
 
 std::string entry_bins(const dynamics::StateSpace& space) {
-  const dynamics::Bins& enter = space.bins()[static_cast<int>(dynamics::Boundary::enter)];
+  constexpr auto kEnter = static_cast<std::size_t>(dynamics::Boundary::enter);
+  if (space.has_trees()) {
+    const auto& seen = space.trees()[kEnter].seen;
+    return text_of(dynamics::Cell{dynamics::Boundary::enter, seen[0], seen[1], seen[2]});
+  }
+  const dynamics::Bins& enter = space.bins()[kEnter];
   const auto range = [](const std::vector<double>& edges) {
     return std::array<double, 2>{edges.front(), edges.back()};
   };

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Chains of trees: error against cost beside direct simulation, and whether their error bars hold.
 #   results/tree/run.sh [GATEWALK]      about 40 minutes on two cores, needs python3
-# Writes points.csv, summary.txt, manifest.txt.
+# Writes points.csv, summary.txt, tree.svg, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 gatewalk=$(realpath "${1:-$root/build/gatewalk}")
 . "$root/results/manifest.sh"
 python3 "$here/study.py" "$gatewalk" "$here"
+python3 "$here/chart.py" "$here"
 manifest "results/tree/run.sh" >"$here/manifest.txt"
