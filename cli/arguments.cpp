@@ -144,15 +144,35 @@ double accuracy_of(const lattice::MatrixFile& file, const std::string& path) {
          (states.at("range").is_null() ? 1.0 : lattice::kPartForOne);
 }
 
+int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
+  const Json states = recorded(file, path, "state_space");
+  return states.is_null() ? dynamics::kEntriesPerLeaf
+                          : states.value("entries_per_leaf", dynamics::kEntriesPerLeaf);
+}
+
 void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
                    const std::vector<dynamics::BodyState>& bodies) {
   if (!lattice::has_runs(m.file)) return;
-  lattice::RunPool pool = lattice::pool_of(m.file, path);
-  const lattice::AccuracyOptions how{.accuracy = accuracy_of(m.file, path), .seed = options.seed()};
-  const auto prediction = lattice::predict_pooled(m.scene, pool, bodies, how, options.work());
-  const Json states = recorded(m.file, path, "state_space");
-  m.file.transitions =
-      lattice::matrix_of(m.scene, pool, bodies, states.at("entries_per_leaf").get<int>());
+  lattice::RunPool pool = lattice::pool_of(m.file, m.scene.field, path);
+  std::vector<dynamics::BodyState> unknown;
+  for (const dynamics::BodyState& b : bodies)
+    if (pool.place_of({dynamics::Boundary::enter, b.x, b.vx, b.vy}) == pool.starts.size())
+      unknown.push_back(b);
+  if (unknown.empty()) return;
+  lattice::AccuracyOptions how;
+  how.accuracy = accuracy_of(m.file, path);
+  how.most_runs = std::max<std::int64_t>(100'000, pool.gate_runs());
+  how.per_leaf = entries_per_leaf(m.file, path);
+  how.seed = options.seed();
+  const auto prediction = lattice::predict_pooled(m.scene, pool, unknown, how, options.work());
+  options.remark(std::to_string(prediction.gate_runs) + " gate runs from starts that " + path +
+                 " does not know");
+  options.warn(complaint(prediction.health));
+  warn_of(options, prediction, how.accuracy);
+  std::vector<dynamics::BodyState> all;
+  for (const lattice::StartTrials& s : pool.starts)
+    all.push_back({s.start.d, 0.0, s.start.vx, s.start.vy});
+  m.file.transitions = lattice::matrix_of(m.scene, pool, all, how.per_leaf);
   m.file.transitions.health = prediction.health;
 }
 

@@ -46,8 +46,9 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
 
 /// The accuracy for one start that a matrix of trees was made for.
 [[nodiscard]] double accuracy_of(const lattice::MatrixFile& file, const std::string& path);
+[[nodiscard]] int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path);
 /// A matrix of trees, in which each of these bodies' starts is a state of its own: trials are added
-/// where need be. Other matrices stay as they are.
+/// for those that it does not know, which is said. Other matrices stay as they are.
 void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
                    const std::vector<dynamics::BodyState>& bodies);
 

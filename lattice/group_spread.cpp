@@ -39,10 +39,17 @@ Error95 error_of_draws(int draws, const CellProbabilities& p,
     const CellProbabilities other = draw(k);
     distances.push_back(total_variation(other, p));
     const double correlation = corrcoef(other, p);
-    correlations.push_back(std::isfinite(correlation) ? -correlation : 0.0);
+    if (std::isfinite(correlation)) correlations.push_back(-correlation);
     rmses.push_back(rmse_per_100(other, p));
   }
-  return {quantile(distances, 0.95), -quantile(correlations, 0.95), quantile(rmses, 0.95)};
+  const double least =
+      correlations.size() == distances.size() ? -quantile(correlations, 0.95) : std::nan("");
+  return {quantile(distances, 0.95), least, quantile(rmses, 0.95)};
+}
+
+/// The largest share that so many trials miss altogether 5 times in 100.
+double unseen_95(std::int64_t trials) {
+  return 1.0 - std::pow(0.05, 1.0 / static_cast<double>(std::max<std::int64_t>(1, trials)));
 }
 
 constexpr std::uint64_t kGroupDraws = 0x67726f7570;  // "group", row of their streams
@@ -68,7 +75,7 @@ GroupSpread::Moments GroupSpread::moments(Value value) const {
   return {std::sqrt(squares / (n * (n - 1.0))), kBiasLeft * (mean - value(whole_))};
 }
 
-Error95 GroupSpread::error(std::uint64_t seed) const {
+Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
   const auto n = static_cast<double>(groups_.size());
   CellProbabilities mean =
       CellProbabilities::Zero(whole_.final_cells.rows(), whole_.final_cells.cols());
@@ -83,7 +90,8 @@ Error95 GroupSpread::error(std::uint64_t seed) const {
         for (const auto& g : groups_) drawn += scale * random.normal() * (g.final_cells - mean);
         return drawn;
       });
-  e.total_variation = std::min(1.0, e.total_variation + whole_.unsampled + whole_.remainder);
+  e.total_variation = std::min(
+      1.0, std::max(e.total_variation, unseen_95(trials)) + whole_.unsampled + whole_.remainder);
   return e;
 }
 
@@ -97,7 +105,7 @@ double half_width(double error, double bias) { return std::hypot(kQuantile * err
 
 }  // namespace
 
-std::array<CellProbabilities, 2> GroupSpread::gates_95() const {
+std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) const {
   std::array<CellProbabilities, 2> range{whole_.final_cells, whole_.final_cells};
   for (Eigen::Index i = 0; i < whole_.final_cells.size(); ++i) {
     const Moments m =
@@ -105,6 +113,10 @@ std::array<CellProbabilities, 2> GroupSpread::gates_95() const {
     const double half = half_width(m.error, m.bias), p = whole_.final_cells.data()[i];
     range[0].data()[i] = std::max(0.0, p - half);
     range[1].data()[i] = std::min(1.0, p + half);
+    if (half > 0.0) continue;
+    const auto unseen =
+        dynamics::interval_of_share(std::clamp(p, 0.0, 1.0), static_cast<double>(trials));
+    for (std::size_t side = 0; side < 2; ++side) range[side].data()[i] = unseen[side];
   }
   return range;
 }
@@ -124,9 +136,11 @@ EndingShares GroupSpread::endings_95(std::int64_t trials) const {
 Error95 error_of_shares(const CellCounts& counts, std::uint64_t seed) {
   const CellProbabilities p = shares(counts);
   const std::int64_t trials = counts.sum();
-  return error_of_draws(draws_for(p.size()), p, [&](int k) {
+  Error95 e = error_of_draws(draws_for(p.size()), p, [&](int k) {
     return shares(sampled(p, trials, seed ^ kGroupDraws, static_cast<std::uint64_t>(k)));
   });
+  e.total_variation = std::max(e.total_variation, unseen_95(trials));
+  return e;
 }
 
 }  // namespace gatewalk::lattice

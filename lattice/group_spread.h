@@ -19,7 +19,7 @@ inline constexpr int kTrialGroups = 8;
 /// 95 % of predictions like this one are no further from the truth.
 struct Error95 {
   double total_variation = 0.0;  // of the final gates, at most
-  double corrcoef = 1.0;         // with the true shares, at least
+  double corrcoef = 1.0;         // with the true shares, at least; NaN where there is none
   double rmse_per_100 = 0.0;     // at most
 };
 
@@ -30,11 +30,11 @@ class GroupSpread {
   GroupSpread(const markov::FinalDistribution& whole,
               const std::vector<markov::FinalDistribution>& groups);
 
-  /// From errors drawn as the groups differ.
-  [[nodiscard]] Error95 error(std::uint64_t seed) const;
+  /// From errors drawn as the groups differ. `trials`: behind the prediction. They say what shares
+  /// can be that no group sees, here and below.
+  [[nodiscard]] Error95 error(std::int64_t trials, std::uint64_t seed) const;
   /// Final gates: low and high (rows x columns).
-  [[nodiscard]] std::array<CellProbabilities, 2> gates_95() const;
-  /// `trials`: behind the prediction. They say what a share can be that no group sees.
+  [[nodiscard]] std::array<CellProbabilities, 2> gates_95(std::int64_t trials) const;
   [[nodiscard]] EndingShares endings_95(std::int64_t trials) const;
 
  private:

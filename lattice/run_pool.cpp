@@ -67,6 +67,12 @@ markov::Counts counted(const std::vector<int>& row, const std::vector<int>& colu
 
 }  // namespace
 
+std::size_t RunPool::place_of(const Crossing& start) const {
+  const auto own = std::find_if(starts.begin(), starts.end(),
+                                [&](const StartTrials& s) { return s.start == start; });
+  return static_cast<std::size_t>(own - starts.begin());
+}
+
 std::int64_t RunPool::gate_runs() const {
   std::int64_t runs = std::ssize(scattered.each.passages);
   for (const StartTrials& s : starts) runs += s.gate_runs();
@@ -81,6 +87,8 @@ Kernel kernel_of(const GateParams& p, const RunPool& pool, int per_leaf, TrialGr
     if (mirror) entries.push_back(mirrored(entry));
   });
   std::vector<int> row, column;
+  const std::int64_t fits = 2 * std::ssize(entries) / kMostStates;
+  per_leaf = static_cast<int>(std::max<std::int64_t>(per_leaf, fits));
   StateSpace space = tree_space(p, entries, per_leaf, {}, &row);
   column.reserve(row.size());
   const std::size_t together = mirror ? 2 : 1;

@@ -19,7 +19,7 @@ struct StartTrials {
   dynamics::Crossing start{};
   FieldTrials full{.final_gates = {}, .keep_passages = true};
   FieldTrials first{.final_gates = {}, .keep_passages = true};  // that ran through one gate only
-  bool knows_endings = true;  // full trials were run in the field at hand, and kept how they ended
+  bool knows_endings = true;  // the full trials were run in the field at hand
 
   /// Runs through the first gate.
   [[nodiscard]] std::int64_t first_runs() const {
@@ -40,6 +40,8 @@ struct RunPool {
   std::vector<StartTrials> starts;
   ScatteredTrials scattered;
 
+  /// Place of a start among `starts`; their number if it is none.
+  [[nodiscard]] std::size_t place_of(const dynamics::Crossing& start) const;
   [[nodiscard]] std::int64_t gate_runs() const;
 };
 
@@ -55,7 +57,8 @@ struct Kernel {
 };
 
 /// From the runs of one group of the trials but the starts' own first ones. With mirror images a
-/// run makes two counts. Runs that broke are left out.
+/// run makes two counts. Runs that broke are left out. Leaves are larger where there would be more
+/// than kMostStates of them.
 [[nodiscard]] Kernel kernel_of(const dynamics::GateParams& p, const RunPool& pool,
                                int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {});
 

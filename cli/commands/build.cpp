@@ -54,6 +54,9 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
   for (const lattice::PaperStart& s : given_starts(options)) how.starts.push_back(s.body());
   lattice::require_inside(given_starts(options), scene);
   if (how.starts.empty() && !how.range) how.starts = {scene.start};
+  if (scene.field.fidelity != lattice::Fidelity::active)
+    options.warn("field.fidelity = \"" + std::string(lattice::name_of(scene.field.fidelity)) +
+                 "\" is of the full dynamics: a chain always has \"active\"");
   const dynamics::Stopwatch watch;
   const lattice::TreeChain chain = lattice::make_tree_chain(scene, how, options.work());
   const Json bins = "tree", space = to_json(chain, how.accuracy.accuracy);

@@ -104,8 +104,10 @@ int predict_from_runs(const Options& options, const lattice::SceneMatrix& m) {
   lattice::AccuracyOptions how = accuracy_of(options);
   const std::string path = options.text("matrix");
   if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
+  how.per_leaf = entries_per_leaf(m.file, path);
   if (options.has("first-runs")) how.first_runs = options.count("first-runs", 8);
-  return predict_accurately(options, m.scene, {}, lattice::pool_of(m.file, path), how);
+  return predict_accurately(options, m.scene, {}, lattice::pool_of(m.file, m.scene.field, path),
+                            how);
 }
 
 }  // namespace
@@ -136,7 +138,9 @@ int run_predict(const Arguments& arguments) {
                    "auto");
   options.add_strict();
   options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
-  options.add_seed("seed of the resampled matrices behind the intervals");
+  options.add_seed(
+      "seed of all trials; of a matrix of bins: of the resampled matrices behind the "
+      "intervals");
   if (!options.parse(arguments)) return kFine;
   if (!is_matrix(options.text("matrix"))) return predict_scene(options);
   const std::string solver = options.text("solver"), path = options.text("matrix");
@@ -148,8 +152,8 @@ int run_predict(const Arguments& arguments) {
   const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0;
   if (lattice::has_runs(m.file) && others.empty() && solver == "auto" && !no_runs)
     return predict_from_runs(options, m);
-  for (const char* other : {"accuracy", "gate-runs"})
-    if (options.has(other))
+  for (const char* other : {"accuracy", "gate-runs", "first-runs"})
+    if (options.has(other) && !(no_runs && std::string_view(other) == "first-runs"))
       throw UsageError(std::string("--") + other + ": " + path +
                        " keeps no gate runs that could be added to (or --row, --solver, "
                        "--first-runs 0 asks for the matrix as it is)");

@@ -40,6 +40,10 @@ Subject build_subject(const Options& options) {
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   if (tree && options.has("matrix-trials"))
     throw UsageError("--matrix-trials is of runs per state of bins: --bins tree takes --accuracy");
+  for (const char* other : {"accuracy", "gate-runs"})
+    if (!tree && options.has(other))
+      throw UsageError(std::string("--") + other +
+                       " has no meaning for bins: it is for --bins tree");
   if (!tree && choice.kind != lattice::BinsChoice::Kind::automatic)
     require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);

@@ -39,7 +39,7 @@ int run_walk(const Arguments& arguments) {
   options.warn(too_few_gates(m.scene));
   options.remark(fixed(seconds, 3) + " s, " + fixed(static_cast<double>(walks) / seconds / 1e6, 2) +
                  " million walks a second");
-  return exit_status(options, faults_recorded(status).empty());
+  return exit_status(options, faults_recorded(status).empty() && t.health.clean());
 }
 
 }  // namespace gatewalk::cli

@@ -80,21 +80,22 @@ FinalDistribution shares_of(const markov::WalkTally& tally) {
 }
 
 /// Predictions from the start rows that stand behind a kernel's: exact, or by `walks` where there
-/// is a number.
+/// are any.
 std::vector<FinalDistribution> predictions(const Kernel& kernel,
                                            const std::vector<std::vector<std::int64_t>>& first_rows,
-                                           const FieldParams& field, std::int64_t walks,
+                                           const FieldParams& field, markov::WalkRange walks,
                                            std::uint64_t seed) {
   std::vector<markov::Start> places;
   for (std::size_t i = 0; i < first_rows.size(); ++i)
     places.push_back({field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
   const markov::Field cells{field.columns, field.rows};
   const markov::Chain chain = chain_of(kernel, first_rows);
-  if (walks == 0) return markov::predict(chain, cells, places, {.max_cells = field.max_gates});
+  if (walks.count == 0)
+    return markov::predict(chain, cells, places, {.max_cells = field.max_gates});
   const markov::Walker walker(chain);
   std::vector<FinalDistribution> all;
   for (const markov::Start& start : places)
-    all.push_back(shares_of(walker.walk(cells, start, field.max_gates, seed, {0, walks})));
+    all.push_back(shares_of(walker.walk(cells, start, field.max_gates, seed, walks)));
   return all;
 }
 
@@ -131,7 +132,7 @@ Said ask(const Scene& scene, const RunPool& pool, const std::vector<std::size_t>
       const Kernel kernel = kernel_of(scene.gate, pool, options.per_leaf);
       said.walks = by_walks ? kWalks : 0;
       said.whole =
-          predictions(kernel, rows(kernel.space, {}), scene.field, said.walks, options.seed);
+          predictions(kernel, rows(kernel.space, {}), scene.field, {0, said.walks}, options.seed);
       said.states = kernel.space.size();
       said.nonzeros = kernel.counts.nonZeros();
       return;
@@ -143,8 +144,8 @@ Said ask(const Scene& scene, const RunPool& pool, const std::vector<std::size_t>
       auto all = rows(kernel.space, {});
       first.insert(first.end(), all.begin(), all.end());
     }
-    auto found = predictions(kernel, first, scene.field, by_walks ? kWalksOfGroup : 0,
-                             options.seed + 1 + static_cast<std::uint64_t>(g));
+    const markov::WalkRange walks{kWalks + g * kWalksOfGroup, by_walks ? kWalksOfGroup : 0};
+    auto found = predictions(kernel, first, scene.field, walks, options.seed);
     for (std::size_t i = 0; i < n; ++i) {
       said.groups[i][static_cast<std::size_t>(g)] = std::move(found[i]);
       if (with_kernels) said.kernels[i][static_cast<std::size_t>(g)] = std::move(found[n + i]);
@@ -215,12 +216,8 @@ class Runner {
   [[nodiscard]] double seconds_per_gate_run() const {
     return seconds / static_cast<double>(std::max<std::int64_t>(1, gate_runs));
   }
-  /// Throws when a run broke; checks a sample by a better method.
+  /// Checks a sample by a better method.
   void finish() {
-    if (health.broken > 0)
-      throw std::runtime_error("prediction: " + std::to_string(health.broken) +
-                               " gate runs stopped being finite numbers; try method stable or a "
-                               "smaller run.step_s");
     if (gate_runs > 0)
       check_outcomes(scene_, RunsFrom::everywhere, options_.seed, std::max(trials_, gate_runs / 10),
                      health, work_);
@@ -246,6 +243,10 @@ class Runner {
       trial_runs_ += tally.health.runs;
     });
     seconds += watch.seconds();
+    if (health.broken > 0)
+      throw std::runtime_error("prediction: " + std::to_string(health.broken) +
+                               " gate runs stopped being finite numbers; try method stable or a "
+                               "smaller run.step_s");
   }
 
   const Scene& scene_;
@@ -271,21 +272,23 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, FinalDistributio
   a.trials = s.knows_endings ? std::ssize(s.full.final_gates) : 0;
   a.first_runs = s.first_runs();
   const GroupSpread spread(whole, groups);
-  a.error = spread.error(seed);
+  const std::int64_t behind = a.trials > 0 ? a.trials : a.first_runs;
+  a.error = spread.error(behind, seed);
   a.error.total_variation = std::hypot(a.error.total_variation, chance);
-  a.kernel_error_95 = kernels.empty() ? a.error.total_variation
-                                      : GroupSpread(whole, kernels).error(seed).total_variation;
+  a.kernel_error_95 = kernels.empty()
+                          ? a.error.total_variation
+                          : GroupSpread(whole, kernels).error(behind, seed).total_variation;
   Error95 of_trials{1.0, 0.0, 100.0};
   if (a.trials > 0) {
     CellCounts counts = CellCounts::Zero(scene.field.rows, scene.field.columns);
     for (const std::int32_t cell : s.full.final_gates) ++counts.data()[cell];
     of_trials = error_of_shares(counts, seed);
     a.trials_error_95 = of_trials.total_variation;
-    a.from_trials = a.trials_error_95 < a.error.total_variation;
+    a.from_trials = a.trials_error_95 < 0.95 * a.error.total_variation;
   }
   if (!a.from_trials) {
-    a.endings = spread.endings_95(a.trials > 0 ? a.trials : a.first_runs);
-    a.gates_95 = spread.gates_95();
+    a.endings = spread.endings_95(behind);
+    a.gates_95 = spread.gates_95(behind);
     a.final = std::move(whole);
     return a;
   }
@@ -322,7 +325,8 @@ void add_trials_of(StartTrials& s, const StartAnswer& a, double accuracy, Runner
     runner.run_first(s, static_cast<std::int64_t>(n * (times_more(first, left) - 1.0)));
     return;
   }
-  const auto n = static_cast<double>(std::max(a.trials, kFirstRound / 2));
+  const auto n =
+      static_cast<double>(std::max<std::int64_t>(std::ssize(s.full.final_gates), kFirstRound / 2));
   runner.run_full(s, static_cast<std::int64_t>(n * (times_more(error, accuracy) - 1.0)));
 }
 
@@ -347,10 +351,8 @@ std::vector<std::size_t> places_of(const std::vector<BodyState>& starts, RunPool
           "start.y_m = " + std::to_string(body.y) +
           " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
     const Crossing entry = entry_of(body);
-    const auto known = std::find_if(pool.starts.begin(), pool.starts.end(),
-                                    [&](const StartTrials& s) { return s.start == entry; });
-    places.push_back(static_cast<std::size_t>(known - pool.starts.begin()));
-    if (known != pool.starts.end()) continue;
+    places.push_back(pool.place_of(entry));
+    if (places.back() < pool.starts.size()) continue;
     StartTrials& s = pool.starts.emplace_back();
     s.start = entry;
     if (has_kernel)
@@ -407,16 +409,18 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
     result.states = said.states;
     result.nonzeros = said.nonzeros;
     std::vector<std::size_t> left;
+    bool chance_is_too_much = false;  // of walks: more trials would not help
     for (std::size_t i = 0; i < open.size(); ++i) {
       const std::size_t k = open[i];
       const double chance = chance_of_walks(said.whole[i], said.walks);
+      chance_is_too_much = chance_is_too_much || chance >= options.accuracy;
       result.starts[k] = answer_of(
           scene, pool.starts[places[k]], std::move(said.whole[i]), chance, said.groups[i],
           with_kernels ? said.kernels[i] : std::vector<FinalDistribution>{}, options.seed);
       if (result.starts[k].error.total_variation > options.accuracy) left.push_back(k);
     }
     result.reached = left.empty();
-    if (!runner.may_go_on() || options.first_runs) break;
+    if (!runner.may_go_on() || options.first_runs || chance_is_too_much) break;
     open = std::move(left);
     for (const std::size_t k : open)
       if (runner.may_go_on())
@@ -468,8 +472,9 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
     pool.scattered = std::move(tried.scattered);
     std::vector<double> errors;
     for (std::size_t k = 0; k < all.size(); ++k)
-      errors.push_back(
-          GroupSpread(said.whole[k], said.kernels[k]).error(options.seed).total_variation);
+      errors.push_back(GroupSpread(said.whole[k], said.kernels[k])
+                           .error(kFirstRuns, options.seed)
+                           .total_variation);
     std::sort(errors.begin(), errors.end());
     result.kernel_error_95 = errors[errors.size() / 2];
     result.worst_kernel_error_95 = errors.back();

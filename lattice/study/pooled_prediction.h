@@ -4,7 +4,6 @@
 /// these are the more certain.
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -17,7 +16,8 @@ namespace gatewalk::lattice {
 
 struct AccuracyOptions {
   double accuracy = 0.02;  // total variation of the final gates that 95 % of answers keep
-  std::int64_t most_runs = std::numeric_limits<std::int64_t>::max();  // new gate runs, about
+  /// New gate runs, but for the first few of each start. (These take some GB.)
+  std::int64_t most_runs = 20'000'000;
   /// None are added but these: so many first runs of a start that the pool does not know.
   std::optional<std::int64_t> first_runs{};
   int per_leaf = dynamics::kEntriesPerLeaf;

@@ -71,8 +71,11 @@ TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options, const 
     part.accuracy *= 1.2 * kPartForOne;
     range = pool_range(scene, pool, *options.range, part, work);
   }
-  if (!options.starts.empty())
-    prediction = predict_pooled(scene, pool, options.starts, options.accuracy, work);
+  if (!options.starts.empty()) {
+    AccuracyOptions rest = options.accuracy;
+    if (range) rest.most_runs = std::max<std::int64_t>(1, rest.most_runs - range->gate_runs);
+    prediction = predict_pooled(scene, pool, options.starts, rest, work);
+  }
   Kernel kernel = kernel_of(scene.gate, pool, options.accuracy.per_leaf);
   TreeChain chain{.pool = std::move(pool),
                   .kernel = kernel,
@@ -96,6 +99,8 @@ struct RunArray {
 };
 constexpr RunArray kTrialRuns{"trial_runs", "1",
                               "gate runs of each trial, one after the other in run_*"},
+    kTrialKind{"trial_kind", "1",
+               "0: from anywhere; from a start of its own: 1 through the field, 2 one gate only"},
     kTrialD{"trial_d", "m", "where each trial started, on the lower edge of a gate"},
     kTrialVx{"trial_vx", "m s-1", "lateral velocity there"},
     kTrialVy{"trial_vy", "m s-1", "forward velocity there"},
@@ -107,12 +112,15 @@ constexpr RunArray kTrialRuns{"trial_runs", "1",
     kRunVx{"run_vx", "m s-1", "lateral velocity there (trapped: 0)"},
     kRunVy{"run_vy", "m s-1", "forward velocity there (trapped: 0)"};
 
+enum Kind : int { kScattered, kFullTrial, kFirstRun };
+
 /// Appends trials to the tables.
 struct RunTables {
-  std::vector<double> trial_runs, trial_d, trial_vx, trial_vy;
+  std::vector<double> trial_runs, trial_kind, trial_d, trial_vx, trial_vy;
   std::vector<double> ending, boundary, d, vx, vy;
 
-  void add(const Crossing& start, std::span<const GatePassage> passages) {
+  void add(int kind, const Crossing& start, std::span<const GatePassage> passages) {
+    trial_kind.push_back(kind);
     trial_runs.push_back(static_cast<double>(passages.size()));
     trial_d.push_back(start.d);
     trial_vx.push_back(start.vx);
@@ -132,16 +140,19 @@ struct RunTables {
 std::vector<markov::NamedArray> arrays_of(const RunPool& pool) {
   RunTables t;
   for (const StartTrials& s : pool.starts)
-    for (const FieldTrials* trials : {&s.full, &s.first})
-      for (std::size_t i = 0; i < trials->final_gates.size(); ++i)
-        t.add(s.start, trials->of_trial(i));
+    for (const int kind : {kFullTrial, kFirstRun}) {
+      const FieldTrials& trials = kind == kFullTrial ? s.full : s.first;
+      for (std::size_t i = 0; i < trials.final_gates.size(); ++i)
+        t.add(kind, s.start, trials.of_trial(i));
+    }
   for (std::size_t i = 0; i < pool.scattered.starts.size(); ++i)
-    t.add(pool.scattered.starts[i], pool.scattered.each.of_trial(i));
+    t.add(kScattered, pool.scattered.starts[i], pool.scattered.each.of_trial(i));
   std::vector<markov::NamedArray> arrays;
   const auto add = [&](const RunArray& array, std::vector<double>& values) {
     arrays.push_back({array.name, array.unit, array.meaning, std::move(values)});
   };
   add(kTrialRuns, t.trial_runs);
+  add(kTrialKind, t.trial_kind);
   add(kTrialD, t.trial_d);
   add(kTrialVx, t.trial_vx);
   add(kTrialVy, t.trial_vy);
@@ -158,51 +169,134 @@ bool has_runs(const MatrixFile& file) {
                      [](const markov::NamedArray& a) { return a.name == kTrialRuns.name; });
 }
 
-RunPool pool_of(const MatrixFile& file, const std::string& path) {
-  const auto table = [&](const RunArray& array) -> const std::vector<double>& {
-    for (const markov::NamedArray& a : file.arrays)
-      if (a.name == array.name) return a.values;
-    throw markov::BadFile(path + ": no table " + array.name);
-  };
-  const auto &runs = table(kTrialRuns), &trial_d = table(kTrialD), &trial_vx = table(kTrialVx),
-             &trial_vy = table(kTrialVy);
-  const auto &ending = table(kRunEnding), &boundary = table(kRunBoundary), &d = table(kRunD),
-             &vx = table(kRunVx), &vy = table(kRunVy);
-  const auto refuse = [&](const std::string& what) {
-    throw markov::BadFile(path + ": its gate runs do not add up: " + what);
-  };
-  const auto whole_in = [](double x, int end) { return x >= 0.0 && x < end && x == std::floor(x); };
-  for (const auto* t : {&trial_d, &trial_vx, &trial_vy})
-    if (t->size() != runs.size()) refuse("trials");
-  for (const auto* t : {&boundary, &d, &vx, &vy})
-    if (t->size() != ending.size()) refuse("runs");
+namespace {
 
-  RunPool pool;
-  for (const Crossing& start : file.transitions.space.points()) {
-    StartTrials& s = pool.starts.emplace_back();
-    s.start = start;
-    s.knows_endings = false;
+/// The tables of a file, checked.
+class RunReader {
+ public:
+  RunReader(const MatrixFile& file, const std::string& path)
+      : file_(file),
+        path_(path),
+        runs_(table(kTrialRuns)),
+        kind_(table(kTrialKind)),
+        start_{&table(kTrialD), &table(kTrialVx), &table(kTrialVy)},
+        ending_(table(kRunEnding)),
+        boundary_(table(kRunBoundary)),
+        entry_{&table(kRunD), &table(kRunVx), &table(kRunVy)} {
+    for (const auto* t : {&kind_, start_[0], start_[1], start_[2]})
+      if (t->size() != runs_.size()) refuse("trials");
+    for (const auto* t : {&boundary_, entry_[0], entry_[1], entry_[2]})
+      if (t->size() != ending_.size()) refuse("runs");
   }
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Crossing start{Boundary::enter, trial_d[i], trial_vx[i], trial_vy[i]};
-    const auto own = std::find_if(pool.starts.begin(), pool.starts.end(),
-                                  [&](const StartTrials& s) { return s.start == start; });
-    if (own == pool.starts.end()) pool.scattered.starts.push_back(start);
-    FieldTrials& trials = own == pool.starts.end() ? pool.scattered.each : own->full;
-    if (!(runs[i] >= 1.0 && runs[i] <= static_cast<double>(ending.size() - at)))
-      refuse("trial " + std::to_string(i + 1));
-    for (const std::size_t end = at + static_cast<std::size_t>(runs[i]); at < end; ++at) {
-      if (!whole_in(ending[at], 4) || !whole_in(boundary[at], kBoundaries))
-        refuse("run " + std::to_string(at + 1));
-      trials.passages.push_back({static_cast<Ending>(ending[at]),
-                                 {static_cast<Boundary>(boundary[at]), d[at], vx[at], vy[at]}});
+
+  [[nodiscard]] RunPool read() {
+    RunPool pool;
+    for (const Crossing& start : file_.transitions.space.points())
+      pool.starts.emplace_back().start = start;
+    for (std::size_t i = 0; i < runs_.size(); ++i) read_trial(i, pool);
+    if (at_ != ending_.size()) refuse("runs of no trial");
+    for (const StartTrials& s : pool.starts)
+      if (s.first_runs() == 0) refuse("a start of its own without runs");
+    return pool;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw markov::BadFile(path_ + ": its gate runs do not add up: " + what);
+  }
+  [[nodiscard]] const std::vector<double>& table(const RunArray& array) const {
+    for (const markov::NamedArray& a : file_.arrays)
+      if (a.name == array.name) return a.values;
+    throw markov::BadFile(path_ + ": no table " + array.name);
+  }
+  /// A whole number in [0, end).
+  [[nodiscard]] int whole(double x, double end, const std::string& what) const {
+    if (!(x >= 0.0 && x < end && x == std::floor(x))) refuse(what);
+    return static_cast<int>(x);
+  }
+  [[nodiscard]] Crossing crossing(Boundary boundary,
+                                  const std::array<const std::vector<double>*, 3>& axes,
+                                  std::size_t i, const std::string& what) const {
+    Crossing c{boundary};
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      c.*kCrossingAxes[axis] = (*axes[axis])[i];
+      if (!std::isfinite((*axes[axis])[i])) refuse(what);
+    }
+    return c;
+  }
+
+  void read_trial(std::size_t i, RunPool& pool) {
+    const std::string what = "trial " + std::to_string(i + 1);
+    const Crossing start = crossing(Boundary::enter, start_, i, what);
+    const int kind = whole(kind_[i], 3, what);
+    const int count = whole(runs_[i], static_cast<double>(ending_.size() - at_) + 1.0, what);
+    if (count == 0) refuse(what);
+    const std::size_t own = pool.place_of(start);
+    if (kind != kScattered && own == pool.starts.size()) refuse(what);
+    if (kind == kScattered) pool.scattered.starts.push_back(start);
+    FieldTrials& trials = kind == kScattered   ? pool.scattered.each
+                          : kind == kFullTrial ? pool.starts[own].full
+                                               : pool.starts[own].first;
+    for (int k = 0; k < count; ++k, ++at_) {
+      const std::string run = "run " + std::to_string(at_ + 1);
+      const auto ending = static_cast<Ending>(whole(ending_[at_], 4, run));
+      if (ending == Ending::trapped && k + 1 < count) refuse(run);
+      const auto boundary = static_cast<Boundary>(whole(boundary_[at_], kBoundaries, run));
+      trials.passages.push_back({ending, crossing(boundary, entry_, at_, run)});
     }
     trials.passed.push_back(std::ssize(trials.passages));
     trials.final_gates.push_back(0);
     trials.endings.push_back({});
   }
-  if (at != ending.size()) refuse("runs of no trial");
+
+  const MatrixFile& file_;
+  const std::string& path_;
+  const std::vector<double>&runs_, &kind_;
+  std::array<const std::vector<double>*, 3> start_;
+  const std::vector<double>&ending_, &boundary_;
+  std::array<const std::vector<double>*, 3> entry_;
+  std::size_t at_ = 0;  // run
+};
+
+/// Follows trials through a field by their passages, to where and how they end there. False when
+/// they were not run in such a field.
+bool follow(const FieldParams& field, FieldTrials& trials) {
+  for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
+    int column = field.start_column(), row = 0;
+    std::optional<markov::Ending> ending;
+    const auto passages = trials.of_trial(i);
+    for (const GatePassage& p : passages) {
+      if (ending) return false;  // it went on where this field has an end
+      if (p.ending == Ending::trapped) {
+        ending = markov::Ending::trapped;
+        break;
+      }
+      const Move move = move_into(p.entry.boundary);
+      if (!field.contains(column + move.di_x, row + move.di_y)) {
+        ending =
+            markov::edge_before({field.columns, field.rows}, column + move.di_x, row + move.di_y);
+      } else if (&p == &passages.back()) {
+        ending = markov::Ending::cut_off;
+      } else {
+        column += move.di_x;
+        row += move.di_y;
+      }
+    }
+    const auto gates = std::ssize(passages);
+    const bool cut = ending == markov::Ending::cut_off;
+    if (field.max_gates > 0 ? gates > field.max_gates || (cut && gates < field.max_gates) : cut)
+      return false;
+    trials.final_gates[i] = row * field.columns + column;
+    trials.endings[i] = ending;
+  }
+  return true;
+}
+
+}  // namespace
+
+RunPool pool_of(const MatrixFile& file, const FieldParams& field, const std::string& path) {
+  RunPool pool = RunReader(file, path).read();
+  for (StartTrials& s : pool.starts) s.knows_endings = follow(field, s.full);
   return pool;
 }
 
@@ -214,12 +308,11 @@ Transitions matrix_of(const Scene& scene, const RunPool& pool, const std::vector
   for (const BodyState& b : starts) {
     const Crossing entry{Boundary::enter, b.x, b.vx, b.vy};
     if (std::find(points.begin(), points.end(), entry) != points.end()) continue;
-    const auto own = std::find_if(pool.starts.begin(), pool.starts.end(),
-                                  [&](const StartTrials& s) { return s.start == entry; });
-    if (own == pool.starts.end())
+    const std::size_t own = pool.place_of(entry);
+    if (own == pool.starts.size())
       throw std::invalid_argument("matrix: a start has no runs of its own");
     points.push_back(entry);
-    rows.push_back(first_row(scene.gate, kernel.space, *own));
+    rows.push_back(first_row(scene.gate, kernel.space, pool.starts[own]));
   }
   return transitions_of(kernel, points, rows);
 }

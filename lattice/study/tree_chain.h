@@ -40,12 +40,13 @@ struct TreeChain {
 /// Part of the accuracy asked for a range that error bars of a single start are to keep.
 inline constexpr double kPartForOne = 0.5;
 
-/// The runs of a pool as tables of a matrix file, and back: trials from starts that are states of
-/// their own without the field that they were run in. Throws markov::BadFile naming `path` when
-/// they do not add up.
+/// The runs of a pool as tables of a matrix file, and back. Starts know how their full trials end
+/// where these were run in such a field. Throws markov::BadFile naming `path` when they do not add
+/// up.
 [[nodiscard]] std::vector<markov::NamedArray> arrays_of(const RunPool& pool);
 [[nodiscard]] bool has_runs(const MatrixFile& file);
-[[nodiscard]] RunPool pool_of(const MatrixFile& file, const std::string& path);
+[[nodiscard]] RunPool pool_of(const MatrixFile& file, const FieldParams& field,
+                              const std::string& path);
 
 /// The matrix of a pool with these starts as states of their own. Each start needs runs of its own.
 [[nodiscard]] dynamics::Transitions matrix_of(const Scene& scene, const RunPool& pool,
