@@ -87,7 +87,8 @@ lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& sc
 void add_accuracy(Options& options, const std::string& by_default) {
   options.add_number("accuracy", "A",
                      "trials are added until the final gates are right within a total variation of "
-                     "A, 95 times in 100 (default: " +
+                     "A, 95 times in 100 (0.02: of 100 bodies 2 end in another gate than said; "
+                     "default: " +
                          by_default + ")");
   options.add_count("gate-runs", "N", "but not many more gate runs than N, whatever the accuracy");
 }

@@ -79,7 +79,7 @@ int run_build(const Arguments& arguments) {
       "grown over the gate runs of full trials from the scene's start (or --start, --starts)\n"
       "until predictions are as accurate as --accuracy says. With --bins paper it is the\n"
       "paper's: N short runs from each of Table III's 87 bins, counted by where they come out.",
-      "gatewalk build scenes/field.toml --bins paper --trials 100 --seed 1 -o matrix.nc");
+      "gatewalk build scenes/field.toml --accuracy 0.02 --starts all -o chain.nc");
   options.scene();
   add_accuracy(options);
   options.add_count("trials", "N", "bins: runs per input state (default: 100)");

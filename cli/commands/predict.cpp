@@ -118,16 +118,16 @@ int run_predict(const Arguments& arguments) {
       "The distribution of endings and final gate. From a scene: full trials are run, and their\n"
       "gate runs pooled into a chain, until the error bar keeps --accuracy; never dearer than\n"
       "direct simulation by more than the bar costs. From a matrix with trees: the same with the\n"
-      "runs that it keeps, and some first runs of a start that it does not know. From a matrix\n"
+      "runs that it keeps, and first runs of a start that it does not know. From a matrix\n"
       "of bins: what infinitely many walks with it would give; its intervals count that the\n"
       "matrix is a sample of gate runs, the chain's own error gatewalk validate measures.",
       "gatewalk predict scenes/field.toml --accuracy 0.01 --json prediction.json");
   options.positional("matrix", "a scene, or a matrix file written by gatewalk build", true);
   options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
-  add_accuracy(options, "0.02, or that of the matrix");
+  add_accuracy(options, "0.02; that of a matrix, or half of it if it is for any start");
   options.add_count("first-runs", "N",
                     "matrix of trees: N first runs of a start that it does not know, and no other "
-                    "trials; 0: none, such a start is one of its leaf");
+                    "trials; 0: none, it is taken for any other of its leaf, which says little");
   add_starts(options, "the scene's start");
   options.add_texts("row", "A-B=FILE",
                     "gates of rows i_y = A to B as in another matrix of the same bins (may be "

@@ -45,10 +45,11 @@ std::string row_table(const Transitions& t) {
     const Cell cell = t.space.cell(row);
     const auto share = outcome_shares(t, row);
     out << padded(std::to_string(row + 1), 4) << "  "
-        << kBoundaryNames[static_cast<int>(cell.boundary)] << " " << padded(text_of(cell.d), -12)
-        << padded(text_of(cell.vx), -12) << padded(text_of(cell.vy), -12)
-        << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
-        << " |";
+        << kBoundaryNames[static_cast<int>(cell.boundary)] << " "
+        << padded(dynamics::text_of(cell.d) + " ", -12)
+        << padded(dynamics::text_of(cell.vx) + " ", -12)
+        << padded(dynamics::text_of(cell.vy) + " ", -12) << padded(std::to_string(t.trials[row]), 7)
+        << padded(std::to_string(t.clamped[row]), 8) << " |";
     for (const double s : share) out << padded(fixed(100.0 * s, 1), 6);
     out << "\n";
   }
