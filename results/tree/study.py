@@ -143,6 +143,11 @@ def seconds_per_run(method):
     return j["run_seconds"] / j["gate_runs"]
 
 
+def beside_runs(r, cost):
+    """Seconds of chains and bars, as if its runs had taken what they take on an idle machine."""
+    return (r["seconds"] - r["run_seconds"]) * cost["moreau"] * r["gate_runs"] / r["run_seconds"]
+
+
 def summary(rows):
     cost = {m: seconds_per_run(m) for m in ("moreau", "stable")}
     lines = [f"a gate run takes {1e6 * cost['moreau']:.1f} us by moreau, "
@@ -159,7 +164,7 @@ def summary(rows):
             continue
         error = g[0]["truth"].clean(mean(r["error"] for r in g))
         direct = g[0]["truth"].gate_runs_for(error)
-        runs, beside = mean(r["gate_runs"] for r in g), mean(r["seconds"] - r["run_seconds"] for r in g)
+        runs, beside = mean(r["gate_runs"] for r in g), mean(beside_runs(r, cost) for r in g)
         ratio = {m: direct * c / (runs * c + beside) for m, c in cost.items()}
         for m in cost:
             ratios[scene, accuracy, m].append(ratio[m])
@@ -182,7 +187,7 @@ def summary(rows):
         errors = [r["truth"].clean(r["error"]) for r in g]
         direct = mean(r["truth"].gate_runs_for(mean(errors)) for r in g)
         build_runs, build = mean(r["build_runs"] for r in g), mean(r["build_seconds"] for r in g)
-        runs, beside = mean(r["gate_runs"] for r in g), mean(r["seconds"] - r["run_seconds"] for r in g)
+        runs, beside = mean(r["gate_runs"] for r in g), mean(beside_runs(r, cost) for r in g)
         ratio = {}
         for m, c in cost.items():
             made = build + build_runs * (c - cost["moreau"])
