@@ -29,8 +29,8 @@ struct BinsChoice {
   [[nodiscard]] std::string name() const;  // "paper", "auto", "scene", "tree"
 };
 
-/// For chains of bins: the scene's own table [bins]; else Table III in the paper's field, and auto in
-/// any other.
+/// For chains of bins: the scene's own table [bins]; else Table III in the paper's field, and auto
+/// in any other.
 [[nodiscard]] BinsChoice usual_bins(const Scene& scene);
 /// The scene's table [bins], else Table III in the scene's own units: for counting, no pilot is
 /// run.

@@ -7,8 +7,10 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "dynamics/share.h"
 #include "lattice/scene/settle.h"
@@ -111,8 +113,31 @@ struct Said {
   std::int64_t walks = 0;  // behind each of `whole`; 0: they are exact
 };
 
-Said ask(const Scene& scene, const RunPool& pool, const std::vector<std::size_t>& starts,
-         const AccuracyOptions& options, bool with_kernels) {
+/// The kernels of a pool and of its groups; they stay while only first runs are added.
+class Kernels {
+ public:
+  void renew(const Scene& scene, const RunPool& pool, int per_leaf) {
+    std::int64_t runs = std::ssize(pool.scattered.each.passages);
+    for (const StartTrials& s : pool.starts) runs += std::ssize(s.full.passages);
+    if (std::exchange(runs_, runs) == runs) return;
+    tbb::parallel_for(-1, kTrialGroups, [&](int g) {
+      const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
+      kernels_[static_cast<std::size_t>(g + 1)] = kernel_of(scene.gate, pool, per_leaf, group);
+    });
+  }
+  [[nodiscard]] const Kernel& whole() const { return *kernels_.front(); }
+  [[nodiscard]] const Kernel& of_group(int g) const {
+    return *kernels_[static_cast<std::size_t>(g + 1)];
+  }
+
+ private:
+  std::int64_t runs_ = -1;
+  std::array<std::optional<Kernel>, kTrialGroups + 1> kernels_;
+};
+
+Said ask(const Scene& scene, const RunPool& pool, Kernels& kernels,
+         const std::vector<std::size_t>& starts, const AccuracyOptions& options,
+         bool with_kernels) {
   // Where exact predictions take longer, walks do: so many, of a group a part of them.
   constexpr double kMostExact = 1e9;
   constexpr std::int64_t kWalks = std::int64_t{1} << 22, kWalksOfGroup = std::int64_t{1} << 18;
@@ -127,9 +152,10 @@ Said ask(const Scene& scene, const RunPool& pool, const std::vector<std::size_t>
   };
   const bool by_walks =
       exact_cost(2 * pool.gate_runs(), scene.field) > kMostExact;  // some nonzeros a run
+  kernels.renew(scene, pool, options.per_leaf);
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     if (g < 0) {
-      const Kernel kernel = kernel_of(scene.gate, pool, options.per_leaf);
+      const Kernel& kernel = kernels.whole();
       said.walks = by_walks ? kWalks : 0;
       said.whole =
           predictions(kernel, rows(kernel.space, {}), scene.field, {0, said.walks}, options.seed);
@@ -138,7 +164,7 @@ Said ask(const Scene& scene, const RunPool& pool, const std::vector<std::size_t>
       return;
     }
     const TrialGroup group{g, kTrialGroups};
-    const Kernel kernel = kernel_of(scene.gate, pool, options.per_leaf, group);
+    const Kernel& kernel = kernels.of_group(g);
     auto first = rows(kernel.space, group);
     if (with_kernels) {
       auto all = rows(kernel.space, {});
@@ -400,12 +426,13 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
   result.starts.resize(starts.size());
   std::vector<std::size_t> open(starts.size());  // those that are not certain enough yet
   std::iota(open.begin(), open.end(), 0);
+  Kernels kernels;
   while (!open.empty()) {
     std::vector<std::size_t> asked;
     for (const std::size_t k : open) asked.push_back(places[k]);
     // A single start's full trials make both its row and the kernel, in good proportion.
     const bool with_kernels = starts.size() > 1 || has_others;
-    Said said = ask(scene, pool, asked, options, with_kernels);
+    Said said = ask(scene, pool, kernels, asked, options, with_kernels);
     result.states = said.states;
     result.nonzeros = said.nonzeros;
     std::vector<std::size_t> left;
@@ -466,9 +493,10 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
   std::vector<std::size_t> all(kTried);
   std::iota(all.begin(), all.end(), 0);
   runner.run_scattered(pool.scattered, range, kBegin);
+  Kernels kernels;
   for (;;) {
     tried.scattered = std::move(pool.scattered);
-    const Said said = ask(scene, tried, all, options, true);
+    const Said said = ask(scene, tried, kernels, all, options, true);
     pool.scattered = std::move(tried.scattered);
     std::vector<double> errors;
     for (std::size_t k = 0; k < all.size(); ++k)
