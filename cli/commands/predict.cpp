@@ -116,10 +116,11 @@ int run_predict(const Arguments& arguments) {
   Options options(
       "predict SCENE|MATRIX.nc [SCENE] [options]",
       "The distribution of endings and final gate. From a scene: full trials are run, and their\n"
-      "gate runs pooled into a chain, until the error bar keeps --accuracy; never dearer than\n"
-      "direct simulation by more than the bar costs. From a matrix with trees: the same with the\n"
-      "runs that it keeps, and first runs of a start that it does not know. From a matrix\n"
-      "of bins: what infinitely many walks with it would give; its intervals count that the\n"
+      "gate runs pooled into a chain, until the error bar keeps --accuracy (the trials' own "
+      "shares\n"
+      "are the answer where they are the more certain). From a matrix with trees: the same with\n"
+      "the runs that it keeps, and first runs of a start that it does not know. From a matrix of\n"
+      "bins: what infinitely many walks with it would give; its intervals count that the\n"
       "matrix is a sample of gate runs, the chain's own error gatewalk validate measures.",
       "gatewalk predict scenes/field.toml --accuracy 0.01 --json prediction.json");
   options.positional("matrix", "a scene, or a matrix file written by gatewalk build", true);

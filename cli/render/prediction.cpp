@@ -43,6 +43,7 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
                    intervals
                        ? "of all walks, 95 % intervals for the sampling of the matrix"
                        : "of all walks; no intervals: the field is too large for many predictions, "
+                         "rows have few runs each, "
                          "or a resampled matrix failed") +
       limits_text(of.matrix.scene) + map_of(f.final_cells) +
       map_of_trapped(markov::trapped_cells(f)) + "left the field " + percent(f.left_field, 1.0, 2) +
