@@ -67,6 +67,16 @@ Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
 
 }  // namespace
 
+void add_final_gates(Json& json, const markov::FinalDistribution& f) {
+  json["final_gates"] = grid(f.final_cells);
+  json["trapped_gates"] = grid(markov::trapped_cells(f));
+  json["departed_gates"] = grid(markov::departed_cells(f));
+  json["trapped"] = f.trapped;
+  json["left_field"] = f.left_field;
+  json["cut_off"] = f.cut_off;
+  json["never_sampled"] = f.unsampled;
+}
+
 std::string map_of(const markov::CellProbabilities& shares, const std::string& what) {
   const Span rows = span_of(shares.rowwise().sum(), 40);
   Span columns = span_of(shares.colwise().sum().transpose(), 15);

@@ -7,6 +7,7 @@
 
 #include "cli/render/json_fwd.h"
 #include "lattice/ending_shares.h"
+#include "markov/predict.h"
 #include "markov/walk.h"
 
 namespace gatewalk::lattice {
@@ -18,6 +19,9 @@ namespace gatewalk::cli {
 [[nodiscard]] Json to_json(const lattice::Comparison& c);
 [[nodiscard]] Json grid(const markov::CellCounts& cells);
 [[nodiscard]] Json grid(const markov::CellProbabilities& cells);
+
+/// Where what was predicted ends: in all, trapped, leaving the field; and the sums.
+void add_final_gates(Json& json, const markov::FinalDistribution& f);
 
 /// The field seen from above, farthest row on top, in percent. Of fields too large to print: where
 /// all but next to nothing lies, in blocks if need be.

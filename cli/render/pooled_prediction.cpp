@@ -18,14 +18,8 @@ void add_to(Json& json, const lattice::StartAnswer& a) {
   const markov::FinalDistribution& f = a.final;
   json["endings"] = endings(f.endings);
   json["endings_95"] = endings_95(a.endings);
-  json["final_gates"] = grid(f.final_cells);
+  add_final_gates(json, f);
   json["final_gates_95"] = {{"low", grid(a.gates_95[0])}, {"high", grid(a.gates_95[1])}};
-  json["trapped_gates"] = grid(markov::trapped_cells(f));
-  json["departed_gates"] = grid(markov::departed_cells(f));
-  json["trapped"] = f.trapped;
-  json["left_field"] = f.left_field;
-  json["cut_off"] = f.cut_off;
-  json["never_sampled"] = f.unsampled;
   json["answer_from"] = a.from_trials ? "trials" : "chain";
   json["error_95"] = a.error.total_variation;
   json["corrcoef_95"] = a.error.corrcoef;

@@ -21,13 +21,7 @@ void add_to(Json& json, const lattice::StartPrediction& s) {
   json["matrix_sampling"] = {{"replicates", s.replicates},
                              {"total_variation_mean", s.mean_total_variation},
                              {"total_variation_95", s.total_variation_95}};
-  json["final_gates"] = grid(f.final_cells);
-  json["trapped_gates"] = grid(markov::trapped_cells(f));
-  json["departed_gates"] = grid(markov::departed_cells(f));
-  json["trapped"] = f.trapped;
-  json["left_field"] = f.left_field;
-  json["cut_off"] = f.cut_off;
-  json["never_sampled"] = f.unsampled;
+  add_final_gates(json, f);
   json["still_walking"] = f.remainder;
   json["rounding_at_most"] = f.rounding;
   json["error_at_most"] = f.remainder + f.rounding;

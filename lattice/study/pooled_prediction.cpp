@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -13,7 +12,7 @@
 #include <utility>
 
 #include "dynamics/share.h"
-#include "lattice/scene/settle.h"
+#include "lattice/study/pool_answers.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -21,267 +20,14 @@ namespace {
 using namespace dynamics;
 using markov::FinalDistribution;
 
-// Numbers of first trials, so that no other command runs these: full ones, those through one gate,
-// scattered ones.
-constexpr std::int64_t kFullOwn = std::int64_t{1} << 41, kFirstOwn = std::int64_t{1} << 42,
-                       kScatteredOwn = std::int64_t{1} << 43;
-constexpr std::int64_t kLeastTrials = 2 * kTrialGroups;  // per start
 constexpr std::int64_t kFirstRound = 20 * kTrialGroups;  // trials of all starts together
 constexpr std::int64_t kLeastFirstRuns = 500;            // of a start that meets a pool
-
-Crossing entry_of(const BodyState& b) { return {Boundary::enter, b.x, b.vx, b.vy}; }
-
-BodyState body_of(const Crossing& c) { return {c.d, 0.0, c.vx, c.vy}; }
 
 void require_fine(const AccuracyOptions& options) {
   if (!(options.accuracy > 0.0 && options.accuracy < 1.0))
     throw std::invalid_argument("accuracy " + std::to_string(options.accuracy) +
                                 " is not permitted: must lie in (0, 1)");
 }
-
-/// Multiplications that exact predictions take, of one start, about.
-double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
-  constexpr double kStepsWithoutLimit = 50.0;
-  const double cells = static_cast<double>(field.columns) * field.rows;
-  const double steps = field.max_gates;
-  return static_cast<double>(nonzeros) * (field.max_gates == 0
-                                              ? cells * kStepsWithoutLimit
-                                              : std::min(cells, 2.0 * steps * steps) * steps / 2.0);
-}
-
-/// What walks say, as a prediction. Over which edge bodies left from a corner cell is not known:
-/// they count as having crossed there.
-FinalDistribution shares_of(const markov::WalkTally& tally) {
-  const auto n = static_cast<double>(tally.walks);
-  FinalDistribution d;
-  d.final_cells = tally.final_cells.cast<double>() / n;
-  for (std::size_t e = 0; e < markov::kEndings; ++e)
-    d.endings[e] = static_cast<double>(tally.endings[e]) / n;
-  d.trapped = static_cast<double>(tally.trapped) / n;
-  d.left_field = static_cast<double>(tally.left_field) / n;
-  d.cut_off = static_cast<double>(tally.cut_off) / n;
-  d.unsampled = static_cast<double>(tally.unsampled) / n;
-  d.mean_steps = static_cast<double>(tally.steps) / n;
-  const Eigen::Index columns = tally.final_cells.cols(), rows = tally.final_cells.rows();
-  for (Eigen::Index i = 0; i < tally.final_cells.size(); ++i) {
-    const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
-    const std::int64_t trapped = tally.trapped_cells.data()[i],
-                       departed = tally.departed_cells.data()[i], all = tally.final_cells.data()[i];
-    if (trapped == all) continue;
-    const markov::Ending edge = i / columns == rows - 1 ? markov::Ending::far_edge
-                                : i % columns == 0      ? markov::Ending::left_edge
-                                                        : markov::Ending::right_edge;
-    markov::CellEndings cell{i};
-    cell.by_ending[static_cast<std::size_t>(markov::Ending::trapped)] = share(trapped);
-    cell.by_ending[static_cast<std::size_t>(edge)] = share(departed);
-    cell.by_ending[static_cast<std::size_t>(markov::Ending::cut_off)] =
-        share(all - trapped - departed);
-    d.mixed_cells.push_back(cell);
-  }
-  return d;
-}
-
-/// Predictions from the start rows that stand behind a kernel's: exact, or by `walks` where there
-/// are any.
-std::vector<FinalDistribution> predictions(const Kernel& kernel,
-                                           const std::vector<std::vector<std::int64_t>>& first_rows,
-                                           const FieldParams& field, markov::WalkRange walks,
-                                           std::uint64_t seed) {
-  std::vector<markov::Start> places;
-  for (std::size_t i = 0; i < first_rows.size(); ++i)
-    places.push_back({field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
-  const markov::Field cells{field.columns, field.rows};
-  const markov::Chain chain = chain_of(kernel, first_rows);
-  if (walks.count == 0)
-    return markov::predict(chain, cells, places, {.max_cells = field.max_gates});
-  const markov::Walker walker(chain);
-  std::vector<FinalDistribution> all;
-  for (const markov::Start& start : places)
-    all.push_back(shares_of(walker.walk(cells, start, field.max_gates, seed, walks)));
-  return all;
-}
-
-/// What the pool says of some of its starts.
-struct Said {
-  std::vector<FinalDistribution> whole;                // (starts)
-  std::vector<std::vector<FinalDistribution>> groups;  // (starts x kTrialGroups)
-  /// The same with the first runs of all trials in every group: what the kernel alone makes. Empty
-  /// if not asked for.
-  std::vector<std::vector<FinalDistribution>> kernels{};
-  int states = 0;
-  std::int64_t nonzeros = 0;
-  std::int64_t walks = 0;  // behind each of `whole`; 0: they are exact
-};
-
-/// The kernels of a pool and of its groups; they stay while only first runs are added.
-class Kernels {
- public:
-  void renew(const Scene& scene, const RunPool& pool, int per_leaf) {
-    std::int64_t runs = std::ssize(pool.scattered.each.passages);
-    for (const StartTrials& s : pool.starts) runs += std::ssize(s.full.passages);
-    if (std::exchange(runs_, runs) == runs) return;
-    tbb::parallel_for(-1, kTrialGroups, [&](int g) {
-      const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
-      kernels_[static_cast<std::size_t>(g + 1)] = kernel_of(scene.gate, pool, per_leaf, group);
-    });
-  }
-  [[nodiscard]] const Kernel& whole() const { return *kernels_.front(); }
-  [[nodiscard]] const Kernel& of_group(int g) const {
-    return *kernels_[static_cast<std::size_t>(g + 1)];
-  }
-
- private:
-  std::int64_t runs_ = -1;
-  std::array<std::optional<Kernel>, kTrialGroups + 1> kernels_;
-};
-
-Said ask(const Scene& scene, const RunPool& pool, Kernels& kernels,
-         const std::vector<std::size_t>& starts, const AccuracyOptions& options,
-         bool with_kernels) {
-  // Where exact predictions take longer, walks do: so many, of a group a part of them.
-  constexpr double kMostExact = 1e9;
-  constexpr std::int64_t kWalks = std::int64_t{1} << 22, kWalksOfGroup = std::int64_t{1} << 18;
-  const std::size_t n = starts.size();
-  Said said{.whole = {}, .groups = {n, std::vector<FinalDistribution>(kTrialGroups)}};
-  if (with_kernels) said.kernels = said.groups;
-  const auto rows = [&](const StateSpace& space, TrialGroup group) {
-    std::vector<std::vector<std::int64_t>> all;
-    for (const std::size_t s : starts)
-      all.push_back(first_row(scene.gate, space, pool.starts[s], group));
-    return all;
-  };
-  const bool by_walks =
-      exact_cost(2 * pool.gate_runs(), scene.field) > kMostExact;  // some nonzeros a run
-  kernels.renew(scene, pool, options.per_leaf);
-  tbb::parallel_for(-1, kTrialGroups, [&](int g) {
-    if (g < 0) {
-      const Kernel& kernel = kernels.whole();
-      said.walks = by_walks ? kWalks : 0;
-      said.whole =
-          predictions(kernel, rows(kernel.space, {}), scene.field, {0, said.walks}, options.seed);
-      said.states = kernel.space.size();
-      said.nonzeros = kernel.counts.nonZeros();
-      return;
-    }
-    const TrialGroup group{g, kTrialGroups};
-    const Kernel& kernel = kernels.of_group(g);
-    auto first = rows(kernel.space, group);
-    if (with_kernels) {
-      auto all = rows(kernel.space, {});
-      first.insert(first.end(), all.begin(), all.end());
-    }
-    const markov::WalkRange walks{kWalks + g * kWalksOfGroup, by_walks ? kWalksOfGroup : 0};
-    auto found = predictions(kernel, first, scene.field, walks, options.seed);
-    for (std::size_t i = 0; i < n; ++i) {
-      said.groups[i][static_cast<std::size_t>(g)] = std::move(found[i]);
-      if (with_kernels) said.kernels[i][static_cast<std::size_t>(g)] = std::move(found[n + i]);
-    }
-  });
-  return said;
-}
-
-/// Runs trials into a pool and keeps count.
-class Runner {
- public:
-  Runner(const Scene& scene, const AccuracyOptions& options, const Work& work)
-      : scene_(scene),
-        field_(scene.field),
-        space_(StateSpace::paper(scene.gate)),
-        options_(options),
-        work_(work) {
-    field_.fidelity = Fidelity::active;
-  }
-
-  void run_full(StartTrials& s, std::int64_t count) {
-    const std::int64_t done = std::ssize(s.full.final_gates);
-    run("full trials", count, [&](TrialRange range) {
-      return run_field(scene_.gate, field_, body_of(s.start), space_, options_.seed,
-                       {kFullOwn + done + range.first, range.count}, &s.full);
-    });
-  }
-  void run_first(StartTrials& s, std::int64_t count) {
-    FieldParams one_gate = field_;
-    one_gate.max_gates = 1;
-    const std::int64_t done = std::ssize(s.first.final_gates);
-    run("first runs", count, [&](TrialRange range) {
-      return run_field(scene_.gate, one_gate, body_of(s.start), space_, options_.seed,
-                       {kFirstOwn + done + range.first, range.count}, &s.first);
-    });
-  }
-  void run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count) {
-    const std::int64_t done = std::ssize(s.starts);
-    run("scattered trials", count, [&](TrialRange range) {
-      std::vector<BodyState> bodies;
-      for (std::int64_t i = 0; i < range.count; ++i) {
-        bodies.push_back(drawn(starts, done + range.first + i));
-        s.starts.push_back(entry_of(bodies.back()));
-      }
-      return run_field(scene_.gate, field_, bodies, space_, options_.seed,
-                       {kScatteredOwn + done + range.first, range.count}, &s.each);
-    });
-  }
-  /// Start number `i` in the range.
-  [[nodiscard]] BodyState drawn(const StartRange& starts, std::int64_t i) const {
-    Random random(Purpose::resampling, {options_.seed, static_cast<std::uint64_t>(kScatteredOwn),
-                                        static_cast<std::uint64_t>(i)});
-    const auto within = [&](const std::array<double, 2>& r) {
-      return r[0] + (r[1] - r[0]) * random.uniform();
-    };
-    BodyState b;
-    b.x = within(starts.d);
-    b.vx = within(starts.vx);
-    b.vy = within(starts.vy);
-    return b;
-  }
-
-  [[nodiscard]] bool may_go_on() const { return gate_runs < options_.most_runs; }
-  /// Gate runs of a full trial, in the mean of those so far.
-  [[nodiscard]] double gates_per_trial() const {
-    return trials_ > 0 ? static_cast<double>(trial_runs_) / static_cast<double>(trials_) : 1.0;
-  }
-  [[nodiscard]] double seconds_per_gate_run() const {
-    return seconds / static_cast<double>(std::max<std::int64_t>(1, gate_runs));
-  }
-  /// Checks a sample by a better method.
-  void finish() {
-    if (gate_runs > 0)
-      check_outcomes(scene_, RunsFrom::everywhere, options_.seed, std::max(trials_, gate_runs / 10),
-                     health, work_);
-  }
-
-  std::int64_t gate_runs = 0;
-  double seconds = 0.0;
-  Health health;
-
- private:
-  void run(const char* what, std::int64_t count,
-           const std::function<FieldTally(TrialRange)>& carry_out) {
-    const Stopwatch watch;
-    const auto most = static_cast<double>(options_.most_runs - gate_runs);
-    count = std::max<std::int64_t>(
-        kLeastTrials, static_cast<std::int64_t>(
-                          std::min(static_cast<double>(count), most / gates_per_trial() + 1.0)));
-    work_.in_pieces(what, count, [&](TrialRange range) {
-      const FieldTally tally = carry_out(range);
-      health += tally.health;
-      gate_runs += tally.health.runs;
-      trials_ += tally.trials;
-      trial_runs_ += tally.health.runs;
-    });
-    seconds += watch.seconds();
-    if (health.broken > 0)
-      throw std::runtime_error("prediction: " + std::to_string(health.broken) +
-                               " gate runs stopped being finite numbers; try method stable or a "
-                               "smaller run.step_s");
-  }
-
-  const Scene& scene_;
-  FieldParams field_;
-  StateSpace space_;
-  const AccuracyOptions& options_;
-  const Work& work_;
-  std::int64_t trials_ = 0, trial_runs_ = 0;
-};
 
 /// Total variation that so many walks keep from what endlessly many would give, 95 times in 100.
 double chance_of_walks(const FinalDistribution& d, std::int64_t walks) {
@@ -340,24 +86,8 @@ double times_more(double error, double wanted) {
   return times > 2.5 ? std::min(0.6 * times, 16.0) : std::max(1.1 * times, 1.2);
 }
 
-/// Adds trials of a start whose answer is not certain enough: first runs where these make most of
-/// the error, else full ones.
-void add_trials_of(StartTrials& s, const StartAnswer& a, double accuracy, Runner& runner) {
-  const double error = a.error.total_variation, kernel = a.kernel_error_95;
-  const double first = std::sqrt(std::max(0.0, error * error - kernel * kernel));
-  if (kernel < 0.85 * accuracy && first > 1.2 * kernel) {
-    const double left = std::sqrt(accuracy * accuracy - kernel * kernel);
-    const auto n = static_cast<double>(a.first_runs);
-    runner.run_first(s, static_cast<std::int64_t>(n * (times_more(first, left) - 1.0)));
-    return;
-  }
-  const auto n =
-      static_cast<double>(std::max<std::int64_t>(std::ssize(s.full.final_gates), kFirstRound / 2));
-  runner.run_full(s, static_cast<std::int64_t>(n * (times_more(error, accuracy) - 1.0)));
-}
-
 /// What direct simulation would take for the same error bar, by this run's speed.
-double direct_seconds(const StartAnswer& a, const Runner& runner, std::uint64_t seed) {
+double direct_seconds(const StartAnswer& a, const PoolRunner& runner, std::uint64_t seed) {
   if (runner.gate_runs == 0) return std::nan("");
   constexpr std::int64_t kTrials = 10'000;
   const CellCounts drawn = sampled(a.final.final_cells, kTrials, seed, 0);
@@ -366,28 +96,175 @@ double direct_seconds(const StartAnswer& a, const Runner& runner, std::uint64_t 
          runner.seconds_per_gate_run();
 }
 
-/// Places of the starts in the pool, put there if need be; each has some trials.
-std::vector<std::size_t> places_of(const std::vector<BodyState>& starts, RunPool& pool,
-                                   std::optional<std::int64_t> first_runs, Runner& runner) {
-  const bool has_kernel = pool.gate_runs() > 0;
-  std::vector<std::size_t> places;
-  for (const BodyState& body : starts) {
-    if (body.y != 0.0)
-      throw std::invalid_argument(
-          "start.y_m = " + std::to_string(body.y) +
-          " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
-    const Crossing entry = entry_of(body);
-    places.push_back(pool.place_of(entry));
-    if (places.back() < pool.starts.size()) continue;
-    StartTrials& s = pool.starts.emplace_back();
-    s.start = entry;
-    if (has_kernel)
-      runner.run_first(s, first_runs.value_or(kLeastFirstRuns));
-    else
-      runner.run_full(s, std::max(kLeastTrials, kFirstRound / std::ssize(starts)));
-  }
-  return places;
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
+
+/// Adds trials of the starts whose answers are not certain enough, until all are.
+class Prediction {
+ public:
+  Prediction(const Scene& scene, RunPool& pool, const std::vector<BodyState>& starts,
+             const AccuracyOptions& options, const Work& work)
+      : scene_(scene),
+        pool_(pool),
+        options_(options),
+        runner_(scene, options.seed, options.most_runs, work),
+        chains_(scene.gate, scene.field, options.per_leaf, starts.size(), options.seed),
+        // A single start's full trials make both its row and the kernel, in good proportion.
+        with_kernels_(starts.size() > 1 || pool.gate_runs() > 0) {
+    place(starts);
+    result_.starts.resize(starts.size());
+    open_ = all();
+  }
+
+  [[nodiscard]] PooledPrediction carry_out() {
+    while (ask() && runner_.may_go_on() && !options_.first_runs) add_trials();
+    result_.reached = open_.empty();
+    result_.gate_runs = runner_.gate_runs;
+    result_.run_seconds = runner_.seconds;
+    result_.seconds = watch_.seconds();
+    tbb::parallel_for(std::size_t{0}, result_.starts.size(), [&](std::size_t k) {
+      result_.starts[k].direct_seconds = direct_seconds(result_.starts[k], runner_, options_.seed);
+    });
+    runner_.finish();
+    result_.health = runner_.health;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::size_t> all() const {
+    std::vector<std::size_t> starts(result_.starts.size());
+    std::iota(starts.begin(), starts.end(), 0);
+    return starts;
+  }
+
+  /// Finds the starts in the pool, or puts them there with some trials each.
+  void place(const std::vector<BodyState>& starts) {
+    const bool has_kernel = pool_.gate_runs() > 0;
+    for (const BodyState& body : starts) {
+      if (body.y != 0.0)
+        throw std::invalid_argument("start.y_m = " + std::to_string(body.y) +
+                                    " is not permitted for a chain: its states are entries from "
+                                    "below, start.y_m must be 0");
+      const Crossing entry = entry_of(body);
+      places_.push_back(pool_.place_of(entry));
+      if (places_.back() < pool_.starts.size()) continue;
+      StartTrials& s = pool_.starts.emplace_back();
+      s.start = entry;
+      if (has_kernel)
+        runner_.run_first(s, options_.first_runs.value_or(kLeastFirstRuns));
+      else
+        runner_.run_full(s, kFirstRound / std::ssize(starts));
+    }
+  }
+
+  /// Answers for the open starts, and closes those that are certain enough. False where more trials
+  /// are not wanted, or would not help.
+  [[nodiscard]] bool ask() {
+    // All by the adjoint, closed ones too: that costs nothing, and an answer that was closed by
+    // luck is seen to be uncertain.
+    if (pays_adjoint(scene_.field, open_.size())) open_ = all();
+    std::vector<std::size_t> asked;
+    for (const std::size_t k : open_) asked.push_back(places_[k]);
+    PoolAnswers said = chains_.ask(pool_, asked, with_kernels_);
+    result_.states = said.states;
+    result_.nonzeros = said.nonzeros;
+    std::vector<double> chances(open_.size());
+    tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t i) {
+      chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
+      result_.starts[open_[i]] = answer_of(
+          scene_, pool_.starts[asked[i]], std::move(said.whole.final[i]), chances[i],
+          said.groups[i], with_kernels_ ? said.kernels[i] : std::vector<FinalDistribution>{},
+          options_.seed);
+    });
+    std::erase_if(open_, [&](std::size_t k) {
+      return result_.starts[k].error.total_variation <= options_.accuracy;
+    });
+    return !open_.empty() && std::all_of(chances.begin(), chances.end(),
+                                         [&](double chance) { return chance < options_.accuracy; });
+  }
+
+  /// The part of the error that first runs make.
+  [[nodiscard]] static double first_error(const StartAnswer& a) {
+    const double e = a.error.total_variation, k = a.kernel_error_95;
+    return std::sqrt(std::max(1e-4 * e * e, e * e - k * k));
+  }
+
+  /// Error bars that kernels should make alone, so that the fewest gate runs are needed in all: the
+  /// kernel's serve all starts, first runs one each; each part of a square goes with 1 / runs.
+  [[nodiscard]] double kernel_goal() const {
+    std::vector<double> kernel, first;
+    for (const std::size_t k : open_) {
+      const StartAnswer& a = result_.starts[k];
+      kernel.push_back(a.kernel_error_95 * std::sqrt(static_cast<double>(pool_.gate_runs())));
+      first.push_back(first_error(a) * std::sqrt(static_cast<double>(a.first_runs)));
+    }
+    const double shared = median(kernel),
+                 own = median(first) * std::sqrt(static_cast<double>(result_.starts.size()));
+    return options_.accuracy * std::sqrt(std::clamp(shared / (shared + own), 0.2, 0.72));
+  }
+
+  void add_trials() {
+    if (!with_kernels_) {
+      const StartAnswer& a = result_.starts.front();
+      run_full(0, static_cast<double>(a.trials) *
+                      (times_more(a.error.total_variation, options_.accuracy) - 1.0));
+      return;
+    }
+    const double goal = kernel_goal();
+    std::vector<std::size_t> lacking;  // starts for which the kernel is too uncertain
+    for (const std::size_t k : open_)
+      if (result_.starts[k].kernel_error_95 > 1.05 * goal) lacking.push_back(k);
+    // Where they are few, first runs can make up for it, up to a point.
+    if (4 * lacking.size() < result_.starts.size())
+      std::erase_if(lacking, [&](std::size_t k) {
+        return result_.starts[k].kernel_error_95 < 0.85 * options_.accuracy;
+      });
+    for (const std::size_t k : lacking) improve_kernel(k, goal, std::ssize(lacking));
+    for (const std::size_t k : open_) {
+      const StartAnswer& a = result_.starts[k];
+      const bool lacks = std::find(lacking.begin(), lacking.end(), k) != lacking.end();
+      const double kernel = lacks ? goal : a.kernel_error_95;
+      const double wanted = std::sqrt(options_.accuracy * options_.accuracy - kernel * kernel);
+      const double times = times_more(first_error(a), wanted);
+      const StartTrials& s = pool_.starts[places_[k]];
+      const auto more =
+          static_cast<double>(a.first_runs) * times - static_cast<double>(s.first_runs());
+      if (runner_.may_go_on() && more > 0.0 && (!lacks || first_error(a) > wanted))
+        runner_.run_first(pool_.starts[places_[k]], static_cast<std::int64_t>(more));
+    }
+  }
+
+  /// By full trials of this start: as many as if only its own could help, or its part of as many as
+  /// if all helped alike, whichever is less.
+  void improve_kernel(std::size_t k, double goal, std::int64_t lacking) {
+    const StartAnswer& a = result_.starts[k];
+    const double more = times_more(a.kernel_error_95, goal) - 1.0;
+    const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
+    const auto own = static_cast<double>(std::max(trials, kFirstRound / 2));
+    const double all = static_cast<double>(pool_.gate_runs()) / std::max(1.0, a.final.mean_steps) /
+                       static_cast<double>(lacking);
+    run_full(k, std::min(own, all) * more);
+  }
+
+  void run_full(std::size_t k, double count) {
+    if (runner_.may_go_on())
+      runner_.run_full(pool_.starts[places_[k]], static_cast<std::int64_t>(count));
+  }
+
+  const Stopwatch watch_;
+  const Scene& scene_;
+  RunPool& pool_;
+  const AccuracyOptions& options_;
+  PoolRunner runner_;
+  PoolChains chains_;
+  bool with_kernels_;
+  std::vector<std::size_t> places_;  // of the starts in the pool
+  std::vector<std::size_t> open_;    // starts that are not certain enough yet
+  PooledPrediction result_;
+};
 
 }  // namespace
 
@@ -418,48 +295,7 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
                                 const std::vector<BodyState>& starts,
                                 const AccuracyOptions& options, const Work& work) {
   require_fine(options);
-  const Stopwatch watch;
-  Runner runner(scene, options, work);
-  PooledPrediction result;
-  const bool has_others = pool.gate_runs() > 0;
-  const std::vector<std::size_t> places = places_of(starts, pool, options.first_runs, runner);
-  result.starts.resize(starts.size());
-  std::vector<std::size_t> open(starts.size());  // those that are not certain enough yet
-  std::iota(open.begin(), open.end(), 0);
-  Kernels kernels;
-  while (!open.empty()) {
-    std::vector<std::size_t> asked;
-    for (const std::size_t k : open) asked.push_back(places[k]);
-    // A single start's full trials make both its row and the kernel, in good proportion.
-    const bool with_kernels = starts.size() > 1 || has_others;
-    Said said = ask(scene, pool, kernels, asked, options, with_kernels);
-    result.states = said.states;
-    result.nonzeros = said.nonzeros;
-    std::vector<std::size_t> left;
-    bool chance_is_too_much = false;  // of walks: more trials would not help
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      const std::size_t k = open[i];
-      const double chance = chance_of_walks(said.whole[i], said.walks);
-      chance_is_too_much = chance_is_too_much || chance >= options.accuracy;
-      result.starts[k] = answer_of(
-          scene, pool.starts[places[k]], std::move(said.whole[i]), chance, said.groups[i],
-          with_kernels ? said.kernels[i] : std::vector<FinalDistribution>{}, options.seed);
-      if (result.starts[k].error.total_variation > options.accuracy) left.push_back(k);
-    }
-    result.reached = left.empty();
-    if (!runner.may_go_on() || options.first_runs || chance_is_too_much) break;
-    open = std::move(left);
-    for (const std::size_t k : open)
-      if (runner.may_go_on())
-        add_trials_of(pool.starts[places[k]], result.starts[k], options.accuracy, runner);
-  }
-  result.gate_runs = runner.gate_runs;
-  result.run_seconds = runner.seconds;
-  result.seconds = watch.seconds();
-  for (StartAnswer& a : result.starts) a.direct_seconds = direct_seconds(a, runner, options.seed);
-  runner.finish();
-  result.health = runner.health;
-  return result;
+  return Prediction(scene, pool, starts, options, work).carry_out();
 }
 
 StartRange usual_range(const Scene& scene) {
@@ -479,7 +315,7 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
   constexpr int kTried = 7;
   constexpr std::int64_t kFirstRuns = 400, kBegin = 2000, kLargestTried = 20'000;
   const Stopwatch watch;
-  Runner runner(scene, options, work);
+  PoolRunner runner(scene, options.seed, options.most_runs, work);
   PooledRange result;
   result.range = range;
   result.tried_on = kTried;
@@ -493,14 +329,14 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
   std::vector<std::size_t> all(kTried);
   std::iota(all.begin(), all.end(), 0);
   runner.run_scattered(pool.scattered, range, kBegin);
-  Kernels kernels;
+  PoolChains chains(scene.gate, scene.field, options.per_leaf, kTried, options.seed);
   for (;;) {
     tried.scattered = std::move(pool.scattered);
-    const Said said = ask(scene, tried, kernels, all, options, true);
+    const PoolAnswers said = chains.ask(tried, all, true);
     pool.scattered = std::move(tried.scattered);
     std::vector<double> errors;
     for (std::size_t k = 0; k < all.size(); ++k)
-      errors.push_back(GroupSpread(said.whole[k], said.kernels[k])
+      errors.push_back(GroupSpread(said.whole.final[k], said.kernels[k])
                            .error(kFirstRuns, options.seed)
                            .total_variation);
     std::sort(errors.begin(), errors.end());

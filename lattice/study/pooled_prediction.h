@@ -9,8 +9,7 @@
 
 #include "dynamics/work.h"
 #include "lattice/group_spread.h"
-#include "lattice/run_pool.h"
-#include "lattice/scene/scene.h"
+#include "lattice/study/pool_runner.h"
 
 namespace gatewalk::lattice {
 
@@ -66,10 +65,6 @@ struct PooledPrediction {
 [[nodiscard]] markov::FinalDistribution shares_of(const FieldTrials& trials,
                                                   const FieldParams& field);
 
-/// Starts on the lower edge of a gate, between these.
-struct StartRange {
-  std::array<double, 2> d{}, vx{}, vy{};  // m, m/s
-};
 /// Those of entries from below of Table III in the scene's own units, and the scene's start.
 [[nodiscard]] StartRange usual_range(const Scene& scene);
 

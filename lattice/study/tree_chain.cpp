@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "lattice/compare.h"
+#include "lattice/study/pool_answers.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -21,18 +22,14 @@ std::vector<std::vector<std::int64_t>> own_rows(const Scene& scene, const RunPoo
 
 /// What walks from the starts end with, or from anywhere in the range where there are none.
 std::vector<markov::FinalDistribution> answers(const Scene& scene, const RunPool& pool,
-                                               const Kernel& kernel) {
+                                               const Kernel& kernel, std::uint64_t seed) {
   auto rows = own_rows(scene, pool, kernel.space);
   if (rows.empty()) rows.push_back(first_row(scene.gate, kernel.space, pool.scattered));
-  std::vector<markov::Start> places;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    places.push_back({scene.field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
-  return markov::predict(chain_of(kernel, rows), {scene.field.columns, scene.field.rows}, places,
-                         {.max_cells = scene.field.max_gates});
+  return answers_of(kernel, rows, scene.field, seed).final;
 }
 
 /// Larger leaves, until there are no more states than that.
-void limit_states(TreeChain& chain, const Scene& scene, int most) {
+void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t seed) {
   if (most < kBoundaries)
     throw std::invalid_argument("a chain has " + std::to_string(kBoundaries) +
                                 " states at least, one for each way to enter a gate; " +
@@ -45,8 +42,8 @@ void limit_states(TreeChain& chain, const Scene& scene, int most) {
     chain.kernel = kernel_of(scene.gate, chain.pool, chain.per_leaf);
   }
   if (chain.kernel.space.size() == full.space.size()) return;
-  const auto before = answers(scene, chain.pool, full),
-             after = answers(scene, chain.pool, chain.kernel);
+  const auto before = answers(scene, chain.pool, full, seed),
+             after = answers(scene, chain.pool, chain.kernel, seed);
   for (std::size_t i = 0; i < before.size(); ++i)
     chain.states_bias =
         std::max(chain.states_bias, total_variation(before[i].final_cells, after[i].final_cells));
@@ -83,7 +80,7 @@ TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options, const 
                   .per_leaf = options.accuracy.per_leaf,
                   .prediction = std::move(prediction),
                   .range = std::move(range)};
-  if (options.most_states) limit_states(chain, scene, *options.most_states);
+  if (options.most_states) limit_states(chain, scene, *options.most_states, options.accuracy.seed);
   chain.transitions = transitions_with(scene, chain.pool, chain.kernel);
   if (chain.range) chain.transitions.health += chain.range->health;
   if (chain.prediction) chain.transitions.health += chain.prediction->health;

@@ -35,10 +35,6 @@ struct Stencil {
   explicit Stencil(const std::vector<Entry>& entries);
 };
 
-struct Range {
-  std::ptrdiff_t first, last;
-};
-
 /// All passes of the stencil over all ranges; see apply_pass().
 void apply_stencil(const Stencil& stencil, const Shift* shifts, std::ptrdiff_t stride,
                    const double* source_mask, const std::vector<Range>& ranges, const double* from,
@@ -63,11 +59,19 @@ class Planes {
 /// the pages back each time, and they are faulted in again).
 class PlaneBuffer {
  public:
-  PlaneBuffer(std::ptrdiff_t count, std::ptrdiff_t stride)
-      : p_(hwy::AllocateAligned<double>(static_cast<std::size_t>(count * stride))),
-        stride_(stride) {
-    if (!p_) throw std::bad_alloc();
+  PlaneBuffer() = default;
+  PlaneBuffer(std::ptrdiff_t count, std::ptrdiff_t stride) { reset(count, stride); }
+  /// Other planes in the same memory, if it is large enough.
+  void reset(std::ptrdiff_t count, std::ptrdiff_t stride) {
+    if (count * stride > size_) {
+      p_ = nullptr;
+      p_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(count * stride));
+      if (!p_) throw std::bad_alloc();
+      size_ = count * stride;
+    }
     std::fill_n(p_.get(), count * stride, 0.0);
+    stride_ = stride;
+    taken_ = 0;
   }
   /// The next `count` planes; not more in all than the buffer has.
   [[nodiscard]] Planes take(std::ptrdiff_t count) {
@@ -78,7 +82,7 @@ class PlaneBuffer {
 
  private:
   hwy::AlignedFreeUniquePtr<double[]> p_;
-  std::ptrdiff_t stride_, taken_ = 0;
+  std::ptrdiff_t size_ = 0, stride_ = 0, taken_ = 0;
 };
 
 /// Places of the cells of several fields of equal size, side by side, one field per start. With two

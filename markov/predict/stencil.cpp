@@ -46,9 +46,27 @@ void apply_block(const StencilPass& pass, const double* HWY_RESTRICT from, doubl
   }
 }
 
-void apply_in_registers(const StencilPass& pass, const double* HWY_RESTRICT from,
-                        double* HWY_RESTRICT to, std::ptrdiff_t first, std::ptrdiff_t last,
-                        bool add) {
+template <int Width>
+void gather_block(const GatherPass& pass, int plane, const double* HWY_RESTRICT from,
+                  double* HWY_RESTRICT to, std::ptrdiff_t c) {
+  const D d;
+  const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  hn::Vec<D> s[Width];
+  for (int i = 0; i < Width; ++i) s[i] = hn::Zero(d);
+  const GatherTerm* const end = pass.terms + pass.ends[plane + 1];
+  for (const GatherTerm* k = pass.terms + pass.ends[plane]; k != end; ++k) {
+    const auto p = hn::Set(d, k->p);
+    const double* const in = from + k->source * pass.stride + pass.shifts[k->move].offset + c;
+    for (int i = 0; i < Width; ++i) s[i] = hn::Add(s[i], hn::Mul(p, hn::LoadU(d, in + i * n)));
+  }
+  for (int i = 0; i < Width; ++i)
+    hn::StoreU(hn::Mul(s[i], hn::LoadU(d, pass.mask + c + i * n)), d,
+               to + plane * pass.stride + c + i * n);
+}
+
+/// Calls block(width, c) for registers from `first` to `last`, some together.
+template <class Block>
+void in_blocks(std::ptrdiff_t first, std::ptrdiff_t last, Block block) {
   constexpr std::ptrdiff_t kWidest = 8;
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(D()));
   const std::ptrdiff_t registers = (last - first) / n;
@@ -56,34 +74,63 @@ void apply_in_registers(const StencilPass& pass, const double* HWY_RESTRICT from
   for (std::ptrdiff_t i = 0; i < blocks; ++i) {
     const std::ptrdiff_t begin = registers * i / blocks,
                          width = registers * (i + 1) / blocks - begin;
-    const std::ptrdiff_t c = first + begin * n;
+    block(static_cast<int>(width), first + begin * n);
+  }
+}
+
+void gather_in_registers(const GatherPass& pass, const std::vector<Range>& ranges,
+                         const std::vector<Reward>& rewards, const double* HWY_RESTRICT from,
+                         double* HWY_RESTRICT to) {
+  for (int plane = 0; plane < pass.planes; ++plane) {
+    for (const Range& r : ranges)
+      in_blocks(r.first, r.last, [&](int width, std::ptrdiff_t c) {
+        switch (width) {
+          case 1:
+            return gather_block<1>(pass, plane, from, to, c);
+          case 2:
+            return gather_block<2>(pass, plane, from, to, c);
+          case 3:
+            return gather_block<3>(pass, plane, from, to, c);
+          case 4:
+            return gather_block<4>(pass, plane, from, to, c);
+          case 5:
+            return gather_block<5>(pass, plane, from, to, c);
+          case 6:
+            return gather_block<6>(pass, plane, from, to, c);
+          case 7:
+            return gather_block<7>(pass, plane, from, to, c);
+          default:
+            return gather_block<8>(pass, plane, from, to, c);
+        }
+      });
+    const double* const shares = pass.shares + std::ptrdiff_t{plane} * pass.shares_per_plane;
+    for (const Reward& r : rewards) to[plane * pass.stride + r.place] += shares[r.share];
+  }
+}
+
+void apply_in_registers(const StencilPass& pass, const double* HWY_RESTRICT from,
+                        double* HWY_RESTRICT to, std::ptrdiff_t first, std::ptrdiff_t last,
+                        bool add) {
+  in_blocks(first, last, [&](int width, std::ptrdiff_t c) {
     switch (width) {
       case 1:
-        apply_block<1>(pass, from, to, add, c);
-        break;
+        return apply_block<1>(pass, from, to, add, c);
       case 2:
-        apply_block<2>(pass, from, to, add, c);
-        break;
+        return apply_block<2>(pass, from, to, add, c);
       case 3:
-        apply_block<3>(pass, from, to, add, c);
-        break;
+        return apply_block<3>(pass, from, to, add, c);
       case 4:
-        apply_block<4>(pass, from, to, add, c);
-        break;
+        return apply_block<4>(pass, from, to, add, c);
       case 5:
-        apply_block<5>(pass, from, to, add, c);
-        break;
+        return apply_block<5>(pass, from, to, add, c);
       case 6:
-        apply_block<6>(pass, from, to, add, c);
-        break;
+        return apply_block<6>(pass, from, to, add, c);
       case 7:
-        apply_block<7>(pass, from, to, add, c);
-        break;
+        return apply_block<7>(pass, from, to, add, c);
       default:
-        apply_block<8>(pass, from, to, add, c);
-        break;
+        return apply_block<8>(pass, from, to, add, c);
     }
-  }
+  });
 }
 
 void accumulate_in_registers(const double* HWY_RESTRICT from, double* HWY_RESTRICT to, int count,
@@ -102,10 +149,16 @@ HWY_AFTER_NAMESPACE();
 namespace gatewalk::markov {
 HWY_EXPORT(apply_in_registers);
 HWY_EXPORT(accumulate_in_registers);
+HWY_EXPORT(gather_in_registers);
 
 void apply_pass(const StencilPass& pass, const double* from, double* to, std::ptrdiff_t first,
                 std::ptrdiff_t last, bool add) {
   HWY_DYNAMIC_DISPATCH(apply_in_registers)(pass, from, to, first, last, add);
+}
+
+void gather(const GatherPass& pass, const std::vector<Range>& ranges,
+            const std::vector<Reward>& rewards, const double* from, double* to) {
+  HWY_DYNAMIC_DISPATCH(gather_in_registers)(pass, ranges, rewards, from, to);
 }
 
 void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,

@@ -6,11 +6,17 @@
 /// plane; the next plane begins `stride` numbers on.
 
 #include <cstddef>
+#include <vector>
 
 namespace gatewalk::markov {
 
 /// Ranges begin and end at multiples of this: numbers in the longest register.
 inline constexpr std::ptrdiff_t kLanes = 8;
+
+/// Places [first, last).
+struct Range {
+  std::ptrdiff_t first, last;
+};
 
 /// p times the number in plane `source`.
 struct Term {
@@ -49,6 +55,35 @@ struct StencilPass {
 /// sum.
 void apply_pass(const StencilPass& pass, const double* from, double* to, std::ptrdiff_t first,
                 std::ptrdiff_t last, bool add);
+
+/// p times the number in plane `source` a move away.
+struct GatherTerm {
+  double p;
+  int source, move;
+};
+
+/// `share` of the plane's own shares is added at a place.
+struct Reward {
+  std::ptrdiff_t place;
+  int share;
+};
+
+struct GatherPass {
+  const GatherTerm* terms;
+  const int* ends;  // of each plane's terms, the first plane's begin before it (planes + 1)
+  int planes;
+  const Shift* shifts;  // by move; only their offsets count
+  std::ptrdiff_t stride;
+  const double* mask;    // by place: 1 for a cell of the field, else 0
+  const double* shares;  // (planes x shares_per_plane)
+  int shares_per_plane;
+};
+
+/// The adjoint of apply_pass(): for each plane and each place c in the ranges, which begin and end
+/// at multiples of kLanes:
+/// to[plane][c] = mask[c] * sum of p * from[source][c + offset], then the rewards.
+void gather(const GatherPass& pass, const std::vector<Range>& ranges,
+            const std::vector<Reward>& rewards, const double* from, double* to);
 
 /// to += from, in `count` planes from the first on.
 void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,

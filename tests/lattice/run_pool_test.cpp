@@ -6,6 +6,7 @@
 
 #include "dynamics/quantile_bins.h"
 #include "lattice/group_spread.h"
+#include "lattice/study/pool_answers.h"
 #include "lattice/study/pooled_prediction.h"
 #include "lattice/study/tree_chain.h"
 #include "tests/support/threads.h"
@@ -117,10 +118,11 @@ TEST(GroupSpread, SamplingAndBiasByHand) {
   const auto whole = of_shares(0.5, 0.5);
   const std::vector<markov::FinalDistribution> same(8, whole);
   EXPECT_NEAR(GroupSpread(whole, same).error(1'000'000, 1).total_variation, 3e-6, 1e-8);
-  // All groups alike but off: a bias alone, half of which the whole one is thought to have.
+  // All groups alike but off: a bias alone, three quarters of which the whole one is thought to
+  // have.
   const std::vector<markov::FinalDistribution> biased(8, of_shares(0.4, 0.6));
-  EXPECT_NEAR(GroupSpread(whole, biased).error(1000, 1).total_variation, 0.05, 1e-12);
-  EXPECT_NEAR(GroupSpread(whole, biased).endings_95(100).interval[0][0], 0.45, 1e-12);
+  EXPECT_NEAR(GroupSpread(whole, biased).error(1000, 1).total_variation, 0.075, 1e-12);
+  EXPECT_NEAR(GroupSpread(whole, biased).endings_95(100).interval[0][0], 0.425, 1e-12);
   // +-0.1 in turn: a standard error of 0.1 / sqrt(7), whose |error| has its 95 % point at 1.96.
   std::vector<markov::FinalDistribution> spread;
   for (int k = 0; k < 8; ++k) spread.push_back(of_shares(k % 2 ? 0.4 : 0.6, k % 2 ? 0.6 : 0.4));
@@ -186,6 +188,63 @@ TEST(PooledPrediction, UsesWhatThePoolHolds) {
   EXPECT_GT(first.gate_runs, 0);
   EXPECT_EQ(again.gate_runs, 0);
   EXPECT_TRUE((first.starts[0].final.final_cells == again.starts[0].final.final_cells).all());
+}
+
+std::vector<BodyState> many_starts() {
+  std::vector<BodyState> starts;
+  for (int k = 0; k < 24; ++k) starts.push_back({-20.0 + k, 0.0, 8.0 - 0.5 * k, 11.0 + 0.3 * k});
+  return starts;
+}
+
+TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  std::vector<std::size_t> all, few{3, 17};
+  for (const BodyState& b : many_starts()) {
+    all.push_back(pool.starts.size());
+    pool.starts.push_back(some_trials(scene, 64, b));
+  }
+  ASSERT_TRUE(pays_adjoint(scene.field, all.size()));
+  ASSERT_FALSE(pays_adjoint(scene.field, few.size()));
+  const PoolAnswers many =
+      PoolChains(scene.gate, scene.field, 5, all.size(), 1).ask(pool, all, true);
+  // Few starts are asked one by one; many have leaves of twice the size.
+  const PoolAnswers two =
+      PoolChains(scene.gate, scene.field, 10, few.size(), 1).ask(pool, few, true);
+  EXPECT_EQ(many.states, two.states);
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    const auto near = [&](const markov::FinalDistribution& a, const markov::FinalDistribution& b) {
+      EXPECT_LE((a.final_cells - b.final_cells).abs().maxCoeff(), 1e-13);
+      EXPECT_LE((markov::departed_cells(a) - markov::departed_cells(b)).abs().maxCoeff(), 1e-13);
+      EXPECT_NEAR(a.mean_steps, b.mean_steps, 1e-11);
+    };
+    near(many.whole.final[few[i]], two.whole.final[i]);
+    for (std::size_t g = 0; g < kTrialGroups; ++g) {
+      near(many.groups[few[i]][g], two.groups[i][g]);
+      near(many.kernels[few[i]][g], two.kernels[i][g]);
+    }
+  }
+}
+
+TEST(PooledPrediction, OfManyStartsSharesTheirRuns) {
+  const Scene scene = fast_scene();
+  const auto run = [&] {
+    RunPool pool;
+    return predict_pooled(scene, pool, many_starts(), {.accuracy = 0.15, .seed = 2});
+  };
+  const PooledPrediction one = test::on_threads(1, run), three = test::on_threads(3, run);
+  EXPECT_TRUE(one.reached);
+  std::int64_t alone = 0;
+  for (std::size_t k = 0; k < one.starts.size(); ++k) {
+    EXPECT_LE(one.starts[k].error.total_variation, 0.15);
+    EXPECT_TRUE((one.starts[k].final.final_cells == three.starts[k].final.final_cells).all());
+    EXPECT_EQ(one.starts[k].error.total_variation, three.starts[k].error.total_variation);
+    if (k % 6 != 0) continue;
+    RunPool pool;
+    alone +=
+        predict_pooled(scene, pool, {many_starts()[k]}, {.accuracy = 0.15, .seed = 2}).gate_runs;
+  }
+  EXPECT_LT(one.gate_runs, 6 * alone);  // of four starts: together they take less
 }
 
 TEST(PooledPrediction, RefusesNonsense) {

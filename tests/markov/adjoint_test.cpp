@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <stdexcept>
+
+#include "chains.h"
+#include "tests/support/instruction_sets.h"
+
+namespace gatewalk::markov {
+namespace {
+
+using test::lattice_counts;
+using test::lattice_exits;
+
+std::vector<std::int64_t> row_of(const Counts& counts, int row) {
+  std::vector<std::int64_t> dense(static_cast<std::size_t>(counts.cols()));
+  for (Counts::InnerIterator it(counts, row); it; ++it)
+    dense[static_cast<std::size_t>(it.col())] = it.value();
+  return dense;
+}
+
+void expect_near(const FinalDistribution& a, const FinalDistribution& b, double bound) {
+  EXPECT_LE((a.final_cells - b.final_cells).abs().maxCoeff(), bound);
+  EXPECT_NEAR(a.left_field, b.left_field, bound);
+  EXPECT_NEAR(a.mean_steps, b.mean_steps, 20 * bound);
+  test::expect_same_endings(a, b, bound);
+  test::expect_endings_add_up(a);
+}
+
+/// Moves up, left and right only; of several cells at once, down too; none to a cell of the same
+/// colour of a chessboard, but for those of `leaps`.
+std::vector<Exit> never_down() {
+  auto exits = lattice_exits();
+  for (Exit& exit : exits)
+    if (exit.di_y < 0) exit.di_y = 1;
+  return exits;
+}
+std::vector<Exit> leaps() {
+  auto exits = lattice_exits();
+  for (std::size_t j = 0; j + 1 < exits.size(); ++j) {
+    exits[j].di_x = static_cast<int>(j % 7) - 3;
+    exits[j].di_y = static_cast<int>(j % 5) - 2;
+  }
+  return exits;
+}
+
+struct Case {
+  Field field;
+  int column, row, max_cells;
+};
+
+TEST(Adjoint, SaysWhatPropagationSays) {
+  const Case cases[] = {{{9, 9}, 4, 0, 13}, {{9, 9}, 0, 8, 6},  {{1, 1}, 0, 0, 3},
+                        {{3, 12}, 2, 5, 9}, {{12, 3}, 7, 1, 1}, {{40, 5}, 20, 2, 2},
+                        {{5, 5}, 2, 0, 40}};
+  for (const auto& exits : {lattice_exits(), never_down(), leaps()})
+    for (const bool has_gaps : {false, true})
+      for (const Case& c : cases) {
+        Counts counts = lattice_counts(7);
+        if (has_gaps)
+          for (const int row : {3, 40, 60}) test::empty_row(counts, row);
+        const Chain chain = Chain::from_counts(counts, exits);
+        const AdjointPredictor adjoint(chain, c.field, c.column, c.row, c.max_cells);
+        for (const int input : {0, 12, 86}) {
+          const auto expected =
+              test::propagate_plainly(chain, c.field, {c.column, c.row, input}, c.max_cells);
+          const auto found = adjoint.predict(row_of(counts, input));
+          SCOPED_TRACE(std::to_string(c.field.columns) + " x " + std::to_string(c.field.rows) +
+                       ", " + std::to_string(c.max_cells) + " cells, input " +
+                       std::to_string(input));
+          expect_near(found, expected, 1e-14);
+        }
+      }
+}
+
+TEST(Adjoint, ChainsOfTwoOutcomesByHand) {
+  // One state: up with 1/4, trapped with 3/4.
+  Counts counts(1, 2);
+  counts.coeffRef(0, 0) = 1, counts.coeffRef(0, 1) = 3;
+  const AdjointPredictor adjoint(Chain::from_counts(counts, {{0, 0, 1}, {}}), {1, 3}, 0, 0, 3);
+  const auto d = adjoint.predict({2, 2});  // a start that goes up with 1/2
+  EXPECT_DOUBLE_EQ(d.final_cells(0, 0), 0.5);
+  EXPECT_DOUBLE_EQ(d.final_cells(1, 0), 0.5 * 0.75);
+  EXPECT_DOUBLE_EQ(d.final_cells(2, 0), 0.5 * 0.25);
+  EXPECT_DOUBLE_EQ(d.endings[static_cast<std::size_t>(Ending::far_edge)], 0.5 / 16);
+  EXPECT_DOUBLE_EQ(d.mean_steps, 1 + 0.5 + 0.125);
+}
+
+TEST(Adjoint, SameBitsOnAnyThreadsAndInstructions) {
+  const Counts counts = lattice_counts(11);
+  const Chain chain = Chain::from_counts(counts, never_down());
+  const auto shares = [&] {
+    return AdjointPredictor(chain, {9, 9}, 4, 0, 13).predict(row_of(counts, 12)).final_cells;
+  };
+  const CellProbabilities expected = shares();
+  {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_TRUE((shares() == expected).all());
+  }
+  gatewalk::test::on_every_instruction_set([&] { EXPECT_TRUE((shares() == expected).all()); });
+}
+
+TEST(Adjoint, RefusesWhatItCannotAnswer) {
+  const Counts counts = lattice_counts(3);
+  const Chain chain = Chain::from_counts(counts, lattice_exits());
+  EXPECT_THROW(AdjointPredictor(chain, {9, 9}, 4, 0, 0), std::invalid_argument);
+  EXPECT_THROW(AdjointPredictor(chain, {9, 9}, 9, 0, 5), std::invalid_argument);
+  const AdjointPredictor adjoint(chain, {3, 3}, 1, 0, 5);
+  EXPECT_THROW((void)adjoint.predict({1, 2, 3}), std::invalid_argument);
+  EXPECT_THROW((void)adjoint.predict(std::vector<std::int64_t>(88, 0)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::markov
