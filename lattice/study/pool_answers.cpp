@@ -134,8 +134,7 @@ KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows
   return answers;
 }
 
-PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>& starts,
-                            bool with_kernels) {
+PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>& starts) {
   renew(pool);
   prepare_adjoints(starts.size());
   const std::size_t n = starts.size();
@@ -143,7 +142,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
                    .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.counts.nonZeros()};
-  if (with_kernels) said.kernels = said.groups;
+  said.kernels = said.groups;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const GroupChain& chain = chains_[static_cast<std::size_t>(g + 1)];
     Rows rows;
@@ -152,7 +151,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
         rows.push_back(first_row(gate_, chain.kernel.space, pool.starts[s], group));
     };
     if (g >= 0) add({g, kTrialGroups});
-    if (g < 0 || with_kernels) add({});
+    add({});
     KernelAnswers found = answers(chain, g, rows);
     if (g < 0) {
       said.whole = std::move(found);
@@ -160,8 +159,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
     }
     for (std::size_t i = 0; i < n; ++i) {
       said.groups[i][static_cast<std::size_t>(g)] = std::move(found.final[i]);
-      if (with_kernels)
-        said.kernels[i][static_cast<std::size_t>(g)] = std::move(found.final[n + i]);
+      said.kernels[i][static_cast<std::size_t>(g)] = std::move(found.final[n + i]);
     }
   });
   return said;

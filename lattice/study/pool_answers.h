@@ -26,9 +26,8 @@ struct KernelAnswers {
 struct PoolAnswers {
   KernelAnswers whole;
   std::vector<std::vector<markov::FinalDistribution>> groups;  // (starts x kTrialGroups)
-  /// The same with the first runs of all trials in every group: what the kernel alone makes. Empty
-  /// if not asked for.
-  std::vector<std::vector<markov::FinalDistribution>> kernels{};
+  /// The same with the first runs of all trials in every group: what the kernel alone makes.
+  std::vector<std::vector<markov::FinalDistribution>> kernels;
   int states = 0;
   std::int64_t nonzeros = 0;
 };
@@ -45,8 +44,7 @@ class PoolChains {
              std::size_t starts, std::uint64_t seed);
 
   /// Of those starts of the pool.
-  [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<std::size_t>& starts,
-                                bool with_kernels);
+  [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<std::size_t>& starts);
 
  private:
   struct GroupChain {

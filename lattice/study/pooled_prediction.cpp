@@ -47,9 +47,7 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, FinalDistributio
   const std::int64_t behind = a.trials > 0 ? a.trials : a.first_runs;
   a.error = spread.error(behind, seed);
   a.error.total_variation = std::hypot(a.error.total_variation, chance);
-  a.kernel_error_95 = kernels.empty()
-                          ? a.error.total_variation
-                          : GroupSpread(whole, kernels).error(behind, seed).total_variation;
+  a.kernel_error_95 = GroupSpread(whole, kernels).error(behind, seed).total_variation;
   Error95 of_trials{1.0, 0.0, 100.0};
   if (a.trials > 0) {
     CellCounts counts = CellCounts::Zero(scene.field.rows, scene.field.columns);
@@ -111,9 +109,7 @@ class Prediction {
         pool_(pool),
         options_(options),
         runner_(scene, options.seed, options.most_runs, work),
-        chains_(scene.gate, scene.field, options.per_leaf, starts.size(), options.seed),
-        // A single start's full trials make both its row and the kernel, in good proportion.
-        with_kernels_(starts.size() > 1 || pool.gate_runs() > 0) {
+        chains_(scene.gate, scene.field, options.per_leaf, starts.size(), options.seed) {
     place(starts);
     result_.starts.resize(starts.size());
     open_ = all();
@@ -168,16 +164,15 @@ class Prediction {
     if (pays_adjoint(scene_.field, open_.size())) open_ = all();
     std::vector<std::size_t> asked;
     for (const std::size_t k : open_) asked.push_back(places_[k]);
-    PoolAnswers said = chains_.ask(pool_, asked, with_kernels_);
+    PoolAnswers said = chains_.ask(pool_, asked);
     result_.states = said.states;
     result_.nonzeros = said.nonzeros;
     std::vector<double> chances(open_.size());
     tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t i) {
       chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
-      result_.starts[open_[i]] = answer_of(
-          scene_, pool_.starts[asked[i]], std::move(said.whole.final[i]), chances[i],
-          said.groups[i], with_kernels_ ? said.kernels[i] : std::vector<FinalDistribution>{},
-          options_.seed);
+      result_.starts[open_[i]] =
+          answer_of(scene_, pool_.starts[asked[i]], std::move(said.whole.final[i]), chances[i],
+                    said.groups[i], said.kernels[i], options_.seed);
     });
     std::erase_if(open_, [&](std::size_t k) {
       return result_.starts[k].error.total_variation <= options_.accuracy;
@@ -207,12 +202,6 @@ class Prediction {
   }
 
   void add_trials() {
-    if (!with_kernels_) {
-      const StartAnswer& a = result_.starts.front();
-      run_full(0, static_cast<double>(a.trials) *
-                      (times_more(a.error.total_variation, options_.accuracy) - 1.0));
-      return;
-    }
     const double goal = kernel_goal();
     std::vector<std::size_t> lacking;  // starts for which the kernel is too uncertain
     for (const std::size_t k : open_)
@@ -260,7 +249,6 @@ class Prediction {
   const AccuracyOptions& options_;
   PoolRunner runner_;
   PoolChains chains_;
-  bool with_kernels_;
   std::vector<std::size_t> places_;  // of the starts in the pool
   std::vector<std::size_t> open_;    // starts that are not certain enough yet
   PooledPrediction result_;
@@ -332,7 +320,7 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
   PoolChains chains(scene.gate, scene.field, options.per_leaf, kTried, options.seed);
   for (;;) {
     tried.scattered = std::move(pool.scattered);
-    const PoolAnswers said = chains.ask(tried, all, true);
+    const PoolAnswers said = chains.ask(tried, all);
     pool.scattered = std::move(tried.scattered);
     std::vector<double> errors;
     for (std::size_t k = 0; k < all.size(); ++k)

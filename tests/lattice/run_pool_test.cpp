@@ -206,11 +206,9 @@ TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
   }
   ASSERT_TRUE(pays_adjoint(scene.field, all.size()));
   ASSERT_FALSE(pays_adjoint(scene.field, few.size()));
-  const PoolAnswers many =
-      PoolChains(scene.gate, scene.field, 5, all.size(), 1).ask(pool, all, true);
+  const PoolAnswers many = PoolChains(scene.gate, scene.field, 5, all.size(), 1).ask(pool, all);
   // Few starts are asked one by one; many have leaves of twice the size.
-  const PoolAnswers two =
-      PoolChains(scene.gate, scene.field, 10, few.size(), 1).ask(pool, few, true);
+  const PoolAnswers two = PoolChains(scene.gate, scene.field, 10, few.size(), 1).ask(pool, few);
   EXPECT_EQ(many.states, two.states);
   for (std::size_t i = 0; i < few.size(); ++i) {
     const auto near = [&](const markov::FinalDistribution& a, const markov::FinalDistribution& b) {
