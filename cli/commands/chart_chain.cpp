@@ -34,15 +34,16 @@ int run_chart_chain(const Arguments& arguments) {
   Options options(
       "chart-chain SCENE -o DIR [options]",
       "Charts the chain's error against its cost: matrices of coarser and finer bins and of\n"
-      "10 to 10000 trials a row, against the full dynamics, beside direct simulation at the\n"
-      "same cost. Writes chain.csv, chain.json and chain.svg into DIR.",
+      "10 to 10000 trials a row, and trees (predict --accuracy), against the full dynamics,\n"
+      "beside direct simulation at the same cost. Writes chain.csv, chain.json and chain.svg into "
+      "DIR.",
       "gatewalk chart-chain scenes/field.toml -o results/chain --truth-trials 1e5");
   options.scene();
   const std::vector<std::string> files{"chain.csv", "chain.json", "chain.svg"};
   options.output_folder("folder to write to, made if missing", files);
   options.add_count("truth-trials", "N",
                     "trials of the full dynamics per start, against which errors are taken", "1e5");
-  options.add_count("runs-limit", "N", "gate runs that one matrix may take", "1e6");
+  options.add_count("runs-limit", "N", "gate runs that one matrix or tree may take", "1e6");
   options.add_numbers("bins", "FACTOR",
                       "bins per axis, as a multiple of those that build has without --bins (may be "
                       "repeated; default: 0.5, 1, 2, 4)");

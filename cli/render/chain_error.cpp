@@ -116,6 +116,17 @@ Json start_json(const ChainErrorChart& chart, std::size_t s) {
                                       {"seconds", d.seconds},
                                       {"drawn", json_of(d.drawn)},
                                       {"formula", json_of(d.formula)}});
+  j["trees"] = Json::array();
+  for (const lattice::TreePoint& p : chart.trees[s]) {
+    Json tree = json_of(p.error);
+    tree["accuracy"] = p.accuracy;
+    tree["error_95"] = p.error_95;
+    tree["predictions"] = p.predictions;
+    tree["gate_runs"] = p.gate_runs;
+    tree["states"] = p.states;
+    tree["seconds"] = p.seconds;
+    j["trees"].push_back(std::move(tree));
+  }
   j["summary"] = summary_json(chart, s);
   return j;
 }
@@ -127,9 +138,9 @@ std::string when_it_pays(const ChainErrorChart& chart, const ChainSummary& summa
   const FieldTruth& truth = chart.truths[s];
   std::string text;
   if (summary.pays_from == ChainSummary::kNever) {
-    text = "For one start direct simulation is better at every cost charted";
+    text = "For one start direct simulation is better than bins at every cost charted";
   } else {
-    text = "For one start the chain is better from " + seconds_text(summary.pays_from) + " s";
+    text = "For one start bins are better from " + seconds_text(summary.pays_from) + " s";
     text += summary.pays_until == ChainSummary::kNever
                 ? " on, as far as this truth can tell"
                 : "; from " + seconds_text(summary.pays_until) + " s (" +
@@ -144,6 +155,22 @@ std::string when_it_pays(const ChainErrorChart& chart, const ChainSummary& summa
          " on (" + seconds_text(direct) + " s of direct simulation each).\n";
 }
 
+/// "Trees: TV 0.045 in 0.03 s (direct simulation 0.103), 0.023 in 0.1 s (0.052)."
+std::string trees_text(const ChainErrorChart& chart, std::size_t s) {
+  const FieldTruth& truth = chart.truths[s];
+  std::string text;
+  for (const lattice::TreePoint& p : chart.trees[s]) {
+    const auto trials =
+        std::max<std::int64_t>(1, std::llround(p.seconds / truth.seconds_per_trial));
+    text += (text.empty() ? "Trees (predict --accuracy): TV " : ", ") +
+            fixed(p.error.total_variation, 3) + " in " + seconds_text(p.seconds) + " s (" +
+            (text.empty() ? "direct simulation then has " : "") +
+            fixed(lattice::expected_total_variation(truth.p, truth.as_against_exact(trials)), 3) +
+            ")";
+  }
+  return text.empty() ? "Trees: no prediction within --runs-limit.\n" : text + ".\n";
+}
+
 /// A paragraph for one start.
 std::string words_of(const ChainErrorChart& chart, std::size_t s) {
   const ChainSummary summary = summary_of(chart, s);
@@ -153,7 +180,7 @@ std::string words_of(const ChainErrorChart& chart, std::size_t s) {
   };
   const ChainPoint &best = chart.points[summary.best], &cheapest = chart.points[summary.cheapest];
   std::string text =
-      "The chain's best error is TV " + fixed(best.error(s), 3) + " (" + place(best) +
+      "The best error of bins is TV " + fixed(best.error(s), 3) + " (" + place(best) +
       "; the truth's noise: " + fixed(chart.truths[s].floor.total_variation, 3) + "); ";
   text += summary.cheapest == summary.best
               ? "nothing cheaper comes within 1.5 times of it.\n"
@@ -161,9 +188,9 @@ std::string words_of(const ChainErrorChart& chart, std::size_t s) {
                     place(cheapest) + ").\n";
   text += when_it_pays(chart, summary, s);
   const ChainAnswer& a = best.answers[s];
-  text += std::string("At its best the chain is limited by ") +
-          (a.bins > a.sampling ? "its states (TV " + fixed(a.bins, 3) +
-                                     " from bins and what they forget; sampling makes " +
+  text += std::string("At their best bins are limited by ") +
+          (a.bins > a.sampling ? "what they forget (TV " + fixed(a.bins, 3) +
+                                     "; sampling makes " +
                                      fixed(a.sampling, 3) + "): more trials would not help.\n"
                                : "the sampling of its matrix (TV " + fixed(a.sampling, 3) +
                                      "; bins and what they forget make " + fixed(a.bins, 3) +
@@ -174,7 +201,7 @@ std::string words_of(const ChainErrorChart& chart, std::size_t s) {
             fixed(visited.error(s), 3) + " (" + place(visited) +
             ", the trials that saw them included).\n";
   }
-  return text;
+  return text + trees_text(chart, s);
 }
 
 /// Seconds, total variation of the chain, that of direct simulation at this cost.
@@ -282,6 +309,11 @@ std::string csv_of(const ChainErrorChart& chart) {
         line(std::to_string(kChainWalks[w]) + " walks", a.walk_seconds[w], a.walks[w], kNone, kNone,
              kNone);
     }
+    for (const lattice::TreePoint& p : chart.trees[s])
+      csv.row(start.d, start.vx, start.vy, "tree", kNone, p.states, "visited", kNone, p.gate_runs,
+              p.predictions, kNone, kNone, p.seconds, p.error.total_variation, kNone,
+              p.error.corrcoef, kNone, kNone, kNone, kNone, floor.total_variation, floor.corrcoef,
+              kNone, kNone, kNone);
     for (const DirectSimulation& d : chart.direct[s])
       csv.row(start.d, start.vx, start.vy, "direct simulation", kNone, kNone, kNone, d.trials,
               kNone, kNone, kNone, d.seconds, d.seconds, d.drawn.total_variation, kNone,

@@ -23,6 +23,7 @@ const std::string kDirect = " with lines lc rgb '#000000' lw 2";
 const std::string kNoise = " with lines lc rgb '#888888' lw 1.5 dt 3";
 const std::string kChain = " with linespoints pt 7 ps 0.5 lw 2";
 const std::string kSampling = " with lines lw 1.2 dt 2";
+const std::string kTree = " with linespoints pt 5 ps 0.7 lw 2.5 lc rgb '#56b4e9'";
 const std::string kVisited = " with linespoints pt 6 ps 0.6 lw 1.2";
 
 std::string colour(const ChainErrorChart& chart, std::size_t curve) {
@@ -64,12 +65,16 @@ Extent extent_of(const ChainErrorChart& chart) {
       extent.see(p.seconds(s));
       extent.see(p.answers[s].exact);
     }
+    for (const lattice::TreePoint& p : chart.trees[s]) {
+      extent.see(p.seconds);
+      extent.see(p.error);
+    }
   }
   return extent;
 }
 
-/// $chain_CURVE_START: seconds, total variation, 1 - corrcoef, sampling; $direct_START: the first
-/// three.
+/// $chain_CURVE_START: seconds, total variation, 1 - corrcoef, sampling; $direct_START and
+/// $tree_START: the first three.
 std::string data_of(const ChainErrorChart& chart) {
   std::string out;
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
@@ -89,8 +94,18 @@ std::string data_of(const ChainErrorChart& chart) {
       rows += digits(d.seconds) + " " + digits(d.drawn.total_variation) + " " +
               digits(1.0 - d.drawn.corrcoef) + "\n";
     out += data_block("$direct_" + of, rows);
+    rows.clear();
+    for (const lattice::TreePoint& p : chart.trees[s])
+      rows += digits(p.seconds) + " " + digits(p.error.total_variation) + " " +
+              digits(1.0 - p.error.corrcoef) + "\n";
+    if (!rows.empty()) out += data_block("$tree_" + of, rows);
   }
   return out;
+}
+
+bool has_trees(const ChainErrorChart& chart) {
+  return std::any_of(chart.trees.begin(), chart.trees.end(),
+                     [](const auto& points) { return !points.empty(); });
 }
 
 /// Where panels and key are, in pixels.
@@ -106,7 +121,7 @@ struct Layout {
         key_columns(width / 400) {
     const bool has_visited = chart.curves.back().visited;
     const int uniform = static_cast<int>(chart.curves.size()) / (has_visited ? 2 : 1);
-    key_rows = (uniform + 3 + has_visited + key_columns - 1) / key_columns;
+    key_rows = (uniform + 3 + has_visited + has_trees(chart) + key_columns - 1) / key_columns;
     height = kTop + 2 * kPanelHeight + kGap + 80 + kKeyRow * key_rows;
   }
   /// Sides of what is drawn next, from the left and from the top.
@@ -139,6 +154,7 @@ std::string panel(const ChainErrorChart& chart, std::size_t s, int column, doubl
     items.push_back(data + shown + (visited ? kVisited : kChain) + colour(chart, c));
     if (column == 2 && !visited) items.push_back(data + "4" + kSampling + colour(chart, c));
   }
+  if (!chart.trees[s].empty()) items.push_back("$tree_" + of + " using 1:" + shown + kTree);
   return plot(items);
 }
 
@@ -177,6 +193,7 @@ std::string key_of(const ChainErrorChart& chart, const Layout& layout) {
                     literal("chain, " + name_of(chart.curves[c]) + " (" +
                             std::to_string(chart.curves[c].space.size()) + " states)"));
   key.push_back("NaN" + kSampling + " lc rgb '#000000' title 'its part from sampling the matrix'");
+  if (has_trees(chart)) key.push_back("NaN" + kTree + " title 'trees (predict --accuracy)'");
   if (chart.curves.back().visited)
     key.push_back("NaN" + kVisited + " lc rgb '#000000' title 'rows started where bodies enter'");
   return layout.margins(Layout::kLeft, layout.width - Layout::kGap,

@@ -12,6 +12,7 @@
 
 #include "lattice/scene/matrix.h"
 #include "lattice/study/one_thread.h"
+#include "lattice/study/pooled_prediction.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -234,6 +235,40 @@ void add_points(ChainErrorChart& chart, std::size_t place, const Scene& scene, T
   }
 }
 
+/// Predictions until one would take more runs than the limit.
+std::vector<TreePoint> tree_points(const ChainErrorChart& chart, const Scene& scene,
+                                   const FieldTruth& truth, dynamics::Health& health,
+                                   const Work& work) {
+  std::vector<TreePoint> points;
+  for (const double accuracy : kTreeAccuracies) {
+    TreePoint p;
+    p.accuracy = accuracy;
+    p.predictions = kTreePredictions;
+    const auto n = static_cast<double>(p.predictions);
+    for (std::int64_t k = 0; k < p.predictions; ++k) {
+      PooledPrediction made;
+      const dynamics::Stopwatch watch;
+      const double cpu = one_thread_seconds([&] {
+        RunPool pool;
+        made = predict_pooled(scene, pool, {truth.start.body()},
+                              {.accuracy = accuracy,
+                               .most_runs = chart.options.runs_limit,
+                               .seed = chart.options.seed + static_cast<std::uint64_t>(k)},
+                              work);
+      });
+      health += made.health;
+      if (!made.reached) return points;
+      p.seconds += cpu * made.seconds / watch.seconds() / n;  // without the check of a sample
+      p.gate_runs += made.gate_runs / p.predictions;
+      p.states = made.states;
+      p.error_95 += made.starts.front().error.total_variation / n;
+      add_to_mean(p.error, error_of(made.starts.front().final.final_cells, truth.p), n);
+    }
+    points.push_back(p);
+  }
+  return points;
+}
+
 /// Numbers of trials 1, 2, 5, 10, ... whose cost covers [low, high] seconds.
 std::vector<DirectSimulation> direct_simulation(const FieldTruth& truth, double low, double high,
                                                 std::uint64_t seed, const Work& work) {
@@ -311,6 +346,8 @@ ChainErrorChart chart_chain_error(const Scene& scene, ChainErrorPlan plan, const
   TimedWork rest(work, milliseconds_left(chart));
   finish_truths(chart, scene, rest);
   for (std::size_t c = 0; c < chart.curves.size(); ++c) add_points(chart, c, scene, rest);
+  for (const FieldTruth& truth : chart.truths)
+    chart.trees.push_back(tree_points(chart, scene, truth, chart.health, rest.beside()));
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     const auto [low, high] = std::minmax_element(
         chart.points.begin(), chart.points.end(),

@@ -1,7 +1,7 @@
 #pragma once
 /// The chain's error against its cost: matrices of coarser and finer bins and of few or many trials
-/// a row, against the full dynamics, beside direct simulation at the same cost. All seconds are CPU
-/// time of one thread.
+/// a row, and trees, against the full dynamics, beside direct simulation at the same cost. All
+/// seconds are CPU time of one thread.
 
 #include <array>
 #include <cstdint>
@@ -57,7 +57,22 @@ struct DirectSimulation {
   FinalGateError formula;  // expected_total_variation and the noise floor
 };
 
+/// Predictions of one start by trees, each with trials of its own, to an accuracy asked for; means
+/// over them.
+struct TreePoint {
+  double accuracy = 0.0;
+  std::int64_t predictions = 0, gate_runs = 0;
+  int states = 0;
+  double seconds = 0.0;  // of runs, chain and error bar
+  FinalGateError error;
+  double error_95 = 0.0;  // what they said: total variation
+};
+
 // ---- The chart ----
+
+/// What trees are asked for, as far as the limit of runs allows, and how often.
+inline constexpr std::array<double, 4> kTreeAccuracies{0.1, 0.05, 0.02, 0.01};
+inline constexpr std::int64_t kTreePredictions = 4;
 
 /// Trials per row that are charted, as far as the limit of runs allows.
 inline constexpr std::array<std::int64_t, 10> kChainTrials{10,  20,   50,   100,  200,
@@ -68,7 +83,7 @@ struct ChainErrorOptions {
   std::vector<double> factors{0.5, 1.0, 2.0,
                               4.0};     // bins per axis, as a multiple of the usual ones
   std::int64_t truth_trials = 100'000;  // of the full dynamics, per start
-  std::int64_t runs_limit = 1'000'000;  // gate runs that one matrix may take
+  std::int64_t runs_limit = 1'000'000;  // gate runs that one matrix or tree may take
   /// Full trials per start whose entries rows start from, on curves of their own. Rows of bins that
   /// are made from what is seen always start so; without a number, from kPilotTrials.
   std::optional<std::int64_t> visited{};
@@ -96,6 +111,7 @@ struct ChainErrorPlan {
 struct ChainErrorChart : ChainErrorPlan {
   std::vector<FieldTruth> truths{};                     // by start
   std::vector<ChainPoint> points{};                     // by curve, then trials
+  std::vector<std::vector<TreePoint>> trees{};          // by start, then accuracy
   std::vector<std::vector<DirectSimulation>> direct{};  // by start
 };
 /// All but the times is the same on any number of threads. Throws std::invalid_argument for an
