@@ -106,6 +106,7 @@ int predict_from_runs(const Options& options, const lattice::SceneMatrix& m) {
   if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
   how.per_leaf = entries_per_leaf(m.file, path);
   if (options.has("first-runs")) how.first_runs = options.count("first-runs", 8);
+  remark_on_range(options, m.file, path, bodies_of(given_starts(options), m.scene));
   return predict_accurately(options, m.scene, {}, lattice::pool_of(m.file, m.scene.field, path),
                             how);
 }

@@ -242,6 +242,7 @@ Validation validation_of(const Json& json, const std::string& file) {
   v.crossings = {.rt_and_lt = crossings["RT_and_LT_share"].number(),
                  .clamped = crossings["clamped_share"].number(),
                  .between_gates = crossings["between_gates"].count()};
+  v.markov = all["markov"]["verdict"].text();
   v.matrix_seconds = all["matrix"]["seconds"].number();
   return v;
 }

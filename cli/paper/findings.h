@@ -125,6 +125,7 @@ struct Validation {
   std::int64_t trials = 0, walks = 0;  // per start
   std::vector<ValidatedStart> starts;
   Crossings crossings;
+  std::string markov;  // whether the chain forgets what counts, in words
   double matrix_seconds = 0.0;
 
   [[nodiscard]] double seconds_per_trial() const;

@@ -26,6 +26,20 @@ double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
                                               : std::min(cells, 2.0 * steps * steps) * steps / 2.0);
 }
 
+/// Whether adjoints of all chains pay: measured, they take as long as predictions from as many
+/// starts as a quarter of the cells.
+bool pays_adjoint(const FieldParams& field, std::size_t starts) {
+  return field.max_gates > 0 &&
+         4 * static_cast<std::int64_t>(starts) >= std::int64_t{field.columns} * field.rows;
+}
+
+/// Runs behind the rows of kernels.
+std::int64_t kernel_runs(const RunPool& pool) {
+  std::int64_t runs = std::ssize(pool.scattered.each.passages);
+  for (const StartTrials& s : pool.starts) runs += std::ssize(s.full.passages);
+  return runs;
+}
+
 /// What walks say, as a prediction. Over which edge bodies left from a corner cell is not known:
 /// they count as having crossed there.
 FinalDistribution shares_of(const markov::WalkTally& tally) {
@@ -77,11 +91,6 @@ KernelAnswers answers_of(const Kernel& kernel, const Rows& first_rows, const Fie
 
 }  // namespace
 
-bool pays_adjoint(const FieldParams& field, std::size_t starts) {
-  return field.max_gates > 0 &&
-         4 * static_cast<std::int64_t>(starts) >= std::int64_t{field.columns} * field.rows;
-}
-
 KernelAnswers answers_of(const Kernel& kernel, const Rows& first_rows, const FieldParams& field,
                          std::uint64_t seed) {
   const bool exact = exact_cost(kernel.counts.nonZeros(), field) <= kMostExact;
@@ -95,9 +104,15 @@ PoolChains::PoolChains(const dynamics::GateParams& gate, const FieldParams& fiel
       per_leaf_(pays_adjoint(field, starts) ? 2 * per_leaf : per_leaf),
       seed_(seed) {}
 
+bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
+  constexpr std::int64_t kMostNumbers = 100'000'000;  // that adjoints keep
+  const std::int64_t cells = std::int64_t{field_.columns} * field_.rows,
+                     states = 2 * 2 * kernel_runs(pool) / per_leaf_;  // of all chains, at most
+  return pays_adjoint(field_, starts) && 2 * cells * states <= kMostNumbers;
+}
+
 void PoolChains::renew(const RunPool& pool) {
-  std::int64_t runs = std::ssize(pool.scattered.each.passages);
-  for (const StartTrials& s : pool.starts) runs += std::ssize(s.full.passages);
+  const std::int64_t runs = kernel_runs(pool);
   if (std::exchange(runs_, runs) == runs) return;
   by_walks_ = exact_cost(2 * runs, field_) > kMostExact;  // some nonzeros a run
   std::vector<std::optional<Kernel>> kernels(kTrialGroups + 1);
@@ -107,19 +122,6 @@ void PoolChains::renew(const RunPool& pool) {
   });
   chains_.clear();
   for (auto& kernel : kernels) chains_.push_back({.kernel = std::move(*kernel)});
-}
-
-void PoolChains::prepare_adjoints(std::size_t starts) {
-  constexpr std::int64_t kMostNumbers = 100'000'000;  // that adjoints keep
-  const std::int64_t cells = std::int64_t{field_.columns} * field_.rows;
-  std::int64_t states = 0;
-  for (const GroupChain& c : chains_) states += c.kernel.space.size();
-  if (chains_.front().adjoint || by_walks_ || !pays_adjoint(field_, starts) ||
-      2 * cells * states > kMostNumbers)
-    return;
-  for (GroupChain& c : chains_)
-    c.adjoint.emplace(chain_of(c.kernel, {}), markov::Field{field_.columns, field_.rows},
-                      field_.start_column(), 0, field_.max_gates);
 }
 
 KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows& rows) const {
@@ -136,7 +138,10 @@ KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows
 
 PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>& starts) {
   renew(pool);
-  prepare_adjoints(starts.size());
+  if (!chains_.front().adjoint && by_adjoint(pool, starts.size()))
+    for (GroupChain& c : chains_)
+      c.adjoint.emplace(chain_of(c.kernel, {}), markov::Field{field_.columns, field_.rows},
+                        field_.start_column(), 0, field_.max_gates);
   const std::size_t n = starts.size();
   PoolAnswers said{.whole = {},
                    .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},

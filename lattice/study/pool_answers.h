@@ -32,16 +32,16 @@ struct PoolAnswers {
   std::int64_t nonzeros = 0;
 };
 
-/// Whether adjoints of all chains pay: measured, they take as long as predictions from as many
-/// starts as a quarter of the cells. They do so the more the fewer states there are.
-[[nodiscard]] bool pays_adjoint(const FieldParams& field, std::size_t starts);
-
 /// Asks a pool that grows. Kernels stay while only first runs are added.
 class PoolChains {
  public:
-  /// For so many starts at first. Leaves are twice as large where these are many.
+  /// For so many starts at first. Where these are many, their answers come by the adjoint, and
+  /// leaves are twice as large, so that this takes less.
   PoolChains(const dynamics::GateParams& gate, const FieldParams& field, int per_leaf,
              std::size_t starts, std::uint64_t seed);
+
+  /// Whether answers for so many starts come by the adjoint: further ones then cost nothing.
+  [[nodiscard]] bool by_adjoint(const RunPool& pool, std::size_t starts) const;
 
   /// Of those starts of the pool.
   [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<std::size_t>& starts);
@@ -52,7 +52,6 @@ class PoolChains {
     std::optional<markov::AdjointPredictor> adjoint{};
   };
   void renew(const RunPool& pool);
-  void prepare_adjoints(std::size_t starts);
   [[nodiscard]] KernelAnswers answers(const GroupChain& chain, int group,
                                       const std::vector<std::vector<std::int64_t>>& rows) const;
 

@@ -161,7 +161,7 @@ class Prediction {
   [[nodiscard]] bool ask() {
     // All by the adjoint, closed ones too: that costs nothing, and an answer that was closed by
     // luck is seen to be uncertain.
-    if (pays_adjoint(scene_.field, open_.size())) open_ = all();
+    if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
     std::vector<std::size_t> asked;
     for (const std::size_t k : open_) asked.push_back(places_[k]);
     PoolAnswers said = chains_.ask(pool_, asked);

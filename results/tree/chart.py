@@ -18,10 +18,13 @@ def main():
     rows = list(csv.DictReader((OUT / "points.csv").open()))
     text = (OUT / "summary.txt").read_text()
     one = defaultdict(list)  # (scene, accuracy): error, seconds, seconds of direct simulation
-    for m in re.finditer(r"^([ABC]) +\S+ +([\d.]+) +([\d.]+) +[\d.]+ +\d+ +([\d.]+) +([\d.]+) \(", text, re.M):
+    for m in re.finditer(r"^([ABC]) +\S+,\S+ +([\d.]+) +([\d.]+) +[\d.]+ +\d+ +([\d.]+) +([\d.]+) \(", text, re.M):
         scene, accuracy, error, seconds, ratio = m.group(1), *map(float, m.groups()[1:])
         one[scene, accuracy].append((error, seconds, ratio * seconds))
-    many = {m.group(1): float(m.group(2)) for m in re.finditer(r"^([ABC]): error mean ([\d.]+)", text, re.M)}
+    many = defaultdict(list)  # scene: seconds of a hundredth of all, error
+    for m in re.finditer(r"^([ABC]) +[\d.]+ +([\d.]+) +[\d.]+ +\d+ +([\d.]+) +\d+ +([\d.]+) +[\d.]+ \(", text, re.M):
+        error, build, start = map(float, m.groups()[1:])
+        many[m.group(1)].append((start + build / 100, error))
     paper = {m.group(1): [float(e) for e in re.findall(r"\d+: ([\d.]+)", m.group(2))]
              for m in re.finditer(r"^([ABC]): (10: .*)$", text, re.M)}
     plots, data = [], []
@@ -29,8 +32,7 @@ def main():
         points = {a: p for (s, a), p in one.items() if s == scene}
         constant = math.exp(mean(math.log(d * e * e) for p in points.values() for e, _, d in p))
         tree = sorted((mean(s for _, s, _ in p), mean(e for e, _, _ in p)) for p in points.values())
-        g = [r for r in rows if r["kind"] == "many" and r["scene"] == scene]
-        hundred = [(mean(float(r["seconds"]) + float(r["build_seconds"]) / 100 for r in g), many[scene])]
+        hundred = sorted(many[scene])
         seconds = defaultdict(list)
         for r in rows:
             if r["kind"] == "paper" and r["scene"] == scene:
@@ -43,7 +45,7 @@ def main():
             f"plot sqrt({constant}/x) with lines lw 2 lc rgb '#999999' title 'direct simulation', "
             f"${scene}p with linespoints pt 5 lw 2 lc rgb '#cc6677' title 'paper, 87 bins', "
             f"${scene}t with linespoints pt 7 lw 2 lc rgb '#332288' title 'tree, one start', "
-            f"${scene}h with points pt 9 ps 1.5 lc rgb '#117733' title 'tree, each of a hundred starts'\n")
+            f"${scene}h with linespoints pt 9 ps 1.2 lw 2 lc rgb '#117733' title 'tree, each of a hundred starts'\n")
     script = "\n".join(data) + f"""
 set terminal svg size 1050,360 font 'sans,13' background rgb 'white'
 set output '{OUT / "tree.svg"}'

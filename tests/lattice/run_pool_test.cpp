@@ -204,9 +204,10 @@ TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
     all.push_back(pool.starts.size());
     pool.starts.push_back(some_trials(scene, 64, b));
   }
-  ASSERT_TRUE(pays_adjoint(scene.field, all.size()));
-  ASSERT_FALSE(pays_adjoint(scene.field, few.size()));
-  const PoolAnswers many = PoolChains(scene.gate, scene.field, 5, all.size(), 1).ask(pool, all);
+  PoolChains chains(scene.gate, scene.field, 5, all.size(), 1);
+  ASSERT_TRUE(chains.by_adjoint(pool, all.size()));
+  ASSERT_FALSE(chains.by_adjoint(pool, few.size()));
+  const PoolAnswers many = chains.ask(pool, all);
   // Few starts are asked one by one; many have leaves of twice the size.
   const PoolAnswers two = PoolChains(scene.gate, scene.field, 10, few.size(), 1).ask(pool, few);
   EXPECT_EQ(many.states, two.states);
@@ -228,19 +229,19 @@ TEST(PooledPrediction, OfManyStartsSharesTheirRuns) {
   const Scene scene = fast_scene();
   const auto run = [&] {
     RunPool pool;
-    return predict_pooled(scene, pool, many_starts(), {.accuracy = 0.15, .seed = 2});
+    return predict_pooled(scene, pool, many_starts(), {.accuracy = 0.2, .seed = 2});
   };
   const PooledPrediction one = test::on_threads(1, run), three = test::on_threads(3, run);
   EXPECT_TRUE(one.reached);
   std::int64_t alone = 0;
   for (std::size_t k = 0; k < one.starts.size(); ++k) {
-    EXPECT_LE(one.starts[k].error.total_variation, 0.15);
+    EXPECT_LE(one.starts[k].error.total_variation, 0.2);
     EXPECT_TRUE((one.starts[k].final.final_cells == three.starts[k].final.final_cells).all());
     EXPECT_EQ(one.starts[k].error.total_variation, three.starts[k].error.total_variation);
     if (k % 6 != 0) continue;
     RunPool pool;
     alone +=
-        predict_pooled(scene, pool, {many_starts()[k]}, {.accuracy = 0.15, .seed = 2}).gate_runs;
+        predict_pooled(scene, pool, {many_starts()[k]}, {.accuracy = 0.2, .seed = 2}).gate_runs;
   }
   EXPECT_LT(one.gate_runs, 6 * alone);  // of four starts: together they take less
 }
