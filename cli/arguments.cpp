@@ -145,21 +145,22 @@ double accuracy_of(const lattice::MatrixFile& file, const std::string& path) {
          (states.at("range").is_null() ? 1.0 : lattice::kPartForOne);
 }
 
-void remark_on_range(const Options& options, const lattice::MatrixFile& file,
-                     const std::string& path, const std::vector<dynamics::BodyState>& bodies) {
+void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
+                   const std::vector<dynamics::BodyState>& bodies) {
   const Json states = recorded(file, path, "state_space");
   if (states.is_null() || !states.contains("range") || states.at("range").is_null()) return;
   const Json& range = states.at("range");
   const auto outside = [&](const char* key, double x) {
     return x < range.at(key).at(0).get<double>() || x > range.at(key).at(1).get<double>();
   };
+  const auto& own = file.transitions.space.points();
   const auto count = std::count_if(bodies.begin(), bodies.end(), [&](const dynamics::BodyState& b) {
+    if (std::find(own.begin(), own.end(), lattice::entry_of(b)) != own.end()) return false;
     return outside("d_m", b.x) || outside("vx_m_per_s", b.vx) || outside("vy_m_per_s", b.vy);
   });
   if (count > 0)
     options.warn(std::to_string(count) + (count == 1 ? " start lies" : " starts lie") +
-                 " outside the range that " + path +
-                 " was built for: more runs of their own are needed");
+                 " outside the range that " + path + " was built for");
 }
 
 int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
@@ -171,7 +172,7 @@ int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
 void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
                    const std::vector<dynamics::BodyState>& bodies) {
   if (!lattice::has_runs(m.file)) return;
-  remark_on_range(options, m.file, path, bodies);
+  warn_of_range(options, m.file, path, bodies);
   lattice::RunPool pool = lattice::pool_of(m.file, m.scene.field, path);
   std::vector<dynamics::BodyState> unknown;
   for (const dynamics::BodyState& b : bodies)

@@ -44,9 +44,9 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
 [[nodiscard]] std::optional<lattice::StartRange> range_of(const Options& options,
                                                           const lattice::Scene& scene);
 
-/// Says so where starts lie outside the range of starts that a matrix was built for.
-void remark_on_range(const Options& options, const lattice::MatrixFile& file,
-                     const std::string& path, const std::vector<dynamics::BodyState>& bodies);
+/// Says so where starts that a matrix does not know lie outside the range that it was built for.
+void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
+                   const std::vector<dynamics::BodyState>& bodies);
 
 /// The accuracy for one start that a matrix of trees was made for.
 [[nodiscard]] double accuracy_of(const lattice::MatrixFile& file, const std::string& path);

@@ -79,6 +79,12 @@ std::int64_t RunPool::gate_runs() const {
   return runs;
 }
 
+std::int64_t RunPool::trials() const {
+  std::int64_t trials = std::ssize(scattered.starts);
+  for (const StartTrials& s : starts) trials += std::ssize(s.full.final_gates);
+  return trials;
+}
+
 Kernel kernel_of(const GateParams& p, const RunPool& pool, int per_leaf, TrialGroup group) {
   const bool mirror = symmetric(p);
   std::vector<Crossing> entries;

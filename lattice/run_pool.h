@@ -43,6 +43,8 @@ struct RunPool {
   /// Place of a start among `starts`; their number if it is none.
   [[nodiscard]] std::size_t place_of(const dynamics::Crossing& start) const;
   [[nodiscard]] std::int64_t gate_runs() const;
+  /// Those that ran through the field.
+  [[nodiscard]] std::int64_t trials() const;
 };
 
 /// Trials number group, group + of, group + 2 of, ... of every start.

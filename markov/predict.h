@@ -137,8 +137,8 @@ class AdjointPredictor {
   AdjointPredictor(AdjointPredictor&&) noexcept;
   AdjointPredictor& operator=(AdjointPredictor&&) noexcept;
 
-  /// From a start whose first draw gave each output so often (outputs). Throws
-  /// std::invalid_argument for another number of outputs, and when all counts are zero.
+  /// From a start whose first draw gave each output so often (outputs); all zero: a row never
+  /// sampled. Throws std::invalid_argument for another number of outputs.
   [[nodiscard]] FinalDistribution predict(const std::vector<std::int64_t>& counts) const;
 
  private:

@@ -105,8 +105,8 @@ int predict_from_runs(const Options& options, const lattice::SceneMatrix& m) {
   const std::string path = options.text("matrix");
   if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
   how.per_leaf = entries_per_leaf(m.file, path);
-  if (options.has("first-runs")) how.first_runs = options.count("first-runs", 8);
-  remark_on_range(options, m.file, path, bodies_of(given_starts(options), m.scene));
+  if (options.has("first-runs"))
+    how.first_runs = options.count("first-runs", lattice::PoolRunner::kLeastTrials);
   return predict_accurately(options, m.scene, {}, lattice::pool_of(m.file, m.scene.field, path),
                             how);
 }
@@ -151,6 +151,7 @@ int run_predict(const Arguments& arguments) {
   const std::vector<lattice::RowMatrix> others = other_rows(options);
   const lattice::SceneMatrix m = read_matrix(options);
   lattice::require_inside(given, m.scene);
+  warn_of_range(options, m.file, path, bodies_of(given, m.scene));
   const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0;
   if (lattice::has_runs(m.file) && others.empty() && solver == "auto" && !no_runs)
     return predict_from_runs(options, m);

@@ -97,7 +97,7 @@ Claim accuracy(const Findings& f) {
           " starts the difference is no more than chance in trials and matrix makes; at " +
           std::to_string(visible) +
           " it would show in 100 trials. With 100 trials a perfect chain would have an RMSE of "
-          "about 1 as well. Is the chain Markov? Of it: " +
+          "about 1 as well. Is it Markov: " +
           f.field.markov,
       "fig11"};
 }

@@ -121,7 +121,7 @@ Json start_json(const ChainErrorChart& chart, std::size_t s) {
     Json tree = json_of(p.error);
     tree["accuracy"] = p.accuracy;
     tree["error_95"] = p.error_95;
-    tree["predictions"] = p.predictions;
+    tree["predictions"] = lattice::kTreePredictions;
     tree["gate_runs"] = p.gate_runs;
     tree["states"] = p.states;
     tree["seconds"] = p.seconds;
@@ -189,8 +189,7 @@ std::string words_of(const ChainErrorChart& chart, std::size_t s) {
   text += when_it_pays(chart, summary, s);
   const ChainAnswer& a = best.answers[s];
   text += std::string("At their best bins are limited by ") +
-          (a.bins > a.sampling ? "what they forget (TV " + fixed(a.bins, 3) +
-                                     "; sampling makes " +
+          (a.bins > a.sampling ? "what they forget (TV " + fixed(a.bins, 3) + "; sampling makes " +
                                      fixed(a.sampling, 3) + "): more trials would not help.\n"
                                : "the sampling of its matrix (TV " + fixed(a.sampling, 3) +
                                      "; bins and what they forget make " + fixed(a.bins, 3) +
@@ -311,7 +310,7 @@ std::string csv_of(const ChainErrorChart& chart) {
     }
     for (const lattice::TreePoint& p : chart.trees[s])
       csv.row(start.d, start.vx, start.vy, "tree", kNone, p.states, "visited", kNone, p.gate_runs,
-              p.predictions, kNone, kNone, p.seconds, p.error.total_variation, kNone,
+              lattice::kTreePredictions, kNone, kNone, p.seconds, p.error.total_variation, kNone,
               p.error.corrcoef, kNone, kNone, kNone, kNone, floor.total_variation, floor.corrcoef,
               kNone, kNone, kNone);
     for (const DirectSimulation& d : chart.direct[s])

@@ -239,28 +239,29 @@ void add_points(ChainErrorChart& chart, std::size_t place, const Scene& scene, T
 std::vector<TreePoint> tree_points(const ChainErrorChart& chart, const Scene& scene,
                                    const FieldTruth& truth, dynamics::Health& health,
                                    const Work& work) {
+  constexpr auto n = static_cast<double>(kTreePredictions);
   std::vector<TreePoint> points;
   for (const double accuracy : kTreeAccuracies) {
-    TreePoint p;
+    TreePoint p{};
     p.accuracy = accuracy;
-    p.predictions = kTreePredictions;
-    const auto n = static_cast<double>(p.predictions);
-    for (std::int64_t k = 0; k < p.predictions; ++k) {
+    for (std::int64_t k = 0; k < kTreePredictions; ++k) {
       PooledPrediction made;
-      const dynamics::Stopwatch watch;
+      double elapsed = 0.0;
       const double cpu = one_thread_seconds([&] {
+        const dynamics::Stopwatch watch;
         RunPool pool;
         made = predict_pooled(scene, pool, {truth.start.body()},
                               {.accuracy = accuracy,
                                .most_runs = chart.options.runs_limit,
                                .seed = chart.options.seed + static_cast<std::uint64_t>(k)},
                               work);
+        elapsed = watch.seconds();
       });
       health += made.health;
       if (!made.reached) return points;
-      p.seconds += cpu * made.seconds / watch.seconds() / n;  // without the check of a sample
-      p.gate_runs += made.gate_runs / p.predictions;
-      p.states = made.states;
+      p.seconds += cpu * made.seconds / elapsed / n;  // without the check of a sample
+      p.gate_runs += static_cast<double>(made.gate_runs) / n;
+      p.states += static_cast<double>(made.states) / n;
       p.error_95 += made.starts.front().error.total_variation / n;
       add_to_mean(p.error, error_of(made.starts.front().final.final_cells, truth.p), n);
     }
@@ -346,8 +347,8 @@ ChainErrorChart chart_chain_error(const Scene& scene, ChainErrorPlan plan, const
   TimedWork rest(work, milliseconds_left(chart));
   finish_truths(chart, scene, rest);
   for (std::size_t c = 0; c < chart.curves.size(); ++c) add_points(chart, c, scene, rest);
-  for (const FieldTruth& truth : chart.truths)
-    chart.trees.push_back(tree_points(chart, scene, truth, chart.health, rest.beside()));
+  for (const FieldTruth& truth : chart.truths)  // tells of its own runs
+    chart.trees.push_back(tree_points(chart, scene, truth, chart.health, work));
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     const auto [low, high] = std::minmax_element(
         chart.points.begin(), chart.points.end(),

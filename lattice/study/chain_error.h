@@ -58,11 +58,9 @@ struct DirectSimulation {
 };
 
 /// Predictions of one start by trees, each with trials of its own, to an accuracy asked for; means
-/// over them.
+/// over kTreePredictions.
 struct TreePoint {
-  double accuracy = 0.0;
-  std::int64_t predictions = 0, gate_runs = 0;
-  int states = 0;
+  double accuracy = 0.0, gate_runs = 0.0, states = 0.0;
   double seconds = 0.0;  // of runs, chain and error bar
   FinalGateError error;
   double error_95 = 0.0;  // what they said: total variation

@@ -27,9 +27,9 @@ double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
 }
 
 /// Whether adjoints of all chains pay: measured, they take as long as predictions from as many
-/// starts as a quarter of the cells.
+/// starts as a quarter of the cells; and all steps, also those that nobody walks any more.
 bool pays_adjoint(const FieldParams& field, std::size_t starts) {
-  return field.max_gates > 0 &&
+  return field.max_gates > 0 && field.max_gates <= 2 * (field.columns + field.rows) &&
          4 * static_cast<std::int64_t>(starts) >= std::int64_t{field.columns} * field.rows;
 }
 

@@ -30,7 +30,7 @@ PoolRunner::PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most
 
 void PoolRunner::run_full(StartTrials& s, std::int64_t count) {
   const std::int64_t done = std::ssize(s.full.final_gates);
-  run("full trials", count, [&](TrialRange range) {
+  run("full trials", count, true, [&](TrialRange range) {
     return run_field(scene_.gate, field_, body_of(s.start), space_, seed_,
                      {kFullOwn + done + range.first, range.count}, &s.full);
   });
@@ -40,7 +40,7 @@ void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
   FieldParams one_gate = field_;
   one_gate.max_gates = 1;
   const std::int64_t done = std::ssize(s.first.final_gates);
-  run("first runs", count, [&](TrialRange range) {
+  run("first runs", count, false, [&](TrialRange range) {
     return run_field(scene_.gate, one_gate, body_of(s.start), space_, seed_,
                      {kFirstOwn + done + range.first, range.count}, &s.first);
   });
@@ -48,7 +48,7 @@ void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
 
 void PoolRunner::run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count) {
   const std::int64_t done = std::ssize(s.starts);
-  run("scattered trials", count, [&](TrialRange range) {
+  run("scattered trials", count, true, [&](TrialRange range) {
     std::vector<BodyState> bodies;
     for (std::int64_t i = 0; i < range.count; ++i) {
       bodies.push_back(drawn(starts, done + range.first + i));
@@ -78,17 +78,19 @@ void PoolRunner::finish() {
                    work_);
 }
 
-void PoolRunner::run(const char* what, std::int64_t count,
+void PoolRunner::run(const char* what, std::int64_t count, bool through_field,
                      const std::function<FieldTally(TrialRange)>& carry_out) {
   const Stopwatch watch;
   const auto most = static_cast<double>(most_runs_ - gate_runs);
   count = std::max<std::int64_t>(
-      kLeastTrials, static_cast<std::int64_t>(
-                        std::min(static_cast<double>(count), most / gates_per_trial() + 1.0)));
+      kLeastTrials,
+      static_cast<std::int64_t>(std::min(static_cast<double>(count),
+                                         most / (through_field ? gates_per_trial() : 1.0) + 1.0)));
   work_.in_pieces(what, count, [&](TrialRange range) {
     const FieldTally tally = carry_out(range);
     health += tally.health;
     gate_runs += tally.health.runs;
+    if (!through_field) return;
     trials_ += tally.trials;
     trial_runs_ += tally.health.runs;
   });

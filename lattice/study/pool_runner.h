@@ -30,7 +30,8 @@ class PoolRunner {
  public:
   static constexpr std::int64_t kLeastTrials = 2 * kTrialGroups;  // of a call
 
-  /// Trials of the seed that no other command runs, until there are `most_runs` gate runs.
+  /// Trials of the seed that no other command runs; no more are begun than `most_runs` gate runs
+  /// would take, about, but for the least of a call.
   PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most_runs,
              const dynamics::Work& work);
 
@@ -43,7 +44,7 @@ class PoolRunner {
   [[nodiscard]] dynamics::BodyState drawn(const StartRange& starts, std::int64_t i) const;
 
   [[nodiscard]] bool may_go_on() const { return gate_runs < most_runs_; }
-  /// Gate runs of a trial, in the mean of those so far.
+  /// Gate runs of a trial through the field, in the mean of those so far.
   [[nodiscard]] double gates_per_trial() const {
     return trials_ > 0 ? static_cast<double>(trial_runs_) / static_cast<double>(trials_) : 1.0;
   }
@@ -58,7 +59,7 @@ class PoolRunner {
   dynamics::Health health;
 
  private:
-  void run(const char* what, std::int64_t count,
+  void run(const char* what, std::int64_t count, bool through_field,
            const std::function<FieldTally(dynamics::TrialRange)>& carry_out);
 
   const Scene& scene_;
@@ -67,7 +68,7 @@ class PoolRunner {
   std::uint64_t seed_;
   std::int64_t most_runs_;
   const dynamics::Work& work_;
-  std::int64_t trials_ = 0, trial_runs_ = 0;
+  std::int64_t trials_ = 0, trial_runs_ = 0;  // through the field
 };
 
 }  // namespace gatewalk::lattice

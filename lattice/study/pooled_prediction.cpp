@@ -35,19 +35,20 @@ double chance_of_walks(const FinalDistribution& d, std::int64_t walks) {
   return walks == 0 ? 0.0 : kToQuantile * expected_total_variation(d.final_cells, walks);
 }
 
-/// Error bars of one start; `chance` is that of the walks behind `whole`.
-StartAnswer answer_of(const Scene& scene, const StartTrials& s, FinalDistribution whole,
-                      double chance, const std::vector<FinalDistribution>& groups,
+/// Error bars of one start; `pooled`: trials in the pool, `chance`: of the walks behind `whole`.
+StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t pooled,
+                      FinalDistribution whole, double chance,
+                      const std::vector<FinalDistribution>& groups,
                       const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
   StartAnswer a;
   a.start = s.start;
   a.trials = s.knows_endings ? std::ssize(s.full.final_gates) : 0;
   a.first_runs = s.first_runs();
   const GroupSpread spread(whole, groups);
-  const std::int64_t behind = a.trials > 0 ? a.trials : a.first_runs;
+  const std::int64_t behind = std::min(a.first_runs, pooled);
   a.error = spread.error(behind, seed);
   a.error.total_variation = std::hypot(a.error.total_variation, chance);
-  a.kernel_error_95 = GroupSpread(whole, kernels).error(behind, seed).total_variation;
+  a.kernel_error_95 = GroupSpread(whole, kernels).error(pooled, seed).total_variation;
   Error95 of_trials{1.0, 0.0, 100.0};
   if (a.trials > 0) {
     CellCounts counts = CellCounts::Zero(scene.field.rows, scene.field.columns);
@@ -167,18 +168,22 @@ class Prediction {
     PoolAnswers said = chains_.ask(pool_, asked);
     result_.states = said.states;
     result_.nonzeros = said.nonzeros;
+    const std::int64_t pooled = pool_.trials();
     std::vector<double> chances(open_.size());
     tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t i) {
       chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
       result_.starts[open_[i]] =
-          answer_of(scene_, pool_.starts[asked[i]], std::move(said.whole.final[i]), chances[i],
-                    said.groups[i], said.kernels[i], options_.seed);
+          answer_of(scene_, pool_.starts[asked[i]], pooled, std::move(said.whole.final[i]),
+                    chances[i], said.groups[i], said.kernels[i], options_.seed);
     });
     std::erase_if(open_, [&](std::size_t k) {
       return result_.starts[k].error.total_variation <= options_.accuracy;
     });
-    return !open_.empty() && std::all_of(chances.begin(), chances.end(),
-                                         [&](double chance) { return chance < options_.accuracy; });
+    // The groups' walks have their chance too: where it makes half of the error, trials do not
+    // help.
+    return !open_.empty() && std::all_of(chances.begin(), chances.end(), [&](double chance) {
+      return chance < 0.5 * options_.accuracy;
+    });
   }
 
   /// The part of the error that first runs make.
@@ -198,7 +203,8 @@ class Prediction {
     }
     const double shared = median(kernel),
                  own = median(first) * std::sqrt(static_cast<double>(result_.starts.size()));
-    return options_.accuracy * std::sqrt(std::clamp(shared / (shared + own), 0.2, 0.72));
+    return options_.accuracy *
+           std::sqrt(std::clamp(shared / std::max(1e-9, shared + own), 0.2, 0.72));
   }
 
   void add_trials() {
@@ -325,7 +331,7 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
     std::vector<double> errors;
     for (std::size_t k = 0; k < all.size(); ++k)
       errors.push_back(GroupSpread(said.whole.final[k], said.kernels[k])
-                           .error(kFirstRuns, options.seed)
+                           .error(pool.trials(), options.seed)
                            .total_variation);
     std::sort(errors.begin(), errors.end());
     result.kernel_error_95 = errors[errors.size() / 2];

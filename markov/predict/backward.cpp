@@ -22,6 +22,7 @@ struct Sums {
   std::vector<int> ends{0};    // of each input's terms (inputs + 1)
   std::vector<double> shares;  // (inputs x Share)
   int widest = 0, lowest = 0, highest = 0;
+  int most_terms = 0;  // of an input
   bool is_chequered = true, has_unsampled = false;
 
   explicit Sums(const Chain& chain) {
@@ -45,6 +46,7 @@ struct Sums {
         own[kMovedShare + move] += it.value();
         terms.push_back({it.value(), exit.next_input, move});
       }
+      most_terms = std::max(most_terms, static_cast<int>(terms.size()) - ends.back());
       ends.push_back(static_cast<int>(terms.size()));
     }
   }
@@ -236,12 +238,18 @@ AdjointPredictor::AdjointPredictor(const Chain& chain, const Field& field, int c
   validate(chain, field, {column, row, 0}, max_cells);
   std::vector<Question> questions{{}};
   const Sums& sums = plan_->sums;
+  const auto is_near = [&](std::int64_t c, std::int64_t r) {  // enough to be reached
+    const std::int64_t moves = max_cells - 1;
+    return std::abs(c - column) <= sums.widest * moves && r - row >= sums.lowest * moves &&
+           r - row <= sums.highest * moves;
+  };
   const auto ask = [&](std::int64_t cell, Ending why) {
     questions.push_back({cell, why});
     ends_.push_back({cell, why});
   };
   for (std::int64_t r = 0; r < field.rows; ++r)
     for (std::int64_t c = 0; c < field.columns; ++c) {
+      if (!is_near(c, r)) continue;
       const std::int64_t cell = r * field.columns + c;
       ask(cell, Ending::trapped);
       if (sums.has_unsampled) ask(cell, Ending::unsampled);
@@ -278,15 +286,20 @@ FinalDistribution AdjointPredictor::predict(const std::vector<std::int64_t>& cou
     answers += static_cast<double>(counts[output]) *
                answers_.row(static_cast<Eigen::Index>(output)).transpose();
   }
-  if (sum == 0) throw std::invalid_argument("adjoint: no counts");
-  answers /= static_cast<double>(sum);
   Ends ends(plan_->field);
+  if (sum == 0)
+    ends.add(Ending::unsampled, std::int64_t{plan_->row} * plan_->field.columns + plan_->column,
+             1.0);
+  else
+    answers /= static_cast<double>(sum);
   for (std::size_t k = 0; k < ends_.size(); ++k)
     if (const double p = answers[static_cast<Eigen::Index>(k) + 1]; p > 0.0)
       ends.add(ends_[k].why, ends_[k].cell, p);
   FinalDistribution d = ends.result();
   d.mean_steps = answers[0];
   d.steps = plan_->last + 1;
+  d.rounding = rounding_bound(d.mean_steps, plan_->sums.most_terms + 3,
+                              d.steps + static_cast<double>(counts.size()) + 8);
   return d;
 }
 

@@ -217,7 +217,8 @@ TEST(ChainErrorChart, ChartsMatricesOfTheSameTrials) {
   EXPECT_EQ(chart.points[1].answers[0].exact.total_variation, again.exact.total_variation);
   EXPECT_EQ(chart.points[1].answers[0].walks[0].corrcoef, again.walks[0].corrcoef);
   EXPECT_EQ(chart.points[1].answers[0].sampling, again.sampling);
-  EXPECT_EQ(chart.health.runs, truth.health.runs + 460);
+  EXPECT_GT(chart.health.runs, truth.health.runs + 460);  // and those of trees
+  EXPECT_EQ(chart.trees.size(), 1u);
   // Direct simulation covers what the matrices cost.
   EXPECT_LT(chart.direct[0].front().seconds, chart.points[0].seconds(0));
   EXPECT_GE(chart.direct[0].back().seconds, chart.points[1].seconds(0));

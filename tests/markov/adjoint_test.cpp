@@ -50,9 +50,9 @@ struct Case {
 };
 
 TEST(Adjoint, SaysWhatPropagationSays) {
-  const Case cases[] = {{{9, 9}, 4, 0, 13}, {{9, 9}, 0, 8, 6},  {{1, 1}, 0, 0, 3},
-                        {{3, 12}, 2, 5, 9}, {{12, 3}, 7, 1, 1}, {{40, 5}, 20, 2, 2},
-                        {{5, 5}, 2, 0, 40}};
+  const Case cases[] = {{{9, 9}, 4, 0, 13}, {{9, 9}, 0, 8, 6},      {{1, 1}, 0, 0, 3},
+                        {{3, 12}, 2, 5, 9}, {{12, 3}, 7, 1, 1},     {{40, 5}, 20, 2, 2},
+                        {{5, 5}, 2, 0, 40}, {{401, 1}, 200, 0, 12}, {{3, 300}, 1, 7, 5}};
   for (const auto& exits : {lattice_exits(), never_down(), leaps()})
     for (const bool has_gaps : {false, true})
       for (const Case& c : cases) {
@@ -107,7 +107,9 @@ TEST(Adjoint, RefusesWhatItCannotAnswer) {
   EXPECT_THROW(AdjointPredictor(chain, {9, 9}, 9, 0, 5), std::invalid_argument);
   const AdjointPredictor adjoint(chain, {3, 3}, 1, 0, 5);
   EXPECT_THROW((void)adjoint.predict({1, 2, 3}), std::invalid_argument);
-  EXPECT_THROW((void)adjoint.predict(std::vector<std::int64_t>(88, 0)), std::invalid_argument);
+  const auto nothing = adjoint.predict(std::vector<std::int64_t>(88, 0));
+  EXPECT_EQ(nothing.unsampled, 1.0);
+  EXPECT_EQ(nothing.final_cells(0, 1), 1.0);
 }
 
 }  // namespace
