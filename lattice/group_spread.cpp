@@ -107,6 +107,7 @@ double half_width(double error, double bias) { return std::hypot(kQuantile * err
 
 std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) const {
   std::array<CellProbabilities, 2> range{whole_.final_cells, whole_.final_cells};
+  const auto never = dynamics::interval_of_share(0.0, static_cast<double>(trials));
   for (Eigen::Index i = 0; i < whole_.final_cells.size(); ++i) {
     const Moments m =
         moments([&](const markov::FinalDistribution& d) { return d.final_cells.data()[i]; });
@@ -114,8 +115,9 @@ std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) cons
     range[0].data()[i] = std::max(0.0, p - half);
     range[1].data()[i] = std::min(1.0, p + half);
     if (half > 0.0) continue;
-    const auto unseen =
-        dynamics::interval_of_share(std::clamp(p, 0.0, 1.0), static_cast<double>(trials));
+    const auto unseen = p == 0.0 ? never
+                                 : dynamics::interval_of_share(std::clamp(p, 0.0, 1.0),
+                                                               static_cast<double>(trials));
     for (std::size_t side = 0; side < 2; ++side) range[side].data()[i] = unseen[side];
   }
   return range;

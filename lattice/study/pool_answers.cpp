@@ -147,7 +147,8 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
                    .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.counts.nonZeros()};
-  said.kernels = said.groups;
+  const bool with_kernels = !by_walks_ || chains_.front().adjoint;
+  if (with_kernels) said.kernels = said.groups;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const GroupChain& chain = chains_[static_cast<std::size_t>(g + 1)];
     Rows rows;
@@ -156,7 +157,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
         rows.push_back(first_row(gate_, chain.kernel.space, pool.starts[s], group));
     };
     if (g >= 0) add({g, kTrialGroups});
-    add({});
+    if (g < 0 || with_kernels) add({});
     KernelAnswers found = answers(chain, g, rows);
     if (g < 0) {
       said.whole = std::move(found);
@@ -164,7 +165,8 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
     }
     for (std::size_t i = 0; i < n; ++i) {
       said.groups[i][static_cast<std::size_t>(g)] = std::move(found.final[i]);
-      said.kernels[i][static_cast<std::size_t>(g)] = std::move(found.final[n + i]);
+      if (with_kernels)
+        said.kernels[i][static_cast<std::size_t>(g)] = std::move(found.final[n + i]);
     }
   });
   return said;

@@ -26,7 +26,8 @@ struct KernelAnswers {
 struct PoolAnswers {
   KernelAnswers whole;
   std::vector<std::vector<markov::FinalDistribution>> groups;  // (starts x kTrialGroups)
-  /// The same with the first runs of all trials in every group: what the kernel alone makes.
+  /// The same with the first runs of all trials in every group: what the kernel alone makes. Empty
+  /// where answers come by walks.
   std::vector<std::vector<markov::FinalDistribution>> kernels;
   int states = 0;
   std::int64_t nonzeros = 0;

@@ -48,7 +48,9 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
   const std::int64_t behind = std::min(a.first_runs, pooled);
   a.error = spread.error(behind, seed);
   a.error.total_variation = std::hypot(a.error.total_variation, chance);
-  a.kernel_error_95 = GroupSpread(whole, kernels).error(pooled, seed).total_variation;
+  a.kernel_error_95 = kernels.empty()
+                          ? a.error.total_variation
+                          : GroupSpread(whole, kernels).error(pooled, seed).total_variation;
   Error95 of_trials{1.0, 0.0, 100.0};
   if (a.trials > 0) {
     CellCounts counts = CellCounts::Zero(scene.field.rows, scene.field.columns);
@@ -70,9 +72,12 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
     if (e) ++endings[static_cast<std::size_t>(*e)];
   a.endings = EndingShares(endings, a.trials);
   a.gates_95 = {a.final.final_cells, a.final.final_cells};
+  const auto never = interval_of_share(0.0, static_cast<double>(a.trials));
   for (Eigen::Index i = 0; i < a.final.final_cells.size(); ++i) {
     const auto interval =
-        interval_of_share(a.final.final_cells.data()[i], static_cast<double>(a.trials));
+        a.final.final_cells.data()[i] == 0.0
+            ? never
+            : interval_of_share(a.final.final_cells.data()[i], static_cast<double>(a.trials));
     for (std::size_t side = 0; side < 2; ++side) a.gates_95[side].data()[i] = interval[side];
   }
   return a;
@@ -168,13 +173,15 @@ class Prediction {
     PoolAnswers said = chains_.ask(pool_, asked);
     result_.states = said.states;
     result_.nonzeros = said.nonzeros;
+    by_walks_ = said.whole.walks > 0;
     const std::int64_t pooled = pool_.trials();
     std::vector<double> chances(open_.size());
     tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t i) {
       chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
-      result_.starts[open_[i]] =
-          answer_of(scene_, pool_.starts[asked[i]], pooled, std::move(said.whole.final[i]),
-                    chances[i], said.groups[i], said.kernels[i], options_.seed);
+      result_.starts[open_[i]] = answer_of(
+          scene_, pool_.starts[asked[i]], pooled, std::move(said.whole.final[i]), chances[i],
+          said.groups[i], said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i],
+          options_.seed);
     });
     std::erase_if(open_, [&](std::size_t k) {
       return result_.starts[k].error.total_variation <= options_.accuracy;
@@ -208,6 +215,15 @@ class Prediction {
   }
 
   void add_trials() {
+    if (by_walks_) {  // rounds take long, and walks have their chance too: the shortest way
+      for (const std::size_t k : open_) {
+        const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
+        run_full(
+            k, static_cast<double>(std::max(trials, kFirstRound / 2)) *
+                   (times_more(result_.starts[k].error.total_variation, options_.accuracy) - 1.0));
+      }
+      return;
+    }
     const double goal = kernel_goal();
     std::vector<std::size_t> lacking;  // starts for which the kernel is too uncertain
     for (const std::size_t k : open_)
@@ -255,6 +271,7 @@ class Prediction {
   const AccuracyOptions& options_;
   PoolRunner runner_;
   PoolChains chains_;
+  bool by_walks_ = false;            // are the answers so far
   std::vector<std::size_t> places_;  // of the starts in the pool
   std::vector<std::size_t> open_;    // starts that are not certain enough yet
   PooledPrediction result_;

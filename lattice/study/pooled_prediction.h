@@ -29,7 +29,8 @@ struct StartAnswer {
   markov::FinalDistribution final;  // the answer
   bool from_trials = false;         // it is the shares of the start's own full trials
   Error95 error;
-  double kernel_error_95 = 0.0;  // total variation, of the chain with endlessly many first runs
+  double kernel_error_95 = 0.0;  // total variation, of the chain with endlessly many first runs;
+                                 // of all where walks make the answer
   double trials_error_95 = 1.0;  // total variation, of the trials' own shares
   EndingShares endings{std::array<double, markov::kEndings>{}};
   std::array<CellProbabilities, 2> gates_95;  // low, high
