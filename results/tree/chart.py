@@ -7,6 +7,11 @@ from pathlib import Path
 OUT = Path(sys.argv[1])
 TITLES = {"A": "A: 7 N, Rm 50 N (scenes/field.toml)", "B": "B: 8 N, Rm 10 N",
           "C": "C: 8.5 N, Rm 25 N, k 300 / 450"}
+LABELS = "".join(
+    f"set label '{text}' at graph {x},{y} tc rgb '{colour}'\n" for text, x, y, colour in (
+        ("paper, 87 bins", 0.22, 0.87, "#cc6677"), ("direct simulation", 0.46, 0.46, "#777777"),
+        ("tree, one start", 0.03, 0.14, "#332288"),
+        ("tree, each of a hundred", 0.03, 0.06, "#117733")))
 
 
 def mean(values):
@@ -42,23 +47,23 @@ def main():
             data.append(f"${scene}{name} << EOD\n" + "".join(f"{x} {y}\n" for x, y in block) + "EOD")
         plots.append(
             f"set title '{TITLES[scene]}'\n"
-            f"plot sqrt({constant}/x) with lines lw 2 lc rgb '#999999' title 'direct simulation', "
-            f"${scene}p with linespoints pt 5 lw 2 lc rgb '#cc6677' title 'paper, 87 bins', "
-            f"${scene}t with linespoints pt 7 lw 2 lc rgb '#332288' title 'tree, one start', "
-            f"${scene}h with linespoints pt 9 ps 1.2 lw 2 lc rgb '#117733' title 'tree, each of a hundred starts'\n")
+            f"plot sqrt({constant}/x) with lines lw 2 lc rgb '#999999', "
+            f"${scene}p with linespoints pt 5 lw 2 lc rgb '#cc6677', "
+            f"${scene}t with linespoints pt 7 lw 2 lc rgb '#332288', "
+            f"${scene}h with linespoints pt 9 ps 1.2 lw 2 lc rgb '#117733'\n")
     script = "\n".join(data) + f"""
 set terminal svg size 1050,360 font 'sans,13' background rgb 'white'
 set output '{OUT / "tree.svg"}'
-set multiplot layout 1,3
+set multiplot layout 1,3 margins 0.08,0.98,0.18,0.9 spacing 0.07
 set logscale xy
 set xrange [0.03:100]
-set yrange [0.003:0.3]
+set yrange [0.003:0.7]
 set format x '%g'
 set xlabel 'seconds on one core'
 set ylabel 'error: total variation of the final gates'
-set key top right samplen 1.5 font ',11'
+unset key
 set grid lc rgb '#dddddd'
-""" + "unset key\n".join([plots[0], "set ylabel ' '\n" + plots[1] + plots[2]]) + "unset multiplot\n"
+""" + LABELS + "unset label\n".join([plots[0], "set ylabel ' '\n" + plots[1] + plots[2]]) + "unset multiplot\n"
     subprocess.run(["gnuplot"], input=script, text=True, check=True)
 
 
