@@ -1,6 +1,6 @@
 #include "markov/predict/stencil.h"
 
-#include <algorithm>
+#include <type_traits>
 
 // Registers whose length is not known when this is compiled cannot stand in arrays.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -64,7 +64,10 @@ void gather_block(const GatherPass& pass, int plane, const double* HWY_RESTRICT 
                to + plane * pass.stride + c + i * n);
 }
 
-/// Calls block(width, c) for registers from `first` to `last`, some together.
+template <int Width>
+using Registers = std::integral_constant<int, Width>;
+
+/// Calls block(Registers<Width>(), c) for the registers from `first` to `last`, some together.
 template <class Block>
 void in_blocks(std::ptrdiff_t first, std::ptrdiff_t last, Block block) {
   constexpr std::ptrdiff_t kWidest = 8;
@@ -74,7 +77,33 @@ void in_blocks(std::ptrdiff_t first, std::ptrdiff_t last, Block block) {
   for (std::ptrdiff_t i = 0; i < blocks; ++i) {
     const std::ptrdiff_t begin = registers * i / blocks,
                          width = registers * (i + 1) / blocks - begin;
-    block(static_cast<int>(width), first + begin * n);
+    const std::ptrdiff_t c = first + begin * n;
+    switch (width) {
+      case 1:
+        block(Registers<1>(), c);
+        break;
+      case 2:
+        block(Registers<2>(), c);
+        break;
+      case 3:
+        block(Registers<3>(), c);
+        break;
+      case 4:
+        block(Registers<4>(), c);
+        break;
+      case 5:
+        block(Registers<5>(), c);
+        break;
+      case 6:
+        block(Registers<6>(), c);
+        break;
+      case 7:
+        block(Registers<7>(), c);
+        break;
+      default:
+        block(Registers<kWidest>(), c);
+        break;
+    }
   }
 }
 
@@ -83,25 +112,8 @@ void gather_in_registers(const GatherPass& pass, const std::vector<Range>& range
                          double* HWY_RESTRICT to) {
   for (int plane = 0; plane < pass.planes; ++plane) {
     for (const Range& r : ranges)
-      in_blocks(r.first, r.last, [&](int width, std::ptrdiff_t c) {
-        switch (width) {
-          case 1:
-            return gather_block<1>(pass, plane, from, to, c);
-          case 2:
-            return gather_block<2>(pass, plane, from, to, c);
-          case 3:
-            return gather_block<3>(pass, plane, from, to, c);
-          case 4:
-            return gather_block<4>(pass, plane, from, to, c);
-          case 5:
-            return gather_block<5>(pass, plane, from, to, c);
-          case 6:
-            return gather_block<6>(pass, plane, from, to, c);
-          case 7:
-            return gather_block<7>(pass, plane, from, to, c);
-          default:
-            return gather_block<8>(pass, plane, from, to, c);
-        }
+      in_blocks(r.first, r.last, [&]<int Width>(Registers<Width>, std::ptrdiff_t c) {
+        gather_block<Width>(pass, plane, from, to, c);
       });
     const double* const shares = pass.shares + std::ptrdiff_t{plane} * pass.shares_per_plane;
     for (const Reward& r : rewards) to[plane * pass.stride + r.place] += shares[r.share];
@@ -111,25 +123,8 @@ void gather_in_registers(const GatherPass& pass, const std::vector<Range>& range
 void apply_in_registers(const StencilPass& pass, const double* HWY_RESTRICT from,
                         double* HWY_RESTRICT to, std::ptrdiff_t first, std::ptrdiff_t last,
                         bool add) {
-  in_blocks(first, last, [&](int width, std::ptrdiff_t c) {
-    switch (width) {
-      case 1:
-        return apply_block<1>(pass, from, to, add, c);
-      case 2:
-        return apply_block<2>(pass, from, to, add, c);
-      case 3:
-        return apply_block<3>(pass, from, to, add, c);
-      case 4:
-        return apply_block<4>(pass, from, to, add, c);
-      case 5:
-        return apply_block<5>(pass, from, to, add, c);
-      case 6:
-        return apply_block<6>(pass, from, to, add, c);
-      case 7:
-        return apply_block<7>(pass, from, to, add, c);
-      default:
-        return apply_block<8>(pass, from, to, add, c);
-    }
+  in_blocks(first, last, [&]<int Width>(Registers<Width>, std::ptrdiff_t c) {
+    apply_block<Width>(pass, from, to, add, c);
   });
 }
 

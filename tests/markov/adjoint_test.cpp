@@ -11,6 +11,8 @@ namespace {
 
 using test::lattice_counts;
 using test::lattice_exits;
+using test::leaps;
+using test::never_down;
 
 std::vector<std::int64_t> row_of(const Counts& counts, int row) {
   std::vector<std::int64_t> dense(static_cast<std::size_t>(counts.cols()));
@@ -25,23 +27,6 @@ void expect_near(const FinalDistribution& a, const FinalDistribution& b, double 
   EXPECT_NEAR(a.mean_steps, b.mean_steps, 20 * bound);
   test::expect_same_endings(a, b, bound);
   test::expect_endings_add_up(a);
-}
-
-/// Moves up, left and right only; of several cells at once, down too; none to a cell of the same
-/// colour of a chessboard, but for those of `leaps`.
-std::vector<Exit> never_down() {
-  auto exits = lattice_exits();
-  for (Exit& exit : exits)
-    if (exit.di_y < 0) exit.di_y = 1;
-  return exits;
-}
-std::vector<Exit> leaps() {
-  auto exits = lattice_exits();
-  for (std::size_t j = 0; j + 1 < exits.size(); ++j) {
-    exits[j].di_x = static_cast<int>(j % 7) - 3;
-    exits[j].di_y = static_cast<int>(j % 5) - 2;
-  }
-  return exits;
 }
 
 struct Case {

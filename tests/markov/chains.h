@@ -62,6 +62,24 @@ inline std::vector<Exit> lattice_exits() {
   return exits;
 }
 
+/// Exits of the paper's kind: left, right and up only.
+inline std::vector<Exit> never_down() {
+  auto exits = lattice_exits();
+  for (Exit& exit : exits)
+    if (exit.di_y < 0) exit.di_y = 1;
+  return exits;
+}
+
+/// Moves of several cells at once, down too.
+inline std::vector<Exit> leaps() {
+  auto exits = lattice_exits();
+  for (std::size_t j = 0; j + 1 < exits.size(); ++j) {
+    exits[j].di_x = static_cast<int>(j % 7) - 3;
+    exits[j].di_y = static_cast<int>(j % 5) - 2;
+  }
+  return exits;
+}
+
 inline Counts lattice_counts(std::uint64_t seed) {
   Words words(seed);
   Counts counts(87, 88);

@@ -18,7 +18,9 @@ using test::kBottomCentre;
 using test::kNineByNine;
 using test::lattice_counts;
 using test::lattice_exits;
+using test::leaps;
 using test::matrix;
+using test::never_down;
 
 using RowMethod = PredictOptions::RowMethod;
 using Solver = PredictOptions::Solver;
@@ -51,24 +53,6 @@ bool same_bits(const FinalDistribution& a, const FinalDistribution& b) {
                     b.mixed_cells.end(), [](const CellEndings& x, const CellEndings& y) {
                       return x.cell == y.cell && x.by_ending == y.by_ending;
                     });
-}
-
-/// Exits of the paper's kind: left, right and up only.
-std::vector<Exit> never_down() {
-  auto exits = lattice_exits();
-  for (Exit& exit : exits)
-    if (exit.di_y < 0) exit.di_y = 1;
-  return exits;
-}
-
-/// Moves of several cells at once, down too.
-std::vector<Exit> leaps() {
-  auto exits = lattice_exits();
-  for (std::size_t j = 0; j + 1 < exits.size(); ++j) {
-    exits[j].di_x = static_cast<int>(j % 7) - 3;
-    exits[j].di_y = static_cast<int>(j % 5) - 2;
-  }
-  return exits;
 }
 
 Chain with_gaps(std::uint64_t seed, std::vector<Exit> exits) {
