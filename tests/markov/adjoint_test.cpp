@@ -58,6 +58,26 @@ TEST(Adjoint, SaysWhatPropagationSays) {
       }
 }
 
+// Most cells of a long row cannot be reached.
+TEST(Adjoint, LeavesOutWhatCannotBeReached) {
+  Counts counts(2, 4);
+  for (const int row : {0, 1}) {
+    counts.coeffRef(row, row) = 5;
+    counts.coeffRef(row, 1 - row) = 2;
+    counts.coeffRef(row, 2) = 1;
+    counts.coeffRef(row, 3) = 1;
+  }
+  const Chain chain = Chain::from_counts(counts, {{0, -1, 0}, {1, 1, 0}, {0, 0, 1}, {}});
+  for (const Case& c : {Case{{2001, 1}, 1000, 0, 41}, Case{{2001, 1}, 1000, 0, 150},
+                        Case{{401, 1}, 200, 0, 40}, Case{{401, 1}, 200, 0, 2}}) {
+    const auto found =
+        AdjointPredictor(chain, c.field, c.column, 0, c.max_cells).predict(row_of(counts, 0));
+    EXPECT_NEAR(found.final_cells.sum(), 1.0, 1e-12);
+    expect_near(found, test::propagate_plainly(chain, c.field, {c.column, 0, 0}, c.max_cells),
+                1e-13);
+  }
+}
+
 TEST(Adjoint, ChainsOfTwoOutcomesByHand) {
   // One state: up with 1/4, trapped with 3/4.
   Counts counts(1, 2);
