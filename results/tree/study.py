@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """How accurate chains of trees are, at what cost, and whether their error bars hold.
 
-study.py GATEWALK DIR: writes points.csv and summary.txt into DIR. One thread; method moreau, whose
-runs are the cheapest, so that chains and bars weigh the most. Truth: the final gates of many full
-trials of other seeds, whose noise is taken out of errors in squares; truth.json in DIR keeps them,
-and those that it lacks are run (another quarter of an hour for all).
+study.py GATEWALK DIR [SCENE...]: writes points.csv and summary.txt into DIR; points of scenes that are
+not named stay. One thread; method moreau, whose runs are the cheapest, so that chains and bars weigh
+the most. Truth: the final gates of many full trials of other seeds, whose noise is taken out of errors
+in squares; truth.json in DIR keeps them, and those that it lacks are run (another half an hour for all).
 """
 import csv, json, math, random, subprocess, sys, tempfile, time
 from collections import defaultdict
@@ -20,18 +20,29 @@ SCENES = {
     "C": FIELD + ["--set", "forces.propulsion_N=8.5", "--set", "forces.random_N=25",
                   "--set", "beams.stiffness_left_Nm_per_rad=300",
                   "--set", "beams.stiffness_right_Nm_per_rad=450"],
+    "M": FIELD + ["--set", "forces.propulsion_N=9", "--set", "forces.random_N=35",
+                  "--set", "beams.stiffness_left_Nm_per_rad=150",
+                  "--set", "beams.stiffness_right_Nm_per_rad=800"],
+    "R": [str(ROOT / "scenes/robot.toml"), "--set", "run.method=moreau"],
 }
-TABLE_IV = [(0, 0, 15), (23, -11, 16), (4, 5, 10), (-17, 13, 12)]
+# Table IV's starts, and for the robot four of its own size.
+FOUR = defaultdict(lambda: [(0, 0, 15), (23, -11, 16), (4, 5, 10), (-17, 13, 12)])
+FOUR["R"] = [(0, 0, 0.4), (0.184, -0.15, 0.3), (0.032, 0.07, 0.14), (-0.136, 0.18, 0.2)]
+# Of d, v_x, v_y: within --starts all.
+RANGES = defaultdict(lambda: ((-24, 24), (-20, 20), (10, 20)))
+RANGES["R"] = ((-0.192, 0.192), (-0.28, 0.28), (0.142, 0.4))
 
 
-def anywhere(seed, count):
+def anywhere(scene, seed, count):
     """Starts in the range of --starts all."""
     random.seed(seed)
-    return [(round(random.uniform(-24, 24), 3), round(random.uniform(-20, 20), 3),
-             round(random.uniform(10, 20), 3)) for _ in range(count)]
+    return [tuple(round(random.uniform(*r), 3) for r in RANGES[scene]) for _ in range(count)]
 
 
-HUNDRED = anywhere(5, 8) + anywhere(77, 92)
+def hundred(scene):
+    return anywhere(scene, 5, 8) + anywhere(scene, 77, 92)
+
+
 KNOWN = 24  # of the hundred whose truth is known
 TRIALS = {"one": [(9001, 500_000), (9002, 500_000)], "many": [(9003, 150_000)]}  # seed, trials
 SEEDS = {0.04: 24, 0.02: 12, 0.01: 4}  # of predictions of one start
@@ -91,8 +102,8 @@ class Truth:
 
 def one_start(scene, k):
     """Predictions straight from the scene, and the paper's chain."""
-    truth = Truth(scene, TABLE_IV[k], "one")
-    start = ",".join(map(str, TABLE_IV[k]))
+    truth = Truth(scene, FOUR[scene][k], "one")
+    start = ",".join(map(str, FOUR[scene][k]))
     rows = []
     for accuracy, seeds in SEEDS.items():
         for seed in range(1, seeds + 1):
@@ -119,17 +130,18 @@ def one_start(scene, k):
 
 def any_start(scene, accuracy, count, seed):
     """One chain for a range of starts; predictions from starts that it does not know."""
-    truths = [Truth(scene, s, "many") for s in HUNDRED[:KNOWN]]
+    starts = hundred(scene)[:count]
+    truths = [Truth(scene, s, "many") for s in starts[:KNOWN]]
     with tempfile.TemporaryDirectory() as folder:
         matrix = Path(folder) / "m.nc"
         watch = time.time()
         made = run("build", *SCENES[scene], "--accuracy", accuracy, "--starts", "all", "--seed", seed,
                    "-o", matrix)
         build_seconds = time.time() - watch
-        words = [w for s in HUNDRED[:count] for w in ("--start", ",".join(map(str, s)))]
+        words = [w for s in starts for w in ("--start", ",".join(map(str, s)))]
         j = run("predict", matrix, *words, "--seed", seed)
     rows = []
-    for truth, a, s in zip(truths, j["starts"], HUNDRED):
+    for truth, a, s in zip(truths, j["starts"], starts):
         rows.append(dict(kind=f"any {count}", scene=scene, start=",".join(map(str, s)),
                          accuracy=accuracy, seed=seed, error=truth.error(flat(a["final_gates"])),
                          error_95=a["error_95"], gate_runs=j["gate_runs"] / count,
@@ -234,25 +246,41 @@ def summary(rows):
 TRUTHS = {}
 
 
+KEYS = ["kind", "scene", "start", "accuracy", "seed", "error", "error_95", "gate_runs", "seconds",
+        "run_seconds", "answer", "build_seconds", "build_runs"]
+
+
+def kept_rows(scenes):
+    """Those of the other scenes, from an earlier call."""
+    if not (OUT / "points.csv").exists():
+        return []
+    rows = [r for r in csv.DictReader((OUT / "points.csv").open()) if r["scene"] not in scenes]
+    for r in rows:
+        for key in KEYS[3:10] + KEYS[11:]:
+            r[key] = float(r[key]) if r[key] else None
+        start = tuple(json.loads(f"[{r['start']}]"))
+        r["truth"] = Truth(r["scene"], start, "many" if r["kind"].startswith("any") else "one")
+    return rows
+
+
 def main():
     OUT.mkdir(parents=True, exist_ok=True)
+    scenes = sys.argv[3:] or list(SCENES)
     kept = OUT / "truth.json"
     if kept.exists():
         TRUTHS.update(json.loads(kept.read_text()))
     with ThreadPoolExecutor(2) as pool:
-        jobs = [pool.submit(Truth, s, start, "one") for s in SCENES for start in TABLE_IV]
-        jobs += [pool.submit(Truth, s, start, "many") for s in SCENES for start in HUNDRED[:KNOWN]]
+        jobs = [pool.submit(Truth, s, start, "one") for s in scenes for start in FOUR[s]]
+        jobs += [pool.submit(Truth, s, start, "many") for s in scenes for start in hundred(s)[:KNOWN]]
         for job in jobs:
             job.result()
         kept.write_text(json.dumps(TRUTHS, indent=0, sort_keys=True) + "\n")
         jobs = [pool.submit(any_start, s, accuracy, count, seed) for accuracy, count, seeds in BUILDS
-                for seed in range(1, seeds + 1) for s in SCENES]
-        jobs += [pool.submit(one_start, s, k) for s in SCENES for k in range(len(TABLE_IV))]
-        rows = [row for job in jobs for row in job.result()]
-    keys = ["kind", "scene", "start", "accuracy", "seed", "error", "error_95", "gate_runs",
-            "seconds", "run_seconds", "answer", "build_seconds", "build_runs"]
+                for seed in range(1, seeds + 1) for s in scenes]
+        jobs += [pool.submit(one_start, s, k) for s in scenes for k in range(len(FOUR[s]))]
+        rows = kept_rows(scenes) + [row for job in jobs for row in job.result()]
     with open(OUT / "points.csv", "w", newline="") as file:
-        table = csv.DictWriter(file, keys, extrasaction="ignore")
+        table = csv.DictWriter(file, KEYS, extrasaction="ignore")
         table.writeheader()
         table.writerows(rows)
     (OUT / "summary.txt").write_text(summary(rows))
