@@ -158,9 +158,14 @@ void warn_of_range(const Options& options, const lattice::MatrixFile& file, cons
     if (std::find(own.begin(), own.end(), lattice::entry_of(b)) != own.end()) return false;
     return outside("d_m", b.x) || outside("vx_m_per_s", b.vx) || outside("vy_m_per_s", b.vy);
   });
+  const auto axis = [&](const char* key) {
+    return "[" + digits(range.at(key).at(0).get<double>()) + ", " +
+           digits(range.at(key).at(1).get<double>()) + "]";
+  };
   if (count > 0)
     options.warn(std::to_string(count) + (count == 1 ? " start lies" : " starts lie") +
-                 " outside the range that " + path + " was built for");
+                 " outside the range that " + path + " was built for: d " + axis("d_m") +
+                 " m, vx " + axis("vx_m_per_s") + " m/s, vy " + axis("vy_m_per_s") + " m/s");
 }
 
 int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {

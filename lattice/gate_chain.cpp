@@ -207,6 +207,10 @@ MatrixFile read_matrix(const std::string& path) {
       return markov::read_counts(path);
     } catch (const markov::BadChecksum& e) {
       throw markov::BadFile(std::string(e.what()) + "; " + markov::diagnose_counts(path));
+    } catch (const markov::BadFile& e) {
+      if (!path.ends_with(".toml")) throw;
+      throw markov::BadFile(std::string(e.what()) +
+                            ", but a scene by its name; gatewalk build makes a matrix of one");
     }
   }();
   try {

@@ -1,6 +1,8 @@
 #include "lattice/run_pool.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -35,6 +37,9 @@ void each_kernel_run(const RunPool& pool, TrialGroup group, Use use) {
       pool.scattered.each, group, 0,
       [&](std::int64_t i) { return pool.scattered.starts[static_cast<std::size_t>(i)]; }, use);
 }
+
+// Leaves next to each other in preorder lie near each other; some hundred entries.
+constexpr int kStatesOfBox = 16;
 
 int output_of(const StateSpace& space, const GatePassage& passage, const Crossing& entry) {
   return passage.ending == Ending::trapped ? space.trapped() : space.index_of(entry).state;
@@ -106,7 +111,72 @@ Kernel kernel_of(const GateParams& p, const RunPool& pool, int per_leaf, TrialGr
                                            image == 0 ? passage.entry : mirrored(passage.entry)));
   });
   markov::Counts counts = counted(row, column, space.size());
-  return {std::move(space), std::move(counts)};
+  SeenEntries seen = group.of == 1 ? SeenEntries(space, entries, row) : SeenEntries();
+  return {std::move(space), std::move(counts), std::move(seen)};
+}
+
+SeenEntries::SeenEntries(const StateSpace& space, const std::vector<Crossing>& entries,
+                         const std::vector<int>& state) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  boxes.assign(static_cast<std::size_t>(space.size() / kStatesOfBox + kBoundaries + 1),
+               {{kNone, kNone, kNone}, {-kNone, -kNone, -kNone}});
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    Box& b = boxes[place_of(space, state[i])];
+    ++b.entries;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double x = entries[i].*kCrossingAxes[axis];
+      b.low[axis] = std::min(b.low[axis], x);
+      b.high[axis] = std::max(b.high[axis], x);
+    }
+  }
+}
+
+std::size_t SeenEntries::place_of(const StateSpace& space, int state) {
+  const Boundary b = space.boundary(state);
+  const int first = space.first(b);
+  return static_cast<std::size_t>(first / kStatesOfBox + static_cast<int>(b) +
+                                  (state - first) / kStatesOfBox);
+}
+
+bool SeenEntries::Box::holds(const Crossing& entry) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = entry.*kCrossingAxes[axis];
+    if (x < low[axis] || x > high[axis]) return false;
+  }
+  return true;
+}
+
+double unseen_share(const Kernel& kernel, const FieldParams& field, const StartTrials& start) {
+  if (field.max_gates == 1 || start.first_runs() == 0) return 0.0;
+  std::vector<std::int64_t> here(kernel.seen.boxes.size());  // first runs that enter each box
+  std::int64_t outside = 0;
+  for (const FieldTrials* trials : {&start.full, &start.first})
+    for (std::size_t i = 0; i < trials->final_gates.size(); ++i) {
+      const auto passages = trials->of_trial(i);
+      const GatePassage& passage = passages.front();
+      if (passages.size() > 1 || passage.ending == Ending::trapped ||
+          passage.ending == Ending::broken)
+        continue;  // the kernel has the entry, or there is none
+      const Move move = move_into(passage.entry.boundary);
+      if (!field.contains(field.start_column() + move.di_x, move.di_y)) continue;
+      const std::size_t at =
+          SeenEntries::place_of(kernel.space, kernel.space.index_of(passage.entry).state);
+      ++here[at];
+      if (!kernel.seen.boxes[at].holds(passage.entry)) ++outside;
+    }
+  // Of n entries the next one of the same kind lies beyond one of the six sides of their box with
+  // 6 / (n + 1), about; how many of several do is the less certain the more there are of one box.
+  constexpr std::int64_t kFew = 12;  // of fewer nothing is known
+  double expected = 0.0, variance = 0.0;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const std::int64_t n = kernel.seen.boxes[i].entries;
+    if (n < kFew) continue;
+    const double mean = 6.0 * static_cast<double>(here[i]) / static_cast<double>(n + 1);
+    expected += mean;
+    variance += mean + mean * mean / 6.0;
+  }
+  return std::max(0.0, static_cast<double>(outside) - expected - 2.0 * std::sqrt(variance)) /
+         static_cast<double>(start.first_runs());
 }
 
 std::vector<std::int64_t> first_row(const GateParams& p, const StateSpace& space,

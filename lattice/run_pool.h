@@ -4,6 +4,7 @@
 /// grown over the entries that were seen (dynamics/tree_space.h), their mirror images too where the
 /// gate is symmetric.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -52,10 +53,29 @@ struct TrialGroup {
   std::int64_t group = 0, of = 1;
 };
 
+/// Where entries were seen: the least boxes around those of some neighbouring leaves of a boundary.
+/// A box may hold places between its leaves where none was.
+struct SeenEntries {
+  struct Box {
+    std::array<double, 3> low, high;
+    std::int64_t entries = 0;
+    [[nodiscard]] bool holds(const dynamics::Crossing& entry) const;
+  };
+  std::vector<Box> boxes{};
+
+  SeenEntries() = default;
+  /// `state[i]` is that of entries[i].
+  SeenEntries(const dynamics::StateSpace& space, const std::vector<dynamics::Crossing>& entries,
+              const std::vector<int>& state);
+  /// Place among `boxes`.
+  [[nodiscard]] static std::size_t place_of(const dynamics::StateSpace& space, int state);
+};
+
 /// Counts of trees' states, none of which is a start's own.
 struct Kernel {
   dynamics::StateSpace space;
   markov::Counts counts;  // (n x n+1), the last column: trapped
+  SeenEntries seen{};     // of the kernel of all trials
 };
 
 /// From the runs of one group of the trials but the starts' own first ones. With mirror images a
@@ -74,6 +94,11 @@ struct Kernel {
 [[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::GateParams& p,
                                                   const dynamics::StateSpace& space,
                                                   const ScatteredTrials& trials);
+
+/// The share of the start's first runs that enter the next gate of the field where no run of the
+/// kernel did, less what chance alone would make: what the kernel says of these is a guess.
+[[nodiscard]] double unseen_share(const Kernel& kernel, const FieldParams& field,
+                                  const StartTrials& start);
 
 /// The kernel's rows, and behind them `first_rows`, which nothing leads to.
 [[nodiscard]] markov::Chain chain_of(const Kernel& kernel,

@@ -876,6 +876,7 @@ expect 1 'No space left on device' "$gatewalk" gate "$scenes/single_gate.toml" -
 # A large file of another kind is refused at once and in little memory.
 truncate -s 3G zeros.nc
 (printf '\211HDF\r\n\032\n'; head -c 100 /dev/zero) >large.nc && truncate -s 3G large.nc
+expect 2 'field.toml: not a NetCDF-4 file, but a scene .* gatewalk build' "$gatewalk" walk "$scenes/field.toml"
 expect 2 'zeros.nc: not a NetCDF-4 file' bash -c "ulimit -v 2000000; $gatewalk show zeros.nc"
 expect 2 'large.nc: has 3221225472 bytes, more than' bash -c "ulimit -v 2000000; $gatewalk show large.nc"
 rm zeros.nc large.nc

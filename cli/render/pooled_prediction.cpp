@@ -25,6 +25,7 @@ void add_to(Json& json, const lattice::StartAnswer& a) {
   json["corrcoef_95"] = a.error.corrcoef;
   json["rmse_per_100_95"] = a.error.rmse_per_100;
   json["kernel_error_95"] = a.kernel_error_95;
+  json["unseen_entries"] = a.unseen;
   json["full_trials"] = a.trials;
   json["first_runs"] = a.first_runs;
   json["direct_seconds"] = std::isfinite(a.direct_seconds) ? Json(a.direct_seconds) : Json();
@@ -41,6 +42,9 @@ std::string table_of(const lattice::StartAnswer& a, const lattice::Scene& scene)
       ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
       " per 100, each 95 times in 100 (sampling, states and memory)\n";
   if (a.from_trials) table += "the trials' own shares: they are more certain here than the chain\n";
+  if (!a.from_trials && a.unseen > 0.0)
+    table += "the error counts " + percent(a.unseen, 1.0, 2) +
+             " that enter the second gate where no gate run did: what becomes of them is a guess\n";
   if (f.unsampled > 0.0)
     table += "reaches a state that no run left: " + percent(f.unsampled, 1.0, 4) + "\n";
   return table;

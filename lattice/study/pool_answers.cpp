@@ -145,8 +145,11 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
   const std::size_t n = starts.size();
   PoolAnswers said{.whole = {},
                    .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},
+                   .unseen = {},
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.counts.nonZeros()};
+  for (const std::size_t s : starts)
+    said.unseen.push_back(unseen_share(chains_.front().kernel, field_, pool.starts[s]));
   const bool with_kernels = !by_walks_ || chains_.front().adjoint;
   if (with_kernels) said.kernels = said.groups;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {

@@ -35,9 +35,14 @@ double chance_of_walks(const FinalDistribution& d, std::int64_t walks) {
   return walks == 0 ? 0.0 : kToQuantile * expected_total_variation(d.final_cells, walks);
 }
 
+/// What cannot be told of a share of the bodies may lie anywhere.
+void widen(std::array<double, 2>& interval, double share) {
+  interval = {std::max(0.0, interval[0] - share), std::min(1.0, interval[1] + share)};
+}
+
 /// Error bars of one start; `pooled`: trials in the pool, `chance`: of the walks behind `whole`.
 StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t pooled,
-                      FinalDistribution whole, double chance,
+                      FinalDistribution whole, double chance, double unseen,
                       const std::vector<FinalDistribution>& groups,
                       const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
   StartAnswer a;
@@ -47,10 +52,12 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
   const GroupSpread spread(whole, groups);
   const std::int64_t behind = std::min(a.first_runs, pooled);
   a.error = spread.error(behind, seed);
-  a.error.total_variation = std::hypot(a.error.total_variation, chance);
-  a.kernel_error_95 = kernels.empty()
-                          ? a.error.total_variation
-                          : GroupSpread(whole, kernels).error(pooled, seed).total_variation;
+  a.unseen = unseen;
+  a.error.total_variation = std::min(1.0, std::hypot(a.error.total_variation, chance) + unseen);
+  a.kernel_error_95 =
+      kernels.empty()
+          ? a.error.total_variation
+          : std::min(1.0, GroupSpread(whole, kernels).error(pooled, seed).total_variation + unseen);
   Error95 of_trials{1.0, 0.0, 100.0};
   if (a.trials > 0) {
     CellCounts counts = CellCounts::Zero(scene.field.rows, scene.field.columns);
@@ -62,6 +69,14 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
   if (!a.from_trials) {
     a.endings = spread.endings_95(behind);
     a.gates_95 = spread.gates_95(behind);
+    if (unseen > 0.0) {  // moved from one gate to another they make the largest RMSE
+      const auto gates = static_cast<double>(a.gates_95[0].size());
+      a.error.rmse_per_100 += 100.0 * unseen * std::sqrt(2.0 / gates);
+      a.error.corrcoef = std::nan("");
+    }
+    for (auto& interval : a.endings.interval) widen(interval, unseen);
+    a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
+    a.gates_95[1] = (a.gates_95[1] + unseen).min(1.0);
     a.final = std::move(whole);
     return a;
   }
@@ -180,8 +195,8 @@ class Prediction {
       chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
       result_.starts[open_[i]] = answer_of(
           scene_, pool_.starts[asked[i]], pooled, std::move(said.whole.final[i]), chances[i],
-          said.groups[i], said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i],
-          options_.seed);
+          said.unseen[i], said.groups[i],
+          said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i], options_.seed);
     });
     std::erase_if(open_, [&](std::size_t k) {
       return result_.starts[k].error.total_variation <= options_.accuracy;
@@ -195,7 +210,7 @@ class Prediction {
 
   /// The part of the error that first runs make.
   [[nodiscard]] static double first_error(const StartAnswer& a) {
-    const double e = a.error.total_variation, k = a.kernel_error_95;
+    const double e = a.error.total_variation - a.unseen, k = a.kernel_error_95 - a.unseen;
     return std::sqrt(std::max(1e-4 * e * e, e * e - k * k));
   }
 

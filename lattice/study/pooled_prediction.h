@@ -31,6 +31,9 @@ struct StartAnswer {
   Error95 error;
   double kernel_error_95 = 0.0;  // total variation, of the chain with endlessly many first runs;
                                  // of all where walks make the answer
+  double unseen =
+      0.0;  // share of first runs that enter the second gate where no run of the pool
+            // did (unseen_share): the chain's error bars have it on top, corrcoef then has none
   double trials_error_95 = 1.0;  // total variation, of the trials' own shares
   EndingShares endings{std::array<double, markov::kEndings>{}};
   std::array<CellProbabilities, 2> gates_95;  // low, high

@@ -170,6 +170,53 @@ TEST(PooledPrediction, WhatWasNeverSeenIsInTheBar) {
   EXPECT_LT(p.starts[0].gates_95[0].maxCoeff(), 1.0);
 }
 
+// The pool knows slow bodies only: of a fast one it cannot say how it goes on.
+TEST(PooledPrediction, EntriesWhereNoRunEnteredAreInTheBar) {
+  const Scene scene = fast_scene();
+  const BodyState fast{0, 0, 0, 45};
+  RunPool pool;
+  pool.starts.push_back(some_trials(scene, 2000));
+  RunPool other = pool;
+  const auto guess = predict_pooled(scene, pool, {fast}, {.accuracy = 0.1, .first_runs = 400});
+  EXPECT_GT(guess.starts[0].unseen, 0.3);
+  EXPECT_GE(guess.starts[0].error.total_variation, guess.starts[0].unseen);
+  EXPECT_FALSE(guess.reached);
+  const auto known = predict_pooled(scene, other, {fast}, {.accuracy = 0.1});
+  EXPECT_TRUE(known.reached);
+  EXPECT_GT(known.starts[0].trials, 100);
+  const FieldTally truth =
+      run_field(scene.gate, scene.field, fast, StateSpace::paper(scene.gate), 77, {0, 5000});
+  EXPECT_LE(total_variation(known.starts[0].final.final_cells, shares(truth.final_gates)), 0.11);
+  EXPECT_LE(total_variation(guess.starts[0].final.final_cells, shares(truth.final_gates)),
+            guess.starts[0].error.total_variation);
+}
+
+TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  pool.starts.push_back(some_trials(scene, 4000));
+  const Kernel kernel = kernel_of(scene.gate, pool);
+  // Other trials of the same start, through the first gate only.
+  FieldParams one_gate = scene.field;
+  one_gate.max_gates = 1;
+  StartTrials again;
+  again.start = pool.starts[0].start;
+  (void)run_field(scene.gate, one_gate, kStart, StateSpace::paper(scene.gate), 10, {0, 1000},
+                  &again.first);
+  EXPECT_LT(unseen_share(kernel, scene.field, again), 0.01);
+  std::int64_t go_on = 0;
+  for (GatePassage& p : again.first.passages)
+    if (p.ending != dynamics::Ending::trapped) {
+      p.entry = {Boundary::enter, 1e3, 0.0, 1e3};
+      ++go_on;
+    }
+  ASSERT_GT(go_on, 200);
+  EXPECT_NEAR(unseen_share(kernel, scene.field, again), static_cast<double>(go_on) / 1000, 0.1);
+  FieldParams last_row = scene.field;
+  last_row.rows = 1;  // who leaves upwards has crossed: nothing more is to be known of that
+  EXPECT_EQ(unseen_share(kernel, last_row, again), 0.0);
+}
+
 TEST(PooledPrediction, StopsAtTheLimitOfRunsAndSaysSo) {
   const Scene scene = fast_scene();
   RunPool pool;
