@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Chains of trees: error against cost beside direct simulation, and whether their error bars hold.
-#   results/tree/run.sh [GATEWALK]      about 15 minutes on two cores (30 without truth.json), needs python3, gnuplot
+#   results/tree/run.sh [GATEWALK]      about 20 minutes on two cores (40 without truth.json), needs python3, gnuplot
 # Writes points.csv, summary.txt, tree.svg, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
