@@ -35,7 +35,7 @@ namespace {
 /// Options that cannot change a result, left out of the recorded command.
 bool shapes_nothing(const std::string& name) {
   return name == "threads" || name == "quiet" || name == "json" || name == "output" ||
-         name == "strict";
+         name == "strict" || name == "figure";
 }
 
 /// An option as users write it.
@@ -236,6 +236,10 @@ void Options::output_folder(const std::string& help, std::vector<std::string> fi
   state_->needs_output = "DIR";
 }
 
+void Options::add_figure(const std::string& shows) {
+  output_file("figure", "FILE.svg|pdf|png", "draw " + shows + " (needs gnuplot)", Content::binary);
+}
+
 void Options::without_scene(const std::string& reason) { state_->no_scene = reason; }
 
 // ---- What is given ----
@@ -361,6 +365,11 @@ void Options::check_files() {
   };
   for (const State::Output& output : state_->output_files)
     if (has(output.name)) check(shown(output.name), [&] { require_writable(text(output.name)); });
+  if (has("figure")) {
+    if (!can_be_drawn(text("figure")))
+      throw UsageError("--figure " + text("figure") + ": must end in .svg, .pdf or .png");
+    check("--figure", require_gnuplot);
+  }
   if (!has_folder) return;
   check("-o", [&] {
     require_possible_folder(folder);
@@ -503,8 +512,21 @@ void Options::give_out(const Json& json, const std::string& table, int indent) c
   if (!target.empty()) write_text_atomically(target, text_of(json, indent) + "\n");
 }
 
+void Options::draw(const std::function<Figure()>& picture) const {
+  if (!has("figure")) return;
+  try {
+    cli::draw(text("figure"), picture(), about());
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error("no figure: " + std::string(e.what()) + "; the numbers are written");
+  }
+}
+
+AboutFigure Options::about() const {
+  return {"gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' ')), canonical()};
+}
+
 ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)
-    : folder_(options.text("output")), files_(files) {
+    : folder_(options.text("output")), files_(files), about_(options.about()) {
   require_folder(folder_);
 }
 
@@ -518,7 +540,7 @@ void ResultFolder::write(const std::string& csv_file, const std::string& csv,
 
 void ResultFolder::draw(const std::string& file, const Figure& figure) const {
   try {
-    draw_svg(path(file), figure);
+    cli::draw(path(file), figure, about_);
   } catch (const std::runtime_error& e) {
     throw std::runtime_error("no figure: " + std::string(e.what()) + "; the other files in " +
                              folder_ + " are written");

@@ -96,6 +96,8 @@ class Options {
   void main_output_file(const std::string& shown, const std::string& help, Content content);
   /// Declares -o, --output, which must be given: a folder, in which `files` are written.
   void output_folder(const std::string& help, std::vector<std::string> files);
+  /// Declares --figure FILE.svg|pdf|png, a picture of the result; `shows` ends the help.
+  void add_figure(const std::string& shows);
   /// There is no scene to override keys of: --set is refused with `reason`, and not on the help
   /// page.
   void without_scene(const std::string& reason);
@@ -139,6 +141,11 @@ class Options {
   /// FILE the table too, unless --quiet.
   /// `indent` -1: JSON on one line, for long arrays.
   void give_out(const Json& json, const std::string& table, int indent = 2) const;
+  /// Draws the picture that --figure asks for, if it does, when the result has been given out.
+  /// Throws std::runtime_error, which says so, when gnuplot fails.
+  void draw(const std::function<Figure()>& picture) const;
+  /// Title and command for the metadata of pictures.
+  [[nodiscard]] AboutFigure about() const;
 
  private:
   struct NamedFile;
@@ -167,6 +174,7 @@ class ResultFolder {
  private:
   std::string folder_;
   std::vector<std::string> files_;
+  AboutFigure about_;
 };
 
 /// The exit status of a command whose result is written: with --strict, kFailure when the result's

@@ -77,6 +77,7 @@ int run_chart(const Arguments& arguments) {
   options.add_text("methods", "A,B,...", "methods to chart (default: all)");
   options.add_seed();
   options.add_strict();
+  options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
   dynamics::WorkPrecisionOptions how{.label = {},
                                      .methods = chosen_methods(options),
@@ -120,7 +121,9 @@ int run_chart(const Arguments& arguments) {
     options.warn(chart.label +
                  ": the reference itself shows faults: " + std::string(dynamics::name_of(verdict)));
   }
-  return exit_status(options, clean);
+  const int exit = exit_status(options, clean);
+  options.draw([&] { return figure_of(charts); });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

@@ -55,6 +55,7 @@ int run_chart_chain(const Arguments& arguments) {
   add_starts(options);
   options.add_seed();
   options.add_strict();
+  options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
   const std::vector<lattice::PaperStart> starts = starts_of(options, scene);
@@ -85,7 +86,9 @@ int run_chart_chain(const Arguments& arguments) {
   folder.write("chain.csv", csv_of(chart), "chain.json", json);
   options.give_out(json, table_of(chart));
   folder.draw("chain.svg", figure_of(chart));
-  return status_of(options, chart.health);
+  const int exit = status_of(options, chart.health);
+  options.draw([&] { return figure_of(chart); });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

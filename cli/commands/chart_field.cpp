@@ -23,6 +23,7 @@ int run_chart_field(const Arguments& arguments) {
   options.output_folder("folder to write to; made if missing", files);
   add_starts(options);
   options.add_strict();
+  options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
   const lattice::Scene scene = options.read_scene();
   if (scene.gate.run.method == "auto")
@@ -42,7 +43,9 @@ int run_chart_field(const Arguments& arguments) {
   options.give_out(json, table_of(study));
   for (const std::string& text : complaints(study)) options.warn(text);
   folder.draw("fidelity.svg", figure_of(study));
-  return exit_status(options, study.clean());
+  const int exit = exit_status(options, study.clean());
+  options.draw([&] { return figure_of(study); });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

@@ -16,6 +16,7 @@ int run_gate(const Arguments& arguments) {
   options.scene();
   options.add_trials_and_seed("runs of the gate");
   options.add_strict();
+  options.add_figure("a bar per outcome");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
   const std::int64_t trials = options.trials();
@@ -29,7 +30,9 @@ int run_gate(const Arguments& arguments) {
   json["status"] = to_json(tally.health);
   json["made_by"] = to_json(options.provenance(scene));
   options.give_out(json, scene_line(scene) + table_of(tally) + method_line(settled));
-  return status_of(options, tally.health);
+  const int exit = status_of(options, tally.health);
+  options.draw([&] { return figure_of(tally); });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

@@ -49,6 +49,7 @@ int run_landscape(const Arguments& arguments) {
   options.add_count("trials", "N", "also run the gate N times: who passes, beside who should", "0");
   options.add_seed();
   options.add_strict();
+  options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
   const auto beams = beams_of(options.text("beam"));
   const std::int64_t trials = options.count("trials", 0);
@@ -74,7 +75,9 @@ int run_landscape(const Arguments& arguments) {
   folder.write("landscape.csv", csv_of(passes.coarse.landscape), "landscape.json", json);
   folder.draw("landscape.svg", figure_of(passes, scene.gate));
   options.give_out(json, table);
-  return status_of(options, health);
+  const int exit = status_of(options, health);
+  options.draw([&] { return figure_of(passes, scene.gate); });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/render/field_figure.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
@@ -15,6 +16,7 @@ int run_lattice(const Arguments& arguments) {
   options.scene();
   options.add_trials_and_seed("trials through the field");
   options.add_strict();
+  options.add_figure("where bodies end, and how");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
   const std::int64_t trials = options.trials();
@@ -28,7 +30,11 @@ int run_lattice(const Arguments& arguments) {
   options.give_out(json, table_of(tally, scene, settled));
   options.remark(fixed(watch.seconds(), 2) + " s");
   options.warn(too_few_gates(scene));
-  return status_of(options, tally.health);
+  const int exit = status_of(options, tally.health);
+  options.draw([&] {
+    return figure_of({{"full dynamics, " + std::to_string(trials) + " trials", tally}});
+  });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

@@ -2,6 +2,7 @@
 
 #include "cli/arguments.h"
 #include "cli/render/choice.h"
+#include "cli/render/field_figure.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/pooled_prediction.h"
@@ -62,6 +63,11 @@ std::vector<dynamics::BodyState> bodies_of(const std::vector<lattice::PaperStart
   return given.empty() ? std::vector{scene.start} : lattice::entries_at(given);
 }
 
+/// Of the picture of start i.
+std::string picture_title(const std::vector<lattice::PaperStart>& given, std::size_t i) {
+  return "prediction" + (given.empty() ? std::string() : ", " + title_of(given[i]));
+}
+
 /// Until the error bar says enough, with the runs that a pool has already.
 int predict_accurately(const Options& options, const lattice::Scene& scene,
                        const std::optional<lattice::Settled>& settled, lattice::RunPool pool,
@@ -75,7 +81,15 @@ int predict_accurately(const Options& options, const lattice::Scene& scene,
   options.give_out(json, table_of(prediction, scene, !given.empty()) + method_line(settled));
   options.warn(too_few_gates(scene));
   warn_of(options, prediction, how.accuracy);
-  return status_of(options, prediction.health);
+  const int exit = status_of(options, prediction.health);
+  options.draw([&] {
+    std::vector<FieldPicture> pictures;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      pictures.emplace_back(picture_title(given, i), prediction.starts[i].final,
+                            prediction.starts[i].endings);
+    return figure_of(pictures);
+  });
+  return exit;
 }
 
 int predict_scene(const Options& options) {
@@ -127,9 +141,11 @@ int run_predict(const Arguments& arguments) {
   options.positional("matrix", "a scene, or a matrix file written by gatewalk build", true);
   options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
   add_accuracy(options, "0.02; that of a matrix, or half of it if it is for any start");
-  options.add_count("first-runs", "N",
-                    "matrix of trees: N first runs of a start that it does not know, and no other "
-                    "trials; 0: none, it is taken for any other of its leaf, which says little");
+  options.add_count(
+      "first-runs", "N",
+      "matrix of trees: N first runs (16 or more) of a start that it does not know, and "
+      "no other trials; 0: none, it is taken for any other of its leaf, which says "
+      "little");
   add_starts(options, "the scene's start");
   options.add_texts("row", "A-B=FILE",
                     "gates of rows i_y = A to B as in another matrix of the same bins (may be "
@@ -139,11 +155,17 @@ int run_predict(const Arguments& arguments) {
                    "klu: one sparse solve; auto: march without limit, else propagate",
                    "auto");
   options.add_strict();
+  options.add_figure("where bodies end, and how; of up to " + std::to_string(kMostPictures) +
+                     " starts");
   options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
   options.add_seed(
       "seed of all trials; of a matrix of bins: of the resampled matrices behind the "
       "intervals");
   if (!options.parse(arguments)) return kFine;
+  if (const auto starts = given_starts(options);
+      options.has("figure") && starts.size() > kMostPictures)
+    throw UsageError("--figure: shows at most " + std::to_string(kMostPictures) +
+                     " starts, these are " + std::to_string(starts.size()));
   if (!is_matrix(options.text("matrix"))) return predict_scene(options);
   const std::string solver = options.text("solver"), path = options.text("matrix");
   const markov::PredictOptions how{.solver = solver_of(solver)};
@@ -182,7 +204,15 @@ int run_predict(const Arguments& arguments) {
   options.give_out(json, table_of(prediction, shown));
   options.warn(too_few_gates(m.scene));
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
-  return exit_status(options, faults_recorded(status).empty());
+  const int exit = exit_status(options, faults_recorded(status).empty());
+  options.draw([&] {
+    std::vector<FieldPicture> pictures;
+    for (std::size_t i = 0; i < starts.size(); ++i)
+      pictures.emplace_back(picture_title(given, i), prediction.starts[i].final,
+                            prediction.starts[i].shares);
+    return figure_of(pictures);
+  });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

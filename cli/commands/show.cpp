@@ -13,6 +13,7 @@ int run_show(const Arguments& arguments) {
   options.positional("matrix", "matrix file written by gatewalk build", true);
   options.add_flag("rows", "a line per input state");
   options.add_count("row", "I", "all outputs of input state I (from 1)");
+  options.add_figure("the matrix, states grouped by boundary");
   options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
   const std::string path = options.text("matrix");
@@ -22,6 +23,7 @@ int run_show(const Arguments& arguments) {
     shown.one = static_cast<int>(options.count("row", 1, file.transitions.space.size())) - 1;
 
   options.give_out(to_json(file, path), table_of(file, path, shown));
+  options.draw([&] { return figure_of(file.transitions); });
   return kFine;
 }
 

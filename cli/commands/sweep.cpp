@@ -53,6 +53,7 @@ int run_sweep(const Arguments& arguments) {
                     "a key and its values, e.g. forces.random_N=0:10:40 or run.method=stable,paper "
                     "(may be repeated)");
   options.output_file("csv", "FILE", "write the grid as CSV; - is standard output");
+  options.add_figure("shares over one key, a map over two");
   if (!options.parse(arguments)) return kFine;
   const std::string csv = options.text("csv");
   const std::int64_t trials = options.trials();
@@ -60,6 +61,9 @@ int run_sweep(const Arguments& arguments) {
   const lattice::Scene scene = lattice::parse_scene(text, source, options.overrides());
   const auto axes = lattice::sweep_axes(scene.sweep, options.texts("vary"));
   refuse_overridden(axes, options.overrides());
+  if (options.has("figure") && axes.size() > 2)
+    throw UsageError("--figure: shows one key or two, " + std::to_string(axes.size()) +
+                     " are varied");
   auto points = lattice::sweep_points({text, source, options.overrides(), axes});
   for (const std::string& remark : remarks_on(points, options.talk())) options.warn(remark);
 
@@ -78,8 +82,11 @@ int run_sweep(const Arguments& arguments) {
   dynamics::Health health;
   for (const lattice::SweepPoint& p : points) health += p.tally.health;
   options.warn(complaint(health));
-  return exit_status(options, std::all_of(points.begin(), points.end(),
-                                          [](const auto& p) { return p.tally.health.clean(); }));
+  const int status =
+      exit_status(options, std::all_of(points.begin(), points.end(),
+                                       [](const auto& p) { return p.tally.health.clean(); }));
+  options.draw([&] { return figure_of(axes, points); });
+  return status;
 }
 
 }  // namespace gatewalk::cli

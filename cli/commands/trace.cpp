@@ -28,6 +28,7 @@ void declare(Options& options) {
   options.output_file("replay", "FILE.html", "write a page that plays the runs");
   options.output_file("video", "FILE.mp4|gif", "write a film of the first run (needs ffmpeg)",
                       Options::Content::binary);
+  options.add_figure("the ways of up to " + std::to_string(kMostDrawn) + " runs");
   options.add_number(
       "video-speed", "X",
       "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
@@ -114,7 +115,9 @@ int run_trace(const Arguments& arguments) {
   json["made_by"] = made_by;
   const bool to_stdout = options.text("csv") == "-" || options.text("replay") == "-";
   options.give_out(json, to_stdout ? "" : table_of(scene, recordings) + method_line(settled), -1);
-  return status_of(options, recordings.health);
+  const int exit = status_of(options, recordings.health);
+  options.draw([&] { return figure_of(scene, recordings); });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

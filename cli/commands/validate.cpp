@@ -99,6 +99,7 @@ int run_validate(const Arguments& arguments) {
                    "also run the trials with the random force drawn anew at every crossing");
   add_starts(options);
   add_bins(options);
+  options.add_figure("final gates of dynamics and chain, and their difference");
   if (!options.parse(arguments)) return kFine;
   constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
   lattice::ValidationOptions how{.trials = options.trials(),
@@ -108,6 +109,10 @@ int run_validate(const Arguments& arguments) {
                                  .force_memory = options.has("memory")};
   if (options.has("walks")) how.walks = options.count("walks");
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
+  if (const auto starts = given_starts(options);
+      options.has("figure") && starts.size() > kMostValidated)
+    throw UsageError("--figure: shows at most " + std::to_string(kMostValidated) +
+                     " starts, these are " + std::to_string(starts.size()));
   if (options.has("matrix"))
     for (const char* other : {"bins", "matrix-trials", "accuracy", "gate-runs"})
       if (options.has(other))
@@ -130,7 +135,9 @@ int run_validate(const Arguments& arguments) {
   Json json = to_json(result, matrix);
   json["made_by"] = to_json(options.provenance(scene));
   options.give_out(json, table_of(result, scene, matrix));
-  return status_of(options, result.health);
+  const int exit = status_of(options, result.health);
+  options.draw([&] { return figure_of(result); });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/render/field_figure.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
@@ -19,6 +20,7 @@ int run_walk(const Arguments& arguments) {
   options.add_count("walks", "N", "number of walks", "100");
   options.add_seed();
   options.add_strict();
+  options.add_figure("where walks end, and how");
   if (!options.parse(arguments)) return kFine;
   lattice::SceneMatrix m = read_matrix(options);
   add_starts_to(m, options.text("matrix"), options, {m.scene.start});
@@ -39,7 +41,9 @@ int run_walk(const Arguments& arguments) {
   options.warn(too_few_gates(m.scene));
   options.remark(fixed(seconds, 3) + " s, " + fixed(static_cast<double>(walks) / seconds / 1e6, 2) +
                  " million walks a second");
-  return exit_status(options, faults_recorded(status).empty() && t.health.clean());
+  const int exit = exit_status(options, faults_recorded(status).empty() && t.health.clean());
+  options.draw([&] { return figure_of({{"chain, " + std::to_string(walks) + " walks", tally}}); });
+  return exit;
 }
 
 }  // namespace gatewalk::cli

@@ -19,11 +19,8 @@ constexpr double kSpacing = 1.0;  // m, of drawn landscapes
 }  // namespace
 
 void draw(const std::string& name, int width, int height, const std::string& script) {
-  draw_svg(name + ".svg", {width, height, script});
-  write_text_atomically(
-      name + ".pdf",
-      drawn("set terminal pdfcairo size " + digits(width / 100.0) + "," + digits(height / 100.0) +
-            " font 'sans,10' background '#ffffff' enhanced\n" + script + "\n"));
+  for (const char* end : {".svg", ".pdf"})
+    draw(name + end, Figure{width, height, script}, {name, "gatewalk reproduce"});
 }
 
 std::string line_of(const std::vector<double>& values) {

@@ -293,7 +293,7 @@ Reproduction reproduce(const ReproductionOptions& options) {
   require_folder(folder);
   require_folder(folder + "/data");
   require_folder(folder + "/scenes");
-  (void)drawn("print 'gnuplot is there'");  // before minutes of work, not after
+  require_gnuplot();
   // The commands are recorded as they work inside the folder.
   std::filesystem::current_path(folder);
   const FolderLock lock(folder);

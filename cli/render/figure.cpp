@@ -2,9 +2,74 @@
 
 #include <cmath>
 
+#include "cli/render/final_gates.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
+
+std::string Sheet::margins(const Box& box) const {
+  const auto side = [](const char* name, double share) {
+    return std::string("set ") + name + "margin at screen " + digits(share) + "\n";
+  };
+  return side("l", box.left / kWidth) + side("r", box.right / kWidth) +
+         side("t", 1.0 - box.top / height) + side("b", 1.0 - box.bottom / height);
+}
+
+std::string Sheet::at(double left, double top) const {
+  return digits(left / kWidth) + "," + digits(1.0 - top / height);
+}
+
+std::string Sheet::text(const std::string& text, double left, double middle, int font) const {
+  return "set label " + literal(text) + " at screen " + at(left, middle) + " left font '," +
+         std::to_string(font) + "'\n";
+}
+
+std::string RootScale::range() const { return "[0:" + digits(std::sqrt(most_)) + "]"; }
+
+std::string RootScale::tics() const {
+  std::string list = "'0' 0";
+  double last = 0.0;
+  const double gap = 0.17 * std::sqrt(most_);
+  for (double decade = std::pow(10.0, std::floor(std::log10(most_)) - 1.0); decade <= most_;
+       decade *= 10.0)
+    for (const double x : {1.0, 2.0, 5.0}) {
+      const double root = std::sqrt(x * decade);
+      if (x * decade > most_ || root - last < gap) continue;
+      list += ", '" + digits(x * decade) + "' " + digits(root);
+      last = root;
+    }
+  return list;
+}
+
+std::string RootScale::colours(const Sheet& sheet, const Box& box) const {
+  return "set cbtics (" + tics() + ") offset -0.8,0\nset colorbox user origin screen " +
+         sheet.at(box.left, box.bottom) + " size screen " +
+         digits((box.right - box.left) / Sheet::kWidth) + "," +
+         digits((box.bottom - box.top) / sheet.height) + "\n" +
+         sheet.text("%, root scale", box.left - 4, box.bottom + 18, kSmallFont);
+}
+
+std::string share_bars(const Sheet& sheet, const Box& box, const std::string& data,
+                       const std::vector<ShareBar>& bars) {
+  std::string rows, tics;
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    const auto& [name, share, interval] = bars[i];
+    const bool has_interval = std::isfinite(interval[0]);
+    rows += std::to_string(i) + " " + digits(100 * share) + " " +
+            digits(100 * (has_interval ? interval[0] : share)) + " " +
+            digits(100 * (has_interval ? interval[1] : share)) + " \"" +
+            with_interval(share, interval) + " %\"\n";
+    tics += (i ? ", '" : "'") + name + "' " + std::to_string(i);
+  }
+  return data_block(data, rows) + sheet.margins(box) +
+         "unset xtics\nunset xlabel\nunset ylabel\nset border 0\nset xrange [0:100]\nset yrange [" +
+         std::to_string(bars.size()) + "-0.4:-0.6]\nset ytics (" + tics +
+         ") scale 0\nset style fill solid noborder\nplot " + data +
+         " using ($2/2):1:($2/2):(0.36) with boxxyerror lc rgb '" + kFirstColour +
+         "', '' using 2:1:3:4 with xerrorbars pt 0 lw 1.2 lc rgb '#000000', "
+         "'' using ($4 > 98 ? 100 : $4 + 2):1:5 with labels left font '," +
+         std::to_string(kSmallFont) + "'\nset ytics scale 0.5\n";
+}
 
 std::string literal(std::string_view text) {
   std::string out = "'";  // single quotes: taken as it stands
@@ -27,6 +92,11 @@ std::string tics_1_2_5(double low, double high) {
       list += (list.empty() ? "'" : ", '") + digits(digit * decade) + "' " + digits(digit * decade);
     }
   return list;
+}
+
+std::string short_number(double x) {
+  const double decade = std::pow(10.0, std::floor(std::log10(x)));
+  return digits(std::floor(x / decade) * decade);
 }
 
 Look look_of(std::string_view method) {

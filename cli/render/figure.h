@@ -1,10 +1,16 @@
 #pragma once
 /// What the figures of several commands share: text for gnuplot, one look.
 
+#include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gatewalk::cli {
+
+/// Sizes of letters in figures of Sheet::kWidth: 7.5 (6 in an index) and 6 points, printed 3.5
+/// inches wide, one column of a journal. Nothing is smaller.
+inline constexpr int kFont = 15, kSmallFont = 12;
 
 /// A figure as gnuplot draws it: its size in points of the screen, and the script without terminal.
 struct Figure {
@@ -12,6 +18,77 @@ struct Figure {
   std::string commands;
   int font = 12;  // its size
 };
+
+/// What the file of a figure says of it, in its metadata.
+struct AboutFigure {
+  std::string title;    // in a line
+  std::string made_by;  // the program's command
+};
+
+/// A rectangle of a figure, in points from its left and its upper edge.
+struct Box {
+  double left, right, top, bottom;
+};
+
+/// The paper of a figure.
+struct Sheet {
+  static constexpr int kWidth = 504;
+  int height = 0;
+
+  /// Where the next panel is drawn.
+  [[nodiscard]] std::string margins(const Box& box) const;
+  /// "x,y" in gnuplot's measure of a whole figure.
+  [[nodiscard]] std::string at(double left, double top) const;
+  /// Names of the axes, in gnuplot's quotes, near enough for a margin of 60 points.
+  [[nodiscard]] static std::string axes(const std::string& x, const std::string& y) {
+    return "set xlabel " + x + " offset 0,0.4\nset ylabel " + y + " offset 0.8,0\n";
+  }
+  /// A text that begins at this place, its middle at this height; until "unset label".
+  [[nodiscard]] std::string text(const std::string& text, double left, double middle,
+                                 int font = kFont) const;
+};
+
+/// Shares in %, from 0 to `most`, as colours by their square root: small ones can be told apart.
+class RootScale {
+ public:
+  explicit RootScale(double most) : most_(most > 0.0 ? most : 1.0) {}
+  [[nodiscard]] double most() const { return most_; }
+  [[nodiscard]] std::string range() const;
+  /// "'0' 0, '1' 1, '4' 2"
+  [[nodiscard]] std::string tics() const;
+  /// The colours with their numbers, and that they are roots.
+  [[nodiscard]] std::string colours(const Sheet& sheet, const Box& box) const;
+
+ private:
+  double most_;
+};
+
+/// Of a map whose data are "column row value": a square each (gnuplot's images need four at least).
+inline constexpr char kCells[] =
+    " using 1:2:(0.5):(0.5):3 with boxxyerror fs solid noborder lc palette";
+
+/// Horizontal bars of shares of all, each with its 95 % interval (NaN: none) and its number.
+struct ShareBar {
+  std::string name;
+  double share;
+  std::array<double, 2> interval;
+};
+[[nodiscard]] std::string share_bars(const Sheet& sheet, const Box& box, const std::string& data,
+                                     const std::vector<ShareBar>& bars);
+/// Height that so many bars want.
+[[nodiscard]] constexpr double height_of_bars(std::size_t bars) {
+  return 24.0 * static_cast<double>(bars);
+}
+
+/// The sequential colours (viridis), dark to light; and one colour for bars and first curves.
+inline constexpr char kSequential[] =
+    "set palette defined (0 '#440154', 1 '#46327e', 2 '#365c8d', 3 '#277f8e', 4 '#1fa187', "
+    "5 '#4ac16d', 6 '#a0da39', 7 '#fde725')\n";
+/// Colours of bars and curves (Okabe and Ito's), and from one sign of a difference to the other.
+inline constexpr char kFirstColour[] = "#0072b2", kSecondColour[] = "#d55e00",
+                      kThirdColour[] = "#009e73";
+inline constexpr char kDiverging[] =
+    "set palette defined (-1 '#2166ac', -0.5 '#92c5de', 0 '#f7f7f7', 0.5 '#f4a582', 1 '#b2182b')\n";
 
 /// Text for titles and labels of gnuplot, with nothing in it that gnuplot would understand.
 [[nodiscard]] std::string literal(std::string_view text);
@@ -21,6 +98,9 @@ struct Figure {
 
 /// Tics of a logarithmic axis from low to high: 1, 2 and 5 times the powers of ten, or these alone.
 [[nodiscard]] std::string tics_1_2_5(double low, double high);
+
+/// The next lower number of one digit: 0.0271 is "0.02".
+[[nodiscard]] std::string short_number(double x);
 
 /// Colour and marker of a method, the same in every figure (Okabe and Ito's colours).
 struct Look {

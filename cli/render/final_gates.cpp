@@ -46,16 +46,11 @@ Json grid(const markov::CellProbabilities& cells) { return rows_of(cells); }
 
 namespace {
 
-/// Places from `first` on, `count` of them, printed in blocks of `block`.
-struct Span {
-  Eigen::Index first, count, block;
-};
-
 /// All of them if they can be printed; else those between ends that hold next to nothing, in blocks
 /// if they are still too many.
-Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
+FieldMap::Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
   constexpr double kNextToNothing = 5e-5;  // prints as 0.00 %
-  Span span{0, shares.size(), 1};
+  FieldMap::Span span{0, shares.size(), 1};
   if (span.count <= most) return span;
   const double small = kNextToNothing * shares.sum();
   Eigen::Index low = 0, high = shares.size() - 1;
@@ -77,45 +72,64 @@ void add_final_gates(Json& json, const markov::FinalDistribution& f) {
   json["never_sampled"] = f.unsampled;
 }
 
-std::string map_of(const markov::CellProbabilities& shares, const std::string& what) {
-  const Span rows = span_of(shares.rowwise().sum(), 40);
-  Span columns = span_of(shares.colwise().sum().transpose(), 15);
-  const Eigen::Index half = shares.cols() / 2;
-  std::string text = what + ", % of trials (i_y upwards, i_x to the right";
-  if (rows.block > 1 || columns.block > 1) {
-    // The start's column in the middle of a block, so that left and right can be compared.
-    columns.block |= 1;
-    const Eigen::Index end = columns.first + columns.count;
-    const Eigen::Index to_left = half - columns.block / 2 - columns.first;  // from the middle block
-    columns.first +=
-        to_left - (to_left + (to_left > 0 ? columns.block - 1 : 0)) / columns.block * columns.block;
-    columns.count = end - columns.first;
-    text += "; blocks of " + std::to_string(columns.block) + " x " + std::to_string(rows.block) +
-            " gates: i_x in their middle, i_y at their lower end";
-  }
-  text += ")\n";
-  double shown = 0.0;
-  for (Eigen::Index r = (rows.count - 1) / rows.block * rows.block; r >= 0; r -= rows.block) {
-    text += padded(std::to_string(rows.first + r), 4) + " |";
-    for (Eigen::Index c = columns.first; c < columns.first + columns.count; c += columns.block) {
-      const Eigen::Index left = std::max<Eigen::Index>(0, c),
-                         right = std::min(shares.cols(), c + columns.block);
-      const double share =
-          shares.block(rows.first + r, left, std::min(rows.block, rows.count - r), right - left)
+FieldMap::FieldMap(const markov::CellProbabilities& shares, Eigen::Index most_rows,
+                   Eigen::Index most_columns)
+    : rows(span_of(shares.rowwise().sum(), most_rows)),
+      columns(span_of(shares.colwise().sum().transpose(), most_columns)),
+      middle_column(shares.cols() / 2) {
+  if (rows.block == 1 && columns.block == 1) return;
+  // The start's column in the middle of a block, so that left and right can be compared.
+  columns.block |= 1;
+  const Eigen::Index end = columns.first + columns.count;
+  const Eigen::Index to_left =
+      middle_column - columns.block / 2 - columns.first;  // from the middle block
+  columns.first +=
+      to_left - (to_left + (to_left > 0 ? columns.block - 1 : 0)) / columns.block * columns.block;
+  columns.count = end - columns.first;
+}
+
+markov::CellProbabilities FieldMap::blocks_of(const markov::CellProbabilities& shares) const {
+  markov::CellProbabilities blocks(rows.blocks(), columns.blocks());
+  for (Eigen::Index i = 0; i < blocks.rows(); ++i)
+    for (Eigen::Index k = 0; k < blocks.cols(); ++k) {
+      const Eigen::Index low = i * rows.block, from = columns.first + k * columns.block,
+                         left = std::max<Eigen::Index>(0, from),
+                         right = std::min(shares.cols(), from + columns.block);
+      blocks(i, k) =
+          shares.block(rows.first + low, left, std::min(rows.block, rows.count - low), right - left)
               .sum();
-      shown += share;
-      text += share == 0.0 ? padded(".", 7) : padded(fixed(100.0 * share, 2), 7);
     }
+  return blocks;
+}
+
+std::string short_percent(double share) {
+  if (share == 0.0) return "\"\"";
+  if (share < 5e-4) return "<.1";
+  return fixed(100.0 * share, share < 0.0995 ? 1 : 0);
+}
+
+std::string map_of(const markov::CellProbabilities& shares, const std::string& what) {
+  const FieldMap map(shares, 40, 15);
+  std::string text = what + ", % of trials (i_y upwards, i_x to the right";
+  if (map.rows.block > 1 || map.columns.block > 1)
+    text += "; blocks of " + std::to_string(map.columns.block) + " x " +
+            std::to_string(map.rows.block) + " gates: i_x in their middle, i_y at their lower end";
+  text += ")\n";
+  const markov::CellProbabilities blocks = map.blocks_of(shares);
+  for (Eigen::Index r = blocks.rows() - 1; r >= 0; --r) {
+    text += padded(std::to_string(map.rows.first + r * map.rows.block), 4) + " |";
+    for (const double share : blocks.row(r))
+      text += share == 0.0 ? padded(".", 7) : padded(fixed(100.0 * share, 2), 7);
     text += "\n";
   }
   text += "  i_x ";
-  for (Eigen::Index c = columns.first; c < columns.first + columns.count; c += columns.block)
-    text += padded(std::to_string(c + columns.block / 2 - half), 7);
+  for (Eigen::Index c = 0; c < blocks.cols(); ++c)
+    text += padded(std::to_string(map.columns.middle(c) - map.middle_column), 7);
   text += "\n";
-  if (rows.count < shares.rows() || columns.count < shares.cols())
+  if (map.rows.count < shares.rows() || map.columns.count < shares.cols())
     text += "elsewhere in the " + std::to_string(shares.cols()) + " x " +
             std::to_string(shares.rows()) +
-            " gates: " + percent(std::max(0.0, shares.sum() - shown), 1.0, 4) + "\n";
+            " gates: " + percent(std::max(0.0, shares.sum() - blocks.sum()), 1.0, 4) + "\n";
   return text;
 }
 

@@ -23,6 +23,31 @@ namespace gatewalk::cli {
 /// Where what was predicted ends: in all, trapped, leaving the field; and the sums.
 void add_final_gates(Json& json, const markov::FinalDistribution& f);
 
+/// What of a field is shown: all of it, or, of fields too large, the part that holds all but next
+/// to nothing, in blocks if need be.
+struct FieldMap {
+  /// Gates from `first` on, `count` of them, in blocks of `block`; `first` may lie before the
+  /// field.
+  struct Span {
+    Eigen::Index first, count, block;
+    [[nodiscard]] Eigen::Index blocks() const { return (count + block - 1) / block; }
+    /// The gate in the middle of block i, and the block that holds a gate.
+    [[nodiscard]] Eigen::Index middle(Eigen::Index i) const {
+      return first + i * block + block / 2;
+    }
+    [[nodiscard]] Eigen::Index block_of(Eigen::Index gate) const { return (gate - first) / block; }
+  };
+  Span rows, columns;
+  Eigen::Index middle_column;  // of the field: i_x = 0
+
+  FieldMap(const markov::CellProbabilities& shares, Eigen::Index most_rows,
+           Eigen::Index most_columns);
+  /// Shares of the same field by block.
+  [[nodiscard]] markov::CellProbabilities blocks_of(const markov::CellProbabilities& shares) const;
+};
+/// A share in %, short enough for a gate of a figure: "17", "1.2", "<.1", nothing for none.
+[[nodiscard]] std::string short_percent(double share);
+
 /// The field seen from above, farthest row on top, in percent. Of fields too large to print: where
 /// all but next to nothing lies, in blocks if need be.
 [[nodiscard]] std::string map_of(const markov::CellProbabilities& shares,

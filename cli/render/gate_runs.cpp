@@ -41,4 +41,25 @@ std::string table_of(const dynamics::GateTally& tally) {
   return table;
 }
 
+Figure figure_of(const dynamics::GateTally& tally) {
+  std::vector<ShareBar> bars;
+  const auto add = [&](const std::string& name, std::int64_t n) {
+    bars.push_back({name, static_cast<double>(n) / static_cast<double>(tally.trials),
+                    dynamics::share_interval(n, tally.trials)});
+  };
+  add("traversed", tally.traversed());
+  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
+    if (tally[outcome] > 0 || (outcome != Outcome::traversed_even && outcome != Outcome::broken))
+      add(std::string(words), tally[outcome]);
+  constexpr double kTop = 36;
+  const Sheet sheet{static_cast<int>(kTop + height_of_bars(bars.size()) + 10)};
+  return {Sheet::kWidth, sheet.height,
+          "unset key\n" +
+              sheet.text("one gate, " + std::to_string(tally.trials) + " trials, 95 % intervals", 8,
+                         18) +
+              share_bars(sheet, {135, 320, kTop, kTop + height_of_bars(bars.size())}, "$outcomes",
+                         bars),
+          kFont};
+}
+
 }  // namespace gatewalk::cli

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "dynamics/ensemble.h"
 
@@ -12,5 +13,7 @@ namespace gatewalk::cli {
 [[nodiscard]] Json to_json(const dynamics::GateTally& tally);
 /// A line per outcome: count, share, 95 % interval.
 [[nodiscard]] std::string table_of(const dynamics::GateTally& tally);
+/// A bar per outcome.
+[[nodiscard]] Figure figure_of(const dynamics::GateTally& tally);
 
 }  // namespace gatewalk::cli

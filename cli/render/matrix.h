@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/provenance.h"
 #include "lattice/gate_chain.h"
@@ -48,5 +49,8 @@ struct ShownRows {
 };
 [[nodiscard]] std::string table_of(const lattice::MatrixFile& file, const std::string& path,
                                    const ShownRows& shown);
+
+/// The matrix as a picture: states grouped by boundary, in blocks if they are many.
+[[nodiscard]] Figure figure_of(const dynamics::Transitions& t);
 
 }  // namespace gatewalk::cli

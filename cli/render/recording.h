@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "lattice/study/recording.h"
 
@@ -21,6 +22,11 @@ namespace gatewalk::cli {
 /// attributes.
 [[nodiscard]] std::string netcdf_of(const lattice::Scene& scene,
                                     const lattice::Recordings& recordings, const Json& made_by);
+
+/// The ways of the runs, of at most kMostDrawn: over the landscape of their gate, Eq. (15), or
+/// through the field.
+inline constexpr std::size_t kMostDrawn = 20;
+[[nodiscard]] Figure figure_of(const lattice::Scene& scene, const lattice::Recordings& recordings);
 
 /// What a film does not show of one of its runs: trial, hits, and the arrays potential_J,
 /// elastic_left_J, elastic_right_J, landscape_J, landscape_left_J, landscape_right_J (null where

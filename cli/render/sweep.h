@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "lattice/study/sweep.h"
 
@@ -17,5 +18,10 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string table_of(const lattice::Scene& scene,
                                    const std::vector<lattice::SweepAxis>& axes,
                                    const std::vector<lattice::SweepPoint>& points);
+
+/// Of one key: shares over its values; of two: a map of the traversed. Throws std::invalid_argument
+/// for more.
+[[nodiscard]] Figure figure_of(const std::vector<lattice::SweepAxis>& axes,
+                               const std::vector<lattice::SweepPoint>& points);
 
 }  // namespace gatewalk::cli

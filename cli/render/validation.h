@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "dynamics/transitions.h"
 #include "lattice/study/validation.h"
@@ -21,5 +22,10 @@ struct ValidatedMatrix {
 [[nodiscard]] Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix);
 [[nodiscard]] std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
                                    const ValidatedMatrix& matrix);
+
+/// Maps of the final gates: dynamics, chain, and their difference, a row per start. Throws
+/// std::invalid_argument for more than kMostValidated.
+inline constexpr std::size_t kMostValidated = 8;
+[[nodiscard]] Figure figure_of(const lattice::Validation& v);
 
 }  // namespace gatewalk::cli

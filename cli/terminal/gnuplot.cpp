@@ -1,9 +1,16 @@
 #include "cli/terminal/gnuplot.h"
 
+#include <algorithm>
+#include <boost/crc.hpp>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
+#include "cli/render/text.h"
 #include "cli/terminal/child.h"
 #include "cli/terminal/output.h"
 
@@ -22,11 +29,143 @@ std::string drawn(const std::string& script) {
   return gnuplot.output();
 }
 
-void draw_svg(const std::string& path, const Figure& f) {
-  write_text_atomically(path,
-                        drawn("set terminal svg size " + std::to_string(f.width) + "," +
-                              std::to_string(f.height) + " font 'sans," + std::to_string(f.font) +
-                              "' background '#ffffff' enhanced\n" + f.commands + "\n"));
+namespace {
+
+// One column of a journal, 3.5 inches, for a sheet; others are larger by as much.
+double printed_inches(const Figure& f) { return 3.5 * f.width / Sheet::kWidth; }
+
+enum class Kind { svg, pdf, png, other };
+Kind kind_of(const std::string& path) {
+  if (path.ends_with(".svg")) return Kind::svg;
+  if (path.ends_with(".pdf")) return Kind::pdf;
+  return path.ends_with(".png") ? Kind::png : Kind::other;
+}
+
+/// gnuplot's words for a picture of f, as large as its kind has it.
+std::string terminal_of(Kind kind, const Figure& f) {
+  const std::string look =
+      " font 'sans," + std::to_string(f.font) + "' background '#ffffff' enhanced";
+  if (kind == Kind::svg)
+    return "svg size " + std::to_string(f.width) + "," + std::to_string(f.height) + look;
+  if (kind == Kind::pdf) {
+    const double shrunk = printed_inches(f) / f.width;
+    return "pdfcairo size " + digits(printed_inches(f)) + "," + digits(shrunk * f.height) + look +
+           " fontscale " + digits(72.0 * shrunk) + " linewidth " + digits(72.0 * shrunk);
+  }
+  const double grown = 300.0 * printed_inches(f) / f.width;
+  const std::string scale = digits(grown);
+  return "pngcairo size " + std::to_string(std::lround(grown * f.width)) + "," +
+         std::to_string(std::lround(grown * f.height)) + look + " fontscale " + scale +
+         " linewidth " + scale + " pointscale " + scale;
+}
+
+/// As it stands in XML.
+std::string in_xml(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '&')
+      out += "&amp;";
+    else
+      out += c;
+  return out;
+}
+
+/// What stands between two texts becomes another; unchanged where they are not found.
+void replace_between(std::string& text, const std::string& begin, const std::string& end,
+                     const std::string& inside) {
+  const std::size_t first = text.find(begin);
+  if (first == std::string::npos) return;
+  const std::size_t from = first + begin.size(), to = text.find(end, from);
+  if (to != std::string::npos) text.replace(from, to - from, inside);
+}
+
+std::string svg_with(std::string svg, const AboutFigure& about) {
+  replace_between(svg, "<title>", "</title>", in_xml(about.title));
+  replace_between(svg, "<desc>", "</desc>", in_xml(about.made_by));
+  return svg;
+}
+
+/// A text of PDF; of other than ASCII characters as UTF-8, with the mark that says so (ISO
+/// 32000-2).
+std::string in_pdf(const std::string& text) {
+  const bool ascii = std::none_of(text.begin(), text.end(), [](char c) { return (c & 0x80) != 0; });
+  std::string out = ascii ? "(" : "(\xEF\xBB\xBF";
+  for (const char c : text) {
+    if (c == '(' || c == ')' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + ")";
+}
+
+/// The number after the last `key`.
+long number_after(const std::string& pdf, const std::string& key) {
+  const std::size_t at = pdf.rfind(key);
+  if (at == std::string::npos) throw std::runtime_error("gnuplot wrote a PDF without " + key);
+  return std::strtol(pdf.c_str() + at + key.size(), nullptr, 10);
+}
+
+/// With an update at its end, as ISO 32000-1, 7.5.6 has it: another document information.
+/// Unchanged where its cross-references are no plain table, as those of newer libraries may be.
+std::string pdf_with(std::string pdf, const AboutFigure& about) {
+  if (pdf.find("\ntrailer") == std::string::npos) return pdf;
+  const long size = number_after(pdf, "/Size"), root = number_after(pdf, "/Root"),
+             info = number_after(pdf, "/Info"), previous = number_after(pdf, "startxref");
+  const std::string number = std::to_string(info);
+  const std::size_t object = pdf.size();
+  pdf += number + " 0 obj\n<< /Title " + in_pdf(about.title) + " /Subject " +
+         in_pdf(about.made_by) + " /Creator (gatewalk) >>\nendobj\n";
+  std::string offset = std::to_string(object);
+  offset.insert(0, 10 - offset.size(), '0');
+  const std::size_t table = pdf.size();
+  return pdf + "xref\n" + number + " 1\n" + offset + " 00000 n \ntrailer\n<< /Size " +
+         std::to_string(size) + " /Root " + std::to_string(root) + " 0 R /Info " + number +
+         " 0 R /Prev " + std::to_string(previous) + " >>\nstartxref\n" + std::to_string(table) +
+         "\n%%EOF\n";
+}
+
+/// Four bytes, the highest first.
+std::string bytes(std::uint32_t n) {
+  std::string out;
+  for (const int shift : {24, 16, 8, 0}) out += static_cast<char>(n >> shift & 0xff);
+  return out;
+}
+
+std::string png_chunk(const std::string& type_and_data) {
+  boost::crc_32_type crc;
+  crc.process_bytes(type_and_data.data(), type_and_data.size());
+  return bytes(static_cast<std::uint32_t>(type_and_data.size() - 4)) + type_and_data +
+         bytes(crc.checksum());
+}
+
+/// With texts and the density of its points behind the header (PNG specification, 11.3).
+std::string png_with(std::string png, const AboutFigure& about) {
+  constexpr std::size_t kHeader = 8 + 25;
+  constexpr std::uint32_t kPerMetre = 11811;  // 300 to the inch
+  if (png.size() < kHeader) throw std::runtime_error("gnuplot wrote no PNG");
+  const auto text = [](const std::string& key, const std::string& value) {
+    return png_chunk("iTXt" + key + std::string(5, '\0') + value);
+  };
+  return png.insert(kHeader, png_chunk("pHYs" + bytes(kPerMetre) + bytes(kPerMetre) + '\1') +
+                                 text("Title", about.title) + text("Description", about.made_by));
+}
+
+}  // namespace
+
+void require_gnuplot() { (void)drawn("print 'gnuplot is there'"); }
+
+bool can_be_drawn(const std::string& path) { return kind_of(path) != Kind::other; }
+
+void draw(const std::string& path, const Figure& f, const AboutFigure& about) {
+  const Kind kind = kind_of(path);
+  if (kind == Kind::other)
+    throw std::invalid_argument(path + ": the name of a figure ends in .svg, .pdf or .png");
+  std::string made = drawn("set terminal " + terminal_of(kind, f) + "\n" + f.commands + "\n");
+  if (kind == Kind::svg) made = svg_with(std::move(made), about);
+  if (kind == Kind::pdf) made = pdf_with(std::move(made), about);
+  if (kind == Kind::png) made = png_with(std::move(made), about);
+  write_text_atomically(path, made);
 }
 
 }  // namespace gatewalk::cli

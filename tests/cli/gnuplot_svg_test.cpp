@@ -30,21 +30,23 @@ struct DrawSvg : ::testing::Test {
 // gnuplot itself looks: a kill while it draws leaves nothing behind but the old figure.
 TEST_F(DrawSvg, NothingLiesInTheFolderWhileItDraws) {
   const std::string listing = "system('ls -A " + folder.string() + " | tr \"\\n\" \" \"')";
-  draw_svg(figure, {300, 200,
-                    "set label 1 'seen:'.(" + listing +
-                        ").':end' at graph 0, graph 0.5 noenhanced\nplot sin(x)\n"});
+  draw(figure,
+       Figure{300, 200,
+              "set label 1 'seen:'.(" + listing +
+                  ").':end' at graph 0, graph 0.5 noenhanced\nplot sin(x)\n"},
+       {});
   EXPECT_NE(text().find("seen:figure.svg :end"), std::string::npos) << text();
   EXPECT_NE(text().find("</svg>"), std::string::npos);
 }
 
 TEST_F(DrawSvg, KeepsPermissions) {
   fs::permissions(figure, fs::perms::owner_read | fs::perms::owner_write);
-  draw_svg(figure, {300, 200, "plot sin(x)\n"});
+  draw(figure, Figure{300, 200, "plot sin(x)\n"}, {});
   EXPECT_EQ(fs::status(figure).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
 TEST_F(DrawSvg, FailureKeepsTheOldFigure) {
-  EXPECT_THROW(draw_svg(figure, {300, 200, "plot nonsense nowhere\n"}), std::runtime_error);
+  EXPECT_THROW(draw(figure, Figure{300, 200, "plot nonsense nowhere\n"}, {}), std::runtime_error);
   EXPECT_EQ(text(), "old");
 }
 

@@ -1,0 +1,184 @@
+#include "cli/render/field_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "cli/render/final_gates.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+
+using markov::CellProbabilities;
+
+FieldPicture::FieldPicture(std::string name, const markov::FinalDistribution& final,
+                           const lattice::EndingShares& shares)
+    : title(std::move(name)),
+      final_gates(final.final_cells),
+      trapped(markov::trapped_cells(final)),
+      departed(markov::departed_cells(final)),
+      endings(shares) {}
+
+FieldPicture::FieldPicture(std::string name, const lattice::FieldTally& tally)
+    : title(std::move(name)),
+      final_gates(lattice::shares(tally.final_gates)),
+      trapped(tally.trapped_gates.cast<double>() / static_cast<double>(tally.trials)),
+      departed(tally.departed_gates.cast<double>() / static_cast<double>(tally.trials)),
+      endings(tally.endings, tally.trials) {}
+
+FieldPicture::FieldPicture(std::string name, const markov::WalkTally& tally)
+    : title(std::move(name)),
+      final_gates(lattice::shares(tally.final_cells)),
+      trapped(tally.trapped_cells.cast<double>() / static_cast<double>(tally.walks)),
+      departed(tally.departed_cells.cast<double>() / static_cast<double>(tally.walks)),
+      endings(tally.endings, tally.walks) {}
+
+namespace {
+
+constexpr Eigen::Index kMostDrawn = 101;  // gates or blocks of gates, each way
+
+/// Places within one picture, px.
+struct Plan {
+  static constexpr double kLeft = 58, kMap = 270, kSmall = 108, kSmallLeft = 384;
+  double top, map_width, map_height, cell_width, cell_height;
+
+  Plan(const FieldMap& map, double from_top) : top(from_top + 42) {
+    const auto columns = static_cast<double>(map.columns.blocks()),
+               rows = static_cast<double>(map.rows.blocks());
+    // Gates are drawn square where neither side would become too long or too short.
+    const double cell = std::min(kMap / columns, 300.0 / rows);
+    map_width = std::max(0.3 * kMap, cell * columns);
+    map_height = std::max(120.0, cell * rows);
+    cell_width = map_width / columns;
+    cell_height = map_height / rows;
+  }
+  [[nodiscard]] Box map() const { return {kLeft, kLeft + map_width, top, top + map_height}; }
+  [[nodiscard]] Box colours() const {
+    const double left = map().right + 10;
+    return {left, left + 10, top, top + map_height};
+  }
+  /// The upper (0) or lower (1) of the two small maps.
+  [[nodiscard]] Box small(int i) const {
+    const double each = std::min(kSmall * map_height / map_width, 0.5 * map_height - 14);
+    const double begin = i == 0 ? top : top + map_height - each;
+    return {kSmallLeft, kSmallLeft + std::min(kSmall, each * map_width / map_height), begin,
+            begin + each};
+  }
+  [[nodiscard]] Box bars() const {
+    const double begin = map().bottom + 64;
+    return {102, 300, begin, begin + height_of_bars(kEndingNames.size())};
+  }
+  [[nodiscard]] double end() const { return bars().bottom + 8; }
+};
+
+/// "column row root_of_share label"
+std::string rows_of(const FieldMap& map, const CellProbabilities& shares) {
+  std::string out;
+  const CellProbabilities shown = map.blocks_of(shares);
+  for (Eigen::Index r = 0; r < shown.rows(); ++r)
+    for (Eigen::Index c = 0; c < shown.cols(); ++c)
+      out += std::to_string(c) + " " + std::to_string(r) + " " +
+             digits(std::sqrt(100.0 * shown(r, c))) + " " + short_percent(shown(r, c)) + "\n";
+  return out;
+}
+
+std::string image(const std::string& data) { return "plot " + data + kCells; }
+
+/// Tics of an axis over blocks: at most `most` of them, named by the gates in their middle.
+std::string tics(const FieldMap::Span& span, Eigen::Index zero, Eigen::Index most) {
+  std::string list;
+  const Eigen::Index blocks = span.blocks(), step = (blocks - 1) / most + 1;
+  const Eigen::Index centre = std::clamp<Eigen::Index>(span.block_of(zero), 0, blocks - 1) % step;
+  for (Eigen::Index i = centre; i < blocks; i += step)
+    list += (list.empty() ? "'" : ", '") + std::to_string(span.middle(i) - zero) + "' " +
+            std::to_string(i);
+  return "(" + list + ")";
+}
+
+std::string range(const FieldMap::Span& span) {
+  return "[-0.5:" + digits(static_cast<double>(span.blocks()) - 0.5) + "]\n";
+}
+
+/// The large map with its numbers.
+std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
+                      const std::string& data, const RootScale& scale) {
+  const Box box = plan.map();
+  std::string blocks;
+  if (map.rows.block > 1 || map.columns.block > 1)
+    blocks = ", blocks of " + std::to_string(map.columns.block) + " x " +
+             std::to_string(map.rows.block) + " gates";
+  std::string out =
+      sheet.margins(box) + "set border 3\nset tics out nomirror scale 0.5\nset xrange " +
+      range(map.columns) + "set yrange " + range(map.rows) + "set xtics " +
+      tics(map.columns, map.middle_column,
+           std::max<Eigen::Index>(3, static_cast<Eigen::Index>(plan.map_width / 30))) +
+      "\nset ytics " + tics(map.rows, 0, static_cast<Eigen::Index>(plan.map_height / 22)) + "\n" +
+      Sheet::axes("'column i_x'", "'row i_y'") +
+      sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
+      scale.colours(sheet, plan.colours());
+  out += image(data);
+  if (plan.cell_width >= 26 && plan.cell_height >= 15)
+    out += ", '' using 1:2:4:($3 > " + digits(0.6 * std::sqrt(scale.most())) +
+           " ? 0x000000 : 0xffffff) with labels tc rgb variable font ',12'";
+  return out + "\nunset label\n";
+}
+
+/// Maps without numbers: of whom, with the same colours.
+std::string small_map(const std::string& title, const FieldMap& map, const Box& box,
+                      const Sheet& sheet, const std::string& data) {
+  return sheet.margins(box) +
+         "set border 15\nunset xtics\nunset ytics\nunset xlabel\nunset "
+         "ylabel\nset xrange " +
+         range(map.columns) + "set yrange " + range(map.rows) +
+         sheet.text(title, box.left, box.top - 10, kSmallFont) + "unset colorbox\n" + image(data) +
+         "\nunset label\n";
+}
+
+/// The five endings with their intervals.
+std::vector<ShareBar> bars_of(const lattice::EndingShares& endings) {
+  std::vector<ShareBar> bars;
+  for (const EndingName& e : kEndingNames) {
+    const auto at = static_cast<std::size_t>(e.ending);
+    bars.push_back({e.name, endings.share[at], endings.interval[at]});
+  }
+  return bars;
+}
+
+}  // namespace
+
+Figure figure_of(const std::vector<FieldPicture>& pictures) {
+  if (pictures.empty() || pictures.size() > kMostPictures)
+    throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostPictures) +
+                                " starts, these are " + std::to_string(pictures.size()));
+  std::vector<FieldMap> maps;
+  std::vector<Plan> plans;
+  double height = 0.0, most = 0.0;
+  for (const FieldPicture& p : pictures) {
+    maps.emplace_back(p.final_gates, kMostDrawn, kMostDrawn);
+    plans.emplace_back(maps.back(), height);
+    height = plans.back().end();
+    most = std::max(most, maps.back().blocks_of(p.final_gates).maxCoeff());
+  }
+  const RootScale scale(100.0 * most);
+  const Sheet sheet{static_cast<int>(std::ceil(height))};
+  std::string out = std::string(kSequential) +
+                    "set multiplot\nunset key\nset tics out nomirror scale 0.5\nset cbrange " +
+                    scale.range() + "\n";
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const FieldPicture& p = pictures[i];
+    const Plan& plan = plans[i];
+    const std::string tag = std::to_string(i);
+    const auto block = [&](const char* name, const CellProbabilities& shares) {
+      return data_block(name + tag, rows_of(maps[i], shares));
+    };
+    out += block("$all", p.final_gates) + block("$trapped", p.trapped) +
+           block("$left", p.departed) + sheet.text(p.title, 8, plan.top - 30) +
+           large_map(maps[i], plan, sheet, "$all" + tag, scale) +
+           small_map("trapped, % of all", maps[i], plan.small(0), sheet, "$trapped" + tag) +
+           small_map("left, % of all", maps[i], plan.small(1), sheet, "$left" + tag) +
+           share_bars(sheet, plan.bars(), "$endings" + tag, bars_of(p.endings));
+  }
+  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
+}
+
+}  // namespace gatewalk::cli

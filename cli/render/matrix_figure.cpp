@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cli/render/figure.h"
+#include "cli/render/matrix.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using dynamics::StateSpace;
+using dynamics::Transitions;
+
+/// States of one boundary, the starts, or the column of the trapped, with their place in the
+/// picture.
+struct Group {
+  std::string name;
+  int first, states, blocks;
+  double from = 0.0, size = 0.0;  // px
+
+  [[nodiscard]] double edge(int block) const { return from + size * block / blocks; }
+};
+
+constexpr double kSide = 330.0, kGap = 3.0, kLeast = 18.0;
+constexpr int kMostBlocks = 120;  // about, each way
+
+/// Widths in proportion to the blocks, but none less than kLeast.
+void place(std::vector<Group>& groups) {
+  const double room = kSide - kGap * static_cast<double>(groups.size() - 1);
+  const auto taken = [&](double each) {
+    double sum = 0.0;
+    for (const Group& g : groups) sum += std::max(kLeast, each * g.blocks);
+    return sum;
+  };
+  double low = 0.0, high = room;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (taken(middle) < room ? low : high) = middle;
+  }
+  double at = 0.0;
+  for (Group& g : groups) {
+    g.from = at;
+    g.size = std::max(kLeast, low * g.blocks);
+    at += g.size + kGap;
+  }
+}
+
+std::vector<Group> groups_of(const StateSpace& space, int per_block, bool with_trapped) {
+  std::vector<Group> groups;
+  const auto add = [&](const std::string& name, int first, int states) {
+    if (states > 0) groups.push_back({name, first, states, (states + per_block - 1) / per_block});
+  };
+  const int starts = static_cast<int>(space.points().size()), all = space.size();
+  for (int b = 0; b < dynamics::kBoundaries; ++b) {
+    const int first = space.first(static_cast<dynamics::Boundary>(b));
+    const int next = b + 1 < dynamics::kBoundaries
+                         ? space.first(static_cast<dynamics::Boundary>(b + 1))
+                         : all - starts;
+    add(std::string(dynamics::kBoundaryNames[b]), first, next - first);
+  }
+  add(starts == 1 ? "start" : "starts", all - starts, starts);
+  if (with_trapped) add("trapped", space.trapped(), 1);
+  place(groups);
+  return groups;
+}
+
+/// Chances, in %, of the blocks of a group of rows to those of a group of columns; below zero where
+/// no row has runs.
+std::vector<std::vector<double>> chances(const Transitions& t, const Group& rows,
+                                         const Group& columns, int per_block) {
+  std::vector<std::vector<double>> all(static_cast<std::size_t>(rows.blocks));
+  for (int i = 0; i < rows.blocks; ++i) {
+    std::vector<double>& sums = all[static_cast<std::size_t>(i)];
+    sums.assign(static_cast<std::size_t>(columns.blocks), 0.0);
+    int sampled = 0;
+    for (int row = i * per_block; row < std::min(rows.states, (i + 1) * per_block); ++row) {
+      const auto at = static_cast<std::size_t>(rows.first + row);
+      std::int64_t runs = 0;
+      for (const auto& [column, count] : t.rows[at]) runs += count;
+      if (runs == 0) continue;
+      ++sampled;
+      for (auto it = t.rows[at].lower_bound(columns.first);
+           it != t.rows[at].end() && it->first < columns.first + columns.states; ++it)
+        sums[static_cast<std::size_t>((it->first - columns.first) / per_block)] +=
+            100.0 * static_cast<double>(it->second) / static_cast<double>(runs);
+    }
+    for (double& s : sums) s = sampled == 0 ? -1.0 : s / sampled;
+  }
+  return all;
+}
+
+}  // namespace
+
+Figure figure_of(const Transitions& t) {
+  const int per_block = (t.space.size() - 1) / kMostBlocks + 1;
+  const auto rows = groups_of(t.space, per_block, false),
+             columns = groups_of(t.space, per_block, true);
+  constexpr double kLeft = 84, kTop = 44;
+  const Box box{kLeft, kLeft + kSide, kTop, kTop + kSide};
+  const Sheet sheet{static_cast<int>(box.bottom + 112)};
+  std::string cells, ground, labels;
+  double most = 0.0;
+  int object = 0;
+  const auto rectangle = [&](const Group& r, int begin, int end, const Group& c,
+                             const char* colour) {
+    ground += "set object " + std::to_string(++object) + " rectangle from " + digits(c.from) + "," +
+              digits(r.edge(begin)) + " to " + digits(c.from + c.size) + "," + digits(r.edge(end)) +
+              " behind fillcolor rgb '" + colour + "' fillstyle solid noborder\n";
+  };
+  for (const Group& r : rows)
+    for (const Group& c : columns) {
+      rectangle(r, 0, r.blocks, c, "#e4e4e4");
+      const auto shares = chances(t, r, c, per_block);
+      for (int i = 0; i < r.blocks; ++i)
+        for (int k = 0; k < c.blocks; ++k) {
+          const double share = shares[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+          if (share < 0.0 && k == 0) rectangle(r, i, i + 1, c, "#ffffff");
+          if (share <= 0.0) continue;
+          most = std::max(most, share);
+          cells += digits(0.5 * (c.edge(k) + c.edge(k + 1))) + " " +
+                   digits(0.5 * (r.edge(i) + r.edge(i + 1))) + " " + digits(c.edge(k)) + " " +
+                   digits(c.edge(k + 1)) + " " + digits(r.edge(i)) + " " + digits(r.edge(i + 1)) +
+                   " " + digits(std::sqrt(share)) + "\n";
+        }
+    }
+  const auto label = [&](const std::string& text, const std::string& place) {
+    labels += "set label " + literal(text) + " at " + place + " font '," +
+              std::to_string(kSmallFont) + "'\n";
+  };
+  for (const Group& r : rows)
+    label(r.name + (r.states > 1 ? " " + std::to_string(r.states) : ""),
+          "-6," + digits(r.from + 0.5 * r.size) + " right");
+  for (const Group& c : columns)
+    label(c.name, digits(c.from + 0.5 * c.size) + "," + digits(kSide + 8) +
+                      (c.size > 8.0 * static_cast<double>(c.name.size()) ? " center offset 0,-0.3"
+                                                                         : " right rotate by 90"));
+  const RootScale scale(most);
+  const auto totals = t.totals();
+  return {Sheet::kWidth, sheet.height,
+          std::string(kSequential) + data_block("$cells", cells) + sheet.margins(box) + ground +
+              labels +
+              sheet.text("transition matrix: " + std::to_string(t.space.size()) + " states, " +
+                             std::to_string(totals.runs) + " counts" +
+                             (per_block > 1 ? ", blocks of " + std::to_string(per_block) : ""),
+                         8, 18) +
+              sheet.text("down: how a gate is entered; across: how the next one is, or trapped", 8,
+                         box.bottom + 76, kSmallFont) +
+              sheet.text("grey: no run ended here; white: none began here", 8, box.bottom + 96,
+                         kSmallFont) +
+              "unset key\nunset border\nunset tics\n" +
+              scale.colours(sheet, {box.right + 14, box.right + 26, box.top, box.bottom}) +
+              "set cbrange " + scale.range() + "\nset xrange [0:" + digits(kSide) +
+              "]\nset yrange [" + digits(kSide) +
+              ":0]\nset style fill solid noborder\nplot $cells using 1:2:3:4:5:6:7 with boxxyerror "
+              "lc palette\n",
+          kFont};
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "cli/render/figure.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/prediction.h"
+#include "cli/render/text.h"
+#include "cli/render/validation.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using lattice::StartValidation;
+using markov::CellProbabilities;
+
+constexpr double kMapWidth = 142, kGap = 14, kLeft = 22, kHead = 46;
+
+std::string rows_of(const CellProbabilities& blocks, bool roots) {
+  std::string out;
+  for (Eigen::Index r = 0; r < blocks.rows(); ++r)
+    for (Eigen::Index c = 0; c < blocks.cols(); ++c) {
+      const double percent = 100.0 * blocks(r, c);
+      out += std::to_string(c) + " " + std::to_string(r) + " " +
+             digits(roots ? std::sqrt(percent) : percent) + "\n";
+    }
+  return out;
+}
+
+/// Colours of a horizontal bar below the maps.
+std::string colour_bar(const Sheet& sheet, double left, double right, double top) {
+  return "set colorbox horizontal user origin screen " + sheet.at(left, top + 10) +
+         " size screen " + digits((right - left) / Sheet::kWidth) + "," +
+         digits(10.0 / sheet.height) + "\n";
+}
+
+std::string summary(const StartValidation& v) {
+  return title_of(v.start) + ": total variation " + fixed(v.exact_against.total_variation, 3) +
+         " (chance: " + fixed(v.exact_against.floor_total_variation, 3) + ")";
+}
+
+}  // namespace
+
+Figure figure_of(const lattice::Validation& v) {
+  if (v.starts.empty() || v.starts.size() > kMostValidated)
+    throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostValidated) +
+                                " starts, these are " + std::to_string(v.starts.size()));
+  struct Row {
+    CellProbabilities dynamics, chain;
+    double top, height;
+  };
+  std::vector<Row> rows;
+  double most = 0.0, largest = 0.0, end = kHead;
+  for (const StartValidation& s : v.starts) {
+    const CellProbabilities seen = lattice::shares(s.dynamics.final_gates);
+    const FieldMap map(0.5 * (seen + s.exact.final_cells), 60, 60);  // what either of them reaches
+    Row row{map.blocks_of(seen), map.blocks_of(s.exact.final_cells), end + 22, 0.0};
+    row.height = std::clamp(
+        kMapWidth * static_cast<double>(row.chain.rows()) / static_cast<double>(row.chain.cols()),
+        40.0, 240.0);
+    end = row.top + row.height + 8;
+    most = std::max({most, row.dynamics.maxCoeff(), row.chain.maxCoeff()});
+    largest = std::max(largest, (row.dynamics - row.chain).abs().maxCoeff());
+    rows.push_back(std::move(row));
+  }
+  if (largest == 0.0) largest = 1e-4;
+  const Sheet sheet{static_cast<int>(end + 56)};
+  const RootScale scale(100.0 * most);
+  const auto left_of = [](int i) { return kLeft + i * (kMapWidth + kGap); };
+  std::string out = "set multiplot\nunset key\nunset tics\nset border 15\n" +
+                    sheet.text("final gates, " + std::to_string(v.trials) + " trials", 8, 16);
+  const char* const heads[] = {"dynamics, %", "chain, %", "dynamics - chain, points"};
+  for (int i = 0; i < 3; ++i) out += sheet.text(heads[i], left_of(i), kHead - 4, kSmallFont);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Row& row = rows[k];
+    const bool last = k + 1 == rows.size();
+    const std::string tag = std::to_string(k);
+    out += sheet.text(summary(v.starts[k]), kLeft, row.top - 10, kSmallFont);
+    const auto panel = [&](int i, const char* name, const std::string& data) {
+      const std::string block = name + tag;
+      out += data_block(block, data) +
+             sheet.margins({left_of(i), left_of(i) + kMapWidth, row.top, row.top + row.height}) +
+             "set xrange [-0.5:" + digits(static_cast<double>(row.chain.cols()) - 0.5) +
+             "]\nset yrange [-0.5:" + digits(static_cast<double>(row.chain.rows()) - 0.5) +
+             "]\nplot " + block + kCells + "\nunset label\n";
+    };
+    out += kSequential;
+    out += "set cbrange " + scale.range() + "\nunset colorbox\n";
+    panel(0, "$dynamics", rows_of(row.dynamics, true));
+    if (last)
+      out += "set cbtics (" + scale.tics() + ") scale 0.5 offset 0,0.4\n" +
+             colour_bar(sheet, left_of(0), left_of(1) + kMapWidth, end + 8) +
+             sheet.text("root scale", left_of(1) - 30, end + 46, kSmallFont);
+    panel(1, "$chain", rows_of(row.chain, true));
+    out += kDiverging;
+    const double bound = 100.0 * largest;
+    out += "set cbrange [" + digits(-bound) + ":" + digits(bound) + "]\nunset colorbox\n";
+    if (last) {
+      const std::string tic = short_number(0.7 * bound);
+      out += "set cbtics ('-" + tic + "' -" + tic + ", '0' 0, '+" + tic + "' " + tic +
+             ") scale 0.5 offset 0,0.4\n" +
+             colour_bar(sheet, left_of(2), left_of(2) + kMapWidth, end + 8);
+    }
+    panel(2, "$difference", rows_of(row.dynamics - row.chain, false));
+  }
+  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
+}
+
+}  // namespace gatewalk::cli

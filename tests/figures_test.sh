@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# The pictures of --figure, of every command that has one: made in every format, and read by tests/web/figures_test.mjs.
+#   tests/figures_test.sh GATEWALK SOURCES FOLDER
+set -euo pipefail
+gatewalk=$1 scenes=$2/scenes out=$3
+rm -rf "$out"
+mkdir -p "$out/work"
+cd "$out/work"
+few=(--quiet --seed 1)
+run() { "$gatewalk" "$@" "${few[@]}" >/dev/null; }
+field=$scenes/field.toml
+"$gatewalk" build "$field" --bins paper --trials 20 -o paper.nc --quiet >/dev/null
+"$gatewalk" build "$field" --accuracy 0.1 -o tree.nc --quiet >/dev/null
+run gate "$scenes/soft_left.toml" --trials 500 --figure ../gate.svg
+run gate "$scenes/single_gate.toml" --set forces.propulsion_N=4 --set forces.random_N=0 --trials 200 --figure ../gate_trapped.svg
+grep -q '100.00 \[' ../gate_trapped.svg || { echo "gate_trapped.svg: no number beside a bar of 100 %"; exit 1; }
+run sweep "$scenes/single_gate.toml" --trials 50 --vary forces.propulsion_N=7 --figure ../sweep_single.svg
+run sweep "$scenes/single_gate.toml" --trials 200 --vary forces.propulsion_N=4:1:9 --figure ../sweep_one.svg
+run sweep "$scenes/single_gate.toml" --trials 100 --vary run.method=stable,moreau,paper --figure ../sweep_words.svg
+run sweep "$scenes/single_gate.toml" --trials 100 --vary forces.propulsion_N=4:1:9 --vary forces.random_N=0:10:60 --figure ../sweep_two.svg
+run predict "$field" --accuracy 0.1 --figure ../predict.svg
+run predict tree.nc --accuracy 0.1 --start 4,5,10 --start=-17,13,12 --figure ../predict_starts.svg
+run predict paper.nc --figure ../predict_bins.svg
+run predict paper.nc --set field.columns=401 --set field.rows=300 --set field.max_gates=200 --figure ../predict_large.svg
+run predict paper.nc --set field.columns=3 --set field.rows=30 --set field.max_gates=40 --figure ../predict_tall.svg
+for size in 1,1 3,1 1,3 401,1; do
+  run predict paper.nc --set field.columns=${size%,*} --set field.rows=${size#*,} --set field.max_gates=5 --figure ../predict_$size.svg
+done
+run walk paper.nc --walks 1000 --figure ../walk.svg
+run lattice "$field" --trials 1000 --figure ../lattice.svg
+run lattice "$scenes/robot.toml" --trials 1000 --figure ../lattice_robot.svg
+"$gatewalk" show paper.nc --figure ../show_paper.svg >/dev/null
+"$gatewalk" show tree.nc --figure ../show_tree.svg >/dev/null
+run validate "$field" --bins paper --matrix-trials 20 --trials 500 --figure ../validate.svg
+run trace "$scenes/soft_left.toml" --trials 5 --figure ../trace.svg
+run trace "$field" --field --trials 4 --figure ../trace_field.svg
+# The other formats, with what they say of themselves.
+for end in pdf png; do run gate "$scenes/single_gate.toml" --trials 100 --figure ../gate.$end; done
+nine=(); for d in 1 2 3 4 5 6 7 8 9; do nine+=(--start "$d,0,15"); done
+"$gatewalk" predict paper.nc "${nine[@]}" --figure nine.svg 2>nine.txt && { echo "nine starts in a figure"; exit 1; }
+grep -q 'at most 8 starts' nine.txt
+"$gatewalk" gate "$scenes/single_gate.toml" --trials 10 --figure gate.jpg 2>jpg.txt && { echo "a figure .jpg"; exit 1; }
+grep -q 'must end in .svg, .pdf or .png' jpg.txt
+for end in svg pdf png; do
+  grep -qa 'gatewalk gate .*scenes/.*\.toml --trials' ../gate.$end || { echo "gate.$end does not say what made it"; exit 1; }
+done
+node "$2/tests/web/figures_test.mjs" "$out"
