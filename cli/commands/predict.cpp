@@ -63,9 +63,15 @@ std::vector<dynamics::BodyState> bodies_of(const std::vector<lattice::PaperStart
   return given.empty() ? std::vector{scene.start} : lattice::entries_at(given);
 }
 
-/// Of the picture of start i.
-std::string picture_title(const std::vector<lattice::PaperStart>& given, std::size_t i) {
-  return "prediction" + (given.empty() ? std::string() : ", " + title_of(given[i]));
+/// A map for each start.
+template <class Answer>
+Figure figure_of(const std::vector<lattice::PaperStart>& given, const std::vector<Answer>& answers,
+                 lattice::EndingShares Answer::*shares) {
+  std::vector<FieldPicture> pictures;
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    pictures.emplace_back("prediction" + (given.empty() ? "" : ", " + title_of(given[i])),
+                          answers[i].final, answers[i].*shares);
+  return cli::figure_of(pictures);
 }
 
 /// Until the error bar says enough, with the runs that a pool has already.
@@ -82,13 +88,7 @@ int predict_accurately(const Options& options, const lattice::Scene& scene,
   options.warn(too_few_gates(scene));
   warn_of(options, prediction, how.accuracy);
   const int exit = status_of(options, prediction.health);
-  options.draw([&] {
-    std::vector<FieldPicture> pictures;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-      pictures.emplace_back(picture_title(given, i), prediction.starts[i].final,
-                            prediction.starts[i].endings);
-    return figure_of(pictures);
-  });
+  options.draw([&] { return figure_of(given, prediction.starts, &lattice::StartAnswer::endings); });
   return exit;
 }
 
@@ -205,13 +205,8 @@ int run_predict(const Arguments& arguments) {
   options.warn(too_few_gates(m.scene));
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
   const int exit = exit_status(options, faults_recorded(status).empty());
-  options.draw([&] {
-    std::vector<FieldPicture> pictures;
-    for (std::size_t i = 0; i < starts.size(); ++i)
-      pictures.emplace_back(picture_title(given, i), prediction.starts[i].final,
-                            prediction.starts[i].shares);
-    return figure_of(pictures);
-  });
+  options.draw(
+      [&] { return figure_of(given, prediction.starts, &lattice::StartPrediction::shares); });
   return exit;
 }
 
