@@ -57,11 +57,6 @@ void draw(const std::string& name, int width, int height, const std::string& scr
 /// The multiple of `unit` next to x, for the page; null for what is no number.
 [[nodiscard]] Json rounded(double x, double unit);
 
-/// One colour scale for all maps.
-inline constexpr char kViridis[] = R"(
-set palette defined (0 '#440154', 1 '#46327e', 2 '#365c8d', 3 '#277f8e', 4 '#1fa187', 5 '#4ac16d', 6 '#a0da39', 7 '#fde725')
-)";
-
 /// Energies of drawn landscapes beyond this are cut off: beside the joints they leave every scale.
 inline constexpr double kCeiling = 500.0;  // J
 

@@ -54,7 +54,7 @@ void draw_fig11(std::vector<Cell> cells) {
     pairs += std::to_string(i + 1) + " " + line_of({100 * cells[i].dynamics, 100 * cells[i].chain});
   draw("fig11", 1150, 900,
        data_block("$chain", maps[0]) + data_block("$dynamics", maps[1]) +
-           data_block("$pairs", pairs) + kViridis +
+           data_block("$pairs", pairs) + kSequential +
            filled(R"(
 set multiplot
 set size 0.5,0.56

@@ -43,7 +43,7 @@ Section fig5() {
   }
   write_text_atomically("fig5.csv", csv.text());
   draw("fig5", 1100, 900,
-       script + kViridis + kSurfaceLook +
+       script + kSequential + kSurfaceLook +
            filled(R"(
 set cbrange [0:{{ceiling}}]
 set zrange [0:{{ceiling}}]

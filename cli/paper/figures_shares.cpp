@@ -81,7 +81,7 @@ Section fig8(const Findings& f) {
   write_text_atomically("fig8.csv", csv.text());
   draw("fig8", 1200, 950,
        data_block("$map50", map[0]) + data_block("$map10", map[1]) +
-           data_block("$series50", series[0]) + data_block("$series10", series[1]) + kViridis +
+           data_block("$series50", series[0]) + data_block("$series10", series[1]) + kSequential +
            "set multiplot layout 2,2\n" + fig8_panels("50", "d = 50, as printed") +
            fig8_panels("10", "d = 10") + "unset multiplot\n");
   return {"fig8",

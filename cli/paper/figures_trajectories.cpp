@@ -54,7 +54,7 @@ Section fig6(const Findings& f) {
   const Json both = surface_of(p, true), alone = surface_of(p, true, {false, true});
   draw("fig6", 1200, 800,
        data_block("$run", rows) + data_block("$both", blocks_of(both, kHigh)) +
-           data_block("$alone", blocks_of(alone, kHigh)) + kViridis + kSurfaceLook +
+           data_block("$alone", blocks_of(alone, kHigh)) + kSequential + kSurfaceLook +
            filled(R"(
 set cbrange [0:{{high}}]
 set zrange [0:{{high}}]
@@ -184,7 +184,7 @@ Section fig9(const Findings& f) {
   }
   write_text_atomically("fig9.csv", csv.text());
   draw("fig9", 1300, 620,
-       data + kViridis +
+       data + kSequential +
            filled(R"(
 set cbrange [0:{{ceiling}}]
 set multiplot layout 1,3
