@@ -267,15 +267,15 @@ Json first_screen(const std::map<std::string, std::string>& commands) {
   return {
       {{"figure", "crossing.svg"},
        {"alt",
-        "Thirty paths from the middle of the lower edge through nine by nine gates; most end "
+        "Twenty paths from the middle of the lower edge through nine by nine gates; most end "
         "within the first rows."},
-       {"caption", "Full dynamics: thirty bodies push through the field of 9 x 9 gates."},
+       {"caption", "Full dynamics: twenty bodies push through the field of 9 x 9 gates."},
        {"command", commands.at("crossing_ways")}},
       {{"figure", "prediction.svg"},
        {"alt",
         "A map of nine by nine gates coloured by the share of bodies that end in each, and bars "
         "of how they end."},
-       {"caption", "Markov chain: where bodies that enter so end, and how."},
+       {"caption", "Markov chain: in which gate bodies end, and how."},
        {"command", commands.at("prediction")}}};
 }
 

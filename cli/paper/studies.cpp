@@ -103,7 +103,7 @@ void add_traces(Studies& s) {
   s.trace("exits", 100,
           {kGate, "--set", set(kPropulsion, 8), "--set", set(kRandom, 40), "--only", "exited"});
   s.trace("crossing", 3, {kField, "--field", "--trial", "2"});
-  s.trace("crossing_ways", 30, {kField, "--field", "--figure", "crossing.svg"});
+  s.trace("crossing_ways", 20, {kField, "--field", "--figure", "crossing.svg"});
 }
 
 /// Fig. 5, the barriers behind Fig. 9, and where the basin ends.
