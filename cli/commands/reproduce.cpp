@@ -33,9 +33,8 @@ int run_reproduce(const Arguments& arguments) {
     else if (options.talk())
       std::cout << "\n"
                 << table_of(r.claims) << "\n"
-                << r.count(Verdict::reproduced) << " reproduced, " << r.count(Verdict::within_noise)
-                << " within noise, " << r.count(Verdict::differs) << " differ. Studies "
-                << fixed(r.seconds, 0) << " s. Open " << folder << "/report.html\n"
+                << r.tally() << ". Studies " << fixed(r.seconds, 0) << " s. Open " << folder
+                << "/report.html\n"
                 << std::flush;
   } catch (const Interrupted&) {
     std::cerr << "gatewalk: stopped before the end; what was finished stays in " << folder

@@ -96,7 +96,8 @@ Claim rises_then_falls(const Findings& f) {
               : percent_text(shown.first) + ", " + percent_text(shown.top) + " at Rm " +
                     number(shown.at) + " N, " + percent_text(shown.last) + " at 60 N (" +
                     number(shown_force) + " N, d = " + number(shown_damping) + ")",
-          verdict_of(both == 0 && shown.top.whole >= kEnoughTrials, 2 * both > up && up > 0),
+          verdict_of(both == 0 && shown.top.whole >= kEnoughTrials, 2 * both > up && up > 0,
+                     shown.top.whole >= kEnoughTrials),
           "It rises beyond chance at " + of(up, series) +
               " pairs of propulsion and damping and falls again up to 60 N at " +
               std::to_string(both) + " of these (" + std::to_string(on_the_grid) +
@@ -129,7 +130,8 @@ Claim peak_at_20(const Findings& f) {
           "The best random force is 20 N: more of it lowers traversal.",
           "20 N",
           rising == 0 ? "rises nowhere beyond chance" : best + " N",
-          verdict_of(enough && more_than_chance(seen, rising), enough && above == 0 && rising > 0),
+          verdict_of(enough && more_than_chance(seen, rising), enough && above == 0 && rising > 0,
+                     enough),
           "Of 0 to 40 N, highest at " + where +
               " N where it rises at all (d = 50, then 10; F_prop from 4 N up). Higher than at 20 N "
               "beyond chance in " +

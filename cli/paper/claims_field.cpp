@@ -61,7 +61,7 @@ Claim table4_row(const Findings& f, std::size_t i, const char* id) {
           number(start.paper_corrcoef, 3) + " / " + number(start.paper_rmse, 3),
           exact.text(),
           verdict_of(!exact.fits() && !walks.fits(),
-                     exact.fits() && walks.fits() && start.repeats >= 50),
+                     exact.fits() && walks.fits() && start.repeats >= 50, start.repeats >= 50),
           why,
           "table4"};
 }

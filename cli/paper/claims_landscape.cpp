@@ -91,7 +91,8 @@ Claim steep(const Findings& f) {
           "always",
           std::string(downhill ? "no basin, " : "a basin, ") + percent_text(share) + " at 20 N",
           verdict_of(!downhill || share.high < 0.99,
-                     share.part == share.whole && share.whole >= kEnoughTrials),
+                     share.part == share.whole && share.whole >= kEnoughTrials,
+                     share.whole >= kEnoughTrials),
           "k = 400, Rm 10 N, d = 50. At 9 N, without random force, " +
               number(100 * fig8_at(f, 50, 9, 0).value) + " % do already.",
           "fig5"};
@@ -187,7 +188,7 @@ Claim euler_step(const Findings& f) {
           "Euler's method with a step of 0.004 s is accurate enough.",
           "good accuracy",
           percent_text(paper) + " traverse left; reference " + percent_text(event),
-          verdict_of(apart && seen, !apart && paper.whole >= 10 * kEnoughTrials),
+          verdict_of(apart && seen, !apart && paper.whole >= 10 * kEnoughTrials, apart),
           "k_L = 300, d = 10, against the event-driven reference. Its constraints act on "
           "accelerations and drift: bodies sink into beams by up to " +
               number(by_paper.worst_penetration, 1) + " m." +

@@ -43,7 +43,7 @@ Claim softer_side(const Findings& f) {
       "towards the softer side",
       "softer side in " + of(softer, cells) + " cells, stiffer side in " + std::to_string(stiffer),
       verdict_of((enough && more_than_chance(seen, cells)) || stiffer > softer,
-                 enough && !more_than_chance(stiffer, cells) && 2 * softer >= cells),
+                 enough && !more_than_chance(stiffer, cells) && 2 * softer >= cells, enough),
       why,
       "fig12"};
 }
@@ -190,7 +190,7 @@ Claim fig12_propulsion(const Findings& f) {
           "rises from 7 to 8 N",
           "higher in " + of(up, cells) + " cells, lower in " + std::to_string(down),
           verdict_of((enough && more_than_chance(seen, cells)) || down > up,
-                     enough && down == 0 && 2 * up > cells),
+                     enough && down == 0 && 2 * up > cells, enough),
           why,
           "fig12"};
 }

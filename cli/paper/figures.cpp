@@ -15,14 +15,10 @@ Json sections_of(const Findings& f, const std::map<std::string, std::string>& co
         used.push_back(found->second);
     if (s.drawn)
       for (const char* end : {".csv", ".svg", ".pdf"}) files.push_back(std::string(s.id) + end);
-    list.push_back({{"id", s.id},
-                    {"heading", s.heading},
-                    {"text", s.text},
-                    {"alt", s.alt},
-                    {"commands", used},
-                    {"files", files},
-                    {"chart", s.chart},
-                    {"data", s.data}});
+    Json section = {{"id", s.id},   {"heading", s.heading}, {"text", s.text},
+                    {"alt", s.alt}, {"commands", used},     {"files", files}};
+    if (s.data.contains("film")) section["film"] = s.data["film"];
+    list.push_back(section);
   }
   return list;
 }

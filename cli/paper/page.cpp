@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
-#include <set>
+#include <regex>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -17,19 +19,15 @@
 namespace gatewalk::cli {
 namespace {
 
-// What report.js draws; tests/web shows each of them.
-constexpr std::array kCharts = {"outcomes",    "right_share",  "landscapes",  "barriers",
-                                "penetration", "trajectories", "final_gates", "table4",
-                                "rates",       "speed",        "histogram",   "replay"};
-
 /// How a verdict is shown: never by colour alone.
 struct Mark {
   std::string_view name;
   const char *style, *symbol;
 };
-constexpr std::array<Mark, 3> kMarks = {{{kVerdictNames[0], "reproduced", "✓"},
-                                         {kVerdictNames[1], "noise", "≈"},
-                                         {kVerdictNames[2], "differs", "≠"}}};
+constexpr std::array<Mark, 4> kMarks = {{{kVerdictNames[3], "differs", "≠"},
+                                         {kVerdictNames[2], "unknown", "?"},
+                                         {kVerdictNames[1], "agrees", "≈"},
+                                         {kVerdictNames[0], "reproduced", "✓"}}};
 
 const Mark& mark_of(const Json& claim) {
   const auto name = claim.at("verdict").get<std::string>();
@@ -40,23 +38,22 @@ const Mark& mark_of(const Json& claim) {
                               ": unknown verdict \"" + name + "\"");
 }
 
-/// A text field, ready for HTML.
+/// Words as they stand in HTML; an index as the paper prints it: k_L as k<sub>L</sub>.
+std::string words(const std::string& plain) {
+  static const std::regex index("\\b(k|F|i|v|E)_(L|R|x|y|prop|rand)\\b");
+  return std::regex_replace(escaped(plain), index, "$1<sub>$2</sub>");
+}
+
+/// A text field as words.
 std::string text(const Json& object, const char* field) {
-  return escaped(object.at(field).get<std::string>());
+  return words(object.at(field).get<std::string>());
 }
 
 /// The same, with nothing broken apart at a line's end that belongs together: "46.0 % [45.3, 46.7]"
 /// between % and [ only.
 std::string values(const Json& object, const char* field) {
-  const auto plain = object.at(field).get<std::string>();
-  std::string out;
-  bool in_brackets = false;
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    in_brackets = (in_brackets || plain[i] == '[') && plain[i] != ']';
-    const bool kept = in_brackets || plain.compare(i, 2, " %") == 0;
-    out += plain[i] == ' ' && kept ? "&nbsp;" : escaped(plain.substr(i, 1));
-  }
-  return out;
+  static const std::regex within(" (?=%|[^\\[]*\\])");
+  return std::regex_replace(text(object, field), within, "&nbsp;");
 }
 
 /// An element that closes itself: <p class="why">...</p> from element("p class=\"why\"", ...).
@@ -67,7 +64,7 @@ std::string element(std::string_view opening, const std::string& inside) {
 
 std::string paragraphs(const Json& list) {
   std::string out;
-  for (const Json& p : list) out += element("p", escaped(p.get<std::string>()));
+  for (const Json& p : list) out += element("p", words(p.get<std::string>()));
   return out;
 }
 
@@ -76,120 +73,146 @@ std::string badge(const Mark& v) {
                  std::string("<i aria-hidden=\"true\">") + v.symbol + "</i>" + std::string(v.name));
 }
 
-/// How many claims got each verdict, as a bar and in numbers.
+std::int64_t count(const Json& claims, const Mark& mark) {
+  return std::count_if(claims.begin(), claims.end(),
+                       [&](const Json& c) { return &mark_of(c) == &mark; });
+}
+
+/// How many claims got each verdict, as a bar.
 std::string tally_of(const Json& claims) {
-  std::string bar, list;
-  for (const Mark& v : kMarks) {
-    const auto n = std::count_if(claims.begin(), claims.end(),
-                                 [&](const Json& c) { return &mark_of(c) == &v; });
-    if (n == 0) continue;
-    bar += "<span class=\"" + std::string(v.style) + "\" style=\"flex-grow:" + std::to_string(n) +
-           "\"></span>";
-    list += element(std::string("li class=\"") + v.style + "\"",
-                    "<b>" + std::to_string(n) + "</b>" + badge(v));
-  }
-  return element("div class=\"bar\" aria-hidden=\"true\"", bar) + element("ul", list);
+  std::string bar;
+  for (const Mark& v : kMarks)
+    if (const auto n = count(claims, v); n > 0)
+      bar += "<span class=\"" + std::string(v.style) + "\" style=\"flex-grow:" + std::to_string(n) +
+             "\"></span>";
+  return element("div class=\"bar\" aria-hidden=\"true\"", bar);
 }
 
-std::string claim_rows(const Json& claims, const std::map<std::string, std::string>& headings) {
-  std::string rows;
-  for (const Json& c : claims) {
-    const Mark& v = mark_of(c);
-    const auto see = c.at("see").get<std::string>();
-    const auto heading = headings.find(see);
-    if (heading == headings.end()) {
-      throw std::invalid_argument("claim " + c.at("id").get<std::string>() + ": no section \"" +
-                                  see + "\"");
-    }
-    std::string what =
-        element("span class=\"where\"", text(c, "where")) + element("p", text(c, "claim"));
-    if (!c.at("why").get<std::string>().empty()) what += element("p class=\"why\"", text(c, "why"));
-    const std::string cell = "td role=\"cell\" ";
-    rows += element(
-        "tr role=\"row\" class=\"" + std::string(v.style) + "\" id=\"claim-" + text(c, "id") + "\"",
-        element(cell + "class=\"claim\"", what) +
-            element(cell + "data-label=\"Paper\"", values(c, "paper")) +
-            element(cell + "data-label=\"Here\"", values(c, "ours")) +
-            element(cell + "data-label=\"Verdict\"", badge(v)) +
-            element(cell + "data-label=\"See\"",
-                    "<a href=\"#" + escaped(see) + "\">" + escaped(heading->second) + "</a>"));
-  }
-  return rows;
-}
-
-/// The paper's Table IV beside ours, as a table.
-std::string table4(const Json& data) {
-  const auto number = [](const Json& row, const char* field, int digits) {
-    const auto found = row.find(field);
-    return found == row.end() || found->is_null() ? std::string("–")
-                                                  : fixed(found->get<double>(), digits);
+/// Buttons that leave the claims of one verdict (report.css does it).
+std::string filter_of(const Json& claims) {
+  const auto button = [](const std::string& id, const std::string& label, bool checked) {
+    return element("label", "<input type=\"radio\" name=\"verdict\" id=\"show-" + id + "\"" +
+                                (checked ? " checked" : "") + ">" + element("span", label));
   };
-  std::string rows;
-  for (const Json& r : data.at("rows")) {
-    std::string cells = element("th scope=\"row\"", text(r, "start"));
-    for (const std::string measure : {"corrcoef", "rmse"}) {
-      const int digits = measure == "rmse" ? 2 : 3;
-      cells += element("td", number(r, ("paper_" + measure).c_str(), digits)) +
-               element("td class=\"ours\"", number(r, measure.c_str(), digits) + " ± " +
-                                                number(r, (measure + "_sd").c_str(), digits)) +
-               element("td", number(r, (measure + "_floor").c_str(), digits)) +
-               element("td", number(r, (measure + "_all").c_str(), digits));
-    }
-    rows += element("tr", cells + element("td class=\"ours\"", number(r, "tv", 3)) +
-                              element("td", number(r, "tv_floor", 3)));
-  }
-  const std::string four =
-      "<th scope=\"col\">paper</th><th scope=\"col\">here ± sd</th><th scope=\"col\">noise "
-      "floor</th>"
-      "<th scope=\"col\">all trials</th>";
-  const std::string head =
-      element("tr",
-              "<th rowspan=\"2\" scope=\"col\">start</th><th colspan=\"4\" "
-              "scope=\"colgroup\">correlation coefficient</th>"
-              "<th colspan=\"4\" scope=\"colgroup\">RMSE, trials per 100</th>"
-              "<th colspan=\"2\" scope=\"colgroup\">total variation</th>") +
-      element("tr",
-              four + four + "<th scope=\"col\">all trials</th><th scope=\"col\">noise floor</th>");
-  return element(
-      "div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table IV, the paper's and "
-      "ours\"",
-      element("table class=\"numbers\"", element("thead", head) + element("tbody", rows)));
+  std::string out = button("all", "all " + std::to_string(claims.size()), true);
+  for (const Mark& v : kMarks)
+    if (const auto n = count(claims, v); n > 0)
+      out += button(v.style,
+                    std::string(v.symbol) + " " + std::string(v.name) + " " + std::to_string(n),
+                    false);
+  return out;
 }
 
-std::string section(const Json& s, const Json& claims) {
-  const auto id = s.at("id").get<std::string>();
-  const auto kind = s.at("chart").get<std::string>();
-  if (std::find(kCharts.begin(), kCharts.end(), kind) == kCharts.end()) {
-    throw std::invalid_argument("section " + id + ": unknown chart \"" + kind + "\"");
-  }
-  (void)s.at("data");
-  std::string about, commands, files;
-  for (const Json& c : claims) {
-    if (c.at("see").get<std::string>() != id) continue;
-    about += element("li", "<a href=\"#claim-" + text(c, "id") + "\">" + badge(mark_of(c)) +
-                               text(c, "claim") + "</a>");
-  }
-  for (const Json& c : s.at("commands")) commands += element("code", escaped(c.get<std::string>()));
+/// Every claim, folded, those that differ first.
+std::string folded(const Json& claims, const std::map<std::string, std::string>& headings) {
+  std::string out;
+  for (const Mark& v : kMarks)
+    for (const Json& c : claims) {
+      if (&mark_of(c) != &v) continue;
+      const auto see = c.at("see").get<std::string>();
+      const auto heading = headings.find(see);
+      if (heading == headings.end())
+        throw std::invalid_argument("claim " + c.at("id").get<std::string>() + ": no section \"" +
+                                    see + "\"");
+      const auto entry = [](const char* name, const std::string& value) {
+        return element("div", element("dt", name) + element("dd", value));
+      };
+      std::string about = entry("Paper", values(c, "paper")) + entry("Here", values(c, "ours"));
+      if (!c.at("why").get<std::string>().empty()) about += entry("Remark", text(c, "why"));
+      about += entry("Where", text(c, "where") + "; here: <a href=\"#" + escaped(see) + "\">" +
+                                  words(heading->second) + "</a>");
+      out += element(
+          "details class=\"claim " + std::string(v.style) + "\" id=\"claim-" + text(c, "id") + "\"",
+          element("summary", badge(v) + element("span", text(c, "claim"))) + element("dl", about));
+    }
+  return out;
+}
+
+/// A picture as it stands in an attribute: the whole file, nothing to be fetched.
+std::string picture(const std::string& svg, const std::string& alt) {
+  std::string url = "data:image/svg+xml,";
+  for (const char c : svg) switch (c) {
+      case '%':
+        url += "%25";
+        break;
+      case '#':
+        url += "%23";
+        break;
+      case '\n':
+        url += "%0A";
+        break;
+      case '\t':
+        url += ' ';
+        break;
+      default:
+        url += escaped({&c, 1});
+    }
+  return "<img src=\"" + url + "\" alt=\"" + escaped(alt) + "\">";
+}
+
+/// A command whose words stay whole where a line ends.
+std::string command(const std::string& line) {
+  std::string out;
+  std::istringstream in(line);
+  for (std::string word; in >> word;)
+    out += (out.empty() ? "<span>" : " <span>") + escaped(word) + "</span>";
+  return element("code", out);
+}
+
+/// The picture of a section or of the page's beginning, with what made it.
+std::string figure(const Json& about, const std::string& file, const std::string& caption,
+                   const FigureText& figure_text) {
+  const auto alt = about.at("alt").get<std::string>();
+  return element("figure",
+                 element("a href=\"" + escaped(file) + "\"", picture(figure_text(file), alt)) +
+                     element("figcaption", caption));
+}
+
+std::string first_screen(const Json& first, const FigureText& figure_text) {
+  std::string out;
+  for (const Json& f : first)
+    out += figure(f, f.at("figure").get<std::string>(),
+                  element("p", text(f, "caption")) +
+                      element("div class=\"commands\"", command(f.at("command"))),
+                  figure_text);
+  return out;
+}
+
+/// What made a section, and its files.
+std::string made_with(const Json& s) {
+  std::string commands, files;
+  for (const Json& c : s.at("commands")) commands += command(c);
   for (const Json& f : s.at("files")) {
     const std::string name = escaped(f.get<std::string>());
     files += "<a href=\"" + name + "\">" + name + "</a> ";
   }
-  std::string out = element("h2", text(s, "heading"));
-  if (!about.empty()) out += element("ul class=\"about\" aria-label=\"Claims shown here\"", about);
-  out += element("div class=\"text\"", paragraphs(s.at("text")));
-  out +=
-      "<figure>" + element("div class=\"chart\" data-kind=\"" + kind + "\" data-section=\"" +
-                               escaped(id) + "\" data-alt=\"" + text(s, "alt") + "\"",
-                           "<noscript><p class=\"remark\">" + text(s, "alt") + "</p></noscript>");
-  if (kind == "table4") out += table4(s.at("data"));
-  std::string how;
   const auto n = s.at("commands").size();
   if (n > 0) commands = element("div class=\"commands\"", commands);
-  how += n > 3 ? element("details", element("summary", std::to_string(n) + " commands") + commands)
-               : commands;
-  if (!files.empty()) how += element("p class=\"files\"", "Files: " + files);
-  out += element("figcaption", how) + "</figure>\n";
-  return element("section id=\"" + escaped(id) + "\"", out);
+  if (n > 2)
+    commands = element("details", element("summary", std::to_string(n) + " commands") + commands);
+  return commands + (files.empty() ? "" : element("p class=\"files\"", "Files: " + files));
+}
+
+std::string section(const Json& s, const Json& claims, const FigureText& figure_text) {
+  const auto id = s.at("id").get<std::string>();
+  std::string about;
+  for (const Json& c : claims)
+    if (c.at("see").get<std::string>() == id)
+      about += element("li", "<a href=\"#claim-" + text(c, "id") + "\">" + badge(mark_of(c)) +
+                                 element("span", text(c, "claim")) + "</a>");
+  if (!about.empty()) about = element("ul class=\"about\" aria-label=\"Claims shown here\"", about);
+  const std::string head = element("h2", text(s, "heading")),
+                    words = element("div class=\"text\"", paragraphs(s.at("text")) + about);
+  const bool plays = s.contains("film");
+  const std::string shown =
+      plays ? "<figure><div class=\"replay\"><noscript><p>The animation needs JavaScript. " +
+                  text(s, "alt") +
+                  "</p></noscript></div>\n<script type=\"application/json\" id=\"film\">" +
+                  script_json(s.at("film")) + "</script>" + element("figcaption", made_with(s)) +
+                  "</figure>\n"
+            : figure(s, id + ".svg", made_with(s), figure_text);
+  return element("section id=\"" + escaped(id) + "\"" + (plays ? " class=\"wide\"" : ""),
+                 head + element("div class=\"beside\"", shown + words));
 }
 
 std::string duration(double seconds) {
@@ -205,7 +228,7 @@ std::string made_by(const Json& made) {
   };
   std::string out = element(
       "dl", entry("Program", text(made, "program")) +
-                entry("Command", "<code>" + text(made, "command") + "</code>") +
+                entry("Command", command(made.at("command"))) +
                 entry("Seed", made.at("seed").dump()) + entry("Machine", text(made, "machine")) +
                 entry("Time taken", duration(made.at("seconds").get<double>())) +
                 entry("Date", text(made, "date")));
@@ -216,56 +239,33 @@ std::string made_by(const Json& made) {
   return out;
 }
 
-std::string licences() {
-  std::string out;
-  for (const char* name :
-       {"vega.LICENSE", "vega-lite.LICENSE", "vega-embed.LICENSE", "plotly.LICENSE"}) {
-    out += element("h3", name) + element("pre tabindex=\"0\"", escaped(carried_file(name)));
-  }
-  return out;
-}
-
-/// A script for report.js to start when it is needed, so that the page opens at once.
-std::string library(const char* name) {
-  const std::string code(carried_file(name));
-  if (code.find("</script") != std::string::npos)
-    throw std::logic_error(std::string(name) + " cannot stand in a page");
-  return element("script type=\"text/plain\" id=\"" + std::string(name) + "\"", code);
-}
-
 }  // namespace
 
-std::string report_page(const Json& report) {
+std::string report_page(const Json& report, const FigureText& figure_text) {
   const Json& claims = report.at("claims");
   std::map<std::string, std::string> headings;
   std::string contents, sections;
-  Json data = Json::object();
   for (const Json& s : report.at("sections")) {
     const auto id = s.at("id").get<std::string>();
     const auto heading = s.at("heading").get<std::string>();
     // "Fig. 8: traversal of ..." is "Fig. 8" where room is short.
-    if (!headings.emplace(id, heading.substr(0, heading.find(':'))).second) {
+    if (!headings.emplace(id, heading.substr(0, heading.find(':'))).second)
       throw std::invalid_argument("two sections \"" + id + "\"");
-    }
-    contents += element("li", "<a href=\"#" + escaped(id) + "\">" + escaped(heading) + "</a>");
-    sections += section(s, claims);
-    data[id] = s.at("data");
+    contents += element("li", "<a href=\"#" + escaped(id) + "\">" + words(heading) + "</a>");
+    sections += section(s, claims, figure_text);
   }
-
   return filled(carried_file("report.html"),
                 {{"title", text(report, "title")},
                  {"paper", text(report, "paper")},
                  {"css", std::string(carried_file("report.css"))},
+                 {"first", first_screen(report.at("first"), figure_text)},
                  {"lead", paragraphs(report.at("lead"))},
                  {"tally", tally_of(claims)},
-                 {"claims", claim_rows(claims, headings)},
+                 {"filter", filter_of(claims)},
+                 {"claims", folded(claims, headings)},
                  {"contents", contents},
                  {"sections", sections},
                  {"made_by", made_by(report.at("made_by"))},
-                 {"licences", licences()},
-                 {"data", script_json(data)},
-                 {"libraries", library("vega.min.js") + library("vega-lite.min.js") +
-                                   library("vega-embed.min.js") + library("plotly-gl3d.min.js")},
                  {"replay", std::string(carried_file("replay.js"))},
                  {"js", std::string(carried_file("report.js"))}});
 }

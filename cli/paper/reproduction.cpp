@@ -54,6 +54,13 @@ std::string build_id() {
 /// What is known of a study that was carried out: enough to know whether it is still the same one.
 Json record_of(const Study& s) { return {{"command", s.text()}, {"program", build_id()}}; }
 
+/// A file of the folder.
+std::string file_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error("cannot read " + path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 /// Empty when there is none, or none that can be read: then it is made again.
 Json read_json(const std::string& path) {
   std::ifstream in(path);
@@ -136,6 +143,8 @@ class Records {
     for (const auto& [key, value] : wanted.items())
       if (known->value(key, Json()) != value) return {};
     if (!known->value("seconds", Json()).is_number()) return {};
+    for (auto word = s.arguments.begin(); word != s.arguments.end(); ++word)
+      if (*word == "--figure" && !std::filesystem::exists(*(word + 1))) return {};
     Json data = read_json(file_of(s));
     // A file of another run, or half a one, is no result.
     return data.is_object() && data.contains("made_by") ? data : Json();
@@ -237,13 +246,10 @@ std::vector<std::string> lead_of(const Reproduction& r, bool quick) {
       "The results of the paper, Figs. 5, 6, 8, 9, 11, 12 and Table IV, and what its abstract "
       "and its Sections II and III claim, made again from the model alone, beside the paper's "
       "own values.",
-      "Of " + std::to_string(r.claims.size()) + " claims " +
-          std::to_string(r.count(Verdict::reproduced)) + " are reproduced, " +
-          std::to_string(r.count(Verdict::within_noise)) +
-          " agree or differ by no more than the paper's 100 trials (or the trials here) can "
-          "tell, and " +
-          std::to_string(r.count(Verdict::differs)) +
-          " differ; why, as far as it is known, stands beside them. Intervals are 95 % "
+      "Of " + std::to_string(r.claims.size()) + " claims: " + r.tally() +
+          ". \"Agrees\" means that it deviates by no more than the paper's 100 trials a point "
+          "would "
+          "show. Why a claim differs, as far as it is known, stands beside it. Intervals are 95 % "
           "(Jeffreys).",
       "Symbols as in the paper: F_prop propulsive force, Rm random force (N); k_L, k_R stiffness "
       "of the left and right beam (N m/rad), d their damping (N m s/rad, printed as N s/rad) "
@@ -254,6 +260,23 @@ std::vector<std::string> lead_of(const Reproduction& r, bool quick) {
         "This is the quick version: few trials, wide intervals. The full one, without --quick, "
         "takes some four minutes.");
   return lead;
+}
+
+/// The two pictures that the page begins with: commands of the studies drew them.
+Json first_screen(const std::map<std::string, std::string>& commands) {
+  return {
+      {{"figure", "crossing.svg"},
+       {"alt",
+        "Twenty paths from the middle of the lower edge through nine by nine gates; most end "
+        "within the first rows."},
+       {"caption", "Full dynamics: twenty bodies push through the field of 9 x 9 gates."},
+       {"command", commands.at("crossing_ways")}},
+      {{"figure", "prediction.svg"},
+       {"alt",
+        "A map of nine by nine gates coloured by the share of bodies that end in each, and bars "
+        "of how they end."},
+       {"caption", "Markov chain: in which gate bodies end, and how."},
+       {"command", commands.at("prediction")}}};
 }
 
 Reproduction report_of(const Results& results, const std::vector<Study>& studies, bool quick,
@@ -269,6 +292,7 @@ Reproduction report_of(const Results& results, const std::vector<Study>& studies
               {"quick", quick},
               {"claims", to_json(r.claims)},
               {"lead", lead_of(r, quick)},
+              {"first", first_screen(commands)},
               {"sections", sections_of(findings, commands)},
               {"made_by",
                {{"program", std::string("gatewalk ") + kVersion + " (" + kCommit + ")"},
@@ -283,9 +307,13 @@ Reproduction report_of(const Results& results, const std::vector<Study>& studies
 
 }  // namespace
 
-int Reproduction::count(Verdict verdict) const {
-  return static_cast<int>(std::count_if(claims.begin(), claims.end(),
+std::string Reproduction::tally() const {
+  const auto count = [&](Verdict verdict) {
+    return std::to_string(std::count_if(claims.begin(), claims.end(),
                                         [&](const Claim& c) { return c.verdict == verdict; }));
+  };
+  return count(Verdict::reproduced) + " reproduced, " + count(Verdict::agrees) + " agree, " +
+         count(Verdict::cannot_tell) + " cannot be told, " + count(Verdict::differs) + " differ";
 }
 
 Reproduction reproduce(const ReproductionOptions& options) {
@@ -307,7 +335,7 @@ Reproduction reproduce(const ReproductionOptions& options) {
   Reproduction r = report_of(carry_out(studies, options.talk), studies, options.quick, scenes);
   write_text_atomically("claims.csv", csv_of(r.claims));
   write_text_atomically("report.json", text_of(r.report, -1) + "\n");
-  write_text_atomically("report.html", report_page(r.report));
+  write_text_atomically("report.html", report_page(r.report, file_text));
   return r;
 }
 

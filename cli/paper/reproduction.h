@@ -20,7 +20,8 @@ struct Reproduction {
   std::vector<Claim> claims;
   double seconds = 0.0;  // of all studies
 
-  [[nodiscard]] int count(Verdict verdict) const;
+  /// "18 reproduced, 9 agree, 0 cannot be told, 9 differ"
+  [[nodiscard]] std::string tally() const;
 };
 
 /// Runs the studies that are not done yet, inside the folder, and writes the figures, claims.csv,

@@ -103,6 +103,7 @@ void add_traces(Studies& s) {
   s.trace("exits", 100,
           {kGate, "--set", set(kPropulsion, 8), "--set", set(kRandom, 40), "--only", "exited"});
   s.trace("crossing", 3, {kField, "--field", "--trial", "2"});
+  s.trace("crossing_ways", 20, {kField, "--field", "--figure", "crossing.svg"});
 }
 
 /// Fig. 5, the barriers behind Fig. 9, and where the basin ends.
@@ -116,8 +117,12 @@ void add_landscapes(Studies& s) {
                         s.quick ? "500" : "10000"});
 }
 
-/// Fig. 11, Table IV, crossings, times.
+/// Fig. 11, Table IV, crossings, times; what the page begins with.
 void add_validations(Studies& s) {
+  s.add("prediction", run_predict, "predict",
+        {kField, "--accuracy", s.quick ? "0.05" : "0.01", "--seed", "1", "--figure",
+         "prediction.svg"},
+        s.quick ? 1 : 5);
   s.validate("field", s.quick ? 1000 : 10000, {kField}, s.quick ? 4 : 20);
   s.validate("field_paper_method", s.quick ? 200 : 2000, {kField, "--set", "run.method=paper"},
              s.quick ? 3 : 10);

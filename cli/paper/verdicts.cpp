@@ -23,9 +23,9 @@ std::string percent_text(const Share& s) {
 
 Verdict against(std::int64_t paper_count, const Share& ours) {
   const Share paper = share_of(paper_count, kPaperTrials);
-  if (ours.whole == 0) return Verdict::within_noise;
+  if (ours.whole == 0) return Verdict::cannot_tell;
   return verdict_of(ours.high < paper.low || ours.low > paper.high,
-                    paper.low <= ours.low && ours.high <= paper.high);
+                    paper.low <= ours.low && ours.high <= paper.high, ours.whole >= kEnoughTrials);
 }
 
 bool rises(const Share& a, const Share& b) { return a.whole > 0 && b.whole > 0 && a.high < b.low; }
@@ -64,7 +64,7 @@ Verdict Trend::verdict(bool wiggles) const {
   const bool enough = least_trials_ >= kEnoughTrials;
   const bool differs = more_than_chance(down, series) || (enough && up == 0) ||
                        (!wiggles && enough && more_than_chance(seen, steps));
-  return verdict_of(differs, enough && 2 * up > series && (wiggles || falling == 0));
+  return verdict_of(differs, enough && 2 * up > series && (wiggles || falling == 0), enough);
 }
 
 }  // namespace gatewalk::cli

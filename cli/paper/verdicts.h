@@ -12,17 +12,21 @@ namespace gatewalk::cli {
 /// From best to worst.
 enum class Verdict : std::uint8_t {
   reproduced,
-  within_noise,  // the paper's 100 trials, or ours, cannot tell
+  agrees,       // it deviates by no more than the paper's 100 trials would show
+  cannot_tell,  // the trials here are too few
   differs,
 };
-inline constexpr std::array<std::string_view, 3> kVerdictNames{"reproduced", "within noise",
-                                                               "differs"};
+inline constexpr std::array<std::string_view, 4> kVerdictNames{"reproduced", "agrees",
+                                                               "cannot tell", "differs"};
 [[nodiscard]] inline std::string_view name_of(Verdict v) {
   return kVerdictNames[static_cast<std::size_t>(v)];
 }
-/// Of a claim that is seen not to hold, or else seen to hold, or neither.
-[[nodiscard]] inline Verdict verdict_of(bool differs, bool reproduced) {
-  return differs ? Verdict::differs : reproduced ? Verdict::reproduced : Verdict::within_noise;
+/// Of a claim that is seen not to hold, or else seen to hold, or else not by the paper's trials
+/// (`agrees`), or nothing of this.
+[[nodiscard]] inline Verdict verdict_of(bool differs, bool reproduced, bool agrees = false) {
+  if (differs) return Verdict::differs;
+  if (reproduced) return Verdict::reproduced;
+  return agrees ? Verdict::agrees : Verdict::cannot_tell;
 }
 
 inline constexpr std::int64_t kPaperTrials = 100;
@@ -39,7 +43,7 @@ struct Share {
 [[nodiscard]] std::string percent_text(const Share& s);
 
 /// A number that the paper counted in 100 trials: reproduced when all of our interval lies within
-/// that of the paper's count, differs when they do not meet.
+/// that of the paper's count, differs when they do not meet; else, on enough trials, it agrees.
 [[nodiscard]] Verdict against(std::int64_t paper_count, const Share& ours);
 
 /// b lies above a beyond chance: their 95 % intervals do not meet.
@@ -66,7 +70,7 @@ class Trend {
   /// Differs when a series ends beyond chance below its start, and, on enough trials, when none
   /// ends above it or the paper would see more steps down than chance makes. Reproduced, on enough
   /// trials, when most end above their start and no step goes down beyond chance (or the paper
-  /// allows that: `wiggles`).
+  /// allows that: `wiggles`). Else, on enough trials, it agrees.
   [[nodiscard]] Verdict verdict(bool wiggles = false) const;
 
   int series = 0, up = 0, down = 0;  // from end to end, beyond chance

@@ -81,9 +81,25 @@ void replace_between(std::string& text, const std::string& begin, const std::str
   if (to != std::string::npos) text.replace(from, to - from, inside);
 }
 
+/// The paper and what is drawn on it in no colour of its own (gnuplot writes these as `black`),
+/// light or dark as the reader's screen is.
+constexpr char kLightOrDark[] = R"(
+<style>
+svg { color-scheme: light dark }
+[fill="#ffffff"] { fill: light-dark(#ffffff, #1b1f25) }
+[fill="black"] { fill: light-dark(black, #e6e8eb) }
+[stroke="black"] { stroke: light-dark(black, #e6e8eb) }
+[color="black"] { color: light-dark(black, #e6e8eb) }
+[color="gray"] { color: light-dark(gray, #5a636e) }
+[stroke="gray"] { stroke: light-dark(gray, #5a636e) }
+</style>)";
+
 std::string svg_with(std::string svg, const AboutFigure& about) {
   replace_between(svg, "<title>", "</title>", in_xml(about.title));
   replace_between(svg, "<desc>", "</desc>", in_xml(about.made_by));
+  const std::string before = "</desc>";
+  if (const std::size_t at = svg.find(before); at != std::string::npos)
+    svg.insert(at + before.size(), kLightOrDark);
   return svg;
 }
 

@@ -1,11 +1,10 @@
-# Puts the pages, their script libraries and the scenes into `target`: an assembly file takes the bytes in
+# Puts the pages and the scenes into `target`: an assembly file takes the bytes in
 # as they are (.incbin), with a table of names that cli/web/embedded.cpp reads.
 
 # carry(NAME PATH): the program knows the file PATH as NAME.
 function(carry name path)
   if(NOT EXISTS ${path})
-    message(FATAL_ERROR "${path} is missing. The pages' script libraries come from npm, once:\n"
-      "  npm ci --ignore-scripts --prefix cli/web\n./demo.sh and ./test.sh do it by themselves.")
+    message(FATAL_ERROR "${path} is missing.")
   endif()
   set_property(GLOBAL APPEND PROPERTY CARRIED_PATHS ${path})
   get_property(paths GLOBAL PROPERTY CARRIED_PATHS)
@@ -17,15 +16,6 @@ endfunction()
 
 function(embed_web_files target)
   set(web ${PROJECT_SOURCE_DIR}/cli/web)
-  set(npm ${web}/node_modules)
-  carry(vega.min.js ${npm}/vega/build/vega.min.js)
-  carry(vega-lite.min.js ${npm}/vega-lite/build/vega-lite.min.js)
-  carry(vega-embed.min.js ${npm}/vega-embed/build/vega-embed.min.js)
-  carry(plotly-gl3d.min.js ${npm}/plotly.js-gl3d-dist-min/plotly-gl3d.min.js)
-  carry(vega.LICENSE ${npm}/vega/LICENSE)
-  carry(vega-lite.LICENSE ${npm}/vega-lite/LICENSE)
-  carry(vega-embed.LICENSE ${npm}/vega-embed/LICENSE)
-  carry(plotly.LICENSE ${npm}/plotly.js-gl3d-dist-min/LICENSE)
   file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${web} ${web}/*.html ${web}/*.css ${web}/*.js)
   foreach(page ${pages})
     carry(${page} ${web}/${page})

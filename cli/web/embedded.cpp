@@ -13,7 +13,7 @@ struct CarriedFile {
 
 }  // namespace
 
-// Made by cli/web_files.cmake, an assembly file.
+// Made by cli/web/embedded.cmake, an assembly file.
 extern "C" const CarriedFile gatewalk_carried_files[];
 
 namespace gatewalk::cli {

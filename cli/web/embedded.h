@@ -1,13 +1,13 @@
 #pragma once
 /// Files that the program carries inside, so that it works from anywhere: cli/web's pages, the
-/// script libraries from npm with their licences, the scenes.
+/// scenes.
 
 #include <string_view>
 
 namespace gatewalk::cli {
 
-/// A carried file, byte for byte: "report.js", "vega.min.js", "vega.LICENSE", "scenes/fig8.toml".
-/// Throws std::logic_error for a name that is not carried.
+/// A carried file, byte for byte: "report.js", "scenes/fig8.toml". Throws
+/// std::logic_error for a name that is not carried.
 [[nodiscard]] std::string_view carried_file(std::string_view name);
 
 }  // namespace gatewalk::cli

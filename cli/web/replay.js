@@ -548,7 +548,6 @@ const gatewalkReplay = (() => {
     const runs = film.runs.map((run) => prepared(run, film));
     const field = film.columns * film.rows > 1;
     const bounds = boundsOf(film, runs), unit = film.scale.time_s, units = unitsOf(film.scale, runs);
-    const calm = window.matchMedia('(prefers-reduced-motion: reduce)');
     let run = runs[0], time = run.t[0], playing = false, last = 0, colours = {}, font = 'sans-serif', frame = 0;
 
     // The arrows' scale is one for all runs: the larger of propulsion and of what few draws exceed spans two radii.
@@ -739,10 +738,8 @@ const gatewalkReplay = (() => {
     });
     choose(0);
     new ResizeObserver(show).observe(stageBox);
-    // It starts by itself when it comes into sight, once, unless the reader asked for little motion; out of sight it rests.
-    let begun = calm.matches;
+    // Out of sight it rests.
     new IntersectionObserver(([entry]) => {
-      if (entry.intersectionRatio >= 0.5 && !begun) { begun = true; start(); }
       if (entry.intersectionRatio === 0 && playing) pause();
     }, {threshold: [0, 0.5]}).observe(stage);
     return {play: start, pause, seek, key};

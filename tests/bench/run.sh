@@ -15,7 +15,6 @@ here=$root/tests/bench
 packages+=(libbenchmark-dev libchipmunk-dev libbox2d-dev libode-dev pkg-config dpkg-dev octave r-base-core
   r-cran-matrix r-cran-markovchain python3-numpy python3-scipy)
 command -v apt-get >/dev/null && install_missing
-web_libraries
 say() { echo "$*" >&2; }
 
 cmake -S . -B build-bench -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DGATEWALK_BENCH=ON >/dev/null

@@ -11,15 +11,16 @@ TEST(PaperVerdict, OfANumberCountedIn100Trials) {
   EXPECT_EQ(against(52, share_of(500, 10000)), Verdict::differs);
   EXPECT_EQ(against(13, share_of(20, 10000)), Verdict::differs);
   EXPECT_EQ(against(98, share_of(9800, 10000)), Verdict::reproduced);
-  EXPECT_EQ(against(52, share_of(0, 0)), Verdict::within_noise);
+  EXPECT_EQ(against(13, share_of(750, 10000)), Verdict::agrees);  // on the edge
+  EXPECT_EQ(against(52, share_of(0, 0)), Verdict::cannot_tell);
 }
 
 // Fewer trials widen our interval: what was reproduced or different becomes unsure, never the other
 // way round.
 TEST(PaperVerdict, FewerTrialsAreNeverSurer) {
-  EXPECT_EQ(against(52, share_of(46, 100)), Verdict::within_noise);
-  EXPECT_EQ(against(52, share_of(23, 50)), Verdict::within_noise);
-  EXPECT_EQ(against(13, share_of(0, 20)), Verdict::within_noise);
+  EXPECT_EQ(against(52, share_of(46, 100)), Verdict::cannot_tell);
+  EXPECT_EQ(against(52, share_of(23, 50)), Verdict::cannot_tell);
+  EXPECT_EQ(against(13, share_of(0, 20)), Verdict::cannot_tell);
   EXPECT_EQ(against(13, share_of(0, 2000)), Verdict::differs);
 }
 
@@ -43,9 +44,9 @@ TEST(PaperVerdict, OfATrend) {
   EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000, true),
             Verdict::reproduced);  // if the paper allows it
   EXPECT_EQ(verdict({0.01, 0.05, 0.03, 0.6}, 10000),
-            Verdict::within_noise);  // a fall that they do not
+            Verdict::agrees);  // a fall that they do not
   EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 100),
-            Verdict::within_noise);  // too few trials to say "never falls"
+            Verdict::cannot_tell);  // too few trials to say "never falls"
 }
 
 // Shares of few: what 100 trials of all would show of them depends on how few they are.
@@ -57,7 +58,7 @@ TEST(PaperVerdict, OfATrendOfSharesOfFew) {
   EXPECT_EQ(many.falling, 1);
   EXPECT_EQ(many.at, 200);
   EXPECT_EQ(many.verdict(), Verdict::differs);
-  EXPECT_EQ(few.verdict(), Verdict::within_noise);
+  EXPECT_EQ(few.verdict(), Verdict::agrees);
 }
 
 TEST(PaperVerdict, TextHasDigitsAsTheTrialsAllow) {

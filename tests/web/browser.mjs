@@ -5,7 +5,7 @@ import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
-const {chromium} = createRequire(new URL('../../cli/web/package.json', import.meta.url))('playwright-core');
+const {chromium} = createRequire(import.meta.url)('playwright-core');
 
 /// Opens the file `path`; `use(page, faults)` gets the page and a list that faults are added to.
 export async function browse(path, options, use) {
