@@ -17,11 +17,6 @@
 namespace gatewalk::cli {
 namespace {
 
-// What report.js draws; tests/web shows each of them.
-constexpr std::array kCharts = {"outcomes",    "right_share",  "landscapes",  "barriers",
-                                "penetration", "trajectories", "final_gates", "table4",
-                                "rates",       "speed",        "histogram",   "replay"};
-
 /// How a verdict is shown: never by colour alone.
 struct Mark {
   std::string_view name;
@@ -117,52 +112,8 @@ std::string claim_rows(const Json& claims, const std::map<std::string, std::stri
   return rows;
 }
 
-/// The paper's Table IV beside ours, as a table.
-std::string table4(const Json& data) {
-  const auto number = [](const Json& row, const char* field, int digits) {
-    const auto found = row.find(field);
-    return found == row.end() || found->is_null() ? std::string("–")
-                                                  : fixed(found->get<double>(), digits);
-  };
-  std::string rows;
-  for (const Json& r : data.at("rows")) {
-    std::string cells = element("th scope=\"row\"", text(r, "start"));
-    for (const std::string measure : {"corrcoef", "rmse"}) {
-      const int digits = measure == "rmse" ? 2 : 3;
-      cells += element("td", number(r, ("paper_" + measure).c_str(), digits)) +
-               element("td class=\"ours\"", number(r, measure.c_str(), digits) + " ± " +
-                                                number(r, (measure + "_sd").c_str(), digits)) +
-               element("td", number(r, (measure + "_floor").c_str(), digits)) +
-               element("td", number(r, (measure + "_all").c_str(), digits));
-    }
-    rows += element("tr", cells + element("td class=\"ours\"", number(r, "tv", 3)) +
-                              element("td", number(r, "tv_floor", 3)));
-  }
-  const std::string four =
-      "<th scope=\"col\">paper</th><th scope=\"col\">here ± sd</th><th scope=\"col\">noise "
-      "floor</th>"
-      "<th scope=\"col\">all trials</th>";
-  const std::string head =
-      element("tr",
-              "<th rowspan=\"2\" scope=\"col\">start</th><th colspan=\"4\" "
-              "scope=\"colgroup\">correlation coefficient</th>"
-              "<th colspan=\"4\" scope=\"colgroup\">RMSE, trials per 100</th>"
-              "<th colspan=\"2\" scope=\"colgroup\">total variation</th>") +
-      element("tr",
-              four + four + "<th scope=\"col\">all trials</th><th scope=\"col\">noise floor</th>");
-  return element(
-      "div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table IV, the paper's and "
-      "ours\"",
-      element("table class=\"numbers\"", element("thead", head) + element("tbody", rows)));
-}
-
 std::string section(const Json& s, const Json& claims) {
   const auto id = s.at("id").get<std::string>();
-  const auto kind = s.at("chart").get<std::string>();
-  if (std::find(kCharts.begin(), kCharts.end(), kind) == kCharts.end()) {
-    throw std::invalid_argument("section " + id + ": unknown chart \"" + kind + "\"");
-  }
-  (void)s.at("data");
   std::string about, commands, files;
   for (const Json& c : claims) {
     if (c.at("see").get<std::string>() != id) continue;
@@ -177,11 +128,13 @@ std::string section(const Json& s, const Json& claims) {
   std::string out = element("h2", text(s, "heading"));
   if (!about.empty()) out += element("ul class=\"about\" aria-label=\"Claims shown here\"", about);
   out += element("div class=\"text\"", paragraphs(s.at("text")));
-  out +=
-      "<figure>" + element("div class=\"chart\" data-kind=\"" + kind + "\" data-section=\"" +
-                               escaped(id) + "\" data-alt=\"" + text(s, "alt") + "\"",
-                           "<noscript><p class=\"remark\">" + text(s, "alt") + "</p></noscript>");
-  if (kind == "table4") out += table4(s.at("data"));
+  out += "<figure>";
+  if (s.contains("film"))
+    out += element("div class=\"chart\" data-kind=\"replay\" data-section=\"" + escaped(id) +
+                       "\" data-alt=\"" + text(s, "alt") + "\"",
+                   "<noscript><p class=\"remark\">" + text(s, "alt") + "</p></noscript>");
+  else
+    out += "<img src=\"" + escaped(id) + ".svg\" alt=\"" + text(s, "alt") + "\">\n";
   std::string how;
   const auto n = s.at("commands").size();
   if (n > 0) commands = element("div class=\"commands\"", commands);
@@ -249,7 +202,7 @@ std::string report_page(const Json& report) {
     }
     contents += element("li", "<a href=\"#" + escaped(id) + "\">" + escaped(heading) + "</a>");
     sections += section(s, claims);
-    data[id] = s.at("data");
+    if (s.contains("film")) data[id] = {{"film", s.at("film")}};
   }
 
   return filled(carried_file("report.html"),
