@@ -1,25 +1,28 @@
 #pragma once
 /// The figures of the report and the sections of its page about them.
 
+#include <Eigen/Core>
+#include <cmath>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cli/paper/findings.h"
+#include "cli/render/figure.h"
 #include "dynamics/landscape.h"
 
 namespace gatewalk::cli {
 
+/// A section of the page: a figure and its numbers, or a film.
 struct Section {
   const char* id;
   std::string heading;
   std::vector<std::string> text;
-  std::string alt;
+  std::string alt;                   // what is seen, in words
   std::vector<std::string> studies;  // whose commands gave the data
-  const char* chart;                 // page.h
-  Json data;
-  bool drawn = true;  // ID.csv, ID.svg, ID.pdf were written
+  std::string csv;                   // ID.csv
+  Figure figure;                     // ID.svg, ID.pdf
+  Json film = nullptr;               // null: none
 };
 
 /// Draws the figures into the current folder (fig8.svg, fig8.pdf, fig8.csv, ...) and returns the
@@ -28,7 +31,7 @@ struct Section {
 [[nodiscard]] Json sections_of(const Findings& f,
                                const std::map<std::string, std::string>& commands);
 
-// ---- One by one; each writes its CSV, SVG and PDF
+// ---- One by one
 
 // Landscapes and trajectories (figures_landscape.cpp, figures_trajectories.cpp)
 [[nodiscard]] Section fig5();
@@ -46,50 +49,75 @@ struct Section {
 [[nodiscard]] Section speed(const Findings& f);
 [[nodiscard]] Section replay(const Findings& f);
 
-// ---- What several of them need
+// ---- What several of them need (figures_common.cpp)
 
-/// NAME.svg and NAME.pdf from one script of gnuplot.
-void draw(const std::string& name, int width, int height, const std::string& script);
+/// A figure of these panels, which follow each other in gnuplot's multiplot; `data`: what they
+/// read.
+[[nodiscard]] Figure figure_of(const Sheet& sheet, const std::string& data,
+                               const std::string& panels);
+
+/// Text in gnuplot's quotes with the paper's symbols as they are printed: F_prop, k_L, d = 50.
+[[nodiscard]] std::string quoted(const std::string& text);
+/// Such a text on the sheet, its middle at this height; until "unset label".
+[[nodiscard]] std::string words(const Sheet& sheet, const std::string& text, double left,
+                                double middle, int font = kFont);
+
+/// Where the next panel is drawn, and the names of its axes until "unset label" (gnuplot drops
+/// those of its own that it finds too wide); without a y its tics have no numbers.
+/// `room`: from the panel to the middle of its name.
+[[nodiscard]] std::string frame(const Sheet& sheet, const Box& box, const std::string& x,
+                                const std::string& y, double room = 48.0);
 
 /// Numbers as digits with spaces between them, a line of a table of gnuplot.
 [[nodiscard]] std::string line_of(const std::vector<double>& values);
 
-/// The multiple of `unit` next to x, for the page; null for what is no number.
-[[nodiscard]] Json rounded(double x, double unit);
+/// A share or percentage where a root scale has it; and the tics of such an axis, in %.
+[[nodiscard]] inline double root_percent(double share) { return std::sqrt(100.0 * share); }
+[[nodiscard]] std::string root_tics(const std::vector<double>& percents, bool numbers = true);
 
-/// Energies of drawn landscapes beyond this are cut off: beside the joints they leave every scale.
-inline constexpr double kCeiling = 500.0;  // J
+/// How tics and lines of a grid look.
+inline constexpr char kSmallTics[] = "set tics font ',12'\n";
+inline constexpr char kGrid[] = " lc rgb '#888888' lt 1 dt 3 lw 0.5";
 
-/// A landscape as the page draws it: x, y (m) and rows of z (J, null: none).
-[[nodiscard]] Json surface_of(const dynamics::GateParams& p, bool with_propulsion,
-                              dynamics::BeamsThatPush beams = dynamics::kBothBeams);
-/// The surface as blocks that gnuplot's pm3d reads, cut at the ceiling.
-[[nodiscard]] std::string blocks_of(const Json& surface, double ceiling = kCeiling);
-/// How surfaces are seen.
-inline constexpr char kSurfaceLook[] = R"(
-unset key
-set pm3d scansautomatic
-set xyplane 0
-set xlabel 'x (m)'
-set ylabel 'y (m)'
-set xrange [-25:25]
-set yrange [0:65]
-set xtics 25
-set ytics 20
-set cblabel 'J'
-)";
+/// A landscape from above with lines of equal energy (J), `step` apart; what is higher than the
+/// ceiling, beside the joints, is drawn as that; grey where the disc would cover a joint.
+struct EnergyMap {
+  std::string name;  // "$A"
+  double ceiling, step;
 
-/// A share with its interval, in a row of the page's chart `rates`.
-struct Rate {
-  std::string label, group;
-  Share share;
+  static constexpr double kWidth = 175, kHeight = 227.5;  // px, of 50 m and 65 m
+  /// Half of the paper's grid's, m.
+  static constexpr double kSpacing = 0.25;
+  /// `energy`: what of the landscape is drawn.
+  [[nodiscard]] std::string data(const dynamics::Landscape& l, const Eigen::ArrayXXd& energy) const;
+  /// With its upper left corner there, and names of its axes; "plot ..." without an end.
+  [[nodiscard]] std::string plot(const Sheet& sheet, double left, double top, const std::string& x,
+                                 const std::string& y) const;
+  /// Its colours, right of a map with its upper left corner there.
+  [[nodiscard]] std::string colours(const Sheet& sheet, double left, double top) const;
 };
-[[nodiscard]] Json to_json(const std::vector<Rate>& rates);
-/// Horizontal dots with 95 % bars, grouped, and a line at the paper's value `mark` (%), up to
-/// `most` (%).
-void draw_rates(const std::string& name, const std::vector<Rate>& rates, double mark,
-                const std::string& mark_label, const std::string& title, double most);
-/// Names as tics 0, 1, 2 ... of a y axis.
-[[nodiscard]] std::string tics_of(const std::vector<std::string>& names);
+/// A way over such a map: `what` of gnuplot's plot as a line with a dark edge.
+[[nodiscard]] std::string track(const std::string& what, double width, const std::string& colour);
+
+/// Dots with 95 % bars in rows, the rows in groups: shares that vary with one setting at a time.
+struct Series {
+  std::string name, colour;
+  int marker;
+};
+struct RateRow {
+  std::string label;
+  std::vector<Share> shares;  // of each series; not a number: none
+};
+struct RateGroup {
+  std::string name;
+  std::vector<RateRow> rows;
+  double mark = std::nan("");  // what the paper says of them
+  std::string mark_label;
+};
+[[nodiscard]] Figure rates(const std::vector<std::string>& head, const std::vector<Series>& series,
+                           const std::vector<RateGroup>& groups, const std::string& axis);
+/// Tics of rows from above: labels as they are; of a group its name, bold.
+[[nodiscard]] std::string row_tics(const std::vector<std::string>& labels);
+[[nodiscard]] inline std::string bold(const std::string& text) { return "{/:Bold " + text + "}"; }
 
 }  // namespace gatewalk::cli

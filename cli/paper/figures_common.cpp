@@ -1,26 +1,70 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "cli/paper/figures.h"
-#include "cli/render/figure.h"
-#include "cli/render/json.h"
-#include "cli/render/provenance.h"
 #include "cli/render/text.h"
-#include "cli/terminal/gnuplot.h"
-#include "cli/terminal/output.h"
-#include "cli/web/html.h"
 
 namespace gatewalk::cli {
 namespace {
 
-constexpr double kSpacing = 1.0;  // m, of drawn landscapes
+/// As the paper prints them; an index has kSmallFont in letters of either size.
+constexpr std::pair<const char*, const char*> kSymbols[] = {{"F_prop", "{/:Italic F}_{/=12 prop}"},
+                                                            {"k_L", "{/:Italic k}_{/=12 L}"},
+                                                            {"k_R", "{/:Italic k}_{/=12 R}"},
+                                                            {"v_x", "{/:Italic v_{/=12 x}}"},
+                                                            {"v_y", "{/:Italic v_{/=12 y}}"},
+                                                            {"i_x", "{/:Italic i_{/=12 x}}"},
+                                                            {"i_y", "{/:Italic i_{/=12 y}}"},
+                                                            {"Rm", "{/:Italic Rm}"},
+                                                            {"d = ", "{/:Italic d} = "},
+                                                            {"d in N", "{/:Italic d} in N"},
+                                                            {"n = ", "{/:Italic n} = "}};
 
 }  // namespace
 
-void draw(const std::string& name, int width, int height, const std::string& script) {
-  for (const char* end : {".svg", ".pdf"})
-    draw(name + end, Figure{width, height, script}, {name, "gatewalk reproduce"});
+Figure figure_of(const Sheet& sheet, const std::string& data, const std::string& panels) {
+  return {Sheet::kWidth, sheet.height,
+          "set encoding utf8\nset minussign\nunset key\nset tics out "
+          "nomirror scale 0.5\n"
+          "set xtics offset 0,0.4\n" +
+              data + "set multiplot\n" + panels + "unset multiplot\n",
+          kFont};
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (std::size_t i = 0; i < text.size();) {
+    const auto* const symbol = std::find_if(std::begin(kSymbols), std::end(kSymbols), [&](auto& s) {
+      const std::string_view plain = s.first;
+      return text.compare(i, plain.size(), plain) == 0;
+    });
+    if (symbol != std::end(kSymbols)) {
+      out += symbol->second;
+      i += std::string_view(symbol->first).size();
+    } else {
+      if (text[i] == '\'') out += '\'';  // doubled
+      out += text[i++];
+    }
+  }
+  return out + "'";
+}
+
+std::string words(const Sheet& sheet, const std::string& text, double left, double middle,
+                  int font) {
+  return "set label " + quoted(text) + " at screen " + sheet.at(left, middle) + " left font '," +
+         std::to_string(font) + "'\n";
+}
+
+std::string frame(const Sheet& sheet, const Box& box, const std::string& x, const std::string& y,
+                  double room) {
+  const auto name = [&](const std::string& text, double left, double top, const char* how) {
+    return text.empty() ? ""
+                        : "set label " + quoted(text) + " at screen " + sheet.at(left, top) +
+                              " center " + how + "\n";
+  };
+  return sheet.margins(box) + "set format y" + (y.empty() ? " ''\n" : "\n") +
+         name(x, 0.5 * (box.left + box.right), box.bottom + 42, "") +
+         name(y, box.left - room, 0.5 * (box.top + box.bottom), "rotate by 90");
 }
 
 std::string line_of(const std::vector<double>& values) {
@@ -29,92 +73,129 @@ std::string line_of(const std::vector<double>& values) {
   return line + "\n";
 }
 
-Json rounded(double x, double unit) {
-  if (!std::isfinite(x)) return nullptr;
-  // Through text: a multiple of 0.1 shall be written as one.
-  return std::strtod(digits(std::round(x / unit) * unit).c_str(), nullptr);
+std::string root_tics(const std::vector<double>& percents, bool numbers) {
+  std::string list;
+  for (const double p : percents)
+    list +=
+        (list.empty() ? "('" : ", '") + (numbers ? digits(p) : "") + "' " + digits(std::sqrt(p));
+  return list + ")";
 }
 
-Json surface_of(const dynamics::GateParams& p, bool with_propulsion,
-                dynamics::BeamsThatPush beams) {
-  const dynamics::Landscape l = dynamics::landscape(p, 0.0, kSpacing, beams);
-  const auto& e = with_propulsion ? l.total : l.elastic;
-  Json s{{"x", Json::array()}, {"y", Json::array()}, {"z", Json::array()}};
-  for (const double x : l.x) s["x"].push_back(rounded(x, 1e-3));
-  for (std::size_t i = 0; i < l.y.size(); ++i) {
-    s["y"].push_back(rounded(l.y[i], 1e-3));
-    Json row = Json::array();
-    for (std::size_t j = 0; j < l.x.size(); ++j) row.push_back(rounded(e(i, j), 0.1));
-    s["z"].push_back(std::move(row));
-  }
-  return s;
-}
+// ---- Landscapes
 
-/// The surface as blocks that gnuplot's pm3d reads, cut at the ceiling.
-std::string blocks_of(const Json& surface, double ceiling) {
+std::string EnergyMap::data(const dynamics::Landscape& l, const Eigen::ArrayXXd& energy) const {
   std::string rows;
-  const Json &x = surface["x"], &y = surface["y"], &z = surface["z"];
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    for (std::size_t j = 0; j < x.size(); ++j) {
-      const double e = z[i][j].is_number() ? std::min(z[i][j].get<double>(), ceiling) : ceiling;
-      rows += x[j].dump() + " " + y[i].dump() + " " + digits(e) + "\n";
+  for (std::size_t i = 0; i < l.y.size(); ++i) {
+    for (std::size_t j = 0; j < l.x.size(); ++j) {
+      const double e = energy(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      rows += digits(l.x[j]) + " " + digits(l.y[i]) + " " +
+              (std::isfinite(e) ? digits(std::min(e, ceiling)) : "NaN") + "\n";
     }
     rows += "\n";
   }
-  return rows;
+  return data_block(name, rows) +
+         "set contour base\nunset surface\nset cntrparam levels incremental " + digits(step) + "," +
+         digits(step) + "," + digits(ceiling - step) + "\nset table " + name + "_lines\nsplot " +
+         name + " using 1:2:3 with lines\nunset table\nunset contour\nset surface\n";
 }
 
-std::string tics_of(const std::vector<std::string>& names) {
+std::string EnergyMap::plot(const Sheet& sheet, double left, double top, const std::string& x,
+                            const std::string& y) const {
+  return kSequential + frame(sheet, {left, left + kWidth, top, top + kHeight}, x, y) + kSmallTics +
+         "set border 15\nset cbrange [0:" + digits(ceiling) +
+         "]\nset xrange [-25:25]\nset yrange [0:65]\nset xtics 20\nset ytics 20\n"
+         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#999999' "
+         "fillstyle solid noborder\nplot " +
+         name + " using 1:2:3 with image, " + name + "_lines using 1:2:($3 > " +
+         digits(0.55 * ceiling) + " ? 0x000000 : 0xffffff) with lines lw 0.5 lc rgb variable";
+}
+
+std::string EnergyMap::colours(const Sheet& sheet, double left, double top) const {
+  const double bar = left + kWidth + 12;
+  return "set cbtics 100 font ',12' offset -0.8,0\nset colorbox user origin screen " +
+         sheet.at(bar, top + kHeight) + " size screen " + digits(12.0 / Sheet::kWidth) + "," +
+         digits(kHeight / sheet.height) + "\n" +
+         words(sheet, "J, cut at", bar, top - 34, kSmallFont) +
+         words(sheet, digits(ceiling) + " J", bar, top - 18, kSmallFont);
+}
+
+std::string track(const std::string& what, double width, const std::string& colour) {
+  return what + " with lines lw " + digits(width + 0.9) + " lc rgb '#000000', " + what +
+         " with lines lw " + digits(width) + " lc rgb '" + colour + "'";
+}
+
+// ---- Rows of shares
+
+std::string row_tics(const std::vector<std::string>& labels) {
   std::string list;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string quoted = literal(names[i]);
-    list +=
-        (i ? ", " : "") + quoted.substr(0, quoted.rfind(" noenhanced")) + " " + std::to_string(i);
-  }
-  return "set ytics (" + list + ") noenhanced";
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    list += (i ? ", " : "(") + quoted(labels[i]) + " " + std::to_string(i);
+  return "set ytics " + list + ") scale 0 font ',12'\nset yrange [" +
+         digits(static_cast<double>(labels.size()) - 0.4) + ":-0.6]\n";
 }
 
-Json to_json(const std::vector<Rate>& rates) {
-  Json rows = Json::array();
-  for (const Rate& r : rates)
-    rows.push_back({{"label", r.label},
-                    {"group", r.group},
-                    {"value", r.share.value},
-                    {"low", r.share.low},
-                    {"high", r.share.high}});
-  return rows;
-}
-
-void draw_rates(const std::string& name, const std::vector<Rate>& rates, double mark,
-                const std::string& mark_label, const std::string& title, double most) {
-  std::string lines;
-  std::vector<std::string> names;
-  for (const Rate& r : rates) {
-    lines += std::to_string(names.size()) + " " +
-             line_of({100 * r.share.value, 100 * r.share.low, 100 * r.share.high});
-    names.push_back(r.group + ": " + r.label);
+Figure rates(const std::vector<std::string>& head, const std::vector<Series>& series,
+             const std::vector<RateGroup>& groups, const std::string& axis) {
+  double most = 0.0;
+  for (const RateGroup& g : groups) {
+    most = std::fmax(most, g.mark);
+    for (const RateRow& row : g.rows)
+      for (const Share& s : row.shares) most = std::fmax(most, 100.0 * s.high);
   }
-  const std::size_t n = names.size();
-  draw(name, 1000, static_cast<int>(140 + 17 * n),
-       data_block("$rates", lines) + filled(R"(
-set title '{{title}}' offset 0,1
-set yrange [{{n}}:-1]
-{{tics}} font ',9'
-set xlabel '%'
-set xrange [-0.01*{{most}}:{{most}}]
-set grid x
-unset key
-set arrow from {{mark}},graph 0 to {{mark}},graph 1 nohead dt 2 lw 2 lc rgb '#d55e00'
-set label {{label}} at {{mark}},graph 1.02 center tc rgb '#d55e00'
-set tmargin 5
-plot $rates using 2:1:3:4 with xerrorbars pt 7 ps 0.6 lc rgb '#0072b2'
-)",
-                                            {{"title", title},
-                                             {"n", std::to_string(n)},
-                                             {"tics", tics_of(names)},
-                                             {"most", digits(most)},
-                                             {"mark", digits(mark)},
-                                             {"label", literal(mark_label)}}));
+  const RootScale scale(most);
+  const double end = std::sqrt(scale.most());
+  std::vector<std::string> labels;
+  std::vector<std::string> dots(series.size());
+  std::string guides, marks, texts;
+  for (const RateGroup& g : groups) {
+    const auto first = static_cast<double>(labels.size());
+    labels.push_back(bold(g.name));
+    for (const RateRow& row : g.rows) {
+      const auto at = static_cast<double>(labels.size());
+      labels.push_back(row.label);
+      guides += line_of({0, at, end, 0});
+      for (std::size_t i = 0; i < row.shares.size(); ++i) {
+        const Share& s = row.shares[i];
+        const double beside =
+            0.26 * (static_cast<double>(i) - 0.5 * static_cast<double>(series.size() - 1));
+        if (!std::isnan(s.value))
+          dots[i] += line_of(
+              {root_percent(s.value), at + beside, root_percent(s.low), root_percent(s.high)});
+      }
+    }
+    if (std::isnan(g.mark)) continue;
+    const double x = std::sqrt(g.mark);
+    marks += line_of({x, first + 0.5, 0, static_cast<double>(g.rows.size())});
+    if (!g.mark_label.empty())
+      texts += "set label " + quoted(g.mark_label) + " at " + digits(x) + "," + digits(first) +
+               " center font ',12'\n";
+  }
+  const double top =
+      18.0 + 22.0 * static_cast<double>(head.size()) + (series.size() > 1 ? 22.0 : 0.0);
+  const Box box{186, 488, top, top + 19.0 * static_cast<double>(labels.size())};
+  const Sheet sheet{static_cast<int>(box.bottom + 60)};
+  std::string data = data_block("$guides", guides);
+  std::string plot = std::string("plot $guides using 1:2:3:4 notitle with vectors nohead") + kGrid;
+  for (std::size_t i = 0; i < head.size(); ++i)
+    texts += words(sheet, head[i], 8, 18 + 22.0 * static_cast<double>(i));
+  if (!marks.empty()) {
+    data += data_block("$marks", marks);
+    plot += ", $marks using 1:2:3:4 notitle with vectors nohead lt -1 lw 1.5 dt 2";
+  }
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const std::string name = "$series" + std::to_string(i);
+    data += data_block(name, dots[i].empty() ? "NaN NaN NaN NaN\n" : dots[i]);
+    plot += ", " + name + " using 1:2:3:4 with xerrorbars lw 1.2 pt " +
+            std::to_string(series[i].marker) + " ps 0.5 lc rgb '" + series[i].colour + "'" +
+            (series.size() > 1 ? " title " + quoted(series[i].name) : "");
+  }
+  if (series.size() > 1)
+    texts += "set key at screen " + sheet.at(8, top - 20) +
+             " left center maxrows 1 Left reverse samplen 1.5\n";
+  return figure_of(sheet, data,
+                   frame(sheet, box, axis, "") + texts + row_tics(labels) +
+                       "set border 1\nset xrange [0:" + digits(1.02 * end) + "]\nset xtics (" +
+                       scale.tics() + ")\n" + "set bars 0.4\n" + plot + "\n");
 }
 
 }  // namespace gatewalk::cli

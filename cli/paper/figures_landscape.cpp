@@ -1,132 +1,159 @@
-#include <algorithm>
 #include <cmath>
 
 #include "cli/paper/figures.h"
 #include "cli/paper/studies.h"
 #include "cli/render/csv.h"
-#include "cli/render/figure.h"
-#include "cli/render/provenance.h"
 #include "cli/render/text.h"
-#include "cli/terminal/gnuplot.h"
-#include "cli/terminal/output.h"
-#include "cli/web/html.h"
 
 namespace gatewalk::cli {
 
 Section fig5() {
-  const auto equal = gate_of("scenes/single_gate.toml", {set(kPropulsion, 7)});
-  const auto unequal =
-      gate_of("scenes/single_gate.toml",
-              {set(kPropulsion, 7), set(kLeftStiffness, 500), set(kRightStiffness, 250)});
-  Json panels = Json::array();
-  const auto add = [&](const char* name, const char* title, const Json& surface) {
-    Json panel{{"name", name}, {"title", title}};
-    panel.update(surface);
-    panels.push_back(std::move(panel));
+  const auto landscape_of = [](const std::vector<std::string>& settings) {
+    return dynamics::landscape(gate_of("scenes/single_gate.toml", settings), 0.0,
+                               EnergyMap::kSpacing);
   };
-  add("A", "elastic energy, k_L = k_R = 400", surface_of(equal, false));
-  panels.push_back(panels[0]);
-  panels[1]["name"] = "B";
-  panels[1]["title"] = "the same from above";
-  add("C", "elastic energy, k_L = 500, k_R = 250", surface_of(unequal, false));
-  add("D", "with a propulsion of 7 N, k = 400", surface_of(equal, true));
+  const dynamics::Landscape equal = landscape_of({set(kPropulsion, 7)});
+  const dynamics::Landscape unequal =
+      landscape_of({set(kPropulsion, 7), set(kLeftStiffness, 500), set(kRightStiffness, 250)});
+  struct Panel {
+    const char *letter, *what, *settings;
+    const dynamics::Landscape& landscape;
+    const Eigen::ArrayXXd& energy;
+    double left, top;
+    const char* colour;  // of its section
+  };
+  constexpr double kLeft = 58, kRight = 258, kUpper = 50, kLower = 352;
+  const Panel panels[] = {{"A", "A, B  elastic energy", "k_L = k_R = 400 N m/rad", equal,
+                           equal.elastic, kLeft, kUpper, kFirstColour},
+                          {"C", "C  elastic energy", "k_L = 500, k_R = 250 N m/rad", unequal,
+                           unequal.elastic, kRight, kUpper, kSecondColour},
+                          {"D", "D  with the propulsion", "F_prop = 7 N, k_L = k_R = 400", equal,
+                           equal.total, kLeft, kLower, kThirdColour}};
+  constexpr double kCeiling = 500.0;  // J
+  constexpr std::size_t kStep = 4;    // of what is drawn, that of the numbers
+  const Sheet sheet{662};
   Csv csv("panel,x_m,y_m,energy_J");
-  std::string script;
-  for (const Json& p : panels) {
-    const std::string name = p["name"];
-    if (name == "B") continue;  // A's numbers
-    script += data_block("$" + name, blocks_of(p));
-    for (std::size_t i = 0; i < p["y"].size(); ++i)
-      for (std::size_t j = 0; j < p["x"].size(); ++j)
-        csv.row(name, p["x"][j].get<double>(), p["y"][i].get<double>(),
-                p["z"][i][j].is_null() ? std::nan("") : p["z"][i][j].get<double>());
+  std::string data, maps, sections = "plot";
+  for (const Panel& p : panels) {
+    const EnergyMap map{std::string("$") + p.letter, kCeiling, 50.0};
+    std::string section;
+    const auto middle = static_cast<Eigen::Index>(p.landscape.x.size() / 2);
+    for (std::size_t i = 0; i < p.landscape.y.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      section += line_of({p.energy(row, middle), p.landscape.y[i]});
+      for (std::size_t j = 0; i % kStep == 0 && j < p.landscape.x.size(); j += kStep) {
+        const double e = p.energy(row, static_cast<Eigen::Index>(j));
+        csv.row(p.letter, p.landscape.x[j], p.landscape.y[i],
+                std::isfinite(e) ? std::round(10.0 * e) / 10.0 : std::nan(""));
+      }
+    }
+    data += map.data(p.landscape, p.energy) + data_block(map.name + "_middle", section);
+    maps += words(sheet, p.what, p.left, p.top - 28, kSmallFont) +
+            words(sheet, p.settings, p.left, p.top - 11, kSmallFont) +
+            (&p == panels ? map.colours(sheet, kRight, p.top) : "unset colorbox\n") +
+            map.plot(sheet, p.left, p.top, p.top == kLower ? "x (m)" : "",
+                     p.left == kLeft ? "y (m)" : "") +
+            "\nunset label\n";
+    sections += std::string(&p == panels ? " " : ", ") + map.name +
+                "_middle using 1:2 with lines lw 2 lc rgb '" + p.colour + "' title '" + p.letter +
+                "'";
   }
-  write_text_atomically("fig5.csv", csv.text());
-  draw("fig5", 1100, 900,
-       script + kSequential + kSurfaceLook +
-           filled(R"(
-set cbrange [0:{{ceiling}}]
-set zrange [0:{{ceiling}}]
-set multiplot layout 2,2
-set view 55,335
-set title 'A  elastic energy, k_L = k_R = 400 N m/rad'
-splot $A every 2:2 using 1:2:3 with pm3d
-set title 'B  the same from above'
-plot $A using 1:2:3 with image pixels
-set title 'C  k_L = 500, k_R = 250'
-splot $C every 2:2 using 1:2:3 with pm3d
-set title 'D  with the propulsion, F_{prop} = 7 N, k = 400'
-splot $D every 2:2 using 1:2:3 with pm3d
-unset multiplot
-)",
-                  {{"ceiling", digits(kCeiling)}}));
+  const Box box{kRight, kRight + EnergyMap::kWidth, kLower, kLower + EnergyMap::kHeight};
   return {
       "fig5",
       "Fig. 5: the potential energy landscape",
       {"Eqs. (14) and (15): what it costs to stand somewhere in the gate with both beams deflected "
-       "forward. A: two barriers that overlap in the middle. "
-       "C: a softer right beam has the lower one. D: a propulsion tilts it all, and a basin "
-       "appears in front of the beams.",
+       "forward. A and B, one map here: two barriers that overlap in the middle. C: a softer right "
+       "beam has the lower one. D: a propulsion tilts it all, and a basin appears in front of the "
+       "beams. The fourth panel shows the three along the middle of the gate.",
        "Energies above 500 J, beside the joints, are cut off in the picture. Where the disc would "
-       "cover a joint no angle of the beam is possible; that is drawn as the ceiling or left out. "
-       "The propulsion's energy is zero at y = 65 m, where a single gate counts as traversed; the "
-       "paper puts the zero at 60 m, which shifts all energies by 5 m times the propulsion."},
-      "Four panels: elastic energy over the gate as a surface and from above with two ridges "
-      "rising towards the joints; the same with unequal beams; with propulsion, tilted towards the "
-      "far side.",
+       "cover a joint no angle of the beam is possible: grey. The propulsion's energy is zero at y "
+       "= 65 m, where a single gate counts as traversed; the paper puts the zero at 60 m, which "
+       "shifts all energies by 5 m times the propulsion."},
+      "Three maps of the energy over the gate with lines of equal energy: elastic, two ridges that "
+      "rise towards the joints; with a softer right beam, lower on its side; with propulsion, high "
+      "before the beams and falling towards the far side. Beside them the three along x = 0: from "
+      "zero up to about 330 J and sharply down, or with the propulsion from 455 J to a basin and "
+      "over the barrier.",
       {"fig5_symmetric", "fig5_asymmetric"},
-      "landscapes",
-      {{"panels", panels}, {"ceiling", kCeiling}}};
+      csv.text(),
+      figure_of(
+          sheet, data,
+          maps + frame(sheet, box, "energy (J)", "") +
+              words(sheet, "sections along x = 0", box.left, box.top - 11, kSmallFont) +
+              words(sheet, "lines of equal energy: every 50 J; grey: the disc would cover a joint",
+                    8, sheet.height - 14, kSmallFont) +
+              "unset object\nset xrange [-15:500]\nset xtics 100\n"
+              "set border 3\nset grid" +
+              kGrid + "\nset key at screen " + sheet.at(box.right + 10, box.top) +
+              " left top Left reverse samplen 1.5\n" + sections + "\n")};
 }
 
 Section barriers(const Findings& f) {
   Csv csv("k_left_Nm_per_rad,damping_Nms_per_rad,above_start_J,above_basin_J,traversed,low,high");
-  Json rows = Json::array();
-  std::string lines[2];
+  std::string heights, none, shares[2];
+  double trials = 0.0;
   for (const auto& [k, landscape] : f.barriers) {
     const auto& [start, basin, downhill, place] = landscape.fine;
+    (downhill ? none : heights) += std::to_string(k) + " " + line_of({basin, start});
     for (const int damping : {10, 50}) {
       const Share s =
           f.fig12.at({{kDamping, damping}, {kPropulsion, 7}, {kRandom, 10}, {kLeftStiffness, k}})
               .traversed_share();
-      const double none = std::nan("");
-      csv.row(k, damping, downhill ? none : start, downhill ? none : basin, s.value, s.low, s.high);
-      rows.push_back({{"k_left", k},
-                      {"damping", damping},
-                      {"above_start_J", downhill ? Json(nullptr) : Json(start)},
-                      {"above_basin_J", basin},
-                      {"traversed", s.value},
-                      {"low", s.low},
-                      {"high", s.high}});
-      lines[damping == 10] +=
-          std::to_string(k) + " " + line_of({basin, 100 * s.value, 100 * s.low, 100 * s.high});
+      const double nan = std::nan("");
+      csv.row(k, damping, downhill ? nan : start, downhill ? nan : basin, s.value, s.low, s.high);
+      shares[damping == 10] +=
+          std::to_string(k) + " " +
+          line_of({root_percent(s.value), root_percent(s.low), root_percent(s.high)});
+      trials = static_cast<double>(s.whole);
     }
   }
-  write_text_atomically("barriers.csv", csv.text());
-  draw("barriers", 800, 480, data_block("$d50", lines[0]) + data_block("$d10", lines[1]) + R"(
-set xlabel 'highest point of the lowest way through, above the basin before it (J; 0: no basin)'
-set ylabel 'traversed (%)'
-set yrange [-3:103]
-set offsets graph 0.05, graph 0.05, 0, 0
-set grid
-set key top right
-set title 'Who gets over the barrier: F_{prop} = 7 N, Rm = 10 N, k_R = 500, k_L = 100 to 500 N m/rad'
-plot $d10 using 2:3:4:5 with yerrorlines pt 7 ps 0.7 lc rgb '#d55e00' title 'd = 10', \
-     $d50 using 2:3:4:5 with yerrorlines pt 5 ps 0.7 lc rgb '#0072b2' title 'd = 50', \
-     $d10 using 2:3:(sprintf('k_L %d', $1)) with labels offset 0,1 font ',9' notitle
-)");
-  return {"barriers",
-          "Barriers and who passes them",
-          {"Of all ways through the gate, the lowest one's highest point is the barrier (minimax "
-           "path on a grid of 0.05 m); its height above the basin before it is what a body that "
-           "has settled there must climb. Zero: no basin, downhill to the far side.",
-           "Height is not all: the same barrier lets more through where beams are damped less. And "
-           "the height above the start says little: with k_L = 450 the lowest way lies below the "
-           "start, yet hardly anybody traverses, because hits and dampers take the energy."},
-          "Traversal against the barrier's height above the basin: from nearly all without a basin "
-          "to nearly none at 170 J.",
-          {"barrier_100", "barrier_300", "barrier_500", "fig12"},
-          "barriers",
-          {{"rows", rows}}};
+  if (none.empty()) none = "NaN NaN NaN\n";
+  const Sheet sheet{594};
+  const Box upper{78, 488, 96, 286}, lower{78, 488, 346, 536};
+  const auto key = [&](double middle, const char* how) {
+    return "set key at screen " + sheet.at(upper.left, middle) + " left center " + how +
+           " Left reverse samplen 2.5\n";
+  };
+  return {
+      "barriers",
+      "Barriers and who passes them",
+      {"Of all ways through the gate, the lowest one's highest point is the barrier (minimax "
+       "path on a grid of 0.05 m); its height above the basin before it is what a body that "
+       "has settled there must climb. Without a basin it is downhill to the far side.",
+       "Height is not all: the same barrier lets more through where beams are damped less. And "
+       "the height above the start says little: with k_L = 450 the lowest way lies below the "
+       "start, yet hardly anybody traverses, because hits and dampers take the energy."},
+      "Above, over the stiffness of the left beam: the barrier rises from no basin at 100 N m/rad "
+      "to 174 J above the basin at 500, and from far below the start to 20 J above it. Below: "
+      "nearly all traverse at 100, next to nobody from 400 on; in between more with the smaller "
+      "damping.",
+      {"barrier_100", "barrier_300", "barrier_500", "fig12"},
+      csv.text(),
+      figure_of(
+          sheet,
+          data_block("$heights", heights) + data_block("$none", none) +
+              data_block("$d50", shares[0]) + data_block("$d10", shares[1]),
+          words(sheet, "F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad", 8, 18) +
+              frame(sheet, upper, "", "barrier (J)", 64) + key(64, "maxcols 1") +
+              "set border 3\nset grid ytics" + kGrid +
+              "\nset xrange [75:525]\nset xtics 100,50\n"
+              "set format x ''\nset yrange [-200:220]\nset ytics 100\nplot $heights using 1:2 with "
+              "linespoints lt -1 lw 1.5 pt 7 ps 0.8 title "
+              "'above the basin', '' using 1:3 with linespoints lt -1 lw 1.5 dt 2 pt 6 ps 0.8 "
+              "title 'above the start', $none using 1:(0) with points lt -1 pt 2 ps 0.8 title "
+              "'no basin'\nunset label\n" +
+              frame(sheet, lower, "k_L (N m/rad)", "traversed (%, root scale)", 64) +
+              key(322, "maxrows 1") +
+              "set format x\n"
+              "set yrange [-0.3:10.3]\nset ytics " +
+              root_tics({0, 1, 5, 20, 50, 100}) + "\n" +
+              words(sheet, "d in N m s/rad", 330, 314, kSmallFont) +
+              words(sheet, "95 % intervals, n = " + digits(trials), 330, 330, kSmallFont) +
+              "plot $d50 using 1:2:3:4 with yerrorlines lw 1.5 pt 7 ps 0.7 lc rgb '" +
+              kFirstColour + "' title " + quoted("d = 50") +
+              ", $d10 using 1:2:3:4 with yerrorlines lw 1.5 pt 5 ps 0.7 lc rgb '" + kSecondColour +
+              "' title " + quoted("d = 10") + "\n")};
 }
+
 }  // namespace gatewalk::cli

@@ -4,25 +4,11 @@
 #include "cli/paper/figures.h"
 #include "cli/paper/studies.h"
 #include "cli/render/csv.h"
-#include "cli/render/figure.h"
-#include "cli/render/json.h"
-#include "cli/render/provenance.h"
 #include "cli/render/text.h"
-#include "cli/terminal/gnuplot.h"
-#include "cli/terminal/output.h"
-#include "cli/web/html.h"
 
 namespace gatewalk::cli {
 
 namespace {
-
-/// Every n-th moment and the last one.
-Json thinned(const std::vector<double>& values, std::size_t n, double unit) {
-  Json out = Json::array();
-  for (std::size_t i = 0; i < values.size(); i += n) out.push_back(rounded(values[i], unit));
-  if ((values.size() - 1) % n != 0) out.push_back(rounded(values.back(), unit));
-  return out;
-}
 
 /// How far a run sinks below the landscape (J).
 double depth_of(const TracedRun& run) {
@@ -32,6 +18,21 @@ double depth_of(const TracedRun& run) {
   return depth;
 }
 
+/// A sample of a trajectory's colour, on one of the maps', with words.
+std::string sample(const Sheet& sheet, const std::string& colour, const std::string& text,
+                   double left, double middle) {
+  const auto line = [&](const char* width, const std::string& ink) {
+    return "set arrow from screen " + sheet.at(left + 3, middle) + " to screen " +
+           sheet.at(left + 33, middle) + " nohead front lw " + width + " lc rgb '" + ink + "'\n";
+  };
+  return "set object rectangle from screen " + sheet.at(left, middle + 8) + " to screen " +
+         sheet.at(left + 36, middle - 8) + " fillcolor rgb '#277f8e' fillstyle solid noborder\n" +
+         line("3.4", "#000000") + line("2", colour) +
+         words(sheet, text, left + 44, middle, kSmallFont);
+}
+
+constexpr char kWay[] = "#ffffff", kOther[] = "#ff9d5c";  // of tracks over maps
+
 }  // namespace
 
 Section fig6(const Findings& f) {
@@ -39,69 +40,66 @@ Section fig6(const Findings& f) {
   const TracedRun& run = *std::max_element(
       f.fig6.runs.begin(), f.fig6.runs.end(),
       [](const TracedRun& a, const TracedRun& b) { return depth_of(a) < depth_of(b); });
+  constexpr double kBelow = 1.0;  // J, drawn as below the landscape
   Csv csv("time_s,x_m,y_m,potential_J,landscape_J,landscape_right_beam_J");
-  Json right = Json::array();
   std::string rows;
   for (std::size_t i = 0; i < run.t.size(); ++i) {
     const double one = run.landscape[i] - run.landscape_left[i];
-    right.push_back(rounded(one, 0.01));
     csv.row(run.t[i], run.x[i], run.y[i], run.potential[i], run.landscape[i], one);
     rows += line_of({run.t[i], run.x[i], run.y[i], run.potential[i], run.landscape[i], one});
   }
-  write_text_atomically("fig6.csv", csv.text());
-  constexpr double kHigh = 650.0;  // J: 9 N lift the start above kCeiling
   const auto p = gate_of("scenes/single_gate.toml", {set(kPropulsion, 9), set(kRandom, 10)});
-  const Json both = surface_of(p, true), alone = surface_of(p, true, {false, true});
-  draw("fig6", 1200, 800,
-       data_block("$run", rows) + data_block("$both", blocks_of(both, kHigh)) +
-           data_block("$alone", blocks_of(alone, kHigh)) + kSequential + kSurfaceLook +
-           filled(R"(
-set cbrange [0:{{high}}]
-set zrange [0:{{high}}]
-set multiplot
-set view 50,320
-set size 0.5,0.58
-set origin 0,0.42
-set title 'B  over the landscape of both beams'
-splot $both using 1:2:3 with pm3d, $run using 2:3:4 with lines lw 3 lc rgb '#d55e00'
-set origin 0.5,0.42
-set title 'C  over that of the right beam alone'
-splot $alone using 1:2:3 with pm3d, $run using 2:3:4 with lines lw 3 lc rgb '#d55e00'
-reset
-set size 1,0.42
-set origin 0,0
-set key top right
-set grid
-set xlabel 'time (s)'
-set ylabel 'energy (J)'
-plot $run using 1:5 with lines lw 2 lc rgb '#999999' title 'landscape, both beams', \
-     $run using 1:6 with lines lw 2 dt 2 lc rgb '#0072b2' title 'landscape, right beam alone', \
-     $run using 1:4 with lines lw 2 lc rgb '#d55e00' title 'potential energy of the system'
-unset multiplot
-)",
-                  {{"high", digits(kHigh)}}));
-  Json surfaces = Json::array({both, alone});
-  surfaces[0]["title"] = "landscape of both beams";
-  surfaces[1]["title"] = "landscape of the right beam alone";
-  return {"fig6",
-          "Fig. 6: a trajectory that dives through the landscape",
-          {"A body that pushes past the right beam (" + run.label +
+  const auto of_both = dynamics::landscape(p, 0.0, EnergyMap::kSpacing),
+             of_right = dynamics::landscape(p, 0.0, EnergyMap::kSpacing, {false, true});
+  constexpr double kUpper = 66, kLeft = 58, kRight = 258;
+  const double bottom = kUpper + EnergyMap::kHeight;
+  const EnergyMap both{"$both", 600.0, 50.0}, alone{"$alone", 600.0, 50.0};
+  const Box time{66, 488, bottom + 162, bottom + 342};
+  const Sheet sheet{static_cast<int>(time.bottom + 62)};
+  const auto map_of = [&](const EnergyMap& map, double left, int landscape) {
+    const std::string below = "$run using 2:($4 < $" + std::to_string(landscape) + " - " +
+                              digits(kBelow) + " ? $3 : NaN)";
+    return map.plot(sheet, left, kUpper, "x (m)", left == kLeft ? "y (m)" : "") + ", " +
+           track("$run using 2:3", 1.2, kWay) + ", " + track(below, 2.6, kOther) +
+           "\nunset label\nunset colorbox\n";
+  };
+  const double end = run.t.back();
+  return {
+      "fig6",
+      "Fig. 6: a trajectory that dives through the landscape",
+      {"A body that pushes past the right beam (" + run.label +
            "). The landscape assumes that both beams are deflected; once the left one has let go, "
            "the system's energy is below it, here by up to " +
            fixed(depth_of(run), 0) +
-           " J. With the landscape of the right beam alone that is gone or less (dashed)."},
-          "Energies against time: the system's potential energy follows the landscape of both "
-          "beams, then falls below it while it stays above that of the right beam alone.",
-          {"fig6"},
-          "penetration",
-          {{"t", thinned(run.t, 1, 1e-3)},
-           {"potential", thinned(run.potential, 1, 0.01)},
-           {"landscape", thinned(run.landscape, 1, 0.01)},
-           {"landscape_right", right},
-           {"x", thinned(run.x, 1, 0.01)},
-           {"y", thinned(run.y, 1, 0.01)},
-           {"surfaces", surfaces},
-           {"ceiling", kHigh}}};
+           " J. With the landscape of the right beam alone that is gone or less.",
+       "B and C as in the paper, seen from above. Orange: where the system has more than " +
+           fixed(kBelow, 0) + " J less than the landscape."},
+      "Two maps of the energy with the body's way from below, past the right beam, to the far "
+      "side: over that of both beams a part of it is orange, over that of the right beam alone "
+      "less or none. Below, energies over time: the system's follows the landscape of both beams, "
+      "then falls below it while it stays at or above that of the right beam alone.",
+      {"fig6"},
+      csv.text(),
+      figure_of(
+          sheet,
+          data_block("$run", rows) + both.data(of_both, of_both.total) +
+              alone.data(of_right, of_right.total),
+          words(sheet, "F_prop = 9 N, Rm = 10 N, k_L = k_R = 400 N m/rad", 8, 18) +
+              words(sheet, "B  landscape of both beams", kLeft, kUpper - 11, kSmallFont) +
+              words(sheet, "C  of the right beam alone", kRight, kUpper - 11, kSmallFont) +
+              both.colours(sheet, kRight, kUpper) + map_of(both, kLeft, 5) +
+              sample(sheet, kWay, "the body's way", kLeft, bottom + 66) +
+              sample(sheet, kOther, "more than 1 J below the landscape", 210, bottom + 66) +
+              map_of(alone, kRight, 6) + "unset object\nunset arrow\n" +
+              frame(sheet, time, "time (s)", "energy (J)", 54) + "set border 3\nset grid" + kGrid +
+              "\nset key at screen " + sheet.at(kLeft, bottom + 86) +
+              " left top Left reverse samplen 3\nset xrange [" + digits(-0.02 * end) + ":" +
+              digits(1.02 * end) + "]\nset yrange [-40:*]\nset xtics 1\nset ytics 100\n" +
+              "plot $run using 1:4 with lines lw 2.5 lc rgb '" + kSecondColour +
+              "' title 'potential energy of the system', '' using 1:5 with lines lw 1.5 lc rgb '" +
+              kFirstColour +
+              "' title 'landscape of both beams there', '' using 1:6 with lines lt -1 lw 1.5 dt 2 "
+              "title 'landscape of the right beam alone there'\n")};
 }
 
 namespace {
@@ -111,107 +109,79 @@ struct Panel {
   const Trace& traced;
   double k_left, damping;
   const char* letter;
-
-  [[nodiscard]] std::string title() const {
-    return "k_L = " + digits(k_left) + ", k_R = 500, d = " + digits(damping);
-  }
+  double left, top;  // px
 };
-
-/// What gnuplot and the page draw of a panel.
-struct DrawnPanel {
-  std::string data, plot;
-  Json json;
-};
-
-DrawnPanel drawn_panel(const Panel& panel, Csv& csv) {
-  std::int64_t left = 0, right = 0;
-  Json runs = Json::array();
-  std::string tracks[2];
-  for (const TracedRun& run : panel.traced.runs) {
-    const bool to_right = run.ending == "traversed right";
-    const std::string side = to_right ? "right" : "left";
-    (to_right ? right : left) += 1;
-    for (std::size_t i = 0; i < run.t.size(); i += 5) {
-      csv.row(panel.letter, panel.k_left, panel.damping, static_cast<double>(run.trial), side,
-              run.t[i], run.x[i], run.y[i], run.potential[i]);
-      tracks[to_right] += line_of({run.x[i], run.y[i]});
-    }
-    tracks[to_right] += "\n";
-    runs.push_back({{"side", side},
-                    {"x", thinned(run.x, 5, 0.01)},
-                    {"y", thinned(run.y, 5, 0.01)},
-                    {"e", thinned(run.potential, 5, 0.1)}});
-  }
-  const Json surface =
-      surface_of(gate_of("scenes/soft_left.toml", {set(kLeftStiffness, panel.k_left)}), true);
-  const auto text = [&](std::int64_t n) {
-    return std::to_string(n) + " of " + std::to_string(panel.traced.trials);
-  };
-  const std::string name = std::string("$") + panel.letter;
-  DrawnPanel out;
-  out.data = data_block(name, blocks_of(surface)) +
-             data_block(name + "left", tracks[0].empty() ? "NaN NaN\n" : tracks[0]) +
-             data_block(name + "right", tracks[1].empty() ? "NaN NaN\n" : tracks[1]);
-  out.plot = filled(R"(
-set title "{{letter}}  {{title}}\nleft {{left}}, right {{right}}"
-plot {{name}} using 1:2:3 with image notitle, \
-     {{name}}left using 1:2 with lines lw 1 lc rgb '#ffffff' title 'left', \
-     {{name}}right using 1:2 with lines lw 1 lc rgb '#ff5050' title 'right'
-)",
-                    {{"letter", panel.letter},
-                     {"title", panel.title()},
-                     {"left", text(left)},
-                     {"right", text(right)},
-                     {"name", name}});
-  out.json = {
-      {"title", panel.title()}, {"left", text(left)}, {"right", text(right)}, {"runs", runs}};
-  out.json.update(surface);
-  return out;
-}
 
 }  // namespace
 
 Section fig9(const Findings& f) {
-  Json panels = Json::array();
+  constexpr double kLeft = 58, kRight = 258, kUpper = 70, kLower = 384;
+  const Sheet sheet{static_cast<int>(kLower + EnergyMap::kHeight + 62)};
   Csv csv("panel,k_left_Nm_per_rad,damping_Nms_per_rad,trial,side,time_s,x_m,y_m,potential_J");
-  std::string data, plots;
-  for (const Panel& panel : {Panel{f.fig9_500, 500, 50, "A"}, Panel{f.fig9_300, 300, 10, "B"},
-                             Panel{f.fig9_100, 100, 10, "C"}}) {
-    DrawnPanel out = drawn_panel(panel, csv);
-    data += out.data;
-    plots += out.plot;
-    panels.push_back(std::move(out.json));
+  std::string data,
+      maps = words(sheet, "traversed; F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad", 8, 18);
+  for (const Panel& panel : {Panel{f.fig9_500, 500, 50, "A", kLeft, kUpper},
+                             Panel{f.fig9_300, 300, 10, "B", kRight, kUpper},
+                             Panel{f.fig9_100, 100, 10, "C", kLeft, kLower}}) {
+    std::string tracks[2];
+    std::int64_t count[2] = {0, 0};
+    for (const TracedRun& run : panel.traced.runs) {
+      const bool right = run.ending == "traversed right";
+      ++count[right];
+      for (std::size_t i = 0; i < run.t.size(); i += 5) {
+        csv.row(panel.letter, panel.k_left, panel.damping, static_cast<double>(run.trial),
+                right ? "right" : "left", run.t[i], run.x[i], run.y[i], run.potential[i]);
+        tracks[right] += line_of({run.x[i], run.y[i]});
+      }
+      tracks[right] += "\n";
+    }
+    const EnergyMap map{std::string("$") + panel.letter, 700.0, 50.0};
+    const auto l =
+        dynamics::landscape(gate_of("scenes/soft_left.toml", {set(kLeftStiffness, panel.k_left)}),
+                            0.0, EnergyMap::kSpacing);
+    data += map.data(l, l.total);
+    std::string plot = map.plot(sheet, panel.left, panel.top, panel.top == kLower ? "x (m)" : "",
+                                panel.left == kLeft ? "y (m)" : "");
+    for (const bool right : {false, true}) {
+      if (tracks[right].empty()) continue;
+      const std::string name = map.name + (right ? "_right" : "_left");
+      data += data_block(name, tracks[right]);
+      plot += ", " + track(name + " using 1:2", 0.5, right ? kOther : kWay);
+    }
+    const auto line = [&](const std::string& text, double above) {
+      maps += words(sheet, text, panel.left, panel.top - above, kSmallFont);
+    };
+    line(std::string(panel.letter) + "  k_L = " + digits(panel.k_left) +
+             " N m/rad, d = " + digits(panel.damping),
+         28);
+    line("left " + std::to_string(count[0]) + ", right " + std::to_string(count[1]) + " of " +
+             std::to_string(panel.traced.trials),
+         11);
+    maps += panel.left == kRight ? map.colours(sheet, kRight, panel.top) : "unset colorbox\n";
+    if (panel.top == kLower) {
+      maps += sample(sheet, kWay, "left beam deflected most", kRight, kLower + 20) +
+              sample(sheet, kOther, "right beam deflected most", kRight, kLower + 46);
+      double at = kLower + 76;
+      for (const char* text :
+           {"Lines of equal energy: every 50 J;", "grey: the disc would cover a joint.",
+            "A has the damping of Table I,", "B and C have d = 10 N m s/rad."})
+        maps += words(sheet, text, kRight, at += 18, kSmallFont);
+    }
+    maps += plot + "\nunset label\n";
   }
-  write_text_atomically("fig9.csv", csv.text());
-  draw("fig9", 1300, 620,
-       data + kSequential +
-           filled(R"(
-set cbrange [0:{{ceiling}}]
-set multiplot layout 1,3
-set xrange [-25:25]
-set yrange [0:65]
-set size ratio -1
-set xlabel 'x (m)'
-set ylabel 'y (m)'
-set xtics 10
-set cblabel 'J'
-set key bottom left textcolor rgb '#ffffff'
-{{plots}}
-unset multiplot
-)",
-                  {{"ceiling", digits(kCeiling)}, {"plots", plots}}));
   return {"fig9",
           "Fig. 9: successful trajectories over the landscape",
           {"F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad. A softer left beam opens a way on its "
            "side. Left and right say which beam was deflected most, as in the paper; beyond its "
            "tip the body often goes to the other side.",
-           "A: d = 50, as Table I prints it; so few get through that many are asked. B and C: 100 "
-           "trials each, as in the paper, at d = 10 (the paper sees 52 % and 98 %; see the claims "
-           "for d = 50). Height and colour are the landscape's energy."},
-          "Three views from above: landscape in colour, trajectories as lines. A: a handful on "
-          "both sides. B and C: many, all by the left.",
+           "The panels differ in damping and trials. A: d = 50, as Table I prints it; so few get "
+           "through that many are asked. B and C: 100 trials each, as in the paper, at d = 10 (the "
+           "paper sees 52 % and 98 %; see the claims for d = 50). Colour is the landscape's "
+           "energy."},
+          "Three maps of the landscape with trajectories as lines. A: a handful, white past the "
+          "left beam and orange past the right one. B and C: many, nearly all past the left beam.",
           {"fig9_500", "fig9_300", "fig9_100"},
-          "trajectories",
-          {{"panels", panels}, {"ceiling", kCeiling}}};
+          csv.text(),
+          figure_of(sheet, data, maps)};
 }
 }  // namespace gatewalk::cli

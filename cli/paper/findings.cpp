@@ -128,6 +128,8 @@ ValidatedStart start_of(const Reader& from) {
                                   all["total_variation_floor_95"].number());
   s.counts = from["final_gates"]["dynamics"].rows();
   s.chain = from["final_gates"]["exact"].rows();
+  s.departed_counts = from["departed_gates"]["dynamics"].rows();
+  s.departed_chain = from["departed_gates"]["exact"].rows();
   s.cut_off = from["fates"]["dynamics"]["cut_off"].number();
   s.dynamics_seconds = from["seconds"]["dynamics"].number();
   s.walks_seconds = from["seconds"]["walks"].number();

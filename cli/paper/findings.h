@@ -108,7 +108,8 @@ struct ValidatedStart {
   double total_variation = 0.0, total_variation_floor = 0.0;
   lattice::Finding finding = lattice::Finding::within_trials;
   std::vector<std::vector<double>> counts, chain;  // (rows x columns): trials; shares
-  double cut_off = 0.0;                            // share of the trials
+  std::vector<std::vector<double>> departed_counts, departed_chain;  // of these: left the field
+  double cut_off = 0.0;                                              // share of the trials
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
 
   [[nodiscard]] std::string label() const;  // "d = 0 m, v = (0, 15) m/s"

@@ -41,6 +41,10 @@ Kind kind_of(const std::string& path) {
   return path.ends_with(".png") ? Kind::png : Kind::other;
 }
 
+/// Of a font's size in gnuplot's cairo terminals, for one point of the picture: Pango takes a
+/// point for 96/72 of theirs.
+constexpr double kPangoPoint = 0.75;
+
 /// gnuplot's words for a picture of f, as large as its kind has it.
 std::string terminal_of(Kind kind, const Figure& f) {
   const std::string look =
@@ -50,13 +54,14 @@ std::string terminal_of(Kind kind, const Figure& f) {
   if (kind == Kind::pdf) {
     const double shrunk = printed_inches(f) / f.width;
     return "pdfcairo size " + digits(printed_inches(f)) + "," + digits(shrunk * f.height) + look +
-           " fontscale " + digits(72.0 * shrunk) + " linewidth " + digits(72.0 * shrunk);
+           " fontscale " + digits(kPangoPoint * 72.0 * shrunk) + " linewidth " +
+           digits(72.0 * shrunk);
   }
   const double grown = 300.0 * printed_inches(f) / f.width;
   const std::string scale = digits(grown);
   return "pngcairo size " + std::to_string(std::lround(grown * f.width)) + "," +
-         std::to_string(std::lround(grown * f.height)) + look + " fontscale " + scale +
-         " linewidth " + scale + " pointscale " + scale;
+         std::to_string(std::lround(grown * f.height)) + look + " fontscale " +
+         digits(kPangoPoint * grown) + " linewidth " + scale + " pointscale " + scale;
 }
 
 /// As it stands in XML.

@@ -2,16 +2,17 @@
 // overlaps another, a frame or a legend's lines, none is cut off or below 6 points, and series can be told apart by
 // who sees no red and green, and in grey.
 import assert from 'node:assert/strict';
-import {readdirSync, statSync, readFileSync, writeFileSync, mkdtempSync, rmSync} from 'node:fs';
+import {existsSync, readdirSync, statSync, readFileSync, writeFileSync, mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
+import {constants, inflateSync} from 'node:zlib';
 import {browse} from './browser.mjs';
 
 const files = process.argv.slice(2).flatMap(p => statSync(p).isDirectory()
   ? readdirSync(p).filter(f => f.endsWith('.svg')).map(f => join(p, f)) : [p]);
 assert.ok(files.length > 0, 'node figures_test.mjs FOLDER|FILE.svg...');
 
-const kPrintedPoints = 252, kLeastPoints = 5.99, kLeastDistance = 0.075;
+const kWidth = 504, kPrintedPoints = 252, kLeastPoints = 5.99, kLeastDistance = 0.075;
 
 /// In the page: what is wrong with the texts of the SVG in it.
 function texts_of({width, points, least}) {
@@ -100,6 +101,21 @@ try {
   rmSync(scratch, {recursive: true, force: true});
 }
 
+/// Sizes of the letters in a PDF, in points.
+const sizes_of = pdf => {
+  const sizes = new Set();
+  for (const {index, 0: begin} of pdf.toString('latin1').matchAll(/stream\r?\n/g)) {
+    let text = '';
+    try {
+      text = inflateSync(pdf.subarray(index + begin.length), {finishFlush: constants.Z_SYNC_FLUSH}).toString('latin1');
+    } catch {
+      continue;  // "endstream", or no deflated text
+    }
+    for (const [, a, b] of text.matchAll(/([-\d.]+) ([-\d.]+) [-\d.]+ [-\d.]+ [-\d.]+ [-\d.]+ Tm/g)) sizes.add(Math.hypot(a, b));
+  }
+  return [...sizes];
+};
+
 /// An update at the end of a PDF must lead to its objects, and chunks of a PNG must keep their checksums.
 const crc = bytes => {
   let c = ~0;
@@ -118,6 +134,14 @@ for (const name of folder ? readdirSync(folder) : []) {
     const entry = /^xref\n(\d+) 1\n(\d{10}) 00000 n/.exec(text.slice(table));
     assert.ok(entry, `${file}: no table where startxref leads`);
     assert.ok(text.slice(Number(entry[2])).startsWith(`${entry[1]} 0 obj`), `${file}: no object where the table leads`);
+    const svg = file.replace(/pdf$/, 'svg');
+    if (existsSync(svg)) {
+      const seen = [...readFileSync(svg, 'utf8').matchAll(/font-size="([\d.]+)/g)].map(m => m[1] * kPrintedPoints / kWidth);
+      const printed = sizes_of(bytes);
+      assert.ok(printed.length > 0, `${file}: no letters found`);
+      for (const size of printed)
+        assert.ok(seen.some(s => Math.abs(s - size) < 0.01), `${file}: letters of ${size} points, in the SVG ${[...new Set(seen)]}`);
+    }
     assert.match(text.slice(table), new RegExp(`/Info ${entry[1]} 0 R`), `${file}: trailer`);
   }
   if (name.endsWith('.png')) {
