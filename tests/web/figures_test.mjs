@@ -8,7 +8,7 @@ import {join} from 'node:path';
 import {browse} from './browser.mjs';
 
 const files = process.argv.slice(2).flatMap(p => statSync(p).isDirectory()
-  ? readdirSync(p).filter(f => f.endsWith('.svg')).map(f => join(p, f)) : [p]);
+  ? readdirSync(p, {recursive: true}).filter(f => f.endsWith('.svg')).map(f => join(p, f)) : [p]);
 assert.ok(files.length > 0, 'node figures_test.mjs FOLDER|FILE.svg...');
 
 const kPrintedPoints = 252, kLeastPoints = 5.99, kLeastDistance = 0.075;
@@ -52,10 +52,11 @@ function texts_of({width, points, least}) {
   }
   // Series that carry a name.
   const series = [...svg.querySelectorAll('g[id^=gnuplot_plot]')].map(g => {
-    const drawn = [...g.querySelectorAll('path, use, polygon, circle')].map(e => getComputedStyle(e));
-    const colours = new Set(drawn.flatMap(s => [s.stroke, s.color]).filter(c => c && c.startsWith('rgb(')));
+    const drawn = [...g.querySelectorAll('path, use, polygon, circle')].map(e => [e.localName, getComputedStyle(e)]);
+    const colours = new Set(drawn.flatMap(([name, s]) => name === 'polygon' ? [s.fill] : [s.stroke, s.color])
+      .filter(c => c && c.startsWith('rgb(')));
     return {name: g.querySelector('title')?.textContent.trim() ?? '', colours: [...colours]};
-  }).filter(s => s.name && !/^gnuplot_plot/.test(s.name));
+  }).filter(s => s.name && !/^gnuplot_plot| using /.test(s.name));
   return {faults: [...new Set(faults)], series};
 }
 
