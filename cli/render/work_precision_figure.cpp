@@ -45,6 +45,10 @@ constexpr char kOwn[] = "lines lw 0.8 dt 3";
 /// and what it must reach to be told from no error.
 struct Drawn {
   double error, spread, bound;
+
+  [[nodiscard]] bool parted() const { return !std::isnan(error) && !std::isfinite(height()); }
+  /// Where it is drawn.
+  [[nodiscard]] double height() const { return std::max(error, bound); }
 };
 
 /// One of the errors of a chart: the bound that the reference sets to all, and its own error.
@@ -93,7 +97,7 @@ struct Ranges {
       const auto see = [&](Range& range, const Kind& kind) {
         range.see(kind.limit);
         for (const ChartPoint& p : chart.points)
-          if (p.ran()) range.see(std::max(kind.value(p).error, kind.value(p).bound));
+          if (p.ran()) range.see(kind.value(p).height());
       };
       see(outcomes, outcomes_of(chart));
       see(positions, positions_of(chart));
@@ -124,19 +128,20 @@ std::string panel(const WorkPrecision& chart, const Kind& kind, const Range& ran
     for (; end < chart.points.size() && chart.points[end].setting.method == method; ++end) {
       const ChartPoint& p = chart.points[end];
       if (!p.ran()) continue;
-      const auto [error, spread, bound] = kind.value(p);
+      const Drawn drawn = kind.value(p);
+      const auto [error, spread, bound] = drawn;
       if (std::isnan(error)) continue;
-      const bool has_place = std::isfinite(std::max(error, bound));
       const std::string time = digits(p.least_microseconds()) + " ",
-                        x_y = time + digits(has_place ? std::max(error, bound) : range.high / 1.6) +
+                        x_y = time + digits(drawn.parted() ? range.high / 1.6 : drawn.height()) +
                               "\n";
-      (!has_place                   ? parted
-       : error < bound              ? less
-       : p.verdict == Verdict::fine ? good
-                                    : fault) += x_y;
       if (p.setting.usual) usual += x_y;
-      if (has_place) line += x_y;
-      if (has_place && error >= bound && std::isfinite(spread))
+      if (drawn.parted()) {
+        parted += x_y;
+        continue;
+      }
+      line += x_y;
+      (error < bound ? less : p.verdict == Verdict::fine ? good : fault) += x_y;
+      if (error >= bound && std::isfinite(spread))
         bars += time + digits(std::max(error - 2 * spread, 0.1 * error)) + " " +
                 digits(error + 2 * spread) + "\n";
     }
@@ -157,7 +162,10 @@ std::string panel(const WorkPrecision& chart, const Kind& kind, const Range& ran
     draw("parted", parted, points + kParted + colour);
     draw("usual", usual, points + kUsual + " lt -1");
   }
-  if (plot == "plot ") plot += "NaN";
+  if (blocks.empty()) {
+    element("NaN");
+    blocks = "set label 'nothing to compare' at graph 0.5,0.5 center\n";
+  }
   return blocks + "set yrange " + range.text() + "\n" + plot + "\n";
 }
 
@@ -186,22 +194,27 @@ std::vector<std::string> refused_lines(const WorkPrecision& chart) {
   return lines;
 }
 
-std::string key_of(const WorkPrecision& chart, const Sheet& sheet) {
+std::string key_of(const std::vector<WorkPrecision>& charts, const Sheet& sheet) {
   std::vector<std::string> methods;
   std::string last;
-  for (const ChartPoint& p : chart.points) {
+  for (const ChartPoint& p : charts.front().points) {
     if (p.setting.method == last) continue;
     last = p.setting.method;
     methods.push_back("with linespoints ps 0.7 pt " + std::to_string(look_of(last).marker) +
                       colour_of(last) + " title '" + last + "'");
   }
-  const auto entry = [&](const char* look, const char* name) {
+  const auto entry = [](const char* look, const char* name) {
     return std::string("with ") + look + " lt -1 title '" + name + "'";
   };
-  return sheet.key(8, 6, methods) +
-         sheet.key(116, 6,
-                   {entry(kUsual, "usual setting"), entry(kFault, "shows a fault"),
-                    entry(kLess, "less than this"), entry(kParted, "half or more parted")}) +
+  std::vector<std::string> marks{entry(kUsual, "usual setting"), entry(kFault, "shows a fault"),
+                                 entry(kLess, "less than this")};
+  const bool parted = std::any_of(charts.begin(), charts.end(), [](const WorkPrecision& chart) {
+    return std::any_of(chart.points.begin(), chart.points.end(), [&](const ChartPoint& p) {
+      return p.ran() && positions_of(chart).value(p).parted();
+    });
+  });
+  if (parted) marks.push_back(entry(kParted, "half or more parted"));
+  return sheet.key(8, 6, methods) + sheet.key(116, 6, marks) +
          sheet.key(296, 6, {entry(kLimit, "limit of the reference"), entry(kOwn, "its own error")});
 }
 
@@ -214,7 +227,7 @@ Figure figure_of(const std::vector<WorkPrecision>& charts) {
     height += 30 + kLine * static_cast<double>(refused_lines(chart).size()) + kPanel + kBelow;
   const Sheet sheet{static_cast<int>(height + 32)};
   const Ranges ranges(charts);
-  std::string out = "set multiplot\n" + key_of(charts.front(), sheet) + kFrame +
+  std::string out = "set multiplot\n" + key_of(charts, sheet) + kFrame +
                     "set logscale xy\nset format y '10^{%L}'\nset grid" + kThin + "\nset xrange " +
                     ranges.time.text() + "\nset xtics (" +
                     tics_1_2_5(ranges.time.low, ranges.time.high, 160) + ")\n";
