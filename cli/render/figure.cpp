@@ -97,13 +97,16 @@ std::string data_block(std::string_view name, const std::string& rows) {
 }
 
 std::string tics_1_2_5(double low, double high, double length) {
-  const bool all = length > 3.0 * 40.0 * std::log10(high / low);
+  const double decades = std::log10(high / low);
+  const bool all = length > 3.0 * 40.0 * decades;
+  const int apart = static_cast<int>(std::ceil(40.0 * decades / length));
   std::string list;
-  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10)
+  for (int n = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, n) <= high; ++n)
     for (const int digit : {1, 2, 5}) {
-      const std::string at = digits(digit * decade);
-      list +=
-          (list.empty() ? "'" : ", '") + (digit == 1 || all ? at + "' " + at : "' " + at + " 1");
+      const std::string at = digits(digit * std::pow(10.0, n)),
+                        shown = n >= 4 && digit == 1 ? "10^{" + std::to_string(n) + "}" : at;
+      const bool has_number = all || (digit == 1 && n % apart == 0);
+      list += (list.empty() ? "'" : ", '") + (has_number ? shown + "' " + at : "' " + at + " 1");
     }
   return list;
 }

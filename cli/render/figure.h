@@ -108,7 +108,7 @@ inline constexpr char kDiverging[] =
 [[nodiscard]] std::string data_block(std::string_view name, const std::string& rows);
 
 /// Tics of a logarithmic axis from low to high, so many points long: 1, 2 and 5 times the powers of
-/// ten, with numbers at these alone where more would touch.
+/// ten, with numbers at these alone, or at some of them, where more would touch.
 [[nodiscard]] std::string tics_1_2_5(double low, double high, double length);
 
 /// 1, 2 or 5 times a power of ten that cuts `span` into about `parts`.

@@ -76,8 +76,8 @@ Figure figure_of(const dynamics::Passes& passes) {
   const auto energy = [&](double e) { return digits(e / joule.size); };
   const std::string m = " (" + metre.name + ")'";
 
-  const double scale = std::min(164.0 / wide, 320.0 / deep);
-  const Box first{74, 74 + scale * wide, 36, 36 + scale * deep};
+  const double scale = std::min(158.0 / wide, 320.0 / deep);
+  const Box first{82, 82 + scale * wide, 36, 36 + scale * deep};
   const Box second{first.right + 20, first.right + 20 + scale * wide, first.top, first.bottom};
   const Box profile{82, 488, first.bottom + 100, first.bottom + 240};
   const Sheet sheet{static_cast<int>(profile.bottom + 62)};
@@ -90,12 +90,14 @@ Figure figure_of(const dynamics::Passes& passes) {
           data_block("$way", rows_of(pass, fine.landscape, metre, joule)) + at_pass + at_start +
           "set multiplot\n" + kFrame + "set xrange [" + length(l.x.front()) + ":" +
           length(l.x.back()) + "]\nset yrange [" + length(l.y.front()) + ":" + length(l.y.back()) +
-          "]\nset cbrange [0:" + energy(ceiling) + "]\nunset colorbox\nset xtics autofreq\n" +
-          Sheet::axes("'x" + m, "'y" + m) + sheet.margins(first) +
-          sheet.text("beams, Eq. (14)", first.left, 18) +
+          "]\nset cbrange [0:" + energy(ceiling) + "]\nunset colorbox\nset xtics " +
+          digits(tic_step(wide / metre.size, 3)) + "\nset ytics " +
+          digits(tic_step(deep / metre.size, 5)) + "\n" + Sheet::axes("'x" + m, "'y" + m) +
+          sheet.margins(first) + sheet.text("beams, Eq. (14)", first.left, 18) +
           "plot $grid using 1:2:3 with image\nunset label\n" + sheet.margins(second) +
           "unset ylabel\nset format y ''\nset cblabel '" + joule.name +
-          "' offset -1.5,0\nset cbtics offset -0.8,0\nset colorbox user origin screen " +
+          "' offset -1.5,0\nset cbtics " + digits(tic_step(ceiling / joule.size, 5)) +
+          " offset -0.8,0\nset colorbox user origin screen " +
           sheet.at(second.right + 12, second.bottom) + " size screen " +
           digits(12.0 / Sheet::kWidth) + "," + digits((second.bottom - second.top) / sheet.height) +
           "\n" + sheet.text("with propulsion, Eq. (15)", second.left, 18) +
@@ -104,7 +106,7 @@ Figure figure_of(const dynamics::Passes& passes) {
           outlined("$start using 1:2", "points pt 5 ps 1", "points pt 5 ps 0.6") +
           outlined("$pass using 1:2", "points pt 7 ps 1.1", "points pt 7 ps 0.7") +
           "\nunset label\n" + sheet.margins(profile) +
-          "set format y '%g'\nset xrange [0:*]\nset yrange [*:*]\nset ytics " +
+          "set format y '%g'\nset xrange [0:*]\nset xtics autofreq\nset yrange [*:*]\nset ytics " +
           digits(tic_step(ceiling / joule.size, 5)) + "\n" +
           Sheet::axes(std::string("'along the lowest way from the ") +
                           (fine.downhill() ? "start" : "basin") + m,
@@ -112,7 +114,7 @@ Figure figure_of(const dynamics::Passes& passes) {
           "set key off\nplot $way using 3:4 with lines lw 2 lc rgb '" + kFirstColour + "', " +
           energy(fine.from_start.start_energy + passes.kinetic_energy) +
           " with lines lt -1 dt 2\n" +
-          sheet.key(74, first.bottom + 58, {"with points pt 5 ps 0.8 lt -1 title 'start'"}) +
+          sheet.key(82, first.bottom + 58, {"with points pt 5 ps 0.8 lt -1 title 'start'"}) +
           sheet.key(160, first.bottom + 58, {"with points pt 7 ps 0.9 lt -1 title 'pass'"}) +
           sheet.key(246, first.bottom + 58, {"with lines lt -1 dt 2 title 'energy of the start'"}) +
           "unset multiplot\n",

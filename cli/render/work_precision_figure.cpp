@@ -166,7 +166,9 @@ std::string panel(const WorkPrecision& chart, const Kind& kind, const Range& ran
     element("NaN");
     blocks = "set label 'nothing to compare' at graph 0.5,0.5 center\n";
   }
-  return blocks + "set yrange " + range.text() + "\n" + plot + "\n";
+  return blocks + "set ytics " +
+         digits(std::pow(10.0, std::ceil(std::log10(range.high / range.low) / 6.0))) +
+         "\nset yrange " + range.text() + "\n" + plot + "\n";
 }
 
 /// Settings that the method refused, in lines as wide as the figure: "refused: penalty 0.02 to

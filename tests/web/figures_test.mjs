@@ -8,7 +8,7 @@ import {join} from 'node:path';
 import {browse} from './browser.mjs';
 
 const files = process.argv.slice(2).flatMap(p => statSync(p).isDirectory()
-  ? readdirSync(p, {recursive: true}).filter(f => f.endsWith('.svg')).map(f => join(p, f)) : [p]);
+  ? readdirSync(p).filter(f => f.endsWith('.svg')).map(f => join(p, f)) : [p]);
 assert.ok(files.length > 0, 'node figures_test.mjs FOLDER|FILE.svg...');
 
 const kPrintedPoints = 252, kLeastPoints = 5.99, kLeastDistance = 0.075;
