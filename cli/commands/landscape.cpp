@@ -73,10 +73,10 @@ int run_landscape(const Arguments& arguments) {
   }
   json["made_by"] = to_json(options.provenance(scene));
   folder.write("landscape.csv", csv_of(passes.coarse.landscape), "landscape.json", json);
-  folder.draw("landscape.svg", figure_of(passes, scene.gate));
+  folder.draw("landscape.svg", figure_of(passes));
   options.give_out(json, table);
   const int exit = status_of(options, health);
-  options.draw([&] { return figure_of(passes, scene.gate); });
+  options.draw([&] { return figure_of(passes); });
   return exit;
 }
 

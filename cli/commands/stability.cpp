@@ -27,6 +27,7 @@ int run_stability(const Arguments& arguments) {
   options.output_folder("folder to write to", written);
   options.add_flag("quick", "coarser maps");
   options.add_seed();
+  options.add_figure("all maps in one figure");
   options.without_scene("the maps have scenes of their own");
   if (!options.parse(arguments)) return kFine;
   const ResultFolder folder(options, written);
@@ -44,6 +45,7 @@ int run_stability(const Arguments& arguments) {
   for (const auto& m : maps)
     slowest = std::max(slowest, *std::max_element(m.seconds.begin(), m.seconds.end()));
   options.remark("the slowest point took " + fixed(slowest, 2) + " s");
+  options.draw([&] { return figure_of(maps); });
   return kFine;
 }
 

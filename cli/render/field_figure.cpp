@@ -33,6 +33,21 @@ FieldPicture::FieldPicture(std::string name, const markov::WalkTally& tally)
       departed(tally.departed_cells.cast<double>() / static_cast<double>(tally.walks)),
       endings(tally.endings, tally.walks) {}
 
+std::string tics_of(const FieldMap::Span& span, Eigen::Index zero, double length, double apart) {
+  std::string list;
+  const auto most = std::max<Eigen::Index>(3, static_cast<Eigen::Index>(length / apart));
+  const Eigen::Index blocks = span.blocks(), step = (blocks - 1) / most + 1;
+  const Eigen::Index centre = std::clamp<Eigen::Index>(span.block_of(zero), 0, blocks - 1) % step;
+  for (Eigen::Index i = centre; i < blocks; i += step)
+    list += (list.empty() ? "'" : ", '") + std::to_string(span.middle(i) - zero) + "' " +
+            std::to_string(i);
+  return "(" + list + ")";
+}
+
+std::string range_of(const FieldMap::Span& span) {
+  return "[-0.5:" + digits(static_cast<double>(span.blocks()) - 0.5) + "]";
+}
+
 namespace {
 
 constexpr Eigen::Index kMostDrawn = 101;  // gates or blocks of gates, each way
@@ -84,21 +99,6 @@ std::string rows_of(const FieldMap& map, const CellProbabilities& shares) {
 
 std::string image(const std::string& data) { return "plot " + data + kCells; }
 
-/// Tics of an axis over blocks: at most `most` of them, named by the gates in their middle.
-std::string tics(const FieldMap::Span& span, Eigen::Index zero, Eigen::Index most) {
-  std::string list;
-  const Eigen::Index blocks = span.blocks(), step = (blocks - 1) / most + 1;
-  const Eigen::Index centre = std::clamp<Eigen::Index>(span.block_of(zero), 0, blocks - 1) % step;
-  for (Eigen::Index i = centre; i < blocks; i += step)
-    list += (list.empty() ? "'" : ", '") + std::to_string(span.middle(i) - zero) + "' " +
-            std::to_string(i);
-  return "(" + list + ")";
-}
-
-std::string range(const FieldMap::Span& span) {
-  return "[-0.5:" + digits(static_cast<double>(span.blocks()) - 0.5) + "]\n";
-}
-
 /// The large map with its numbers.
 std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
                       const std::string& data, const RootScale& scale) {
@@ -109,11 +109,9 @@ std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
              std::to_string(map.rows.block) + " gates";
   std::string out =
       sheet.margins(box) + "set border 3\nset tics out nomirror scale 0.5\nset xrange " +
-      range(map.columns) + "set yrange " + range(map.rows) + "set xtics " +
-      tics(map.columns, map.middle_column,
-           std::max<Eigen::Index>(3, static_cast<Eigen::Index>(plan.map_width / 30))) +
-      "\nset ytics " + tics(map.rows, 0, static_cast<Eigen::Index>(plan.map_height / 22)) + "\n" +
-      Sheet::axes("'column i_x'", "'row i_y'") +
+      range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
+      tics_of(map.columns, map.middle_column, plan.map_width, 30) + "\nset ytics " +
+      tics_of(map.rows, 0, plan.map_height, 22) + "\n" + Sheet::axes("'column i_x'", "'row i_y'") +
       sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
       scale.colours(sheet, plan.colours());
   out += image(data);
@@ -129,7 +127,7 @@ std::string small_map(const std::string& title, const FieldMap& map, const Box& 
   return sheet.margins(box) +
          "set border 15\nunset xtics\nunset ytics\nunset xlabel\nunset "
          "ylabel\nset xrange " +
-         range(map.columns) + "set yrange " + range(map.rows) +
+         range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\n" +
          sheet.text(title, box.left, box.top - 10, kSmallFont) + "unset colorbox\n" + image(data) +
          "\nunset label\n";
 }

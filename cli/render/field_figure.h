@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/render/figure.h"
+#include "cli/render/final_gates.h"
 #include "lattice/ending_shares.h"
 #include "lattice/lattice.h"
 #include "lattice/reference.h"
@@ -28,5 +29,11 @@ struct FieldPicture {
 /// several starts one below the other. Throws std::invalid_argument for more than kMostPictures.
 inline constexpr std::size_t kMostPictures = 8;
 [[nodiscard]] Figure figure_of(const std::vector<FieldPicture>& pictures);
+
+/// Tics of an axis over blocks of gates that is so many points long, named by the gates in the
+/// blocks' middle, counted from `zero`; and its range.
+[[nodiscard]] std::string tics_of(const FieldMap::Span& span, Eigen::Index zero, double length,
+                                  double apart);
+[[nodiscard]] std::string range_of(const FieldMap::Span& span);
 
 }  // namespace gatewalk::cli

@@ -24,6 +24,18 @@ std::string Sheet::text(const std::string& text, double left, double middle, int
          std::to_string(font) + "'\n";
 }
 
+std::string Sheet::key(double left, double top, const std::vector<std::string>& entries) const {
+  std::string plot;
+  for (const std::string& entry : entries)
+    plot += (plot.empty() ? "plot [0:1] [0:1] NaN " : ", NaN ") + entry;
+  return margins({0, kWidth, 0, static_cast<double>(height)}) +
+         "unset logscale\nunset border\nunset tics\nunset xlabel\nunset ylabel\nset key at "
+         "screen " +
+         at(left, top) +
+         " left top Left reverse vertical maxcols 1 samplen 1.5 spacing 1.1 font '," +
+         std::to_string(kSmallFont) + "'\n" + plot + "\n";
+}
+
 std::string RootScale::range() const { return "[0:" + digits(std::sqrt(most_)) + "]"; }
 
 std::string RootScale::tics() const {
@@ -66,7 +78,7 @@ std::string share_bars(const Sheet& sheet, const Box& box, const std::string& da
          std::to_string(bars.size()) + "-0.4:-0.6]\nset ytics (" + tics +
          ") scale 0\nset style fill solid noborder\nplot " + data +
          " using ($2/2):1:($2/2):(0.36) with boxxyerror lc rgb '" + kFirstColour +
-         "', '' using 2:1:3:4 with xerrorbars pt 0 lw 1.2 lc rgb '#000000', "
+         "', '' using 2:1:3:4 with xerrorbars pt 0 lw 1.2 lt -1, "
          "'' using ($4 > 98 ? 100 : $4 + 2):1:5 with labels left font '," +
          std::to_string(kSmallFont) + "'\nset ytics scale 0.5\n";
 }
@@ -84,27 +96,32 @@ std::string data_block(std::string_view name, const std::string& rows) {
   return std::string(name) + " << EOD\n" + rows + "EOD\n";
 }
 
-std::string tics_1_2_5(double low, double high) {
+std::string tics_1_2_5(double low, double high, double length) {
+  const double decades = std::log10(high / low);
+  const bool all = length > 3.0 * 40.0 * decades;
+  const int apart = static_cast<int>(std::ceil(40.0 * decades / length));
   std::string list;
-  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10)
+  for (int n = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, n) <= high; ++n)
     for (const int digit : {1, 2, 5}) {
-      if (digit > 1 && high > 1000.0 * low) break;  // they would touch
-      list += (list.empty() ? "'" : ", '") + digits(digit * decade) + "' " + digits(digit * decade);
+      const std::string at = digits(digit * std::pow(10.0, n)),
+                        shown = n >= 4 && digit == 1 ? "10^{" + std::to_string(n) + "}" : at;
+      const bool has_number = all || (digit == 1 && n % apart == 0);
+      list += (list.empty() ? "'" : ", '") + (has_number ? shown + "' " + at : "' " + at + " 1");
     }
   return list;
+}
+
+double tic_step(double span, double parts) {
+  const double wanted = span / parts, power = std::pow(10.0, std::floor(std::log10(wanted)));
+  double best = power;
+  for (const double k : {2.0, 5.0, 10.0})
+    if (std::abs(k * power - wanted) < std::abs(best - wanted)) best = k * power;
+  return best;
 }
 
 std::string short_number(double x) {
   const double decade = std::pow(10.0, std::floor(std::log10(x)));
   return digits(std::floor(x / decade) * decade);
-}
-
-Look look_of(std::string_view method) {
-  if (method == "paper") return {"#d55e00", 5};
-  if (method == "stable") return {"#0072b2", 7};
-  if (method == "moreau") return {"#009e73", 9};
-  if (method == "penalty") return {"#e69f00", 13};
-  return {"#cc79a7", 15};
 }
 
 }  // namespace gatewalk::cli

@@ -30,6 +30,11 @@ struct Box {
   double left, right, top, bottom;
 };
 
+/// A panel's axes, ticks outwards; and of lines that only help to read: thin, in the text's ink.
+inline constexpr char kFrame[] =
+    "unset key\nset border 3\nset tics out scale 0.5\nset xtics nomirror\nset ytics nomirror\n";
+inline constexpr char kThin[] = " lt -1 lw 0.2";
+
 /// The paper of a figure.
 struct Sheet {
   static constexpr int kWidth = 504;
@@ -46,6 +51,10 @@ struct Sheet {
   /// A text that begins at this place, its middle at this height; until "unset label".
   [[nodiscard]] std::string text(const std::string& text, double left, double middle,
                                  int font = kFont) const;
+  /// A column of a key as a panel of its own, from this corner, for the panels of a multiplot:
+  /// `entries` are "with ... title '...'". It takes the frame away: kFrame brings it back.
+  [[nodiscard]] std::string key(double left, double top,
+                                const std::vector<std::string>& entries) const;
 };
 
 /// Shares in %, from 0 to `most`, as colours by their square root: small ones can be told apart.
@@ -84,9 +93,11 @@ struct ShareBar {
 inline constexpr char kSequential[] =
     "set palette defined (0 '#440154', 1 '#46327e', 2 '#365c8d', 3 '#277f8e', 4 '#1fa187', "
     "5 '#4ac16d', 6 '#a0da39', 7 '#fde725')\n";
-/// Colours of bars and curves (Okabe and Ito's), and from one sign of a difference to the other.
+/// Colours of bars and curves, told apart on white and on dark paper (Okabe and Ito's, but the
+/// fifth), and from one sign of a difference to the other.
 inline constexpr char kFirstColour[] = "#0072b2", kSecondColour[] = "#d55e00",
-                      kThirdColour[] = "#009e73";
+                      kThirdColour[] = "#009e73", kFourthColour[] = "#cc79a7",
+                      kFifthColour[] = "#8c6d1f";
 inline constexpr char kDiverging[] =
     "set palette defined (-1 '#2166ac', -0.5 '#92c5de', 0 '#f7f7f7', 0.5 '#f4a582', 1 '#b2182b')\n";
 
@@ -96,17 +107,14 @@ inline constexpr char kDiverging[] =
 /// "name << EOD ... EOD", the rows of a table that `plot` can read as name.
 [[nodiscard]] std::string data_block(std::string_view name, const std::string& rows);
 
-/// Tics of a logarithmic axis from low to high: 1, 2 and 5 times the powers of ten, or these alone.
-[[nodiscard]] std::string tics_1_2_5(double low, double high);
+/// Tics of a logarithmic axis from low to high, so many points long: 1, 2 and 5 times the powers of
+/// ten, with numbers at these alone, or at some of them, where more would touch.
+[[nodiscard]] std::string tics_1_2_5(double low, double high, double length);
+
+/// 1, 2 or 5 times a power of ten that cuts `span` into about `parts`.
+[[nodiscard]] double tic_step(double span, double parts);
 
 /// The next lower number of one digit: 0.0271 is "0.02".
 [[nodiscard]] std::string short_number(double x);
-
-/// Colour and marker of a method, the same in every figure (Okabe and Ito's colours).
-struct Look {
-  const char* colour;
-  int marker;  // gnuplot's number, filled
-};
-[[nodiscard]] Look look_of(std::string_view method);
 
 }  // namespace gatewalk::cli

@@ -5,6 +5,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/quantity.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/landscape.h"
 
@@ -19,8 +20,15 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string table_of(const dynamics::Passes& passes, const dynamics::GateParams& p);
 /// Whom the landscape is held against: "measured: 5.1 % of 1000 trials traverse, 95 % [3.9, 6.6]".
 [[nodiscard]] std::string measured_line(const dynamics::GateTally& tally);
-/// The paper's Fig. 5, on the coarse grid: elastic energy as a surface
-/// and from above, with the propulsion as a surface, and, from above, the lowest way through.
-[[nodiscard]] Figure figure_of(const dynamics::Passes& passes, const dynamics::GateParams& p);
+/// The coarse grid as two maps, elastic energy and with the propulsion, the latter with the lowest
+/// way through of the fine one; and the energy along it.
+[[nodiscard]] Figure figure_of(const dynamics::Passes& passes);
+
+/// What matters of a landscape as it is drawn: beside the joints the beams' energy leaves every
+/// scale, so the ceiling (J) is what lies in the middle, and some more.
+[[nodiscard]] double ceiling_of(const dynamics::Landscape& l);
+/// Rows of "x y elastic total" up to that ceiling, an empty one between two values of y.
+[[nodiscard]] std::string rows_of(const dynamics::Landscape& l, const Sized& metre,
+                                  const Sized& joule, double ceiling);
 
 }  // namespace gatewalk::cli

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "cli/render/figure.h"
 #include "cli/render/landscape.h"
@@ -8,108 +7,118 @@
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
+
+using dynamics::Landscape;
+
+double ceiling_of(const Landscape& l) {
+  const auto middle = static_cast<Eigen::Index>(l.x.size() / 2);
+  double highest = 0.0;
+  for (Eigen::Index i = 0; i < l.total.rows(); ++i)
+    if (const double e = l.total(i, middle); std::isfinite(e)) highest = std::max(highest, e);
+  return 1.2 * highest;
+}
+
+std::string rows_of(const Landscape& l, const Sized& metre, const Sized& joule, double ceiling) {
+  const auto energy = [&](double e) {
+    return std::isfinite(e) ? digits(std::min(e, ceiling) / joule.size) : "NaN";
+  };
+  // No more points than can be seen.
+  const std::size_t stride = std::max<std::size_t>(1, std::max(l.x.size(), l.y.size()) / 200);
+  std::string rows;
+  for (std::size_t i = 0; i < l.y.size(); i += stride) {
+    for (std::size_t j = 0; j < l.x.size(); j += stride)
+      rows += digits(l.x[j] / metre.size) + " " + digits(l.y[i] / metre.size) + " " +
+              energy(l.elastic(i, j)) + " " + energy(l.total(i, j)) + "\n";
+    rows += "\n";
+  }
+  return rows;
+}
+
 namespace {
 
-/// 1, 2 or 5 times a power of ten that cuts `span` into about `parts`.
-double tic_step(double span, double parts) {
-  const double wanted = span / parts, power = std::pow(10.0, std::floor(std::log10(wanted)));
-  double best = power;
-  for (const double k : {2.0, 5.0, 10.0})
-    if (std::abs(k * power - wanted) < std::abs(best - wanted)) best = k * power;
-  return best;
+/// The number of the grid point nearest to x.
+Eigen::Index nearest(const std::vector<double>& grid, double x) {
+  const double spacing = (grid.back() - grid.front()) / static_cast<double>(grid.size() - 1);
+  return std::lround((x - grid.front()) / spacing);
 }
 
-/// What is drawn, in units that read well, up to a ceiling.
-class Drawn {
- public:
-  Drawn(const dynamics::Landscape& l, double ceiling)
-      : ceiling_(ceiling),
-        metre_(readable_unit("m", std::max(l.x.back(), l.y.back() - l.y.front()))),
-        joule_(readable_unit("J", ceiling)) {}
-
-  [[nodiscard]] std::string length(double x) const { return digits(in_units(x)); }
-  [[nodiscard]] double in_units(double x) const { return x / metre_.size; }
-  [[nodiscard]] std::string energy(double e) const {
-    return digits(std::min(e, ceiling_) / joule_.size);
+/// Of a way over a landscape: "x y distance total".
+std::string rows_of(const dynamics::Pass& pass, const Landscape& l, const Sized& metre,
+                    const Sized& joule) {
+  std::string rows;
+  double gone = 0.0;
+  for (std::size_t i = 0; i < pass.way.size(); ++i) {
+    const auto [x, y] = pass.way[i];
+    if (i > 0) gone += std::hypot(x - pass.way[i - 1][0], y - pass.way[i - 1][1]);
+    rows += digits(x / metre.size) + " " + digits(y / metre.size) + " " +
+            digits(gone / metre.size) + " " +
+            digits(l.total(nearest(l.y, y), nearest(l.x, x)) / joule.size) + "\n";
   }
-
-  /// Rows of "x y elastic total", an empty one between two values of y.
-  [[nodiscard]] std::string rows(const dynamics::Landscape& l) const {
-    std::ostringstream rows;
-    // No more points than can be seen.
-    const std::size_t stride = std::max<std::size_t>(1, std::max(l.x.size(), l.y.size()) / 150);
-    for (std::size_t i = 0; i < l.y.size(); i += stride) {
-      for (std::size_t j = 0; j < l.x.size(); j += stride)
-        rows << length(l.x[j]) << ' ' << length(l.y[i]) << ' ' << energy(l.elastic(i, j)) << ' '
-             << energy(l.total(i, j)) << '\n';
-      rows << '\n';
-    }
-    return rows.str();
-  }
-
-  /// Labels, ranges and colours that all four panels have.
-  [[nodiscard]] std::string axes(const dynamics::Landscape& l) const {
-    const std::string top = energy(ceiling_);
-    return "set xlabel 'x (" + metre_.name + ")'\nset ylabel 'y (" + metre_.name +
-           ")'\nset cblabel '" + joule_.name + "'\nset pm3d\nunset key\nset xrange [" +
-           length(l.x.front()) + ":" + length(l.x.back()) + "]\nset yrange [" +
-           length(l.y.front()) + ":" + length(l.y.back()) + "]\nset cbrange [0:" + top +
-           "]\nset zrange [0:" + top +
-           "]\n"
-           "set palette defined (0 '#30123b', 1 '#4145ab', 2 '#4675ed', 3 '#39a2fc', 4 '#1bcfd4', "
-           "5 '#24eca6', 6 '#61fc6c', 7 '#a4fc3b', 8 '#d1e834', 9 '#f3c63a', 10 '#fe9b2d', "
-           "11 '#f36315', 12 '#d93806', 13 '#7a0403')\n"
-           "set xyplane 0\nset xtics " +
-           digits(tic_step(in_units(l.x.back() - l.x.front()), 5.0)) + "\n";
-  }
-
- private:
-  double ceiling_;  // J
-  Sized metre_, joule_;
-};
-
-/// A panel on the left: column `column` of $grid as a surface; `deep`: extent of y as drawn.
-std::string surface(const char* title, int column, double deep, const char* origin) {
-  return std::string("unset colorbox\nset size noratio\nset size 0.52,0.52\nset origin ") + origin +
-         "\nset lmargin 6\nset rmargin 2\nset tmargin 2\nset bmargin 2\nset view "
-         "58,330,0.95\nset title '" +
-         title + "'\nset ytics " + digits(tic_step(deep, 3.0)) +
-         "\nsplot $grid using 1:2:" + std::to_string(column) + " with pm3d\n";
+  return rows;
 }
 
-/// A panel on the right, without its plot.
-std::string from_above(const char* title, double deep, const char* origin) {
-  return std::string("set colorbox\nset size 0.48,0.5\nset size ratio -1\nset origin ") + origin +
-         "\nset lmargin 8\nset rmargin 10\nset tmargin 2\nset bmargin 4\nset title '" + title +
-         "'\nset ytics " + digits(tic_step(deep, 6.0)) + "\n";
-}
-
-/// Beside the joints the beams' energy leaves every scale; what matters lies lower (J).
-double ceiling_of(const dynamics::GateParams& p) {
-  const double stiffer = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
-  return 1.2 * stiffer + p.forces.propulsion * (20.0 * dynamics::scale_of(p).length);
+/// Black below white: seen on every colour of a map.
+std::string outlined(const std::string& data, const std::string& wide, const std::string& narrow) {
+  return ", " + data + " with " + wide + " lc rgb '#000000', " + data + " with " + narrow +
+         " lc rgb '#ffffff'";
 }
 
 }  // namespace
 
-Figure figure_of(const dynamics::Passes& passes, const dynamics::GateParams& p) {
-  const dynamics::Landscape& l = passes.coarse.landscape;
-  const dynamics::Pass& pass =
-      passes.fine.downhill() ? passes.fine.from_start : passes.fine.from_basin;
-  const Drawn drawn(l, ceiling_of(p));
-  std::string way;
-  for (const auto& [x, y] : pass.way) way += drawn.length(x) + " " + drawn.length(y) + "\n";
-  const double deep = drawn.in_units(l.y.back() - l.y.front());
-  return {1100, 950,
-          data_block("$grid", drawn.rows(l)) + data_block("$way", way) + "set multiplot\n" +
-              drawn.axes(l) + surface("elastic energy, Eq. (14)", 3, deep, "0.0,0.49") +
-              from_above("the same from above", deep, "0.52,0.5") +
-              "plot $grid using 1:2:3 with image\n" +
-              surface("with the propulsion, Eq. (15)", 4, deep, "0.0,-0.01") +
-              from_above("lowest way through (white), its highest point", deep, "0.52,0.0") +
-              "plot $grid using 1:2:4 with image, $way using 1:2 with lines lw 2 lc rgb '#ffffff', "
-              "'-' using 1:2 with points pt 7 ps 1 lc rgb '#ff00ff'\n" +
-              drawn.length(pass.x) + " " + drawn.length(pass.y) + "\ne\nunset multiplot\n"};
+Figure figure_of(const dynamics::Passes& passes) {
+  const Landscape& l = passes.coarse.landscape;
+  const dynamics::GridPasses& fine = passes.fine;
+  const dynamics::Pass& pass = fine.downhill() ? fine.from_start : fine.from_basin;
+  const double ceiling = ceiling_of(l);
+  const double wide = l.x.back() - l.x.front(), deep = l.y.back() - l.y.front();
+  const Sized metre = readable_unit("m", std::max(wide, deep)), joule = readable_unit("J", ceiling);
+  const auto length = [&](double x) { return digits(x / metre.size); };
+  const auto energy = [&](double e) { return digits(e / joule.size); };
+  const std::string m = " (" + metre.name + ")'";
+
+  const double scale = std::min(158.0 / wide, 320.0 / deep);
+  const Box first{82, 82 + scale * wide, 36, 36 + scale * deep};
+  const Box second{first.right + 20, first.right + 20 + scale * wide, first.top, first.bottom};
+  const Box profile{82, 488, first.bottom + 100, first.bottom + 240};
+  const Sheet sheet{static_cast<int>(profile.bottom + 62)};
+  const auto [x, y] = fine.from_start.way.front();
+  const std::string at_pass = data_block("$pass", length(pass.x) + " " + length(pass.y) + "\n"),
+                    at_start = data_block("$start", length(x) + " " + length(y) + "\n");
+  return {
+      Sheet::kWidth, sheet.height,
+      std::string(kSequential) + data_block("$grid", rows_of(l, metre, joule, ceiling)) +
+          data_block("$way", rows_of(pass, fine.landscape, metre, joule)) + at_pass + at_start +
+          "set multiplot\n" + kFrame + "set xrange [" + length(l.x.front()) + ":" +
+          length(l.x.back()) + "]\nset yrange [" + length(l.y.front()) + ":" + length(l.y.back()) +
+          "]\nset cbrange [0:" + energy(ceiling) + "]\nunset colorbox\nset xtics " +
+          digits(tic_step(wide / metre.size, 3)) + "\nset ytics " +
+          digits(tic_step(deep / metre.size, 5)) + "\n" + Sheet::axes("'x" + m, "'y" + m) +
+          sheet.margins(first) + sheet.text("beams, Eq. (14)", first.left, 18) +
+          "plot $grid using 1:2:3 with image\nunset label\n" + sheet.margins(second) +
+          "unset ylabel\nset format y ''\nset cblabel '" + joule.name +
+          "' offset -1.5,0\nset cbtics " + digits(tic_step(ceiling / joule.size, 5)) +
+          " offset -0.8,0\nset colorbox user origin screen " +
+          sheet.at(second.right + 12, second.bottom) + " size screen " +
+          digits(12.0 / Sheet::kWidth) + "," + digits((second.bottom - second.top) / sheet.height) +
+          "\n" + sheet.text("with propulsion, Eq. (15)", second.left, 18) +
+          "plot $grid using 1:2:4 with image" +
+          outlined("$way using 1:2", "lines lw 3.5", "lines lw 1.5") +
+          outlined("$start using 1:2", "points pt 5 ps 1", "points pt 5 ps 0.6") +
+          outlined("$pass using 1:2", "points pt 7 ps 1.1", "points pt 7 ps 0.7") +
+          "\nunset label\n" + sheet.margins(profile) +
+          "set format y '%g'\nset xrange [0:*]\nset xtics autofreq\nset yrange [*:*]\nset ytics " +
+          digits(tic_step(ceiling / joule.size, 5)) + "\n" +
+          Sheet::axes(std::string("'along the lowest way from the ") +
+                          (fine.downhill() ? "start" : "basin") + m,
+                      "'energy (" + joule.name + ")'") +
+          "set key off\nplot $way using 3:4 with lines lw 2 lc rgb '" + kFirstColour + "', " +
+          energy(fine.from_start.start_energy + passes.kinetic_energy) +
+          " with lines lt -1 dt 2\n" +
+          sheet.key(82, first.bottom + 58, {"with points pt 5 ps 0.8 lt -1 title 'start'"}) +
+          sheet.key(160, first.bottom + 58, {"with points pt 7 ps 0.9 lt -1 title 'pass'"}) +
+          sheet.key(246, first.bottom + 58, {"with lines lt -1 dt 2 title 'energy of the start'"}) +
+          "unset multiplot\n",
+      kFont};
 }
 
 }  // namespace gatewalk::cli

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cli/render/figure.h"
+#include "cli/render/landscape.h"
 #include "cli/render/quantity.h"
 #include "cli/render/recording.h"
 #include "cli/render/text.h"
@@ -56,28 +57,6 @@ std::string beams_of(const Scene& scene, const Window& w, double metre) {
   return out;
 }
 
-/// The landscape up to what matters between the beams: beside the joints it leaves every scale.
-std::string ground_of(const Scene& scene, double low, double metre, double& highest) {
-  const dynamics::Landscape l =
-      dynamics::landscape(scene.gate, std::min(0.0, low), scene.gate.run.traverse_y / 120.0);
-  highest = 0.0;
-  const auto middle = static_cast<Eigen::Index>(l.x.size() / 2);
-  for (Eigen::Index i = 0; i < l.total.rows(); ++i)
-    if (const double e = l.total(i, middle); std::isfinite(e)) highest = std::max(highest, e);
-  highest *= 1.2;
-  const Sized joule = readable_unit("J", highest);
-  std::string rows;
-  for (std::size_t i = 0; i < l.y.size(); ++i) {
-    for (std::size_t j = 0; j < l.x.size(); ++j) {
-      const double e = l.total(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      rows += digits(l.x[j] / metre) + " " + digits(l.y[i] / metre) + " " +
-              (std::isfinite(e) ? digits(std::min(e, highest) / joule.size) : "NaN") + "\n";
-    }
-    rows += "\n";
-  }
-  return data_block("$ground", rows);
-}
-
 }  // namespace
 
 Figure figure_of(const Scene& scene, const Recordings& recordings) {
@@ -107,15 +86,17 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
   const Sheet sheet{static_cast<int>(box.bottom + 62)};
   std::string out, plot = "plot ";
   if (over_landscape) {
-    double highest = 0.0;
-    data += ground_of(scene, w.bottom, metre.size, highest);
+    const dynamics::Landscape l =
+        dynamics::landscape(scene.gate, std::min(0.0, w.bottom), scene.gate.run.traverse_y / 120.0);
+    const double highest = ceiling_of(l);
     const Sized joule = readable_unit("J", highest);
+    data += data_block("$ground", rows_of(l, metre, joule, highest));
     out += std::string(kSequential) + "set cbrange [*:" + digits(highest / joule.size) +
            "]\nset cblabel 'potential energy (" + joule.name +
            ")'\nset colorbox user origin screen " + sheet.at(box.right + 14, box.bottom) +
            " size screen " + digits(12.0 / Sheet::kWidth) + "," +
            digits((box.bottom - box.top) / sheet.height) + "\n";
-    plot += "$ground using 1:2:3 with image pixels, ";
+    plot += "$ground using 1:2:4 with image pixels, ";
   }
   for (const Recording* run : runs) {
     const std::string way = "$way" + std::to_string(run->trial) + " using 1:2 with lines ";
@@ -137,9 +118,8 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
               "unset key\nset border 15\nset tics out nomirror scale 0.5\n" +
               Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
               length(w.left) + ":" + length(w.right) + "]\nset yrange [" + length(w.bottom) + ":" +
-              length(w.top) + "]\n" + plot +
-              "$ends using 1:2:3 with circles lc rgb '#000000' fs empty border rgb '" +
-              (over_landscape ? "#ffffff" : "#000000") + "'\n",
+              length(w.top) + "]\n" + plot + "$ends using 1:2:3 with circles fs empty border " +
+              (over_landscape ? "rgb '#ffffff'" : "lt -1") + "\n",
           kFont};
 }
 

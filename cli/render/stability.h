@@ -21,7 +21,7 @@ namespace gatewalk::cli {
 
 /// "step_stiffness.svg"
 [[nodiscard]] std::string figure_name(const dynamics::StabilityMap& map);
-/// The maps of one kind side by side, at most five.
+/// The maps of each kind side by side, at most five, one kind below the other.
 [[nodiscard]] Figure figure_of(std::span<const dynamics::FinishedMap> maps);
 
 }  // namespace gatewalk::cli

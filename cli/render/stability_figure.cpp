@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
+#include <vector>
 
 #include "cli/render/figure.h"
 #include "cli/render/stability.h"
@@ -16,19 +16,21 @@ using dynamics::Verdict;
 
 /// One colour per verdict, in their order: pale while the numbers hold.
 constexpr std::array<const char*, dynamics::kVerdictNames.size()> kColours{
-    "#d8efd3",  // ok
-    "#fff3b0",  // missed hit
-    "#c9d3ea",  // no formula
-    "#fdbe85",  // too fast
-    "#f781bf",  // outcomes off
-    "#e6550d",  // energy
-    "#9e79bd",  // penetration
-    "#7f1d1d",  // beyond bound
-    "#2166ac",  // stuck
+    "#e3f1dc",  // ok
+    "#ffe169",  // missed hit
+    "#a9c3d9",  // no formula
+    "#f2a04e",  // too fast
+    "#d987e0",  // outcomes off
+    "#d04a00",  // energy
+    "#9066c9",  // penetration
+    "#7a1010",  // beyond bound
+    "#1f5fae",  // stuck
     "#111111",  // not finite
-    "#9a9a9a",  // refused
+    "#8f8f8f",  // refused
 };
 static_assert(kColours.back() != nullptr, "one colour per verdict");
+
+constexpr double kPanelWidth = 128, kPanelHeight = 112;
 
 /// An axis as gnuplot draws it. Grazing's delta runs over both signs and 24 decades: it is drawn by
 /// number. A zero on a logarithmic axis stands one place below the first value.
@@ -52,8 +54,10 @@ struct DrawnAxis {
     set_edges(at);
     if (by_number || zero_first)
       tics = "(" + tics_by_hand(v, at) + ")";
-    else if (logarithmic && high.back() < 1000.0 * low.front())
-      tics = "(" + tics_1_2_5(low.front(), high.back()) + ")";
+    else if (logarithmic)
+      tics = digits(std::pow(10.0, std::ceil(std::log10(high.back() / low.front()) / 3.5)));
+    else
+      tics = digits(tic_step(high.back() - low.front(), 3));
   }
 
   [[nodiscard]] double drawn(double place) const { return logarithmic ? std::exp(place) : place; }
@@ -68,7 +72,8 @@ struct DrawnAxis {
     }
   }
 
-  /// Zero and whole decades, of an axis by number only two of them and the middle.
+  /// Zero and whole decades, not that next to it; of an axis by number only one of them and the
+  /// middle.
   [[nodiscard]] std::string tics_by_hand(const std::vector<double>& v,
                                          const std::vector<double>& at) const {
     std::string list;
@@ -80,11 +85,11 @@ struct DrawnAxis {
       const long whole = std::lround(decade);
       if (v[i] == 0.0)
         tic(at[i], "0");
-      else if (by_number ? whole == -3 || whole == -9
-                         : std::abs(decade - static_cast<double>(whole)) < 1e-9)
-        tic(at[i], (v[i] < 0 ? "-1e" : "1e") + std::to_string(whole));
+      else if (by_number ? whole == -6
+                         : i > 1 && std::abs(decade - static_cast<double>(whole)) < 1e-9)
+        tic(at[i], (v[i] < 0 ? "-10^{" : "10^{") + std::to_string(whole) + "}");
     }
-    if (by_number) tic(0.5 * (at.front() + at.back()), "-+1e-15");
+    if (by_number) tic(0.5 * (at.front() + at.back()), "0");
     return list;
   }
 };
@@ -102,87 +107,112 @@ std::string cells_of(const FinishedMap& m, const DrawnAxis& x, const DrawnAxis& 
   return cells;
 }
 
-/// Known borders of a map: their data blocks, and what to add to `plot` for them.
-struct BorderLines {
-  std::string blocks, elements;
+/// The maps of one kind, three methods in a row, and a key in the place of the sixth.
+class Group {
+ public:
+  Group(std::span<const FinishedMap> maps, double top, std::string tag)
+      : maps_(maps), top_(top), tag_(std::move(tag)) {
+    for (const FinishedMap& m : maps_)
+      for (const dynamics::Border& border : dynamics::borders(m.map))
+        if (std::find(borders_.begin(), borders_.end(), border.label) == borders_.end())
+          borders_.push_back(border.label);
+  }
+
+  [[nodiscard]] double end() const {
+    return row_of(1) + kPanelHeight + 70 + 20 * static_cast<double>((borders_.size() + 1) / 2);
+  }
+
+  [[nodiscard]] std::string drawn_on(const Sheet& sheet) const {
+    const dynamics::StabilityMap& map = maps_.front().map;
+    std::string out = sheet.text(std::string(map.title), 8, top_ + 14) + "set label " +
+                      literal(map.y.label) + " at screen " + sheet.at(10, row_of(1) - 20) +
+                      " center rotate by 90\n";
+    for (std::size_t i = 0; i < maps_.size(); ++i) out += panel(i, sheet);
+    std::vector<std::string> verdicts;
+    for (std::size_t v = 0; v < kColours.size(); ++v)
+      if (std::any_of(maps_.begin(), maps_.end(),
+                      [v](const FinishedMap& m) { return m.count(static_cast<Verdict>(v)) > 0; }))
+        verdicts.push_back(std::string("with points pt 5 ps 1.4 lc rgb '") + kColours[v] +
+                           "' title " + literal(dynamics::kVerdictNames[v]));
+    out += sheet.key(left_of(2), row_of(1), verdicts);
+    for (std::size_t i = 0; i < borders_.size(); ++i)
+      out += sheet.key(i % 2 == 0 ? 70 : 270,
+                       end() - 8 - 20 * static_cast<double>((borders_.size() + 1) / 2 - i / 2),
+                       {"with lines lt -1 lw 1.5 dt " + std::to_string(i + 1) + " title " +
+                        literal(borders_[i])});
+    return out;
+  }
+
+ private:
+  [[nodiscard]] static double left_of(std::size_t column) {
+    return 76 + (kPanelWidth + 16) * static_cast<double>(column);
+  }
+  [[nodiscard]] double row_of(std::size_t row) const {
+    return top_ + 52 + 196 * static_cast<double>(row);
+  }
+
+  /// Known borders of a map, the same one in the same dashes everywhere, seen on every colour.
+  [[nodiscard]] std::string lines_of(const dynamics::StabilityMap& map, const std::string& tag,
+                                     std::string& blocks) const {
+    std::string plot;
+    for (const dynamics::Border& border : dynamics::borders(map)) {
+      std::string rows;
+      for (std::size_t k = 0; k < border.x.size(); ++k)
+        rows += digits(border.x[k]) + " " + digits(border.y[k]) + "\n";
+      const auto place = std::find(borders_.begin(), borders_.end(), border.label);
+      const std::string dash = std::to_string(place - borders_.begin() + 1),
+                        name = tag + "B" + dash;
+      blocks += data_block(name, rows);
+      plot += ", " + name + " using 1:2 with lines lw 3.5 lc rgb '#ffffff', " + name +
+              " using 1:2 with lines lw 1.5 lc rgb '#000000' dt " + dash;
+    }
+    return plot;
+  }
+
+  [[nodiscard]] std::string panel(std::size_t i, const Sheet& sheet) const {
+    const dynamics::StabilityMap& map = maps_[i].map;
+    const DrawnAxis x(map.x), y(map.y);
+    const std::string name = tag_ + std::to_string(i);
+    const double left = left_of(i % 3), top = row_of(i / 3);
+    // A label under the middle one serves its whole row, but for one that has another axis.
+    const bool named = i % 3 == 1 || (i == 3 && map.x.label != maps_.back().map.x.label);
+    std::string blocks = data_block(name, cells_of(maps_[i], x, y));
+    const std::string lines = lines_of(map, name, blocks);
+    const auto axis = [](const std::string& n, const DrawnAxis& drawn) {
+      return (drawn.logarithmic ? "set logscale " : "unset logscale ") + n + "\nset format " + n +
+             (drawn.logarithmic ? " '10^{%L}'" : " '%g'") + "\nset " + n + "tics " + drawn.tics +
+             "\nset " + n + "range [" + digits(drawn.low.front()) + ":" +
+             digits(drawn.high.back()) + "]\n";
+    };
+    return blocks + kFrame + "set style fill solid noborder\n" +
+           sheet.margins({left, left + kPanelWidth, top, top + kPanelHeight}) +
+           sheet.text(map.method, left, top - 12) + axis("x", x) + axis("y", y) +
+           (i % 3 == 0 ? "" : "unset ytics\n") + "set xlabel " +
+           (named ? literal(map.x.label) : std::string("''")) + " offset 0,0.4\nplot " + name +
+           " using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable" + lines + "\nunset label\n";
+  }
+
+  std::span<const FinishedMap> maps_;
+  double top_;
+  std::string tag_;
+  std::vector<std::string> borders_;  // labels, in the order of their dashes
 };
-BorderLines borders_of(const dynamics::StabilityMap& map, const std::string& tag) {
-  BorderLines lines;
-  int number = 0;
-  for (const auto& border : dynamics::borders(map)) {
-    std::string rows;
-    for (std::size_t k = 0; k < border.x.size(); ++k)
-      rows += digits(border.x[k]) + " " + digits(border.y[k]) + "\n";
-    const std::string name = tag + "B" + std::to_string(number);
-    lines.blocks += data_block(name, rows);
-    lines.elements += ", " + name +
-                      " using 1:2 with linespoints lw 2 pt 7 ps 0.2 lc rgb 'black' dt " +
-                      std::to_string(++number) + " title " + literal(border.label);
-  }
-  return lines;
-}
-
-/// In the place of the sixth panel: the verdicts that any of the maps has.
-std::string legend(std::span<const FinishedMap> maps) {
-  std::ostringstream out;
-  int label = 10;
-  for (std::size_t v = 0; v < kColours.size(); ++v) {
-    const bool seen = std::any_of(maps.begin(), maps.end(), [v](const FinishedMap& m) {
-      return m.count(static_cast<Verdict>(v)) > 0;
-    });
-    if (!seen) continue;
-    const double row = 0.36 - 0.035 * (label - 10);
-    out << "set label " << label++ << " " << literal(dynamics::kVerdictNames[v])
-        << " at screen 0.74, screen " << row << " left point pt 5 ps 2 lc rgb '" << kColours[v]
-        << "' offset 1.5,0\n";
-  }
-  return out.str();
-}
-
-/// Place, title and axes of panel i, of two rows of three.
-std::string frame(const dynamics::StabilityMap& map, std::size_t i, const DrawnAxis& x,
-                  const DrawnAxis& y, bool key) {
-  std::ostringstream out;
-  const double left = 0.08 + 0.32 * static_cast<double>(i % 3), right = left + 0.24;
-  const double top = i < 3 ? 0.86 : 0.385, bottom = top - 0.29;
-  out << "set lmargin at screen " << left << "\nset rmargin at screen " << right
-      << "\nset tmargin at screen " << top << "\nset bmargin at screen " << bottom << "\nset title "
-      << literal(map.method) << " offset 0,1.5\n"
-      << "set xlabel " << literal(map.x.label) << "\nset ylabel " << literal(map.y.label) << "\n"
-      << (x.logarithmic ? "set logscale x\nset format x '10^{%L}'\n"
-                        : "unset logscale x\nset format x '%g'\n")
-      << (y.logarithmic ? "set logscale y\nset format y '10^{%L}'\n"
-                        : "unset logscale y\nset format y '%g'\n")
-      << "set xtics nomirror out font ',10' " << (x.tics.empty() ? "autofreq" : x.tics) << "\n"
-      << "set ytics nomirror out " << (y.tics.empty() ? "autofreq" : y.tics) << "\n"
-      << "set xrange [" << digits(x.low.front()) << ":" << digits(x.high.back())
-      << "]\nset yrange [" << digits(y.low.front()) << ":" << digits(y.high.back()) << "]\n"
-      << (key ? "set key at graph 0.5, graph 1.1 center horizontal font ',9' samplen 2\n"
-              : "unset key\n");
-  return out.str();
-}
 
 }  // namespace
 
 Figure figure_of(std::span<const FinishedMap> maps) {
-  std::ostringstream out;
-  out << "set multiplot\nunset key\nset border 3\nset style fill solid 1.0 noborder\n";
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    const dynamics::StabilityMap& map = maps[i].map;
-    const DrawnAxis x(map.x), y(map.y);
-    const std::string tag = "$M" + std::to_string(i);
-    const BorderLines lines = borders_of(map, tag);
-    out << data_block(tag, cells_of(maps[i], x, y)) << lines.blocks
-        << frame(map, i, x, y, !lines.elements.empty());
-    if (i == 0)
-      out << "set label 1 " << literal(map.title) << " at screen 0.02, screen 0.965 font ',16'\n";
-    if (i + 1 == maps.size()) out << legend(maps);
-    out << "plot " << tag << " using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable notitle"
-        << lines.elements << "\n"
-        << "unset label\n";
+  std::vector<Group> groups;
+  double height = 0.0;
+  for (std::size_t begin = 0, end = 0; begin < maps.size(); begin = end) {
+    while (end < maps.size() && maps[end].map.kind == maps[begin].map.kind) ++end;
+    groups.emplace_back(maps.subspan(begin, end - begin), height,
+                        "$map" + std::to_string(groups.size()) + "_");
+    height = groups.back().end();
   }
-  out << "unset multiplot\n";
-  return {.width = 1080, .height = 720, .commands = out.str()};
+  const Sheet sheet{static_cast<int>(height)};
+  std::string out = "set multiplot\nunset ylabel\n";
+  for (Group& group : groups) out += group.drawn_on(sheet);
+  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
 }
 
 }  // namespace gatewalk::cli

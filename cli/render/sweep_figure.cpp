@@ -82,11 +82,10 @@ Figure curves(const SweepAxis& axis, const std::vector<SweepPoint>& points) {
              (numbers ? "yerrorlines" : "yerrorbars") + " lc rgb '" + c.colour + "' lw 1.5 pt " +
              marker + " ps 0.8 title '" + c.name + "'";
   }
-  std::string out = data + sheet.margins(box) + sheet.text(about(points), 8, 18) +
-                    "set key at screen " + sheet.at(480, 42) +
-                    " right center horizontal samplen 2\nset border 3\nset tics out nomirror scale "
-                    "0.5\nset grid ytics lc rgb '#dddddd' lt 1\nset yrange [0:100]\n" +
-                    Sheet::axes(literal(axis.key), "'% of trials'");
+  std::string out =
+      data + kFrame + sheet.margins(box) + sheet.text(about(points), 8, 18) + "set key at screen " +
+      sheet.at(480, 42) + " right center horizontal maxrows 1 width -3 samplen 2\nset grid ytics" +
+      kThin + "\nset yrange [0:100]\n" + Sheet::axes(literal(axis.key), "'% of trials'");
   if (numbers) {
     const auto [low, high] = std::minmax_element(numbers->begin(), numbers->end());
     const double margin = *high > *low  ? 0.04 * (*high - *low)
@@ -119,17 +118,17 @@ Figure map_of(const SweepAxis& up, const SweepAxis& right, const std::vector<Swe
                height = tall / static_cast<double>(rows);
   const Box box{left, left + wide, 44, 44 + tall};
   const Sheet sheet{static_cast<int>(box.bottom + 66)};
-  std::string out =
-      kSequential + data_block("$map", data) + sheet.margins(box) +
-      sheet.text(about(points) + ": traversed, %", 8, 18) +
-      "unset key\nset border 3\nset tics out nomirror scale 0.5\nset cbrange [0:100]\n"
-      "set cbtics 25\nset colorbox user origin screen " +
-      sheet.at(box.right + 12, box.bottom) + " size screen " + digits(12.0 / Sheet::kWidth) + "," +
-      digits(tall / sheet.height) +
-      "\nset xrange [-0.5:" + digits(static_cast<double>(columns) - 0.5) +
-      "]\nset yrange [-0.5:" + digits(static_cast<double>(rows) - 0.5) + "]\nset xtics " +
-      tics_of(right, width, false) + " noenhanced\nset ytics " + tics_of(up, height, true) +
-      " noenhanced\n" + Sheet::axes(literal(right.key), literal(up.key)) + "plot $map" + kCells;
+  std::string out = kSequential + data_block("$map", data) + sheet.margins(box) +
+                    sheet.text(about(points) + ": traversed, %", 8, 18) + kFrame +
+                    "set cbrange [0:100]\n"
+                    "set cbtics 25\nset colorbox user origin screen " +
+                    sheet.at(box.right + 12, box.bottom) + " size screen " +
+                    digits(12.0 / Sheet::kWidth) + "," + digits(tall / sheet.height) +
+                    "\nset xrange [-0.5:" + digits(static_cast<double>(columns) - 0.5) +
+                    "]\nset yrange [-0.5:" + digits(static_cast<double>(rows) - 0.5) +
+                    "]\nset xtics " + tics_of(right, width, false) + " noenhanced\nset ytics " +
+                    tics_of(up, height, true) + " noenhanced\n" +
+                    Sheet::axes(literal(right.key), literal(up.key)) + "plot $map" + kCells;
   if (width >= 28 && height >= 16)
     out += ", '' using 1:2:4:($3 > 60 ? 0x000000 : 0xffffff) with labels tc rgb variable font '," +
            std::to_string(kSmallFont) + "'";

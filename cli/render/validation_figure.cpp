@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cli/render/field_figure.h"
 #include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/prediction.h"
@@ -14,7 +15,7 @@ namespace {
 using lattice::StartValidation;
 using markov::CellProbabilities;
 
-constexpr double kMapWidth = 142, kGap = 14, kLeft = 22, kHead = 46;
+constexpr double kMapWidth = 130, kGap = 16, kLeft = 64, kHead = 46;
 
 std::string rows_of(const CellProbabilities& blocks, bool roots) {
   std::string out;
@@ -46,6 +47,7 @@ Figure figure_of(const lattice::Validation& v) {
     throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostValidated) +
                                 " starts, these are " + std::to_string(v.starts.size()));
   struct Row {
+    FieldMap map;  // of what either of them reaches
     CellProbabilities dynamics, chain;
     double top, height;
   };
@@ -53,36 +55,41 @@ Figure figure_of(const lattice::Validation& v) {
   double most = 0.0, largest = 0.0, end = kHead;
   for (const StartValidation& s : v.starts) {
     const CellProbabilities seen = lattice::shares(s.dynamics.final_gates);
-    const FieldMap map(0.5 * (seen + s.exact.final_cells), 60, 60);  // what either of them reaches
-    Row row{map.blocks_of(seen), map.blocks_of(s.exact.final_cells), end + 22, 0.0};
+    const FieldMap map(0.5 * (seen + s.exact.final_cells), 60, 60);
+    Row row{map, map.blocks_of(seen), map.blocks_of(s.exact.final_cells), end + 24, 0.0};
     row.height = std::clamp(
         kMapWidth * static_cast<double>(row.chain.rows()) / static_cast<double>(row.chain.cols()),
-        40.0, 240.0);
-    end = row.top + row.height + 8;
+        60.0, 240.0);
+    end = row.top + row.height + 40;
     most = std::max({most, row.dynamics.maxCoeff(), row.chain.maxCoeff()});
     largest = std::max(largest, (row.dynamics - row.chain).abs().maxCoeff());
     rows.push_back(std::move(row));
   }
   if (largest == 0.0) largest = 1e-4;
-  const Sheet sheet{static_cast<int>(end + 56)};
+  end += 26;  // the name of the last row's axis
+  const Sheet sheet{static_cast<int>(end + 62)};
   const RootScale scale(100.0 * most);
   const auto left_of = [](int i) { return kLeft + i * (kMapWidth + kGap); };
-  std::string out = "set multiplot\nunset key\nunset tics\nset border 15\n" +
+  std::string out = std::string("set multiplot\n") + kFrame + "set border 15\n" +
                     sheet.text("final gates, " + std::to_string(v.trials) + " trials", 8, 16);
-  const char* const heads[] = {"dynamics, %", "chain, %", "dynamics - chain, points"};
+  const char* const heads[] = {"dynamics, %", "chain, %", "difference, points"};
   for (int i = 0; i < 3; ++i) out += sheet.text(heads[i], left_of(i), kHead - 4, kSmallFont);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Row& row = rows[k];
     const bool last = k + 1 == rows.size();
     const std::string tag = std::to_string(k);
-    out += sheet.text(summary(v.starts[k]), kLeft, row.top - 10, kSmallFont);
+    out += sheet.text(summary(v.starts[k]), 8, row.top - 10, kSmallFont) + kFrame +
+           "set border 15\nset xrange " + range_of(row.map.columns) + "\nset yrange " +
+           range_of(row.map.rows) + "\nset xtics " +
+           tics_of(row.map.columns, row.map.middle_column, kMapWidth, 34) + "\nset ytics " +
+           tics_of(row.map.rows, 0, row.height, 22) + "\n" +
+           Sheet::axes(last ? "'column i_x'" : "''", "'row i_y'");
     const auto panel = [&](int i, const char* name, const std::string& data) {
       const std::string block = name + tag;
       out += data_block(block, data) +
              sheet.margins({left_of(i), left_of(i) + kMapWidth, row.top, row.top + row.height}) +
-             "set xrange [-0.5:" + digits(static_cast<double>(row.chain.cols()) - 0.5) +
-             "]\nset yrange [-0.5:" + digits(static_cast<double>(row.chain.rows()) - 0.5) +
-             "]\nplot " + block + kCells + "\nunset label\n";
+             (i == 1 ? "unset ytics\nunset ylabel\n" : "") + "plot " + block + kCells +
+             "\nunset label\n";
     };
     out += kSequential;
     out += "set cbrange " + scale.range() + "\nunset colorbox\n";
@@ -90,7 +97,7 @@ Figure figure_of(const lattice::Validation& v) {
     if (last)
       out += "set cbtics (" + scale.tics() + ") scale 0.5 offset 0,0.4\n" +
              colour_bar(sheet, left_of(0), left_of(1) + kMapWidth, end + 8) +
-             sheet.text("root scale", left_of(1) - 30, end + 46, kSmallFont);
+             sheet.text("root scale", left_of(1) - 30, end + 50, kSmallFont);
     panel(1, "$chain", rows_of(row.chain, true));
     out += kDiverging;
     const double bound = 100.0 * largest;

@@ -3,8 +3,6 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
-#include <set>
-#include <sstream>
 
 #include "cli/render/figure.h"
 #include "cli/render/text.h"
@@ -14,275 +12,243 @@ namespace gatewalk::cli {
 namespace {
 
 using dynamics::ChartPoint;
-using dynamics::StrongError;
 using dynamics::Verdict;
 using dynamics::WorkPrecision;
 
-char letter_of(Verdict v) {
-  switch (v) {
-    case Verdict::penetration:
-      return 'P';
-    case Verdict::energy:
-      return 'E';
-    case Verdict::too_fast:
-      return 'F';
-    case Verdict::beyond_bound:
-      return 'B';
-    case Verdict::no_formula:
-      return 'N';
-    case Verdict::stuck:
-      return 'S';
-    case Verdict::not_finite:
-      return 'X';
-    default:
-      return '?';
-  }
+/// Colour and marker (gnuplot's number, filled) of a method.
+struct Look {
+  const char* colour;
+  int marker;
+};
+Look look_of(const std::string& method) {
+  if (method == "paper") return {kSecondColour, 5};
+  if (method == "stable") return {kFirstColour, 7};
+  if (method == "moreau") return {kThirdColour, 9};
+  if (method == "penalty") return {kFifthColour, 13};
+  return {kFourthColour, 15};
 }
 
-/// Settings that have no place in a panel, with the reason: "paper 0.02 to 0.005 s: not finite".
-std::vector<std::string> strip(
-    const std::vector<std::pair<const ChartPoint*, std::string>>& without) {
-  std::vector<std::string> lines;
-  constexpr std::size_t kLongest = 95;  // letters that a panel is wide
-  for (std::size_t i = 0; i < without.size();) {
-    const auto& [first, reason] = without[i];
-    std::size_t last = i;  // of a run of neighbours in the list with the same reason
-    while (last + 1 < without.size() && without[last + 1].first == without[last].first + 1 &&
-           without[last + 1].first->setting.method == first->setting.method &&
-           without[last + 1].second == reason)
-      ++last;
-    const auto value = [](const ChartPoint* p) {
-      char text[16];
-      std::snprintf(text, sizeof text, "%.3g", p->setting.value);
-      return std::string(text);
+/// "lc rgb '...'", for all that is of the method.
+std::string colour_of(const std::string& method) {
+  return std::string(" lc rgb '") + look_of(method).colour + "'";
+}
+
+// What is marked, in the panels and in the key.
+constexpr char kUsual[] = "points pt 6 ps 1.2 lw 1.2";
+constexpr char kFault[] = "points pt 2 ps 0.7 lw 2";
+constexpr char kLess[] = "points pt 10 ps 0.9 lw 1.2";
+constexpr char kParted[] = "points pt 8 ps 0.9 lw 1.2";
+constexpr char kLimit[] = "lines lw 0.8 dt 2";
+constexpr char kOwn[] = "lines lw 0.8 dt 3";
+
+/// A point's error (infinite: half of the trials or more parted; NaN: none), its standard error,
+/// and what it must reach to be told from no error.
+struct Drawn {
+  double error, spread, bound;
+
+  [[nodiscard]] bool parted() const { return !std::isnan(error) && !std::isfinite(height()); }
+  /// Where it is drawn.
+  [[nodiscard]] double height() const { return std::max(error, bound); }
+};
+
+/// One of the errors of a chart: the bound that the reference sets to all, and its own error.
+struct Kind {
+  double limit, own;
+  std::function<Drawn(const ChartPoint&)> value;
+};
+Kind outcomes_of(const WorkPrecision& chart) {
+  return {chart.outcome_limit(), chart.reference.own.outcomes.total_variation,
+          [&chart](const ChartPoint& p) {
+            const dynamics::WeakError& e = p.errors.outcomes;
+            return Drawn{e.total_variation, e.standard_error, chart.outcome_bound(p.errors)};
+          }};
+}
+Kind positions_of(const WorkPrecision& chart) {
+  return {chart.position_limit(), chart.reference.own.strong.position,
+          [&chart](const ChartPoint& p) {
+            const dynamics::StrongError& e = p.errors.strong;
+            const bool parted = !std::isfinite(e.position) && e.compared + e.parted > 0;
+            return Drawn{parted ? HUGE_VAL : e.position, std::nan(""), chart.position_limit()};
+          }};
+}
+
+/// Of a logarithmic axis.
+struct Range {
+  double low = HUGE_VAL, high = 0.0;
+
+  void see(double x) {
+    if (!(x > 0.0) || !std::isfinite(x)) return;
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  /// With room on both sides; one that has seen nothing has some, too.
+  [[nodiscard]] Range wider(double below, double above) const {
+    return high > 0.0 ? Range{low / below, high * above} : Range{0.1, 1.0};
+  }
+  [[nodiscard]] std::string text() const { return "[" + digits(low) + ":" + digits(high) + "]"; }
+};
+
+/// The same for all scenes: they can be compared.
+struct Ranges {
+  Range time, outcomes, positions;
+
+  explicit Ranges(const std::vector<WorkPrecision>& charts) {
+    for (const WorkPrecision& chart : charts) {
+      const auto see = [&](Range& range, const Kind& kind) {
+        range.see(kind.limit);
+        for (const ChartPoint& p : chart.points)
+          if (p.ran()) range.see(kind.value(p).height());
+      };
+      see(outcomes, outcomes_of(chart));
+      see(positions, positions_of(chart));
+      for (const ChartPoint& p : chart.points) time.see(p.least_microseconds());
+    }
+    time = time.wider(1.3, 1.3);
+    outcomes = outcomes.wider(4.0, 2.0);
+    positions = positions.wider(20.0, 10.0);
+  }
+};
+
+/// Least time per trial against error, all methods. What is below its bound is drawn there, as
+/// less than that; what has parted, on top.
+std::string panel(const WorkPrecision& chart, const Kind& kind, const Range& range,
+                  const std::string& tag) {
+  std::string blocks, plot = "plot ";
+  const auto element = [&](const std::string& text) {
+    plot += (plot == "plot " ? "" : ", ") + text;
+  };
+  const auto level = [&](double at, const char* look) {
+    if (at > range.low && std::isfinite(at)) element(digits(at) + " with " + look + " lt -1");
+  };
+  level(kind.limit, kLimit);
+  level(kind.own, kOwn);
+  for (std::size_t begin = 0, end = 0; begin < chart.points.size(); begin = end) {
+    const std::string& method = chart.points[begin].setting.method;
+    std::string line, good, bars, fault, less, parted, usual;
+    for (; end < chart.points.size() && chart.points[end].setting.method == method; ++end) {
+      const ChartPoint& p = chart.points[end];
+      if (!p.ran()) continue;
+      const Drawn drawn = kind.value(p);
+      const auto [error, spread, bound] = drawn;
+      if (std::isnan(error)) continue;
+      const std::string time = digits(p.least_microseconds()) + " ",
+                        x_y = time + digits(drawn.parted() ? range.high / 1.6 : drawn.height()) +
+                              "\n";
+      if (p.setting.usual) usual += x_y;
+      if (drawn.parted()) {
+        parted += x_y;
+        continue;
+      }
+      line += x_y;
+      (error < bound ? less : p.verdict == Verdict::fine ? good : fault) += x_y;
+      if (error >= bound && std::isfinite(spread))
+        bars += time + digits(std::max(error - 2 * spread, 0.1 * error)) + " " +
+                digits(error + 2 * spread) + "\n";
+    }
+    const Look look = look_of(method);
+    const auto draw = [&](const char* what, const std::string& rows, const std::string& with) {
+      if (rows.empty()) return;
+      const std::string name = "$" + tag + method + what;
+      blocks += data_block(name, rows);
+      element(name + with);
     };
-    const std::string text = first->setting.method + " " + value(first) +
-                             (last > i ? " to " + value(without[last].first) : "") + " " +
-                             first->setting.unit() + ": " + reason;
+    const std::string colour = colour_of(method), points = " using 1:2 with ";
+    draw("line", line, points + "lines lw 1" + colour);
+    draw("bars", bars,
+         " using 1:2:(0):($3-$2) with vectors heads size graph 0.015,90 lw 0.8" + colour);
+    draw("good", good, points + "points ps 0.7 pt " + std::to_string(look.marker) + colour);
+    draw("fault", fault, points + kFault + colour);
+    draw("less", less, points + kLess + colour);
+    draw("parted", parted, points + kParted + colour);
+    draw("usual", usual, points + kUsual + " lt -1");
+  }
+  if (blocks.empty()) {
+    element("NaN");
+    blocks = "set label 'nothing to compare' at graph 0.5,0.5 center\n";
+  }
+  return blocks + "set ytics " +
+         digits(std::pow(10.0, std::ceil(std::log10(range.high / range.low) / 6.0))) +
+         "\nset yrange " + range.text() + "\n" + plot + "\n";
+}
+
+/// Settings that the method refused, in lines as wide as the figure: "refused: penalty 0.02 to
+/// 0.01 s".
+std::vector<std::string> refused_lines(const WorkPrecision& chart) {
+  constexpr std::size_t kLongest = 76;
+  const auto refused = [&](std::size_t i, const std::string& method) {
+    return i < chart.points.size() && !chart.points[i].ran() &&
+           chart.points[i].setting.method == method;
+  };
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < chart.points.size(); ++i) {
+    const dynamics::Setting& first = chart.points[i].setting;
+    if (!refused(i, first.method)) continue;
+    while (refused(i + 1, first.method)) ++i;
+    const dynamics::Setting& last = chart.points[i].setting;
+    std::string text = first.method + " " + digits(first.value);
+    if (!(last == first)) text += " to " + digits(last.value);
+    text += std::string(" ") + first.unit();
     if (lines.empty() || lines.back().size() + text.size() > kLongest)
-      lines.push_back(lines.empty() ? "no point: " + text : text);
+      lines.push_back(lines.empty() ? "refused: " + text : text);
     else
-      lines.back() += "; " + text;
-    i = last + 1;
+      lines.back() += ", " + text;
   }
   return lines;
 }
 
-/// Why a setting that ran has no strong error.
-std::string lacks(const StrongError& e, double limit) {
-  if (std::isinf(limit)) return "the reference itself parted";
-  if (e.compared > 0) return "half or more parted";
-  return e.parted > 0 ? "all parted" : "no exits";
-}
-
-/// A point's error, its standard error, and what it must reach to be told from no error.
-struct Drawn {
-  double error, spread, bound;
-};
-
-/// One panel: least time per trial against error. What is below its bound is drawn there, as less
-/// than that.
-class Panel {
- public:
-  /// `tag` makes names of data blocks; `limit` is the bound that the reference sets to all, `own`
-  /// its error.
-  Panel(const WorkPrecision& chart, std::string tag, double limit, double own,
-        const std::function<Drawn(const ChartPoint&)>& value)
-      : tag_(std::move(tag)), limit_(limit), lowest_(limit), highest_(limit) {
-    std::vector<std::string> methods;
-    for (const ChartPoint& p : chart.points)
-      if (std::find(methods.begin(), methods.end(), p.setting.method) == methods.end())
-        methods.push_back(p.setting.method);
-    for (const std::string& method : methods) add_method(chart, method, value);
-    if (separator_ == "plot ") {
-      plot_ << "plot [1:10] [0.1:1] NaN";
-      return;
-    }
-    if (limit > 0.0 && std::isfinite(limit))
-      element(digits(limit) + " with lines dt 2 lw 1 lc rgb '#666666'");
-    if (own > 0.0 && own >= 0.01 * lowest_) {
-      element(digits(own) + " with lines dt 3 lw 1 lc rgb '#666666'");
-      lowest_ = std::min(lowest_, own);
-    }
+std::string key_of(const std::vector<WorkPrecision>& charts, const Sheet& sheet) {
+  std::vector<std::string> methods;
+  std::string last;
+  for (const ChartPoint& p : charts.front().points) {
+    if (p.setting.method == last) continue;
+    last = p.setting.method;
+    methods.push_back("with linespoints ps 0.7 pt " + std::to_string(look_of(last).marker) +
+                      colour_of(last) + " title '" + last + "'");
   }
-
-  [[nodiscard]] std::string text(const std::string& title, const std::string& label) const {
-    std::ostringstream out;
-    const std::vector<std::string> lines = strip(without_);
-    out << blocks_.str() << "unset label\nset title " << literal(title) << " offset 0,"
-        << 0.3 + 0.8 * static_cast<double>(lines.size()) << "\nset ylabel " << literal(label)
-        << "\n";
-    for (std::size_t i = 0; i < lines.size(); ++i)
-      out << "set label " << 11 + i << " " << literal(lines[i]) << " at graph 0, graph "
-          << 1.03 + 0.045 * static_cast<double>(lines.size() - 1 - i)
-          << " font ',8' tc rgb '#444444'\n";
-    if (limit_ > 0.0 && slowest_ > 0.0)
-      out << "set label 10 'below: not told from the reference' at graph 0.99, first "
-          << digits(limit_) << " right offset 0,-0.6 font ',8' tc rgb '#666666'\n";
-    if (slowest_ > 0.0)
-      out << "set xrange [" << digits(quickest_ / 1.5) << ":" << digits(slowest_ * 1.5)
-          << "]\nset xtics nomirror (" << tics_1_2_5(quickest_ / 1.5, slowest_ * 1.5)
-          << ")\nset yrange [" << digits(lowest_ / 2.5) << ":" << digits(highest_ * 2.0) << "]\n";
-    out << plot_.str() << "\n";
-    return out.str();
-  }
-
- private:
-  /// Rows of a method's data blocks: "time error ...".
-  struct Rows {
-    std::string line, good, bars, failed, below, usual;
-
-    void add(const ChartPoint& p, double time, const Drawn& drawn) {
-      const auto [error, spread, bound] = drawn;
-      const std::string x_y = digits(time) + " " + digits(std::max(error, bound));
-      line += x_y + "\n";
-      const bool fails = p.verdict != Verdict::fine;
-      if (fails) failed += x_y + " " + letter_of(p.verdict) + "\n";
-      if (error < bound)
-        below += x_y + "\n";
-      else if (!fails)
-        good += x_y + "\n";
-      if (error >= bound && std::isfinite(spread))
-        bars += x_y + " " + digits(std::max(error - 2 * spread, 0.1 * error)) + " " +
-                digits(error + 2 * spread) + "\n";
-      if (p.setting.usual) usual += x_y + "\n";
-    }
+  const auto entry = [](const char* look, const char* name) {
+    return std::string("with ") + look + " lt -1 title '" + name + "'";
   };
-
-  void add_method(const WorkPrecision& chart, const std::string& method,
-                  const std::function<Drawn(const ChartPoint&)>& value) {
-    Rows rows;
-    for (const ChartPoint& p : chart.points) {
-      if (p.setting.method != method) continue;
-      const Drawn drawn = value(p);
-      if (!p.ran() || !std::isfinite(drawn.error) || !std::isfinite(drawn.bound)) {
-        without_.emplace_back(&p, p.ran() ? lacks(p.errors.strong, limit_)
-                                          : std::string(dynamics::name_of(p.verdict)));
-        continue;
-      }
-      const double time = p.least_microseconds(), y = std::max(drawn.error, drawn.bound);
-      quickest_ = std::min(quickest_, time);
-      slowest_ = std::max(slowest_, time);
-      lowest_ = std::min(lowest_, y);
-      highest_ = std::max(highest_, y);
-      rows.add(p, time, drawn);
-    }
-    if (!rows.line.empty()) plot_method(method, rows);
-  }
-
-  void plot_method(const std::string& method, const Rows& rows) {
-    const Look look = look_of(method);
-    const std::string colour = std::string(" lc rgb '") + look.colour + "'";
-    const auto block = [&](const char* kind, const std::string& lines) {
-      const std::string name = "$" + tag_ + "_" + method + "_" + kind;
-      blocks_ << data_block(name, lines);
-      return name;
-    };
-    element(block("line", rows.line) + " using 1:2 with lines lw 1.2" + colour);
-    if (!rows.bars.empty())
-      element(block("bars", rows.bars) + " using 1:2:3:4 with yerrorbars pt 0 lw 0.8" + colour);
-    if (!rows.good.empty())
-      element(block("good", rows.good) + " using 1:2 with points ps 0.8 pt " +
-              std::to_string(look.marker) + colour);
-    if (!rows.below.empty())
-      element(block("below", rows.below) + " using 1:2 with points pt 10 ps 1.1 lw 1.5" + colour);
-    if (!rows.failed.empty()) {
-      const std::string name = block("failed", rows.failed);
-      element(name + " using 1:2 with points pt 2 ps 0.8 lw 1.8" + colour);
-      element(name + " using 1:2:3 with labels font ',8' offset 0.7,0.5 tc rgb '" + look.colour +
-              "'");
-    }
-    if (!rows.usual.empty())
-      element(block("usual", rows.usual) +
-              " using 1:2 with points pt 6 ps 1.8 lw 1.2 lc rgb 'black'");
-  }
-
-  void element(const std::string& text) {
-    plot_ << separator_ << text;
-    separator_ = ", ";
-  }
-
-  std::string tag_, separator_ = "plot ";
-  double limit_, lowest_, highest_;
-  double quickest_ = std::numeric_limits<double>::infinity(), slowest_ = 0.0;
-  std::ostringstream blocks_, plot_;
-  std::vector<std::pair<const ChartPoint*, std::string>> without_;
-};
-
-/// On top of the first row, drawn with a plot that has nothing else.
-std::string legend(const WorkPrecision& chart, int height) {
-  std::ostringstream out;
-  out << "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\n"
-         "set bmargin at screen 0\nunset border\nunset tics\nunset xlabel\n";
-  double x = 0.02;
-  const double y = 1.0 - 16.0 / height;
-  int label = 10;
-  const auto entry = [&](const std::string& text, const std::string& point, double width) {
-    out << "set label " << label++ << " " << literal(text) << " at screen " << x << ", screen " << y
-        << " left point " << point << " offset 1,0\n";
-    x += width;
-  };
-  std::set<std::string> drawn;
-  for (const ChartPoint& p : chart.points) {
-    if (!drawn.insert(p.setting.method).second) continue;
-    const Look look = look_of(p.setting.method);
-    entry(p.setting.method,
-          "pt " + std::to_string(look.marker) + " ps 0.8 lc rgb '" + look.colour + "'", 0.085);
-  }
-  entry("usual: the method's default", "pt 6 ps 1.8 lc rgb 'black'", 0.21);
-  entry("less: below what the reference or chance can show", "pt 10 ps 1.1 lc rgb '#444444'", 0.3);
-  out << "set label " << label++ << " "
-      << literal(
-             "x fails: E energy from nothing, P disc sinks into a beam, F too fast for its steps, "
-             "S stuck, N contact without a formula, B beyond the stability bound, X not finite. "
-             "Bars: 2 standard errors.")
-      << " at screen 0.016, screen " << 1.0 - 40.0 / height << " font ',10'\n"
-      << "plot [0:1] [0:1] NaN\nunset label\nset border 3\nset xtics nomirror\n"
-         "set ytics nomirror\nset xlabel 'least time per trial (µs)' offset 0,0.3\n"
-         "set logscale xy\n";
-  return out.str();
+  std::vector<std::string> marks{entry(kUsual, "usual setting"), entry(kFault, "shows a fault"),
+                                 entry(kLess, "less than this")};
+  const bool parted = std::any_of(charts.begin(), charts.end(), [](const WorkPrecision& chart) {
+    return std::any_of(chart.points.begin(), chart.points.end(), [&](const ChartPoint& p) {
+      return p.ran() && positions_of(chart).value(p).parted();
+    });
+  });
+  if (parted) marks.push_back(entry(kParted, "half or more parted"));
+  return sheet.key(8, 6, methods) + sheet.key(116, 6, marks) +
+         sheet.key(296, 6, {entry(kLimit, "limit of the reference"), entry(kOwn, "its own error")});
 }
 
 }  // namespace
 
 Figure figure_of(const std::vector<WorkPrecision>& charts) {
-  constexpr int kRow = 395, kHeader = 60;
-  const int height = kRow * static_cast<int>(charts.size()) + kHeader;
-  std::ostringstream out;
-  out << "set multiplot\nset format y '10^{%L}'\nset xtics nomirror\n"
-         "set ytics nomirror\nset border 3\n"
-         "set grid lc rgb '#eeeeee' lt 1\nunset key\nset xlabel 'least time per trial (µs)' offset "
-         "0,0.3\n"
-         "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n"
-      << legend(charts.front(), height);
-  for (std::size_t row = 0; row < charts.size(); ++row) {
-    const WorkPrecision& chart = charts[row];
-    const double top =
-        1.0 - static_cast<double>(kHeader + kRow * static_cast<int>(row) + 86) / height;
-    const double bottom = top - 240.0 / height;
-    const auto place = [&](double left, double right) {
-      out << "set lmargin at screen " << left << "\nset rmargin at screen " << right
-          << "\nset tmargin at screen " << top << "\nset bmargin at screen " << bottom << "\n";
-    };
-    const std::string tag = "S" + std::to_string(row);
-    place(0.075, 0.485);
-    const Panel weak(
-        chart, tag + "weak", chart.outcome_limit(), chart.reference.own.outcomes.total_variation,
-        [&](const ChartPoint& p) {
-          const dynamics::WeakError& e = p.errors.outcomes;
-          return Drawn{e.total_variation, e.standard_error, chart.outcome_bound(p.errors)};
-        });
-    out << weak.text(chart.label + ": distribution of outcomes", "total variation");
-    place(0.575, 0.985);
-    const Panel strong(
-        chart, tag + "strong", chart.position_limit(), chart.reference.own.strong.position,
-        [&](const ChartPoint& p) {
-          return Drawn{p.errors.strong.position, std::nan(""), chart.position_limit()};
-        });
-    out << strong.text(chart.label + ": where a trial ends, median", "distance (m)");
+  constexpr double kHead = 112, kPanel = 142, kBelow = 30, kLine = 16;
+  double height = kHead;
+  for (const WorkPrecision& chart : charts)
+    height += 30 + kLine * static_cast<double>(refused_lines(chart).size()) + kPanel + kBelow;
+  const Sheet sheet{static_cast<int>(height + 32)};
+  const Ranges ranges(charts);
+  std::string out = "set multiplot\n" + key_of(charts, sheet) + kFrame +
+                    "set logscale xy\nset format y '10^{%L}'\nset grid" + kThin + "\nset xrange " +
+                    ranges.time.text() + "\nset xtics (" +
+                    tics_1_2_5(ranges.time.low, ranges.time.high, 160) + ")\n";
+  double top = kHead;
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    const WorkPrecision& chart = charts[i];
+    out += sheet.text(chart.label, 8, top + 14);
+    for (const std::string& line : refused_lines(chart))
+      out += sheet.text(line, 8, (top += kLine) + 14, kSmallFont);
+    top += 30;
+    const std::string label = i + 1 == charts.size() ? "'µs per trial'" : "''";
+    const Box left{80, 240, top, top + kPanel}, right{336, 496, top, top + kPanel};
+    out += sheet.margins(left) + Sheet::axes(label, "'total variation'") +
+           panel(chart, outcomes_of(chart), ranges.outcomes, "weak" + std::to_string(i)) +
+           "unset label\n" + sheet.margins(right) + Sheet::axes(label, "'exit off by (m)'") +
+           panel(chart, positions_of(chart), ranges.positions, "strong" + std::to_string(i));
+    top += kPanel + kBelow;
   }
-  out << "unset multiplot\n";
-  return {1000, height, out.str()};
+  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
 }
 
 }  // namespace gatewalk::cli

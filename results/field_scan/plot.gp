@@ -1,16 +1,18 @@
 # gnuplot -c plot.gp scan.csv scan.svg
-set terminal svg size 760,460 font "sans,13" background "#ffffff"
+call system("dirname ".ARG0)."/../look.gp" 330
 set output ARG2
 set datafile separator ","
-set title "How far the paper's Table IV lies from each scene\n(misfit; 8 on average if the scene were the paper's)"
+eval text("misfit of the paper's Table IV; 8 if the scene were the paper's", 8, 18)
+eval text("colours: its logarithm", 8, 42)." font ',12'"
+eval panel(64, 496, 62, 268)
 set xlabel "random force Rm (N)"
 set ylabel "propulsion F_{prop} (N)"
-set palette defined (0 "#f7fbff", 1 "#9ecae1", 2 "#4292c6")
+eval "set palette defined ".sequential
 unset colorbox
-set xtics 10 nomirror
-set ytics 1 nomirror
+unset key
 set xrange [5:65]
 set yrange [4.5:9.5]
-unset key
-plot ARG1 every ::1 using 2:1:(log10($3)) with image pixels, \
-     "" every ::1 using 2:1:(sprintf("%.0f", $3)) with labels font ",13"
+set ytics 1
+# White on the dark half of the colours, black on the light one.
+plot ARG1 every ::1 using 2:1:(5):(0.5):(log10($3)) with boxxyerror fs solid noborder lc palette, \
+     "" every ::1 using 2:1:(sprintf("%.0f", $3)):($3 > 120 ? 0x000000 : 0xffffff) with labels tc rgb variable

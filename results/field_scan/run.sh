@@ -11,6 +11,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 gatewalk=${1:-$root/build/gatewalk}
+. "$root/results/manifest.sh"
 seeds="1 2 3"
 trials=1500
 work=$(mktemp -d)
@@ -60,10 +61,9 @@ jq -rs '["propulsion_N","random_N","d_m","vx_m_per_s","vy_m_per_s","paper_corrco
    | map(if . == null then "" else (. * 10000 | round / 10000) end)) | @csv' "$work"/scene-*.json | tr -d '"' >"$here/starts.csv"
 
 {
-  echo "command: results/field_scan/run.sh"
-  echo "program: $("$gatewalk" --version)"
+  manifest "results/field_scan/run.sh"
   echo "trials: $trials per start and seed, seeds $seeds, matrices of 100 runs per row"
-  echo "machine: $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores, $(. /etc/os-release && echo "$PRETTY_NAME")"
 } >"$here/manifest.txt"
 
 gnuplot -c "$here/plot.gp" "$here/scan.csv" "$here/scan.svg"
+light_or_dark "$here/scan.svg"

@@ -5,13 +5,8 @@ from collections import defaultdict
 from pathlib import Path
 
 OUT = Path(sys.argv[1])
-TITLES = {"A": "A: 7 N, Rm 50 N (scenes/field.toml)", "B": "B: 8 N, Rm 10 N",
+TITLES = {"A": "A: 7 N, Rm 50 N (field.toml)", "B": "B: 8 N, Rm 10 N",
           "C": "C: 8.5 N, Rm 25 N, k 300 / 450"}
-LABELS = "".join(
-    f"set label '{text}' at graph {x},{y} tc rgb '{colour}'\n" for text, x, y, colour in (
-        ("paper, 87 bins", 0.22, 0.87, "#cc6677"), ("direct simulation", 0.46, 0.46, "#777777"),
-        ("tree, one start", 0.03, 0.14, "#332288"),
-        ("tree, each of a hundred", 0.03, 0.06, "#117733")))
 
 
 def mean(values):
@@ -33,7 +28,7 @@ def main():
     paper = {m.group(1): [float(e) for e in re.findall(r"\d+: ([\d.]+)", m.group(2))]
              for m in re.finditer(r"^([ABC]): (10: .*)$", text, re.M)}
     plots, data = [], []
-    for scene in TITLES:
+    for i, scene in enumerate(TITLES):
         points = {a: p for (s, a), p in one.items() if s == scene}
         constant = math.exp(mean(math.log(d * e * e) for p in points.values() for e, _, d in p))
         tree = sorted((mean(s for _, s, _ in p), mean(e for e, _, _ in p)) for p in points.values())
@@ -45,25 +40,29 @@ def main():
         table = list(zip((mean(seconds[n]) for n in sorted(seconds)), paper[scene]))
         for name, block in (("t", tree), ("h", hundred), ("p", table)):
             data.append(f"${scene}{name} << EOD\n" + "".join(f"{x} {y}\n" for x, y in block) + "EOD")
+        left, top = 82 + 224 * (i % 2), 34 + 196 * (i // 2)
         plots.append(
-            f"set title '{TITLES[scene]}'\n"
-            f"plot sqrt({constant}/x) with lines lw 2 lc rgb '#999999', "
-            f"${scene}p with linespoints pt 5 lw 2 lc rgb '#cc6677', "
-            f"${scene}t with linespoints pt 7 lw 2 lc rgb '#332288', "
-            f"${scene}h with linespoints pt 9 ps 1.2 lw 2 lc rgb '#117733'\n")
-    script = "\n".join(data) + f"""
-set terminal svg size 1050,360 font 'sans,13' background rgb 'white'
+            f"unset label\neval text('{TITLES[scene]}', {left}, {top - 14}).\" font ',12'\"\n"
+            f"eval panel({left}, {left + 170}, {top}, {top + 132})\n"
+            f"set ylabel '{'' if i % 2 else 'total variation'}'\nset xlabel '{'' if i == 0 else 'seconds on one core'}'\n"
+            f"plot sqrt({constant}/x) with lines lt -1 lw 1.5 title 'direct simulation', "
+            f"${scene}p with linespoints pt 5 lc rgb second title 'chain, bins of the paper', "
+            f"${scene}t with linespoints pt 7 lc rgb first title 'trees, one start', "
+            f"${scene}h with linespoints pt 9 lc rgb third title 'trees, each of a hundred'\n"
+            "unset key\n")
+    script = f"""
+call '{Path(__file__).parent.parent / "look.gp"}' 424
 set output '{OUT / "tree.svg"}'
-set multiplot layout 1,3 margins 0.08,0.98,0.18,0.9 spacing 0.07
+set multiplot
 set logscale xy
 set xrange [0.03:100]
 set yrange [0.003:0.7]
-set format x '%g'
-set xlabel 'seconds on one core'
-set ylabel 'error: total variation of the final gates'
-unset key
-set grid lc rgb '#dddddd'
-""" + LABELS + "unset label\n".join([plots[0], "set ylabel ' '\n" + plots[1] + plots[2]]) + "unset multiplot\n"
+set format xy '%g'
+set grid lt -1 lw 0.2
+set style data linespoints
+set pointsize 0.7
+eval key_at(298, 260)
+""" + "\n".join(data + plots) + "unset multiplot\n"
     subprocess.run(["gnuplot"], input=script, text=True, check=True)
 
 

@@ -9,4 +9,5 @@ gatewalk=$(realpath "${1:-$root/build/gatewalk}")
 . "$root/results/manifest.sh"
 python3 "$here/study.py" "$gatewalk" "$here"
 python3 "$here/chart.py" "$here"
+light_or_dark "$here/tree.svg"
 manifest "results/tree/run.sh" >"$here/manifest.txt"

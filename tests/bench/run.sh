@@ -109,6 +109,8 @@ say "4. Lanes beside plain runs, evaluations, time to a total variation of 0.01"
 cp "$work"/{size,lanes,evaluations,budget}.csv "$folder"
 /usr/bin/python3 "$here/report.py" "$work" "$folder"
 gnuplot -c "$here/plot.gp" "$folder"
+light_or_dark "$folder/peers.svg"
+light_or_dark "$folder/size.svg"
 {
   manifest "tests/bench/run.sh"
   echo "load before: $load"

@@ -78,5 +78,20 @@ TEST(WorkPrecisionCsv, HasTheSameFieldsInEveryLine) {
   }
 }
 
+/// What the figure of a chart says, as gnuplot's script.
+bool says(const WorkPrecision& chart, const std::string& words) {
+  return figure_of(std::vector{chart}).commands.find(words) != std::string::npos;
+}
+
+TEST(WorkPrecisionFigure, SaysWhatHasNoPlaceInIt) {
+  WorkPrecision chart = sample();
+  EXPECT_TRUE(says(chart, "refused: penalty 0.02 s"));
+  EXPECT_TRUE(says(chart, "nothing to compare"));  // no run has left the gate
+  EXPECT_FALSE(says(chart, "half or more parted"));
+  chart.points[0].errors.strong = {.compared = 1, .parted = 9};
+  EXPECT_TRUE(says(chart, "half or more parted"));
+  EXPECT_FALSE(says(chart, "nothing to compare"));
+}
+
 }  // namespace
 }  // namespace gatewalk::cli

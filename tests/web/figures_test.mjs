@@ -53,10 +53,11 @@ function texts_of({width, points, least}) {
   }
   // Series that carry a name.
   const series = [...svg.querySelectorAll('g[id^=gnuplot_plot]')].map(g => {
-    const drawn = [...g.querySelectorAll('path, use, polygon, circle')].map(e => getComputedStyle(e));
-    const colours = new Set(drawn.flatMap(s => [s.stroke, s.color]).filter(c => c && c.startsWith('rgb(')));
+    const drawn = [...g.querySelectorAll('path, use, polygon, circle')].map(e => [e.localName, getComputedStyle(e)]);
+    const colours = new Set(drawn.flatMap(([name, s]) => name === 'polygon' ? [s.fill] : [s.stroke, s.color])
+      .filter(c => c && c.startsWith('rgb(')));
     return {name: g.querySelector('title')?.textContent.trim() ?? '', colours: [...colours]};
-  }).filter(s => s.name && !/^gnuplot_plot/.test(s.name));
+  }).filter(s => s.name && !/^gnuplot_plot| using /.test(s.name));
   return {faults: [...new Set(faults)], series};
 }
 
