@@ -2,7 +2,7 @@
 # Every figure, table and number of the paper, with verdicts.
 #   results/paper/run.sh [GATEWALK]      about 4 minutes on two cores
 # Writes a CSV, an SVG and a PDF per figure, claims.csv, report.json (the page's data), manifest.txt.
-# The page itself, report.html, stays in the folder that is named at the end: its script libraries are large.
+# The page itself, report.html, stays in the folder that is named at the end (some 4 MB).
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
