@@ -2,7 +2,15 @@
 
 #include <limits>
 
+#include "dynamics/wide-inl.h"
+
 namespace gatewalk::dynamics {
+
+Direction Direction::of(double theta) {
+  if (!(std::abs(theta) < kMostTurns)) return {theta, std::cos(theta), std::sin(theta)};
+  const auto [c, s] = HWY_NAMESPACE::direction_of(theta);
+  return {theta, c, s};
+}
 
 Touch nearest(const GateParams& p, Side side, const BodyState& body, const Direction& beam) {
   // Centre from the joint, in the beam's own frame.

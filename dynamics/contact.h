@@ -38,9 +38,9 @@ enum class ContactKind : std::uint8_t { interior, tip, pin };
 struct Direction {
   double theta = 0.0;  // rad
   double c = 1.0, s = 0.0;
-  [[nodiscard]] static Direction of(double theta) {
-    return {theta, std::cos(theta), std::sin(theta)};
-  }
+  /// By the same arithmetic as the vector lanes (wide-inl.h), the C library's beyond kMostTurns.
+  [[nodiscard]] static Direction of(double theta);
+  static constexpr double kMostTurns = 1e6;  // rad
   /// The same for an angle nearby, to the last digits without trigonometry.
   [[nodiscard]] Direction turned_to(double angle) const {
     const double d = angle - theta, d2 = d * d;
