@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include <cstddef>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {
@@ -68,6 +69,7 @@ HWY_INLINE bool any(WideMask x) { return !hn::AllFalse(D(), hn::Or(x.a, x.b)); }
 HWY_INLINE Wide choose(WideMask m, Wide yes, Wide no) {
   return {hn::IfThenElse(m.a, yes.a, no.a), hn::IfThenElse(m.b, yes.b, no.b)};
 }
+HWY_INLINE WideMask choose(WideMask m, WideMask yes, WideMask no) { return (m & yes) | (~m & no); }
 HWY_INLINE Wide or_zero(WideMask m, Wide yes) {
   return {hn::IfThenElseZero(m.a, yes.a), hn::IfThenElseZero(m.b, yes.b)};
 }
@@ -121,12 +123,25 @@ HWY_INLINE Direction2<Number> direction_of(Number angle) {
       -1.0 / 3628800, 1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
   const Number sine = r + r * z * series(z, kSin);
   const Number cosine = like(z, 1.0) + z * series(z, kCos);
+  if constexpr (std::is_same_v<Number, double>)
+    if (quarter == 0.0) return {cosine, sine};
   // quarter modulo 4: 0 (c, s), 1 (-s, c), 2 (-c, -s), 3 (s, -c).
   const Number turn = quarter - 4.0 * rounded(0.25 * quarter - like(z, 0.375));
   const auto one = turn == like(z, 1.0), upper = turn >= like(z, 2.0);
   const auto odd = one | (turn == like(z, 3.0));
   const Number c = choose(odd, sine, cosine), s = choose(odd, cosine, sine);
   return {choose(one | (turn == like(z, 2.0)), -c, c), choose(upper, -s, s)};
+}
+
+/// The direction turned on by |d| < 1/16, to the last digits: Taylor series, the next terms are
+/// d^10 / 10! < 3e-19 and d^11 / 11!.
+template <class Number>
+HWY_INLINE Direction2<Number> turned_by(Number d, const Direction2<Number>& from) {
+  constexpr double kSin[] = {-1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880};
+  constexpr double kCos[] = {-1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320};
+  const Number z = d * d;
+  const Number c = like(z, 1.0) + z * series(z, kCos), s = d + d * z * series(z, kSin);
+  return {from.c * c - from.s * s, from.s * c + from.c * s};
 }
 
 /// log to 1 or 2 units in the last place, for normal x > 0: x = 2^e m with m in [1/sqrt 2, sqrt 2),

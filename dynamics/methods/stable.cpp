@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "dynamics/methods/march.h"
 
@@ -18,6 +19,8 @@ int halvings_for(double phase, double most, int limit) {
   for (; phase > most && n < limit; phase *= 0.5) ++n;
   return n;
 }
+
+double halved(double step, int n) { return n == 0 ? step : std::ldexp(step, -n); }
 
 void refuse_too_fast(const GateParams& p) {
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
@@ -104,9 +107,7 @@ void StableMethod::finish_step(GateState& s, double force_x, double step, Progre
                                Watch& watch) const {
   // Pieces are halves, quarters ... of the step, each begun at a multiple of its own length.
   while (done.unit < kUnits && !outside(p_, s.body)) {
-    int n = halvings(s);
-    while (n < kMaxHalvings && too_far(s, std::ldexp(step, -n))) ++n;
-    while (done.unit % (kUnits >> n) != 0) ++n;
+    int n = std::max(level(s, step, done.unit), std::exchange(done.halved, 0));
     double time = 0.0;
     const auto beams = s.beams;
     const std::int64_t impacts = watch.impacts;
@@ -116,20 +117,31 @@ void StableMethod::finish_step(GateState& s, double force_x, double step, Progre
     }
     if (watch.impacts == impacts)
       for (const Side side : {kLeft, kRight}) watch_swing(side, beams[side], time, watch);
-    done.fast |= n == kMaxHalvings && too_far(s, std::ldexp(step, -n));
+    done.fast |= n == kMaxHalvings && too_far(s, halved(step, n));
     done.passed += time;
     done.unit += kUnits >> n;
   }
 }
 
+int StableMethod::level(const GateState& s, double step, int unit) const {
+  int n = halvings(s);
+  while (n < kMaxHalvings && too_far(s, halved(step, n))) ++n;
+  while (unit % (kUnits >> n) != 0) ++n;
+  return n;
+}
+
 void StableMethod::watch_swing(Side side, const BeamState& before, double seconds,
                                Watch& watch) const {
   if (limits_.halvings[side] == 0 || before.held) return;
+  // By its energy it swings no further than this.
+  const double far =
+      before.theta * before.theta + before.omega * before.omega / limits_.swing[side];
+  if (far * (1 + 1e-9) <= watch.max_theta[side] * watch.max_theta[side]) return;
   watch.max_theta[side] = std::max(watch.max_theta[side], law_.beams[side].swing(before, seconds));
 }
 
 StableMethod::Piece StableMethod::piece(double step, int halvings) const {
-  const double dt = std::ldexp(step, -halvings);
+  const double dt = halved(step, halvings);
   if (step != p_.run.step || halvings > finest_) return {dt};
   return {dt, &flow(halvings), &flow(halvings + 1)};
 }
@@ -317,12 +329,14 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
 
     // A first guess from the interpolated motion, which is cheap, then Newton's method on the
     // motion itself while the gap closes. If that does not land on the contact, a safe search does.
-    double when = crossing(dt, start, gap_of(end), from_contact, 10 * limits_.touching,
+    // Near contact, where the hit may be at once, it must be a good one.
+    const double guess = (from_contact ? 10 : kGuess) * limits_.touching;
+    double when = crossing(dt, start, gap_of(end), from_contact, guess,
                            [&](double t) { return gap_of(interpolated(s, end, dt, t)); });
     GateState there = moved(when);
     Touch t = touch_of(there);
-    const double near = 0.1 * limits_.touching;
-    for (int i = 0; i < kNewtonSteps && !(std::abs(t.gap - level) <= near); ++i) {
+    const double exact = 1e-3 * limits_.touching, near = 0.1 * limits_.touching;
+    for (int i = 0; i < kNewtonSteps && !(std::abs(t.gap - level) <= exact); ++i) {
       const double falling = gap_rate(t, there.body, there.beams[side]);
       const double next = when - (t.gap - level) / falling;
       if (!(falling < 0.0 && next > 0.0 && next <= dt)) break;

@@ -33,17 +33,23 @@ class StableMethod final : public Method {
   double advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,
                  Watch& watch) const override;
 
-  /// How far a step has come: in units of the smallest piece, kUnits of them, and in s. `fast`:
-  /// disc or beam went too far in one of the smallest pieces.
+  /// How far a step has come: in units of the smallest piece, kUnits of them, and in s; how often
+  /// the next piece must be halved at least. `fast`: disc or beam went too far in one of the
+  /// smallest pieces.
   static constexpr int kMaxHalvings = 10;  // for the fastest beam, and for the way in a piece
   static constexpr int kUnits = 1 << kMaxHalvings;
   struct Progress {
     int unit = 0;
+    int halved = 0;
     double passed = 0.0;
     bool fast = false;
   };
   /// Takes what is left of a step, up to the moment of leaving the gate.
   void finish_step(GateState& s, double force_x, double step, Progress& done, Watch& watch) const;
+  /// How often the step must be halved for the piece that begins at `unit`.
+  [[nodiscard]] int level(const GateState& s, double step, int unit) const;
+  /// More often only where something moves too far.
+  [[nodiscard]] int finest() const { return finest_; }
   /// Largest deflection of a free light beam that may swing out and back in a piece without hits.
   void watch_swing(Side side, const BeamState& before, double seconds, Watch& watch) const;
 
@@ -58,6 +64,7 @@ class StableMethod final : public Method {
     explicit Limits(const GateParams& p);
   };
   static constexpr double kMaxTurn = 0.05;  // rad that a held beam may turn in a piece
+  static constexpr double kGuess = 1e3;     // touching gaps, of the interpolated motion
   static constexpr int kNewtonSteps = 3;    // towards a hit, then a search that cannot fail
   [[nodiscard]] const Limits& limits() const { return limits_; }
   [[nodiscard]] const GateLaw& law() const { return law_; }
