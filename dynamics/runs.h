@@ -28,7 +28,7 @@ inline constexpr std::int64_t kAnyWork = std::numeric_limits<std::int64_t>::max(
 /// takes several at a time (lanes.h), each in a slot of its own, unless a run could take more than
 /// `most_work`; all others one after the other. What becomes of a run depends on its slot alone.
 void carry_out(const GateParams& p, const Method& method, const NextRun& next,
-               std::int64_t most_work = kAnyWork);
+               std::int64_t most_work = kAnyWork, std::int64_t at_once = kAnyWork);
 
 /// Puts the first run of a trial into the slot.
 using BeginTrial = std::function<void(RunSlot& slot)>;
