@@ -15,6 +15,9 @@
 /// So is a piece in which disc or beam would move by more than half a radius: no hit is stepped
 /// over.
 ///
+/// This is the plain method, one run at a time, and the reference of its lanes (stable_lanes.h),
+/// which have the same bits and leave to it what is rare: a change here is one there.
+///
 /// The impulse threshold shrinks with the step: contact.impulse_threshold_Ns is that of the paper's
 /// step (0.004 units of time, see Scale). With a fixed one the error of a trajectory stops falling.
 

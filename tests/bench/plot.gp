@@ -55,9 +55,9 @@ set ylabel "seconds"
 set xrange [50:2e6]
 set yrange [1e-3:1e4]
 plot one("trials stable") using 2:4 title "stable" lc "#0072b2" pt 7, \
-     one("trials moreau") using 2:4 title "moreau in lanes" lc "#009e73" pt 9, \
+     one("trials moreau") using 2:4 title "moreau" lc "#009e73" pt 9, \
      on(2, "trials stable") using 2:4 title "stable, two threads" lc "#0072b2" pt 6 dt 2, \
-     on(2, "trials moreau") using 2:4 title "lanes, two threads" lc "#009e73" pt 8 dt 2
+     on(2, "trials moreau") using 2:4 title "moreau, two threads" lc "#009e73" pt 8 dt 2
 set title "Matrix, 100 runs per row, one thread"
 set xlabel "rows"
 set xrange [3:2000]
