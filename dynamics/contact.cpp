@@ -2,7 +2,22 @@
 
 #include <limits>
 
+#include "dynamics/wide-inl.h"
+
 namespace gatewalk::dynamics {
+
+Direction Direction::of(double theta) {
+  if (!(std::abs(theta) < kMostAngle)) return {theta, std::cos(theta), std::sin(theta)};
+  const auto [c, s] = HWY_NAMESPACE::direction_of(theta);
+  return {theta, c, s};
+}
+
+Direction Direction::turned_to(double angle) const {
+  const double d = angle - theta;
+  if (!(std::abs(d) < kNearby)) return of(angle);
+  const auto to = HWY_NAMESPACE::turned_by(d, {c, s});
+  return {angle, to.c, to.s};
+}
 
 Touch nearest(const GateParams& p, Side side, const BodyState& body, const Direction& beam) {
   // Centre from the joint, in the beam's own frame.
@@ -26,8 +41,9 @@ Touch nearest(const GateParams& p, Side side, const BodyState& body, const Direc
     const double qx = px - r * c, qy = py - r * s;
     const double dist = std::sqrt(qx * qx + qy * qy);
     const bool degenerate = dist < std::numeric_limits<double>::min();
-    nx = degenerate ? -s : qx / dist;
-    ny = degenerate ? c : qy / dist;
+    const double over = 1.0 / dist;
+    nx = degenerate ? -s : qx * over;
+    ny = degenerate ? c : qy * over;
     t.kind = r > 0.0 ? ContactKind::tip : ContactKind::pin;
     t.gap = dist - p.body.radius;
     t.lever = r * (c * ny - s * nx);
@@ -71,42 +87,52 @@ double gap_rate_bias(const GateParams& p, Side side, const Touch& t, const BodyS
 
 double free_gap_acceleration(const GateParams& p, Side side, const Touch& t, const GateState& s,
                              double force_x) {
-  const double ax = (force_x - p.forces.drag * s.body.vx) / p.body.mass;
-  const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy) / p.body.mass;
+  const double per_mass = 1.0 / p.body.mass, per_inertia = 1.0 / p.beams.inertia();
+  const double ax = (force_x - p.forces.drag * s.body.vx) * per_mass;
+  const double ay = (p.forces.propulsion - p.forces.drag * s.body.vy) * per_mass;
   const double k = p.beams.stiffness(side);
   const BeamState& beam = s.beams[side];
-  const double beta = (-k * beam.theta - p.beams.damping * beam.omega) / p.beams.inertia();
+  const double beta = (-k * beam.theta - p.beams.damping * beam.omega) * per_inertia;
   return (t.nx * ax + t.ny * ay) - t.lever * beta + gap_rate_bias(p, side, t, s.body, beam);
+}
+
+Push::Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force) {
+  const double per_mass = 1.0 / p.body.mass, per_inertia = 1.0 / p.beams.inertia();
+  ax = (force[kLeft] * t[kLeft].nx + force[kRight] * t[kRight].nx) * per_mass;
+  ay = (force[kLeft] * t[kLeft].ny + force[kRight] * t[kRight].ny) * per_mass;
+  for (const Side side : {kLeft, kRight}) beta[side] = -t[side].lever * force[side] * per_inertia;
 }
 
 void apply_impulses(const GateParams& p, const std::array<Touch, 2>& touch,
                     const std::array<double, 2>& impulse, GateState& s) {
-  s.body.vx +=
-      (impulse[kLeft] * touch[kLeft].nx + impulse[kRight] * touch[kRight].nx) / p.body.mass;
-  s.body.vy +=
-      (impulse[kLeft] * touch[kLeft].ny + impulse[kRight] * touch[kRight].ny) / p.body.mass;
-  for (const Side side : {kLeft, kRight})
-    s.beams[side].omega -= impulse[side] * touch[side].lever / p.beams.inertia();
+  const Push by(p, touch, impulse);
+  s.body.vx += by.ax;
+  s.body.vy += by.ay;
+  for (const Side side : {kLeft, kRight}) s.beams[side].omega += by.beta[side];
 }
 
 Coupling coupling(const GateParams& p, const std::array<Touch, 2>& touch) {
   const Touch &l = touch[kLeft], &r = touch[kRight];
   const double inertia = p.beams.inertia();
   return {compliance(p.body.mass, inertia, l.lever), compliance(p.body.mass, inertia, r.lever),
-          (l.nx * r.nx + l.ny * r.ny) / p.body.mass};
+          (l.nx * r.nx + l.ny * r.ny) * (1.0 / p.body.mass)};
 }
 
 std::array<double, 2> bilateral_impulses(const Coupling& w, const std::array<double, 2>& b,
                                          const std::array<bool, 2>& active) {
   if (active[kLeft] && active[kRight]) {
+    // With a = |cross| and s its sign: z = -(b e' + a (b - s b')) / det, where a dash is the other
+    // side's and e = w - a. Nothing cancels where heavy beams make W nearly singular.
+    const double s = w.cross < 0.0 ? -1.0 : 1.0, a = s * w.cross;
+    const double left = w.left - a, right = w.right - a;
+    const double det = left * right + a * (left + right);
     // det > 0 unless both contacts coincide (two pins in one place); then share equally.
-    const double det = w.left * w.right - w.cross * w.cross;
     if (det <= 1e-14 * (w.left * w.right)) {
       const double z = -(b[kLeft] + b[kRight]) / ((w.left + w.right) + 2.0 * w.cross);
       return {z, z};
     }
-    return {(b[kRight] * w.cross - b[kLeft] * w.right) / det,
-            (b[kLeft] * w.cross - b[kRight] * w.left) / det};
+    return {-(b[kLeft] * right + a * (b[kLeft] - s * b[kRight])) / det,
+            -(b[kRight] * left + a * (b[kRight] - s * b[kLeft])) / det};
   }
   if (active[kLeft]) return {-b[kLeft] / w.left, 0.0};
   if (active[kRight]) return {0.0, -b[kRight] / w.right};

@@ -38,19 +38,12 @@ enum class ContactKind : std::uint8_t { interior, tip, pin };
 struct Direction {
   double theta = 0.0;  // rad
   double c = 1.0, s = 0.0;
-  [[nodiscard]] static Direction of(double theta) {
-    return {theta, std::cos(theta), std::sin(theta)};
-  }
+  /// By the same arithmetic as the vector lanes (wide-inl.h), the C library's beyond kMostAngle.
+  [[nodiscard]] static Direction of(double theta);
+  static constexpr double kMostAngle = 1e6;  // rad
+  static constexpr double kNearby = 0.0625;  // rad
   /// The same for an angle nearby, to the last digits without trigonometry.
-  [[nodiscard]] Direction turned_to(double angle) const {
-    const double d = angle - theta, d2 = d * d;
-    if (!(std::abs(d) < 0.0625)) return of(angle);
-    // Taylor series; the first terms left out are d^10 / 10! < 3e-19 and d^11 / 11!.
-    const double cd = 1 - d2 * (1.0 / 2 - d2 * (1.0 / 24 - d2 * (1.0 / 720 - d2 * (1.0 / 40320))));
-    const double sd =
-        d * (1 - d2 * (1.0 / 6 - d2 * (1.0 / 120 - d2 * (1.0 / 5040 - d2 * (1.0 / 362880)))));
-    return {angle, c * cd - s * sd, s * cd + c * sd};
-  }
+  [[nodiscard]] Direction turned_to(double angle) const;
 };
 
 /// The point of one beam nearest to the disc's centre.
@@ -110,7 +103,7 @@ struct Touch {
 
 /// 1 / effective mass of one contact: 1/M + l^2/I (1/kg).
 [[nodiscard]] inline double compliance(double mass, double inertia, double lever) {
-  return 1.0 / mass + lever * lever / inertia;
+  return 1.0 / mass + lever * lever * (1.0 / inertia);
 }
 
 /// Impulse (N s) of a single hit with restitution e: J = -(1+e) u / (1/M + l^2/I).
@@ -120,6 +113,15 @@ struct Touch {
                                            double restitution) {
   return -(1.0 + restitution) * u / compliance(mass, inertia, lever);
 }
+
+/// What contact forces (N, along each touch's n) do: accelerations of body and beams. Of impulses
+/// they are velocities, of shifts along n (kg m) they are shifts.
+struct Push {
+  double ax = 0.0, ay = 0.0;             // m/s^2
+  std::array<double, 2> beta{0.0, 0.0};  // rad/s^2
+  Push() = default;
+  Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force);
+};
 
 /// Effect of impulses J (N s, along each touch's n) on velocities. Both beams at once, in an order
 /// that a mirror image does not change.

@@ -8,7 +8,8 @@
 ///   methods/       time stepping, one file per method behind methods/method.h
 ///   random.h       counter-based random streams, the held lateral force of Eq. (1)
 ///   gate.h         one run of one gate
-///   runs.h         runs by the thousand on all threads; lanes.h: those of moreau in vector registers
+///   runs.h         runs by the thousand on all threads; in vector registers those of stable
+///                  (stable_lanes.h) and moreau (lanes.h)
 ///   ensemble.h     many runs and their outcomes; trial_set.h: which trials they are
 ///   health.h       how far runs can be trusted
 ///   state_space.h  how a body enters a gate, as a number: Table III's bins, others, or trees

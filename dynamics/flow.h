@@ -10,6 +10,7 @@ namespace gatewalk::dynamics {
 
 /// v' = decay v + (F/M) rise;  x' = x + rise v + (F/M) fall.  Drag -> 0: 1, dt, dt^2/2.
 struct BodyFlow {
+  static constexpr double kSeries = 1e-2;  // a power series up to this (D/M) dt
   double decay = 1.0, rise = 0.0, fall = 0.0;
   BodyFlow(double drag_over_mass, double dt);
 
@@ -36,21 +37,20 @@ struct BeamFlow {
 };
 
 /// One beam's flows over any dt, with what they share computed once.
-class BeamLaw {
- public:
+struct BeamLaw {
+  static constexpr double kSeries = 0.5;  // a power series up to this phase, rate |dt|
+  static constexpr int kTerms = 16;       // 0.5^16 / 16! < 1e-18
+  double k, d;                            // 1/s^2, 1/s, per inertia
+  double rate;                            // 1/s, bound on both characteristic roots
+  // Response to a unit push from rest: theta = dt^2 sum theta[i] z^i, omega = dt sum omega[i] z^i
+  // with z = rate dt.
+  double theta[kTerms], omega[kTerms];
+
   BeamLaw(double stiffness_over_inertia, double damping_over_inertia);
   [[nodiscard]] BeamFlow over(double dt) const;
   /// |theta| (rad) where the free beam first comes to rest, if it does so within `dt` (s), else 0.
   /// It never swings out further after that.
   [[nodiscard]] double swing(BeamState beam, double dt) const;
-
- private:
-  static constexpr int kTerms = 16;  // 0.5^16 / 16! < 1e-18
-  double k_, d_;                     // 1/s^2, 1/s
-  double rate_;                      // 1/s, bound on both characteristic roots
-  // Response to a unit push from rest: theta = dt^2 sum theta_[i] z^i, omega = dt sum omega_[i] z^i
-  // with z = rate dt.
-  std::array<double, kTerms> theta_{}, omega_{};
 };
 
 /// Body and both beams over one dt.

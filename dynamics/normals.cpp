@@ -18,7 +18,7 @@ void box_muller(const double* radius, const double* angle, std::size_t n, double
   const D d;
   for (std::size_t i = 0; i < n; i += width()) {
     const Wide r = sqrt(-2.0 * log(load(radius + i)));
-    const Direction2 to = direction_of(2.0 * std::numbers::pi * load(angle + i));
+    const Direction2<Wide> to = direction_of(2.0 * std::numbers::pi * load(angle + i));
     const Wide x = r * to.c, y = r * to.s;
     hn::StoreInterleaved2(x.a, y.a, d, normals + 2 * i);
     hn::StoreInterleaved2(x.b, y.b, d, normals + 2 * i + width());

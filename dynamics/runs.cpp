@@ -6,11 +6,15 @@
 #include <atomic>
 
 #include "dynamics/lanes.h"
+#include "dynamics/stable_lanes.h"
 
 namespace gatewalk::dynamics {
 
 void carry_out(const GateParams& p, const Method& method, const NextRun& next,
-               std::int64_t most_work) {
+               std::int64_t most_work, std::int64_t at_once) {
+  const auto* stable = dynamic_cast<const StableMethod*>(&method);
+  if (stable != nullptr && lanes_pay_for_stable())
+    return carry_out_in_lanes(p, *stable, next, most_work, at_once);
   if (p.run.method == "moreau" && most_evaluations_in_lanes(p) <= static_cast<double>(most_work))
     return carry_out_in_lanes(p, next);
   RunSlot slot{-1, {}, RandomForce(p.forces, Random(Purpose::gate, {}))};
@@ -31,9 +35,11 @@ void carry_out_trials(const GateParams& p, const Method& method, std::int64_t co
     begin(slot);
     return true;
   };
-  tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(), [&](int) {
+  const int threads = tbb::this_task_arena::max_concurrency();
+  const std::int64_t each = (count + threads - 1) / threads;  // nobody takes what others could do
+  tbb::parallel_for(0, threads, [&](int) {
     try {
-      carry_out(p, method, next, most_work);
+      carry_out(p, method, next, most_work, each);
     } catch (...) {
       next_trial = count;  // nobody takes another one
       throw;

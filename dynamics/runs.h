@@ -24,11 +24,12 @@ using NextRun = std::function<bool(RunSlot& slot, const GateRun* ended)>;
 
 inline constexpr std::int64_t kAnyWork = std::numeric_limits<std::int64_t>::max();
 
-/// Carries out runs on this thread until `next` has no more, each as run_gate does. Method `moreau`
-/// takes several at a time (lanes.h), each in a slot of its own, unless a run could take more than
-/// `most_work`; all others one after the other. What becomes of a run depends on its slot alone.
+/// Carries out runs on this thread until `next` has no more, each as run_gate does. Method `stable`
+/// takes hundreds at a time (stable_lanes.h), each in a slot of its own, but not more than
+/// `at_once`; `moreau` several (lanes.h), unless a run could take more than `most_work`; all others
+/// one after the other. What becomes of a run depends on its slot alone.
 void carry_out(const GateParams& p, const Method& method, const NextRun& next,
-               std::int64_t most_work = kAnyWork);
+               std::int64_t most_work = kAnyWork, std::int64_t at_once = kAnyWork);
 
 /// Puts the first run of a trial into the slot.
 using BeginTrial = std::function<void(RunSlot& slot)>;

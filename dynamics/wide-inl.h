@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include <cstddef>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {
@@ -49,8 +50,6 @@ HWY_INLINE Wide sqrt(Wide x) { return {hn::Sqrt(x.a), hn::Sqrt(x.b)}; }
 HWY_INLINE Wide abs(Wide x) { return {hn::Abs(x.a), hn::Abs(x.b)}; }
 HWY_INLINE Wide max(Wide x, Wide y) { return {hn::Max(x.a, y.a), hn::Max(x.b, y.b)}; }
 HWY_INLINE Wide min(Wide x, Wide y) { return {hn::Min(x.a, y.a), hn::Min(x.b, y.b)}; }
-HWY_INLINE Wide round(Wide x) { return {hn::Round(x.a), hn::Round(x.b)}; }
-HWY_INLINE Wide floor(Wide x) { return {hn::Floor(x.a), hn::Floor(x.b)}; }
 
 HWY_INLINE WideMask operator<(Wide x, Wide y) { return {hn::Lt(x.a, y.a), hn::Lt(x.b, y.b)}; }
 HWY_INLINE WideMask operator<=(Wide x, Wide y) { return {hn::Le(x.a, y.a), hn::Le(x.b, y.b)}; }
@@ -70,50 +69,79 @@ HWY_INLINE bool any(WideMask x) { return !hn::AllFalse(D(), hn::Or(x.a, x.b)); }
 HWY_INLINE Wide choose(WideMask m, Wide yes, Wide no) {
   return {hn::IfThenElse(m.a, yes.a, no.a), hn::IfThenElse(m.b, yes.b, no.b)};
 }
+HWY_INLINE WideMask choose(WideMask m, WideMask yes, WideMask no) { return (m & yes) | (~m & no); }
 HWY_INLINE Wide or_zero(WideMask m, Wide yes) {
   return {hn::IfThenElseZero(m.a, yes.a), hn::IfThenElseZero(m.b, yes.b)};
 }
 
+// Functions of a Number are for Wide and for double: the plain code has the same bits as the lanes.
+HWY_INLINE Wide like(Wide, double x) { return all(x); }
+HWY_INLINE double like(double, double x) { return x; }
+HWY_INLINE double choose(bool m, double yes, double no) { return m ? yes : no; }
+
 /// c[0] + c[1] z + ...; even and odd powers apart, so that one need not wait for the other.
-template <std::size_t N>
-HWY_INLINE Wide series(Wide z, const double (&c)[N]) {
+template <class Number, std::size_t N>
+HWY_INLINE Number series(Number z, const double (&c)[N]) {
   static_assert(N >= 2);
-  const Wide zz = z * z;
-  Wide last = all(c[N - 1]), other = all(c[N - 2]);
+  const Number zz = z * z;
+  Number last = like(z, c[N - 1]), other = like(z, c[N - 2]);
   for (std::size_t i = N - 2; i-- > 0;) {
-    const Wide next = last * zz + all(c[i]);
+    const Number next = last * zz + like(z, c[i]);
     last = other;
     other = next;
   }
   return other + last * z;
 }
 
+template <class Number>
 struct Direction2 {
-  Wide c, s;
+  Number c, s;
 };
+
+/// The nearest whole number, the even one of two, for |x| < 2^51: no digit after the point is left.
+template <class Number>
+HWY_INLINE Number rounded(Number x) {
+  const Number big = like(x, 0x1.8p+52);
+  return (x + big) - big;
+}
 
 /// cos and sin to 3e-16 for |angle| < 10^6, so that near their zeros the relative error is larger:
 /// reduced to [-pi/4, pi/4] by three parts of pi/2, the first two short enough for exact products;
 /// then Taylor's series, next terms below 6e-17 of the sum.
-HWY_INLINE Direction2 direction_of(Wide angle) {
-  const Wide quarter = round(0x1.45f306dc9c883p-1 * angle);  // 2/pi
-  Wide r = angle - 0x1.921fb54p+0 * quarter;
+template <class Number>
+HWY_INLINE Direction2<Number> direction_of(Number angle) {
+  const Number quarter = rounded(0x1.45f306dc9c883p-1 * angle);  // 2/pi
+  Number r = angle - 0x1.921fb54p+0 * quarter;
   r = r - 0x1.10b46118p-30 * quarter;
   r = r - 0x1.313198a2e0370p-61 * quarter;
-  const Wide z = r * r;
+  const Number z = r * r;
   constexpr double kSin[] = {
       -1.0 / 6,        1.0 / 120,          -1.0 / 5040,           1.0 / 362880,
       -1.0 / 39916800, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
   constexpr double kCos[] = {
       -1.0 / 2,       1.0 / 24,          -1.0 / 720,           1.0 / 40320,
       -1.0 / 3628800, 1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
-  const Wide sine = r + r * z * series(z, kSin);
-  const Wide cosine = all(1.0) + z * series(z, kCos);
+  const Number sine = r + r * z * series(z, kSin);
+  const Number cosine = like(z, 1.0) + z * series(z, kCos);
+  if constexpr (std::is_same_v<Number, double>)
+    if (quarter == 0.0) return {cosine, sine};
   // quarter modulo 4: 0 (c, s), 1 (-s, c), 2 (-c, -s), 3 (s, -c).
-  const Wide turn = quarter - 4.0 * floor(0.25 * quarter);
-  const WideMask one = turn == all(1.0), upper = turn >= all(2.0), odd = one | (turn == all(3.0));
-  const Wide c = choose(odd, sine, cosine), s = choose(odd, cosine, sine);
-  return {choose(one | (turn == all(2.0)), -c, c), choose(upper, -s, s)};
+  const Number turn = quarter - 4.0 * rounded(0.25 * quarter - like(z, 0.375));
+  const auto one = turn == like(z, 1.0), upper = turn >= like(z, 2.0);
+  const auto odd = one | (turn == like(z, 3.0));
+  const Number c = choose(odd, sine, cosine), s = choose(odd, cosine, sine);
+  return {choose(one | (turn == like(z, 2.0)), -c, c), choose(upper, -s, s)};
+}
+
+/// The direction turned on by |d| < 1/16, to the last digits: Taylor series, the next terms are
+/// d^10 / 10! < 3e-19 and d^11 / 11!.
+template <class Number>
+HWY_INLINE Direction2<Number> turned_by(Number d, const Direction2<Number>& from) {
+  constexpr double kSin[] = {-1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880};
+  constexpr double kCos[] = {-1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320};
+  const Number z = d * d;
+  const Number c = like(z, 1.0) + z * series(z, kCos), s = d + d * z * series(z, kSin);
+  return {from.c * c - from.s * s, from.s * c + from.c * s};
 }
 
 /// log to 1 or 2 units in the last place, for normal x > 0: x = 2^e m with m in [1/sqrt 2, sqrt 2),

@@ -18,12 +18,6 @@ std::array<Touch, 2> touches(const GateParams& p, const GateState& s, std::array
   return t;
 }
 
-Push::Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force)
-    : ax((force[kLeft] * t[kLeft].nx + force[kRight] * t[kRight].nx) / p.body.mass),
-      ay((force[kLeft] * t[kLeft].ny + force[kRight] * t[kRight].ny) / p.body.mass),
-      beta{-t[kLeft].lever * force[kLeft] / p.beams.inertia(),
-           -t[kRight].lever * force[kRight] / p.beams.inertia()} {}
-
 void fly(const GateParams& p, const GateFlow& flow, double force_x, const Push& push,
          GateState& s) {
   flow.body.apply(s.body, force_x / p.body.mass + push.ax,
@@ -47,10 +41,10 @@ std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool
     if (std::max(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p.body.radius) break;
     // Shift along the mass metric: the same 2 x 2 system as for impulses, with gaps for rates.
     const auto shift = bilateral_impulses(coupling(p, touch), gap, contacts);
-    s.body.x += (shift[kLeft] * touch[kLeft].nx + shift[kRight] * touch[kRight].nx) / p.body.mass;
-    s.body.y += (shift[kLeft] * touch[kLeft].ny + shift[kRight] * touch[kRight].ny) / p.body.mass;
-    for (const Side side : {kLeft, kRight})
-      s.beams[side].theta -= shift[side] * touch[side].lever / p.beams.inertia();
+    const Push by(p, touch, shift);
+    s.body.x += by.ax;
+    s.body.y += by.ay;
+    for (const Side side : {kLeft, kRight}) s.beams[side].theta += by.beta[side];
     touch = touches(p, s, contacts, touch);
   }
   const std::array<double, 2> rate{gap_rate(touch[kLeft], s.body, s.beams[kLeft]),

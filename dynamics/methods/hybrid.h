@@ -24,14 +24,6 @@ namespace gatewalk::dynamics {
   return {s.beams[kLeft].held, s.beams[kRight].held};
 }
 
-/// Contact forces as accelerations of body and beams.
-struct Push {
-  double ax = 0.0, ay = 0.0;             // m/s^2
-  std::array<double, 2> beta{0.0, 0.0};  // rad/s^2
-  Push() = default;
-  Push(const GateParams& p, const std::array<Touch, 2>& t, const std::array<double, 2>& force);
-};
-
 [[nodiscard]] inline bool at_rest(const BeamState& beam) {
   return beam.theta == 0.0 && beam.omega == 0.0;
 }

@@ -52,20 +52,39 @@ void Watch::penetration(const GateParams& p, const GateState& s) {
   }
 }
 
-GateState interpolated(const GateState& a, const GateState& b, double dt, double t) {
-  const double z = t / dt, z2 = z * z, z3 = z2 * z;
-  const double wb = 3 * z2 - 2 * z3, da = dt * (z - 2 * z2 + z3), db = dt * (z3 - z2);
-  const double rate = 6 * (z - z2) / dt, ra = 1 - 4 * z + 3 * z2, rb = 3 * z2 - 2 * z;
-  const auto mix = [&](double xa, double va, double xb, double vb, double& x, double& v) {
+namespace {
+
+/// Cubic Hermite interpolation between two moments dt apart, at t.
+struct Interpolation {
+  double wb, da, db, rate, ra, rb;
+  Interpolation(double dt, double t) {
+    const double z = t / dt, z2 = z * z, z3 = z2 * z;
+    wb = 3 * z2 - 2 * z3;
+    da = dt * (z - 2 * z2 + z3);
+    db = dt * (z3 - z2);
+    rate = 6 * (z - z2) / dt;
+    ra = 1 - 4 * z + 3 * z2;
+    rb = 3 * z2 - 2 * z;
+  }
+  void mix(double xa, double va, double xb, double vb, double& x, double& v) const {
     x = xa + wb * (xb - xa) + da * va + db * vb;
     v = rate * (xb - xa) + ra * va + rb * vb;
-  };
+  }
+  void mix(const BodyState& a, const BodyState& b, BodyState& s) const {
+    mix(a.x, a.vx, b.x, b.vx, s.x, s.vx);
+    mix(a.y, a.vy, b.y, b.vy, s.y, s.vy);
+  }
+};
+
+}  // namespace
+
+GateState interpolated(const GateState& a, const GateState& b, double dt, double t) {
+  const Interpolation at(dt, t);
   GateState s = b;
-  mix(a.body.x, a.body.vx, b.body.x, b.body.vx, s.body.x, s.body.vx);
-  mix(a.body.y, a.body.vy, b.body.y, b.body.vy, s.body.y, s.body.vy);
+  at.mix(a.body, b.body, s.body);
   for (const Side side : {kLeft, kRight})
-    mix(a.beams[side].theta, a.beams[side].omega, b.beams[side].theta, b.beams[side].omega,
-        s.beams[side].theta, s.beams[side].omega);
+    at.mix(a.beams[side].theta, a.beams[side].omega, b.beams[side].theta, b.beams[side].omega,
+           s.beams[side].theta, s.beams[side].omega);
   return s;
 }
 
@@ -85,14 +104,11 @@ double back_to_exit(const GateParams& p, const GateState& before, GateState& s, 
   double inside = 0.0, beyond = dt;
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (inside + beyond);
-    const GateState there = interpolated(before, after, dt, middle);
-    if (outside(p, there.body)) {
-      beyond = middle;
-      s = there;
-    } else {
-      inside = middle;
-    }
+    BodyState there;
+    Interpolation(dt, middle).mix(before.body, after.body, there);
+    (outside(p, there) ? beyond : inside) = middle;
   }
+  if (beyond < dt) s = interpolated(before, after, dt, beyond);
   return beyond;
 }
 

@@ -4,7 +4,7 @@
 ///   size walks MATRIX N THREADS | size field MATRIX SIDE GATES
 ///                study,what,size,threads,seconds,peak_MiB,note
 ///   evaluations  evaluations of gaps and forces per trial, by method
-///   lanes N      outcomes of N trials of moreau in lanes beside those of moreau plain
+///   lanes N      outcomes of N trials in lanes beside those of the plain methods
 ///   budget MATRIX  full dynamics to a total variation of 0.01 beside one exact prediction
 
 #include <sys/resource.h>
@@ -156,23 +156,25 @@ markov::CellCounts outcomes(const GateTally& t) {
 }
 
 void lanes(std::int64_t trials) {
-  for (const char condition : {'A', 'B'}) {
-    const GateParams p = bench::by(bench::condition(condition), "moreau");
-    const auto method = dynamics::make_method(p);
-    tbb::enumerable_thread_specific<GateTally> parts;
-    tbb::parallel_for(std::int64_t{0}, trials, [&](std::int64_t i) {
-      parts.local().add(p, dynamics::run_gate_trial(p, *method, {}, bench::kSeed, i));
-    });
-    GateTally plain;
-    for (const GateTally& part : parts) plain += part;
-    for (const std::uint64_t seed : {bench::kSeed, bench::kSeed + 1}) {
-      const GateTally in_lanes = dynamics::run_gate_trials(p, {}, seed, {0, trials});
-      const auto c = lattice::compare(outcomes(in_lanes), outcomes(plain), 1000, 1);
-      std::cout << condition << ',' << trials << ',' << (seed == bench::kSeed ? "same" : "other")
-                << ',' << c.total_variation << ',' << c.floor_total_variation << ','
-                << c.floor_total_variation_95 << ',' << c.p_total_variation << '\n';
+  for (const char* name : {"stable", "moreau"})
+    for (const char condition : {'A', 'B'}) {
+      const GateParams p = bench::by(bench::condition(condition), name);
+      const auto method = dynamics::make_method(p);
+      tbb::enumerable_thread_specific<GateTally> parts;
+      tbb::parallel_for(std::int64_t{0}, trials, [&](std::int64_t i) {
+        parts.local().add(p, dynamics::run_gate_trial(p, *method, {}, bench::kSeed, i));
+      });
+      GateTally plain;
+      for (const GateTally& part : parts) plain += part;
+      for (const std::uint64_t seed : {bench::kSeed, bench::kSeed + 1}) {
+        const GateTally in_lanes = dynamics::run_gate_trials(p, {}, seed, {0, trials});
+        const auto c = lattice::compare(outcomes(in_lanes), outcomes(plain), 1000, 1);
+        std::cout << condition << ',' << name << ',' << trials << ','
+                  << (seed == bench::kSeed ? "same" : "other") << ',' << c.total_variation << ','
+                  << c.floor_total_variation << ',' << c.floor_total_variation_95 << ','
+                  << c.p_total_variation << '\n';
+      }
     }
-  }
 }
 
 void budget(const std::string& matrix) {

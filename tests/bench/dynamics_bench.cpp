@@ -26,7 +26,7 @@ GateTally ours(const GateParams& p, TrialRange range) {
   return dynamics::run_gate_trials(p, {}, bench::kSeed, range);
 }
 
-/// One run after the other: `moreau` without its lanes.
+/// One run after the other: `stable` and `moreau` without their lanes.
 GateTally one_by_one(const GateParams& p, TrialRange range) {
   const auto method = dynamics::make_method(p);
   GateTally tally;
@@ -98,7 +98,8 @@ int main(int argc, char** argv) {
   engine("Box2D", 100, bench::make_box2d);
   engine("ODE", 80, bench::make_ode);
   add("paper", "paper", paper_step, 2000, ours);
-  add("stable", "stable", 0.02, 2000, ours);
+  add("stable", "stable", 0.02, 2000, one_by_one);
+  add("stable lanes", "stable", 0.02, 8000, ours);
   add("moreau", "moreau", paper_step, 2000, one_by_one);
   add("moreau lanes", "moreau", paper_step, 10000, ours);
   benchmark::Initialize(&argc, argv);

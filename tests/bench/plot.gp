@@ -51,9 +51,9 @@ set xlabel "trials"
 set ylabel "seconds"
 set xrange [50:2e6]
 plot one("trials stable") using 2:4 title "stable" lc rgb first pt 7, \
-     one("trials moreau") using 2:4 title "moreau in lanes" lc rgb third pt 9, \
+     one("trials moreau") using 2:4 title "moreau" lc rgb third pt 9, \
      on(2, "trials stable") using 2:4 title "stable, two threads" lc rgb first pt 6 dt 2, \
-     on(2, "trials moreau") using 2:4 title "lanes, two threads" lc rgb third pt 8 dt 2
+     on(2, "trials moreau") using 2:4 title "moreau, two threads" lc rgb third pt 8 dt 2
 unset key
 unset label
 eval text("matrix, 100 runs/row", 326, 16)

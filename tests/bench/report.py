@@ -93,7 +93,8 @@ def dynamics(work):
         its["steps_per_s"] *= scale
         slow = [{k: float(v) for k, v in o.items() if k != "condition"}
                 for o in octave if o["condition"] == condition]
-        names = ["ODE", "Box2D", "Chipmunk", "paper", "stable", "moreau", "moreau lanes"]
+        names = ["ODE", "Box2D", "Chipmunk", "paper", "stable", "stable lanes", "moreau",
+                 "moreau lanes"]
         for row in [one_engine(condition, "Octave (paper's scheme)", slow), its, *(here[n] for n in names)]:
             row["over_chipmunk"] = digits(row["trials_per_s"] / here["Chipmunk"]["trials_per_s"])
             row["over_stable"] = digits(row["trials_per_s"] / here["stable"]["trials_per_s"])
@@ -145,16 +146,16 @@ Debian's builds.
     yield from table(rows, {
         "": "condition", "engine": "engine", "trials/s": "trials_per_s", "steps/s": "steps_per_s",
         "traversed / exited / trapped %": lambda r: " / ".join(r[end + "_percent"] for end in ENDS),
-        "trials": "trials", "over Chipmunk": "over_chipmunk", "over `stable`": "over_stable"})
+        "trials": "trials", "over Chipmunk": "over_chipmunk", "over plain `stable`": "over_stable"})
     for r in rows:
-        if r["engine"] == "moreau lanes":
+        if r["engine"].endswith("lanes"):
             over_stable, over_chipmunk = float(r["over_stable"]), float(r["over_chipmunk"])
             met = "reached" if over_stable >= 4 and over_chipmunk >= 40 else "not reached"
-            yield (f"{r['condition']}: lanes run {over_stable:g} times as many trials as `stable`, "
+            yield (f"{r['condition']}: {r['engine']} run {over_stable:g} times as many trials as plain `stable`, "
                    f"{over_chipmunk:g} times as many as Chipmunk; wanted: 4 and 40, {met}.\n")
-    yield "Lanes beside plain `moreau`: total variation of the outcomes, and what chance alone gives.\n"
+    yield "Lanes beside the plain methods: total variation of the outcomes, and what chance alone gives.\n"
     yield from table(read_csv(f"{folder}/lanes.csv"), {
-        "": "condition", "trials each": "trials", "random force": "noise",
+        "": "condition", "method": "method", "trials each": "trials", "random force": "noise",
         "total variation": "total_variation", "chance (mean)": "chance", "chance (95 %)": "chance_95", "p": "p"})
     yield "Work: evaluations of gaps and forces per trial.\n"
     work = defaultdict(dict)
@@ -199,7 +200,7 @@ def budget_text(folder):
     yield textwrap.fill(f"""Direct simulation needs {b['trials_for_0.01']:.0f} trials to be off by 0.01 on average. With the matrix at hand one
 exact prediction takes {1e3 * b['predict_seconds']:.3g} ms; the matrix takes {b['matrix_seconds']:.2g} s.""", 115) + "\n"
     yield from table(["stable", "moreau"], {
-        "full dynamics by": lambda m: "moreau in lanes" if m == "moreau" else m,
+        "full dynamics by": lambda m: m,
         "seconds": lambda m: b[m + "_seconds"],
         "over one prediction": lambda m: b[m + "_over_predict"],
         "over matrix and prediction": lambda m: b[m + "_over_matrix_and_predict"],
@@ -207,7 +208,7 @@ exact prediction takes {1e3 * b['predict_seconds']:.3g} ms; the matrix takes {b[
     yield textwrap.fill(f"""But the chain is not the truth: the prediction of this matrix is off by {b['chain_total_variation']:.2g} (the
 truth's own trials make some {b['truth_floor']:.1g} of it). Direct simulation is that close after
 {b['trials_for_chains_error']:.0f} trials, {b['stable_seconds_to_chains_error']:.2g} s by `stable`,
-{b['moreau_seconds_to_chains_error']:.2g} s in lanes; at this error the matrix pays from start
+{b['moreau_seconds_to_chains_error']:.2g} s by `moreau`; at this error the matrix pays from start
 {b['stable_pays_from_starts_at_chains_error']:.0f} and {b['moreau_pays_from_starts_at_chains_error']:.0f} on.""", 115)
 
 

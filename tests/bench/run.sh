@@ -81,9 +81,9 @@ cost() { "$bench/cost_bench" "$@"; }
 say "3. Cost against size"
 {
   echo "study,size,threads,seconds,peak_MiB,note"
-  for n in 100 1000 10000; do cost size trials stable $n 1; done
+  for n in 100 1000 10000 100000; do cost size trials stable $n 1; done
   for n in 100 1000 10000 100000; do cost size trials moreau $n 1; done
-  for n in 10000 100000; do cost size trials stable $n 2; done
+  for n in 100000 1000000; do cost size trials stable $n 2; done
   for n in 100000 1000000; do cost size trials moreau $n 2; done
   for bins in 0.2 0.3 0.5 1 1.5 2; do cost size rows $bins 1; done
   for bins in 1 2; do cost size rows $bins 2; done
@@ -102,7 +102,7 @@ say "3. Cost against size"
 } >"$work/size.csv"
 
 say "4. Lanes beside plain runs, evaluations, time to a total variation of 0.01"
-{ echo "condition,trials,noise,total_variation,chance,chance_95,p"; cost lanes 100000; } >"$work/lanes.csv"
+{ echo "condition,method,trials,noise,total_variation,chance,chance_95,p"; cost lanes 100000; } >"$work/lanes.csv"
 { echo "scene,method,step_s,trials,steps_per_trial,evaluations_per_trial"; cost evaluations; } >"$work/evaluations.csv"
 { echo "what,value"; cost budget "$work/matrix.nc"; } >"$work/budget.csv"
 

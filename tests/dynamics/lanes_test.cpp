@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dynamics/ensemble.h"
+#include "tests/support/gate_runs.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
@@ -14,6 +15,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
+using test::expect_same_bits;
 using test::same_bits;
 
 GateParams moreau(GateParams p, double step = 0.004) {
@@ -22,36 +24,8 @@ GateParams moreau(GateParams p, double step = 0.004) {
   return p;
 }
 
-/// Trials 0 .. n - 1 of run_gate_trial's streams, by lanes.
 std::vector<GateRun> by_lanes(const GateParams& p, const BodyState& start, int n) {
-  std::vector<GateRun> runs(n);
-  int next = 0;
-  carry_out_in_lanes(p, [&](RunSlot& slot, const GateRun* ended) {
-    if (ended != nullptr) runs[slot.trial] = *ended;
-    if (next == n) return false;
-    slot.trial = next++;
-    slot.start = start;
-    slot.force = gate_force(p, 1, slot.trial);
-    return true;
-  });
-  return runs;
-}
-
-void expect_same_bits(const GateRun& a, const GateRun& b) {
-  EXPECT_EQ(a.ending, b.ending);
-  EXPECT_TRUE(same_bits(a.exit.x, b.exit.x) && same_bits(a.exit.y, b.exit.y));
-  EXPECT_TRUE(same_bits(a.exit.vx, b.exit.vx) && same_bits(a.exit.vy, b.exit.vy));
-  EXPECT_TRUE(same_bits(a.seconds, b.seconds));
-  const Watch &v = a.watch, &w = b.watch;
-  EXPECT_TRUE(same_bits(v.max_theta[kLeft], w.max_theta[kLeft]));
-  EXPECT_TRUE(same_bits(v.max_theta[kRight], w.max_theta[kRight]));
-  EXPECT_TRUE(same_bits(v.max_penetration, w.max_penetration));
-  EXPECT_TRUE(same_bits(v.energy_created, w.energy_created));
-  EXPECT_TRUE(same_bits(v.max_speed, w.max_speed));
-  EXPECT_EQ(v.steps, w.steps);
-  EXPECT_EQ(v.evaluations, w.evaluations);
-  EXPECT_EQ(v.impacts, w.impacts);
-  EXPECT_EQ(v.fast_steps, w.fast_steps);
+  return test::trials_by([&](const NextRun& next) { carry_out_in_lanes(p, next); }, p, start, n);
 }
 
 struct LaneScene {
