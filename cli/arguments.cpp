@@ -178,7 +178,7 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
                    const std::vector<dynamics::BodyState>& bodies) {
   if (!lattice::has_runs(m.file)) return;
   warn_of_range(options, m.file, path, bodies);
-  lattice::RunPool pool = lattice::pool_of(m.file, m.scene.field, path);
+  lattice::RunPool pool = lattice::pool_of(m.file, m.scene, path);
   std::vector<dynamics::BodyState> unknown;
   for (const dynamics::BodyState& b : bodies)
     if (pool.place_of({dynamics::Boundary::enter, b.x, b.vx, b.vy}) == pool.starts.size())
@@ -199,7 +199,7 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
     all.push_back({s.start.d, 0.0, s.start.vx, s.start.vy});
   dynamics::Health health = m.file.transitions.health;
   health += prediction.health;
-  m.file.transitions = lattice::matrix_of(m.scene, pool, all, how.per_leaf);
+  lattice::put_matrices(m.file, m.scene, lattice::matrices_of(m.scene, pool, all, how.per_leaf));
   m.file.transitions.health = health;
 }
 
@@ -211,7 +211,7 @@ bool is_matrix(const std::string& path) {
 
 std::optional<lattice::Settled> settle_method(const Options& options, lattice::Scene& scene,
                                               lattice::RunsFrom from) {
-  for (const std::string& text : lattice::keys_without_effect(scene)) options.warn(text);
+  for (const std::string& text : lattice::keys_without_effect(scene, from)) options.warn(text);
   if (options.talk()) options.warn(lattice::derived_keys(scene));
   auto settled = lattice::settle_method(scene, from, options.seed(), options.work());
   if (settled) options.warn(complaint(*settled));

@@ -27,7 +27,8 @@ enum class Purpose : std::uint64_t {
   field = 3,
   comparison = 4,
   resampling = 5,
-  memory = 6
+  memory = 6,
+  terrain = 7
 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.

@@ -37,6 +37,15 @@ Transitions::Totals Transitions::totals() const {
   return total;
 }
 
+Transitions::Totals& Transitions::Totals::operator+=(const Totals& o) {
+  runs += o.runs;
+  crossings += o.crossings;
+  clamped += o.clamped;
+  nonzeros += o.nonzeros;
+  empty_rows += o.empty_rows;
+  return *this;
+}
+
 Transitions& Transitions::operator+=(const Transitions& o) {
   if (!(space == o.space))
     throw std::invalid_argument("transitions of two different state spaces cannot be added");

@@ -29,6 +29,7 @@ struct Transitions {
     std::int64_t clamped = 0;    // of these, outside every bin
     std::int64_t nonzeros = 0;
     std::int64_t empty_rows = 0;
+    Totals& operator+=(const Totals& other);
     [[nodiscard]] double clamped_share() const {
       return crossings > 0 ? static_cast<double>(clamped) / static_cast<double>(crossings) : 0.0;
     }

@@ -41,12 +41,14 @@ FieldGates::FieldGates(dynamics::GateParams everywhere) : types_{std::move(every
 FieldGates FieldGates::by_cell(std::vector<dynamics::GateParams> types, int columns,
                                std::vector<int> type_of_cell) {
   if (types.empty()) throw std::invalid_argument("field: no type of gate is given");
+  if (types.size() > 256) throw std::invalid_argument("field: more than 256 types of gates");
   const dynamics::GateParams& first = types.front();
   for (const dynamics::GateParams& p : types)
     if (p.body.mass != first.body.mass || p.body.radius != first.body.radius ||
-        p.gate_width() != first.gate_width() || p.gate_length() != first.gate_length())
+        p.gate_width() != first.gate_width() || p.gate_length() != first.gate_length() ||
+        p.beams.joint_y != first.beams.joint_y)
       throw std::invalid_argument(
-          "field: gates of other size or for another body cannot share a field");
+          "field: gates of other size, with other joints or for another body cannot share a field");
   if (columns < 1 || type_of_cell.empty() || std::ssize(type_of_cell) % columns != 0)
     throw std::invalid_argument("field: types of " + std::to_string(type_of_cell.size()) +
                                 " cells do not fill rows of " + std::to_string(columns));

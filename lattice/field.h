@@ -35,15 +35,15 @@ struct FieldParams {
   }
 };
 
-/// The gates of a field: one type everywhere, or a type per cell. All have the same body and the
-/// same width and length.
+/// The gates of a field: one type everywhere, or a type per cell. All have the same body, width,
+/// length and joints.
 class FieldGates {
  public:
   FieldGates(
       dynamics::GateParams everywhere);  // NOLINT(google-explicit-constructor): the usual case
   /// The gate in (column, row) is types[type_of_cell[row * columns + column]]. Throws
-  /// std::invalid_argument unless there is a type, all are of one size and for one body, and each
-  /// cell is given one of them.
+  /// std::invalid_argument unless there is a type (256 at most), all are of one size and for one
+  /// body, and each cell is given one of them.
   [[nodiscard]] static FieldGates by_cell(std::vector<dynamics::GateParams> types, int columns,
                                           std::vector<int> type_of_cell);
 
@@ -52,6 +52,9 @@ class FieldGates {
     return type_of_cell_.empty() ? 0
                                  : type_of_cell_[static_cast<std::size_t>(row * columns_ + column)];
   }
+  /// (rows x columns) of types(), and their columns; empty: all are the first.
+  [[nodiscard]] const std::vector<int>& type_of_cell() const { return type_of_cell_; }
+  [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] const dynamics::GateParams& at(int column, int row) const {
     return types_[static_cast<std::size_t>(type_of(column, row))];
   }

@@ -23,6 +23,17 @@ markov::Chain make_chain(const Transitions& t) {
   return markov::Chain::from_counts(t.counts(), exits_of(t.space));
 }
 
+markov::FieldChain field_chain(const FieldGates& gates, std::vector<markov::Chain> chains) {
+  if (gates.type_of_cell().empty()) return {std::move(chains.front())};
+  return markov::FieldChain::by_cell(std::move(chains), gates.columns(), gates.type_of_cell());
+}
+
+markov::FieldChain make_chain(const FieldGates& gates, const std::vector<Transitions>& matrices) {
+  std::vector<markov::Chain> chains;
+  for (const Transitions& t : matrices) chains.push_back(make_chain(t));
+  return field_chain(gates, std::move(chains));
+}
+
 ChainStart chain_start(const StateSpace& space, const FieldParams& field, const BodyState& body) {
   if (body.y != 0.0)
     throw std::invalid_argument(
@@ -165,12 +176,27 @@ std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays
 
 }  // namespace
 
+namespace {
+
+markov::RowCounts row_counts(const Transitions& t) { return {t.counts(), t.trials, t.clamped}; }
+
+Transitions transitions_of(const StateSpace& space, const markov::RowCounts& in) {
+  Transitions t(space);
+  for (int row = 0; row < space.size(); ++row)
+    for (markov::Counts::InnerIterator it(in.counts, row); it; ++it)
+      t.rows[row][static_cast<int>(it.col())] = it.value();
+  t.trials = in.trials;
+  t.clamped = in.clamped;
+  return t;
+}
+
+}  // namespace
+
 void write_matrix(const std::string& path, const MatrixFile& file) {
   const Transitions& t = file.transitions;
   markov::CountsFile out;
-  out.counts = t.counts();
-  out.trials = t.trials;
-  out.clamped = t.clamped;
+  static_cast<markov::RowCounts&>(out) = row_counts(t);
+  for (const auto& [name, of_type] : file.types) out.types.emplace(name, row_counts(of_type));
   out.exits = exits_of(t.space);
   out.arrays = file.arrays;
   for (int b = 0; b < kBoundaries && t.space.has_trees(); ++b) add_tree(out, b, t.space.trees()[b]);
@@ -215,19 +241,17 @@ MatrixFile read_matrix(const std::string& path) {
   }();
   try {
     const bool has_trees = find_array(in, array_name(0, kTreeAxis)) != nullptr;
-    Transitions t{has_trees ? trees_in(in, path) : bins_in(in, path)};
-    if (t.space.size() != in.counts.rows())
-      throw markov::BadFile(path + ": its state space makes " + std::to_string(t.space.size()) +
+    const StateSpace space = has_trees ? trees_in(in, path) : bins_in(in, path);
+    if (space.size() != in.counts.rows())
+      throw markov::BadFile(path + ": its state space makes " + std::to_string(space.size()) +
                             " states, the counts have " + std::to_string(in.counts.rows()) +
                             " rows");
-    if (in.exits != exits_of(t.space))
+    if (in.exits != exits_of(space))
       throw markov::BadFile(path + ": exits are not those of its states");
-    for (int row = 0; row < t.space.size(); ++row)
-      for (markov::Counts::InnerIterator it(in.counts, row); it; ++it)
-        t.rows[row][static_cast<int>(it.col())] = it.value();
-    t.trials = in.trials;
-    t.clamped = in.clamped;
-    return {std::move(t), in.text, others_in(in.arrays)};
+    MatrixFile file{transitions_of(space, in), in.text, others_in(in.arrays)};
+    for (const auto& [name, of_type] : in.types)
+      file.types.emplace(name, transitions_of(space, of_type));
+    return file;
   } catch (const std::invalid_argument& e) {
     throw markov::BadFile(path + ": " + e.what());
   }

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "dynamics/transitions.h"
 #include "lattice/field.h"
@@ -15,6 +16,13 @@ namespace gatewalk::lattice {
 [[nodiscard]] std::vector<markov::Exit> exits_of(const dynamics::StateSpace& space);
 
 [[nodiscard]] markov::Chain make_chain(const dynamics::Transitions& t);
+
+/// A chain for each of gates.types(), where that type stands.
+[[nodiscard]] markov::FieldChain field_chain(const FieldGates& gates,
+                                             std::vector<markov::Chain> chains);
+/// The same of matrices with the same states.
+[[nodiscard]] markov::FieldChain make_chain(const FieldGates& gates,
+                                            const std::vector<dynamics::Transitions>& matrices);
 
 /// The chain's start for a body that starts in gate (0, 0): its state, and whether it lies outside
 /// the bins as StateSpace::Index says. A body inside the gate (y > 0) has no state of its own:
@@ -31,7 +39,8 @@ struct ChainStart {
 struct MatrixFile {
   dynamics::Transitions transitions;
   std::map<std::string, std::string> text;
-  std::vector<markov::NamedArray> arrays{};  // beside those of the state space
+  std::vector<markov::NamedArray> arrays{};              // beside those of the state space
+  std::map<std::string, dynamics::Transitions> types{};  // of other gates in the field, by name
 };
 
 /// As markov::write_counts.

@@ -21,9 +21,28 @@ std::int64_t CountedField::runs_at(const markov::Start& start) const {
   return counts[type].row(start.input).sum();
 }
 
+CountedField counted_field(const FieldGates& gates,
+                           const std::vector<dynamics::Transitions>& matrices) {
+  CountedField field{make_chain(gates, matrices), {}, matrices.front().space.has_trees()};
+  for (const dynamics::Transitions& t : matrices) field.counts.push_back(t.counts());
+  return field;
+}
+
 CountedField counted_field(const dynamics::Transitions& matrix) {
   return {make_chain(matrix), {matrix.counts()}, matrix.space.has_trees()};
 }
+
+namespace {
+
+bool equals_row_before(const markov::Counts& counts, int row) {
+  const int* const begin = counts.outerIndexPtr() + row;
+  const auto same = [&](const auto* values) {
+    return std::equal(values + begin[0], values + begin[1], values + begin[-1], values + begin[0]);
+  };
+  return row > 0 && same(counts.innerIndexPtr()) && same(counts.valuePtr());
+}
+
+}  // namespace
 
 markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::uint64_t replicate,
                          bool small_rows) {
@@ -39,7 +58,9 @@ markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::
   std::vector<Eigen::Triplet<std::int64_t>> drawn;
   std::vector<double> weights;
   std::vector<std::int64_t> of_entries;
+  int first = 0;  // of the rows that are the same runs
   for (int row = 0; row < counts.rows(); ++row) {
+    if (!small_rows || !equals_row_before(counts, row)) first = row;
     weights.clear();
     for (Entry entry(counts, row); entry; ++entry)
       weights.push_back(static_cast<double>(entry.value()));
@@ -47,7 +68,7 @@ markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::
     of_entries.resize(weights.size());
     const std::int64_t trials = counts.row(row).sum();
     dynamics::Random random(dynamics::Purpose::resampling,
-                            {seed, static_cast<std::uint64_t>(row), replicate});
+                            {seed, static_cast<std::uint64_t>(first), replicate});
     const std::int64_t others =
         small_rows ? 0 : binomial(trials, 1.0 / static_cast<double>(trials + 1), random);
     multinomial(trials - others, weights, of_entries, random);
@@ -102,6 +123,17 @@ std::int64_t affordable_replicates(const markov::Field& field, int max_cells, st
       static_cast<double>(most),
       kCellSteps / (cells * steps * std::max(1.0, static_cast<double>(nonzeros) / kNonzeros)));
   return replicates < kTooFew ? 0 : static_cast<std::int64_t>(replicates);
+}
+
+std::int64_t affordable_replicates(const CountedField& gates, const markov::Field& field,
+                                   int max_cells, std::int64_t most) {
+  // Without limit, rows of several types are not gone through one by one, but in steps: so many.
+  constexpr int kSteps = 100;
+  if (max_cells == 0 && !gates.chains.has_uniform_rows()) max_cells = kSteps;
+  std::int64_t nonzeros = 0;
+  for (const markov::Counts& c : gates.counts)
+    nonzeros = std::max<std::int64_t>(nonzeros, c.nonZeros());
+  return affordable_replicates(field, max_cells, nonzeros, most);
 }
 
 MatrixNoise::MatrixNoise(const FinalDistribution& prediction, std::int64_t runs)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dynamics/transitions.h"
+#include "lattice/field.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {
@@ -20,13 +21,17 @@ struct CountedField {
   /// Runs of the row that a walk begins in.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
 };
+/// Every cell draws from the matrix of its type; matrices as gates.types().
+[[nodiscard]] CountedField counted_field(const FieldGates& gates,
+                                         const std::vector<dynamics::Transitions>& matrices);
 /// Every cell draws from the same matrix.
 [[nodiscard]] CountedField counted_field(const dynamics::Transitions& matrix);
 
 /// The counts that another set of runs might have given: every row's trials drawn anew from its own
 /// counts, as one binomial per entry, and of one run more that may end as any of all rows: what a
 /// row never saw may yet happen in it. (Not in small rows, of which one run is a large part; there,
-/// predictions average over many rows.) Chains of such counts show what the sampling of the matrix
+/// predictions average over many rows. Neighbouring small rows that are equal are the same runs,
+/// and stay equal.) Chains of such counts show what the sampling of the matrix
 /// alone does to a prediction.
 [[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
                                        std::uint64_t replicate, bool small_rows = false);
@@ -43,6 +48,11 @@ struct CountedField {
 /// `nonzeros` of the matrix.
 [[nodiscard]] std::int64_t affordable_replicates(const markov::Field& field, int max_cells,
                                                  std::int64_t nonzeros, std::int64_t most);
+
+/// The same for these matrices.
+[[nodiscard]] std::int64_t affordable_replicates(const CountedField& gates,
+                                                 const markov::Field& field, int max_cells,
+                                                 std::int64_t most);
 
 /// The spread of predictions that the sampling of the matrix makes.
 class MatrixNoise {

@@ -36,17 +36,19 @@ struct Trial {
 
 /// Takes the result of a trial's run through one gate. The crossing into the next gate; none when
 /// the trial ends here.
-std::optional<Crossing> follow(Trial& t, const GateParams& p, const FieldParams& field,
+std::optional<Crossing> follow(Trial& t, const FieldGates& gates, const FieldParams& field,
                                const StateSpace& space, const GateRun& run, bool keep_passages) {
+  const auto type = static_cast<std::uint8_t>(gates.type_of(t.column, t.row));
+  const GateParams& p = gates.types()[type];
   t.health.add(p, run);
   ++t.gates;
   if (run.ending == Ending::broken || run.ending == Ending::trapped) {
     if (run.ending == Ending::trapped) t.ending = markov::Ending::trapped;
-    if (keep_passages) t.passages.push_back({run.ending, {}});
+    if (keep_passages) t.passages.push_back({run.ending, type, {}});
     return {};
   }
   const Crossing crossing = crossing_of(p, run.ending, run.exit);
-  if (keep_passages) t.passages.push_back({run.ending, crossing});
+  if (keep_passages) t.passages.push_back({run.ending, type, crossing});
   const Move move = move_into(crossing.boundary);
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
     t.ending =
@@ -169,7 +171,7 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
           [&](RunSlot& slot, const GateRun& run) {
             const std::int64_t i = wave[slot.trial];
             Trial& t = trials[i];
-            if (!follow(t, p, field, space, run, keep_passages)) return false;
+            if (!follow(t, gates, field, space, run, keep_passages)) return false;
             slot.start = shifted_into_next(p, run.ending, run.exit);
             if (held == HeldForce::drawn_anew) slot.force.drop_hold();
             const auto next = static_cast<std::size_t>(gates.type_of(t.column, t.row));
@@ -209,7 +211,8 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
       FieldStepper stepper(p, field, start_of(i));
       RandomForce force = force_of(i);
       for (GateRun run = stepper.run_gate(force);
-           follow(trials[i], p, field, space, run, keep_passages); run = stepper.run_gate(force)) {
+           follow(trials[i], gates, field, space, run, keep_passages);
+           run = stepper.run_gate(force)) {
         stepper.go_on(run.ending);
         if (held == HeldForce::drawn_anew) force.drop_hold();
       }
@@ -274,7 +277,7 @@ FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const 
         {t.column, t.row, trace_gate(p, *make_method(p), from, force, most_samples)});
     most_samples -= trace.visits.back().trace.samples.size();
     const GateRun& run = trace.visits.back().trace.run;
-    if (!follow(t, p, field, space, run, false)) break;
+    if (!follow(t, gates, field, space, run, false)) break;
     from = shifted_into_next(p, run.ending, run.exit);
   }
   trace.ending = t.ending;

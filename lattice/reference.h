@@ -42,10 +42,11 @@ struct FieldTally {
   FieldTally& operator+=(const FieldTally& other);
 };
 
-/// How a trial's run through one gate ended, and with which entry into the next gate, inside the
-/// field or outside; no entry where it did not leave its gate.
+/// How a trial's run through one gate ended, that gate's type, and with which entry into the next
+/// gate, inside the field or outside; no entry where it did not leave its gate.
 struct GatePassage {
   dynamics::Ending ending = dynamics::Ending::trapped;
+  std::uint8_t type = 0;  // of FieldGates::types()
   dynamics::Crossing entry{};
 };
 

@@ -13,9 +13,9 @@ namespace {
 
 using namespace dynamics;
 
-/// Calls use(entry, passage, goes_on) for the runs of some trials of the group that did not break,
-/// but the first `skipped` ones of each trial. `start_of(i)`: where trial i started; `goes_on`: the
-/// next call is for the run that follows it.
+/// Calls use(entry, passage, next) for the runs of some trials of the group that did not break, but
+/// the first `skipped` ones of each trial. `start_of(i)`: where trial i started; `next`: the run
+/// that follows it, which the next call is for; null if there is none.
 template <class StartOf, class Use>
 void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, StartOf start_of,
               Use use) {
@@ -24,7 +24,8 @@ void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, 
     for (std::size_t k = skipped; k < passages.size(); ++k)
       if (passages[k].ending != Ending::broken)
         use(k == 0 ? start_of(i) : passages[k - 1].entry, passages[k],
-            k + 1 < passages.size() && passages[k + 1].ending != Ending::broken);
+            k + 1 < passages.size() && passages[k + 1].ending != Ending::broken ? &passages[k + 1]
+                                                                                : nullptr);
   }
 }
 
@@ -70,7 +71,75 @@ markov::Counts counted(const std::vector<int>& row, const std::vector<int>& colu
   return counts;
 }
 
+/// By type: how many counts a run makes, 2 with its mirror image.
+std::vector<std::size_t> images_of(const FieldGates& gates) {
+  std::vector<std::size_t> images;
+  for (const GateParams& p : gates.types()) images.push_back(symmetric(p) ? 2 : 1);
+  return images;
+}
+
+/// Parts of a tree: as many leaves together as it takes for `least` runs in each. `runs`: of each
+/// leaf; the first leaf of its part takes each leaf's place in `first`.
+void join_leaves(const Tree& tree, const std::int64_t* runs, std::int64_t least, int first_state,
+                 int* first) {
+  const std::size_t nodes = tree.nodes.size();
+  std::vector<std::size_t> above(nodes), leaves(nodes, 1), end(nodes);  // of a node: its second
+                                                                        // half, size, next node
+  for (std::size_t i = nodes; i-- > 0;) {
+    end[i] = i + 1;
+    if (tree.nodes[i].axis == Tree::kLeaf) continue;
+    above[i] = end[i + 1];
+    end[i] = end[above[i]];
+    leaves[i] = leaves[i + 1] + leaves[above[i]];
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, 0}};  // node, its first leaf
+  while (!open.empty()) {
+    const auto [node, begin] = open.back();
+    open.pop_back();
+    const auto runs_in = [&](std::size_t from, std::size_t count) {
+      return std::accumulate(runs + from, runs + from + count, std::int64_t{0});
+    };
+    const std::size_t below = node + 1, cut = begin + (leaves[node] > 1 ? leaves[below] : 0);
+    if (leaves[node] > 1 && runs_in(begin, cut - begin) >= least &&
+        runs_in(cut, leaves[above[node]]) >= least) {
+      open.emplace_back(below, begin);
+      open.emplace_back(above[node], cut);
+    } else {
+      std::fill(first + begin, first + begin + leaves[node], first_state + static_cast<int>(begin));
+    }
+  }
+}
+
+/// The counts of one type, row[i] to column[i]; where leaves have few runs, of several together.
+markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
+                              const std::vector<int>& column, std::int64_t least) {
+  std::vector<std::int64_t> runs(static_cast<std::size_t>(space.size()), 0);
+  for (const int r : row) ++runs[static_cast<std::size_t>(r)];
+  std::vector<int> first(runs.size());
+  for (int b = 0; b < kBoundaries; ++b) {
+    const int begin = space.first(static_cast<Boundary>(b));
+    join_leaves(space.trees()[static_cast<std::size_t>(b)], runs.data() + begin, least, begin,
+                first.data() + begin);
+  }
+  for (int& r : row) r = first[static_cast<std::size_t>(r)];
+  const markov::Counts parts = counted(row, column, space.size());
+  markov::Counts counts(parts.rows(), parts.cols());
+  for (int leaf = 0; leaf < space.size(); ++leaf) {
+    counts.startVec(leaf);
+    for (markov::Counts::InnerIterator it(parts, first[static_cast<std::size_t>(leaf)]); it; ++it)
+      counts.insertBack(leaf, it.col()) = it.value();
+  }
+  counts.finalize();
+  return counts;
+}
+
 }  // namespace
+
+std::int64_t Kernel::nonzeros() const {
+  std::int64_t all = 0;
+  for (const markov::Counts& c : counts) all += c.nonZeros();
+  return all;
+}
 
 std::size_t RunPool::place_of(const Crossing& start) const {
   const auto own = std::find_if(starts.begin(), starts.end(),
@@ -90,29 +159,51 @@ std::int64_t RunPool::trials() const {
   return trials;
 }
 
-Kernel kernel_of(const GateParams& p, const RunPool& pool, int per_leaf, TrialGroup group) {
-  const bool mirror = symmetric(p);
+Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, TrialGroup group) {
+  const std::vector<std::size_t> images = images_of(gates);
   std::vector<Crossing> entries;
-  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage&, bool) {
+  std::vector<std::uint8_t> types;
+  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
     entries.push_back(entry);
-    if (mirror) entries.push_back(mirrored(entry));
+    if (images[run.type] == 2) entries.push_back(mirrored(entry));
+    types.resize(entries.size(), run.type);
   });
   std::vector<int> row, column;
   const std::int64_t fits = 2 * std::ssize(entries) / kMostStates;
   per_leaf = static_cast<int>(std::max<std::int64_t>(per_leaf, fits));
-  StateSpace space = tree_space(p, entries, per_leaf, {}, &row);
+  StateSpace space = tree_space(gates.types().front(), entries, per_leaf, {}, &row);
   column.reserve(row.size());
-  const std::size_t together = mirror ? 2 : 1;
-  each_kernel_run(pool, group, [&](const Crossing&, const GatePassage& passage, bool goes_on) {
-    const std::size_t next = column.size() + together;
-    for (std::size_t image = 0; image < together; ++image)
-      column.push_back(goes_on ? row[next + image]
-                               : output_of(space, passage,
-                                           image == 0 ? passage.entry : mirrored(passage.entry)));
-  });
-  markov::Counts counts = counted(row, column, space.size());
-  SeenEntries seen = group.of == 1 ? SeenEntries(space, entries, row) : SeenEntries();
-  return {std::move(space), std::move(counts), std::move(seen)};
+  each_kernel_run(
+      pool, group, [&](const Crossing&, const GatePassage& run, const GatePassage* next) {
+        const std::size_t at = column.size() + images[run.type];
+        for (std::size_t image = 0; image < images[run.type]; ++image)
+          column.push_back(
+              next && image < images[next->type]
+                  ? row[at + image]
+                  : output_of(space, run, image == 0 ? run.entry : mirrored(run.entry)));
+      });
+  Kernel kernel{std::move(space), {}};
+  const auto seen_in = [&](const std::vector<Crossing>& there, const std::vector<int>& states) {
+    if (group.of == 1) kernel.seen.emplace_back(kernel.space, there, states);
+  };
+  if (gates.types().size() == 1) {
+    kernel.counts.push_back(counted(row, column, kernel.space.size()));
+    seen_in(entries, row);
+    return kernel;
+  }
+  for (std::size_t type = 0; type < gates.types().size(); ++type) {
+    std::vector<Crossing> there;
+    std::vector<int> from, to;
+    for (std::size_t i = 0; i < types.size(); ++i) {
+      if (types[i] != type) continue;
+      there.push_back(entries[i]);
+      from.push_back(row[i]);
+      to.push_back(column[i]);
+    }
+    seen_in(there, from);
+    kernel.counts.push_back(counts_of_type(kernel.space, std::move(from), to, per_leaf));
+  }
+  return kernel;
 }
 
 SeenEntries::SeenEntries(const StateSpace& space, const std::vector<Crossing>& entries,
@@ -146,9 +237,12 @@ bool SeenEntries::Box::holds(const Crossing& entry) const {
   return true;
 }
 
-double unseen_share(const Kernel& kernel, const FieldParams& field, const StartTrials& start) {
+double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+                    const StartTrials& start) {
   if (field.max_gates == 1 || start.first_runs() == 0) return 0.0;
-  std::vector<std::int64_t> here(kernel.seen.boxes.size());  // first runs that enter each box
+  // First runs that enter each box, by type of the gate entered.
+  std::vector<std::vector<std::int64_t>> here;
+  for (const SeenEntries& seen : kernel.seen) here.emplace_back(seen.boxes.size());
   std::int64_t outside = 0;
   for (const FieldTrials* trials : {&start.full, &start.first})
     for (std::size_t i = 0; i < trials->final_gates.size(); ++i) {
@@ -158,92 +252,109 @@ double unseen_share(const Kernel& kernel, const FieldParams& field, const StartT
           passage.ending == Ending::broken)
         continue;  // the kernel has the entry, or there is none
       const Move move = move_into(passage.entry.boundary);
-      if (!field.contains(field.start_column() + move.di_x, move.di_y)) continue;
+      const int column = field.start_column() + move.di_x;
+      if (!field.contains(column, move.di_y)) continue;
+      const auto type = static_cast<std::size_t>(gates.type_of(column, move.di_y));
       const std::size_t at =
           SeenEntries::place_of(kernel.space, kernel.space.index_of(passage.entry).state);
-      ++here[at];
-      if (!kernel.seen.boxes[at].holds(passage.entry)) ++outside;
+      ++here[type][at];
+      if (!kernel.seen[type].boxes[at].holds(passage.entry)) ++outside;
     }
   // Of n entries the next one of the same kind lies beyond one of the six sides of their box with
   // 6 / (n + 1), about; how many of several do is the less certain the more there are of one box.
   constexpr std::int64_t kFew = 12;  // of fewer nothing is known
   double expected = 0.0, variance = 0.0;
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    const std::int64_t n = kernel.seen.boxes[i].entries;
-    if (n < kFew) continue;
-    const double mean = 6.0 * static_cast<double>(here[i]) / static_cast<double>(n + 1);
-    expected += mean;
-    variance += mean + mean * mean / 6.0;
-  }
+  for (std::size_t type = 0; type < here.size(); ++type)
+    for (std::size_t i = 0; i < here[type].size(); ++i) {
+      const std::int64_t n = kernel.seen[type].boxes[i].entries;
+      if (n < kFew) continue;
+      const double mean = 6.0 * static_cast<double>(here[type][i]) / static_cast<double>(n + 1);
+      expected += mean;
+      variance += mean + mean * mean / 6.0;
+    }
   return std::max(0.0, static_cast<double>(outside) - expected - 2.0 * std::sqrt(variance)) /
          static_cast<double>(start.first_runs());
 }
 
-std::vector<std::int64_t> first_row(const GateParams& p, const StateSpace& space,
+std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& space,
                                     const StartTrials& start, TrialGroup group) {
-  const bool mirror = symmetric(p) && mirrored(start.start) == start.start;
+  const std::vector<std::size_t> images = images_of(gates);
+  const bool in_the_middle = mirrored(start.start) == start.start;
   std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
   for (const FieldTrials* trials : {&start.full, &start.first})
     for (std::int64_t i = group.group; i < std::ssize(trials->final_gates); i += group.of) {
       const GatePassage& passage = trials->of_trial(static_cast<std::size_t>(i)).front();
       if (passage.ending == Ending::broken) continue;
       ++row[static_cast<std::size_t>(output_of(space, passage, passage.entry))];
-      if (mirror)
+      if (in_the_middle && images[passage.type] == 2)
         ++row[static_cast<std::size_t>(output_of(space, passage, mirrored(passage.entry)))];
     }
   return row;
 }
 
-std::vector<std::int64_t> first_row(const GateParams& p, const StateSpace& space,
+std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& space,
                                     const ScatteredTrials& trials) {
-  const bool mirror = symmetric(p);
+  const std::vector<std::size_t> images = images_of(gates);
   std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
   for (std::size_t i = 0; i < trials.starts.size(); ++i) {
     const GatePassage& passage = trials.each.of_trial(i).front();
     if (passage.ending == Ending::broken) continue;
     ++row[static_cast<std::size_t>(output_of(space, passage, passage.entry))];
-    if (mirror) ++row[static_cast<std::size_t>(output_of(space, passage, mirrored(passage.entry)))];
+    if (images[passage.type] == 2)
+      ++row[static_cast<std::size_t>(output_of(space, passage, mirrored(passage.entry)))];
   }
   return row;
 }
 
-markov::Chain chain_of(const Kernel& kernel,
-                       const std::vector<std::vector<std::int64_t>>& first_rows) {
-  const markov::Counts& k = kernel.counts;
-  markov::Counts counts(k.rows() + std::ssize(first_rows), k.cols());
-  counts.reserve(k.nonZeros());
-  for (Eigen::Index row = 0; row < counts.rows(); ++row) {
-    counts.startVec(row);
-    if (row < k.rows()) {
-      for (markov::Counts::InnerIterator it(k, row); it; ++it)
-        counts.insertBack(row, it.col()) = it.value();
-      continue;
+markov::FieldChain chain_of(const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+                            const std::vector<std::vector<std::int64_t>>& first_rows) {
+  const int start_type = gates.type_of(field.start_column(), 0);
+  std::vector<markov::Chain> chains;
+  for (const markov::Counts& k : kernel.counts) {
+    const bool has_first = std::ssize(chains) == start_type;
+    markov::Counts counts(k.rows() + std::ssize(first_rows), k.cols());
+    counts.reserve(k.nonZeros());
+    for (Eigen::Index row = 0; row < counts.rows(); ++row) {
+      counts.startVec(row);
+      if (row < k.rows()) {
+        for (markov::Counts::InnerIterator it(k, row); it; ++it)
+          counts.insertBack(row, it.col()) = it.value();
+        continue;
+      }
+      const auto& first = first_rows[static_cast<std::size_t>(row - k.rows())];
+      for (Eigen::Index column = 0; column < k.cols() && has_first; ++column)
+        if (const std::int64_t n = first[static_cast<std::size_t>(column)]; n > 0)
+          counts.insertBack(row, column) = n;
     }
-    const auto& first = first_rows[static_cast<std::size_t>(row - k.rows())];
-    for (Eigen::Index column = 0; column < k.cols(); ++column)
-      if (const std::int64_t n = first[static_cast<std::size_t>(column)]; n > 0)
-        counts.insertBack(row, column) = n;
+    counts.finalize();
+    chains.push_back(markov::Chain::from_counts(counts, exits_of(kernel.space)));
   }
-  counts.finalize();
-  return markov::Chain::from_counts(counts, exits_of(kernel.space));
+  return field_chain(gates, std::move(chains));
 }
 
-Transitions transitions_of(const Kernel& kernel, const std::vector<Crossing>& starts,
-                           const std::vector<std::vector<std::int64_t>>& first_rows) {
-  Transitions t(StateSpace(kernel.space.trees(), starts));
-  const auto add = [&](int row, int column, std::int64_t n) {
-    t.rows[static_cast<std::size_t>(row)]
-          [column == kernel.space.trapped() ? t.space.trapped() : column] += n;
-    t.trials[static_cast<std::size_t>(row)] += n;
-  };
-  for (int row = 0; row < kernel.space.size(); ++row)
-    for (markov::Counts::InnerIterator it(kernel.counts, row); it; ++it)
-      add(row, static_cast<int>(it.col()), it.value());
-  for (std::size_t s = 0; s < first_rows.size(); ++s)
-    for (int column = 0; column <= kernel.space.size(); ++column)
-      if (const std::int64_t n = first_rows[s][static_cast<std::size_t>(column)]; n > 0)
-        add(kernel.space.size() + static_cast<int>(s), column, n);
-  return t;
+std::vector<Transitions> transitions_of(const Kernel& kernel, const FieldGates& gates,
+                                        const FieldParams& field,
+                                        const std::vector<Crossing>& starts,
+                                        const std::vector<std::vector<std::int64_t>>& first_rows) {
+  std::vector<Transitions> all;
+  const int start_type = gates.type_of(field.start_column(), 0);
+  for (const markov::Counts& counts : kernel.counts) {
+    const bool has_first = std::ssize(all) == start_type;
+    Transitions& t = all.emplace_back(StateSpace(kernel.space.trees(), starts));
+    const auto add = [&](int row, int column, std::int64_t n) {
+      t.rows[static_cast<std::size_t>(row)]
+            [column == kernel.space.trapped() ? t.space.trapped() : column] += n;
+      t.trials[static_cast<std::size_t>(row)] += n;
+    };
+    for (int row = 0; row < kernel.space.size(); ++row)
+      for (markov::Counts::InnerIterator it(counts, row); it; ++it)
+        add(row, static_cast<int>(it.col()), it.value());
+    for (std::size_t s = 0; s < first_rows.size() && has_first; ++s)
+      for (int column = 0; column <= kernel.space.size(); ++column)
+        if (const std::int64_t n = first_rows[s][static_cast<std::size_t>(column)]; n > 0)
+          add(kernel.space.size() + static_cast<int>(s), column, n);
+  }
+  return all;
 }
 
 }  // namespace gatewalk::lattice

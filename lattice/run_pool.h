@@ -1,8 +1,9 @@
 #pragma once
-/// Gate runs of full trials, pooled over all gates, since one gate is like the other; and the chain
-/// that they make: a start's own first runs are its row, all later runs fill the rows of trees
-/// grown over the entries that were seen (dynamics/tree_space.h), their mirror images too where the
-/// gate is symmetric.
+/// Gate runs of full trials, pooled over all gates of a type, since one is like the other; and the
+/// chain that they make: a start's own first runs are its row, all later runs fill the rows of
+/// trees grown over the entries that were seen (dynamics/tree_space.h), their mirror images too
+/// where the gate is symmetric. All types share the trees: what enters a gate comes from another
+/// one.
 
 #include <array>
 #include <cstdint>
@@ -71,42 +72,49 @@ struct SeenEntries {
   [[nodiscard]] static std::size_t place_of(const dynamics::StateSpace& space, int state);
 };
 
-/// Counts of trees' states, none of which is a start's own.
+/// Counts of trees' states, none of which is a start's own. Where a leaf has fewer runs of a type
+/// than asked for, its row is that of all its neighbours in the smallest part of the tree that has
+/// them.
 struct Kernel {
   dynamics::StateSpace space;
-  markov::Counts counts;  // (n x n+1), the last column: trapped
-  SeenEntries seen{};     // of the kernel of all trials
+  std::vector<markov::Counts> counts;  // by type of gate: (n x n+1), the last column: trapped
+  std::vector<SeenEntries> seen{};     // by type, of the kernel of all trials
+
+  [[nodiscard]] std::int64_t nonzeros() const;  // of all types
 };
 
 /// From the runs of one group of the trials but the starts' own first ones. With mirror images a
 /// run makes two counts. Runs that broke are left out. Leaves are larger where there would be more
 /// than kMostStates of them.
-[[nodiscard]] Kernel kernel_of(const dynamics::GateParams& p, const RunPool& pool,
+[[nodiscard]] Kernel kernel_of(const FieldGates& gates, const RunPool& pool,
                                int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {});
 
 /// How often the start's own first runs of one group ended in each of the kernel's outputs (n + 1).
 /// A start in the middle of a symmetric gate has mirror images too.
-[[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::GateParams& p,
+[[nodiscard]] std::vector<std::int64_t> first_row(const FieldGates& gates,
                                                   const dynamics::StateSpace& space,
                                                   const StartTrials& start, TrialGroup group = {});
 
 /// The same of trials that start anywhere: how often their first runs ended so.
-[[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::GateParams& p,
+[[nodiscard]] std::vector<std::int64_t> first_row(const FieldGates& gates,
                                                   const dynamics::StateSpace& space,
                                                   const ScatteredTrials& trials);
 
 /// The share of the start's first runs that enter the next gate of the field where no run of the
 /// kernel did, less what chance alone would make: what the kernel says of these is a guess.
-[[nodiscard]] double unseen_share(const Kernel& kernel, const FieldParams& field,
-                                  const StartTrials& start);
+[[nodiscard]] double unseen_share(const Kernel& kernel, const FieldGates& gates,
+                                  const FieldParams& field, const StartTrials& start);
 
-/// The kernel's rows, and behind them `first_rows`, which nothing leads to.
-[[nodiscard]] markov::Chain chain_of(const Kernel& kernel,
-                                     const std::vector<std::vector<std::int64_t>>& first_rows);
+/// The kernel's rows, and behind them `first_rows`, which nothing leads to: they are those of the
+/// gate in which trials start.
+[[nodiscard]] markov::FieldChain chain_of(const Kernel& kernel, const FieldGates& gates,
+                                          const FieldParams& field,
+                                          const std::vector<std::vector<std::int64_t>>& first_rows);
 
-/// The same as a matrix, in which the starts are states of their own.
-[[nodiscard]] dynamics::Transitions transitions_of(
-    const Kernel& kernel, const std::vector<dynamics::Crossing>& starts,
+/// The same as matrices, in which the starts are states of their own.
+[[nodiscard]] std::vector<dynamics::Transitions> transitions_of(
+    const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+    const std::vector<dynamics::Crossing>& starts,
     const std::vector<std::vector<std::int64_t>>& first_rows);
 
 }  // namespace gatewalk::lattice

@@ -301,11 +301,33 @@ WalkTally& WalkTally::operator+=(const WalkTally& other) {
   return *this;
 }
 
+namespace {
+
+/// The chains of all types as one: rows and outputs one type behind the other.
+Chain stacked(const FieldChain& field) {
+  if (field.chains().size() == 1) return field.chains().front();
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<Exit> exits;
+  int rows = 0;
+  for (const Chain& chain : field.chains()) {
+    for (int row = 0; row < chain.inputs(); ++row)
+      for (Probabilities::InnerIterator it(chain.matrix(), row); it; ++it)
+        entries.emplace_back(rows + row, std::ssize(exits) + it.col(), it.value());
+    exits.insert(exits.end(), chain.exits().begin(), chain.exits().end());
+    rows += chain.inputs();
+  }
+  Probabilities all(rows, std::ssize(exits));
+  all.setFromTriplets(entries.begin(), entries.end());
+  return Chain::from_probabilities(std::move(all), std::move(exits));
+}
+
+}  // namespace
+
 // A row of n entries gets n slots of 2^64 units. Entry j owns p_j n 2^64 units, and together they
 // fill the slots exactly: each slot takes a small entry whole and is topped up from one large one.
-Walker::Walker(const Chain& chain)
-    : chain_(chain),
-      keep_(static_cast<std::size_t>(chain.matrix().nonZeros()) + 1,
+Walker::Walker(const FieldChain& chain)
+    : chain_(stacked(chain)),
+      keep_(static_cast<std::size_t>(chain_.matrix().nonZeros()) + 1,
             std::numeric_limits<Word>::max()),
       outputs_(2 * keep_.size()) {
   constexpr Wide kSlotUnits = Wide{1} << 64;
@@ -353,6 +375,10 @@ Walker::Walker(const Chain& chain)
     for (const int l : large) set(l, std::numeric_limits<Word>::max(), l, l);
   }
 
+  if (chain.chains().size() > 1) {
+    types_ = chain;
+    return;
+  }
   const auto far = [](const Exit& exit) {
     return std::min(exit.di_x, exit.di_y) < -kReach || std::max(exit.di_x, exit.di_y) >= kReach;
   };
@@ -440,9 +466,12 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
     std::int64_t row = job.start.row;
     std::int64_t kind = Counters::kOthers;
     int input = job.start.input;
+    const auto row_here = [&] {
+      return input + (types_ ? types_->type_of(column, row) * types_->inputs() : 0);
+    };
     r123::Philox4x64::ctr_type words;
     for (Word drawn = 0;; ++drawn) {
-      if (!chain_.is_sampled(input)) {
+      if (!chain_.is_sampled(row_here())) {
         ++counters.at(Ending::unsampled);
         break;
       }
@@ -452,7 +481,7 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
             {{job.seed, kWalkStream}});
       }
       ++counters.steps;
-      const int output = pick(input, words[static_cast<std::size_t>(drawn % 4)]);
+      const int output = pick(row_here(), words[static_cast<std::size_t>(drawn % 4)]);
       const Exit& exit = chain_.exits()[static_cast<std::size_t>(output)];
       if (exit.next_input == Exit::kTrapped) {
         ++counters.at(Ending::trapped);
@@ -534,7 +563,10 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
 WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int max_cells,
                       Word seed, WalkRange range,
                       std::vector<std::int32_t>* final_cell_of_walk) const {
-  validate(chain_, field, start, max_cells);
+  if (types_)
+    validate(*types_, field, start, max_cells);
+  else
+    validate(chain_, field, start, max_cells);
   if (range.first < 0 || range.count < 0 ||
       range.first > std::numeric_limits<std::int64_t>::max() - range.count) {
     throw std::invalid_argument("walks: " + std::to_string(range.count) + " from number " +

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "markov/chain.h"
@@ -45,16 +46,18 @@ inline constexpr std::uint64_t kWalkStream = 0x77616c6b'00000001;  // "walk", ve
 /// from 1 (rounding, at most 1e-12) goes to its largest entry.
 class Walker {
  public:
-  explicit Walker(const Chain& chain);
+  explicit Walker(const FieldChain& chain);
 
-  /// An output of `row` for a uniform 64-bit word; never one of probability zero.
+  /// An output of `row` for a uniform 64-bit word; never one of probability zero. Rows and outputs
+  /// of several types of cells are numbered one behind the other.
   [[nodiscard]] int draw(int row, std::uint64_t word) const;
 
   /// Runs `range` (from 0 up) on all threads of the current TBB arena, many walks at once in vector
   /// registers (Google Highway). At most `max_cells` cells are visited (0: no limit; then a walk is
   /// still cut off after 10^6 cells, and counted so). Same walks for any number of threads and any
   /// instruction set. `final_cell_of_walk`, if given, gets row * columns + column per walk. Chains
-  /// with an exit of 512 cells or more, or with 2^21 nonzeros or more, are walked plainly.
+  /// with an exit of 512 cells or more, or with 2^21 nonzeros or more, and fields with cells of
+  /// several types are walked plainly.
   [[nodiscard]] WalkTally walk(const Field& field, const Start& start, int max_cells,
                                std::uint64_t seed, WalkRange range,
                                std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
@@ -80,7 +83,8 @@ class Walker {
   [[nodiscard]] std::int32_t pick(int row, std::uint64_t word) const;
   [[nodiscard]] std::uint64_t packed(const Exit& exit) const;
 
-  Chain chain_;
+  Chain chain_;                      // of all types of cells, one behind the other
+  std::optional<FieldChain> types_;  // which cell has which, if there are several
   // Slots: one per nonzero, in the order of the matrix, and one more for all unsampled rows in
   // lanes.
   std::vector<std::uint64_t> keep_;    // (slots) the first output, up to here within the slot

@@ -16,13 +16,15 @@ using Settled = std::optional<lattice::Settled>;
 int give_out(const Options& options, const lattice::Scene& scene, const MadeMatrix& made,
              std::vector<markov::NamedArray> runs) {
   const std::string path = options.text("output");
-  lattice::write_matrix(
-      path, {made.transitions, record_of(made, scene, options.provenance(scene)), std::move(runs)});
-  Json json = summary_json(made, path);
+  lattice::MatrixFile file{made.matrices.front(), record_of(made, scene, options.provenance(scene)),
+                           std::move(runs)};
+  lattice::put_matrices(file, scene, made.matrices);
+  lattice::write_matrix(path, file);
+  Json json = summary_json(made, file, path);
   json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, summary_table(made.transitions, path) + states_line(json["state_space"]) +
+  options.give_out(json, summary_table(file, path) + states_line(json["state_space"]) +
                              method_line(made.settled));
-  return status_of(options, made.transitions.health);
+  return status_of(options, made.matrices.front().health);
 }
 
 int build_bins(const Options& options, const lattice::Scene& scene,
@@ -34,9 +36,10 @@ int build_bins(const Options& options, const lattice::Scene& scene,
   const std::int64_t trials = options.has("trials") ? options.count("trials") : 100;
   const dynamics::Stopwatch watch;
   const lattice::States states = states_of(options, scene, choice, {scene.start});
-  const auto matrix = lattice::build_matrix(scene, states, trials, options.seed(), options.work());
+  const auto matrices =
+      lattice::build_matrices(scene, states, trials, options.seed(), options.work());
   const Json bins = bins_json(states.choice), space = to_json(states);
-  const int status = give_out(options, scene, {matrix, bins, space, settled, trials}, {});
+  const int status = give_out(options, scene, {matrices, bins, space, settled, trials}, {});
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
   for (const std::string& text : complaints(states)) options.warn(text);
   return status;
@@ -95,6 +98,10 @@ int run_build(const Arguments& arguments) {
   options.add_count("states", "S", "tree: at most S states beside the starts");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
+  if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)
+    throw UsageError(scene.source + ": the scene with its map has " + std::to_string(bytes) +
+                     " bytes, a matrix file keeps " + std::to_string(markov::kMostTextBytes) +
+                     ": take a random map, or a smaller one of the same types");
   const lattice::BinsChoice choice = bins_choice(options, scene, options.has("trials"));
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);

@@ -9,6 +9,7 @@
 #include "cli/terminal/interrupt.h"
 #include "dynamics/work.h"
 #include "lattice/scene/scene.h"
+#include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -54,6 +55,7 @@ void require_chartable(const Options& options, const std::vector<std::string>& p
     } catch (const dynamics::InvalidParameter& e) {
       throw lattice::SceneError(path + ": no reference for a chart: " + e.what());
     }
+    options.warn(lattice::terrain_without_effect(scene));
     if (!labels.insert(label_of(path)).second)
       throw UsageError("two scenes are called " + label_of(path));
   }

@@ -56,6 +56,7 @@ int run_landscape(const Arguments& arguments) {
   lattice::Scene scene = options.read_scene();
   const double spacing = spacing_for(options, scene);
   const ResultFolder folder(options, files);
+  if (trials == 0) options.warn(lattice::terrain_without_effect(scene));
 
   const dynamics::Passes passes = dynamics::passes(scene.gate, scene.start, spacing, beams);
   Json json = to_json(passes);

@@ -121,8 +121,7 @@ int predict_from_runs(const Options& options, const lattice::SceneMatrix& m) {
   how.per_leaf = entries_per_leaf(m.file, path);
   if (options.has("first-runs"))
     how.first_runs = options.count("first-runs", lattice::PoolRunner::kLeastTrials);
-  return predict_accurately(options, m.scene, {}, lattice::pool_of(m.file, m.scene.field, path),
-                            how);
+  return predict_accurately(options, m.scene, {}, lattice::pool_of(m.file, m.scene, path), how);
 }
 
 }  // namespace

@@ -53,7 +53,14 @@ int run_scene(const Arguments& arguments) {
   Json json;
   json["keys"] = to_json(keys);
   json["scene"] = lattice::to_toml(scene);
-  options.give_out(json, table_of(keys));
+  std::string map;
+  if (scene.terrain) {
+    const std::vector<std::string> rows = lattice::map_rows(*scene.terrain, scene.field);
+    json["map"] = rows;
+    map = "\nmap, the far side first:\n";
+    for (const std::string& row : rows) map += row + "\n";
+  }
+  options.give_out(json, table_of(keys) + map);
   return kFine;
 }
 

@@ -13,11 +13,18 @@ int run_show(const Arguments& arguments) {
   options.positional("matrix", "matrix file written by gatewalk build", true);
   options.add_flag("rows", "a line per input state");
   options.add_count("row", "I", "all outputs of input state I (from 1)");
+  options.add_text("type", "NAME", "the matrix of gates of that type of the table [terrain]");
   options.add_figure("the matrix, states grouped by boundary");
   options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
   const std::string path = options.text("matrix");
-  const lattice::MatrixFile file = lattice::read_matrix(path);
+  lattice::MatrixFile file = lattice::read_matrix(path);
+  if (options.has("type")) {
+    const auto type = file.types.find(options.text("type"));
+    if (type == file.types.end())
+      throw UsageError("--type " + options.text("type") + ": " + path + " has no such type");
+    file.transitions = type->second;
+  }
   ShownRows shown{.all = options.has("rows"), .one = {}};
   if (options.has("row"))
     shown.one = static_cast<int>(options.count("row", 1, file.transitions.space.size())) - 1;

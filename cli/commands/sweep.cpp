@@ -27,7 +27,8 @@ void refuse_overridden(const std::vector<lattice::SweepAxis>& axes,
 std::vector<std::string> remarks_on(const std::vector<lattice::SweepPoint>& points, bool talk) {
   std::set<std::string> texts;
   for (const lattice::SweepPoint& p : points) {
-    for (const std::string& text : lattice::keys_without_effect(p.scene)) texts.insert(text);
+    for (const std::string& text : lattice::keys_without_effect(p.scene, lattice::RunsFrom::start))
+      texts.insert(text);
     if (talk) texts.insert(lattice::derived_keys(p.scene));
   }
   texts.erase("");

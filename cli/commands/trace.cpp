@@ -106,7 +106,7 @@ int run_trace(const Arguments& arguments) {
       write_video(options.text("video"), film, {.speed = speed}, options.work());
     if (options.has("json"))
       for (std::size_t i = 0; i < recordings.runs.size(); ++i)
-        json["runs"][i].update(details_of(scene, recordings.runs[i]));
+        json["runs"][i].update(details_of(scene, recordings.runs[i], wanted.across_field));
   }
   json["recorded"] = recordings.runs.size();
   json["trials"] = recordings.trials;

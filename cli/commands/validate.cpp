@@ -16,6 +16,12 @@ struct Subject {
   Json status, settled, states;
 };
 
+lattice::SceneMatrix matrix_of(lattice::Scene scene, std::vector<dynamics::Transitions> matrices) {
+  lattice::SceneMatrix m{{dynamics::Transitions(matrices.front().space), {}}, std::move(scene)};
+  lattice::put_matrices(m.file, m.scene, std::move(matrices));
+  return m;
+}
+
 Subject read_subject(const Options& options) {
   const std::string path = options.text("matrix");
   lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
@@ -51,22 +57,17 @@ Subject build_subject(const Options& options) {
     lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = bodies};
     lattice::TreeChain chain = lattice::make_tree_chain(scene, how, options.work());
     warn_of(options, *chain.prediction, how.accuracy.accuracy);
-    Json status = to_json(chain.transitions.health), states = to_json(chain, how.accuracy.accuracy);
-    return {{{std::move(chain.transitions), {}}, std::move(scene)},
-            std::move(starts),
-            std::move(status),
-            settled ? to_json(*settled) : Json(),
-            std::move(states)};
+    Json status = to_json(chain.transitions.front().health),
+         states = to_json(chain, how.accuracy.accuracy);
+    return {matrix_of(std::move(scene), std::move(chain.transitions)), std::move(starts),
+            std::move(status), settled ? to_json(*settled) : Json(), std::move(states)};
   }
   const lattice::States states = states_of(options, scene, choice, bodies);
   for (const std::string& text : complaints(states)) options.warn(text);
-  auto built = lattice::build_matrix(scene, states, trials, options.seed(), options.work());
-  Json status = to_json(built.health);
-  return {{{std::move(built), {}}, std::move(scene)},
-          std::move(starts),
-          std::move(status),
-          settled ? to_json(*settled) : Json(),
-          to_json(states)};
+  auto built = lattice::build_matrices(scene, states, trials, options.seed(), options.work());
+  Json status = to_json(built.front().health);
+  return {matrix_of(std::move(scene), std::move(built)), std::move(starts), std::move(status),
+          settled ? to_json(*settled) : Json(), to_json(states)};
 }
 
 }  // namespace
@@ -122,15 +123,11 @@ int run_validate(const Arguments& arguments) {
   const dynamics::Stopwatch watch;
   const Subject subject = options.has("matrix") ? read_subject(options) : build_subject(options);
   const lattice::Scene& scene = subject.matrix.scene;
-  const ValidatedMatrix matrix{subject.matrix.file.transitions,
-                               options.text("matrix"),
-                               watch.seconds(),
-                               subject.status,
-                               subject.settled,
-                               subject.states};
+  const auto matrices = lattice::matrices_of(subject.matrix.file, scene);
+  const ValidatedMatrix matrix{matrices,       options.text("matrix"), watch.seconds(),
+                               subject.status, subject.settled,        subject.states};
 
-  const auto result =
-      lattice::validate_chain(scene, matrix.transitions, subject.starts, how, options.work());
+  const auto result = lattice::validate_chain(scene, matrices, subject.starts, how, options.work());
 
   Json json = to_json(result, matrix);
   json["made_by"] = to_json(options.provenance(scene));

@@ -28,9 +28,11 @@ int run_walk(const Arguments& arguments) {
   const lattice::ChainStart start = ready_start(options, m, m.scene.start, "the start");
   const std::int64_t walks = options.count("walks");
 
+  const markov::FieldChain chain =
+      lattice::make_chain(lattice::gates_of(m.scene), lattice::matrices_of(m.file, m.scene));
   const dynamics::Stopwatch watch;
-  const auto tally = lattice::walks(lattice::make_chain(t), m.scene.field, start, walks,
-                                    options.seed(), options.work());
+  const auto tally =
+      lattice::walks(chain, m.scene.field, start, walks, options.seed(), options.work());
   const double seconds = watch.seconds();
 
   const Json status = recorded_status(m.file);

@@ -51,6 +51,8 @@ Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings)
   film.title = title_of(scene);
   film.gate = scene.gate;
   if (recordings.across_field) film.field = scene.field;
+  if (const lattice::RunGates gates(scene, recordings.across_field); gates.all().types().size() > 1)
+    film.types = gates.all();
   const dynamics::Scale scale = dynamics::scale_of(scene.gate);
   for (const lattice::Recording& r : recordings.runs) {
     FilmRun run{label_of(r, recordings.across_field, scale), r.ending, {}};

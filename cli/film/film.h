@@ -2,6 +2,7 @@
 /// What is drawn of runs, by the page that plays them (replay.h) and in videos (video.h).
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,11 +32,16 @@ struct FilmRun {
 struct Film {
   std::string title;
   dynamics::GateParams gate;
+  std::optional<lattice::FieldGates> types{};  // of the field's gates, if there are several
   lattice::FieldParams field{.columns = 1, .rows = 1};  // 1 x 1: a gate alone
   std::vector<FilmRun> runs;
 
   [[nodiscard]] double width() const { return gate.gate_width(); }   // m, of a gate
   [[nodiscard]] double depth() const { return gate.gate_length(); }  // m, the same
+  /// The gate at (i_x, i_y) of the field.
+  [[nodiscard]] const dynamics::GateParams& gate_at(int i_x, int i_y) const {
+    return types ? types->at(i_x + field.start_column(), i_y) : gate;
+  }
   [[nodiscard]] bool is_field() const { return field.columns * field.rows > 1; }
 };
 

@@ -210,8 +210,9 @@ void Picture::forces(const View& view, const Scenery& s) {
   const Point body = view(s.body);
   const double random = run_.steps()[s.at.i].random_force;
   painter_.arrow(body, {body.x + arrow_ * random * view.scale, body.y}, kGrey, view.thick);
-  painter_.arrow(body, {body.x, body.y - arrow_ * film_.gate.forces.propulsion * view.scale},
-                 kOrange, view.thick);
+  painter_.arrow(
+      body, {body.x, body.y - arrow_ * film_.gate_at(s.i_x, s.i_y).forces.propulsion * view.scale},
+      kOrange, view.thick);
   painter_.circle(body, std::max(1.5, 0.6 * view.thick));
   painter_.fill(kEdge);
 }
@@ -277,7 +278,7 @@ void Picture::legend(double x, double& y, const Scenery& said) {
     words(name, shown(reading(newton, "N", 0.1 * unit_.force())));
     y += 27;
   };
-  force(kOrange, "propulsion", film_.gate.forces.propulsion);
+  force(kOrange, "propulsion", film_.gate_at(said.i_x, said.i_y).forces.propulsion);
   force(kGrey, "random force", run_.steps()[said.at.i].random_force);
   const auto velocity = [&](double dynamics::BodyState::*member) {
     return said.at([&](std::size_t i) { return run_.steps()[i].body.*member; });

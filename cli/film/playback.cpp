@@ -32,7 +32,7 @@ bool is_finite(const FilmStep& s) {
 }  // namespace
 
 Segment beam_of(const Film& film, int i_x, int i_y, Side side, double angle) {
-  const dynamics::Beams& beams = film.gate.beams;
+  const dynamics::Beams& beams = film.gate_at(i_x, i_y).beams;
   const double sign = side == kLeft ? 1.0 : -1.0;
   const auto along = dynamics::Direction::of(angle);
   const Point joint{-sign * beams.joint_x + film.width() * i_x, beams.joint_y + film.depth() * i_y};
@@ -41,7 +41,7 @@ Segment beam_of(const Film& film, int i_x, int i_y, Side side, double angle) {
 
 Point nearest_point(const Film& film, int i_x, int i_y, Side side, double angle, Point body) {
   const dynamics::BodyState at{body.x - film.width() * i_x, body.y - film.depth() * i_y};
-  const dynamics::Touch touch = dynamics::nearest(film.gate, side, at, angle);
+  const dynamics::Touch touch = dynamics::nearest(film.gate_at(i_x, i_y), side, at, angle);
   const double distance = touch.gap + film.gate.body.radius;
   return {body.x - distance * touch.nx, body.y - distance * touch.ny};
 }

@@ -54,6 +54,12 @@ Json to_json(const Film& film) {
       {"rows", film.field.rows},
       {"start_column", film.field.start_column()},
       {"runs", Json::array()}};
+  if (film.types) {
+    for (const dynamics::GateParams& type : film.types->types())
+      json["types"].push_back(
+          {{"beam_m", type.beams.length}, {"propulsion_N", type.forces.propulsion}});
+    json["type_of_gate"] = film.types->type_of_cell();
+  }
   for (const FilmRun& run : film.runs) {
     Json of{{"label", run.label}, {"ending", run.ending}, {"propulsion_N", p.forces.propulsion}};
     for (const auto& [name, value] : kArrays) {

@@ -70,6 +70,30 @@ std::string outputs_table(const Transitions& t, int row) {
   return out.str();
 }
 
+/// Matrices of other gates in the field.
+Json types_json(const lattice::MatrixFile& file) {
+  Json json;
+  for (const auto& [name, t] : file.types) {
+    const auto total = t.totals();
+    json[name] = {{"counts", total.runs},
+                  {"nonzeros", total.nonzeros},
+                  {"clamped_share", total.clamped_share()},
+                  {"rows_never_sampled", total.empty_rows}};
+  }
+  return json;
+}
+
+std::string types_table(const lattice::MatrixFile& file, const std::string& indent) {
+  std::string table;
+  for (const auto& [name, t] : file.types) {
+    const auto total = t.totals();
+    table += indent + padded("type " + name, -20) + std::to_string(total.runs) + " counts, " +
+             std::to_string(total.nonzeros) + " nonzeros, " + std::to_string(total.empty_rows) +
+             " rows never sampled\n";
+  }
+  return table;
+}
+
 }  // namespace
 
 Json recorded(const lattice::MatrixFile& file, const std::string& path, const std::string& key) {
@@ -117,14 +141,15 @@ std::map<std::string, std::string> record_of(const MadeMatrix& made, const latti
       {"program", "gatewalk " + made_by.at("version").get<std::string>()},
       {"commit", made_by.at("commit")},
       {"command", provenance.command},
-      {"status", to_json(made.transitions.health).dump()}};
+      {"status", to_json(made.matrices.front().health).dump()}};
   if (made.trials_per_row) text["trials_per_row"] = std::to_string(*made.trials_per_row);
   if (made.settled) text["method"] = to_json(*made.settled).dump();
   return text;
 }
 
-Json summary_json(const MadeMatrix& made, const std::string& path) {
-  const Transitions& t = made.transitions;
+Json summary_json(const MadeMatrix& made, const lattice::MatrixFile& file,
+                  const std::string& path) {
+  const Transitions& t = made.matrices.front();
   const auto total = t.totals();
   Json json;
   json["matrix"] = path;
@@ -135,19 +160,22 @@ Json summary_json(const MadeMatrix& made, const std::string& path) {
   json["nonzeros"] = total.nonzeros;
   json["clamped_share"] = total.clamped_share();
   json["state_space"] = made.states;
+  if (!file.types.empty()) json["types"] = types_json(file);
   if (made.settled) json["method"] = to_json(*made.settled);
   json["status"] = to_json(t.health);
   return json;
 }
 
-std::string summary_table(const Transitions& t, const std::string& path) {
+std::string summary_table(const lattice::MatrixFile& file, const std::string& path) {
+  const Transitions& t = file.transitions;
   const auto total = t.totals();
   const std::string size = path + ": " + std::to_string(t.space.size()) + " x " +
                            std::to_string(t.space.size() + 1) + " matrix, ";
-  if (t.space.has_trees()) return size + std::to_string(total.nonzeros) + " nonzeros\n";
+  if (t.space.has_trees())
+    return size + std::to_string(total.nonzeros) + " nonzeros\n" + types_table(file, "");
   return size + std::to_string(total.runs) + " gate runs, " + std::to_string(total.nonzeros) +
          " nonzeros, " + percent(total.clamped_share(), 1.0) +
-         " of the crossings clamped into the nearest bin\n";
+         " of the crossings clamped into the nearest bin\n" + types_table(file, "");
 }
 
 Json to_json(const lattice::MatrixFile& file, const std::string& path) {
@@ -165,6 +193,7 @@ Json to_json(const lattice::MatrixFile& file, const std::string& path) {
   json["density"] = static_cast<double>(total.nonzeros) / cells;
   json["clamped_share"] = total.clamped_share();
   json["rows_never_sampled"] = total.empty_rows;
+  if (!file.types.empty()) json["types"] = types_json(file);
   json["rows"] = Json::array();
   for (int row = 0; row < n; ++row) {
     const Cell cell = t.space.cell(row);
@@ -203,7 +232,8 @@ std::string table_of(const lattice::MatrixFile& file, const std::string& path,
       << (t.space.has_trees()
               ? ""
               : "  clamped crossings   " + percent(total.clamped_share(), 1.0) + "\n")
-      << "  rows never sampled  " << total.empty_rows << "\n";
+      << "  rows never sampled  " << total.empty_rows << "\n"
+      << types_table(file, "  ");
   for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins"})
     if (const auto it = file.text.find(key); it != file.text.end())
       out << "  " << padded(key, -20) << it->second << "\n";

@@ -23,10 +23,11 @@ namespace gatewalk::cli {
 /// The faults of the runs behind a recorded status, in one sentence; empty when none were seen.
 [[nodiscard]] std::string faults_recorded(const Json& status);
 
-/// What is said of a matrix that was made: "bins" is the factor on Table III's or their name, and
-/// `states` the state space as JSON. A tree has no number of trials per row.
+/// What is said of matrices that were made, one for each type of gate: "bins" is the factor on
+/// Table III's or their name, and `states` the state space as JSON. A tree has no number of trials
+/// per row.
 struct MadeMatrix {
-  const dynamics::Transitions& transitions;
+  const std::vector<dynamics::Transitions>& matrices;  // the first has the health of all
   const Json &bins, &states;
   const std::optional<lattice::Settled>& settled;
   std::optional<std::int64_t> trials_per_row;
@@ -38,8 +39,9 @@ struct MadeMatrix {
                                                            const lattice::Scene& scene,
                                                            const Provenance& provenance);
 /// The matrix written to `path`, without its counts and without "made_by".
-[[nodiscard]] Json summary_json(const MadeMatrix& made, const std::string& path);
-[[nodiscard]] std::string summary_table(const dynamics::Transitions& t, const std::string& path);
+[[nodiscard]] Json summary_json(const MadeMatrix& made, const lattice::MatrixFile& file,
+                                const std::string& path);
+[[nodiscard]] std::string summary_table(const lattice::MatrixFile& file, const std::string& path);
 
 [[nodiscard]] Json to_json(const lattice::MatrixFile& file, const std::string& path);
 /// What is shown besides the summary: a line per row, all outputs of one row (from 0).

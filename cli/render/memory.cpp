@@ -107,6 +107,9 @@ Json to_json(const MemoryStudy& study, Question q) {
 // ---- Gates ahead ----
 
 std::string sentence_ahead(const MemoryStudy& study) {
+  if (study.ahead.steps.empty())
+    return "gates ahead: not asked of a field with several types of gates, where the next one's "
+           "depends on the place";
   const GatesAhead::Step& s = study.ahead.largest();
   const std::string p = p_words(study.p_adjusted(Question::gates_ahead)),
                     seen = fixed(s.total_variation.seen, 4), chance = fixed(s.chance_95, 4);
@@ -136,7 +139,7 @@ Json to_json(const MemoryStudy& study, const GatesAhead& ahead) {
   j["p"] = ahead.p;
   j["p_adjusted"] = study.p_adjusted(Question::gates_ahead);
   j["runs"] = ahead.runs;
-  j["largest"] = ahead.largest().gates;
+  if (!ahead.steps.empty()) j["largest"] = ahead.largest().gates;
   j["steps"] = Json::array();
   for (const GatesAhead::Step& s : ahead.steps)
     j["steps"].push_back(

@@ -31,6 +31,7 @@ inline constexpr std::size_t kMostDrawn = 20;
 /// What a film does not show of one of its runs: trial, hits, and the arrays potential_J,
 /// elastic_left_J, elastic_right_J, landscape_J, landscape_left_J, landscape_right_J (null where
 /// there is no way to stand), with seven digits in the scene's own units.
-[[nodiscard]] Json details_of(const lattice::Scene& scene, const lattice::Recording& recording);
+[[nodiscard]] Json details_of(const lattice::Scene& scene, const lattice::Recording& recording,
+                              bool across_field = false);
 
 }  // namespace gatewalk::cli

@@ -41,18 +41,21 @@ Window window_of(const Scene& scene, const std::vector<const Recording*>& runs) 
 }
 
 /// Beams at rest of every gate in the window: "x y dx dy" from joint to tip.
-std::string beams_of(const Scene& scene, const Window& w, double metre) {
-  const auto& b = scene.gate.beams;
+std::string beams_of(const Scene& scene, const lattice::RunGates& gates, const Window& w,
+                     double metre) {
+  const auto& b = scene.gate.beams;  // joints, which all gates have in common
   std::string out;
   const auto columns = std::lround((w.right - w.left) / (2.0 * b.joint_x)),
              rows = std::lround(w.top / scene.gate.run.traverse_y);
+  const long first = std::lround(w.left / (2.0 * b.joint_x) + 0.5);  // i_x
   for (long r = 0; r < rows; ++r)
     for (long c = 0; c < columns; ++c) {
+      const double beam = gates.at(static_cast<int>(first + c), static_cast<int>(r)).beams.length;
       const double middle = w.left + static_cast<double>(2 * c + 1) * b.joint_x,
                    y = b.joint_y + static_cast<double>(r) * scene.gate.run.traverse_y;
       for (const double side : {-1.0, 1.0})
         out += digits((middle + side * b.joint_x) / metre) + " " + digits(y / metre) + " " +
-               digits(-side * b.length / metre) + " 0\n";
+               digits(-side * beam / metre) + " 0\n";
     }
   return out;
 }
@@ -112,15 +115,17 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
                 (runs.size() < recordings.runs.size()
                      ? " of " + std::to_string(recordings.runs.size())
                      : "");
-  return {Sheet::kWidth, sheet.height,
-          data + data_block("$ends", ends) + data_block("$beams", beams_of(scene, w, metre.size)) +
-              out + sheet.margins(box) + sheet.text(title + "; disc: where it ended", 8, 18) +
-              "unset key\nset border 15\nset tics out nomirror scale 0.5\n" +
-              Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
-              length(w.left) + ":" + length(w.right) + "]\nset yrange [" + length(w.bottom) + ":" +
-              length(w.top) + "]\n" + plot + "$ends using 1:2:3 with circles fs empty border " +
-              (over_landscape ? "rgb '#ffffff'" : "lt -1") + "\n",
-          kFont};
+  return {
+      Sheet::kWidth, sheet.height,
+      data + data_block("$ends", ends) +
+          data_block("$beams", beams_of(scene, {scene, recordings.across_field}, w, metre.size)) +
+          out + sheet.margins(box) + sheet.text(title + "; disc: where it ended", 8, 18) +
+          "unset key\nset border 15\nset tics out nomirror scale 0.5\n" +
+          Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
+          length(w.left) + ":" + length(w.right) + "]\nset yrange [" + length(w.bottom) + ":" +
+          length(w.top) + "]\n" + plot + "$ends using 1:2:3 with circles fs empty border " +
+          (over_landscape ? "rgb '#ffffff'" : "lt -1") + "\n",
+      kFont};
 }
 
 }  // namespace gatewalk::cli

@@ -94,9 +94,11 @@ std::string commented(const lattice::Scene& scene) {
   std::string table;
   std::size_t width = 0;
   const auto leaf = [](const lattice::KeyInfo& k) { return k.key.substr(k.key.find('.') + 1); };
+  const auto of_terrain = [](const lattice::KeyInfo& k) { return k.key.starts_with("terrain."); };
   for (const lattice::KeyInfo& k : keys)
-    width = std::max(width, leaf(k).size() + k.value.size() + 5);
+    if (!of_terrain(k)) width = std::max(width, leaf(k).size() + k.value.size() + 5);
   for (const lattice::KeyInfo& k : keys) {
+    if (of_terrain(k)) break;  // as a table below
     if (const std::string own = k.key.substr(0, k.key.find('.')); own != table)
       text += "\n[" + (table = own) + "]\n";
     const bool follows = k.source == "derived";
@@ -107,6 +109,7 @@ std::string commented(const lattice::Scene& scene) {
     text += "\n";
   }
   if (scene.bins) text += "\n" + lattice::bins_toml(*scene.bins);
+  if (scene.terrain) text += "\n" + lattice::terrain_toml(*scene.terrain, scene.field);
   if (!scene.sweep.empty()) text += "\n[sweep]\n";
   for (const lattice::Variation& v : scene.sweep)
     text += "\"" + v.key + "\" = \"" + v.values + "\"\n";

@@ -72,13 +72,13 @@ std::string tree_line(const Json& j) {
 Json to_json(const lattice::TreeChain& c, double accuracy) {
   Json j;
   j["bins"] = "tree";
-  j["states"] = c.transitions.space.size();
+  j["states"] = c.transitions.front().space.size();
   j["outermost_bins"] = "open";
   j["entries_per_leaf"] = c.per_leaf;
   j["gate_runs"] = c.pool.gate_runs();
   j["accuracy"] = accuracy;
   j["starts_of_their_own"] = Json::array();
-  for (const Crossing& s : c.transitions.space.points())
+  for (const Crossing& s : c.transitions.front().space.points())
     j["starts_of_their_own"].push_back(to_json(s));
   if (c.prediction) {
     j["error_95"] = Json::array();

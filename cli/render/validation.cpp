@@ -246,6 +246,15 @@ double share(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
 
+/// Of all types. Leaves of trees may share their runs: then the runs are those of the record.
+dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix) {
+  dynamics::Transitions::Totals total;
+  for (const dynamics::Transitions& t : matrix.matrices) total += t.totals();
+  if (matrix.matrices.size() > 1 && matrix.states.contains("gate_runs"))
+    total.runs = matrix.states.at("gate_runs").get<std::int64_t>();
+  return total;
+}
+
 }  // namespace
 
 Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix) {
@@ -257,7 +266,7 @@ Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix) {
   json["crossings"] = {{"between_gates", v.entries},
                        {"RT_and_LT_share", share(v.traverse_sides, v.entries)},
                        {"clamped_share", share(v.clamped, v.entries)}};
-  const auto total = matrix.transitions.totals();
+  const auto total = totals_of(matrix);
   json["matrix"] = {{"gate_runs", total.runs},
                     {"clamped_share", total.clamped_share()},
                     {"rows_never_sampled", total.empty_rows},
@@ -280,7 +289,7 @@ std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
   const auto crossings = static_cast<double>(v.entries);
   std::string table = endings_table(v, labels) + table4_table(v, labels, papers) +
                       final_gates_table(v, labels) + seconds_table(v, labels);
-  table += "\nMatrix: " + std::to_string(matrix.transitions.totals().runs) + " gate runs, " +
+  table += "\nMatrix: " + std::to_string(totals_of(matrix).runs) + " gate runs, " +
            (matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path) +
            ". Crossings between gates in the dynamics: " +
            percent(static_cast<double>(v.traverse_sides), crossings) + " through RT or LT" +

@@ -10,9 +10,10 @@
 
 namespace gatewalk::cli {
 
-/// The matrix whose chain was validated, with what its file or its making says of it.
+/// The matrices whose chain was validated, one for each type of gate, with what its file or its
+/// making says of it.
 struct ValidatedMatrix {
-  const dynamics::Transitions& transitions;
+  const std::vector<dynamics::Transitions>& matrices;
   std::string path;                       // empty: it was built for this
   double seconds = 0.0;                   // to build or read it
   const Json &status, &settled, &states;  // null where there is none

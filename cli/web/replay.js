@@ -18,6 +18,7 @@ const gatewalkReplay = (() => {
   ];
   const kFilmKeys = ['title', 'scale', 'radius_m', 'beam_m', 'joint_x_m', 'joint_y_m', 'gate_m', 'columns', 'rows',
     'start_column', 'runs'];
+  const kOptionalFilmKeys = ['types', 'type_of_gate'];
   const kArrays = ['t', 'gx', 'gy', 'x', 'y', 'vx', 'vy', 'left', 'right', 'contact_left', 'contact_right',
     'random_N', 'body_J', 'beams_J', 'elastic_J', 'work_J', 'lost_J'];
   const kOptionalArrays = ['lost_in_hits_J'];
@@ -97,7 +98,17 @@ const gatewalkReplay = (() => {
       number(name, film[name], 1);
       if (!Number.isInteger(film[name])) faults.push(`${name} is not a whole number`);
     }
-    for (const name of Object.keys(film)) if (!kFilmKeys.includes(name)) remarks.push(name);
+    for (const name of Object.keys(film)) if (![...kFilmKeys, ...kOptionalFilmKeys].includes(name)) remarks.push(name);
+    if (film.types !== undefined) {
+      if (!Array.isArray(film.types) || film.types.length === 0) faults.push('types is not a list');
+      else film.types.forEach((type, i) => {
+        positive(`types[${i}].beam_m`, type?.beam_m);
+        number(`types[${i}].propulsion_N`, type?.propulsion_N, 0);
+      });
+      if (!Array.isArray(film.type_of_gate) || film.type_of_gate.length !== film.columns * film.rows ||
+          !film.type_of_gate.every((type) => film.types?.[type] !== undefined))
+        faults.push('type_of_gate is not a type for each gate');
+    }
     if (!Array.isArray(film.runs) || film.runs.length === 0) faults.push('runs is missing or empty');
     else film.runs.forEach((run, index) => examineRun(run, `run ${index + 1}: `, film, faults, remarks));
     return {faults, remarks: [...new Set(remarks)]};
@@ -197,11 +208,20 @@ const gatewalkReplay = (() => {
     return [mean(run.sumX, run.X), mean(run.sumY, run.Y)];
   }
 
+  /** What a gate has otherwise than the others; `types` are listed for a field of several. */
+  function typeOf(film, gx, gy) {
+    return film.types?.[film.type_of_gate[gy * film.columns + gx + film.start_column]] ?? {};
+  }
+
+  function propulsionAt(film, run, state) {
+    return typeOf(film, state.gx, state.gy).propulsion_N ?? run.propulsion_N;
+  }
+
   /** Joint and tip of a beam in a gate; at rest both lie on the line between the joints. */
   function beamOf(film, gx, gy, side, angle) {
-    const sign = side === 'left' ? 1 : -1;
+    const sign = side === 'left' ? 1 : -1, length = typeOf(film, gx, gy).beam_m ?? film.beam_m;
     const x = -sign * film.joint_x_m + film.gate_m[0] * gx, y = film.joint_y_m + film.gate_m[1] * gy;
-    return [x, y, x + sign * film.beam_m * Math.cos(angle), y + film.beam_m * Math.sin(angle)];
+    return [x, y, x + sign * length * Math.cos(angle), y + length * Math.sin(angle)];
   }
 
   function nearest([x0, y0, x1, y1], x, y) {
@@ -425,7 +445,7 @@ const gatewalkReplay = (() => {
       ctx.closePath(); ctx.fill();
     };
     drawArrow(arrow * state.random, 0, c.grey);
-    drawArrow(0, arrow * run.propulsion_N, c.orange);
+    drawArrow(0, arrow * propulsionAt(film, run, state), c.orange);
     ctx.beginPath(); ctx.arc(px(state.X), py(state.Y), Math.max(1.5, 0.6 * thick), 0, 2 * Math.PI);
     ctx.fillStyle = c.edge; ctx.fill();
 
@@ -640,7 +660,7 @@ const gatewalkReplay = (() => {
       for (const {keys, unit: joules} of panels) for (const key of keys) put(values[key], reading(state[key], joules));
       for (const side of ['left', 'right'])
         put(values[side], `${contactWord(state, side)}, ${whole(state[side] * 180 / Math.PI)}°`);
-      put(values.propulsion, reading(run.propulsion_N, units.force));
+      put(values.propulsion, reading(propulsionAt(film, run, state), units.force));
       put(values.random, reading(state.random, units.force));
       put(values.speed, reading(Math.hypot(state.vx, state.vy), units.speed));
       if (field) put(values.gate, `${whole(state.gx)}, ${state.gy}`);

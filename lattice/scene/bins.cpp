@@ -55,6 +55,7 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
   FieldParams field = scene.field;
   field.fidelity = Fidelity::active;
   field.max_gates = field.max_gates == 0 ? kPilotGates : std::min(field.max_gates, kPilotGates);
+  const FieldGates gates = gates_of(scene);
   const StateSpace space =
       StateSpace::paper(scene.gate);  // run_field counts with it; nobody asks here
   for (const BodyState& start : starts) {
@@ -64,7 +65,7 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
       pilot.starts.push_back(entry);
     work.in_pieces("pilot", trials, [&](TrialRange range) {
       FieldTrials each{.final_gates = {}, .keep_passages = true};
-      pilot.health += run_field(scene.gate, field, start, space, seed,
+      pilot.health += run_field(gates, field, start, space, seed,
                                 {kPilotsOwn + range.first, range.count}, &each)
                           .health;
       const std::vector<Crossing> entries = each.entries();
@@ -85,7 +86,8 @@ int states_for(double scale) {
 
 SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
   std::vector<Crossing> entries = pilot.entries;
-  if (symmetric(scene.gate)) add_mirror_images(entries);
+  const std::vector<GateParams> types = gates_of(scene).types();
+  if (std::all_of(types.begin(), types.end(), symmetric)) add_mirror_images(entries);
   StateSpace space = quantile_space(scene.gate, entries, states_for(scale), pilot.starts);
   Entries of_rows = entries_of(space, entries);
   return {std::move(space), std::move(of_rows)};

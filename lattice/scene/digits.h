@@ -13,10 +13,10 @@ namespace gatewalk::lattice {
   return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr};
 }
 
-/// The same as a TOML float: "7.0".
+/// The same, but never to be taken for a whole number: "7.0", "-0.0".
 [[nodiscard]] inline std::string toml_float(double x) {
   const std::string digits = shortest(x);
-  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
+  return digits.find_first_of(".en") == digits.npos ? digits + ".0" : digits;  // n: nan, inf
 }
 
 }  // namespace gatewalk::lattice

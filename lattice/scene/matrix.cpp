@@ -1,6 +1,7 @@
 #include "lattice/scene/matrix.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "lattice/scene/settle.h"
 #include "markov/formats/counts.h"
@@ -14,15 +15,44 @@ void require_unbroken(const dynamics::Transitions& t) {
                              "runs, try method stable or a smaller run.step_s");
 }
 
-dynamics::Transitions build_matrix(const Scene& scene, const States& states, std::int64_t trials,
-                                   std::uint64_t seed, const dynamics::Work& work) {
-  dynamics::Transitions t(states.space);
-  work.in_pieces("building matrix", trials, [&](dynamics::TrialRange range) {
-    dynamics::add_trials(t, scene.gate, seed, range, states.entries);
-  });
-  require_unbroken(t);
-  check_outcomes(scene, RunsFrom::everywhere, seed, t.totals().runs, t.health, work);
-  return t;
+std::vector<dynamics::Transitions> build_matrices(const Scene& scene, const States& states,
+                                                  std::int64_t trials, std::uint64_t seed,
+                                                  const dynamics::Work& work) {
+  std::vector<dynamics::Transitions> matrices;
+  const FieldGates gates = gates_of(scene);
+  for (const dynamics::GateParams& gate : gates.types()) {
+    dynamics::Transitions& t = matrices.emplace_back(states.space);
+    work.in_pieces("building matrix", trials, [&](dynamics::TrialRange range) {
+      dynamics::add_trials(t, gate, seed, range, states.entries);
+    });
+    require_unbroken(t);
+    if (matrices.size() > 1) matrices.front().health += std::exchange(t.health, dynamics::Health{});
+  }
+  dynamics::Transitions& first = matrices.front();
+  check_outcomes(scene, RunsFrom::everywhere, seed, first.totals().runs, first.health, work);
+  return matrices;
+}
+
+std::vector<dynamics::Transitions> matrices_of(const MatrixFile& file, const Scene& scene) {
+  std::vector<dynamics::Transitions> matrices{file.transitions};
+  const std::vector<int> types = gate_types(scene);
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (types[i] < std::ssize(matrices)) continue;
+    const auto found = file.types.find(scene.terrain->types[i].name);
+    if (found == file.types.end())
+      throw std::invalid_argument("the file has no matrix of type " + scene.terrain->types[i].name);
+    matrices.push_back(found->second);
+  }
+  return matrices;
+}
+
+void put_matrices(MatrixFile& file, const Scene& scene,
+                  std::vector<dynamics::Transitions> matrices) {
+  const std::vector<int> types = gate_types(scene);
+  file.types.clear();
+  for (std::size_t i = 0; i < types.size(); ++i)
+    file.types.emplace(scene.terrain->types[i].name, matrices[static_cast<std::size_t>(types[i])]);
+  file.transitions = std::move(matrices.front());
 }
 
 SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string& scene_path,

@@ -13,12 +13,23 @@ namespace gatewalk::lattice {
 /// Throws std::runtime_error when a run of the matrix broke.
 void require_unbroken(const dynamics::Transitions& t);
 
-/// A matrix of these states, `trials` runs per row (dynamics::runs_per_trial as many for a single
-/// entry's). A sample is run again by a better method (check_outcomes). Throws std::runtime_error
-/// when a run broke.
-[[nodiscard]] dynamics::Transitions build_matrix(const Scene& scene, const States& states,
-                                                 std::int64_t trials, std::uint64_t seed,
-                                                 const dynamics::Work& work = {});
+/// A matrix of these states for each of gates_of(scene).types(), `trials` runs per row
+/// (dynamics::runs_per_trial as many for a single entry's). A sample is run again by a better
+/// method (check_outcomes): the first one has the health of all. Throws std::runtime_error when a
+/// run broke.
+[[nodiscard]] std::vector<dynamics::Transitions> build_matrices(const Scene& scene,
+                                                                const States& states,
+                                                                std::int64_t trials,
+                                                                std::uint64_t seed,
+                                                                const dynamics::Work& work = {});
+
+/// The matrices in a file, one for each of gates_of(scene).types(). Throws std::invalid_argument
+/// when it has none of a type of the scene's terrain.
+[[nodiscard]] std::vector<dynamics::Transitions> matrices_of(const MatrixFile& file,
+                                                             const Scene& scene);
+/// Puts them there.
+void put_matrices(MatrixFile& file, const Scene& scene,
+                  std::vector<dynamics::Transitions> matrices);
 
 /// A matrix and the scene to use it with.
 struct SceneMatrix {

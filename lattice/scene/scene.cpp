@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -20,6 +21,8 @@
 #include "lattice/scene/digits.h"
 #include "lattice/scene/edit_distance.h"
 #include "lattice/scene/scene_bins.h"
+#include "lattice/scene/scene_terrain.h"
+#include "lattice/scene/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -33,7 +36,7 @@ constexpr std::size_t kLongestCompared = 100;  // bytes of an unknown key
 // ---- The table of keys
 
 constexpr std::string_view kMethodKey = "run.method";
-constexpr std::string_view kFidelityKey = "field.fidelity";
+constexpr const char* kFidelityKey = "field.fidelity";
 constexpr std::string_view kSweepTable = "sweep";
 
 using Slot = std::variant<double*, int*, std::string*, Fidelity*>;
@@ -165,37 +168,6 @@ std::string unit_of(std::string_view key) {
 
 // ---- Texts
 
-/// As `shortest`, but never to be taken for a whole number: "8.0", "-0.0".
-std::string float_text(double v) {
-  const std::string digits = shortest(v);
-  return digits.find_first_of(".en") == digits.npos ? digits + ".0" : digits;  // n: nan, inf
-}
-
-/// Fit for one line of a message, whatever a file contains.
-std::string printable(std::string_view raw) {
-  constexpr std::size_t kLongest = 60;
-  std::string shown;
-  for (const char c : raw.substr(0, kLongest)) {
-    shown += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  }
-  if (raw.size() > kLongest) {
-    while (!shown.empty() && static_cast<unsigned char>(shown.back()) >= 0x80) shown.pop_back();
-    shown += "...";
-  }
-  return shown;
-}
-
-/// " = -3", " = \"fast\"", " (an array)": the value behind a key, as a message shows it.
-std::string shown_value(const toml::node& node) {
-  if (const auto* number = node.as_floating_point()) return " = " + float_text(number->get());
-  if (const auto* whole = node.as_integer()) return " = " + std::to_string(whole->get());
-  if (const auto* truth = node.as_boolean()) return truth->get() ? " = true" : " = false";
-  if (const auto* string = node.as_string()) return " = \"" + printable(string->get()) + "\"";
-  if (node.is_array()) return " (an array)";
-  if (node.is_table()) return " (a table)";
-  return " (a date or time)";
-}
-
 std::string_view trimmed(std::string_view s) {
   constexpr std::string_view kBlank = " \t\r";
   const std::size_t first = s.find_first_not_of(kBlank);
@@ -232,9 +204,6 @@ std::string_view closest_key(std::string_view name) {
 }
 
 // ---- From TOML to settings
-
-/// `origin(line)` is how a message begins: "scenes/x.toml:12" or "--set forces.random_N=-3".
-using Origin = std::function<std::string(std::size_t line)>;
 
 /// One key that a file or an override gives.
 struct Setting {
@@ -284,7 +253,8 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
     const std::string table_name(table_key.str());
     const std::string table_origin = origin(table_node.source().begin.line);
     const toml::table* table = table_node.as_table();
-    if (table_name == kSweepTable || table_name == kBinsTable) continue;  // read apart
+    if (table_name == kSweepTable || table_name == kBinsTable || table_name == kTerrainTable)
+      continue;  // read apart
     if (!is_table(table_name)) {
       throw SceneError(table_origin + ": unknown " +
                        (table ? "table " + printable(table_name) + "; the closest known table is " +
@@ -376,16 +346,18 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
 
   documents.push_back(parse_toml(name + " = " + value, origin));
   const Settings added = settings_of(documents.back(), origin);
-  if (added.empty() && !documents.back().contains(kBinsTable))
+  if (added.empty() && !documents.back().contains(kBinsTable) &&
+      !documents.back().contains(kTerrainTable))
     throw SceneError(begin + ": sets no key");
   for (const auto& [key, setting] : added) settings[key] = setting;
 }
 
 // ---- From settings to a scene
 
-void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
+/// `shown`: what a message calls the key.
+void assign(const SceneKey& key, const Setting& setting, Scene& scene, std::string_view shown) {
   const auto refusal = [&](const std::string& allowed) {
-    return SceneError(setting.origin + ": " + std::string(key.key) + shown_value(*setting.value) +
+    return SceneError(setting.origin + ": " + std::string(shown) + shown_value(*setting.value) +
                       " is not permitted: must " + allowed);
   };
   const Slot slot = key.slot(scene);
@@ -427,9 +399,13 @@ void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
   *std::get<double*>(slot) = number;
 }
 
+void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
+  assign(key, setting, scene, key.key);
+}
+
 /// Distance from the start to the nearest point of the two beams at rest (both on y = joint_y).
 double distance_to_beams(const Scene& scene) {
-  const dynamics::Beams& beams = scene.gate.beams;
+  const dynamics::Beams beams = gates_of(scene).at(scene.field.start_column(), 0).beams;
   const auto to_beam = [&](double joint_x, double tip_x) {
     const double nearest_x =
         std::clamp(scene.start.x, std::min(joint_x, tip_x), std::max(joint_x, tip_x));
@@ -464,20 +440,63 @@ bool is_methods_own(std::string_view key) {
          key == "contact.impulse_threshold_Ns";
 }
 
+/// Throws InvalidParameter for a gate that no method, or not its own, can run.
+void require_runnable(const dynamics::GateParams& gate) {
+  if (gate.run.method == "auto")
+    dynamics::validate(gate);
+  else
+    (void)dynamics::make_method(gate);  // validates, and asks the method what it can run
+}
+
 /// What depends on several keys of the gate at once.
 void check_gate(const Scene& scene, const Settings& settings) {
-  check(scene, settings, [&] {
-    if (scene.gate.run.method == "auto")
-      dynamics::validate(scene.gate);
-    else
-      (void)dynamics::make_method(scene.gate);  // validates, and asks the method what it can run
-  });
+  check(scene, settings, [&] { require_runnable(scene.gate); });
+}
+
+/// The same for the types of the terrain.
+void check_types(const Scene& scene) {
+  for (const Terrain::Type& type : scene.terrain->types) try {
+      require_runnable(gate_of(scene, type));
+    } catch (const dynamics::InvalidParameter& error) {
+      std::string origin = scene.source;
+      for (const Terrain::Key& key : type.keys)
+        if (std::strstr(error.what(), key.name.c_str())) origin = key.origin;
+      throw SceneError(origin + ": terrain.types." + type.name + ": " + error.what());
+    }
+}
+
+/// Table [terrain] of the file and of the overrides.
+void read_terrain(Scene& scene, const toml::table& document, const Origin& origin,
+                  const std::deque<toml::table>& override_documents,
+                  const std::vector<std::string>& overrides) {
+  TerrainSettings settings;
+  add_terrain(settings, document, origin,
+              std::filesystem::path(scene.source).parent_path().string());
+  for (std::size_t i = 0; i < overrides.size(); ++i)
+    add_terrain(
+        settings, override_documents[i],
+        [given = printable(overrides[i])](std::size_t) { return "--set " + given; }, "");
+  scene.terrain =
+      terrain_of(settings, scene.field,
+                 [&](std::string_view name, const TerrainSetting& given, const std::string& shown) {
+                   Scene other = scene;
+                   const SceneKey& key = *find_key(name);
+                   assign(key, {given.value, given.where()}, other, shown);
+                   return *std::get<double*>(key.slot(other));
+                 });
+  if (scene.terrain) check_types(scene);
 }
 
 /// What depends on gate, field and start.
 void check_start(const Scene& scene, const Settings& settings) {
   check(scene, settings, [&] {
     validate(scene.gate, scene.field);
+    if (scene.terrain && scene.field.fidelity != Fidelity::active)
+      throw dynamics::InvalidParameter(
+          kFidelityKey, std::string(kFidelityKey) + " = \"" +
+                            std::string(name_of(scene.field.fidelity)) +
+                            "\" is not permitted with [terrain]: gates of several types are only "
+                            "run with \"active\"");
     if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
       throw dynamics::InvalidParameter(
           "start.y_m", "start.y_m = " + shortest(scene.start.y) +
@@ -576,6 +595,7 @@ Scene parse_scene(std::string_view text, std::string name,
   for (const SceneKey& key : scene_keys())
     if (const auto it = settings.find(key.key); !of_gate(key) && it != settings.end())
       assign(key, it->second, scene);
+  read_terrain(scene, document, origin, override_documents, overrides);
   check_start(scene, settings);
   auto edges = edges_in(document, origin);
   for (std::size_t i = 0; i < overrides.size(); ++i)
@@ -600,7 +620,7 @@ std::string value_text(const SceneKey& key, Scene& scene) {
   if (auto* const* integer = std::get_if<int*>(&slot)) return std::to_string(**integer);
   if (auto* const* fidelity = std::get_if<Fidelity*>(&slot))
     return "\"" + std::string(name_of(**fidelity)) + "\"";
-  return float_text(*std::get<double*>(slot));
+  return toml_float(*std::get<double*>(slot));
 }
 
 }  // namespace
@@ -617,6 +637,7 @@ std::string to_toml(const Scene& scene) {
     text += std::string(leaf_of(key.key)) + " = " + value_text(key, copy) + "\n";
   }
   if (scene.bins) text += "\n" + bins_toml(*scene.bins);
+  if (scene.terrain) text += "\n" + terrain_toml(*scene.terrain, scene.field);
   return text;
 }
 
@@ -634,8 +655,47 @@ std::vector<KeyInfo> describe(const Scene& scene) {
     if (scene.derived.contains(key.key)) info.source = "derived";
     all.push_back(std::move(info));
   }
+  if (!scene.terrain) return all;
+  for (const Terrain::Type& type : scene.terrain->types)
+    for (const Terrain::Key& own : type.keys) {
+      KeyInfo info = *std::find_if(all.begin(), all.end(),
+                                   [&](const KeyInfo& k) { return k.key == own.name; });
+      info.key = "terrain.types." + type.name + "." + own.name;
+      info.value = toml_float(own.value);
+      info.source = own.origin;
+      all.push_back(std::move(info));
+    }
   return all;
 }
+
+namespace {
+
+/// What differs between the types of two terrains, by name.
+std::vector<std::string> type_differences(const Scene& here, const Scene& there) {
+  const auto types_of = [](const Scene& s) {
+    std::map<std::string, dynamics::GateParams> types;
+    if (s.terrain)
+      for (const Terrain::Type& type : s.terrain->types) types.emplace(type.name, gate_of(s, type));
+    return types;
+  };
+  const auto ours = types_of(here), theirs = types_of(there);
+  std::vector<std::string> lines;
+  for (const auto& [name, gate] : theirs)
+    if (!ours.contains(name)) lines.push_back("terrain.types." + name + ": none here");
+  for (const auto& [name, gate] : ours) {
+    const auto other = theirs.find(name);
+    if (other == theirs.end()) lines.push_back("terrain.types." + name + ": none there");
+    for (const dynamics::ParamInfo& info : dynamics::gate_param_table())
+      if (other != theirs.end() && may_differ(info.key) &&
+          info.get(gate) != info.get(other->second))
+        lines.push_back("terrain.types." + name + "." + std::string(info.key) + ": " +
+                        shortest(info.get(gate)) + " here, " + shortest(info.get(other->second)) +
+                        " there");
+  }
+  return lines;
+}
+
+}  // namespace
 
 std::vector<std::string> physics_differences(const Scene& here, const Scene& there) {
   std::vector<std::string> lines;
@@ -662,6 +722,8 @@ std::vector<std::string> physics_differences(const Scene& here, const Scene& the
     else
       add("[bins]", told(here), told(there));
   }
+  const auto types = type_differences(here, there);
+  lines.insert(lines.end(), types.begin(), types.end());
   return lines;
 }
 

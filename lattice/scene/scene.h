@@ -13,6 +13,7 @@
 #include "dynamics/params.h"
 #include "dynamics/state_space.h"
 #include "lattice/field.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::lattice {
 
@@ -32,9 +33,10 @@ struct Scene {
   std::string source;                              // the file it came from
   std::map<std::string, std::string, std::less<>> named;  // keys the user gave, and where
   std::set<std::string, std::less<>>
-      derived;                    // keys that follow from those; the rest are the paper's
-  std::vector<Variation> sweep;   // table [sweep], in the order of the file
-  std::optional<SceneBins> bins;  // table [bins], the chain's states
+      derived;                     // keys that follow from those; the rest are the paper's
+  std::vector<Variation> sweep;    // table [sweep], in the order of the file
+  std::optional<SceneBins> bins;   // table [bins], the chain's states
+  std::optional<Terrain> terrain;  // table [terrain], gates of other types
 };
 
 /// A scene that cannot be used. what() reads
@@ -63,7 +65,7 @@ struct KeyInfo {
   std::string range, meaning;
   std::string source;  // "x.toml:12", "--set ...", "derived" or "paper"
 };
-/// Every key of the scene, in the order of to_toml.
+/// Every key of the scene, in the order of to_toml; then those of [terrain], but no map.
 [[nodiscard]] std::vector<KeyInfo> describe(const Scene& scene);
 /// The keys that the override `given` sets, however it is spelled. Throws SceneError.
 [[nodiscard]] std::vector<std::string> keys_set_by(const std::string& given);
@@ -76,8 +78,8 @@ void require_key(const std::string& key, const std::string& origin);
 [[nodiscard]] std::string to_toml(const Scene& scene);
 
 /// What differs between two scenes among the keys that shape a transition matrix (all of
-/// GateParams and [bins]; neither field nor start): "forces.random_N: 40 here, 20 there", empty if
-/// nothing.
+/// GateParams, [bins] and the types of [terrain]; neither field nor map nor start):
+/// "forces.random_N: 40 here, 20 there", empty if nothing.
 [[nodiscard]] std::vector<std::string> physics_differences(const Scene& here, const Scene& there);
 
 }  // namespace gatewalk::lattice

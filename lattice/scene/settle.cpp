@@ -1,6 +1,8 @@
 #include "lattice/scene/settle.h"
 
+#include <limits>
 #include <sstream>
+#include <utility>
 
 #include "lattice/scene/bins.h"
 #include "lattice/scene/digits.h"
@@ -24,14 +26,24 @@ std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from)
   return starts;
 }
 
+const dynamics::Setting& setting_of(const dynamics::Choice& choice) {
+  return choice.met ? choice.tried.back().setting : choice.reference;
+}
+
+/// What was chosen takes; more than anything where nothing was good enough.
+double work_of(const dynamics::Choice& choice) {
+  return choice.met ? choice.tried.back().work : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
-std::vector<std::string> keys_without_effect(const Scene& scene) {
+std::vector<std::string> keys_without_effect(const Scene& scene, RunsFrom from) {
   std::vector<std::string> told;
   const std::string& method = scene.gate.run.method;
   if (!scene.sweep.empty())
     told.push_back("the table [sweep] of " + scene.source +
                    " has no effect here: gatewalk sweep runs it");
+  if (scene.terrain && from == RunsFrom::start) told.push_back(terrain_without_effect(scene));
   const auto unused = [&](const char* key, bool used, const std::string& why) {
     if (!used && scene.named.contains(key))
       told.push_back(std::string(key) + " has no effect: " + why);
@@ -43,8 +55,14 @@ std::vector<std::string> keys_without_effect(const Scene& scene) {
   return told;
 }
 
+std::string terrain_without_effect(const Scene& scene) {
+  return scene.terrain ? "the table [terrain] of " + scene.source +
+                             " has no effect here: one gate is run, the scene's own"
+                       : "";
+}
+
 std::string derived_keys(const Scene& scene) {
-  if (scene.named.empty())
+  if (scene.named.empty() && !scene.terrain)
     return scene.source + " names no key: this is the paper's scene, 1 kg and 10 m in radius";
   std::string all;
   for (const KeyInfo& k : describe(scene)) {
@@ -67,21 +85,33 @@ std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t 
   settled.tolerance = scene.gate.run.tolerance;
   const auto starts = pilot_starts(scene, from);
   settled.pilot_starts = starts.size();
-  settled.choice = dynamics::choose_method(
-      scene.gate, starts, seed,
-      [&](const dynamics::Setting& s, std::int64_t done, std::int64_t trials) {
-        work.tell("run.method \"auto\": pilot of " + std::to_string(trials) + " trials, " +
-                      s.method + " " + shortest(s.value),
-                  done, trials);
-      });
-  scene.gate = settled.choice.params;
+  const auto chosen_for = [&](const dynamics::GateParams& gate) {
+    return dynamics::choose_method(
+        gate, starts, seed,
+        [&](const dynamics::Setting& s, std::int64_t done, std::int64_t trials) {
+          work.tell("run.method \"auto\": pilot of " + std::to_string(trials) + " trials, " +
+                        s.method + " " + shortest(s.value),
+                    done, trials);
+        });
+  };
+  // One method for all types of gates: the one that takes most work of those chosen for each.
+  const FieldGates gates = gates_of(scene);
+  settled.choice = chosen_for(scene.gate);
+  for (std::size_t type = 1; type < gates.types().size(); ++type)
+    if (dynamics::Choice other = chosen_for(gates.types()[type]);
+        work_of(other) > work_of(settled.choice))
+      settled.choice = std::move(other);
+  scene.gate = setting_of(settled.choice).applied_to(scene.gate);
   return settled;
 }
 
 void check_outcomes(const Scene& scene, RunsFrom from, std::uint64_t seed, std::int64_t trials,
                     dynamics::Health& health, const dynamics::Work& work) {
-  dynamics::check_outcomes(health, scene.gate, pilot_starts(scene, from), seed,
-                           dynamics::check_sample(trials), work);
+  const FieldGates gates = gates_of(scene);
+  for (const dynamics::GateParams& gate :
+       from == RunsFrom::start ? std::vector{scene.gate} : gates.types())
+    dynamics::check_outcomes(health, gate, pilot_starts(scene, from), seed,
+                             dynamics::check_sample(trials), work);
 }
 
 }  // namespace gatewalk::lattice

@@ -27,8 +27,10 @@ struct Settled {
 [[nodiscard]] std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t seed,
                                                    const dynamics::Work& work = {});
 
-/// Keys that the scene gives and its method does not look at, a sentence each.
-[[nodiscard]] std::vector<std::string> keys_without_effect(const Scene& scene);
+/// Keys that the scene gives and its method, or runs from there, do not look at, a sentence each.
+[[nodiscard]] std::vector<std::string> keys_without_effect(const Scene& scene, RunsFrom from);
+/// That the scene's terrain has none where one gate is run; empty without one.
+[[nodiscard]] std::string terrain_without_effect(const Scene& scene);
 /// What the scene leaves out and has been given by its own proportions; empty if nothing.
 [[nodiscard]] std::string derived_keys(const Scene& scene);
 

@@ -31,7 +31,7 @@ std::vector<PaperStart> usual_starts(const Scene& scene) {
   const dynamics::BodyState &own = scene.start, first = papers.front().body();
   const bool the_papers = own.x == 0.0 && own.y == 0.0 && own.vx == 0.0 &&
                           std::abs(own.vy - first.vy) <= 1e-12 * first.vy;
-  if (the_papers && papers_field(scene)) return papers;
+  if (the_papers && !scene.terrain && papers_field(scene)) return papers;
   return {{own.x, own.vx, own.vy, {}, {}, own.y}};
 }
 

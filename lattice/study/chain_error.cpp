@@ -310,6 +310,7 @@ bool ChainErrorPlan::empty() const {
 
 ChainErrorPlan plan_chain_error(const Scene& scene, const ChainErrorOptions& options,
                                 const Work& work) {
+  require_no_terrain(scene, "a chart of the chain's error");
   ChainErrorPlan plan{options, usual_bins(scene)};
   const std::vector<dynamics::BodyState> bodies = entries_at(options.starts);
   const bool from_pilot = plan.bins.kind == BinsChoice::Kind::automatic;

@@ -70,6 +70,7 @@ std::string FidelityVariant::name() const {
 }
 
 std::vector<FidelityVariant> fidelity_variants(const Scene& scene) {
+  require_no_terrain(scene, "a comparison of fidelities");
   std::vector<FidelityVariant> all;
   const auto add = [&](Fidelity fidelity, const std::string& method) {
     Scene s = scene;

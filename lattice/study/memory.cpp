@@ -33,7 +33,7 @@ struct Labelled {
 
 Labelled labelled(const StateWalks& w, const StateSpace& space) {
   std::vector<int> origins;
-  for (int s = 0; s < space.size(); ++s) origins.push_back(origin_of(space, s));
+  for (int s = 0; s < std::ssize(w.way); ++s) origins.push_back(origin_of(space, s % space.size()));
   Labelled all;
   for (std::int64_t walk = 0; walk < w.walks(); ++walk) {
     int row = 0;
@@ -43,7 +43,7 @@ Labelled labelled(const StateWalks& w, const StateSpace& space) {
           next == StateWalks::kTrapped ? dynamics::kBoundaries : w.way[next];
       const std::int64_t visit = i - w.begin(walk);
       if (visit > 0) {
-        row += dynamics::move_into(space.boundary(state)).di_y;
+        row += dynamics::move_into(space.boundary(state % space.size())).di_y;
         all.gate_before.push_back({state, origins[w.state[i - 1]], outcome});
       }
       all.visit.push_back(
@@ -56,22 +56,28 @@ Labelled labelled(const StateWalks& w, const StateSpace& space) {
 
 }  // namespace
 
-StateWalks no_walks(const StateSpace& space) {
+StateWalks no_walks(const StateSpace& space, std::size_t types) {
   StateWalks walks;
   walks.ways = dynamics::kBoundaries;
-  for (int s = 0; s < space.size(); ++s)
-    walks.way.push_back(static_cast<std::int32_t>(space.boundary(s)));
+  for (std::size_t type = 0; type < types; ++type)
+    for (int s = 0; s < space.size(); ++s)
+      walks.way.push_back(static_cast<std::int32_t>(space.boundary(s)));
   return walks;
 }
 
-void add_walks(StateWalks& walks, const StateSpace& space, int first, const FieldTrials& each) {
+void add_walks(StateWalks& walks, const StateSpace& space, int first, const FieldTrials& each,
+               const std::vector<int>& same) {
+  const auto in_gate = [&](std::uint8_t type, std::int32_t state) {
+    const std::int32_t own = type * space.size() + state;
+    return same.empty() ? own : same[static_cast<std::size_t>(own)];
+  };
   std::vector<std::int32_t> states;
   for (std::size_t trial = 0; trial < each.passed.size(); ++trial) {
     states.clear();
     std::int32_t at = first;
     for (const GatePassage& passage : each.of_trial(trial)) {
       if (passage.ending == dynamics::Ending::broken) break;
-      states.push_back(at);
+      states.push_back(in_gate(passage.type, at));
       at = passage.ending == dynamics::Ending::trapped ? StateWalks::kTrapped
                                                        : space.index_of(passage.entry).state;
     }
@@ -117,7 +123,9 @@ MemoryStudy study_memory(const StateWalks& walks, const StateSpace& space,
   begin(Question::gates_ahead);
   MemoryStudy study{.walks = walks.walks(),
                     .runs = runs,
-                    .ahead = gates_ahead(walks, kMostGatesAhead, draws, options.seed),
+                    .ahead = std::ssize(walks.way) == space.size()
+                                 ? gates_ahead(walks, kMostGatesAhead, draws, options.seed)
+                                 : GatesAhead{.steps = {}, .null_draws = draws},
                     .gate_before = independence(Question::gate_before, runs_with.gate_before),
                     .visit = independence(Question::visit, runs_with.visit),
                     .row = independence(Question::row, runs_with.row)};

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "dynamics/state_space.h"
 #include "dynamics/work.h"
@@ -19,13 +20,15 @@ namespace gatewalk::lattice {
 
 // ---- The states' memory ----
 
-/// No walks yet. States are entered by a boundary each.
-[[nodiscard]] StateWalks no_walks(const dynamics::StateSpace& space);
+/// No walks yet. States are entered by a boundary each; those of several types of gates are
+/// numbered one type behind the other.
+[[nodiscard]] StateWalks no_walks(const dynamics::StateSpace& space, std::size_t types = 1);
 
 /// Appends the trials of `each`, which has kept their passages, as walks of the space; they begin
-/// in state `first`. A walk ends before a run that broke.
+/// in state `first`. A walk ends before a run that broke. `same`, if given: the state by which each
+/// one goes, of all types.
 void add_walks(StateWalks& walks, const dynamics::StateSpace& space, int first,
-               const FieldTrials& each);
+               const FieldTrials& each, const std::vector<int>& same = {});
 
 /// The coarse state that a body came from, of the gate before.
 inline constexpr std::array<std::string_view, 4> kOrigins{"from below in the left half",
@@ -49,6 +52,7 @@ struct MemoryStudy {
   static constexpr double kLevel = 0.05;  // of all questions together
 
   std::int64_t walks = 0, runs = 0;
+  /// Not asked (no steps) of gates of several types: which one comes next depends on the place.
   GatesAhead ahead;
   /// Labels: kOrigins; the visit, and the row of the field, from 0. Outcomes: boundary of the next
   /// entry, or trapped (kBoundaries).

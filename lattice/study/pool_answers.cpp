@@ -27,9 +27,11 @@ double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
 }
 
 /// Whether adjoints of all chains pay: measured, they take as long as predictions from as many
-/// starts as a quarter of the cells; and all steps, also those that nobody walks any more.
-bool pays_adjoint(const FieldParams& field, std::size_t starts) {
-  return field.max_gates > 0 && field.max_gates <= 2 * (field.columns + field.rows) &&
+/// starts as a quarter of the cells; and all steps, also those that nobody walks any more. They are
+/// of gates of one type.
+bool pays_adjoint(const FieldGates& gates, const FieldParams& field, std::size_t starts) {
+  return gates.types().size() == 1 && field.max_gates > 0 &&
+         field.max_gates <= 2 * (field.columns + field.rows) &&
          4 * static_cast<std::int64_t>(starts) >= std::int64_t{field.columns} * field.rows;
 }
 
@@ -73,13 +75,13 @@ FinalDistribution shares_of(const markov::WalkTally& tally) {
 }
 
 /// Exact, or by `walks` where there are any.
-KernelAnswers answers_of(const Kernel& kernel, const Rows& first_rows, const FieldParams& field,
-                         markov::WalkRange walks, std::uint64_t seed) {
+KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Rows& first_rows,
+                         const FieldParams& field, markov::WalkRange walks, std::uint64_t seed) {
   std::vector<markov::Start> places;
   for (std::size_t i = 0; i < first_rows.size(); ++i)
     places.push_back({field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
   const markov::Field cells{field.columns, field.rows};
-  const markov::Chain chain = chain_of(kernel, first_rows);
+  const markov::FieldChain chain = chain_of(kernel, gates, field, first_rows);
   if (walks.count == 0)
     return {markov::predict(chain, cells, places, {.max_cells = field.max_gates})};
   const markov::Walker walker(chain);
@@ -91,24 +93,25 @@ KernelAnswers answers_of(const Kernel& kernel, const Rows& first_rows, const Fie
 
 }  // namespace
 
-KernelAnswers answers_of(const Kernel& kernel, const Rows& first_rows, const FieldParams& field,
-                         std::uint64_t seed) {
-  const bool exact = exact_cost(kernel.counts.nonZeros(), field) <= kMostExact;
-  return answers_of(kernel, first_rows, field, {0, exact ? 0 : kWalks}, seed);
+KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Rows& first_rows,
+                         const FieldParams& field, std::uint64_t seed) {
+  const std::int64_t of_a_type = kernel.nonzeros() / std::ssize(kernel.counts);
+  const bool exact = exact_cost(of_a_type, field) <= kMostExact;
+  return answers_of(kernel, gates, first_rows, field, {0, exact ? 0 : kWalks}, seed);
 }
 
-PoolChains::PoolChains(const dynamics::GateParams& gate, const FieldParams& field, int per_leaf,
+PoolChains::PoolChains(const FieldGates& gates, const FieldParams& field, int per_leaf,
                        std::size_t starts, std::uint64_t seed)
-    : gate_(gate),
+    : gates_(gates),
       field_(field),
-      per_leaf_(pays_adjoint(field, starts) ? 2 * per_leaf : per_leaf),
+      per_leaf_(pays_adjoint(gates, field, starts) ? 2 * per_leaf : per_leaf),
       seed_(seed) {}
 
 bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
   constexpr std::int64_t kMostNumbers = 100'000'000;  // that adjoints keep
   const std::int64_t cells = std::int64_t{field_.columns} * field_.rows,
                      states = 2 * 2 * kernel_runs(pool) / per_leaf_;  // of all chains, at most
-  return pays_adjoint(field_, starts) && 2 * cells * states <= kMostNumbers;
+  return pays_adjoint(gates_, field_, starts) && 2 * cells * states <= kMostNumbers;
 }
 
 void PoolChains::renew(const RunPool& pool) {
@@ -118,7 +121,7 @@ void PoolChains::renew(const RunPool& pool) {
   std::vector<std::optional<Kernel>> kernels(kTrialGroups + 1);
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
-    kernels[static_cast<std::size_t>(g + 1)] = kernel_of(gate_, pool, per_leaf_, group);
+    kernels[static_cast<std::size_t>(g + 1)] = kernel_of(gates_, pool, per_leaf_, group);
   });
   chains_.clear();
   for (auto& kernel : kernels) chains_.push_back({.kernel = std::move(*kernel)});
@@ -127,7 +130,7 @@ void PoolChains::renew(const RunPool& pool) {
 KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows& rows) const {
   if (!chain.adjoint) {
     const std::int64_t walks = group < 0 ? kWalks : kWalksOfGroup;
-    return answers_of(chain.kernel, rows, field_,
+    return answers_of(chain.kernel, gates_, rows, field_,
                       {group < 0 ? 0 : kWalks + group * kWalksOfGroup, by_walks_ ? walks : 0},
                       seed_);
   }
@@ -140,16 +143,17 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
   renew(pool);
   if (!chains_.front().adjoint && by_adjoint(pool, starts.size()))
     for (GroupChain& c : chains_)
-      c.adjoint.emplace(chain_of(c.kernel, {}), markov::Field{field_.columns, field_.rows},
-                        field_.start_column(), 0, field_.max_gates);
+      c.adjoint.emplace(chain_of(c.kernel, gates_, field_, {}).chains().front(),
+                        markov::Field{field_.columns, field_.rows}, field_.start_column(), 0,
+                        field_.max_gates);
   const std::size_t n = starts.size();
   PoolAnswers said{.whole = {},
                    .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},
                    .unseen = {},
                    .states = chains_.front().kernel.space.size(),
-                   .nonzeros = chains_.front().kernel.counts.nonZeros()};
+                   .nonzeros = chains_.front().kernel.nonzeros()};
   for (const std::size_t s : starts)
-    said.unseen.push_back(unseen_share(chains_.front().kernel, field_, pool.starts[s]));
+    said.unseen.push_back(unseen_share(chains_.front().kernel, gates_, field_, pool.starts[s]));
   const bool with_kernels = !by_walks_ || chains_.front().adjoint;
   if (with_kernels) said.kernels = said.groups;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
@@ -157,7 +161,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
     Rows rows;
     const auto add = [&](TrialGroup group) {
       for (const std::size_t s : starts)
-        rows.push_back(first_row(gate_, chain.kernel.space, pool.starts[s], group));
+        rows.push_back(first_row(gates_, chain.kernel.space, pool.starts[s], group));
     };
     if (g >= 0) add({g, kTrialGroups});
     if (g < 0 || with_kernels) add({});

@@ -20,6 +20,7 @@ constexpr std::int64_t kFullOwn = std::int64_t{1} << 41, kFirstOwn = std::int64_
 PoolRunner::PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most_runs,
                        const Work& work)
     : scene_(scene),
+      gates_(gates_of(scene)),
       field_(scene.field),
       space_(StateSpace::paper(scene.gate)),
       seed_(seed),
@@ -31,7 +32,7 @@ PoolRunner::PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most
 void PoolRunner::run_full(StartTrials& s, std::int64_t count) {
   const std::int64_t done = std::ssize(s.full.final_gates);
   run("full trials", count, true, [&](TrialRange range) {
-    return run_field(scene_.gate, field_, body_of(s.start), space_, seed_,
+    return run_field(gates_, field_, body_of(s.start), space_, seed_,
                      {kFullOwn + done + range.first, range.count}, &s.full);
   });
 }
@@ -41,7 +42,7 @@ void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
   one_gate.max_gates = 1;
   const std::int64_t done = std::ssize(s.first.final_gates);
   run("first runs", count, false, [&](TrialRange range) {
-    return run_field(scene_.gate, one_gate, body_of(s.start), space_, seed_,
+    return run_field(gates_, one_gate, body_of(s.start), space_, seed_,
                      {kFirstOwn + done + range.first, range.count}, &s.first);
   });
 }
@@ -54,7 +55,7 @@ void PoolRunner::run_scattered(ScatteredTrials& s, const StartRange& starts, std
       bodies.push_back(drawn(starts, done + range.first + i));
       s.starts.push_back(entry_of(bodies.back()));
     }
-    return run_field(scene_.gate, field_, bodies, space_, seed_,
+    return run_field(gates_, field_, bodies, space_, seed_,
                      {kScatteredOwn + done + range.first, range.count}, &s.each);
   });
 }

@@ -63,6 +63,7 @@ class PoolRunner {
            const std::function<FieldTally(dynamics::TrialRange)>& carry_out);
 
   const Scene& scene_;
+  FieldGates gates_;
   FieldParams field_;
   dynamics::StateSpace space_;
   std::uint64_t seed_;

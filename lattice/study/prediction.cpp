@@ -45,8 +45,7 @@ std::vector<MatrixNoise> noise_of(const CountedField& gates, const markov::Field
   std::vector<MatrixNoise> noise;
   for (std::size_t k = 0; k < starts.size(); ++k)
     noise.emplace_back(prediction.starts[k].final, gates.runs_at(starts[k]));
-  const std::int64_t replicates =
-      affordable_replicates(field, max_cells, gates.counts.front().nonZeros(), kMost);
+  const std::int64_t replicates = affordable_replicates(gates, field, max_cells, kMost);
   const auto add = [&](std::int64_t begin) {
     const auto found = replicate_predictions(gates, field, starts, max_cells, seed, begin,
                                              std::min(kTogether, replicates - begin));
@@ -70,6 +69,13 @@ std::vector<MatrixNoise> noise_of(const CountedField& gates, const markov::Field
 
 CountedField field_of(const SceneMatrix& base, const std::string& base_path,
                       const std::vector<RowMatrix>& others) {
+  if (others.empty())
+    return counted_field(gates_of(base.scene), matrices_of(base.file, base.scene));
+  for (const Scene* scene : {&base.scene, &others.front().matrix.scene})
+    if (scene->terrain)
+      throw std::invalid_argument(name_of(others.front()) +
+                                  ": cannot be put into a field with a table [terrain], which says "
+                                  "what stands where");
   const int rows = base.scene.field.rows;
   std::vector<int> type_of_row(static_cast<std::size_t>(rows), 0);
   std::vector<markov::Chain> chains{make_chain(base.file.transitions)};

@@ -21,10 +21,11 @@ struct RowMatrix {
   SceneMatrix matrix;
 };
 
-/// What the cells of base's field draw from. Throws std::invalid_argument, whose message begins
+/// What the cells of base's field draw from: the matrices of its types of gates, or of these rows'
+/// own. Throws std::invalid_argument, whose message begins
 /// "--row FIRST-LAST=PATH", when rows lie outside the field or are given twice, or when a matrix
 /// has another body, gates of another size or other states than `base`, which is called
-/// `base_path`.
+/// `base_path`; and when there are rows and the base has a terrain.
 [[nodiscard]] CountedField field_of(const SceneMatrix& base, const std::string& base_path,
                                     const std::vector<RowMatrix>& others);
 

@@ -72,6 +72,10 @@ std::invalid_argument too_long(const std::string& what, bool across_field) {
 
 }  // namespace
 
+RunGates::RunGates(const Scene& scene, bool across_field)
+    : gates_(across_field ? gates_of(scene) : scene.gate),
+      start_column_(scene.field.start_column()) {}
+
 std::vector<std::string> endings(bool across_field) {
   std::vector<std::string> names;
   if (!across_field) {
@@ -105,11 +109,11 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
   Recording r;
   r.trial = trial;
   if (across_field) {
-    const FieldTrace t =
-        trace_field(scene.gate, scene.field, scene.start, seed, trial, most_moments);
+    const FieldGates gates = gates_of(scene);
+    const FieldTrace t = trace_field(gates, scene.field, scene.start, seed, trial, most_moments);
     for (const auto& visit : t.visits) {
       append(r, visit.trace, visit.column - scene.field.start_column(), visit.row);
-      r.health.add(scene.gate, visit.trace.run);
+      r.health.add(gates.at(visit.column, visit.row), visit.trace.run);
     }
     r.gates = static_cast<int>(t.visits.size());
     r.ending = field_ending(t.ending);

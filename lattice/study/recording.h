@@ -43,6 +43,22 @@ struct Recordings {
   dynamics::Health health;      // of `runs`; a sample was run again by a better method
 };
 
+/// The gates that trials of a scene run through: those of its field, or its own alone.
+class RunGates {
+ public:
+  RunGates(const Scene& scene, bool across_field);
+  [[nodiscard]] const FieldGates& all() const { return gates_; }
+  [[nodiscard]] const dynamics::GateParams& at(int i_x, int i_y) const {
+    return gates_.at(i_x + start_column_, i_y);
+  }
+  /// The gate of a moment.
+  [[nodiscard]] const dynamics::GateParams& of(const Moment& m) const { return at(m.i_x, m.i_y); }
+
+ private:
+  FieldGates gates_;
+  int start_column_;
+};
+
 /// Every ending that a recording may have, in the order of their codes.
 [[nodiscard]] std::vector<std::string> endings(bool across_field);
 

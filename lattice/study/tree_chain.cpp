@@ -13,19 +13,20 @@ namespace {
 
 using namespace dynamics;
 
-std::vector<std::vector<std::int64_t>> own_rows(const Scene& scene, const RunPool& pool,
+std::vector<std::vector<std::int64_t>> own_rows(const FieldGates& gates, const RunPool& pool,
                                                 const StateSpace& space) {
   std::vector<std::vector<std::int64_t>> rows;
-  for (const StartTrials& s : pool.starts) rows.push_back(first_row(scene.gate, space, s));
+  for (const StartTrials& s : pool.starts) rows.push_back(first_row(gates, space, s));
   return rows;
 }
 
 /// What walks from the starts end with, or from anywhere in the range where there are none.
 std::vector<markov::FinalDistribution> answers(const Scene& scene, const RunPool& pool,
                                                const Kernel& kernel, std::uint64_t seed) {
-  auto rows = own_rows(scene, pool, kernel.space);
-  if (rows.empty()) rows.push_back(first_row(scene.gate, kernel.space, pool.scattered));
-  return answers_of(kernel, rows, scene.field, seed).final;
+  const FieldGates gates = gates_of(scene);
+  auto rows = own_rows(gates, pool, kernel.space);
+  if (rows.empty()) rows.push_back(first_row(gates, kernel.space, pool.scattered));
+  return answers_of(kernel, gates, rows, scene.field, seed).final;
 }
 
 /// Larger leaves, until there are no more states than that.
@@ -39,7 +40,7 @@ void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t 
     const double times = static_cast<double>(chain.kernel.space.size()) / most;
     chain.per_leaf = std::max(chain.per_leaf + 1,
                               static_cast<int>(std::ceil(chain.per_leaf * std::sqrt(times))));
-    chain.kernel = kernel_of(scene.gate, chain.pool, chain.per_leaf);
+    chain.kernel = kernel_of(gates_of(scene), chain.pool, chain.per_leaf);
   }
   if (chain.kernel.space.size() == full.space.size()) return;
   const auto before = answers(scene, chain.pool, full, seed),
@@ -49,10 +50,12 @@ void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t 
         std::max(chain.states_bias, total_variation(before[i].final_cells, after[i].final_cells));
 }
 
-Transitions transitions_with(const Scene& scene, const RunPool& pool, const Kernel& kernel) {
+std::vector<Transitions> transitions_with(const Scene& scene, const RunPool& pool,
+                                          const Kernel& kernel) {
   std::vector<Crossing> starts;
   for (const StartTrials& s : pool.starts) starts.push_back(s.start);
-  return transitions_of(kernel, starts, own_rows(scene, pool, kernel.space));
+  const FieldGates gates = gates_of(scene);
+  return transitions_of(kernel, gates, scene.field, starts, own_rows(gates, pool, kernel.space));
 }
 
 }  // namespace
@@ -73,17 +76,17 @@ TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options, const 
     if (range) rest.most_runs = std::max<std::int64_t>(1, rest.most_runs - range->gate_runs);
     prediction = predict_pooled(scene, pool, options.starts, rest, work);
   }
-  Kernel kernel = kernel_of(scene.gate, pool, options.accuracy.per_leaf);
+  Kernel kernel = kernel_of(gates_of(scene), pool, options.accuracy.per_leaf);
   TreeChain chain{.pool = std::move(pool),
                   .kernel = kernel,
-                  .transitions = Transitions(kernel.space),
+                  .transitions = {},
                   .per_leaf = options.accuracy.per_leaf,
                   .prediction = std::move(prediction),
                   .range = std::move(range)};
   if (options.most_states) limit_states(chain, scene, *options.most_states, options.accuracy.seed);
   chain.transitions = transitions_with(scene, chain.pool, chain.kernel);
-  if (chain.range) chain.transitions.health += chain.range->health;
-  if (chain.prediction) chain.transitions.health += chain.prediction->health;
+  if (chain.range) chain.transitions.front().health += chain.range->health;
+  if (chain.prediction) chain.transitions.front().health += chain.prediction->health;
   return chain;
 }
 
@@ -107,14 +110,18 @@ constexpr RunArray kTrialRuns{"trial_runs", "1",
                  "how it entered the next gate: 0 EN, 1 RD, 2 LD, 3 RT, 4 LT (trapped: 0)"},
     kRunD{"run_d", "m", "where on that boundary (trapped: 0)"},
     kRunVx{"run_vx", "m s-1", "lateral velocity there (trapped: 0)"},
-    kRunVy{"run_vy", "m s-1", "forward velocity there (trapped: 0)"};
+    kRunVy{"run_vy", "m s-1", "forward velocity there (trapped: 0)"},
+    // Only where there are several.
+    kRunType{"run_type", "1",
+             "type of the gate of each run: 0 the scene's own, then those of its terrain that are "
+             "not like one before, by name"};
 
 enum Kind : int { kScattered, kFullTrial, kFirstRun };
 
 /// Appends trials to the tables.
 struct RunTables {
   std::vector<double> trial_runs, trial_kind, trial_d, trial_vx, trial_vy;
-  std::vector<double> ending, boundary, d, vx, vy;
+  std::vector<double> ending, type, boundary, d, vx, vy;
 
   void add(int kind, const Crossing& start, std::span<const GatePassage> passages) {
     trial_kind.push_back(kind);
@@ -124,6 +131,7 @@ struct RunTables {
     trial_vy.push_back(start.vy);
     for (const GatePassage& p : passages) {
       ending.push_back(static_cast<double>(p.ending));
+      type.push_back(p.type);
       boundary.push_back(static_cast<double>(p.entry.boundary));
       d.push_back(p.entry.d);
       vx.push_back(p.entry.vx);
@@ -158,6 +166,8 @@ std::vector<markov::NamedArray> arrays_of(const RunPool& pool) {
   add(kRunD, t.d);
   add(kRunVx, t.vx);
   add(kRunVy, t.vy);
+  if (std::any_of(t.type.begin(), t.type.end(), [](double type) { return type != 0.0; }))
+    add(kRunType, t.type);
   return arrays;
 }
 
@@ -168,22 +178,31 @@ bool has_runs(const MatrixFile& file) {
 
 namespace {
 
+const std::vector<double>* find(const MatrixFile& file, const RunArray& array) {
+  for (const markov::NamedArray& a : file.arrays)
+    if (a.name == array.name) return &a.values;
+  return nullptr;
+}
+
 /// The tables of a file, checked.
 class RunReader {
  public:
-  RunReader(const MatrixFile& file, const std::string& path)
+  RunReader(const MatrixFile& file, std::size_t types, const std::string& path)
       : file_(file),
+        types_(types),
         path_(path),
         runs_(table(kTrialRuns)),
         kind_(table(kTrialKind)),
         start_{&table(kTrialD), &table(kTrialVx), &table(kTrialVy)},
         ending_(table(kRunEnding)),
+        type_(find(file, kRunType)),
         boundary_(table(kRunBoundary)),
         entry_{&table(kRunD), &table(kRunVx), &table(kRunVy)} {
     for (const auto* t : {&kind_, start_[0], start_[1], start_[2]})
       if (t->size() != runs_.size()) refuse("trials");
     for (const auto* t : {&boundary_, entry_[0], entry_[1], entry_[2]})
       if (t->size() != ending_.size()) refuse("runs");
+    if (type_ != nullptr && type_->size() != ending_.size()) refuse("runs");
   }
 
   [[nodiscard]] RunPool read() {
@@ -202,8 +221,7 @@ class RunReader {
     throw markov::BadFile(path_ + ": its gate runs do not add up: " + what);
   }
   [[nodiscard]] const std::vector<double>& table(const RunArray& array) const {
-    for (const markov::NamedArray& a : file_.arrays)
-      if (a.name == array.name) return a.values;
+    if (const auto* values = find(file_, array)) return *values;
     throw markov::BadFile(path_ + ": no table " + array.name);
   }
   /// A whole number in [0, end).
@@ -239,7 +257,10 @@ class RunReader {
       const auto ending = static_cast<Ending>(whole(ending_[at_], 4, run));
       if (ending == Ending::trapped && k + 1 < count) refuse(run);
       const auto boundary = static_cast<Boundary>(whole(boundary_[at_], kBoundaries, run));
-      trials.passages.push_back({ending, crossing(boundary, entry_, at_, run)});
+      const int type =
+          type_ == nullptr ? 0 : whole((*type_)[at_], static_cast<double>(types_), run);
+      trials.passages.push_back(
+          {ending, static_cast<std::uint8_t>(type), crossing(boundary, entry_, at_, run)});
     }
     trials.passed.push_back(std::ssize(trials.passages));
     trials.final_gates.push_back(0);
@@ -247,23 +268,27 @@ class RunReader {
   }
 
   const MatrixFile& file_;
+  std::size_t types_;  // of gates
   const std::string& path_;
   const std::vector<double>&runs_, &kind_;
   std::array<const std::vector<double>*, 3> start_;
-  const std::vector<double>&ending_, &boundary_;
+  const std::vector<double>& ending_;
+  const std::vector<double>* type_;  // null: all are the first
+  const std::vector<double>& boundary_;
   std::array<const std::vector<double>*, 3> entry_;
   std::size_t at_ = 0;  // run
 };
 
 /// Follows trials through a field by their passages, to where and how they end there. False when
 /// they were not run in such a field.
-bool follow(const FieldParams& field, FieldTrials& trials) {
+bool follow(const FieldGates& gates, const FieldParams& field, FieldTrials& trials) {
   for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
     int column = field.start_column(), row = 0;
     std::optional<markov::Ending> ending;
     const auto passages = trials.of_trial(i);
     for (const GatePassage& p : passages) {
-      if (ending) return false;  // it went on where this field has an end
+      if (ending || p.type != gates.type_of(column, row))
+        return false;  // it went on where this field has an end, or another gate
       if (p.ending == Ending::trapped) {
         ending = markov::Ending::trapped;
         break;
@@ -279,9 +304,9 @@ bool follow(const FieldParams& field, FieldTrials& trials) {
         row += move.di_y;
       }
     }
-    const auto gates = std::ssize(passages);
+    const auto visited = std::ssize(passages);
     const bool cut = ending == markov::Ending::cut_off;
-    if (field.max_gates > 0 ? gates > field.max_gates || (cut && gates < field.max_gates) : cut)
+    if (field.max_gates > 0 ? visited > field.max_gates || (cut && visited < field.max_gates) : cut)
       return false;
     trials.final_gates[i] = row * field.columns + column;
     trials.endings[i] = ending;
@@ -289,17 +314,40 @@ bool follow(const FieldParams& field, FieldTrials& trials) {
   return true;
 }
 
+/// Trials that began in a gate of another type than trials do here are none of a start's own.
+void scatter_others(RunPool& pool, int type) {
+  const auto is_other = [&](const StartTrials& s) {
+    const FieldTrials& any = s.full.passages.empty() ? s.first : s.full;
+    return any.passages.front().type != type;
+  };
+  FieldTrials& each = pool.scattered.each;
+  for (const StartTrials& s : pool.starts)
+    for (const FieldTrials* trials : {&s.full, &s.first})
+      for (std::size_t i = 0; i < trials->final_gates.size() && is_other(s); ++i) {
+        const auto passages = trials->of_trial(i);
+        each.passages.insert(each.passages.end(), passages.begin(), passages.end());
+        each.passed.push_back(std::ssize(each.passages));
+        each.final_gates.push_back(0);
+        each.endings.push_back({});
+        pool.scattered.starts.push_back(s.start);
+      }
+  std::erase_if(pool.starts, is_other);
+}
+
 }  // namespace
 
-RunPool pool_of(const MatrixFile& file, const FieldParams& field, const std::string& path) {
-  RunPool pool = RunReader(file, path).read();
-  for (StartTrials& s : pool.starts) s.knows_endings = follow(field, s.full);
+RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& path) {
+  const FieldGates gates = gates_of(scene);
+  RunPool pool = RunReader(file, gates.types().size(), path).read();
+  scatter_others(pool, gates.type_of(scene.field.start_column(), 0));
+  for (StartTrials& s : pool.starts) s.knows_endings = follow(gates, scene.field, s.full);
   return pool;
 }
 
-Transitions matrix_of(const Scene& scene, const RunPool& pool, const std::vector<BodyState>& starts,
-                      int per_leaf) {
-  const Kernel kernel = kernel_of(scene.gate, pool, per_leaf);
+std::vector<Transitions> matrices_of(const Scene& scene, const RunPool& pool,
+                                     const std::vector<BodyState>& starts, int per_leaf) {
+  const FieldGates gates = gates_of(scene);
+  const Kernel kernel = kernel_of(gates, pool, per_leaf);
   std::vector<Crossing> points;
   std::vector<std::vector<std::int64_t>> rows;
   for (const BodyState& b : starts) {
@@ -309,9 +357,9 @@ Transitions matrix_of(const Scene& scene, const RunPool& pool, const std::vector
     if (own == pool.starts.size())
       throw std::invalid_argument("matrix: a start has no runs of its own");
     points.push_back(entry);
-    rows.push_back(first_row(scene.gate, kernel.space, pool.starts[own]));
+    rows.push_back(first_row(gates, kernel.space, pool.starts[own]));
   }
-  return transitions_of(kernel, points, rows);
+  return transitions_of(kernel, gates, scene.field, points, rows);
 }
 
 }  // namespace gatewalk::lattice

@@ -22,7 +22,8 @@ struct TreeOptions {
 struct TreeChain {
   RunPool pool;
   Kernel kernel;
-  dynamics::Transitions transitions;
+  /// By gates_of(scene).types(); the first one has the health of all.
+  std::vector<dynamics::Transitions> transitions;
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::optional<PooledPrediction> prediction;  // of the starts, before states were limited
   std::optional<PooledRange> range;
@@ -41,16 +42,16 @@ struct TreeChain {
 inline constexpr double kPartForOne = 0.5;
 
 /// The runs of a pool as tables of a matrix file, and back. Starts know how their full trials end
-/// where these were run in such a field. Throws markov::BadFile naming `path` when they do not add
-/// up.
+/// where these were run in the scene's field. Throws markov::BadFile naming `path` when they do not
+/// add up.
 [[nodiscard]] std::vector<markov::NamedArray> arrays_of(const RunPool& pool);
 [[nodiscard]] bool has_runs(const MatrixFile& file);
-[[nodiscard]] RunPool pool_of(const MatrixFile& file, const FieldParams& field,
-                              const std::string& path);
+[[nodiscard]] RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& path);
 
-/// The matrix of a pool with these starts as states of their own. Each start needs runs of its own.
-[[nodiscard]] dynamics::Transitions matrix_of(const Scene& scene, const RunPool& pool,
-                                              const std::vector<dynamics::BodyState>& starts,
-                                              int per_leaf);
+/// The matrices of a pool, by gates_of(scene).types(), with these starts as states of their own.
+/// Each start needs runs of its own.
+[[nodiscard]] std::vector<dynamics::Transitions> matrices_of(
+    const Scene& scene, const RunPool& pool, const std::vector<dynamics::BodyState>& starts,
+    int per_leaf);
 
 }  // namespace gatewalk::lattice

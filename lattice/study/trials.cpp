@@ -8,15 +8,16 @@ namespace gatewalk::lattice {
 FieldTally field_trials(const Scene& scene, std::int64_t trials, std::uint64_t seed,
                         const dynamics::Work& work) {
   const dynamics::StateSpace space = fixed_space(scene);
+  const FieldGates gates = gates_of(scene);
   FieldTally tally(scene.field);
   work.in_pieces("field trials", trials, [&](dynamics::TrialRange range) {
-    tally += run_field(scene.gate, scene.field, scene.start, space, seed, range);
+    tally += run_field(gates, scene.field, scene.start, space, seed, range);
   });
   check_outcomes(scene, RunsFrom::everywhere, seed, trials, tally.health, work);
   return tally;
 }
 
-markov::WalkTally walks(const markov::Chain& chain, const FieldParams& field,
+markov::WalkTally walks(const markov::FieldChain& chain, const FieldParams& field,
                         const ChainStart& start, std::int64_t count, std::uint64_t seed,
                         const dynamics::Work& work) {
   const markov::Walker walker(chain);

@@ -17,7 +17,7 @@ namespace gatewalk::lattice {
                                       const dynamics::Work& work = {});
 
 /// Walks 0, 1, ... of the chain. Throws as markov::Walker::walk.
-[[nodiscard]] markov::WalkTally walks(const markov::Chain& chain, const FieldParams& field,
+[[nodiscard]] markov::WalkTally walks(const markov::FieldChain& chain, const FieldParams& field,
                                       const ChainStart& start, std::int64_t count,
                                       std::uint64_t seed, const dynamics::Work& work = {});
 

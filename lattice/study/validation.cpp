@@ -67,7 +67,9 @@ class BlocksOf100 {
 /// What all starts share.
 struct Setup {
   const Scene& scene;
-  const dynamics::Transitions& matrix;
+  const FieldGates types;
+  const dynamics::StateSpace& space;
+  const std::vector<int> same;  // states of all types: which are one
   const ValidationOptions& options;
   std::int64_t walks;
   CountedField gates;
@@ -86,9 +88,9 @@ std::vector<std::vector<markov::FinalDistribution>> resampled_predictions(
   const markov::Field field = setup.field();
   const int max_gates = setup.scene.field.max_gates;
   const std::int64_t numbers = std::int64_t{field.columns} * field.rows * std::ssize(starts);
-  const std::int64_t count = std::max(
-      kAtLeast, affordable_replicates(field, max_gates, setup.gates.counts.front().nonZeros(),
-                                      std::min(kMost, kMostNumbers / numbers)));
+  const std::int64_t count =
+      std::max(kAtLeast, affordable_replicates(setup.gates, field, max_gates,
+                                               std::min(kMost, kMostNumbers / numbers)));
   std::vector<std::vector<markov::FinalDistribution>> all(starts.size());
   setup.work.in_pieces(
       "resampled matrices", (count + kTogether - 1) / kTogether, [&](TrialRange batches) {
@@ -138,13 +140,13 @@ TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov
     const Stopwatch watch;
     FieldTrials each;
     each.keep_passages = range.first < kMostRemembered;
-    seen.trials.tally += run_field(setup.scene.gate, setup.scene.field, start.body(),
-                                   setup.matrix.space, setup.options.seed, range, &each);
+    seen.trials.tally += run_field(setup.types, setup.scene.field, start.body(), setup.space,
+                                   setup.options.seed, range, &each);
     seen.seconds += watch.seconds();
     blocks.add(each.final_gates);
     each.passed.resize(
         std::clamp<std::int64_t>(kMostRemembered - range.first, 0, std::ssize(each.passed)));
-    add_walks(remembered, setup.matrix.space, place.input, each);
+    add_walks(remembered, setup.space, place.input, each, setup.same);
     if (setup.options.force_memory) keep_endings(seen.trials.each, each);
   });
   seen.paper_sized = blocks.result();
@@ -155,7 +157,7 @@ TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov
 ForceMemory run_anew(const Setup& setup, const PaperStart& start, const RunTrials& held) {
   RunTrials anew{FieldTally(setup.scene.field), {}};
   setup.work.in_pieces("force drawn anew", setup.options.trials, [&](TrialRange range) {
-    anew.tally += run_field(setup.scene.gate, setup.scene.field, start.body(), setup.matrix.space,
+    anew.tally += run_field(setup.types, setup.scene.field, start.body(), setup.space,
                             setup.options.seed, range, &anew.each, HeldForce::drawn_anew);
   });
   return force_memory(held, anew, setup.options.seed);
@@ -174,8 +176,7 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
                                const std::vector<markov::FinalDistribution>& resampled,
                                StateWalks& remembered) {
   const int max_gates = setup.scene.field.max_gates;
-  const ChainStart chain_start =
-      lattice::chain_start(setup.matrix.space, setup.scene.field, start.body());
+  const ChainStart chain_start = lattice::chain_start(setup.space, setup.scene.field, start.body());
   const Stopwatch exact_watch;
   const markov::FinalDistribution exact =
       setup.predictor.predict(setup.field(), chain_start.start, {.max_cells = max_gates});
@@ -214,6 +215,17 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
                                               : std::nullopt};
 }
 
+/// By state, those of all types one behind the other: the first of those with the same runs.
+std::vector<int> same_states(const std::vector<dynamics::Transitions>& matrices) {
+  std::vector<int> same;
+  for (const dynamics::Transitions& t : matrices)
+    for (int row = 0; row < t.space.size(); ++row)
+      same.push_back(t.space.has_trees() && row > 0 && t.rows[row] == t.rows[row - 1]
+                         ? same.back()
+                         : static_cast<int>(same.size()));
+  return same;
+}
+
 }  // namespace
 
 Finding finding_of(bool differs, double total_variation, double floor_95) {
@@ -221,7 +233,7 @@ Finding finding_of(bool differs, double total_variation, double floor_95) {
   return total_variation <= floor_95 ? Finding::within_trials : Finding::within_trials_and_matrix;
 }
 
-Validation validate_chain(const Scene& scene, const dynamics::Transitions& matrix,
+Validation validate_chain(const Scene& scene, const std::vector<dynamics::Transitions>& matrices,
                           const std::vector<PaperStart>& starts, const ValidationOptions& options,
                           const dynamics::Work& work) {
   if (options.trials < 1 || options.walks.value_or(1) < 1)
@@ -231,23 +243,29 @@ Validation validate_chain(const Scene& scene, const dynamics::Transitions& matri
     throw std::invalid_argument("validate compares fields of up to " + std::to_string(kMostGates) +
                                 " gates; field.columns = " + std::to_string(scene.field.columns) +
                                 " and field.rows = " + std::to_string(scene.field.rows));
-  const markov::Chain chain = make_chain(matrix);
+  const FieldGates gates = gates_of(scene);
+  if (matrices.size() != gates.types().size())
+    throw std::invalid_argument("validate: needs a matrix for each type of gate");
+  const dynamics::StateSpace& space = matrices.front().space;
+  const markov::FieldChain chain = make_chain(gates, matrices);
   const Setup setup{scene,
-                    matrix,
+                    gates,
+                    space,
+                    matrices.size() > 1 ? same_states(matrices) : std::vector<int>{},
                     options,
                     options.walks.value_or(options.trials),
-                    counted_field(matrix),
+                    counted_field(gates, matrices),
                     markov::Predictor(chain),
                     markov::Walker(chain),
                     work};
   std::vector<markov::Start> places;
   for (const PaperStart& start : starts)
-    places.push_back(chain_start(matrix.space, scene.field, start.body()).start);
+    places.push_back(chain_start(space, scene.field, start.body()).start);
   const auto resampled = resampled_predictions(setup, places);
 
-  Validation v{
-      .trials = options.trials, .walks = setup.walks, .starts = {}, .health = matrix.health};
-  StateWalks remembered = no_walks(matrix.space);
+  Validation v{.trials = options.trials, .walks = setup.walks, .starts = {}, .health = {}};
+  for (const dynamics::Transitions& t : matrices) v.health += t.health;
+  StateWalks remembered = no_walks(space, matrices.size());
   for (std::size_t k = 0; k < starts.size(); ++k) {
     v.starts.push_back(validate_start(setup, starts[k], resampled[k], remembered));
     const FieldTally& d = v.starts.back().dynamics;
@@ -259,13 +277,14 @@ Validation validate_chain(const Scene& scene, const dynamics::Transitions& matri
     v.traverse_sides += d.entries[static_cast<int>(dynamics::Boundary::right_traverse)] +
                         d.entries[static_cast<int>(dynamics::Boundary::left_traverse)];
   }
-  v.memory = study_memory(remembered, matrix.space,
+  v.memory = study_memory(remembered, space,
                           {.null_draws = options.null_draws, .seed = options.seed}, work);
   v.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return v;
 }
 
 bool like_table4(const Scene& scene) {
+  if (scene.terrain) return false;
   const dynamics::GateParams paper;
   for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
     const bool free = info.key == "forces.propulsion_N" || info.key == "forces.random_N" ||

@@ -106,10 +106,12 @@ struct Validation {
 
 inline constexpr std::int64_t kMostRemembered = 100'000;
 
-/// Compares the chain of `matrix` with the full dynamics from each start. Some 50 predictions of
+/// Compares the chain of these matrices, one for each of gates_of(scene).types(), with the full
+/// dynamics from each start. Some 50 predictions of
 /// every gate are kept: throws std::invalid_argument for fields of more than 100 000 gates, and as
 /// chain_start and run_field do.
-[[nodiscard]] Validation validate_chain(const Scene& scene, const dynamics::Transitions& matrix,
+[[nodiscard]] Validation validate_chain(const Scene& scene,
+                                        const std::vector<dynamics::Transitions>& matrices,
                                         const std::vector<PaperStart>& starts,
                                         const ValidationOptions& options,
                                         const dynamics::Work& work = {});

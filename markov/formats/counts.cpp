@@ -31,6 +31,7 @@ const std::set<std::string> kOwnVariables = {
     "exit_di_x", "exit_di_y",    "input_state", "nonzero", "output_state"};
 // A matrix of 10 000 states and 10^8 nonzeros has fewer.
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
+const std::string kTypeGroup = "type_";
 const std::set<std::string> kOwnAttributes = {"format", "format_version", "checksum"};
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
@@ -57,17 +58,15 @@ void check_name(const std::string& name, const std::set<std::string>& taken) {
 }
 
 void check_text(const std::string& name, const std::string& text) {
-  constexpr std::size_t kMostBytes = 60'000;  // an HDF5 attribute ends below 64 KB
-  if (text.size() > kMostBytes) {
+  if (text.size() > kMostTextBytes) {
     refuse("text of \"" + name + "\" has " + std::to_string(text.size()) + " bytes, more than " +
-           std::to_string(kMostBytes));
+           std::to_string(kMostTextBytes));
   }
   if (text.find('\0') != std::string::npos) refuse("text of \"" + name + "\" holds a zero byte");
 }
 
-void check_content(const CountsFile& file) {
+void check_rows(const RowCounts& file) {
   const std::int64_t n_in = file.counts.rows();
-  validate(file.exits, n_in, file.counts.cols());
   if (static_cast<std::int64_t>(file.trials.size()) != n_in ||
       static_cast<std::int64_t>(file.clamped.size()) != n_in) {
     refuse("trials and clamped must have one number for each of the " + std::to_string(n_in) +
@@ -92,6 +91,11 @@ void check_content(const CountsFile& file) {
              std::to_string(trials) + " trials");
     }
   }
+}
+
+void check_content(const CountsFile& file) {
+  validate(file.exits, file.counts.rows(), file.counts.cols());
+  check_rows(file);
   std::set<std::string> taken = kOwnVariables;
   for (const NamedArray& array : file.arrays) {
     for (const std::string& name : {array.name, length_of(array.name)}) {
@@ -104,6 +108,16 @@ void check_content(const CountsFile& file) {
   for (const auto& [key, value] : file.text) {
     check_name(key, kOwnAttributes);
     check_text(key, value);
+  }
+  for (const auto& [name, rows] : file.types) {
+    check_name(kTypeGroup + name, taken);
+    if (rows.counts.rows() != file.counts.rows() || rows.counts.cols() != file.counts.cols())
+      refuse("type " + name + ": its counts are of another size than the others");
+    try {
+      check_rows(rows);
+    } catch (const std::invalid_argument& error) {
+      refuse("type " + name + ": " + error.what());
+    }
   }
 }
 
@@ -144,26 +158,33 @@ void seal(std::vector<char>& image) {
   std::copy(digits.begin(), digits.end(), image.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-// The counts and exits as columns of numbers, the way they lie in the file.
-struct Columns {
-  std::vector<std::int32_t> row, column, next_input, di_x, di_y;
-  std::vector<std::int64_t> count;
-};
-
-std::vector<char> encode(const CountsFile& file) {
-  Columns c;
-  for (Eigen::Index row = 0; row < file.counts.rows(); ++row) {
-    for (Counts::InnerIterator it(file.counts, row); it; ++it) {
+// The counts of one type, into the file or a group of it.
+void put_counts(int group, int input, const RowCounts& rows) {
+  std::vector<std::int32_t> of_row, of_column;
+  std::vector<std::int64_t> counts;
+  for (Eigen::Index row = 0; row < rows.counts.rows(); ++row) {
+    for (Counts::InnerIterator it(rows.counts, row); it; ++it) {
       if (it.value() == 0) continue;
-      c.row.push_back(static_cast<std::int32_t>(row));
-      c.column.push_back(static_cast<std::int32_t>(it.col()));
-      c.count.push_back(it.value());
+      of_row.push_back(static_cast<std::int32_t>(row));
+      of_column.push_back(static_cast<std::int32_t>(it.col()));
+      counts.push_back(it.value());
     }
   }
+  const int nonzero = define_dimension(group, "nonzero", counts.size());
+  put_variable(group, "count_row", nonzero, of_row, "1", "input state of a count, from 0");
+  put_variable(group, "count_column", nonzero, of_column, "1", "output state of a count, from 0");
+  put_variable(group, "count", nonzero, counts, "1", "trials that went from input to output");
+  put_variable(group, "trials", input, rows.trials, "1", "trials of an input state");
+  put_variable(group, "clamped", input, rows.clamped, "1",
+               "of these, trials that crossed outside every bin");
+}
+
+std::vector<char> encode(const CountsFile& file) {
+  std::vector<std::int32_t> next_input, di_x, di_y;
   for (const Exit& exit : file.exits) {
-    c.next_input.push_back(exit.next_input);
-    c.di_x.push_back(exit.di_x);
-    c.di_y.push_back(exit.di_y);
+    next_input.push_back(exit.next_input);
+    di_x.push_back(exit.di_x);
+    di_y.push_back(exit.di_y);
   }
 
   Image nc;
@@ -176,20 +197,19 @@ std::vector<char> encode(const CountsFile& file) {
 
   const int input = define_dimension(nc, "input_state", file.trials.size());
   const int output = define_dimension(nc, "output_state", file.exits.size());
-  const int nonzero = define_dimension(nc, "nonzero", c.count.size());
-  put_variable(nc, "count_row", nonzero, c.row, "1", "input state of a count, from 0");
-  put_variable(nc, "count_column", nonzero, c.column, "1", "output state of a count, from 0");
-  put_variable(nc, "count", nonzero, c.count, "1", "trials that went from input to output");
-  put_variable(nc, "trials", input, file.trials, "1", "trials of an input state");
-  put_variable(nc, "clamped", input, file.clamped, "1",
-               "of these, trials that crossed outside every bin");
-  put_variable(nc, "exit_next_input", output, c.next_input, "1",
+  put_counts(nc, input, file);
+  put_variable(nc, "exit_next_input", output, next_input, "1",
                "input state of the next cell, from 0; -1: trapped");
-  put_variable(nc, "exit_di_x", output, c.di_x, "1", "columns to the next cell");
-  put_variable(nc, "exit_di_y", output, c.di_y, "1", "rows to the next cell");
+  put_variable(nc, "exit_di_x", output, di_x, "1", "columns to the next cell");
+  put_variable(nc, "exit_di_y", output, di_y, "1", "rows to the next cell");
   for (const NamedArray& array : file.arrays) {
     const int length = define_dimension(nc, length_of(array.name), array.values.size());
     put_variable(nc, array.name, length, array.values, array.unit, array.meaning);
+  }
+  for (const auto& [name, rows] : file.types) {
+    int group = -1;
+    check(nc_def_grp(nc, (kTypeGroup + name).c_str(), &group), "group of type " + name);
+    put_counts(group, input, rows);
   }
   std::vector<char> image = nc.close_image();
   seal(image);
@@ -208,10 +228,9 @@ class Reader {
     const std::size_t n_out = dimension("output_state");
 
     CountsFile file;
-    file.trials = values<std::int64_t>("trials", "input_state");
-    file.clamped = values<std::int64_t>("clamped", "input_state");
+    static_cast<RowCounts&>(file) = row_counts(nc_, n_in, n_out);
+    file.types = types(n_in, n_out);
     file.exits = exits();
-    file.counts = counts(n_in, n_out);
     file.arrays = arrays();
     file.text = text();
     check_content(file);
@@ -249,14 +268,14 @@ class Reader {
   [[nodiscard]] std::size_t dimension(const std::string& name) {
     int id = -1;
     check(nc_inq_dimid(nc_, name.c_str(), &id), "dimension " + name);
-    return dimension_length(id, name);
+    return dimension_length(nc_, id, name);
   }
 
-  [[nodiscard]] std::size_t dimension_length(int id, const std::string& name) {
+  [[nodiscard]] std::size_t dimension_length(int group, int id, const std::string& name) {
     // Deflate shrinks 1032-fold at the most, and a number has at least 4 bytes.
     constexpr std::size_t kMostPerByte = 1032 / 4;
     std::size_t length = 0;
-    check(nc_inq_dimlen(nc_, id, &length), "dimension " + name);
+    check(nc_inq_dimlen(group, id, &length), "dimension " + name);
     if (length > kMostPerByte * file_bytes_ ||
         length > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
       throw std::runtime_error("dimension " + name +
@@ -266,35 +285,36 @@ class Reader {
   }
 
   template <class T>
-  [[nodiscard]] std::vector<T> values(const std::string& name, const std::string& dimension_name) {
+  [[nodiscard]] std::vector<T> values(int group, const std::string& name,
+                                      const std::string& dimension_name) {
     int variable = -1;
-    check(nc_inq_varid(nc_, name.c_str(), &variable), "variable " + name);
+    check(nc_inq_varid(group, name.c_str(), &variable), "variable " + name);
     nc_type type = NC_NAT;
     int dimensions = 0;
-    check(nc_inq_vartype(nc_, variable, &type), "variable " + name);
-    check(nc_inq_varndims(nc_, variable, &dimensions), "variable " + name);
+    check(nc_inq_vartype(group, variable, &type), "variable " + name);
+    check(nc_inq_varndims(group, variable, &dimensions), "variable " + name);
     std::vector<T> result;
     if (type != type_of(result)) throw std::runtime_error("variable " + name + ": wrong type");
     int wanted = -1, found = -1;
-    check(nc_inq_dimid(nc_, dimension_name.c_str(), &wanted), "dimension " + dimension_name);
-    if (dimensions == 1) check(nc_inq_vardimid(nc_, variable, &found), "variable " + name);
+    check(nc_inq_dimid(group, dimension_name.c_str(), &wanted), "dimension " + dimension_name);
+    if (dimensions == 1) check(nc_inq_vardimid(group, variable, &found), "variable " + name);
     if (found != wanted) {
       throw std::runtime_error("variable " + name + " does not have the one dimension " +
                                dimension_name);
     }
     const std::size_t first = 0;
-    const std::size_t count = dimension_length(found, dimension_name);
+    const std::size_t count = dimension_length(group, found, dimension_name);
     result.resize(count);
     if (count > 0) {
-      check(nc_get_vara(nc_, variable, &first, &count, result.data()), "variable " + name);
+      check(nc_get_vara(group, variable, &first, &count, result.data()), "variable " + name);
     }
     return result;
   }
 
   [[nodiscard]] std::vector<Exit> exits() {
-    const auto next_input = values<std::int32_t>("exit_next_input", "output_state");
-    const auto di_x = values<std::int32_t>("exit_di_x", "output_state");
-    const auto di_y = values<std::int32_t>("exit_di_y", "output_state");
+    const auto next_input = values<std::int32_t>(nc_, "exit_next_input", "output_state");
+    const auto di_x = values<std::int32_t>(nc_, "exit_di_x", "output_state");
+    const auto di_y = values<std::int32_t>(nc_, "exit_di_y", "output_state");
     std::vector<Exit> result;
     for (std::size_t j = 0; j < next_input.size(); ++j) {
       result.push_back({next_input[j], di_x[j], di_y[j]});
@@ -302,10 +322,31 @@ class Reader {
     return result;
   }
 
-  [[nodiscard]] Counts counts(std::size_t n_in, std::size_t n_out) {
-    const auto row = values<std::int32_t>("count_row", "nonzero");
-    const auto column = values<std::int32_t>("count_column", "nonzero");
-    const auto count = values<std::int64_t>("count", "nonzero");
+  [[nodiscard]] RowCounts row_counts(int group, std::size_t n_in, std::size_t n_out) {
+    return {counts(group, n_in, n_out), values<std::int64_t>(group, "trials", "input_state"),
+            values<std::int64_t>(group, "clamped", "input_state")};
+  }
+
+  [[nodiscard]] std::map<std::string, RowCounts> types(std::size_t n_in, std::size_t n_out) {
+    int groups = 0;
+    check(nc_inq_grps(nc_, &groups, nullptr), "groups");
+    std::vector<int> ids(static_cast<std::size_t>(groups));
+    check(nc_inq_grps(nc_, &groups, ids.data()), "groups");
+    std::map<std::string, RowCounts> found;
+    for (const int group : ids) {
+      char name[NC_MAX_NAME + 1] = "";
+      check(nc_inq_grpname(group, name), "groups");
+      if (!std::string_view(name).starts_with(kTypeGroup))
+        throw std::runtime_error(std::string("group ") + name + " is not of a type");
+      found.emplace(name + kTypeGroup.size(), row_counts(group, n_in, n_out));
+    }
+    return found;
+  }
+
+  [[nodiscard]] Counts counts(int group, std::size_t n_in, std::size_t n_out) {
+    const auto row = values<std::int32_t>(group, "count_row", "nonzero");
+    const auto column = values<std::int32_t>(group, "count_column", "nonzero");
+    const auto count = values<std::int64_t>(group, "count", "nonzero");
     Counts result(static_cast<Eigen::Index>(n_in), static_cast<Eigen::Index>(n_out));
     result.reserve(static_cast<Eigen::Index>(count.size()));
     std::size_t k = 0;
@@ -344,7 +385,7 @@ class Reader {
       check(nc_inq_varname(nc_, variable, name), "variables");
       if (kOwnVariables.contains(name)) continue;
       result.push_back({name, attribute(variable, "units"), attribute(variable, "long_name"),
-                        values<double>(name, length_of(name))});
+                        values<double>(nc_, name, length_of(name))});
     }
     std::sort(result.begin(), result.end(),
               [](const NamedArray& a, const NamedArray& b) { return a.name < b.name; });

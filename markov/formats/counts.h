@@ -3,11 +3,13 @@
 ///
 /// Dimensions input_state, output_state, nonzero. Variables count_row, count_column (from 0), count
 /// (nonzero); trials, clamped (input_state); exit_next_input, exit_di_x, exit_di_y (output_state);
-/// each NamedArray by its name. Global attributes format, format_version, checksum and `text`.
-/// checksum = "crc64-xz:" + 16 hexadecimal digits: CRC-64/XZ of the whole file with these digits
-/// read as zeros. The mark "crc64-xz:" may stand nowhere else in the file.
-/// Same content, same bytes. NetCDF is not thread-safe: one call at a time.
+/// each NamedArray by its name. Cells of another type have a group type_NAME with its own nonzero,
+/// count_row, count_column, count, trials and clamped. Global attributes format, format_version,
+/// checksum and `text`. checksum = "crc64-xz:" + 16 hexadecimal digits: CRC-64/XZ of the whole file
+/// with these digits read as zeros. The mark "crc64-xz:" may stand nowhere else in the file. Same
+/// content, same bytes. NetCDF is not thread-safe: one call at a time.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <stdexcept>
@@ -18,6 +20,9 @@
 
 namespace gatewalk::markov {
 
+/// Of a text: an HDF5 attribute ends below 64 KB.
+inline constexpr std::size_t kMostTextBytes = 60'000;
+
 /// A named table of numbers that travels with the counts (bin edges, for example).
 struct NamedArray {
   std::string name;  // letters, digits and _, a letter first; its dimension is name + "_length"
@@ -26,11 +31,16 @@ struct NamedArray {
   std::vector<double> values;
 };
 
+/// The counts of one type of cell.
+struct RowCounts {
+  Counts counts;                      // (n_in x n_out)
+  std::vector<std::int64_t> trials;   // (n_in) runs per row, the sum of its counts
+  std::vector<std::int64_t> clamped;  // (n_in) of these, crossings outside every bin
+};
+
 /// What a file holds. `text` are string attributes (scene, seed, version, command line, ...).
-struct CountsFile {
-  Counts counts;                            // (n_in x n_out)
-  std::vector<std::int64_t> trials;         // (n_in) runs per row, the sum of its counts
-  std::vector<std::int64_t> clamped;        // (n_in) of these, crossings outside every bin
+struct CountsFile : RowCounts {
+  std::map<std::string, RowCounts> types;   // of other types of cells, by name
   std::vector<Exit> exits;                  // (n_out)
   std::vector<NamedArray> arrays;           // unique names; read back sorted by name
   std::map<std::string, std::string> text;  // named as arrays are; up to 60 000 bytes each

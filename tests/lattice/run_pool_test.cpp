@@ -42,8 +42,8 @@ TEST(RunPool, LeavesOfOneRunGiveTheTrialsThemselves) {
   pool.starts.push_back(some_trials(scene, 200));
   const Kernel kernel = kernel_of(scene.gate, pool, 1);
   const auto row = first_row(scene.gate, kernel.space, pool.starts[0]);
-  const auto p = markov::predict(chain_of(kernel, {row}), {9, 9}, {{4, 0, kernel.space.size()}},
-                                 {.max_cells = 13});
+  const auto p = markov::predict(chain_of(kernel, scene.gate, scene.field, {row}), {9, 9},
+                                 {{4, 0, kernel.space.size()}}, {.max_cells = 13});
   const auto own = shares_of(pool.starts[0].full, scene.field);
   EXPECT_LT(total_variation(p[0].final_cells, own.final_cells), 1e-12);
   for (std::size_t e = 0; e < markov::kEndings; ++e)
@@ -88,7 +88,7 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
           entry = run.entry;
         }
       }
-      EXPECT_TRUE(Eigen::MatrixXd(kernel.counts.cast<double>()) == wanted);
+      EXPECT_TRUE(Eigen::MatrixXd(kernel.counts.front().cast<double>()) == wanted);
     }
   }
 }
@@ -203,7 +203,7 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   again.start = pool.starts[0].start;
   (void)run_field(scene.gate, one_gate, kStart, StateSpace::paper(scene.gate), 10, {0, 1000},
                   &again.first);
-  EXPECT_LT(unseen_share(kernel, scene.field, again), 0.01);
+  EXPECT_LT(unseen_share(kernel, scene.gate, scene.field, again), 0.01);
   std::int64_t go_on = 0;
   for (GatePassage& p : again.first.passages)
     if (p.ending != dynamics::Ending::trapped) {
@@ -211,10 +211,11 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
       ++go_on;
     }
   ASSERT_GT(go_on, 200);
-  EXPECT_NEAR(unseen_share(kernel, scene.field, again), static_cast<double>(go_on) / 1000, 0.1);
+  EXPECT_NEAR(unseen_share(kernel, scene.gate, scene.field, again),
+              static_cast<double>(go_on) / 1000, 0.1);
   FieldParams last_row = scene.field;
   last_row.rows = 1;  // who leaves upwards has crossed: nothing more is to be known of that
-  EXPECT_EQ(unseen_share(kernel, last_row, again), 0.0);
+  EXPECT_EQ(unseen_share(kernel, scene.gate, last_row, again), 0.0);
 }
 
 TEST(PooledPrediction, StopsAtTheLimitOfRunsAndSaysSo) {
@@ -311,12 +312,13 @@ TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
   const TreeChain chain =
       make_tree_chain(scene, {.accuracy = {.accuracy = 0.05}, .starts = {kStart, {0, 0, 0, 15}}});
   const std::string path = testing::TempDir() + "tree_chain.nc";
-  write_matrix(path, {chain.transitions, {{"scene", to_toml(scene)}}, arrays_of(chain.pool)});
+  write_matrix(path,
+               {chain.transitions.front(), {{"scene", to_toml(scene)}}, arrays_of(chain.pool)});
   const MatrixFile file = read_matrix(path);
-  EXPECT_EQ(file.transitions.space, chain.transitions.space);
-  EXPECT_EQ(file.transitions.rows, chain.transitions.rows);
+  EXPECT_EQ(file.transitions.space, chain.transitions.front().space);
+  EXPECT_EQ(file.transitions.rows, chain.transitions.front().rows);
   ASSERT_TRUE(has_runs(file));
-  RunPool pool = pool_of(file, scene.field, path);
+  RunPool pool = pool_of(file, scene, path);
   EXPECT_EQ(pool.gate_runs(), chain.pool.gate_runs());
   // Extending a pool from a file is extending the one in memory.
   RunPool here = chain.pool;
@@ -329,11 +331,11 @@ TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
   EXPECT_EQ(more.starts[0].error.total_variation, also.starts[0].error.total_variation);
   EXPECT_EQ(pool.starts[0].full.final_gates, chain.pool.starts[0].full.final_gates);
   EXPECT_EQ(pool.starts[0].full.endings, chain.pool.starts[0].full.endings);
-  FieldParams wider = scene.field;
-  wider.max_gates = 0;
+  Scene wider = scene;
+  wider.field.max_gates = 0;
   EXPECT_FALSE(pool_of(file, wider, path).starts[0].knows_endings);
-  EXPECT_EQ(matrix_of(scene, pool, {kStart, {0, 0, 0, 15}}, chain.per_leaf).rows,
-            chain.transitions.rows);
+  EXPECT_EQ(matrices_of(scene, pool, {kStart, {0, 0, 0, 15}}, chain.per_leaf).front().rows,
+            chain.transitions.front().rows);
   const auto answer = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05});
   EXPECT_EQ(answer.gate_runs, 0);
   EXPECT_LT(total_variation(answer.starts[0].final.final_cells,
@@ -364,17 +366,17 @@ TEST(TreeChain, DamagedRunsAreRefused) {
   const Scene scene = fast_scene();
   const TreeChain chain =
       make_tree_chain(scene, {.accuracy = {.accuracy = 0.2}, .starts = {kStart}});
-  MatrixFile file{chain.transitions, {}, arrays_of(chain.pool)};
-  EXPECT_NO_THROW((void)pool_of(file, scene.field, "x.nc"));
+  MatrixFile file{chain.transitions.front(), {}, arrays_of(chain.pool)};
+  EXPECT_NO_THROW((void)pool_of(file, scene, "x.nc"));
   for (markov::NamedArray& array : file.arrays) {
     MatrixFile bad = file;
     for (markov::NamedArray& other : bad.arrays)
       if (other.name == array.name) other.values.pop_back();
-    EXPECT_THROW((void)pool_of(bad, scene.field, "x.nc"), markov::BadFile) << array.name;
+    EXPECT_THROW((void)pool_of(bad, scene, "x.nc"), markov::BadFile) << array.name;
   }
   for (markov::NamedArray& array : file.arrays)
     if (array.name == "run_boundary") array.values[0] = 7.0;
-  EXPECT_THROW((void)pool_of(file, scene.field, "x.nc"), markov::BadFile);
+  EXPECT_THROW((void)pool_of(file, scene, "x.nc"), markov::BadFile);
 }
 
 }  // namespace

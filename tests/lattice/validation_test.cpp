@@ -62,7 +62,7 @@ const PaperStart kStart{0.0, 0.0, 15.0};
 
 TEST(ValidateChain, ARightChainIsWithinChance) {
   const Scene scene = straight_up();
-  const Validation v = validate_chain(scene, all_up(scene, 1000), {kStart},
+  const Validation v = validate_chain(scene, {all_up(scene, 1000)}, {kStart},
                                       {.trials = 250, .null_draws = 99, .seed = 3});
   ASSERT_EQ(v.starts.size(), 1u);
   const StartValidation& s = v.starts.front();
@@ -81,7 +81,7 @@ TEST(ValidateChain, ARightChainIsWithinChance) {
 
 TEST(ValidateChain, AWrongChainHasAnErrorOfItsOwn) {
   const Scene scene = straight_up();
-  const Validation v = validate_chain(scene, all_trapped(scene, 1000), {kStart},
+  const Validation v = validate_chain(scene, {all_trapped(scene, 1000)}, {kStart},
                                       {.trials = 100, .walks = 40, .null_draws = 99, .seed = 3});
   const StartValidation& s = v.starts.front();
   EXPECT_EQ(s.exact_against.total_variation, 1.0);  // start gate against last row
@@ -103,7 +103,7 @@ TEST(ValidateChain, CountsTheSamplingOfTheMatrix) {
       row.begin()->second -= runs * 2 / 100;
       row[t.space.trapped()] += runs * 2 / 100;
     }
-    return validate_chain(scene, t, {kStart}, {.trials = 1000, .null_draws = 199, .seed = 1})
+    return validate_chain(scene, {t}, {kStart}, {.trials = 1000, .null_draws = 199, .seed = 1})
         .starts.front();
   };
   const StartValidation few = seldom_trapped(50), many = seldom_trapped(100'000);
@@ -117,7 +117,7 @@ TEST(ValidateChain, IsTheSameForAnyPieces) {
   const Scene scene = parse_scene("field = { columns = 3, rows = 3 }", "scene");
   const dynamics::Transitions matrix = all_up(scene, 10);
   const ValidationOptions options{.trials = 120, .walks = 130, .null_draws = 19, .seed = 5};
-  const StartValidation s = validate_chain(scene, matrix, {kStart}, options).starts.front();
+  const StartValidation s = validate_chain(scene, {matrix}, {kStart}, options).starts.front();
   FieldTrials each;
   const FieldTally dynamics =
       run_field(scene.gate, scene.field, kStart.body(), matrix.space, 5, {0, 120}, &each);
@@ -131,7 +131,8 @@ TEST(ValidateChain, IsTheSameForAnyPieces) {
 
 TEST(ValidateChain, RefusesFieldsTooLargeToKeep) {
   const Scene scene = parse_scene("field = { columns = 1001, rows = 100 }", "scene");
-  EXPECT_THROW((void)validate_chain(scene, all_up(scene, 1), {kStart}, {}), std::invalid_argument);
+  EXPECT_THROW((void)validate_chain(scene, {all_up(scene, 1)}, {kStart}, {}),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -128,10 +128,18 @@ bool same(const NamedArray& a, const NamedArray& b) {
                     });
 }
 
-bool same(const CountsFile& a, const CountsFile& b) {
+bool same(const RowCounts& a, const RowCounts& b) {
   const Eigen::Matrix<std::int64_t, -1, -1> dense_a = a.counts, dense_b = b.counts;
   return dense_a.rows() == dense_b.rows() && dense_a.cols() == dense_b.cols() &&
-         dense_a == dense_b && a.trials == b.trials && a.clamped == b.clamped &&
+         dense_a == dense_b && a.trials == b.trials && a.clamped == b.clamped;
+}
+
+bool same(const CountsFile& a, const CountsFile& b) {
+  return same(static_cast<const RowCounts&>(a), b) &&
+         std::equal(a.types.begin(), a.types.end(), b.types.begin(), b.types.end(),
+                    [](const auto& x, const auto& y) {
+                      return x.first == y.first && same(x.second, y.second);
+                    }) &&
          a.exits == b.exits && a.text == b.text &&
          std::equal(a.arrays.begin(), a.arrays.end(), b.arrays.begin(), b.arrays.end(),
                     [](const NamedArray& x, const NamedArray& y) { return same(x, y); });
@@ -199,6 +207,21 @@ TEST_F(ChainIo, RoundTrip) {
   write_counts(path(), other);
   EXPECT_TRUE(same(read_counts(path()), other));
   EXPECT_FALSE(same(read_counts(path()), file));
+}
+
+TEST_F(ChainIo, RoundTripOfSeveralTypesOfCells) {
+  CountsFile file = example();
+  for (const std::string name : {"s", "stiff_2"}) {
+    file.types[name] = static_cast<const RowCounts&>(file);
+    file.types[name].clamped[3] += static_cast<std::int64_t>(name.size());
+  }
+  write_counts(path(), file);
+  EXPECT_TRUE(same(read_counts(path()), file));
+  CountsFile other = file;
+  other.types["s"].clamped[3] += 1;
+  EXPECT_FALSE(same(other, file));
+  other.types.erase("s");
+  EXPECT_FALSE(same(other, file));
 }
 
 TEST_F(ChainIo, RoundTripOfTheSmallestAndTheLargest) {
@@ -296,6 +319,13 @@ TEST_F(ChainIo, RefusesToWriteWhatDoesNotAddUp) {
     refused("name \"" + name + "\"", [&](CountsFile& f) { f.arrays[0].name = name; });
     refused("name \"" + name + "\"", [&](CountsFile& f) { f.text[name] = "1"; });
   }
+  refused("type s: row 5 (counted from 1): counts add up to", [](CountsFile& f) {
+    f.types["s"] = static_cast<const RowCounts&>(f);
+    f.types["s"].trials[4] += 1;
+  });
+  refused("type s: its counts are of another size", [](CountsFile& f) { f.types["s"]; });
+  refused("name \"type_x-y\"",
+          [](CountsFile& f) { f.types["x-y"] = static_cast<const RowCounts&>(f); });
   refused("60001 bytes", [](CountsFile& f) { f.text["scene"] = std::string(60'001, 'x'); });
   refused("zero byte", [](CountsFile& f) { f.arrays[0].unit = std::string("m\0s", 3); });
 }

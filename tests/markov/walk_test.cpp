@@ -511,5 +511,38 @@ TEST(Walk, TalliesOfDifferentFieldsAreNotAdded) {
   EXPECT_TRUE(same(none, wide));
 }
 
+// ---- Cells of several types ----
+
+TEST(Walker, CellsOfOneTypeAmongSeveralAreWalkedAsAUniformField) {
+  const Chain one = with_gaps(3);
+  const FieldChain several = FieldChain::by_cell(
+      {Chain::from_counts(lattice_counts(4), lattice_exits()), one}, 9, std::vector<int>(81, 1));
+  const Start start{4, 0, 20};
+  const Walker walker(several);
+  EXPECT_FALSE(walker.walks_in_lanes());
+  EXPECT_EQ(in_lanes(walker, kNineByNine, start, 13, {0, 5000}),
+            plainly(Walker(one), kNineByNine, start, 13, {0, 5000}));
+}
+
+TEST(Walker, CellsOfSeveralTypesEndAsExactlyPredicted) {
+  std::vector<int> types(81);
+  for (std::size_t i = 0; i < types.size(); ++i) types[i] = static_cast<int>(i * i % 3);
+  std::vector<Chain> chains{with_gaps(5)};
+  for (const std::uint64_t seed : {6, 7})
+    chains.push_back(Chain::from_counts(lattice_counts(seed), lattice_exits()));
+  const FieldChain field = FieldChain::by_cell(chains, 9, types);
+  const Start start{4, 0, 20};
+  constexpr std::int64_t kWalks = 200'000;
+  const WalkTally walked = Walker(field).walk(kNineByNine, start, 13, 1, {0, kWalks});
+  const FinalDistribution exact = propagate(field, kNineByNine, start, {.max_cells = 13});
+  for (Eigen::Index i = 0; i < exact.final_cells.size(); ++i) {
+    const double p = exact.final_cells.data()[i];
+    EXPECT_NEAR(static_cast<double>(walked.final_cells.data()[i]) / kWalks, p,
+                5.0 * std::sqrt(p / kWalks) + 1e-12)
+        << i;
+  }
+  EXPECT_THROW((void)Walker(field).walk({3, 3}, {1, 0, 20}, 13, 1, {0, 1}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace gatewalk::markov

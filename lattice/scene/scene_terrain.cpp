@@ -1,0 +1,248 @@
+#include "lattice/scene/scene_terrain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "lattice/scene/scene.h"
+#include "lattice/scene/toml_text.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+constexpr std::size_t kMostTypes = 100;
+constexpr const char* kKeys = "map, map_file, random, seed and types";
+
+bool is_name(std::string_view name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  return !name.empty() && name.size() <= 60 && is_letter(name.front()) &&
+         std::all_of(name.begin(), name.end(),
+                     [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+const toml::table& table_at(const toml::node& node, const std::string& name, const Origin& origin) {
+  if (const auto* table = node.as_table()) return *table;
+  throw SceneError(origin(node.source().begin.line) + ": " + name + shown_value(node) +
+                   " is not permitted: must be a table");
+}
+
+/// One row of a map, and how a message about it begins.
+struct MapRow {
+  std::string text, where;
+};
+
+std::vector<MapRow> rows_given(const TerrainSetting& map) {
+  const auto refuse = [&](const toml::node& node) {
+    throw SceneError(map.origin(node.source().begin.line) + ": terrain.map" + shown_value(node) +
+                     " is not permitted: must be an array of texts, a row of gates each, the far "
+                     "side first, such as [\".s.\", \"...\"]");
+  };
+  std::vector<MapRow> rows;
+  if (!map.value->is_array()) refuse(*map.value);
+  for (const toml::node& row : *map.value->as_array()) {
+    if (!row.is_string()) refuse(row);
+    rows.push_back({row.as_string()->get(), map.origin(row.source().begin.line) + ": terrain.map"});
+  }
+  return rows;
+}
+
+std::vector<MapRow> rows_of_file(const TerrainSetting& given) {
+  const auto* name = given.value->as_string();
+  if (!name)
+    throw SceneError(given.where() + ": terrain.map_file" + shown_value(*given.value) +
+                     " is not permitted: must be the name of a file, such as \"terrain.csv\"");
+  const std::string path = (std::filesystem::path(given.folder) / name->get()).string();
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path))
+    throw SceneError(given.where() + ": terrain.map_file: " + path + " cannot be read");
+  std::vector<MapRow> rows;
+  std::string text;
+  for (std::size_t line = 1; std::getline(file, text); ++line) {
+    if (text.ends_with('\r')) text.pop_back();
+    rows.push_back({text, path + ":" + std::to_string(line)});
+  }
+  while (!rows.empty() && rows.back().text.empty()) rows.pop_back();
+  return rows;
+}
+
+/// The names in a row: separated by commas, or a letter each.
+std::vector<std::string> names_in(const std::string& row, int columns) {
+  std::vector<std::string> names;
+  if (columns > 1 && row.find(',') == row.npos) {
+    for (const char c : row) names.emplace_back(1, c);
+    return names;
+  }
+  for (std::size_t at = 0; at <= row.size();) {
+    const std::size_t end = std::min(row.find(',', at), row.size());
+    const std::string name = row.substr(at, end - at);
+    const std::size_t first = std::min(name.find_first_not_of(" \t"), name.size());
+    names.push_back(name.substr(first, name.find_last_not_of(" \t") + 1 - first));
+    at = end + 1;
+  }
+  return names;
+}
+
+std::string all_names(const Terrain& terrain) {
+  std::string names(kOwnGate);
+  for (const Terrain::Type& type : terrain.types) names += ", " + type.name;
+  return names;
+}
+
+/// Place of a type among the terrain's, from 1; 0: the scene's own gate; -1: none.
+int type_named(const Terrain& terrain, std::string_view name) {
+  if (name == kOwnGate) return 0;
+  for (std::size_t i = 0; i < terrain.types.size(); ++i)
+    if (terrain.types[i].name == name) return static_cast<int>(i) + 1;
+  return -1;
+}
+
+std::vector<int> cells_of(const std::vector<MapRow>& rows, const std::string& where,
+                          const Terrain& terrain, const FieldParams& field) {
+  if (std::ssize(rows) != field.rows)
+    throw SceneError(where + ": the map has " + std::to_string(rows.size()) +
+                     " rows, field.rows = " + std::to_string(field.rows));
+  std::vector<int> types(rows.size() * static_cast<std::size_t>(field.columns));
+  for (int r = 0; r < field.rows; ++r) {
+    const MapRow& row = rows[static_cast<std::size_t>(r)];
+    const std::string begin = row.where + ": row " + std::to_string(r + 1) + " of the map";
+    const std::vector<std::string> names = names_in(row.text, field.columns);
+    if (std::ssize(names) != field.columns)
+      throw SceneError(begin + " has " + std::to_string(names.size()) +
+                       " gates, field.columns = " + std::to_string(field.columns));
+    for (int c = 0; c < field.columns; ++c) {
+      const std::string& name = names[static_cast<std::size_t>(c)];
+      const int type = type_named(terrain, name);
+      if (type < 0)
+        throw SceneError(begin + ", column " + std::to_string(c + 1) + ": \"" + printable(name) +
+                         "\" is no type of gate: there are " + all_names(terrain));
+      types[static_cast<std::size_t>((field.rows - 1 - r) * field.columns + c)] = type;
+    }
+  }
+  return types;
+}
+
+std::map<std::string, double> shares_of(const TerrainSettings& settings, const Terrain& terrain) {
+  std::map<std::string, double> shares;
+  double sum = 0.0;
+  for (const auto& [key, given] : settings) {
+    if (!key.starts_with("random.")) continue;
+    const std::string name = key.substr(key.find('.') + 1);
+    const std::string begin = given.where() + ": terrain." + key + shown_value(*given.value);
+    if (type_named(terrain, name) < 1)
+      throw SceneError(begin + ": " + printable(name) + " is no type of gate: there are " +
+                       all_names(terrain) + "; what the shares leave is \".\"");
+    const auto share = given.value->value<double>();
+    if (!given.value->is_number() || !(*share >= 0.0 && *share <= 1.0))
+      throw SceneError(begin + " is not permitted: must be a share in [0, 1]");
+    sum += shares[name] = *share;
+    if (sum > 1.0 + 1e-9)
+      throw SceneError(begin + ": the shares of terrain.random sum up to " + shortest(sum) +
+                       ", more than 1");
+  }
+  return shares;
+}
+
+}  // namespace
+
+void add_terrain(TerrainSettings& settings, const toml::table& document, const Origin& origin,
+                 const std::string& folder) {
+  const toml::node* const terrain = document.get(kTerrainTable);
+  if (!terrain) return;
+  const auto add = [&](const std::string& key, const toml::node& node) {
+    settings.insert_or_assign(key, TerrainSetting{&node, origin, folder});
+  };
+  const auto add_type = [&](const std::string& name, const toml::node& node) {
+    const std::string at = origin(node.source().begin.line);
+    if (!is_name(name))
+      throw SceneError(at + ": terrain.types." + printable(name) +
+                       ": a type's name must be letters, digits and _, and begin with a letter");
+    const std::string type = "types." + name;
+    add(type, node);
+    for (const auto& [table, keys] : table_at(node, "terrain." + type, origin)) {
+      const std::string of_table(table.str());
+      const auto add_key = [&](const std::string& key, const toml::node& value) {
+        const std::string where = origin(value.source().begin.line) + ": terrain." + type;
+        require_key(key, where);
+        if (!may_differ(key))
+          throw SceneError(where + "." + key +
+                           " is not permitted: all gates of a field have it in common; a type has "
+                           "beams (but their joints), forces and contact of its own");
+        add(type + "." + key, value);
+      };
+      if (!keys.is_table())
+        add_key(of_table, keys);  // a whole key in quotation marks, or none
+      else
+        for (const auto& [key, value] : *keys.as_table())
+          add_key(of_table + "." + std::string(key.str()), value);
+    }
+  };
+  for (const auto& [key, node] : table_at(*terrain, "terrain", origin)) {
+    const std::string name(key.str());
+    if (name == "map" || name == "map_file" || name == "seed") {
+      add(name, node);
+    } else if (name == "random") {
+      for (const auto& [type, share] : table_at(node, "terrain.random", origin))
+        add("random." + std::string(type.str()), share);
+    } else if (name == "types") {
+      for (const auto& [type, keys] : table_at(node, "terrain.types", origin))
+        add_type(std::string(type.str()), keys);
+    } else {
+      throw SceneError(origin(node.source().begin.line) + ": unknown key terrain." +
+                       printable(name) + "; [terrain] has " + kKeys);
+    }
+  }
+  if (settings.empty())
+    throw SceneError(origin(terrain->source().begin.line) + ": [terrain] is empty; it has " +
+                     kKeys);
+}
+
+std::optional<Terrain> terrain_of(const TerrainSettings& settings, const FieldParams& field,
+                                  const TypeValue& value) {
+  if (settings.empty()) return std::nullopt;
+  Terrain terrain;
+  for (const auto& [key, given] : settings) {  // a type before its keys
+    if (!key.starts_with("types.")) continue;
+    const std::size_t dot = key.find('.', std::string_view("types.").size());
+    if (dot == key.npos) {
+      terrain.types.push_back({key.substr(key.find('.') + 1), {}});
+      continue;
+    }
+    const std::string name = key.substr(dot + 1);
+    terrain.types.back().keys.push_back(
+        {name, value(name, given, "terrain." + key), given.where()});
+  }
+  const std::string where = settings.begin()->second.where();
+  if (terrain.types.size() > kMostTypes)
+    throw SceneError(where + ": [terrain] has more than " + std::to_string(kMostTypes) + " types");
+
+  const auto map = settings.find("map"), file = settings.find("map_file"),
+             seed = settings.find("seed");
+  const auto random = settings.lower_bound("random.");
+  const bool is_random = random != settings.end() && random->first.starts_with("random.");
+  if ((map != settings.end()) + (file != settings.end()) + (is_random ? 1 : 0) != 1)
+    throw SceneError(where + ": [terrain] must have one of map, map_file and random");
+  if (seed != settings.end()) {
+    const auto* whole = seed->second.value->as_integer();
+    const std::string begin =
+        seed->second.where() + ": terrain.seed" + shown_value(*seed->second.value);
+    if (!whole || whole->get() < 0)
+      throw SceneError(begin + " is not permitted: must be a whole number from 0");
+    if (!is_random) throw SceneError(begin + " has no meaning without terrain.random");
+    terrain.seed = static_cast<std::uint64_t>(whole->get());
+  }
+  if (is_random) {
+    terrain.shares = shares_of(settings, terrain);
+    terrain.type_of_cell = drawn_map(terrain, field);
+  } else if (map != settings.end()) {
+    terrain.type_of_cell =
+        cells_of(rows_given(map->second), map->second.where() + ": terrain.map", terrain, field);
+  } else {
+    terrain.type_of_cell = cells_of(rows_of_file(file->second),
+                                    file->second.where() + ": terrain.map_file", terrain, field);
+  }
+  return terrain;
+}
+
+}  // namespace gatewalk::lattice

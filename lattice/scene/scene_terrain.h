@@ -1,0 +1,45 @@
+#pragma once
+/// Reads table [terrain] of a scene.
+
+#include <toml++/toml.h>
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "lattice/scene/terrain.h"
+
+namespace gatewalk::lattice {
+
+inline constexpr std::string_view kTerrainTable = "terrain";
+
+/// `origin(line)` is how a message begins: "scenes/x.toml:12" or "--set terrain.seed=6".
+using Origin = std::function<std::string(std::size_t line)>;
+
+/// One key of the table, as a file or an override gives it; the node must outlive it.
+struct TerrainSetting {
+  const toml::node* value;
+  Origin origin;
+  std::string folder;  // that a path in it starts from
+
+  [[nodiscard]] std::string where() const { return origin(value->source().begin.line); }
+};
+/// "map", "random.s", "types.s", "types.s.forces.propulsion_N", ...
+using TerrainSettings = std::map<std::string, TerrainSetting, std::less<>>;
+
+/// Adds the keys of the table [terrain] of `document`, if it has one: they replace those that are
+/// there. Throws SceneError for what is no key of it, naming the closest one of a type's.
+void add_terrain(TerrainSettings& settings, const toml::table& document, const Origin& origin,
+                 const std::string& folder);
+
+/// The value of the key `name` of a scene, for a type. Throws SceneError when it is not permitted.
+using TypeValue =
+    std::function<double(std::string_view name, const TerrainSetting& given, const std::string&)>;
+
+/// None without settings. Throws SceneError naming the line, row and column for a map that does not
+/// fill the field or has a type that there is not, and for shares that are none.
+[[nodiscard]] std::optional<Terrain> terrain_of(const TerrainSettings& settings,
+                                                const FieldParams& field, const TypeValue& value);
+
+}  // namespace gatewalk::lattice

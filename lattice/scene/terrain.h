@@ -1,0 +1,62 @@
+#pragma once
+/// Gates of several types in one field: table [terrain] of a scene.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lattice/field.h"
+
+namespace gatewalk::lattice {
+
+struct Scene;
+
+/// What stands where. The scene's own gate has the name ".".
+struct Terrain {
+  /// A key that a type has otherwise than the scene.
+  struct Key {
+    std::string name;  // "forces.propulsion_N"
+    double value = 0.0;
+    std::string origin;  // where it was given
+  };
+  struct Type {
+    std::string name;  // letters, digits and _, a letter first
+    std::vector<Key> keys;
+  };
+  std::vector<Type> types;  // by name
+  /// (rows x columns), the near row first. 0: the scene's own gate, i: types[i - 1].
+  std::vector<int> type_of_cell;
+  std::map<std::string, double> shares{};  // of a map that is drawn; empty for one that is given
+  std::uint64_t seed = 1;                  // of that map
+};
+
+inline constexpr std::string_view kOwnGate = ".";
+
+/// Beams, forces and contacts, but not the joints: all gates of a field have body, size, method and
+/// time limit in common.
+[[nodiscard]] bool may_differ(std::string_view key);
+
+/// The gate of a type: the scene's with the type's keys.
+[[nodiscard]] dynamics::GateParams gate_of(const Scene& scene, const Terrain::Type& type);
+/// The gates of the scene's field: its own, then each type that is not like one before.
+[[nodiscard]] FieldGates gates_of(const Scene& scene);
+/// By type of the terrain: which of gates_of(scene).types() it is.
+[[nodiscard]] std::vector<int> gate_types(const Scene& scene);
+
+/// Throws std::invalid_argument when the scene has a terrain; `what` cannot use it.
+void require_no_terrain(const Scene& scene, const std::string& what);
+
+/// A type for each cell of the field, drawn by the terrain's shares; the rest is the scene's own
+/// gate. A cell's draw is that of its place from the start, whatever the size of the field.
+[[nodiscard]] std::vector<int> drawn_map(const Terrain& terrain, const FieldParams& field);
+
+/// The map, a row of gates each, the far side first: ".s.t", or ".,soft,.,stiff" where a name is
+/// longer than a letter.
+[[nodiscard]] std::vector<std::string> map_rows(const Terrain& terrain, const FieldParams& field);
+
+/// "[terrain]\nmap = [...]\n\n[terrain.types.s]\n...": what reads back the same.
+[[nodiscard]] std::string terrain_toml(const Terrain& terrain, const FieldParams& field);
+
+}  // namespace gatewalk::lattice

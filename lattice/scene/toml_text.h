@@ -1,0 +1,38 @@
+#pragma once
+/// Values of a TOML file as messages show them.
+
+#include <toml++/toml.h>
+
+#include <string>
+#include <string_view>
+
+#include "lattice/scene/digits.h"
+
+namespace gatewalk::lattice {
+
+/// Fit for one line of a message, whatever a file contains.
+[[nodiscard]] inline std::string printable(std::string_view raw) {
+  constexpr std::size_t kLongest = 60;
+  std::string shown;
+  for (const char c : raw.substr(0, kLongest)) {
+    shown += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  }
+  if (raw.size() > kLongest) {
+    while (!shown.empty() && static_cast<unsigned char>(shown.back()) >= 0x80) shown.pop_back();
+    shown += "...";
+  }
+  return shown;
+}
+
+/// " = -3", " = \"fast\"", " (an array)": the value behind a key, as a message shows it.
+[[nodiscard]] inline std::string shown_value(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return " = " + toml_float(number->get());
+  if (const auto* whole = node.as_integer()) return " = " + std::to_string(whole->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? " = true" : " = false";
+  if (const auto* string = node.as_string()) return " = \"" + printable(string->get()) + "\"";
+  if (node.is_array()) return " (an array)";
+  if (node.is_table()) return " (a table)";
+  return " (a date or time)";
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,414 @@
+// Gates of several types in one field: table [terrain], and what runs and chains make of it.
+#include "lattice/scene/terrain.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "lattice/compare.h"
+#include "lattice/scene/scene.h"
+#include "lattice/study/prediction.h"
+#include "lattice/study/tree_chain.h"
+#include "lattice/study/trials.h"
+#include "lattice/study/validation.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::StateSpace;
+
+/// Two types in 3 x 2 gates.
+const std::string kTypes = R"(
+[terrain.types.s]
+beams.stiffness_left_Nm_per_rad = 200.0
+beams.stiffness_right_Nm_per_rad = 200.0
+
+[terrain.types.t]
+forces.propulsion_N = 6.0
+)";
+const std::string kField = "field = { columns = 3, rows = 2 }\nrun.method = \"moreau\"\n";
+
+Scene with_map(const std::string& map, const std::string& types = kTypes,
+               const std::string& keys = kField) {
+  return parse_scene(keys + "[terrain]\n" + map + "\n" + types, "x.toml");
+}
+
+std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    (void)parse_scene(text, "x.toml", overrides);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "(accepted)";
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// ---- The table
+
+TEST(Terrain, TheFirstRowOfTheMapIsTheFarSide) {
+  const Scene scene = with_map(R"(map = ["s.t", "..s"])");
+  ASSERT_TRUE(scene.terrain);
+  EXPECT_EQ(scene.terrain->type_of_cell, (std::vector<int>{0, 0, 1, 1, 0, 2}));
+  const FieldGates gates = gates_of(scene);
+  EXPECT_EQ(gates.at(2, 0).beams.stiffness_left, 200.0);
+  EXPECT_EQ(gates.at(2, 0).forces.propulsion, scene.gate.forces.propulsion);
+  EXPECT_EQ(gates.at(2, 1).forces.propulsion, 6.0);
+  EXPECT_EQ(gates.at(0, 0).beams.stiffness_left, scene.gate.beams.stiffness_left);
+}
+
+TEST(Terrain, ReadsBackTheSame) {
+  for (const std::string map :
+       {"map = [\"s.t\", \"..s\"]", "random = { s = 0.3, t = 0.2 }\nseed = 5",
+        "random = { s = 0.25, t = 0.75 }"}) {
+    const Scene scene = with_map(map);
+    const Scene again = parse_scene(to_toml(scene), "again");
+    EXPECT_EQ(to_toml(again), to_toml(scene));
+    EXPECT_EQ(again.terrain->type_of_cell, scene.terrain->type_of_cell);
+    EXPECT_TRUE(physics_differences(again, scene).empty());
+  }
+  const Scene named = with_map("map = [\"soft, ., soft\", \".,.,soft\"]",
+                               "types.soft.beams.stiffness_left_Nm_per_rad = 200\n");
+  EXPECT_EQ(map_rows(*named.terrain, named.field),
+            (std::vector<std::string>{"soft,.,soft", ".,.,soft"}));
+  EXPECT_EQ(to_toml(parse_scene(to_toml(named), "again")), to_toml(named));
+}
+
+TEST(Terrain, AMapMayBeAFileBesideTheScene) {
+  const std::filesystem::path folder = testing::TempDir();
+  std::ofstream(folder / "map.csv") << "s,.,t\r\n.,.,s\n\n";
+  std::ofstream(folder / "letters.txt") << "s.t\n..s\n";
+  std::ofstream(folder / "bad.csv") << "s,.,t\n.,q,s\n";
+  const auto read = [&](const std::string& file) {
+    std::ofstream(folder / "scene.toml") << kField << "[terrain]\nmap_file = \"" << file << "\"\n"
+                                         << kTypes;
+    return read_scene((folder / "scene.toml").string(), {});
+  };
+  for (const std::string file : {"map.csv", "letters.txt"})
+    EXPECT_EQ(read(file).terrain->type_of_cell, (std::vector<int>{0, 0, 1, 1, 0, 2})) << file;
+  const auto message = [&](const std::string& file) {
+    try {
+      (void)read(file);
+    } catch (const SceneError& e) {
+      return std::string(e.what());
+    }
+    return std::string("(accepted)");
+  };
+  EXPECT_TRUE(contains(message("bad.csv"),
+                       "bad.csv:2: row 2 of the map, column 2: \"q\" is no type of gate: there are "
+                       "., s, t"))
+      << message("bad.csv");
+  EXPECT_TRUE(contains(message("none.csv"), "scene.toml:4: terrain.map_file: "))
+      << message("none.csv");
+}
+
+// A share of each type as often as asked for, the same for the same seed, and where a gate is
+// (counted from the start's column) whatever the size of the field.
+TEST(Terrain, DrawsAMapByShares) {
+  const auto drawn = [](int columns, int rows, int seed) {
+    return with_map("random = { s = 0.3, t = 0.2 }\nseed = " + std::to_string(seed), kTypes,
+                    "field = { columns = " + std::to_string(columns) +
+                        ", rows = " + std::to_string(rows) + " }\n")
+        .terrain->type_of_cell;
+  };
+  const std::vector<int> large = drawn(101, 101, 5);
+  for (const auto& [type, share] : {std::pair{0, 0.5}, {1, 0.3}, {2, 0.2}})
+    EXPECT_NEAR(static_cast<double>(std::count(large.begin(), large.end(), type)) / 10201.0, share,
+                4.0 * std::sqrt(share * (1.0 - share) / 10201.0));
+  EXPECT_EQ(drawn(101, 101, 5), large);
+  EXPECT_NE(drawn(101, 101, 6), large);
+  const std::vector<int> small = drawn(9, 4, 5);
+  for (int row = 0; row < 4; ++row)
+    for (int i_x = -4; i_x <= 4; ++i_x)
+      EXPECT_EQ(small[static_cast<std::size_t>(row * 9 + i_x + 4)],
+                large[static_cast<std::size_t>(row * 101 + i_x + 50)]);
+}
+
+TEST(Terrain, OverridesChangeSingleKeys) {
+  const std::string text = kField + "[terrain]\nmap = [\"s.t\", \"..s\"]\n" + kTypes;
+  const Scene scene = parse_scene(text, "x.toml",
+                                  {"terrain.types.s.beams.stiffness_left_Nm_per_rad=300",
+                                   "terrain.map=[\"...\", \"tts\"]", "forces.drag_Ns_per_m=0.5"});
+  const FieldGates gates = gates_of(scene);
+  EXPECT_EQ(gates.at(2, 0).beams.stiffness_left, 300.0);
+  EXPECT_EQ(gates.at(2, 0).beams.stiffness_right, 200.0);
+  EXPECT_EQ(gates.at(2, 0).forces.drag, 0.5);  // a type has the scene's other keys
+  EXPECT_EQ(gates.at(0, 0).forces.propulsion, 6.0);
+}
+
+TEST(Terrain, ErrorsNameFileLineKeyAndWhatIsAllowed) {
+  const auto says = [](const std::string& table, const std::string& message,
+                       const std::string& types = kTypes, const std::string& keys = kField) {
+    const std::string text = refusal(keys + "[terrain]\n" + table + "\n" + types);
+    EXPECT_TRUE(contains(text, message)) << text;
+  };
+  says("map = [\"s.t\", \".x.\"]",
+       "x.toml:4: terrain.map: row 2 of the map, column 2: \"x\" is no type of gate: there are ., "
+       "s, "
+       "t");
+  says("map = [\"s.t\",\n \"..\"]",
+       "x.toml:5: terrain.map: row 2 of the map has 2 gates, field.columns = 3");
+  says("map = [\"s.t\"]", "x.toml:4: terrain.map: the map has 1 rows, field.rows = 2");
+  says("map = \"s.t\"", "terrain.map = \"s.t\" is not permitted: must be an array of texts");
+  says("random = { s = 0.7, t = 0.4 }",
+       "x.toml:4: terrain.random.t = 0.4: the shares of terrain.random sum up to 1.1, more than 1");
+  says("random = { s = -0.1 }", "must be a share in [0, 1]");
+  says("random = { u = 0.1 }", "u is no type of gate: there are ., s, t");
+  says("random = { s = 0.1 }\nseed = -1", "terrain.seed = -1 is not permitted");
+  says("map = [\"s.t\", \"...\"]\nseed = 1", "terrain.seed = 1 has no meaning");
+  says("map = [\"s.t\", \"...\"]\nrandom = { s = 0.1 }",
+       "must have one of map, map_file and random");
+  says("", "must have one of map, map_file and random");
+  says("maps = 1", "x.toml:4: unknown key terrain.maps; [terrain] has map, map_file, random");
+  const std::string map = "map = [\"...\", \"...\"]";
+  for (const std::string key : {"body.mass_kg", "beams.joint_x_m", "beams.joint_y_m",
+                                "run.time_limit_s", "run.method", "field.rows", "start.x_m"})
+    says(map,
+         "x.toml:6: terrain.types.s." + key + " is not permitted: all gates of a field have it",
+         "[terrain.types.s]\n" + key + " = 1\n");
+  says(map, "terrain.types.s: unknown key beams.mass; the closest known key is beams.mass_kg",
+       "[terrain.types.s]\nbeams.mass = 1\n");
+  says(map, "x.toml:6: terrain.types.s.beams.mass_kg = -1 is not permitted: must lie in (0, ",
+       "[terrain.types.s]\nbeams.mass_kg = -1\n");
+  says(map, "x.toml:6: terrain.types.s: ", "[terrain.types.s]\nforces.random_rate_Hz = 33.3\n");
+  says(map, "a type's name must be letters", "[terrain.types.\"1 s\"]\nbeams.mass_kg = 1\n");
+  says(map, "field.fidelity = \"all\" is not permitted with [terrain]", kTypes,
+       "field = { columns = 3, rows = 2, fidelity = \"all\" }\nrun.method = \"moreau\"\n");
+  EXPECT_TRUE(contains(refusal("terrain = 3\n"), "x.toml:1: terrain = 3 is not permitted"));
+}
+
+TEST(Terrain, IsDescribedAndCompared) {
+  const Scene scene = with_map("map = [\"s.t\", \"..s\"]");
+  const auto keys = describe(scene);
+  const auto last = keys.back();
+  EXPECT_EQ(last.key, "terrain.types.t.forces.propulsion_N");
+  EXPECT_EQ(last.value, "6.0");
+  EXPECT_EQ(last.unit, "N");
+  EXPECT_EQ(last.source, "x.toml:11");
+  Scene other = scene;
+  other.terrain->types[0].keys[0].value = 250.0;
+  EXPECT_EQ(physics_differences(scene, other),
+            (std::vector<std::string>{
+                "terrain.types.s.beams.stiffness_left_Nm_per_rad: 200 here, 250 there"}));
+  other = scene;
+  other.terrain->types.pop_back();
+  EXPECT_EQ(physics_differences(scene, other),
+            (std::vector<std::string>{"terrain.types.t: none there"}));
+  EXPECT_EQ(physics_differences(other, scene),
+            (std::vector<std::string>{"terrain.types.t: none here"}));
+  other = scene;
+  other.terrain->type_of_cell.assign(6, 0);  // a map shapes no matrix
+  EXPECT_TRUE(physics_differences(scene, other).empty());
+}
+
+// ---- Types that are alike are one
+
+const std::string kLarge = "field = { columns = 5, rows = 5 }\nrun = { method = \"moreau\" }\n";
+const std::string kMap = "map = [\"a.b.a\", \".ab..\", \"ba.ab\", \"..a..\", \"ab.ba\"]";
+
+/// Two types with the scene's own values.
+Scene alike() {
+  return with_map(kMap,
+                  "[terrain.types.a]\nforces.propulsion_N = 8\n"
+                  "[terrain.types.b]\nbeams.damping_Nms_per_rad = 70\n",
+                  kLarge + "beams.damping_Nms_per_rad = 70\nforces.propulsion_N = 8\n");
+}
+Scene plain() {
+  return parse_scene(kLarge + "beams.damping_Nms_per_rad = 70\nforces.propulsion_N = 8\n", "plain");
+}
+/// Three that differ; no start of a trial is in the scene's own gate.
+Scene mixed() {
+  return with_map(kMap,
+                  "[terrain.types.a]\nbeams.stiffness_left_Nm_per_rad = 250\n"
+                  "beams.stiffness_right_Nm_per_rad = 250\n"
+                  "[terrain.types.b]\nbeams.stiffness_left_Nm_per_rad = 300\n"
+                  "forces.propulsion_N = 9.5\n",
+                  kLarge);
+}
+
+constexpr dynamics::BodyState kStart{4, 0, 5, 10};
+
+TEST(Terrain, TypesThatAreAlikeGiveTheBitsOfOne) {
+  const Scene several = alike(), one = plain();
+  EXPECT_EQ(gates_of(several).types().size(), 1U);
+  const FieldTally a = field_trials(several, 300, 3), b = field_trials(one, 300, 3);
+  EXPECT_TRUE((a.final_gates == b.final_gates).all());
+  EXPECT_EQ(a.endings, b.endings);
+  RunPool here, there;
+  const auto p = predict_pooled(several, here, {kStart}, {.accuracy = 0.08}),
+             q = predict_pooled(one, there, {kStart}, {.accuracy = 0.08});
+  EXPECT_TRUE((p.starts[0].final.final_cells == q.starts[0].final.final_cells).all());
+  EXPECT_EQ(p.starts[0].error.total_variation, q.starts[0].error.total_variation);
+}
+
+// Other types that stand nowhere change no bit either.
+TEST(Terrain, AMapOfOneTypeIsThePlainScene) {
+  const Scene one = plain();
+  Scene other = mixed();
+  other.gate = one.gate;
+  other.terrain->type_of_cell.assign(25, 0);
+  ASSERT_EQ(gates_of(other).types().size(), 3U);
+  const FieldTally a = field_trials(other, 300, 3), b = field_trials(one, 300, 3);
+  EXPECT_TRUE((a.final_gates == b.final_gates).all());
+  RunPool here, there;
+  const auto p = predict_pooled(other, here, {kStart}, {.accuracy = 0.08}),
+             q = predict_pooled(one, there, {kStart}, {.accuracy = 0.08});
+  EXPECT_TRUE((p.starts[0].final.final_cells == q.starts[0].final.final_cells).all());
+  EXPECT_EQ(p.starts[0].error.total_variation, q.starts[0].error.total_variation);
+}
+
+// ---- Kernels
+
+TEST(Terrain, KernelsCountTheRunsOfEachType) {
+  const Scene scene = mixed();
+  const FieldGates gates = gates_of(scene);
+  StartTrials s;
+  s.start = {dynamics::Boundary::enter, kStart.x, kStart.vx, kStart.vy};
+  (void)run_field(gates, scene.field, kStart, StateSpace::paper(scene.gate), 9, {0, 400}, &s.full);
+  RunPool pool;
+  pool.starts.push_back(std::move(s));
+  constexpr int kPerLeaf = 7;
+  const Kernel kernel = kernel_of(gates, pool, kPerLeaf);
+  ASSERT_EQ(kernel.counts.size(), 3U);
+  std::vector<std::int64_t> runs(3, 0);
+  for (std::size_t i = 0; i < 400; ++i) {
+    const auto passages = pool.starts[0].full.of_trial(i);
+    EXPECT_EQ(passages.front().type, gates.type_of(2, 0));
+    for (const GatePassage& run : passages.subspan(1))
+      runs[run.type] += symmetric(gates.types()[run.type]) ? 2 : 1;  // mirror images
+  }
+  for (std::size_t type = 0; type < 3; ++type) {
+    const markov::Counts& counts = kernel.counts[type];
+    for (int b = 0; b < dynamics::kBoundaries; ++b) {
+      const auto boundary = static_cast<dynamics::Boundary>(b);
+      const int first = kernel.space.first(boundary);
+      const auto leaves = static_cast<int>(
+          (kernel.space.trees()[static_cast<std::size_t>(b)].nodes.size() + 1) / 2);
+      // Neighbours with the same row share their runs.
+      std::int64_t in_parts = 0, parts = 0, least = std::numeric_limits<std::int64_t>::max();
+      for (int leaf = first; leaf < first + leaves; ++leaf) {
+        const Eigen::SparseVector<std::int64_t> row = counts.row(leaf).transpose();
+        if (leaf > first) {
+          const Eigen::SparseVector<std::int64_t> before = counts.row(leaf - 1).transpose();
+          if (Eigen::VectorX<std::int64_t>(row) == Eigen::VectorX<std::int64_t>(before)) continue;
+        }
+        in_parts += row.sum();
+        ++parts;
+        least = std::min(least, row.sum());
+      }
+      if (parts > 1) {
+        EXPECT_GE(least, kPerLeaf) << type << " " << b;
+      }
+      runs[type] -= in_parts;
+    }
+    EXPECT_EQ(runs[type], 0) << type;
+  }
+}
+
+// ---- The chain and the dynamics of a mixed field
+
+TEST(Terrain, TheChainIsThatOfItsOwnDynamics) {
+  const Scene scene = mixed();
+  RunPool pool;
+  const auto p = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.03});
+  ASSERT_TRUE(p.reached);
+  const FieldTally truth = run_field(gates_of(scene), scene.field, kStart,
+                                     StateSpace::paper(scene.gate), 77, {0, 20'000});
+  const double tv = total_variation(p.starts[0].final.final_cells, shares(truth.final_gates));
+  const double floor = expected_total_variation(p.starts[0].final.final_cells, truth.trials);
+  EXPECT_LT(tv, floor + p.starts[0].error.total_variation);
+  // The plain scene's field is another one.
+  EXPECT_GT(total_variation(shares(field_trials(plain(), 5000, 1).final_gates),
+                            shares(truth.final_gates)),
+            0.1);
+}
+
+TEST(Terrain, AFileHoldsAMatrixForEachType) {
+  const Scene scene = mixed();
+  const TreeChain chain =
+      make_tree_chain(scene, {.accuracy = {.accuracy = 0.08}, .starts = {kStart}});
+  ASSERT_EQ(chain.transitions.size(), 3U);
+  const std::string path = testing::TempDir() + "terrain.nc";
+  MatrixFile file{chain.transitions.front(), {{"scene", to_toml(scene)}}, arrays_of(chain.pool)};
+  put_matrices(file, scene, chain.transitions);
+  write_matrix(path, file);
+
+  const SceneMatrix m = read_scene_matrix(path, "", {});
+  EXPECT_EQ(m.file.types.size(), 2U);
+  const auto matrices = matrices_of(m.file, m.scene);
+  for (std::size_t type = 0; type < 3; ++type)
+    EXPECT_EQ(matrices[type].rows, chain.transitions[type].rows) << type;
+  RunPool pool = pool_of(m.file, m.scene, path);
+  EXPECT_TRUE(pool.starts[0].knows_endings);
+  EXPECT_EQ(pool.starts[0].full.final_gates, chain.pool.starts[0].full.final_gates);
+  const auto p = predict_pooled(m.scene, pool, {kStart}, {.accuracy = 0.08});
+  EXPECT_EQ(p.gate_runs, 0);
+  EXPECT_LT(
+      total_variation(p.starts[0].final.final_cells, chain.prediction->starts[0].final.final_cells),
+      1e-12);
+  // Walks with the matrices end as the prediction from them says.
+  const ChainStart start = chain_start(matrices[0].space, m.scene.field, kStart);
+  const auto walked =
+      walks(make_chain(gates_of(m.scene), matrices), m.scene.field, start, 100'000, 4);
+  const auto exact = predict(field_of(m, path, {}), m.scene.field, {start}, {}, 1);
+  const auto& final = exact.starts[0].final.final_cells;
+  EXPECT_LT(total_variation(shares(walked.final_cells), final),
+            1.5 * expected_total_variation(final, 100'000));
+  EXPECT_EQ(walked.unsampled, 0);
+
+  // In a field where another gate stands at the start, its own first runs are none.
+  Scene moved = m.scene;
+  moved.terrain->type_of_cell[2] = 1;
+  RunPool others = pool_of(m.file, moved, path);
+  EXPECT_TRUE(others.starts.empty());
+  EXPECT_EQ(others.gate_runs(), chain.pool.gate_runs());
+
+  // Another scene's types are refused by name.
+  const std::string scene_path = testing::TempDir() + "terrain.toml";
+  std::ofstream(scene_path) << to_toml(scene);
+  const auto message = [&](const std::string& override) {
+    try {
+      (void)read_scene_matrix(path, scene_path, {override});
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+    return std::string("(accepted)");
+  };
+  EXPECT_EQ(message("terrain.map=[\"a.b.a\", \".....\", \".....\", \".....\", \"bbbbb\"]"),
+            "(accepted)");
+  EXPECT_TRUE(contains(message("terrain.types.b.forces.propulsion_N=9"),
+                       "terrain.types.b.forces.propulsion_N: 9 here, 9.5 there"));
+  EXPECT_TRUE(
+      contains(message("terrain.types.c.forces.propulsion_N=9"), "terrain.types.c: none there"));
+}
+
+TEST(Terrain, BinsHaveAMatrixForEachType) {
+  const Scene scene = mixed();
+  const States states = states_of(scene, {BinsChoice::Kind::paper}, {kStart}, 1);
+  const auto matrices = build_matrices(scene, states, 20, 1);
+  ASSERT_EQ(matrices.size(), 3U);
+  // Each is that of a scene whose own gate is of the type.
+  for (std::size_t type = 0; type < 2; ++type) {
+    Scene own = scene;
+    own.gate = gate_of(scene, scene.terrain->types[type]);
+    own.terrain.reset();
+    EXPECT_EQ(build_matrices(own, states, 20, 1).front().rows, matrices[type + 1].rows);
+  }
+  const PaperStart start{kStart.x, kStart.vx, kStart.vy, {}, {}};
+  const Validation v =
+      validate_chain(scene, matrices, {start}, {.trials = 200, .walks = {}, .null_draws = 19});
+  EXPECT_EQ(v.starts[0].dynamics.trials, 200);
+  EXPECT_TRUE(v.memory.ahead.steps.empty());
+  EXPECT_GT(v.memory.runs, 200);
+  EXPECT_THROW((void)validate_chain(scene, {matrices[0]}, {start}, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
