@@ -18,7 +18,7 @@ struct Committor {
 };
 
 /// Row by row from the far edge; within a row by sweeps to both sides until no value changes by
-/// more than 1e-13 of the row's largest. Relative accuracy is that of sums of positive numbers,
+/// more than 1e-12 of the row's largest. Relative accuracy is that of sums of positive numbers,
 /// however small the values: nothing is subtracted. A row never sampled does not commit. Throws
 /// std::invalid_argument for moves to a row below and fields of another size than the chain's,
 /// std::runtime_error when 10^5 sweeps do not do.
