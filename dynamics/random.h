@@ -28,7 +28,8 @@ enum class Purpose : std::uint64_t {
   comparison = 4,
   resampling = 5,
   memory = 6,
-  terrain = 7
+  terrain = 7,
+  rare = 8
 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.
@@ -114,6 +115,11 @@ class RandomForce {
   }
   [[nodiscard]] double left() const { return left_; }
   void pass(double seconds) { left_ -= seconds; }
+  /// The draw in force is held on; those after it are of another sequence.
+  void go_on_with(Random random) {
+    random_ = random;
+    used_ = normals_.size();
+  }
   /// Drops the rest of the hold: the next draw of the sequence comes now.
   void drop_hold() { left_ = 0.0; }
 

@@ -1,0 +1,80 @@
+#include "cli/render/rare.h"
+#include "cli/arguments.h"
+#include "cli/render/choice.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
+#include "lattice/study/trials.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// How many of so many trials enter the rows; none without --trials.
+DirectRows direct_rows(const Options& options, lattice::Scene scene, int row) {
+  DirectRows direct;
+  if (!options.has("trials")) return direct;
+  direct.trials = options.trials();
+  scene.field.rows = row;
+  scene.field.max_gates = 0;
+  const dynamics::Stopwatch watch;
+  const auto tally = lattice::field_trials(scene, direct.trials, options.seed(), options.work());
+  direct.seconds = watch.seconds();
+  std::int64_t beyond = tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)];
+  direct.entered.assign(static_cast<std::size_t>(row), beyond);
+  for (int r = row - 1; r > 0; --r) {
+    beyond += tally.final_gates.row(r).sum();
+    direct.entered[static_cast<std::size_t>(r) - 1] = beyond;
+  }
+  return direct;
+}
+
+}  // namespace
+
+int run_rare(const Arguments& arguments) {
+  Options options(
+      "rare SCENE [options]",
+      "The chance that a body enters a far row of a field without limit of gates, however small: "
+      "full trials of the\n"
+      "dynamics, split into more bodies where they get far (importance splitting). How far a body "
+      "is, a chain says\n"
+      "that some gate runs make first; the estimate is unbiased whatever it says. Beside it stands "
+      "the chain's own\n"
+      "answer.",
+      "gatewalk rare scenes/field.toml --row 20 --json rare.json");
+  options.scene();
+  options.add_count("row", "N",
+                    "the row to enter, counted from 0 (default: one behind the field's "
+                    "last: the field is crossed)");
+  options.add_number("accuracy", "R", "relative standard error to reach (default: 0.05)");
+  options.add_count("gate-runs", "N", "at most so many gate runs, about", "2e7");
+  options.add_count("trials", "N", "also run N trials directly, to compare");
+  options.add_seed();
+  options.add_strict();
+  options.add_figure("the chance of every row up to N");
+  if (!options.parse(arguments)) return kFine;
+  lattice::SplittingOptions how{
+      .accuracy = options.has("accuracy") ? options.number("accuracy") : 0.05,
+      .most_runs = options.count("gate-runs", 1000),
+      .seed = options.seed()};
+  if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
+    throw UsageError("--accuracy: must lie between 0 and 1");
+  lattice::Scene scene = options.read_scene();
+  how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 2001)) : scene.field.rows;
+  const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  const lattice::RareEvent event = lattice::rare_event(scene, how, options.work());
+  const DirectRows direct = direct_rows(options, scene, how.row);
+
+  Json json = to_json(event, direct);
+  if (settled) json["method"] = to_json(*settled);
+  json["made_by"] = to_json(options.provenance(scene));
+  options.give_out(json, table_of(event, direct) + method_line(settled));
+  if (!event.splitting.reached)
+    options.warn("the relative standard error of " + digits(how.accuracy) +
+                 " was not reached with " + std::to_string(how.most_runs) +
+                 " gate runs; --gate-runs allows more");
+  const int exit = status_of(options, event.splitting.health);
+  options.draw([&] { return figure_of(event, direct); });
+  return exit;
+}
+
+}  // namespace gatewalk::cli

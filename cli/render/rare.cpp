@@ -1,0 +1,88 @@
+#include "cli/render/rare.h"
+
+#include <cstdio>
+
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// "1.23e-12"
+std::string chance(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+std::string interval(const std::array<double, 2>& i) {
+  return "[" + chance(i[0]) + ", " + chance(i[1]) + "]";
+}
+
+Json to_json(const lattice::RowChance& c) {
+  const bool known = c.probability > 0.0;
+  return {{"probability", c.probability},
+          {"interval_95", known ? Json(c.interval_95()) : Json()},
+          {"relative_standard_error", known ? Json(c.relative_standard_error) : Json()}};
+}
+
+}  // namespace
+
+Json to_json(const lattice::RareEvent& event, const DirectRows& direct) {
+  const lattice::Splitting& s = event.splitting;
+  Json json = to_json(s.rows.back());
+  json["row"] = s.rows.size();
+  json["chain"] = event.chain.back();
+  json["reached"] = s.reached;
+  json["gate_runs"] = s.gate_runs + event.pool_runs;
+  json["split_trials"] = s.trials;
+  json["seconds"] = event.seconds;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    Json row = to_json(s.rows[r]);
+    row["row"] = r + 1;
+    row["chain"] = event.chain[r];
+    if (direct.trials > 0) row["direct_entered"] = direct.entered[r];
+    json["rows"].push_back(std::move(row));
+  }
+  if (direct.trials > 0) json["direct"] = {{"trials", direct.trials}, {"seconds", direct.seconds}};
+  json["status"] = to_json(s.health);
+  return json;
+}
+
+std::string table_of(const lattice::RareEvent& event, const DirectRows& direct) {
+  const lattice::Splitting& s = event.splitting;
+  const lattice::RowChance& last = s.rows.back();
+  std::string table =
+      "chance to enter row " + std::to_string(s.rows.size()) + ": " + chance(last.probability);
+  if (last.probability > 0.0)
+    table += " " + interval(last.interval_95()) + ", relative standard error " +
+             fixed(100 * last.relative_standard_error, 1) + " %";
+  table += "\nthe chain alone says " + chance(event.chain.back()) +
+           "\n\n   row      chance              95 %            chain";
+  if (direct.trials > 0) table += "      direct simulation, 95 %";
+  table += "\n";
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const lattice::RowChance& c = s.rows[r];
+    table += padded(std::to_string(r + 1), 6) + padded(chance(c.probability), 12) +
+             padded(c.probability > 0.0 ? interval(c.interval_95()) : "-", 24) +
+             padded(chance(event.chain[r]), 12);
+    if (direct.trials > 0) {
+      const auto [low, high] = dynamics::share_interval(direct.entered[r], direct.trials);
+      table += padded(chance(static_cast<double>(direct.entered[r]) /
+                             static_cast<double>(direct.trials)),
+                      12) +
+               padded(interval({low, high}), 24);
+    }
+    table += "\n";
+  }
+  return table + std::to_string(s.trials) + " trials that were split, " +
+         std::to_string(s.gate_runs + event.pool_runs) + " gate runs, " + fixed(event.seconds, 1) +
+         " s" +
+         (direct.trials > 0 ? "; " + std::to_string(direct.trials) + " direct trials, " +
+                                  fixed(direct.seconds, 1) + " s"
+                            : "") +
+         "\n";
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,65 @@
+#pragma once
+/// How likely a body is to get far into a field, where direct simulation would never see it:
+/// importance splitting of full trials (Villen-Altamirano 1991; Glasserman et al. 1999) with the
+/// chain's committor as the measure of how far a body has got.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "dynamics/health.h"
+#include "dynamics/work.h"
+#include "lattice/run_pool.h"
+#include "lattice/scene/scene.h"
+
+namespace gatewalk::lattice {
+
+/// How much an entry into a gate is worth: in proportion to the chance to reach the target from
+/// there, as well as one knows. Any function > 0 gives an unbiased estimate, a good one a sure one.
+using EntryValue = std::function<double(int column, int row, const dynamics::Crossing& entry)>;
+
+struct SplittingOptions {
+  int row = 0;                          // the target: entering it, rows counted from 0
+  double accuracy = 0.05;               // relative standard error that ends it
+  std::int64_t most_runs = 20'000'000;  // gate runs, about
+  std::uint64_t seed = 1;
+};
+
+/// Chance to enter one row.
+struct RowChance {
+  double probability = 0.0;
+  double relative_standard_error = 0.0;  // NaN where no body came
+  [[nodiscard]] std::array<double, 2> interval_95() const;
+};
+
+struct Splitting {
+  std::vector<RowChance> rows;  // (options.row) rows 1, 2, ... up to the target
+  std::int64_t trials = 0;      // independent ones, each of which becomes many bodies or none
+  std::int64_t gate_runs = 0;
+  bool reached = false;  // as accurate as was asked for
+  dynamics::Health health;
+};
+
+/// Full trials from the scene's start, without limit of gates. A body of weight w that enters a
+/// gate of value v is to weigh v0/v, v0 the value of the start: within a factor of two it goes on
+/// as it is; else it becomes a whole number of bodies of such weights, by chance so that the mean
+/// is w, each with random forces of its own from then on. The weights that enter a row add up to an
+/// unbiased estimate of the chance to enter it, whatever the values. The same bits on any number of
+/// threads. Throws dynamics::InvalidParameter, also for another fidelity than `active`;
+/// std::invalid_argument for a row below 1 and a value that is not positive.
+[[nodiscard]] Splitting split(const Scene& scene, double start_value, const EntryValue& value,
+                              const SplittingOptions& options, const dynamics::Work& work = {});
+
+struct RareEvent {
+  Splitting splitting;
+  std::vector<double> chain;  // (options.row) the chain's own answers: rows 1, 2, ...
+  std::int64_t pool_runs = 0;
+  double seconds = 0.0;
+};
+
+/// The same with the committor of a chain that full trials make first.
+[[nodiscard]] RareEvent rare_event(const Scene& scene, const SplittingOptions& options,
+                                   const dynamics::Work& work = {});
+
+}  // namespace gatewalk::lattice

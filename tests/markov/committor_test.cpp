@@ -1,0 +1,55 @@
+#include "markov/committor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "markov/predict.h"
+#include "tests/markov/chains.h"
+
+namespace gatewalk::markov {
+namespace {
+
+using namespace test;
+
+// From every state of some cells: what a prediction without limit says of the far edge.
+TEST(Committor, IsTheChanceOfTheFarEdge) {
+  const Chain chain = Chain::from_counts(lattice_counts(3), never_down());
+  const Field field{5, 6};
+  const Committor c = committor(chain, field);
+  for (const int row : {0, 3, 5})
+    for (const int column : {0, 2, 4})
+      for (int input = 0; input < 87; input += 7) {
+        const auto p = predict(chain, field, {{column, row, input}});
+        EXPECT_NEAR(c(column, row, input), p[0].endings[static_cast<std::size_t>(Ending::far_edge)],
+                    1e-11)
+            << column << " " << row << " " << input;
+      }
+}
+
+// One way up with chance q a row: q^n, however small.
+TEST(Committor, KeepsItsDigitsWhereItIsSmall) {
+  const double q = 0.01;
+  const Chain chain =
+      Chain::from_probabilities(matrix(1, 2, {{0, 0, q}, {0, 1, 1 - q}}), {{0, 0, 1}, {}});
+  const Committor c = committor(chain, {3, 100});
+  for (const int row : {0, 50, 99})
+    EXPECT_NEAR(std::log10(c(1, row, 0)) / std::log10(std::pow(q, 100 - row)), 1.0, 1e-12) << row;
+}
+
+TEST(Committor, TakesCellsOfSeveralTypes) {
+  const auto chain = [](double q) {
+    return Chain::from_probabilities(matrix(1, 2, {{0, 0, q}, {0, 1, 1 - q}}), {{0, 0, 1}, {}});
+  };
+  const FieldChain rows = FieldChain::by_row({chain(0.5), chain(0.25)}, {0, 1, 1});
+  EXPECT_DOUBLE_EQ(committor(rows, {2, 3})(0, 0, 0), 0.5 * 0.25 * 0.25);
+}
+
+TEST(Committor, RefusesMovesDown) {
+  const Chain chain = Chain::from_counts(lattice_counts(3), lattice_exits());
+  EXPECT_THROW((void)committor(chain, {5, 6}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::markov
