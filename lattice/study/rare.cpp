@@ -149,6 +149,7 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
   if (!(start_value > 0.0)) throw std::invalid_argument("splitting: a value is not positive");
   if (scene.field.fidelity != Fidelity::active)
     throw InvalidParameter("field.fidelity", "field.fidelity must be \"active\" for splitting");
+  require_no_terrain(scene, "splitting");
   const auto method = make_method(scene.gate);
   Splitting result;
   Sums sums(options.row);
@@ -211,9 +212,9 @@ constexpr int kPerLeafOfValues = 40;
 constexpr double kLeastValue = 0.02;
 
 /// The committor for each target row 1 .. rows, of bodies from the start: first rows of a kernel.
-std::vector<double> chances(const Kernel& kernel, const std::vector<std::int64_t>& first,
-                            const FieldParams& field) {
-  const markov::Chain chain = chain_of(kernel, {first});
+std::vector<double> chances(const Kernel& kernel, const FieldGates& gates,
+                            const std::vector<std::int64_t>& first, const FieldParams& field) {
+  const markov::FieldChain chain = chain_of(kernel, gates, field, {first});
   const int start = chain.inputs() - 1;
   std::vector<double> out;
   // The chance to enter row r of a field is that to leave one of r rows; these are solved from
@@ -228,6 +229,7 @@ std::vector<double> chances(const Kernel& kernel, const std::vector<std::int64_t
 
 RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const Work& work) {
   const Stopwatch watch;
+  require_no_terrain(scene, "splitting");
   Scene deep = scene;
   deep.field.rows = options.row;
   deep.field.max_gates = 0;
@@ -243,13 +245,14 @@ RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const 
                                               runner.gates_per_trial()));
   runner.finish();
 
-  const GateParams& p = deep.gate;
+  const FieldGates gates(deep.gate);
   RareEvent event{.splitting = {}, .chain = {}, .pool_runs = runner.gate_runs};
-  const Kernel fine = kernel_of(p, pool);
-  event.chain = chances(fine, first_row(p, fine.space, start), deep.field);
-  const Kernel coarse = kernel_of(p, pool, kPerLeafOfValues);
+  const Kernel fine = kernel_of(gates, pool);
+  event.chain = chances(fine, gates, first_row(gates, fine.space, start), deep.field);
+  const Kernel coarse = kernel_of(gates, pool, kPerLeafOfValues);
   markov::Committor values = markov::committor(
-      chain_of(coarse, {first_row(p, coarse.space, start)}), {deep.field.columns, options.row});
+      chain_of(coarse, gates, deep.field, {first_row(gates, coarse.space, start)}),
+      {deep.field.columns, options.row});
   const auto of_row =
       static_cast<std::size_t>(values.columns) * static_cast<std::size_t>(values.inputs);
   for (std::size_t row = 0; row < values.values.size(); row += of_row) {
