@@ -32,6 +32,7 @@ run lattice "$scenes/robot.toml" --trials 1000 --figure ../lattice_robot.svg
 "$gatewalk" show paper.nc --figure ../show_paper.svg >/dev/null
 "$gatewalk" show tree.nc --figure ../show_tree.svg >/dev/null
 run validate "$field" --bins paper --matrix-trials 20 --trials 500 --figure ../validate.svg
+run rare "$field" --set run.method=moreau --row 8 --accuracy 0.2 --trials 2000 --figure ../rare.svg
 run trace "$scenes/soft_left.toml" --trials 5 --figure ../trace.svg
 run trace "$field" --field --trials 4 --figure ../trace_field.svg
 # Studies draw into their folders; --figure draws the same again, stability's with all maps.

@@ -300,6 +300,12 @@ expect 2 'set has no meaning' "$gatewalk" reproduce -o paper --set forces.random
 (cd paper && eval "$(jq -r '.sections[] | select(.id == "fig9").commands[1]' report.json | sed "s#^gatewalk#$gatewalk#") --quiet --json again.json") || fail "reproduce: a command of the report does not work"
 jq -s '.[0].runs == .[1].runs' paper/again.json paper/data/fig9_300.json | grep -q true || fail "reproduce: a command of the report gives something else"
 
+# rare: every row's chance, the chain's beside it, as often as is asked for by direct trials.
+expect 0 '^chance to enter row 4: ' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 4 --accuracy 0.2 --trials 500 --json rare.json
+holds '.row == 4 and (.rows | length) == 4 and .probability > 0 and .interval_95[0] < .probability and .probability < .interval_95[1] and .chain > 0 and .relative_standard_error <= 0.2 and .gate_runs > 1000 and .rows[0].direct_entered > 0' rare.json
+expect 2 'must lie between 0 and 1' "$gatewalk" rare "$scenes/field.toml" --accuracy 5
+expect 0 'was not reached' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 12 --accuracy 0.01 --gate-runs 20000
+
 # Predictions from a scene, and chains of trees: as accurate as asked for, one file for all commands.
 fast=(--set run.method=moreau --set run.step_s=0.02)
 "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --json direct.json --threads 1 --quiet >/dev/null 2>&1
