@@ -268,11 +268,14 @@ lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatr
   const dynamics::Cell cell = space.cell(start.start.input);
   const bool own_state =
       start.start.input >= space.size() - static_cast<int>(space.points().size());
-  if (space.has_trees() && !own_state)
-    options.warn(
-        name + " is no state of its own: its row is that of its leaf, " + text_of(cell) + ", " +
-        std::to_string(m.file.transitions.trials[static_cast<std::size_t>(start.start.input)]) +
-        " runs in all, and as noisy as so few are");
+  if (space.has_trees() && !own_state) {
+    const auto type = static_cast<std::size_t>(
+        lattice::gates_of(m.scene).type_of(m.scene.field.start_column(), 0));
+    const auto runs = lattice::matrices_of(m.file, m.scene)[type].trials;
+    options.warn(name + " is no state of its own: its row is that of its leaf, " + text_of(cell) +
+                 ", " + std::to_string(runs[static_cast<std::size_t>(start.start.input)]) +
+                 " runs in all, and as noisy as so few are");
+  }
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
     return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
   };

@@ -178,11 +178,13 @@ std::string_view trimmed(std::string_view s) {
 /// The table whose name is nearest to `name`.
 std::string_view closest_table(std::string_view name) {
   name = name.substr(0, kLongestCompared);
-  const auto& keys = scene_keys();
-  return table_of(
-      std::min_element(keys.begin(), keys.end(), [&](const SceneKey& a, const SceneKey& b) {
-        return edit_distance(name, table_of(a.key)) < edit_distance(name, table_of(b.key));
-      })->key);
+  std::vector<std::string_view> tables;
+  for (const SceneKey& key : scene_keys()) tables.push_back(table_of(key.key));
+  tables.insert(tables.end(), {kSweepTable, kBinsTable, kTerrainTable});
+  return *std::min_element(tables.begin(), tables.end(),
+                           [&](std::string_view a, std::string_view b) {
+                             return edit_distance(name, a) < edit_distance(name, b);
+                           });
 }
 
 /// The key nearest to `name`, by its whole length or by the part behind the table's name.

@@ -49,6 +49,16 @@ inline Film small_field_film() {
   return film;
 }
 
+/// The same with shorter beams and more push in the middle row.
+inline Film small_mixed_film() {
+  Film film = small_field_film();
+  dynamics::GateParams other = film.gate;
+  other.beams.length = 15.0;
+  other.forces.propulsion = 9.0;
+  film.types = lattice::FieldGates::by_cell({film.gate, other}, 3, {0, 0, 0, 1, 1, 1, 0, 0, 0});
+  return film;
+}
+
 /// The same film of a scene with other units.
 inline Film in_other_units(Film film, const test::Twin& twin) {
   const double time = twin.of(0, 1, 0), force = twin.of(1, -2, 1), joule = twin.of(2, -2, 1);

@@ -39,6 +39,15 @@ TEST(Playback, BeamsOfAnyGate) {
   EXPECT_NEAR(right.tip.y, 55.0, 1e-12);
 }
 
+TEST(Playback, BeamsAreThoseOfTheirGatesType) {
+  const Film film = small_mixed_film();
+  EXPECT_EQ(beam_of(film, 0, 0, kLeft, 0.0).tip.x, 0.0);
+  EXPECT_EQ(beam_of(film, -1, 1, kLeft, 0.0).tip.x, -60.0);
+  EXPECT_EQ(beam_of(film, 1, 2, kLeft, 0.0).tip.x, 50.0);
+  const Point tip = nearest_point(film, 0, 1, kLeft, 0.0, {0.0, 90.0});
+  EXPECT_NEAR(tip.x, -10.0, 1e-12);
+}
+
 TEST(Playback, NearestPointOfABeam) {
   const Film film = small_film(0);
   const Point along = nearest_point(film, 0, 0, kLeft, 0.0, {-10.0, 15.0});

@@ -181,6 +181,7 @@ TEST(Terrain, ErrorsNameFileLineKeyAndWhatIsAllowed) {
   says(map, "a type's name must be letters", "[terrain.types.\"1 s\"]\nbeams.mass_kg = 1\n");
   says(map, "field.fidelity = \"all\" is not permitted with [terrain]", kTypes,
        "field = { columns = 3, rows = 2, fidelity = \"all\" }\nrun.method = \"moreau\"\n");
+  EXPECT_TRUE(contains(refusal("[terain]\nmap = []\n"), "the closest known table is terrain"));
   EXPECT_TRUE(contains(refusal("terrain = 3\n"), "x.toml:1: terrain = 3 is not permitted"));
 }
 

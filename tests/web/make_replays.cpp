@@ -20,6 +20,12 @@ int main(int argc, char** argv) try {
   film["runs"][1]["ending"] = "trapped";
   write("gate.html", film);
   write("field.html", to_json(small_field_film()));
+  const Json mixed = to_json(small_mixed_film());
+  write("mixed.html", mixed);
+  Json short_of_types = mixed;
+  short_of_types["types"].erase(1);
+  short_of_types["types"][0]["beam_m"] = -1.0;
+  write("short-of-types.html", short_of_types);
   int number = 0;
   for (const auto& twin : kOtherUnits) {
     const auto name = [&](const char* of) { return of + std::to_string(number) + ".html"; };

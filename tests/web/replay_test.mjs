@@ -211,6 +211,29 @@ test('a film that is incomplete says what is wrong', () => seen('broken.html', {
   assert.equal(await page.locator('canvas').count(), 0);
 }));
 
+test('gates of several types have beams and propulsion of their own', async () => {
+  let plain;
+  await seen('field.html', {}, async (page) => {
+    await page.locator('.gwr-time').fill('2.5');
+    plain = await pixels(page);
+  });
+  await seen('mixed.html', {}, async (page) => {
+    const row = page.getByRole('row', {name: /^propulsion/});
+    assert.equal(await page.getByRole('status').count(), 0);
+    const before = await row.textContent();
+    await page.locator('.gwr-time').fill('2.5');
+    assert.match(await page.getByRole('row', {name: /^gate/}).textContent(), /0, 1$/);
+    assert.match(await row.textContent(), /9(\.0+)? N$/);
+    assert.notEqual(await row.textContent(), before);
+    assert.notEqual(await pixels(page), plain);
+  });
+  await seen('short-of-types.html', {}, async (page) => {
+    const words = await page.getByRole('alert').textContent();
+    for (const fault of ['types[0].beam_m is not a number above 0', 'type_of_gate is not a type for each gate'])
+      assert.ok(words.includes(fault), words);
+  });
+});
+
 test('what the page does not know is said, the rest is shown', () => seen('unknown.html', {}, async (page) => {
   assert.match(await page.getByRole('status').textContent(), /heat_J/);
   assert.equal(await page.locator('canvas').count(), 3);
