@@ -400,6 +400,7 @@ class Rounds {
   void run() {
     const int lanes = static_cast<int>(width());
     while (runs_.in_flight() > 0) {
+      runs_.sort();
       // What few need waits until they fill all lanes, unless too many wait.
       const int least = 4 * runs_.waiting() > runs_.in_flight() ? 1 : lanes;
       try_deck<0>(least);
@@ -410,7 +411,6 @@ class Rounds {
         for (int i = 0; i < deck.size; i += lanes) commit(deck, i);
         runs_.look_after(deck);
       }
-      runs_.sort();
     }
   }
 
@@ -558,29 +558,29 @@ class Rounds {
     const WideState s = load_state(row, kFrom, i), end = load_state(row, kTo, i);
     const Wide force = load(row[kHitForce] + i), left = load(row[kLeftOver] + i);
     const WideMask hit[2] = {load(row[kHit] + i) > all(0.0), load(row[kHit + 1] + i) > all(0.0)};
-    Wide looks = load(row[kHitEvaluations] + i), struck = load(row[kHitImpacts] + i);
+    Wide evaluations = load(row[kHitEvaluations] + i), impacts = load(row[kHitImpacts] + i);
 
     const Wide side = choose(hit[kLeft], all(1.0), all(-1.0));
-    WideHit first = find_hit<N>(rules_, s, end, force, left, side, lanes, looks);
+    WideHit first = find_hit<N>(rules_, s, end, force, left, side, lanes, evaluations);
     const WideMask both = lanes & hit[kLeft] & hit[kRight];
     if (any(both)) {
-      const WideHit right = find_hit<N>(rules_, s, end, force, left, all(-1.0), both, looks);
+      const WideHit right = find_hit<N>(rules_, s, end, force, left, all(-1.0), both, evaluations);
       const WideMask earlier = both & (right.when < first.when);
       first.when = choose(earlier, right.when, first.when);
       first.there = choose(earlier, right.there, first.there);
       first.failed = first.failed | right.failed;
     }
     WideState there = first.there;
-    looks = looks + flag(lanes) + flag(lanes);
+    evaluations = evaluations + all(2.0);
     WideMask failed = first.failed | outside(rules_, there.x, there.y);
-    failed = failed | resolve_hits(rules_, lanes & ~failed, there, struck);
+    failed = failed | resolve_hits(rules_, lanes & ~failed, there, impacts);
     const Wide rest = left - first.when;
     failed = failed | (rest <= 1e-15 * load(row[kPieceTime] + i)) | too_far(rules_, there, rest);
 
     store_state(there, lanes, row, kFrom, i);
     store(rest, row[kLeftOver] + i);
-    store(looks, row[kHitEvaluations] + i);
-    store(struck, row[kHitImpacts] + i);
+    store(evaluations, row[kHitEvaluations] + i);
+    store(impacts, row[kHitImpacts] + i);
     alignas(64) double fails[kMostLanes], holds[kMostLanes];
     store(flag(failed), fails);
     store(flag(there.held[kLeft]) + flag(there.held[kRight]), holds);
@@ -605,15 +605,14 @@ class Rounds {
     const Glided glided =
         glide<N>(rules_, load(row[kHitForce] + i), load(row[kLeftOver] + i), nowhere(), end);
     const Arrival a = arrive<N>(rules_, end, glided);
-    const Wide round = load(row[kTimesHit] + i) + all(1.0);
-    const Wide looks = load(row[kHitEvaluations] + i) + all(2.0) +
-                       3.0 * (flag(s.held[kLeft]) + flag(s.held[kRight]));
+    const Wide times_hit = load(row[kTimesHit] + i) + all(1.0);
+    const Wide evaluations = load(row[kHitEvaluations] + i) + all(2.0 + 3.0 * N);
     store_state(end, lanes, row, kTo, i);
-    store(looks, row[kHitEvaluations] + i);
-    store(round, row[kTimesHit] + i);
+    store(evaluations, row[kHitEvaluations] + i);
+    store(times_hit, row[kTimesHit] + i);
     for (const Side side : {kLeft, kRight}) store(flag(a.hit[side]), row[kHit + side] + i);
     alignas(64) double fails[kMostLanes], overlap[kMostLanes];
-    store(flag(a.lost | (round > all(kMostHits))), fails);
+    store(flag(a.lost | (times_hit > all(kMostHits))), fails);
     store(a.overlap, overlap);
     for (int k = 0; k < n; ++k) {
       if (fails[k] != 0.0)

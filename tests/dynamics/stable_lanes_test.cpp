@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "dynamics/ensemble.h"
@@ -227,6 +228,39 @@ TEST(StableLanes, RunsThatGoOn) {
     RandomForce force = gate_force(p, 1, i);
     const GateRun first = run_gate(p, method, {.vy = 15.0}, force);
     expect_same_bits(run_gate(p, method, again(first), force), second[i]);
+  }
+}
+
+// The first runs of all may begin in the middle of a hold too, and of one of another length.
+TEST(StableLanes, RunsThatBeginWithinAHold) {
+  GateParams p, other;
+  other.forces.random_rate = 25.0;
+  for (const auto& [before, here] : {std::pair{p, p}, std::pair{p, other}, std::pair{other, p}}) {
+    const StableMethod first(before), method(here);
+    const int n = 60;
+    std::vector<RunSlot> begins;
+    for (int i = 0; i < n; ++i) {
+      RandomForce force = gate_force(before, 1, i);
+      const GateRun run = run_gate(before, first, {.vy = 15.0}, force);
+      force.enter(here.forces);
+      begins.push_back({i, {0.5 * run.exit.x, 0.0, run.exit.vx, run.exit.vy}, force});
+    }
+    std::vector<GateRun> runs(n);
+    int next = 0;
+    carry_out_in_lanes(
+        here, method,
+        [&](RunSlot& slot, const GateRun* ended) {
+          if (ended != nullptr) runs[slot.trial] = *ended;
+          if (next == n) return false;
+          slot = begins[next++];
+          return true;
+        },
+        kAnyWork, kAnyWork);
+    for (RunSlot& b : begins) {
+      SCOPED_TRACE(testing::Message() << "trial " << b.trial);
+      expect_same_bits(run_gate(here, method, b.start, b.force), runs[b.trial]);
+      if (HasFailure()) return;
+    }
   }
 }
 
