@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -26,90 +25,72 @@ constexpr int kMostCopies = 100;
 constexpr std::uint64_t kMostOfTrial = std::uint64_t{1} << 20;
 
 struct Body {
+  std::int64_t trial = 0;  // of the block
   int column = 0, row = 0;
   double weight = 1.0;
   BodyState from;
   RandomForce force;
 };
 
-/// One trial: a tree of bodies, walked depth first.
+/// What all trials of a call share.
+struct Aim {
+  const GateParams& p;
+  int columns, target;
+  double start_value;
+  const EntryValue& value;
+  std::uint64_t seed, row;  // of the streams
+};
+
+/// What becomes of one trial's bodies.
 class Trial {
  public:
-  Trial(const Scene& scene, int target, double start_value, const EntryValue& value,
-        std::uint64_t seed, std::int64_t number)
-      : p_(scene.gate),
-        columns_(scene.field.columns),
-        target_(target),
-        start_value_(start_value),
-        value_(value),
-        seed_(seed),
-        row_(stream_row(scene.gate, scene.start)),
+  Trial(const Aim& aim, std::int64_t number)
+      : aim_(aim),
         number_(static_cast<std::uint64_t>(number)),
         chance_(random()),
-        body_{scene.field.start_column(), 0, 1.0, scene.start,
-              RandomForce(scene.gate.forces, random())},
-        entered_(static_cast<std::size_t>(target), 0.0) {}
+        entered_(static_cast<std::size_t>(aim.target), 0.0) {}
 
-  /// The body that runs now.
-  [[nodiscard]] const Body& body() const { return body_; }
-  [[nodiscard]] const std::vector<double>& entered() const { return entered_; }
-  [[nodiscard]] const Health& health() const { return health_; }
-
-  /// Takes the run of that body, under `force` at its end. False when no body is left.
-  bool take(const GateRun& run, const RandomForce& force) {
-    health_.add(p_, run);
-    body_.force = force;
-    if (run.ending != Ending::trapped && run.ending != Ending::broken) go_on(run);
-    if (waiting_.empty()) return false;
-    body_ = std::move(waiting_.back());
-    waiting_.pop_back();
-    return true;
+  [[nodiscard]] Random random() {
+    return {Purpose::rare, {aim_.seed, aim_.row, number_ * kMostOfTrial + streams_++}};
   }
+  /// Weight that entered rows 1, 2, ..., (target).
+  [[nodiscard]] const std::vector<double>& entered() const { return entered_; }
 
- private:
-  Random random() { return {Purpose::rare, {seed_, row_, number_ * kMostOfTrial + streams_++}}; }
-
-  void go_on(const GateRun& run) {
-    const Crossing entry = crossing_of(p_, run.ending, run.exit);
+  /// Takes a body's run, and adds to `next` the bodies that go on from it.
+  void take(Body body, const GateRun& run, std::vector<Body>& next) {
+    if (run.ending == Ending::trapped || run.ending == Ending::broken) return;
+    const Crossing entry = crossing_of(aim_.p, run.ending, run.exit);
     const Move move = move_into(entry.boundary);
-    body_.column += move.di_x;
-    body_.row += move.di_y;
-    if (body_.column < 0 || body_.column >= columns_) return;
-    if (move.di_y > 0) entered_[static_cast<std::size_t>(body_.row) - 1] += body_.weight;
-    if (body_.row == target_) return;
-    body_.from = shifted_into_next(p_, run.ending, run.exit);
-    const double worth = value_(body_.column, body_.row, entry);
+    body.column += move.di_x;
+    body.row += move.di_y;
+    if (body.column < 0 || body.column >= aim_.columns) return;
+    if (move.di_y > 0) entered_[static_cast<std::size_t>(body.row) - 1] += body.weight;
+    if (body.row == aim_.target) return;
+    body.from = shifted_into_next(aim_.p, run.ending, run.exit);
+    const double worth = aim_.value(body.column, body.row, entry);
     if (!(worth > 0.0)) throw std::invalid_argument("splitting: a value is not positive");
-    const double parts = body_.weight * worth / start_value_;
-    if (parts >= 1.0 / kWindow && parts <= kWindow) {
-      waiting_.push_back(body_);
+    const double parts = body.weight * worth / aim_.start_value;
+    const bool within = parts >= 1.0 / kWindow && parts <= kWindow;
+    if (within || streams_ + kMostCopies >= kMostOfTrial) {
+      next.push_back(body);
       return;
     }
     const double whole = std::floor(std::min(parts, double{kMostCopies}));
-    const double each = parts > kMostCopies ? body_.weight / whole : body_.weight / parts;
-    int copies = static_cast<int>(whole);
-    if (parts <= kMostCopies) copies += chance_.uniform() < parts - whole;
-    if (copies > 1 && streams_ + kMostCopies >= kMostOfTrial) {
-      waiting_.push_back(body_);
-      return;
-    }
-    body_.weight = each;
+    const bool too_many = parts > kMostCopies;
+    const int copies =
+        static_cast<int>(whole) + (!too_many && chance_.uniform() < parts - whole ? 1 : 0);
+    body.weight /= too_many ? whole : parts;
     for (int copy = 0; copy < copies; ++copy) {
-      waiting_.push_back(body_);
-      if (copy > 0) waiting_.back().force.go_on_with(random());
+      next.push_back(body);
+      if (copy > 0) next.back().force.go_on_with(random());
     }
   }
 
-  const GateParams& p_;
-  int columns_, target_;
-  double start_value_;
-  const EntryValue& value_;
-  std::uint64_t seed_, row_, number_, streams_ = 0;
+ private:
+  const Aim& aim_;
+  std::uint64_t number_, streams_ = 0;
   Random chance_;  // of rounding numbers of bodies
-  Body body_;
-  std::vector<Body> waiting_;
-  std::vector<double> entered_;  // (target) weight that entered rows 1, 2, ...
-  Health health_;
+  std::vector<double> entered_;
 };
 
 /// Sums over trials, in their order.
@@ -153,35 +134,52 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
   const auto method = make_method(scene.gate);
   Splitting result;
   Sums sums(options.row);
-  const auto run = [&](TrialRange range) {
-    std::vector<std::optional<Trial>> trials(static_cast<std::size_t>(range.count));
-    carry_out_trials(
-        scene.gate, *method, range.count,
-        [&](RunSlot& slot) {
-          const Trial& t = trials[static_cast<std::size_t>(slot.trial)].emplace(
-              scene, options.row, start_value, value, options.seed, range.first + slot.trial);
-          slot.start = t.body().from;
-          slot.force = t.body().force;
-        },
-        [&](RunSlot& slot, const GateRun& run) {
-          Trial& t = *trials[static_cast<std::size_t>(slot.trial)];
-          if (!t.take(run, slot.force)) return false;
-          slot.start = t.body().from;
-          slot.force = t.body().force;
-          return true;
-        });
-    for (const auto& t : trials) {
-      sums.add(t->entered());
-      result.health += t->health();
+  const Aim aim{scene.gate,
+                scene.field.columns,
+                options.row,
+                start_value,
+                value,
+                options.seed,
+                stream_row(scene.gate, scene.start)};
+  // Gate by gate: all bodies of a block run through one gate, so that many are in flight at a time.
+  const auto run_block = [&](TrialRange range) {
+    std::vector<Trial> trials;
+    std::vector<Body> bodies, next;
+    for (std::int64_t i = 0; i < range.count; ++i) {
+      Trial& t = trials.emplace_back(aim, range.first + i);
+      bodies.push_back({i, scene.field.start_column(), 0, 1.0, scene.start,
+                        RandomForce(scene.gate.forces, t.random())});
     }
+    while (!bodies.empty()) {
+      work.tell("split trials", range.first, range.first + range.count);
+      std::vector<GateRun> runs(bodies.size());
+      carry_out_trials(
+          scene.gate, *method, std::ssize(bodies),
+          [&](RunSlot& slot) {
+            const Body& body = bodies[static_cast<std::size_t>(slot.trial)];
+            slot.start = body.from;
+            slot.force = body.force;
+          },
+          [&](RunSlot& slot, const GateRun& run) {
+            const auto i = static_cast<std::size_t>(slot.trial);
+            runs[i] = run;
+            bodies[i].force = slot.force;
+            return false;
+          });
+      for (std::size_t i = 0; i < bodies.size(); ++i) {
+        result.health.add(scene.gate, runs[i]);
+        trials[static_cast<std::size_t>(bodies[i].trial)].take(bodies[i], runs[i], next);
+      }
+      bodies = std::exchange(next, {});
+    }
+    for (const Trial& t : trials) sums.add(t.entered());
   };
   // Rounds: each as many trials as the last ones say are wanted, at most eight times those so far.
   constexpr std::int64_t kFirst = 1000;
   for (std::int64_t more = kFirst; more > 0;) {
-    const std::int64_t done = sums.trials;
-    work.in_pieces("split trials", more, [&](TrialRange range) {
-      run({done + range.first, range.count});
-    });
+    constexpr std::int64_t kBlock = 4096;
+    for (const std::int64_t end = sums.trials + more; sums.trials < end;)
+      run_block({sums.trials, std::min(kBlock, end - sums.trials)});
     const double error = sums.chance(sums.sum.size() - 1).relative_standard_error;
     result.reached = error <= options.accuracy;
     if (result.reached) break;
