@@ -38,7 +38,7 @@ Figure figure_of(const lattice::RareEvent& event, const DirectRows& direct) {
     plot += std::string("$split using 1:2:3:4 with yerrorbars pt 7 ps 0.5 lc rgb '") +
             kFirstColour + "' title 'splitting, 95 %', ";
   if (!trials.empty())
-    plot += std::string("$direct using 1:2:3:4 with yerrorbars pt 4 ps 1.2 lc rgb '") +
+    plot += std::string("$direct using 1:2:3:4 with yerrorbars pt 4 ps 0.9 lc rgb '") +
             kThirdColour + "' title '" + std::to_string(direct.trials) + " direct trials, 95 %', ";
   return {Sheet::kWidth, sheet.height,
           data_block("$chain", chain) + data_block("$split", split) +
@@ -48,7 +48,7 @@ Figure figure_of(const lattice::RareEvent& event, const DirectRows& direct) {
               Sheet::axes("'row entered'", "'chance'") +
               "set xrange [0:" + digits(static_cast<double>(s.rows.size()) + 1.0) +
               "]\nset yrange [" + digits(std::pow(10.0, std::floor(std::log10(least)) - 0.2)) +
-              ":2]\nset key bottom left samplen 2\n" + plot + "\n",
+              ":2]\nset key bottom left Left reverse samplen 1.5 width -4\n" + plot + "\n",
           kFont};
 }
 
