@@ -69,7 +69,9 @@ Figure figure_of(const std::vector<lattice::PaperStart>& given, const std::vecto
                  lattice::EndingShares Answer::*shares) {
   std::vector<FieldPicture> pictures;
   for (std::size_t i = 0; i < answers.size(); ++i)
-    pictures.emplace_back("prediction" + (given.empty() ? "" : ", " + title_of(given[i])),
+    pictures.emplace_back("prediction, " + std::to_string(answers[i].final.final_cells.cols()) +
+                              " x " + std::to_string(answers[i].final.final_cells.rows()) +
+                              " gates" + (given.empty() ? "" : ", " + title_of(given[i])),
                           answers[i].final, answers[i].*shares);
   return cli::figure_of(pictures);
 }

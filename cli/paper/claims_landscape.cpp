@@ -71,12 +71,14 @@ Claim landscape_sides() {
 Claim basin(const Findings& f) {
   const std::array<double, 2> basin = f.fig5_symmetric.fine.basin;
   const dynamics::GateParams p;
+  const bool there = !f.fig5_symmetric.fine.downhill && basin[1] > 20 && basin[1] < p.beams.joint_y;
   return {"basin",
           "Sec. II-C, Fig. 5D",
           "With a modest propulsion a basin lies in front of the beams, around y = 20 m.",
           "around 20 m",
-          "its floor is at y = " + number(basin[1], 1) + " m",
-          basin[1] > 20 && basin[1] < p.beams.joint_y ? Verdict::reproduced : Verdict::differs,
+          f.fig5_symmetric.fine.downhill ? "no basin"
+                                         : "its floor is at y = " + number(basin[1], 1) + " m",
+          there ? Verdict::reproduced : Verdict::differs,
           "F_prop = 7 N, k = 400. The disc touches the beams from y = 20 m on and has not passed "
           "their line, y = 30 m, there.",
           "fig5"};
@@ -85,14 +87,15 @@ Claim basin(const Findings& f) {
 Claim steep(const Findings& f) {
   const bool downhill = f.steep.fine.downhill;
   const Share share = f.steep.measured.traversed_share();
+  // "Always" is 100 of the paper's 100; by more trials, all of these.
+  Verdict verdict = downhill ? against(kPaperTrials, share) : Verdict::differs;
+  if (verdict == Verdict::reproduced && share.part < share.whole) verdict = Verdict::agrees;
   return {"steep",
           "Sec. II-C",
           "With enough propulsion the basin disappears and the body always traverses.",
           "always",
           std::string(downhill ? "no basin, " : "a basin, ") + percent_text(share) + " at 20 N",
-          verdict_of(!downhill || share.high < 0.99,
-                     share.part == share.whole && share.whole >= kEnoughTrials,
-                     share.whole >= kEnoughTrials),
+          verdict,
           "k = 400, Rm 10 N, d = 50. At 9 N, without random force, " +
               number(100 * fig8_at(f, 50, 9, 0).value) + " % do already.",
           "fig5"};

@@ -19,7 +19,7 @@ struct Section {
   std::string heading;
   std::vector<std::string> text;
   std::string alt;                   // what is seen, in words
-  std::vector<std::string> studies;  // whose commands gave the data
+  std::vector<std::string> studies;  // whose commands gave the data, or those of claims about it
   std::string csv;                   // ID.csv
   Figure figure;                     // ID.svg, ID.pdf
   Json film = nullptr;               // null: none

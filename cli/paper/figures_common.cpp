@@ -106,8 +106,8 @@ std::string EnergyMap::plot(const Sheet& sheet, double left, double top, const s
          "]\nset xrange [-25:25]\nset yrange [0:65]\nset xtics 20\nset ytics 20\n"
          "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#999999' "
          "fillstyle solid noborder\nplot " +
-         name + " using 1:2:3 with image, " + name + "_lines using 1:2:($3 > " +
-         digits(0.55 * ceiling) + " ? 0x000000 : 0xffffff) with lines lw 0.5 lc rgb variable";
+         name + " using 1:2:3 with image, " + name + "_lines using 1:2:" + ink(ceiling) +
+         " with lines lw 0.5 lc rgb variable";
 }
 
 std::string EnergyMap::colours(const Sheet& sheet, double left, double top) const {

@@ -14,12 +14,6 @@ namespace {
 /// Percent for a cell of a map, none as "0".
 std::string short_share(double share) { return share == 0.0 ? "0" : short_percent(share); }
 
-/// Of a map whose data are "x y value": cells of such halves.
-std::string cells(double half_x, double half_y) {
-  return " using 1:2:(" + digits(half_x) + "):(" + digits(half_y) +
-         "):3 with boxxyerror fillstyle solid noborder lc palette";
-}
-
 }  // namespace
 
 Section fig8(const Findings& f) {
@@ -63,9 +57,8 @@ Section fig8(const Findings& f) {
                            sheet, {kRight + kWide + 12, kRight + kWide + 24, kTop, kTop + kTall}) +
                            "set cbtics " + root_tics({0, 1, 5, 20, 50, 100}) + " font ',12'\n"
                      : "unset colorbox\n") +
-              "plot " + name + cells(0.5, 5) + ", '' using 1:2:4:($3 > " +
-              digits(0.6 * std::sqrt(scale.most())) +
-              " ? 0x000000 : 0xffffff) with labels tc rgb variable font ',12'\nunset label\n";
+              "plot " + name + cells(0.5, 5) + ", '' using 1:2:4:" + ink(std::sqrt(scale.most())) +
+              " with labels tc rgb variable font ',12'\nunset label\n";
   }
   for (int i = 0; i <= 6; ++i) {
     const int column = i % 4, row = i / 4;
@@ -106,7 +99,7 @@ Section fig8(const Findings& f) {
       "cell, one for each damping; below, the same as curves over the propulsion, a panel for "
       "each random force: near zero below 8 or 9 newton of propulsion, near one above it "
       "without random force, falling with random force there.",
-      {"fig8"},
+      {"fig8", "exits"},
       csv.text(),
       figure_of(sheet, data,
                 std::string(kSequential) +
@@ -121,6 +114,7 @@ Section fig8(const Findings& f) {
 
 Section fig12(const Findings& f) {
   constexpr std::int64_t kFew = 10;  // traversed; of fewer no share is shown
+  int grey = 0;                      // cells of so few
   Csv csv(
       "damping_Nms_per_rad,propulsion_N,random_N,k_left_Nm_per_rad,trials,successes,right,low,"
       "high");
@@ -139,6 +133,7 @@ Section fig12(const Findings& f) {
           csv.row(damping, force, random, k, static_cast<double>(cell.trials),
                   static_cast<double>(s.whole), s.value, s.low, s.high);
           const std::string place = std::to_string(random) + " " + std::to_string(k) + " ";
+          grey += s.whole < kFew;
           if (s.whole < kFew)
             few += place + "(" + std::to_string(s.whole) + ")\n";
           else
@@ -171,9 +166,10 @@ Section fig12(const Findings& f) {
        std::to_string(f.fig12.points[0].trials) +
        " trials a cell. Where fewer than 10 get through there is no share to speak of: "
        "those cells are grey and say, in parentheses, how many do."},
-      "Four maps of the share of right traversals over left stiffness and random force: blue, "
-      "none on the right, at the soft end, towards white, about one half, where both beams are "
-      "alike; some cells are grey with a small number in parentheses.",
+      "Four maps of the share of right traversals over left stiffness and random force, a number "
+      "in each cell: from blue, none on the right, over white, one half, to red, all. In " +
+          std::to_string(grey) + " of " + std::to_string(f.fig12.points.size()) +
+          " cells, grey, a small number in parentheses.",
       {"fig12"},
       csv.text(),
       figure_of(

@@ -36,11 +36,13 @@ constexpr char kWay[] = "#ffffff", kOther[] = "#ff9d5c";  // of tracks over maps
 }  // namespace
 
 Section fig6(const Findings& f) {
+  constexpr double kBelow = 1.0;  // J, drawn as below the landscape
+  const auto dives = std::count_if(f.fig6.runs.begin(), f.fig6.runs.end(),
+                                   [](const TracedRun& r) { return depth_of(r) > kBelow; });
   // The run that sinks deepest below the landscape.
   const TracedRun& run = *std::max_element(
       f.fig6.runs.begin(), f.fig6.runs.end(),
       [](const TracedRun& a, const TracedRun& b) { return depth_of(a) < depth_of(b); });
-  constexpr double kBelow = 1.0;  // J, drawn as below the landscape
   Csv csv("time_s,x_m,y_m,potential_J,landscape_J,landscape_right_beam_J");
   std::string rows;
   for (std::size_t i = 0; i < run.t.size(); ++i) {
@@ -72,13 +74,17 @@ Section fig6(const Findings& f) {
            "the system's energy is below it, here by up to " +
            fixed(depth_of(run), 0) +
            " J. With the landscape of the right beam alone that is gone or less.",
-       "B and C as in the paper, seen from above. Orange: where the system has more than " +
+       "It is a selection, the one that sinks deepest of " + std::to_string(f.fig6.runs.size()) +
+           " such runs, of which " + std::to_string(dives) + " sink more than " + fixed(kBelow, 0) +
+           " J below the landscape at all.",
+       "B and C as in the paper, seen from above. The way is orange where the system has more "
+       "than " +
            fixed(kBelow, 0) + " J less than the landscape."},
       "Two maps of the energy with the body's way from below, past the right beam, to the far "
       "side: over that of both beams a part of it is orange, over that of the right beam alone "
       "less or none. Below, energies over time: the system's follows the landscape of both beams, "
       "then falls below it while it stays at or above that of the right beam alone.",
-      {"fig6"},
+      {"fig6", "fig9_300"},
       csv.text(),
       figure_of(
           sheet,
@@ -95,7 +101,7 @@ Section fig6(const Findings& f) {
               "\nset key at screen " + sheet.at(kLeft, bottom + 86) +
               " left top Left reverse samplen 3\nset xrange [" + digits(-0.02 * end) + ":" +
               digits(1.02 * end) + "]\nset yrange [-40:*]\nset xtics 1\nset ytics 100\n" +
-              "plot $run using 1:4 with lines lw 2.5 lc rgb '" + kSecondColour +
+              "plot $run using 1:4 with lines lw 2.5 lc rgb '" + kThirdColour +
               "' title 'potential energy of the system', '' using 1:5 with lines lw 1.5 lc rgb '" +
               kFirstColour +
               "' title 'landscape of both beams there', '' using 1:6 with lines lt -1 lw 1.5 dt 2 "
@@ -180,7 +186,7 @@ Section fig9(const Findings& f) {
            "energy."},
           "Three maps of the landscape with trajectories as lines. A: a handful, white past the "
           "left beam and orange past the right one. B and C: many, nearly all past the left beam.",
-          {"fig9_500", "fig9_300", "fig9_100"},
+          {"fig9_500", "fig9_300", "fig9_100", "fig12", "tried_method"},
           csv.text(),
           figure_of(sheet, data, maps)};
 }

@@ -164,9 +164,6 @@ std::string ValidatedStart::label() const {
 }
 
 namespace {
-Share share_of_crossings(double share, std::int64_t crossings) {
-  return share_of(std::llround(share * static_cast<double>(crossings)), crossings);
-}
 /// What one of `count` trials or walks per start took on average.
 double seconds_per(const Validation& v, double ValidatedStart::*seconds, std::int64_t count) {
   double sum = 0.0;
@@ -175,8 +172,13 @@ double seconds_per(const Validation& v, double ValidatedStart::*seconds, std::in
 }
 }  // namespace
 
-Share Crossings::clamped_share() const { return share_of_crossings(clamped, between_gates); }
-Share Crossings::rt_and_lt_share() const { return share_of_crossings(rt_and_lt, between_gates); }
+Share share_by_bodies(std::int64_t part, std::int64_t events, std::int64_t bodies) {
+  if (events <= bodies) return share_of(part, events);
+  const double value = static_cast<double>(part) / static_cast<double>(events);
+  Share s = share_of(std::llround(value * static_cast<double>(bodies)), bodies);
+  s.value = value;  // not as rounded
+  return s;
+}
 
 double Validation::seconds_per_trial() const {
   return seconds_per(*this, &ValidatedStart::dynamics_seconds, trials);
@@ -241,9 +243,14 @@ Validation validation_of(const Json& json, const std::string& file) {
   v.walks = all["walks"].count();
   for (const Reader& start : all["starts"].some()) v.starts.push_back(start_of(start));
   const Reader crossings = all["crossings"];
-  v.crossings = {.rt_and_lt = crossings["RT_and_LT_share"].number(),
-                 .clamped = crossings["clamped_share"].number(),
-                 .between_gates = crossings["between_gates"].count()};
+  const std::int64_t between = crossings["between_gates"].count();
+  const auto count_of = [&](const char* share) {
+    return std::llround(crossings[share].number() * static_cast<double>(between));
+  };
+  v.crossings = {.rt_and_lt = count_of("RT_and_LT_share"),
+                 .clamped = count_of("clamped_share"),
+                 .between_gates = between,
+                 .bodies = v.trials * static_cast<std::int64_t>(v.starts.size())};
   v.markov = all["markov"]["verdict"].text();
   v.matrix_seconds = all["matrix"]["seconds"].number();
   return v;

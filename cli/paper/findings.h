@@ -115,11 +115,19 @@ struct ValidatedStart {
   [[nodiscard]] std::string label() const;  // "d = 0 m, v = (0, 15) m/s"
 };
 
+/// A share of events of which a body may have several, alike or not: its interval is that of as
+/// many trials as there are bodies (or events, if fewer), as if a body's were all alike.
+[[nodiscard]] Share share_by_bodies(std::int64_t part, std::int64_t events, std::int64_t bodies);
+
 struct Crossings {
-  double rt_and_lt = 0.0, clamped = 0.0;  // shares
-  std::int64_t between_gates = 0;
-  [[nodiscard]] Share clamped_share() const;
-  [[nodiscard]] Share rt_and_lt_share() const;
+  std::int64_t rt_and_lt = 0, clamped = 0, between_gates = 0;
+  std::int64_t bodies = 0;  // whose crossings these are
+  [[nodiscard]] Share clamped_share() const {
+    return share_by_bodies(clamped, between_gates, bodies);
+  }
+  [[nodiscard]] Share rt_and_lt_share() const {
+    return share_by_bodies(rt_and_lt, between_gates, bodies);
+  }
 };
 
 struct Validation {
@@ -151,6 +159,7 @@ struct Findings {
   /// From the studies' JSON by their names. Throws std::runtime_error that names the file and the
   /// key which is missing or is of another kind.
   explicit Findings(const std::map<std::string, Json>& data);
+  Findings() = default;  // nothing found, to be filled
 };
 
 /// A study's file. Throws as Findings.

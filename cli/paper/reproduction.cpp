@@ -248,8 +248,10 @@ std::vector<std::string> lead_of(const Reproduction& r, bool quick) {
       "own values.",
       "Of " + std::to_string(r.claims.size()) + " claims: " + r.tally() +
           ". \"Agrees\" means that it deviates by no more than the paper's 100 trials a point "
-          "would "
-          "show. Why a claim differs, as far as it is known, stands beside it. Intervals are 95 % "
+          "would show (of Table IV: that the printed pair fits only one of two readings of what "
+          "was compared, trials with the exact chain or with 100 walks); \"cannot tell\", that "
+          "the trials here are too few. Why a claim differs, as far as it is known, stands beside "
+          "it. Intervals are 95 % "
           "(Jeffreys).",
       "Symbols as in the paper: F_prop propulsive force, Rm random force (N); k_L, k_R stiffness "
       "of the left and right beam (N m/rad), d their damping (N m s/rad, printed as N s/rad) "
@@ -267,9 +269,12 @@ Json first_screen(const std::map<std::string, std::string>& commands) {
   return {
       {{"figure", "crossing.svg"},
        {"alt",
-        "Twenty paths from the middle of the lower edge through nine by nine gates; most end "
-        "within the first rows."},
-       {"caption", "Full dynamics: twenty bodies push through the field of 9 x 9 gates."},
+        "Twenty paths from the middle of the lower edge into the field, each with a disc where it "
+        "ended; of the nine by nine gates only the rows and columns that bodies reached are "
+        "drawn."},
+       {"caption",
+        "Full dynamics: twenty bodies push into the field of 9 x 9 gates; drawn are the rows and "
+        "columns that they reached."},
        {"command", commands.at("crossing_ways")}},
       {{"figure", "prediction.svg"},
        {"alt",
@@ -332,6 +337,8 @@ Reproduction reproduce(const ReproductionOptions& options) {
   require_no_scene_of_ones_own(folder);
   const std::vector<Study> studies = paper_studies(options.quick);
   const Json scenes = write_scenes();
+  // No old page beside new figures, should this be stopped between them.
+  std::filesystem::remove("report.html");
   Reproduction r = report_of(carry_out(studies, options.talk), studies, options.quick, scenes);
   write_text_atomically("claims.csv", csv_of(r.claims));
   write_text_atomically("report.json", text_of(r.report, -1) + "\n");

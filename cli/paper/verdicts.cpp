@@ -38,21 +38,49 @@ bool seen_with_100(const Share& a, const Share& b, double counted_a, double coun
          2.0 * std::sqrt(variance(a.value, counted_a) + variance(b.value, counted_b));
 }
 
+Verdict Places::verdict(bool enough, bool strict) const {
+  const bool failing = strict ? fail > 0 : more_than_chance(fail, of);
+  const bool differs = enough ? 2 * hold <= of || more_than_chance(seen, of)
+                              : fail > hold && more_than_chance(fail, of);
+  return verdict_of(differs, enough && !failing, enough);
+}
+
+Verdict rare_and_even(const Share& traversed, const Share& right) {
+  constexpr std::int64_t kLeft = 13, kRight = 8;  // the paper's
+  const double rare = share_of(kLeft + kRight, kPaperTrials).high;
+  const double uneven = 2.0 * std::sqrt(0.25 / static_cast<double>(kLeft + kRight));
+  const bool differs =
+      traversed.low > rare || right.high < 0.5 - uneven || right.low > 0.5 + uneven;
+  const bool within =
+      traversed.high < rare && right.low >= 0.5 - uneven && right.high <= 0.5 + uneven;
+  return verdict_of(differs, within && right.low <= 0.5 && right.high >= 0.5, within);
+}
+
+namespace {
+/// The least number of trials so far; 0: of none.
+void note_trials(std::int64_t& least, std::int64_t trials) {
+  least = least == 0 ? trials : std::min(least, trials);
+}
+}  // namespace
+
 void Trend::add(const std::vector<double>& axis, const std::vector<Share>& s,
                 const std::vector<double>& counted) {
+  const auto counted_at = [&](std::size_t i) { return counted.empty() ? 1.0 : counted[i]; };
   ++series;
   up += rises(s.front(), s.back());
   down += falls(s.front(), s.back());
   for (std::size_t i = 0; i < s.size(); ++i) {
-    const auto trials = static_cast<std::int64_t>(static_cast<double>(s[i].whole) /
-                                                  (counted.empty() ? 1.0 : counted[i]));
-    least_trials_ = least_trials_ == 0 ? trials : std::min(least_trials_, trials);
+    note_trials(least_trials_, std::llround(static_cast<double>(s[i].whole) / counted_at(i)));
+    for (std::size_t j = i + 1; j < s.size(); ++j) {
+      if (!falls(s[i], s[j])) continue;
+      ++lower;
+      seen += seen_with_100(s[i], s[j], counted_at(i), counted_at(j));
+    }
     if (i + 1 == s.size()) break;
     ++steps;
+    rising += rises(s[i], s[i + 1]);
     if (!falls(s[i], s[i + 1])) continue;
     ++falling;
-    seen += counted.empty() ? seen_with_100(s[i], s[i + 1])
-                            : seen_with_100(s[i], s[i + 1], counted[i], counted[i + 1]);
     if (const double fall = s[i].value - s[i + 1].value; fall > largest_fall) {
       largest_fall = fall;
       at = axis[i];
@@ -61,10 +89,43 @@ void Trend::add(const std::vector<double>& axis, const std::vector<Share>& s,
 }
 
 Verdict Trend::verdict(bool wiggles) const {
+  const bool enough = least_trials_ >= kEnoughTrials, most_up = 2 * up > series;
+  // On enough trials chance does not make a fall that the paper's 100 would show.
+  const bool falls = wiggles ? falling > 0 && falling >= rising : seen > 0;
+  return verdict_of(more_than_chance(down, series) || (enough && (!most_up || falls)),
+                    enough && (wiggles || lower == 0), enough);
+}
+
+void RiseThenFall::add(const std::vector<Share>& s) {
+  const auto top = static_cast<std::size_t>(
+      std::max_element(s.begin(), s.end(),
+                       [](const Share& a, const Share& b) { return a.value < b.value; }) -
+      s.begin());
+  const bool rose = rises(s.front(), s[top]), fell = falls(s[top], s.back());
+  bool against = false, shown = false;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    note_trials(least_trials_, s[i].whole);
+    for (std::size_t j = i + 1; j < s.size(); ++j) {
+      const bool down = falls(s[i], s[j]) && (j <= top || (!rose && i == 0)),
+                 up_again = rises(s[i], s[j]) && i >= top,
+                 up_at_end = rises(s[i], s[j]) && top + 1 == s.size() && i + 1 == top;
+      if (!down && !up_again && !up_at_end) continue;
+      against = true;
+      shown |= seen_with_100(s[i], s[j]);
+    }
+  }
+  ++series;
+  up += rose;
+  both += rose && fell;
+  only_down += !rose && fell;
+  contrary += against;
+  seen += shown;
+}
+
+Verdict RiseThenFall::verdict() const {
   const bool enough = least_trials_ >= kEnoughTrials;
-  const bool differs = more_than_chance(down, series) || (enough && up == 0) ||
-                       (!wiggles && enough && more_than_chance(seen, steps));
-  return verdict_of(differs, enough && 2 * up > series && (wiggles || falling == 0), enough);
+  return verdict_of(enough && (both == 0 || more_than_chance(seen, series)),
+                    enough && 2 * both > series && contrary == 0, enough);
 }
 
 }  // namespace gatewalk::cli

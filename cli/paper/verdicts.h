@@ -61,21 +61,61 @@ struct Share {
   return found > 0.02 * compared;
 }
 
+/// A statement without a number, looked at in many places.
+struct Places {
+  int of = 0;
+  int hold = 0, fail = 0;  // beyond chance: as said, the other way round
+  int seen = 0;            // of those that fail: the paper would see it
+
+  /// Differs, on enough trials, when it does not hold in most places (nowhere, if there are none)
+  /// or the paper would see more of them fail than chance makes; on few, when more fail than hold
+  /// and than chance makes. Reproduced, on enough trials, when no more fail than by chance, or none
+  /// (`strict`). Else, on enough trials, it agrees.
+  [[nodiscard]] Verdict verdict(bool enough, bool strict = false) const;
+};
+
+/// That traversal is rare and as likely on both sides, of all and of the traversals on the right.
+/// Each is measured by what the paper calls so, 13 and 8 of 100: rare is what lies below the
+/// interval's upper end of 21 of 100; even, what 21 traversals do not tell from one half by two
+/// standard errors. Reproduced when both intervals lie within these bounds and the second holds one
+/// half, agrees when it does not hold one half, differs when one lies beyond its bounds.
+[[nodiscard]] Verdict rare_and_even(const Share& traversed, const Share& right);
+
 /// Several series along one axis, on which the paper says that they rise.
 class Trend {
  public:
   /// `counted`: what share of all trials each share is of; empty: of all.
   void add(const std::vector<double>& axis, const std::vector<Share>& s,
            const std::vector<double>& counted = {});
-  /// Differs when a series ends beyond chance below its start, and, on enough trials, when none
-  /// ends above it or the paper would see more steps down than chance makes. Reproduced, on enough
-  /// trials, when most end above their start and no step goes down beyond chance (or the paper
-  /// allows that: `wiggles`). Else, on enough trials, it agrees.
+  /// Differs when more series than by chance end beyond chance below their start; and on enough
+  /// trials, when not most end above it or the paper would see a fall between two places of a
+  /// series. Reproduced, on enough trials, when no place lies beyond chance below an earlier one.
+  /// Else, on enough trials, it agrees. `wiggles`: the paper allows falls, but not as many steps
+  /// down as up.
   [[nodiscard]] Verdict verdict(bool wiggles = false) const;
 
-  int series = 0, up = 0, down = 0;  // from end to end, beyond chance
-  int steps = 0, falling = 0, seen = 0;
-  double largest_fall = 0.0, at = 0.0;  // the largest step down and where it begins
+  int series = 0, up = 0, down = 0;        // from end to end, beyond chance
+  int steps = 0, rising = 0, falling = 0;  // between neighbours, beyond chance
+  int lower = 0, seen = 0;                 // pairs of places that fall; the paper would see that
+  double largest_fall = 0.0, at = 0.0;     // the largest step down and where it begins
+
+ private:
+  std::int64_t least_trials_ = 0;
+};
+
+/// Several series of which the paper says that they first rise, then fall.
+class RiseThenFall {
+ public:
+  void add(const std::vector<Share>& s);
+  /// Differs, on enough trials, when no series does both beyond chance, or when the paper would see
+  /// one go the other way: fall before its top, rise after it, rise up to its last place, or only
+  /// fall. Reproduced, on enough trials, when most do both and none goes the other way beyond
+  /// chance. Else, on enough trials, it agrees: what fails to fall, 100 trials would not show.
+  [[nodiscard]] Verdict verdict() const;
+
+  int series = 0, up = 0, both = 0,
+      only_down = 0;           // from the start to the top, from there to the end
+  int contrary = 0, seen = 0;  // series that go the other way
 
  private:
   std::int64_t least_trials_ = 0;

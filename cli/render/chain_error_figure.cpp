@@ -52,7 +52,7 @@ struct Curves {
     plot = "plot " + digits(noise) + kNoise;
     std::string rows;
     for (const lattice::DirectSimulation& d : chart.direct[s])
-      rows += digits(d.seconds) + " " + digits(d.drawn.total_variation) + "\n";
+      rows += row(d.seconds, d.drawn.total_variation);
     add("$direct" + of, rows, kDirect);
     for (std::size_t c = 0; c < chart.curves.size(); ++c) {
       const lattice::ChainCurve& curve = chart.curves[c];
@@ -119,13 +119,16 @@ Figure figure_of(const ChainErrorChart& chart) {
     for (const double x : {curves[s].seconds.low, curves[s].seconds.high}) seconds.see(x);
     for (const double x : {curves[s].errors.low, curves[s].errors.high}) errors.see(x);
   }
+  // Of nothing that has a place on such axes: some place.
+  for (Extent* extent : {&seconds, &errors})
+    if (!std::isfinite(extent->low)) *extent = {0.1, 1.0};
   const double low = seconds.low / 1.4, high = 1.4 * seconds.high;
   const double wide = columns == 1 ? 406.0 : 184.0;
   std::string out = "set multiplot\n" + key_of(chart, sheet) + kFrame +
                     "set logscale xy\nset format y '%g'\nset grid" + kThin + "\nset xrange [" +
                     digits(low) + ":" + digits(high) + "]\nset xtics (" +
                     tics_1_2_5(low, high, wide) + ")\nset yrange [" + digits(0.6 * errors.low) +
-                    ":1]\n";
+                    ":" + digits(std::max(1.0, 1.4 * errors.high)) + "]\n";
   for (std::size_t s = 0; s < starts; ++s) {
     const double left = s % columns == 0 ? 82 : 298,
                  top = kHead + kRow * static_cast<double>(s / columns) + 26;

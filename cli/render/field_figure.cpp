@@ -80,7 +80,7 @@ struct Plan {
             begin + each};
   }
   [[nodiscard]] Box bars() const {
-    const double begin = map().bottom + 64;
+    const double begin = map().bottom + 74;
     return {102, 300, begin, begin + height_of_bars(kEndingNames.size())};
   }
   [[nodiscard]] double end() const { return bars().bottom + 8; }
@@ -97,11 +97,12 @@ std::string rows_of(const FieldMap& map, const CellProbabilities& shares) {
   return out;
 }
 
-std::string image(const std::string& data) { return "plot " + data + kCells; }
+std::string image(const std::string& data) { return "plot " + data + cells(); }
 
 /// The large map with its numbers.
 std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
-                      const std::string& data, const RootScale& scale) {
+                      const std::string& data, const RootScale& scale,
+                      const std::string& elsewhere) {
   const Box box = plan.map();
   std::string blocks;
   if (map.rows.block > 1 || map.columns.block > 1)
@@ -113,11 +114,12 @@ std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
       tics_of(map.columns, map.middle_column, plan.map_width, 30) + "\nset ytics " +
       tics_of(map.rows, 0, plan.map_height, 22) + "\n" + Sheet::axes("'column i_x'", "'row i_y'") +
       sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
+      sheet.text(elsewhere, Plan::kLeft, box.bottom + 58, kSmallFont) +
       scale.colours(sheet, plan.colours());
   out += image(data);
   if (plan.cell_width >= 26 && plan.cell_height >= 15)
-    out += ", '' using 1:2:4:($3 > " + digits(0.6 * std::sqrt(scale.most())) +
-           " ? 0x000000 : 0xffffff) with labels tc rgb variable font ',12'";
+    out += ", '' using 1:2:4:" + ink(std::sqrt(scale.most())) +
+           " with labels tc rgb variable font ',12'";
   return out + "\nunset label\n";
 }
 
@@ -171,9 +173,10 @@ Figure figure_of(const std::vector<FieldPicture>& pictures) {
     };
     out += block("$all", p.final_gates) + block("$trapped", p.trapped) +
            block("$left", p.departed) + sheet.text(p.title, 8, plan.top - 30) +
-           large_map(maps[i], plan, sheet, "$all" + tag, scale) +
+           large_map(maps[i], plan, sheet, "$all" + tag, scale,
+                     elsewhere_text(maps[i], p.final_gates)) +
            small_map("trapped, % of all", maps[i], plan.small(0), sheet, "$trapped" + tag) +
-           small_map("left, % of all", maps[i], plan.small(1), sheet, "$left" + tag) +
+           small_map("departed, % of all", maps[i], plan.small(1), sheet, "$left" + tag) +
            share_bars(sheet, plan.bars(), "$endings" + tag, bars_of(p.endings));
   }
   return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};

@@ -61,6 +61,19 @@ std::string RootScale::colours(const Sheet& sheet, const Box& box) const {
          sheet.text("%, root scale", box.left - 4, box.bottom + 18, kSmallFont);
 }
 
+std::string cells(double half_x, double half_y) {
+  return " using 1:2:(" + digits(half_x) + "):(" + digits(half_y) +
+         "):3 with boxxyerror fs solid noborder lc palette";
+}
+
+std::string ink(double most) { return "($3 > " + digits(0.6 * most) + " ? 0x000000 : 0xffffff)"; }
+
+std::string bar_below(const Sheet& sheet, double left, double right, double top) {
+  return "set colorbox horizontal user origin screen " + sheet.at(left, top + 10) +
+         " size screen " + digits((right - left) / Sheet::kWidth) + "," +
+         digits(10.0 / sheet.height) + "\n";
+}
+
 std::string share_bars(const Sheet& sheet, const Box& box, const std::string& data,
                        const std::vector<ShareBar>& bars) {
   std::string rows, tics;

@@ -72,9 +72,14 @@ class RootScale {
   double most_;
 };
 
-/// Of a map whose data are "column row value": a square each (gnuplot's images need four at least).
-inline constexpr char kCells[] =
-    " using 1:2:(0.5):(0.5):3 with boxxyerror fs solid noborder lc palette";
+/// Of a map whose data are "x y value": a rectangle each of such halves (gnuplot's images need four
+/// at least).
+[[nodiscard]] std::string cells(double half_x = 0.5, double half_y = 0.5);
+/// What is written on sequential colours from 0 to `most`, column 3 of the data: black on light
+/// ones, white on dark ones, for gnuplot's "rgb variable".
+[[nodiscard]] std::string ink(double most);
+/// The colours as a horizontal bar below maps.
+[[nodiscard]] std::string bar_below(const Sheet& sheet, double left, double right, double top);
 
 /// Horizontal bars of shares of all, each with its 95 % interval (NaN: none) and its number.
 struct ShareBar {

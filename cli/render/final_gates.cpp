@@ -102,6 +102,13 @@ markov::CellProbabilities FieldMap::blocks_of(const markov::CellProbabilities& s
   return blocks;
 }
 
+std::string elsewhere_text(const FieldMap& map, const markov::CellProbabilities& shares) {
+  if (map.rows.count >= shares.rows() && map.columns.count >= shares.cols()) return "";
+  return "elsewhere in the " + std::to_string(shares.cols()) + " x " +
+         std::to_string(shares.rows()) +
+         " gates: " + percent(std::max(0.0, shares.sum() - map.blocks_of(shares).sum()), 1.0, 4);
+}
+
 std::string short_percent(double share) {
   if (share == 0.0) return "\"\"";
   if (share < 5e-4) return "<.1";
@@ -126,10 +133,7 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
   for (Eigen::Index c = 0; c < blocks.cols(); ++c)
     text += padded(std::to_string(map.columns.middle(c) - map.middle_column), 7);
   text += "\n";
-  if (map.rows.count < shares.rows() || map.columns.count < shares.cols())
-    text += "elsewhere in the " + std::to_string(shares.cols()) + " x " +
-            std::to_string(shares.rows()) +
-            " gates: " + percent(std::max(0.0, shares.sum() - blocks.sum()), 1.0, 4) + "\n";
+  if (const std::string rest = elsewhere_text(map, shares); !rest.empty()) text += rest + "\n";
   return text;
 }
 

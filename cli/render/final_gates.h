@@ -45,6 +45,10 @@ struct FieldMap {
   /// Shares of the same field by block.
   [[nodiscard]] markov::CellProbabilities blocks_of(const markov::CellProbabilities& shares) const;
 };
+/// How much lies in the gates that the map leaves out, if any: "elsewhere in the 301 x 301 gates:
+/// 0.01 %".
+[[nodiscard]] std::string elsewhere_text(const FieldMap& map,
+                                         const markov::CellProbabilities& shares);
 /// A share in %, short enough for a gate of a figure: "17", "1.2", "<.1", nothing for none.
 [[nodiscard]] std::string short_percent(double share);
 

@@ -27,6 +27,10 @@ namespace gatewalk::cli {
 /// What matters of a landscape as it is drawn: beside the joints the beams' energy leaves every
 /// scale, so the ceiling (J) is what lies in the middle, and some more.
 [[nodiscard]] double ceiling_of(const dynamics::Landscape& l);
+/// Of such a map: where no colour is drawn.
+inline constexpr char kHole[] = "the disc would cover a joint";
+/// "346 J": an energy as a note gives it.
+[[nodiscard]] std::string short_energy(double joules, const Sized& unit);
 /// Rows of "x y elastic total" up to that ceiling, an empty one between two values of y.
 [[nodiscard]] std::string rows_of(const dynamics::Landscape& l, const Sized& metre,
                                   const Sized& joule, double ceiling);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "cli/render/figure.h"
 #include "cli/render/landscape.h"
@@ -16,6 +17,13 @@ double ceiling_of(const Landscape& l) {
   for (Eigen::Index i = 0; i < l.total.rows(); ++i)
     if (const double e = l.total(i, middle); std::isfinite(e)) highest = std::max(highest, e);
   return 1.2 * highest;
+}
+
+std::string short_energy(double joules, const Sized& unit) {
+  std::ostringstream text;
+  text.precision(3);
+  text << joules / unit.size << " " << unit.name;
+  return text.str();
 }
 
 std::string rows_of(const Landscape& l, const Sized& metre, const Sized& joule, double ceiling) {
@@ -80,7 +88,17 @@ Figure figure_of(const dynamics::Passes& passes) {
   const Box first{82, 82 + scale * wide, 36, 36 + scale * deep};
   const Box second{first.right + 20, first.right + 20 + scale * wide, first.top, first.bottom};
   const Box profile{82, 488, first.bottom + 100, first.bottom + 240};
-  const Sheet sheet{static_cast<int>(profile.bottom + 62)};
+  const Sheet sheet{static_cast<int>(profile.bottom + 84)};
+  // Both what the way rises to and the start's energy, off the axis.
+  const double at_start_energy = fine.from_start.start_energy + passes.kinetic_energy;
+  double lowest = at_start_energy, highest = at_start_energy;
+  for (const auto& [way_x, way_y] : pass.way) {
+    const Landscape& on = fine.landscape;
+    const double e = on.total(nearest(on.y, way_y), nearest(on.x, way_x));
+    lowest = std::min(lowest, e);
+    highest = std::max(highest, e);
+  }
+  const double margin = highest > lowest ? 0.06 * (highest - lowest) : 0.5 * joule.size;
   const auto [x, y] = fine.from_start.way.front();
   const std::string at_pass = data_block("$pass", length(pass.x) + " " + length(pass.y) + "\n"),
                     at_start = data_block("$start", length(x) + " " + length(y) + "\n");
@@ -101,19 +119,21 @@ Figure figure_of(const dynamics::Passes& passes) {
           sheet.at(second.right + 12, second.bottom) + " size screen " +
           digits(12.0 / Sheet::kWidth) + "," + digits((second.bottom - second.top) / sheet.height) +
           "\n" + sheet.text("with propulsion, Eq. (15)", second.left, 18) +
+          sheet.text("maps: cut at " + short_energy(ceiling, joule) + "; no colour: " + kHole, 8,
+                     sheet.height - 12, kSmallFont) +
           "plot $grid using 1:2:4 with image" +
           outlined("$way using 1:2", "lines lw 3.5", "lines lw 1.5") +
           outlined("$start using 1:2", "points pt 5 ps 1", "points pt 5 ps 0.6") +
           outlined("$pass using 1:2", "points pt 7 ps 1.1", "points pt 7 ps 0.7") +
           "\nunset label\n" + sheet.margins(profile) +
-          "set format y '%g'\nset xrange [0:*]\nset xtics autofreq\nset yrange [*:*]\nset ytics " +
+          "set format y '%g'\nset xrange [0:*]\nset xtics autofreq\nset yrange [" +
+          energy(lowest - margin) + ":" + energy(highest + margin) + "]\nset ytics " +
           digits(tic_step(ceiling / joule.size, 5)) + "\n" +
           Sheet::axes(std::string("'along the lowest way from the ") +
                           (fine.downhill() ? "start" : "basin") + m,
                       "'energy (" + joule.name + ")'") +
           "set key off\nplot $way using 3:4 with lines lw 2 lc rgb '" + kFirstColour + "', " +
-          energy(fine.from_start.start_energy + passes.kinetic_energy) +
-          " with lines lt -1 dt 2\n" +
+          energy(at_start_energy) + " with lines lt -1 dt 2\n" +
           sheet.key(82, first.bottom + 58, {"with points pt 5 ps 0.8 lt -1 title 'start'"}) +
           sheet.key(160, first.bottom + 58, {"with points pt 7 ps 0.9 lt -1 title 'pass'"}) +
           sheet.key(246, first.bottom + 58, {"with lines lt -1 dt 2 title 'energy of the start'"}) +

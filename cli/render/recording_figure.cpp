@@ -86,8 +86,8 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
   const double wide = w.right - w.left, tall = w.top - w.bottom;
   const double room = over_landscape ? 320.0 : 414.0, scale = std::min(room / wide, 560.0 / tall);
   const Box box{78, 78 + scale * wide, 44, 44 + scale * tall};
-  const Sheet sheet{static_cast<int>(box.bottom + 62)};
-  std::string out, plot = "plot ";
+  const Sheet sheet{static_cast<int>(box.bottom + (over_landscape ? 84 : 62))};
+  std::string out, notes, plot = "plot ";
   if (over_landscape) {
     const dynamics::Landscape l =
         dynamics::landscape(scene.gate, std::min(0.0, w.bottom), scene.gate.run.traverse_y / 120.0);
@@ -99,6 +99,8 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
            ")'\nset colorbox user origin screen " + sheet.at(box.right + 14, box.bottom) +
            " size screen " + digits(12.0 / Sheet::kWidth) + "," +
            digits((box.bottom - box.top) / sheet.height) + "\n";
+    notes = sheet.text("cut at " + short_energy(highest, joule) + "; no colour: " + kHole, 8,
+                       sheet.height - 12, kSmallFont);
     plot += "$ground using 1:2:4 with image pixels, ";
   }
   for (const Recording* run : runs) {
@@ -119,12 +121,14 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
       Sheet::kWidth, sheet.height,
       data + data_block("$ends", ends) +
           data_block("$beams", beams_of(scene, {scene, recordings.across_field}, w, metre.size)) +
-          out + sheet.margins(box) + sheet.text(title + "; disc: where it ended", 8, 18) +
+          out + sheet.margins(box) + sheet.text(title + "; disc: where it ended", 8, 18) + notes +
           "unset key\nset border 15\nset tics out nomirror scale 0.5\n" +
           Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
           length(w.left) + ":" + length(w.right) + "]\nset yrange [" + length(w.bottom) + ":" +
-          length(w.top) + "]\n" + plot + "$ends using 1:2:3 with circles fs empty border " +
-          (over_landscape ? "rgb '#ffffff'" : "lt -1") + "\n",
+          length(w.top) + "]\nset xtics " +
+          digits(tic_step(wide / metre.size, std::max(1.0, (box.right - box.left) / 70.0))) + "\n" +
+          plot + "$ends using 1:2:3 with circles " +
+          (over_landscape ? "lc rgb '#ffffff'" : "lt -1") + " fs empty border\n",
       kFont};
 }
 

@@ -128,9 +128,9 @@ Figure map_of(const SweepAxis& up, const SweepAxis& right, const std::vector<Swe
                     "]\nset yrange [-0.5:" + digits(static_cast<double>(rows) - 0.5) +
                     "]\nset xtics " + tics_of(right, width, false) + " noenhanced\nset ytics " +
                     tics_of(up, height, true) + " noenhanced\n" +
-                    Sheet::axes(literal(right.key), literal(up.key)) + "plot $map" + kCells;
+                    Sheet::axes(literal(right.key), literal(up.key)) + "plot $map" + cells();
   if (width >= 28 && height >= 16)
-    out += ", '' using 1:2:4:($3 > 60 ? 0x000000 : 0xffffff) with labels tc rgb variable font '," +
+    out += ", '' using 1:2:4:" + ink(100.0) + " with labels tc rgb variable font '," +
            std::to_string(kSmallFont) + "'";
   return {Sheet::kWidth, sheet.height, out + "\n", kFont};
 }

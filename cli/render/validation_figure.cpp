@@ -28,13 +28,6 @@ std::string rows_of(const CellProbabilities& blocks, bool roots) {
   return out;
 }
 
-/// Colours of a horizontal bar below the maps.
-std::string colour_bar(const Sheet& sheet, double left, double right, double top) {
-  return "set colorbox horizontal user origin screen " + sheet.at(left, top + 10) +
-         " size screen " + digits((right - left) / Sheet::kWidth) + "," +
-         digits(10.0 / sheet.height) + "\n";
-}
-
 std::string summary(const StartValidation& v) {
   return title_of(v.start) + ": total variation " + fixed(v.exact_against.total_variation, 3) +
          " (chance: " + fixed(v.exact_against.floor_total_variation, 3) + ")";
@@ -88,7 +81,7 @@ Figure figure_of(const lattice::Validation& v) {
       const std::string block = name + tag;
       out += data_block(block, data) +
              sheet.margins({left_of(i), left_of(i) + kMapWidth, row.top, row.top + row.height}) +
-             (i == 1 ? "unset ytics\nunset ylabel\n" : "") + "plot " + block + kCells +
+             (i == 1 ? "unset ytics\nunset ylabel\n" : "") + "plot " + block + cells() +
              "\nunset label\n";
     };
     out += kSequential;
@@ -96,7 +89,7 @@ Figure figure_of(const lattice::Validation& v) {
     panel(0, "$dynamics", rows_of(row.dynamics, true));
     if (last)
       out += "set cbtics (" + scale.tics() + ") scale 0.5 offset 0,0.4\n" +
-             colour_bar(sheet, left_of(0), left_of(1) + kMapWidth, end + 8) +
+             bar_below(sheet, left_of(0), left_of(1) + kMapWidth, end + 8) +
              sheet.text("root scale", left_of(1) - 30, end + 50, kSmallFont);
     panel(1, "$chain", rows_of(row.chain, true));
     out += kDiverging;
@@ -106,7 +99,7 @@ Figure figure_of(const lattice::Validation& v) {
       const std::string tic = short_number(0.7 * bound);
       out += "set cbtics ('-" + tic + "' -" + tic + ", '0' 0, '+" + tic + "' " + tic +
              ") scale 0.5 offset 0,0.4\n" +
-             colour_bar(sheet, left_of(2), left_of(2) + kMapWidth, end + 8);
+             bar_below(sheet, left_of(2), left_of(2) + kMapWidth, end + 8);
     }
     panel(2, "$difference", rows_of(row.dynamics - row.chain, false));
   }

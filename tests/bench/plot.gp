@@ -17,7 +17,9 @@ eval text("one gate, the same trials, one core", 8, 16)
 eval panel(214, 490, 72, 292)
 set xlabel "trials per second"
 set xrange [1:1e5]
-set yrange [8.6:-0.6]
+# As many lines as there are engines, and tools below: none is cut off.
+stats csv("dynamics", "$1 == \"A\"") using 4 nooutput
+set yrange [STATS_records-0.4:-0.6]
 dot = "with points ps 0.9 lc rgb"
 plot csv("dynamics", "$1 == \"A\"") using 4:($0-0.15):ytic(2) @dot first pt 7 title "A: propulsion 8 N, k 400/400 N m/rad", \
      csv("dynamics", "$1 == \"B\"") using 4:($0+0.15) @dot second pt 5 title "B: propulsion 7 N, k 300/500 N m/rad"
@@ -27,7 +29,8 @@ unset grid
 eval text("the chain, the same answers", 8, 372)
 eval panel(214, 452, 390, 580)
 set xlabel "times as long as gatewalk's fastest"
-set yrange [7.6:-0.6]
+stats csv("chain", "NR > 1 && $7 > 1") using 7 nooutput
+set yrange [STATS_records-0.4:-0.6]
 plot csv("chain", "NR > 1 && $7 > 1 { gsub(\"gatewalk\", \"our\"); sub(\" rmarkovchain\", \"\"); print }") using 7:0:ytic(strcol(1).": ".strcol(3)) @dot first pt 7, \
      "" using ($7*1.5):0:(sprintf($7 < 100 ? "%.1f" : "%.0f", $7)) with labels left font ",12"
 unset multiplot

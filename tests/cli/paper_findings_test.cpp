@@ -54,7 +54,7 @@ TEST(Findings, WhatIsMissingOrOfAnotherKindIsNamed) {
   sweep["points"] = Json::array();
   EXPECT_EQ(complaint_of(sweep), "data/a.json: points is not a list with entries");
   EXPECT_EQ(complaint_of(Json()), "data/a.json: points is missing");
-  EXPECT_THROW(Findings({}), std::runtime_error);
+  EXPECT_THROW(Findings(std::map<std::string, Json>{}), std::runtime_error);
 }
 
 // Downhill from the place of the basin on: the way from there is that place alone.
@@ -96,9 +96,18 @@ TEST(Findings, SecondsOfATrialAndOfAWalk) {
   }
   EXPECT_DOUBLE_EQ(v.seconds_per_trial(), 0.005);
   EXPECT_DOUBLE_EQ(v.seconds_per_walk(), 3e-5);
-  v.crossings = {.rt_and_lt = 0.25, .clamped = 0.5, .between_gates = 40};
-  EXPECT_EQ(v.crossings.rt_and_lt_share().part, 10);
-  EXPECT_EQ(v.crossings.clamped_share().part, 20);
+}
+
+// A body's crossings are no independent trials: many of one body count as one.
+TEST(Findings, CrossingsHaveTheIntervalOfTheirBodies) {
+  const Crossings many{.rt_and_lt = 101, .clamped = 200, .between_gates = 400, .bodies = 100};
+  EXPECT_EQ(many.clamped_share().low, share_of(50, 100).low);
+  EXPECT_EQ(many.clamped_share().whole, 100);
+  EXPECT_EQ(many.rt_and_lt_share().value, 0.2525);
+  EXPECT_EQ(many.rt_and_lt_share().high, share_of(25, 100).high);
+  const Crossings few{.rt_and_lt = 10, .clamped = 20, .between_gates = 40, .bodies = 100};
+  EXPECT_EQ(few.clamped_share().low, share_of(20, 40).low);
+  EXPECT_EQ(few.rt_and_lt_share().part, 10);
 }
 
 }  // namespace

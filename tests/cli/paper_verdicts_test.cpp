@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "cli/paper/claims.h"
+#include "cli/paper/studies.h"
+
 namespace gatewalk::cli {
 namespace {
 
@@ -27,7 +32,7 @@ TEST(PaperVerdict, FewerTrialsAreNeverSurer) {
 std::vector<Share> shares(const std::vector<double>& values, std::int64_t trials) {
   std::vector<Share> s;
   for (const double v : values)
-    s.push_back(share_of(static_cast<std::int64_t>(v * static_cast<double>(trials)), trials));
+    s.push_back(share_of(std::llround(v * static_cast<double>(trials)), trials));
   return s;
 }
 Verdict verdict(const std::vector<double>& values, std::int64_t trials, bool wiggles = false) {
@@ -47,6 +52,162 @@ TEST(PaperVerdict, OfATrend) {
             Verdict::agrees);  // a fall that they do not
   EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 100),
             Verdict::cannot_tell);  // too few trials to say "never falls"
+}
+
+// A slide that no step of which shows: 100 trials tell its ends apart.
+TEST(PaperVerdict, ATrendFallsBetweenAnyTwoPlaces) {
+  EXPECT_EQ(verdict({0.2, 0.6, 0.53, 0.46, 0.39, 0.7}, 10000), Verdict::differs);
+  EXPECT_EQ(verdict({0.2, 0.6, 0.57, 0.54, 0.51, 0.7}, 10000), Verdict::agrees);
+}
+
+TEST(PaperVerdict, ATrendThatThePaperAllowsToWiggleGoesMoreUpThanDown) {
+  EXPECT_EQ(verdict({0.3, 0.2, 0.1, 0.4}, 10000, true), Verdict::differs);  // down in most steps
+  EXPECT_EQ(verdict({0.3, 0.4, 0.2, 0.5}, 10000, true), Verdict::reproduced);
+}
+
+TEST(PaperVerdict, MostSeriesOfATrendMustRise) {
+  const auto of = [](int rising) {
+    Trend trend;
+    for (int i = 0; i < 8; ++i)
+      trend.add(
+          {4, 5, 6},
+          shares(i < rising ? std::vector{0.1, 0.2, 0.3} : std::vector{0.3, 0.3, 0.3}, 10000));
+    return trend.verdict();
+  };
+  EXPECT_EQ(of(1), Verdict::differs);
+  EXPECT_EQ(of(4), Verdict::differs);
+  EXPECT_EQ(of(5), Verdict::reproduced);
+}
+
+// 17 of 1000 trials: 17 / (17 / 1000.0) is a little less than 1000, and means 1000.
+TEST(PaperVerdict, TrialsBehindSharesOfFewAreRounded) {
+  Trend trend;
+  trend.add({1, 2}, {share_of(1, 17), share_of(17, 17)}, {17 / 1000.0, 17 / 1000.0});
+  EXPECT_EQ(trend.verdict(), Verdict::reproduced);
+}
+
+Verdict rise_then_fall(const std::vector<std::vector<double>>& series, std::int64_t trials) {
+  RiseThenFall shape;
+  for (const std::vector<double>& values : series) shape.add(shares(values, trials));
+  return shape.verdict();
+}
+
+TEST(PaperVerdict, OfARiseAndAFall) {
+  const std::vector<double> both{0.0, 0.3, 0.5, 0.2}, flat{0.1, 0.1, 0.1, 0.1},
+      only_down{1.0, 0.976, 0.741, 0.43}, slightly_down{0.1, 0.08, 0.07, 0.06},
+      only_up{0.0, 0.1, 0.3, 0.6}, no_fall{0.0, 0.3, 0.31, 0.31}, again{0.0, 0.5, 0.1, 0.4},
+      dip{0.3, 0.0, 0.5, 0.2};
+  EXPECT_EQ(rise_then_fall({both}, 10000), Verdict::reproduced);
+  EXPECT_EQ(rise_then_fall({both}, 100), Verdict::cannot_tell);
+  // That nothing rises is seen on enough trials.
+  EXPECT_EQ(rise_then_fall({flat, flat}, 10000), Verdict::differs);
+  EXPECT_EQ(rise_then_fall({flat, flat}, 100), Verdict::cannot_tell);
+  // What 100 trials would show is against it, however many series do as said.
+  EXPECT_EQ(rise_then_fall({both, both, both, only_down}, 10000), Verdict::differs);
+  EXPECT_EQ(rise_then_fall({both, only_up}, 10000), Verdict::differs);
+  EXPECT_EQ(rise_then_fall({both, again}, 10000), Verdict::differs);
+  EXPECT_EQ(rise_then_fall({both, dip}, 10000), Verdict::differs);
+  EXPECT_EQ(rise_then_fall({both, both, slightly_down}, 10000), Verdict::agrees);
+  EXPECT_EQ(rise_then_fall({both, no_fall, no_fall}, 10000), Verdict::agrees);
+}
+
+TEST(PaperVerdict, OfAStatementInManyPlaces) {
+  const bool enough = true, few = false;
+  EXPECT_EQ((Places{100, 90, 1, 0}.verdict(enough)), Verdict::reproduced);
+  EXPECT_EQ((Places{100, 90, 1, 0}.verdict(enough, true)), Verdict::agrees);
+  EXPECT_EQ((Places{100, 70, 12, 0}.verdict(enough)), Verdict::agrees);
+  EXPECT_EQ((Places{100, 70, 12, 5}.verdict(enough)), Verdict::differs);
+  EXPECT_EQ((Places{100, 0, 0, 0}.verdict(enough)), Verdict::differs);
+  EXPECT_EQ((Places{100, 12, 12, 0}.verdict(enough)), Verdict::differs);
+  EXPECT_EQ((Places{0, 0, 0, 0}.verdict(enough)), Verdict::differs);
+  EXPECT_EQ((Places{0, 0, 0, 0}.verdict(few)), Verdict::cannot_tell);
+  EXPECT_EQ((Places{100, 90, 0, 0}.verdict(few)), Verdict::cannot_tell);
+  EXPECT_EQ((Places{100, 1, 30, 0}.verdict(few)), Verdict::differs);
+}
+
+TEST(PaperVerdict, RareAndEven) {
+  EXPECT_EQ(rare_and_even(share_of(41, 10000), share_of(21, 41)), Verdict::reproduced);
+  EXPECT_EQ(rare_and_even(share_of(20, 10000), share_of(6, 20)), Verdict::cannot_tell);
+  EXPECT_EQ(rare_and_even(share_of(1000, 10000), share_of(600, 1000)), Verdict::agrees);
+  EXPECT_EQ(rare_and_even(share_of(1000, 10000), share_of(900, 1000)), Verdict::differs);
+  EXPECT_EQ(rare_and_even(share_of(5000, 10000), share_of(2500, 5000)), Verdict::differs);
+  EXPECT_EQ(rare_and_even(share_of(0, 10000), share_of(0, 0)), Verdict::cannot_tell);
+}
+
+/// What Fig. 8's and Fig. 12's studies give when the outcomes are these.
+Findings found(std::int64_t trials, std::int64_t (*left)(double force, double random),
+               std::int64_t (*right)(double force, double random)) {
+  Findings f;
+  const auto add = [&](Sweep& to, double damping, double force, double random, double k) {
+    SweepPoint p;
+    p.trials = trials;
+    p.traversed_left = left(force, random);
+    p.traversed_right = right(force, random);
+    p.traversed = p.traversed_left + p.traversed_right;
+    p.settings = {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}};
+    if (k > 0) p.settings.emplace_back(kLeftStiffness, k);
+    to.points.push_back(std::move(p));
+  };
+  for (const double damping : {50.0, 10.0})
+    for (double random = 0; random <= 60; random += 10) {
+      for (double force = 4; force <= 9; ++force) add(f.fig8, damping, force, random, 0);
+      for (const double force : {7.0, 8.0})
+        for (const double k : stiffnesses()) add(f.fig12, damping, force, random, k);
+    }
+  return f;
+}
+
+// Where nothing of what the paper says is seen, enough trials say so and few do not.
+TEST(PaperClaims, WhatIsSeenNowhereDiffers) {
+  const auto none = [](double, double) { return std::int64_t{0}; };
+  const auto verdicts = [](const Findings& f) {
+    return std::vector<Verdict>{rises_with_propulsion(f).verdict,
+                                rises_then_falls(f).verdict,
+                                peak_at_20(f).verdict,
+                                escape(f).verdict,
+                                softer_side(f).verdict,
+                                fig12_propulsion(f).verdict};
+  };
+  EXPECT_EQ(verdicts(found(10000, none, none)), std::vector(6, Verdict::differs));
+  EXPECT_EQ(verdicts(found(100, none, none)), std::vector(6, Verdict::cannot_tell));
+}
+
+TEST(PaperClaims, BothSidesAlikeIsNotTheSofterSide) {
+  const auto some = [](double, double) { return std::int64_t{2000}; };
+  const auto none = [](double, double) { return std::int64_t{0}; };
+  EXPECT_EQ(softer_side(found(10000, some, some)).verdict, Verdict::differs);
+  EXPECT_EQ(softer_side(found(10000, some, none)).verdict, Verdict::reproduced);
+}
+
+// Table IV's pair is judged by standard deviations that some repeats must tell.
+TEST(PaperClaims, AStartOfFewRepeatsIsNotJudged) {
+  ValidatedStart start;
+  start.paper_corrcoef = 0.9;
+  start.paper_rmse = 1.0;
+  start.exact.corrcoef = start.walks.corrcoef = {0.5, 0.01};
+  start.exact.rmse = start.walks.rmse = {1.0, 0.1};
+  Findings f;
+  f.field.starts = {start, start};
+  f.field.starts[0].repeats = 10;
+  f.field.starts[1].repeats = 100;
+  EXPECT_EQ(table4_row(f, 0, "few").verdict, Verdict::cannot_tell);
+  EXPECT_EQ(table4_row(f, 1, "many").verdict, Verdict::differs);
+}
+
+TEST(PaperClaims, ALittleLessThanAlwaysAgrees) {
+  const auto verdict_of_steep = [](std::int64_t traversed, bool downhill) {
+    Findings f = found(
+        10, [](double, double) { return std::int64_t{1}; },
+        [](double, double) { return std::int64_t{1}; });
+    f.steep.fine.downhill = downhill;
+    f.steep.measured.trials = 10000;
+    f.steep.measured.traversed = traversed;
+    return steep(f).verdict;
+  };
+  EXPECT_EQ(verdict_of_steep(10000, true), Verdict::reproduced);
+  EXPECT_EQ(verdict_of_steep(9990, true), Verdict::agrees);
+  EXPECT_EQ(verdict_of_steep(9000, true), Verdict::differs);
+  EXPECT_EQ(verdict_of_steep(10000, false), Verdict::differs);
 }
 
 // Shares of few: what 100 trials of all would show of them depends on how few they are.
