@@ -241,7 +241,7 @@ Figure figure_of(const std::vector<WorkPrecision>& charts) {
       out += sheet.text(line, 8, (top += kLine) + 14, kSmallFont);
     top += 30;
     const std::string label = i + 1 == charts.size() ? "'µs per trial'" : "''";
-    const Box left{80, 240, top, top + kPanel}, right{336, 496, top, top + kPanel};
+    const Box left{80, 236, top, top + kPanel}, right{330, 486, top, top + kPanel};
     out += sheet.margins(left) + Sheet::axes(label, "'total variation'") +
            panel(chart, outcomes_of(chart), ranges.outcomes, "weak" + std::to_string(i)) +
            "unset label\n" + sheet.margins(right) + Sheet::axes(label, "'exit off by (m)'") +

@@ -136,14 +136,15 @@ test('no text is smaller than 12 px, nothing lies beside the page from 320 px on
 }));
 
 test('dark and light follow the page', () => seen('gate.html', {colorScheme: 'light'}, async (page) => {
-  const dark = () => page.locator('.gwr').evaluate((root) => root.classList.contains('gwr-dark'));
+  // The page is told a moment after its colours change.
+  const dark = () => page.locator('.gwr.gwr-dark').waitFor(), bright = () => page.locator('.gwr:not(.gwr-dark)').waitFor();
   const light = await pixels(page);
-  assert.equal(await dark(), false);
+  await bright();
   await page.emulateMedia({colorScheme: 'dark'});
-  assert.equal(await dark(), true);
+  await dark();
   assert.notEqual(await pixels(page), light);
   await page.evaluate(() => { document.documentElement.style.colorScheme = 'light'; });
-  assert.equal(await dark(), false);
+  await bright();
   assert.equal(await pixels(page), light);
 }));
 
