@@ -101,8 +101,7 @@ std::string image(const std::string& data) { return "plot " + data + cells(); }
 
 /// The large map with its numbers.
 std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
-                      const std::string& data, const RootScale& scale,
-                      const std::string& elsewhere) {
+                      const std::string& data, const RootScale& scale) {
   const Box box = plan.map();
   std::string blocks;
   if (map.rows.block > 1 || map.columns.block > 1)
@@ -114,7 +113,6 @@ std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
       tics_of(map.columns, map.middle_column, plan.map_width, 30) + "\nset ytics " +
       tics_of(map.rows, 0, plan.map_height, 22) + "\n" + Sheet::axes("'column i_x'", "'row i_y'") +
       sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
-      sheet.text(elsewhere, Plan::kLeft, box.bottom + 58, kSmallFont) +
       scale.colours(sheet, plan.colours());
   out += image(data);
   if (plan.cell_width >= 26 && plan.cell_height >= 15)
@@ -171,10 +169,12 @@ Figure figure_of(const std::vector<FieldPicture>& pictures) {
     const auto block = [&](const char* name, const CellProbabilities& shares) {
       return data_block(name + tag, rows_of(maps[i], shares));
     };
+    if (const std::string rest = elsewhere_text(maps[i], p.final_gates); !rest.empty())
+      out += sheet.text("elsewhere" + rest.substr(rest.rfind(':')), Plan::kSmallLeft, plan.top - 30,
+                        kSmallFont);
     out += block("$all", p.final_gates) + block("$trapped", p.trapped) +
            block("$left", p.departed) + sheet.text(p.title, 8, plan.top - 30) +
-           large_map(maps[i], plan, sheet, "$all" + tag, scale,
-                     elsewhere_text(maps[i], p.final_gates)) +
+           large_map(maps[i], plan, sheet, "$all" + tag, scale) +
            small_map("trapped, % of all", maps[i], plan.small(0), sheet, "$trapped" + tag) +
            small_map("departed, % of all", maps[i], plan.small(1), sheet, "$left" + tag) +
            share_bars(sheet, plan.bars(), "$endings" + tag, bars_of(p.endings));

@@ -25,7 +25,7 @@ constexpr std::array<const char*, dynamics::kVerdictNames.size()> kColours{
     "#9066c9",  // penetration
     "#7a1010",  // beyond bound
     "#1f5fae",  // stuck
-    "#e8308a",  // not finite
+    "#111111",  // not finite
     "#8f8f8f",  // refused
 };
 static_assert(kColours.back() != nullptr, "one colour per verdict");
