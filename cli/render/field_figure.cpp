@@ -170,8 +170,8 @@ Figure figure_of(const std::vector<FieldPicture>& pictures) {
       return data_block(name + tag, rows_of(maps[i], shares));
     };
     if (const std::string rest = elsewhere_text(maps[i], p.final_gates); !rest.empty())
-      out += sheet.text("elsewhere" + rest.substr(rest.rfind(':')), Plan::kSmallLeft, plan.top - 30,
-                        kSmallFont);
+      out += sheet.text("elsewhere" + rest.substr(rest.rfind(':')), Plan::kSmallLeft - 24,
+                        plan.top - 30, kSmallFont);
     out += block("$all", p.final_gates) + block("$trapped", p.trapped) +
            block("$left", p.departed) + sheet.text(p.title, 8, plan.top - 30) +
            large_map(maps[i], plan, sheet, "$all" + tag, scale) +
