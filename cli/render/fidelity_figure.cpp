@@ -80,7 +80,7 @@ Figure figure_of(const FidelityStudy& study) {
               "set xlabel 'total variation to active' offset 0,0.4\nset arrow from " + bound +
               ", graph 0 to " + bound + ", graph 1 nohead lt -1 dt 2\nplot NaN" + left +
               "\nunset label\nunset arrow\n" + sheet.margins(times) +
-              "unset ytics\nset xrange [0:*]\nset xtics " + digits(tic_step(slowest, 3)) +
+              "unset ytics\nset xrange [0:*]\nset xtics " + digits(tic_step(slowest, 2)) +
               "\nset xlabel 'ms, " + std::to_string(study.threads) +
               (study.threads == 1 ? " thread" : " threads") + "' offset 0,0.4\n" + right +
               "\nunset multiplot\n",
