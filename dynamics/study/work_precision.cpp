@@ -11,17 +11,18 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kSamePlace = 1e-9;    // of R: what is nearer is rounding, or the same bits
-constexpr double kChances = 2.0;       // times what chance would show: what stands out from it
-constexpr double kTimedSeconds = 0.1;  // of the usual setting: the trials that are timed
-constexpr double kLookUp = 0.2;        // s, between two looks while times are taken
+constexpr double kSamePlace = 1e-9;        // of R: what is nearer is rounding, or the same bits
+constexpr double kChances = 2.0;           // times what chance would show: what stands out from it
+constexpr double kTimedSeconds = 0.1;      // of the usual setting: the trials that are timed
+constexpr std::int64_t kLeastTimed = 500;  // of these, for a setting that takes longer
+constexpr double kLookUp = 0.2;            // s, between two looks while times are taken
 
 double per_run(std::int64_t n, const Health& h) {
   return h.runs > 0 ? static_cast<double>(n) / static_cast<double>(h.runs)
                     : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Seconds of trials 0 .. n - 1 on this thread, or of as many as take `enough` seconds.
+/// Seconds of trials 0 .. n - 1 on this thread; of fewer, but `least`, if these take kTimedSeconds.
 struct Timed {
   std::int64_t trials = 0;
   double seconds = 0.0;
@@ -101,7 +102,7 @@ class Charting {
     return point;
   }
 
-  Timed time_trials(const Setting& s, std::int64_t n, double enough,
+  Timed time_trials(const Setting& s, std::int64_t n, std::int64_t least,
                     const std::function<void()>& look_up) const {
     const GateParams p = s.applied_to(chart_.params);
     const auto method = make_method(p);
@@ -112,7 +113,8 @@ class Charting {
         p, *method,
         [&](RunSlot& slot, const GateRun*) {
           timed.seconds = watch.seconds();
-          if (timed.trials == n || timed.seconds >= enough) return false;
+          const bool enough = timed.seconds >= kTimedSeconds && timed.trials >= least;
+          if (timed.trials == n || enough) return false;
           if (timed.seconds >= next_look) {
             look_up();
             next_look = timed.seconds + kLookUp;
@@ -139,13 +141,12 @@ class Charting {
     const std::int64_t total = (options_.rounds + 1) * settings;
     std::int64_t done = 0;
     const auto look_up = [&] { work_.tell(what, done, total); };
-    chart_.timed_trials = time_trials(pace->setting, chart_.trials, kTimedSeconds, look_up).trials;
+    chart_.timed_trials = time_trials(pace->setting, chart_.trials, 1, look_up).trials;
     for (std::int64_t round = 0; round <= options_.rounds; ++round)
       for (ChartPoint& point : chart_.points) {
         look_up();
         if (point.ran()) {
-          const Timed timed = time_trials(point.setting, chart_.timed_trials,
-                                          std::numeric_limits<double>::infinity(), look_up);
+          const Timed timed = time_trials(point.setting, chart_.timed_trials, kLeastTimed, look_up);
           if (round > 0)
             point.microseconds.push_back(1e6 * timed.seconds / static_cast<double>(timed.trials));
         }

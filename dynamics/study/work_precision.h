@@ -64,7 +64,7 @@ struct Reference {
 struct WorkPrecision {
   std::string label;
   GateParams params;
-  std::int64_t trials = 0, timed_trials = 0;
+  std::int64_t trials = 0, timed_trials = 0;  // settings that take long: fewer are timed
   Reference reference;
   std::vector<ChartPoint> points;  // method by method, from coarse to fine
 
