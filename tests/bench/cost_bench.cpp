@@ -150,8 +150,9 @@ void evaluations() {
 
 /// As one row of cells, for lattice::compare.
 markov::CellCounts outcomes(const GateTally& t) {
-  markov::CellCounts counts(1, kOutcomes);
-  for (std::size_t k = 0; k < kOutcomes; ++k) counts(0, static_cast<Eigen::Index>(k)) = t.counts[k];
+  markov::CellCounts counts(1, dynamics::kOutcomes);
+  for (std::size_t k = 0; k < dynamics::kOutcomes; ++k)
+    counts(0, static_cast<Eigen::Index>(k)) = t.counts[k];
   return counts;
 }
 

@@ -17,6 +17,7 @@ namespace {
 using namespace gatewalk;
 using dynamics::GateParams;
 using dynamics::GateTally;
+using dynamics::Outcome;
 using dynamics::TrialRange;
 
 /// Runs trials and says how they ended; `health.steps` counts the steps.
