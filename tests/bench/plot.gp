@@ -29,6 +29,7 @@ unset grid
 eval text("the chain, the same answers", 8, 372)
 eval panel(214, 452, 390, 580)
 set xlabel "times as long as gatewalk's fastest"
+set autoscale y
 stats csv("chain", "NR > 1 && $7 > 1") using 7 nooutput
 set yrange [STATS_records-0.4:-0.6]
 plot csv("chain", "NR > 1 && $7 > 1 { gsub(\"gatewalk\", \"our\"); sub(\" rmarkovchain\", \"\"); print }") using 7:0:ytic(strcol(1).": ".strcol(3)) @dot first pt 7, \
