@@ -34,6 +34,14 @@ Outcome outcome_of(const GateRun& run) {
   return Outcome::broken;
 }
 
+void settle_energy(const GateParams& p, const BodyState& start, GateRun& run) {
+  const auto kinetic = [&](const BodyState& b) {
+    return 0.5 * p.body.mass * (b.vx * b.vx + b.vy * b.vy);
+  };
+  run.propulsion_work = p.forces.propulsion * (run.exit.y - start.y);
+  run.lost = run.propulsion_work + run.random_work - (kinetic(run.exit) - kinetic(start));
+}
+
 Ending ending(const GateParams& p, const GateState& s) {
   if (!finite(s)) return Ending::broken;
   if (s.body.y > p.run.traverse_y) return Ending::traversed;
@@ -60,6 +68,8 @@ GateRun run_gate(const GateParams& p, const Method& method, const BodyState& sta
   }
   run.exit = s.body;
   run.ending = ending(p, s);
+  run.random_work = ledger.random_work();
+  settle_energy(p, start, run);
   return run;
 }
 

@@ -17,12 +17,38 @@ enum class Ending : std::uint8_t { traversed, exited_left, exited_right, trapped
 
 struct GateRun {
   Ending ending = Ending::broken;
-  BodyState exit;        // state at the end, in this gate's frame
-  double seconds = 0.0;  // simulated time
+  BodyState exit;                                   // state at the end, in this gate's frame
+  double seconds = 0.0;                             // simulated time
+  double propulsion_work = 0.0, random_work = 0.0;  // J, of the two forces
+  double lost = 0.0;  // J: their work, less what the body has gained: to hits, dampers and drag,
+                      // and what is left in the beams
   bool out_of_work =
       false;    // stopped because it took more work than was granted; `ending` means nothing
   Watch watch;  // largest deflections, faults, work done
 };
+
+/// Fills in propulsion_work and lost, from where the run began, its exit and random_work.
+void settle_energy(const GateParams& p, const BodyState& start, GateRun& run);
+
+/// What a run takes.
+enum class Cost : std::uint8_t { seconds, propulsion_work, random_work, lost };
+/// Its name in files, with the unit, and in words.
+struct CostName {
+  std::string_view key, unit, words;
+};
+/// All of them, in the order of Cost.
+inline constexpr std::array kCostNames{
+    CostName{"seconds", "s", "duration"},
+    CostName{"propulsion_work_J", "J", "work of the propulsion"},
+    CostName{"random_work_J", "J", "work of the random force"},
+    CostName{"lost_J", "J", "energy that the gate took from the body"},
+};
+inline constexpr std::size_t kCosts = kCostNames.size();
+/// By Cost.
+using Costs = std::array<double, kCosts>;
+[[nodiscard]] inline Costs costs_of(const GateRun& run) {
+  return {run.seconds, run.propulsion_work, run.random_work, run.lost};
+}
 
 /// How a run ends, and for one that traversed by which beam.
 enum class Outcome : std::uint8_t {

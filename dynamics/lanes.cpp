@@ -83,8 +83,9 @@ class LaneRuns {
       passed = back_to_exit(p_, before, s, h);
       s.beams = mixed(before.beams, beams, passed / h);
     }
-    const double balance = energy(p_, s) - p_.forces.propulsion * (s.body.y - watches.y0[i]) -
-                           (watches.work[i] + steps.force[i] * (s.body.x - before.body.x));
+    watches.work[i] += steps.force[i] * (s.body.x - before.body.x);
+    const double balance =
+        energy(p_, s) - p_.forces.propulsion * (s.body.y - watches.y0[i]) - watches.work[i];
     watches.created[i] = std::max(watches.created[i], balance - watches.lowest[i]);
     Watch last;
     last.state(p_, s, h);
@@ -164,6 +165,8 @@ class LaneRuns {
     r.exit = s.body;
     r.ending = ending(p_, s);
     const LaneWatches& w = watches;
+    r.random_work = w.work[i];
+    settle_energy(p_, runs_[i].slot.start, r);
     for (const Side side : {kLeft, kRight}) r.watch.max_theta[side] = w.max_theta[side][i];
     r.watch.max_penetration = w.penetration[i];
     r.watch.energy_created = w.created[i];

@@ -29,7 +29,8 @@ enum class Purpose : std::uint64_t {
   resampling = 5,
   memory = 6,
   terrain = 7,
-  rare = 8
+  rare = 8,
+  sensitivity = 9
 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.

@@ -313,6 +313,8 @@ class StableRuns {
     r.ending = ending(p_, s);
     r.seconds = run.seconds;
     r.out_of_work = run.out_of_work;
+    r.random_work = row[kWork][i];
+    settle_energy(p_, run.slot.start, r);
     for (const Side side : {kLeft, kRight}) r.watch.max_theta[side] = row[kMaxTheta + side][i];
     r.watch.max_penetration = row[kPenetration][i];
     r.watch.energy_created = row[kCreated][i];

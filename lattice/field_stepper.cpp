@@ -90,16 +90,20 @@ double FieldStepper::energy() const {
 
 GateRun FieldStepper::run_gate(RandomForce& force) {
   GateRun run;
+  const BodyState start = body_;
   const double nearly_over = p_.run.time_limit - 1e-6 * p_.run.step;
   while (!outside(p_, body_) && run.seconds < nearly_over) {
     const double f = force.value();
     const double spell = std::min(force.left(), p_.run.time_limit - run.seconds);
+    const double from = body_.x;
     const double passed = advance(f, spell, run.watch);
+    run.random_work += f * (body_.x - from);
     force.pass(passed);
     run.seconds += passed;
     if (!finite()) break;
   }
   run.exit = body_;
+  settle_energy(p_, start, run);
   run.ending = finite() ? ending(p_, {body_, gates_[current_].beams}) : Ending::broken;
   return run;
 }

@@ -54,7 +54,20 @@ double unseen_95(std::int64_t trials) {
 
 constexpr std::uint64_t kGroupDraws = 0x67726f7570;  // "group", row of their streams
 
+/// Student's t with 7 degrees of freedom, 97.5 %: kTrialGroups - 1 of them.
+constexpr double kQuantile = 2.3646;
+static_assert(kTrialGroups == 8);
+
 }  // namespace
+
+double half_width_95(double whole, const std::vector<double>& groups) {
+  const auto n = static_cast<double>(groups.size());
+  double mean = 0.0, squares = 0.0;
+  for (const double g : groups) mean += g / n;
+  for (const double g : groups) squares += (g - mean) * (g - mean);
+  const double error = std::sqrt(squares / (n * (n - 1.0)));
+  return std::hypot(kQuantile * error, kBiasLeft * (mean - whole));
+}
 
 GroupSpread::GroupSpread(const markov::FinalDistribution& whole,
                          const std::vector<markov::FinalDistribution>& groups)
@@ -67,12 +80,10 @@ GroupSpread::GroupSpread(const markov::FinalDistribution& whole,
 }
 
 template <class Value>
-GroupSpread::Moments GroupSpread::moments(Value value) const {
-  const auto n = static_cast<double>(groups_.size());
-  double mean = 0.0, squares = 0.0;
-  for (const auto& g : groups_) mean += value(g) / n;
-  for (const auto& g : groups_) squares += (value(g) - mean) * (value(g) - mean);
-  return {std::sqrt(squares / (n * (n - 1.0))), kBiasLeft * (mean - value(whole_))};
+double GroupSpread::half_width(Value value) const {
+  std::vector<double> values;
+  for (const auto& g : groups_) values.push_back(value(g));
+  return half_width_95(value(whole_), values);
 }
 
 Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
@@ -95,23 +106,13 @@ Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
   return e;
 }
 
-namespace {
-
-/// Student's t with 7 degrees of freedom, 97.5 %: kTrialGroups - 1 of them.
-constexpr double kQuantile = 2.3646;
-static_assert(kTrialGroups == 8);
-
-double half_width(double error, double bias) { return std::hypot(kQuantile * error, bias); }
-
-}  // namespace
-
 std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) const {
   std::array<CellProbabilities, 2> range{whole_.final_cells, whole_.final_cells};
   const auto never = dynamics::interval_of_share(0.0, static_cast<double>(trials));
   for (Eigen::Index i = 0; i < whole_.final_cells.size(); ++i) {
-    const Moments m =
-        moments([&](const markov::FinalDistribution& d) { return d.final_cells.data()[i]; });
-    const double half = half_width(m.error, m.bias), p = whole_.final_cells.data()[i];
+    const double p = whole_.final_cells.data()[i];
+    const double half =
+        half_width([&](const markov::FinalDistribution& d) { return d.final_cells.data()[i]; });
     range[0].data()[i] = std::max(0.0, p - half);
     range[1].data()[i] = std::min(1.0, p + half);
     if (half > 0.0) continue;
@@ -126,8 +127,9 @@ std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) cons
 EndingShares GroupSpread::endings_95(std::int64_t trials) const {
   EndingShares shares(whole_.endings);
   for (std::size_t e = 0; e < markov::kEndings; ++e) {
-    const Moments m = moments([&](const markov::FinalDistribution& d) { return d.endings[e]; });
-    const double half = half_width(m.error, m.bias), p = std::clamp(shares.share[e], 0.0, 1.0);
+    const double half =
+        half_width([&](const markov::FinalDistribution& d) { return d.endings[e]; });
+    const double p = std::clamp(shares.share[e], 0.0, 1.0);
     shares.interval[e] = {std::max(0.0, p - half), std::min(1.0, p + half)};
     if (half == 0.0)
       shares.interval[e] = dynamics::interval_of_share(p, static_cast<double>(trials));

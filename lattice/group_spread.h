@@ -23,6 +23,10 @@ struct Error95 {
   double rmse_per_100 = 0.0;     // at most
 };
 
+/// Half the width of a 95 % interval of any number: of all trials, and of kTrialGroups groups of
+/// them. Their spread is sampling; their mean less the whole's, what larger states would change.
+[[nodiscard]] double half_width_95(double whole, const std::vector<double>& groups);
+
 class GroupSpread {
  public:
   /// `groups`: two or more, from disjoint parts of the trials of equal size. Throws
@@ -38,11 +42,8 @@ class GroupSpread {
   [[nodiscard]] EndingShares endings_95(std::int64_t trials) const;
 
  private:
-  struct Moments {
-    double error, bias;  // standard error by sampling; what larger states would change
-  };
   template <class Value>
-  [[nodiscard]] Moments moments(Value value) const;
+  [[nodiscard]] double half_width(Value value) const;
 
   const markov::FinalDistribution& whole_;
   const std::vector<markov::FinalDistribution>& groups_;

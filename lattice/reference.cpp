@@ -23,6 +23,7 @@ struct Trial {
   std::optional<markov::Ending> ending;  // none: a run stopped being finite
   std::int32_t column = 0, row = 0;
   int gates = 0;  // visited
+  Costs costs{};
   std::array<std::int32_t, kBoundaries> entries{}, clamped{};
   Health health;
   std::vector<GatePassage> passages;
@@ -42,13 +43,15 @@ std::optional<Crossing> follow(Trial& t, const FieldGates& gates, const FieldPar
   const GateParams& p = gates.types()[type];
   t.health.add(p, run);
   ++t.gates;
+  const Costs costs = costs_of(run);
+  for (std::size_t c = 0; c < kCosts; ++c) t.costs[c] += costs[c];
   if (run.ending == Ending::broken || run.ending == Ending::trapped) {
     if (run.ending == Ending::trapped) t.ending = markov::Ending::trapped;
-    if (keep_passages) t.passages.push_back({run.ending, type, {}});
+    if (keep_passages) t.passages.push_back({run.ending, type, {}, costs});
     return {};
   }
   const Crossing crossing = crossing_of(p, run.ending, run.exit);
-  if (keep_passages) t.passages.push_back({run.ending, type, crossing});
+  if (keep_passages) t.passages.push_back({run.ending, type, crossing, costs});
   const Move move = move_into(crossing.boundary);
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
     t.ending =
@@ -227,6 +230,7 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
     for (const Trial& t : trials) {
       each->final_gates.push_back(t.row * field.columns + t.column);
       each->endings.push_back(t.ending);
+      each->costs.push_back(t.costs);
       if (!keep_passages) continue;
       each->passages.insert(each->passages.end(), t.passages.begin(), t.passages.end());
       each->passed.push_back(std::ssize(each->passages));

@@ -42,18 +42,20 @@ struct FieldTally {
   FieldTally& operator+=(const FieldTally& other);
 };
 
-/// How a trial's run through one gate ended, that gate's type, and with which entry into the next
-/// gate, inside the field or outside; no entry where it did not leave its gate.
+/// How a trial's run through one gate ended, that gate's type, with which entry into the next
+/// gate, inside the field or outside (no entry where it did not leave its gate), and what it took.
 struct GatePassage {
   dynamics::Ending ending = dynamics::Ending::trapped;
   std::uint8_t type = 0;  // of FieldGates::types()
   dynamics::Crossing entry{};
+  dynamics::Costs costs{};
 };
 
 /// What each trial did, in the order of their numbers.
 struct FieldTrials {
   std::vector<std::int32_t> final_gates{};               // row * columns + column
   std::vector<std::optional<markov::Ending>> endings{};  // none: a run stopped being finite
+  std::vector<dynamics::Costs> costs{};                  // of all its runs together
   bool keep_passages = false;
   std::vector<GatePassage> passages{};  // of all trials, if kept, ...
   std::vector<std::int64_t> passed{};   // ... and how many of them each trial and those before

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "dynamics/quantile_bins.h"
@@ -110,12 +111,14 @@ void join_leaves(const Tree& tree, const std::int64_t* runs, std::int64_t least,
   }
 }
 
-/// The counts of one type, row[i] to column[i]; where leaves have few runs, of several together.
+/// The counts of one type, row[i] to column[i]; where leaves have few runs, of several together,
+/// the first of which takes each one's place in `first`.
 markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
-                              const std::vector<int>& column, std::int64_t least) {
+                              const std::vector<int>& column, std::int64_t least,
+                              std::vector<int>& first) {
   std::vector<std::int64_t> runs(static_cast<std::size_t>(space.size()), 0);
   for (const int r : row) ++runs[static_cast<std::size_t>(r)];
-  std::vector<int> first(runs.size());
+  first.resize(runs.size());
   for (int b = 0; b < kBoundaries; ++b) {
     const int begin = space.first(static_cast<Boundary>(b));
     join_leaves(space.trees()[static_cast<std::size_t>(b)], runs.data() + begin, least, begin,
@@ -134,6 +137,13 @@ markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
 }
 
 }  // namespace
+
+void each_entry(const RunPool& pool,
+                const std::function<void(const Crossing& entry, int type)>& use) {
+  each_kernel_run(pool, {}, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+    use(entry, run.type);
+  });
+}
 
 std::int64_t Kernel::nonzeros() const {
   std::int64_t all = 0;
@@ -201,7 +211,8 @@ Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, Tri
       to.push_back(column[i]);
     }
     seen_in(there, from);
-    kernel.counts.push_back(counts_of_type(kernel.space, std::move(from), to, per_leaf));
+    kernel.counts.push_back(counts_of_type(kernel.space, std::move(from), to, per_leaf,
+                                           kernel.shared_by.emplace_back()));
   }
   return kernel;
 }
@@ -276,19 +287,81 @@ double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldPa
          static_cast<double>(start.first_runs());
 }
 
-std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& space,
-                                    const StartTrials& start, TrialGroup group) {
+void CostSums::add(const Costs& costs) {
+  for (std::size_t c = 0; c < kCosts; ++c) {
+    sum[c] += costs[c];
+    squares[c] += costs[c] * costs[c];
+  }
+}
+
+std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const FieldGates& gates,
+                                             const RunPool& pool, TrialGroup group) {
+  const std::vector<std::size_t> images = images_of(gates);
+  const auto row_of = [&](std::size_t type, int leaf) {
+    return kernel.shared_by.empty() ? leaf : kernel.shared_by[type][static_cast<std::size_t>(leaf)];
+  };
+  std::vector<std::vector<CostSums>> sums;
+  for (const markov::Counts& counts : kernel.counts)
+    sums.emplace_back(static_cast<std::size_t>(counts.nonZeros()));
+  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+    const markov::Counts& counts = kernel.counts[run.type];
+    for (std::size_t image = 0; image < images[run.type]; ++image) {
+      const bool mirror = image == 1;
+      const int leaf = kernel.space.index_of(mirror ? mirrored(entry) : entry).state;
+      const int row = row_of(run.type, leaf);
+      const int column = output_of(kernel.space, run, mirror ? mirrored(run.entry) : run.entry);
+      const auto *begin = counts.innerIndexPtr() + counts.outerIndexPtr()[row],
+                 *end = counts.innerIndexPtr() + counts.outerIndexPtr()[row + 1];
+      const auto* const at = std::lower_bound(begin, end, column);
+      if (at == end || *at != column)
+        throw std::invalid_argument("cost sums: a run is none of the kernel's");
+      sums[run.type][static_cast<std::size_t>(at - counts.innerIndexPtr())].add(run.costs);
+    }
+  });
+  for (std::size_t type = 0; type < kernel.shared_by.size(); ++type) {
+    const auto* const begin = kernel.counts[type].outerIndexPtr();
+    for (int leaf = 0; leaf < kernel.space.size(); ++leaf)
+      if (const int row = row_of(type, leaf); row != leaf)
+        std::copy(sums[type].begin() + begin[row], sums[type].begin() + begin[row + 1],
+                  sums[type].begin() + begin[leaf]);
+  }
+  return sums;
+}
+
+namespace {
+
+/// Calls use(output, passage) for the first runs of a start's trials of one group.
+template <class Use>
+void each_first_run(const FieldGates& gates, const StateSpace& space, const StartTrials& start,
+                    TrialGroup group, Use use) {
   const std::vector<std::size_t> images = images_of(gates);
   const bool in_the_middle = mirrored(start.start) == start.start;
-  std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
   for (const FieldTrials* trials : {&start.full, &start.first})
     for (std::int64_t i = group.group; i < std::ssize(trials->final_gates); i += group.of) {
       const GatePassage& passage = trials->of_trial(static_cast<std::size_t>(i)).front();
       if (passage.ending == Ending::broken) continue;
-      ++row[static_cast<std::size_t>(output_of(space, passage, passage.entry))];
+      use(output_of(space, passage, passage.entry), passage);
       if (in_the_middle && images[passage.type] == 2)
-        ++row[static_cast<std::size_t>(output_of(space, passage, mirrored(passage.entry)))];
+        use(output_of(space, passage, mirrored(passage.entry)), passage);
     }
+}
+
+}  // namespace
+
+std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& space,
+                                    const StartTrials& start, TrialGroup group) {
+  std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
+  each_first_run(gates, space, start, group,
+                 [&](int output, const GatePassage&) { ++row[static_cast<std::size_t>(output)]; });
+  return row;
+}
+
+std::vector<CostSums> first_cost_sums(const FieldGates& gates, const StateSpace& space,
+                                      const StartTrials& start, TrialGroup group) {
+  std::vector<CostSums> row(static_cast<std::size_t>(space.size()) + 1);
+  each_first_run(gates, space, start, group, [&](int output, const GatePassage& run) {
+    row[static_cast<std::size_t>(output)].add(run.costs);
+  });
   return row;
 }
 

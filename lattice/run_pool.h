@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "dynamics/state_space.h"
@@ -49,6 +50,11 @@ struct RunPool {
   [[nodiscard]] std::int64_t trials() const;
 };
 
+/// Calls use(entry, type of the gate) for all runs of the pool but the starts' own first ones and
+/// those that broke.
+void each_entry(const RunPool& pool,
+                const std::function<void(const dynamics::Crossing& entry, int type)>& use);
+
 /// Trials number group, group + of, group + 2 of, ... of every start.
 struct TrialGroup {
   std::int64_t group = 0, of = 1;
@@ -79,6 +85,8 @@ struct Kernel {
   dynamics::StateSpace space;
   std::vector<markov::Counts> counts;  // by type of gate: (n x n+1), the last column: trapped
   std::vector<SeenEntries> seen{};     // by type, of the kernel of all trials
+  /// By type, where there are several: the first leaf of those that share a leaf's row (n).
+  std::vector<std::vector<int>> shared_by{};
 
   [[nodiscard]] std::int64_t nonzeros() const;  // of all types
 };
@@ -89,11 +97,29 @@ struct Kernel {
 [[nodiscard]] Kernel kernel_of(const FieldGates& gates, const RunPool& pool,
                                int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {});
 
+/// What runs took together, and the sum of the squares.
+struct CostSums {
+  dynamics::Costs sum{}, squares{};
+  void add(const dynamics::Costs& costs);
+};
+
+/// What the runs behind each of the kernel's counts took: by type, in the order of the nonzeros.
+[[nodiscard]] std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel,
+                                                           const FieldGates& gates,
+                                                           const RunPool& pool,
+                                                           TrialGroup group = {});
+
 /// How often the start's own first runs of one group ended in each of the kernel's outputs (n + 1).
 /// A start in the middle of a symmetric gate has mirror images too.
 [[nodiscard]] std::vector<std::int64_t> first_row(const FieldGates& gates,
                                                   const dynamics::StateSpace& space,
                                                   const StartTrials& start, TrialGroup group = {});
+
+/// What these took (n + 1).
+[[nodiscard]] std::vector<CostSums> first_cost_sums(const FieldGates& gates,
+                                                    const dynamics::StateSpace& space,
+                                                    const StartTrials& start,
+                                                    TrialGroup group = {});
 
 /// The same of trials that start anywhere: how often their first runs ended so.
 [[nodiscard]] std::vector<std::int64_t> first_row(const FieldGates& gates,

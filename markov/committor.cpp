@@ -21,17 +21,22 @@ struct Moves {
     int di_x, di_y, next;
   };
   std::vector<Entry> entries;
+  std::vector<double> ends;  // (inputs) chance of the ending at once, wherever the cell is
   std::vector<std::size_t> up,
       side;  // (inputs + 1): where those of an input begin; side: behind up
 
-  explicit Moves(const Chain& chain) {
+  Moves(const Chain& chain, Ending ending) {
     for (int input = 0; input < chain.inputs(); ++input) {
+      ends.push_back(ending == Ending::unsampled && !chain.is_sampled(input) ? 1.0 : 0.0);
       for (const bool upwards : {true, false}) {
         (upwards ? up : side).push_back(entries.size());
         for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
           const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-          if (exit.next_input != Exit::kTrapped && (exit.di_y > 0) == upwards)
+          if (exit.next_input == Exit::kTrapped) {
+            if (ending == Ending::trapped && upwards) ends.back() += it.value();
+          } else if ((exit.di_y > 0) == upwards) {
             entries.push_back({it.value(), exit.di_x, exit.di_y, exit.next_input});
+          }
         }
       }
     }
@@ -41,14 +46,15 @@ struct Moves {
 
 class Rows {
  public:
-  Rows(const FieldChain& chain, const Field& field)
+  Rows(const FieldChain& chain, const Field& field, Ending ending)
       : chain_(chain),
         field_(field),
+        ending_(ending),
         all_{field.columns, field.rows, chain.inputs(), {}},
         from_above_(static_cast<std::size_t>(field.columns) *
                     static_cast<std::size_t>(chain.inputs())) {
     all_.values.resize(from_above_.size() * static_cast<std::size_t>(field.rows));
-    for (const Chain& c : chain.chains()) moves_.emplace_back(c);
+    for (const Chain& c : chain.chains()) moves_.emplace_back(c, ending);
   }
 
   Committor solve() && {
@@ -67,19 +73,26 @@ class Rows {
     return moves_[static_cast<std::size_t>(chain_.type_of(column, row))];
   }
 
-  /// What the rows above give, of which all is known; and a first guess.
+  [[nodiscard]] bool within(std::int64_t column) const {
+    return column >= 0 && column < field_.columns;
+  }
+  [[nodiscard]] double ends_beyond(std::int64_t column, std::int64_t row) const {
+    return edge_before(field_, column, row) == ending_ ? 1.0 : 0.0;
+  }
+
+  /// What ends at once and what the rows above give, of which all is known; and a first guess.
   void look_up(int row) {
     for (int column = 0; column < field_.columns; ++column) {
       const Moves& m = moves_of(column, row);
       double* const sums = from_above_.data() + std::int64_t{column} * all_.inputs;
       for (int input = 0; input < all_.inputs; ++input) {
-        double sum = 0.0;
+        double sum = m.ends[static_cast<std::size_t>(input)];
         for (std::size_t i = m.up[input]; i < m.side[input]; ++i) {
           const auto& [p, di_x, di_y, next] = m.entries[i];
-          if (row + di_y >= field_.rows)
-            sum += p;
-          else if (column + di_x >= 0 && column + di_x < field_.columns)
+          if (within(column + di_x) && row + di_y < field_.rows)
             sum += p * cell(column + di_x, row + di_y)[next];
+          else
+            sum += p * ends_beyond(column + di_x, row + di_y);
         }
         sums[input] = sum;
         cell(column, row)[input] = sum;
@@ -96,8 +109,8 @@ class Rows {
       double sum = sums[input];
       for (std::size_t i = m.side[input]; i < m.up[input + 1]; ++i) {
         const auto& [p, di_x, di_y, next] = m.entries[i];
-        if (column + di_x >= 0 && column + di_x < field_.columns)
-          sum += p * cell(column + di_x, row)[next];
+        sum += p * (within(column + di_x) ? cell(column + di_x, row)[next]
+                                          : ends_beyond(column + di_x, row));
       }
       double& value = cell(column, row)[input];
       change = std::max(change, std::abs(sum - value));
@@ -122,6 +135,7 @@ class Rows {
 
   const FieldChain& chain_;
   const Field field_;
+  const Ending ending_;
   std::vector<Moves> moves_;  // by type
   Committor all_;
   std::vector<double> from_above_;  // (columns x inputs)
@@ -129,12 +143,61 @@ class Rows {
 
 }  // namespace
 
-Committor committor(const FieldChain& chain, const Field& field) {
+Committor committor(const FieldChain& chain, const Field& field, Ending ending) {
   validate(chain, field, {}, 0);
   for (const Chain& c : chain.chains())
     for (const Exit& exit : c.exits())
       if (exit.di_y < 0) throw std::invalid_argument("committor: a move leads to a row below");
-  return Rows(chain, field).solve();
+  return Rows(chain, field, ending).solve();
+}
+
+EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending ending,
+                           int max_cells)
+    : ending_(ending),
+      max_cells_(max_cells),
+      cells_(std::int64_t{field.columns} * field.rows),
+      inputs_(chain.inputs()),
+      layers_(max_cells == 0 ? 1 : max_cells) {
+  validate(chain, field, {}, max_cells);
+  if (max_cells == 0) {
+    values_ = committor(chain, field, ending).values;
+    return;
+  }
+  constexpr double kMostNumbers = 4.0 * (1 << 30) / sizeof(double);
+  const double numbers =
+      static_cast<double>(layers_) * static_cast<double>(cells_) * static_cast<double>(inputs_);
+  if (numbers > kMostNumbers)
+    throw std::invalid_argument("the chance of an ending from every state of " +
+                                std::to_string(cells_) + " cells, " + std::to_string(layers_) +
+                                " draws each, takes more than 4 GiB");
+  values_.resize(static_cast<std::size_t>(numbers));
+  for (std::int64_t layer = layers_ - 1; layer >= 0; --layer)
+    for (std::int64_t cell = 0; cell < cells_; ++cell) {
+      const std::int64_t column = cell % field.columns, row = cell / field.columns;
+      const Chain& here = chain.at(column, row);
+      double* const out = values_.data() + (layer * cells_ + cell) * inputs_;
+      const double* const next = values_.data() + (layer + 1) * cells_ * inputs_;
+      for (int input = 0; input < here.inputs(); ++input) {
+        double sum = !here.is_sampled(input) && ending == Ending::unsampled ? 1.0 : 0.0;
+        for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
+          const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
+          const std::int64_t to_column = column + exit.di_x, to_row = row + exit.di_y;
+          const bool inside =
+              to_column >= 0 && to_column < field.columns && to_row >= 0 && to_row < field.rows;
+          double value;
+          if (exit.next_input == Exit::kTrapped)
+            value = ending == Ending::trapped ? 1.0 : 0.0;
+          else if (!inside)
+            value = edge_before(field, to_column, to_row) == ending ? 1.0 : 0.0;
+          else if (layer + 1 == layers_)
+            value = ending == Ending::cut_off ? 1.0 : 0.0;
+          else
+            value = next[(to_row * field.columns + to_column) * inputs_ + exit.next_input];
+          sum += it.value() * value;
+        }
+        out[input] = sum;
+      }
+    }
 }
 
 }  // namespace gatewalk::markov

@@ -1,13 +1,15 @@
 #pragma once
-/// How likely walks are to leave a field over its far edge, from every state of every cell.
+/// How likely walks are to end in one way, from every state of every cell: the committor of their
+/// leaving over the far edge, the same of any other ending, and with a limit of cells.
 
+#include <cstdint>
 #include <vector>
 
 #include "markov/chain.h"
 
 namespace gatewalk::markov {
 
-/// Chance that a walk without limit of cells leaves over the far edge: the committor.
+/// Chance that a walk without limit of cells ends so.
 struct Committor {
   int columns = 0, rows = 0, inputs = 0;
   std::vector<double> values;  // (rows x columns x inputs)
@@ -19,9 +21,33 @@ struct Committor {
 
 /// Row by row from the far edge; within a row by sweeps to both sides until no value changes by
 /// more than 1e-12 of the row's largest. Relative accuracy is that of sums of positive numbers,
-/// however small the values: nothing is subtracted. A row never sampled does not commit. Throws
+/// however small the values: nothing is subtracted. A row never sampled ends as `unsampled`. Throws
 /// std::invalid_argument for moves to a row below and fields of another size than the chain's,
 /// std::runtime_error when 10^5 sweeps do not do.
-[[nodiscard]] Committor committor(const FieldChain& chain, const Field& field);
+[[nodiscard]] Committor committor(const FieldChain& chain, const Field& field,
+                                  Ending ending = Ending::far_edge);
+
+/// The same of walks that may visit so many cells.
+class EndingChance {
+ public:
+  /// max_cells 0: no limit, as committor(). Memory: max_cells x rows x columns x inputs numbers;
+  /// throws std::invalid_argument above 4 GiB.
+  EndingChance(const FieldChain& chain, const Field& field, Ending ending, int max_cells);
+
+  /// From a cell (row * columns + column) in which the walk is to make its `draw`-th draw, from 1;
+  /// 0 behind the last one. Without limit any number will do.
+  [[nodiscard]] double operator()(int draw, std::int64_t cell, std::int64_t input) const {
+    const std::int64_t layer = max_cells_ == 0 ? 0 : draw - 1;
+    if (layer >= layers_) return 0.0;
+    return values_[static_cast<std::size_t>((layer * cells_ + cell) * inputs_ + input)];
+  }
+  [[nodiscard]] Ending ending() const { return ending_; }
+
+ private:
+  Ending ending_;
+  int max_cells_;
+  std::int64_t cells_, inputs_, layers_;
+  std::vector<double> values_;  // (layers x cells x inputs)
+};
 
 }  // namespace gatewalk::markov

@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/render/analysis.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/json.h"
@@ -23,11 +24,13 @@ int run_lattice(const Arguments& arguments) {
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
 
   const dynamics::Stopwatch watch;
-  const auto tally = lattice::field_trials(scene, trials, options.seed(), options.work());
+  lattice::FieldCosts costs(scene.gate);
+  const auto tally = lattice::field_trials(scene, trials, options.seed(), options.work(), &costs);
 
   Json json = to_json(tally, scene, settled);
+  json["costs"] = to_json(costs, scene.gate);
   json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, table_of(tally, scene, settled));
+  options.give_out(json, table_of(tally, scene, settled) + table_of(costs, scene.gate));
   options.remark(fixed(watch.seconds(), 2) + " s");
   options.warn(too_few_gates(scene));
   const int exit = status_of(options, tally.health);

@@ -69,6 +69,8 @@ class EnergyLedger {
       follow_({s, force_x, seconds, p_.forces.propulsion * (s.body.y - y0_), random_work_, w});
   }
 
+  [[nodiscard]] double random_work() const { return random_work_; }  // J, so far
+
  private:
   [[nodiscard]] double balance(const GateState& s) const;
   const GateParams& p_;

@@ -118,10 +118,14 @@ constexpr RunArray kTrialRuns{"trial_runs", "1",
 
 enum Kind : int { kScattered, kFullTrial, kFirstRun };
 
+/// What a run took: "run_seconds", ...; older files have none.
+std::string array_name(const CostName& cost) { return "run_" + std::string(cost.key); }
+
 /// Appends trials to the tables.
 struct RunTables {
   std::vector<double> trial_runs, trial_kind, trial_d, trial_vx, trial_vy;
   std::vector<double> ending, type, boundary, d, vx, vy;
+  std::array<std::vector<double>, kCosts> costs;
 
   void add(int kind, const Crossing& start, std::span<const GatePassage> passages) {
     trial_kind.push_back(kind);
@@ -136,6 +140,7 @@ struct RunTables {
       d.push_back(p.entry.d);
       vx.push_back(p.entry.vx);
       vy.push_back(p.entry.vy);
+      for (std::size_t c = 0; c < kCosts; ++c) costs[c].push_back(p.costs[c]);
     }
   }
 };
@@ -166,6 +171,10 @@ std::vector<markov::NamedArray> arrays_of(const RunPool& pool) {
   add(kRunD, t.d);
   add(kRunVx, t.vx);
   add(kRunVy, t.vy);
+  for (std::size_t c = 0; c < kCosts; ++c)
+    arrays.push_back({array_name(kCostNames[c]), std::string(kCostNames[c].unit),
+                      std::string(kCostNames[c].words) + ", of each gate run",
+                      std::move(t.costs[c])});
   if (std::any_of(t.type.begin(), t.type.end(), [](double type) { return type != 0.0; }))
     add(kRunType, t.type);
   return arrays;
@@ -178,9 +187,9 @@ bool has_runs(const MatrixFile& file) {
 
 namespace {
 
-const std::vector<double>* find(const MatrixFile& file, const RunArray& array) {
+const std::vector<double>* find(const MatrixFile& file, const std::string& name) {
   for (const markov::NamedArray& a : file.arrays)
-    if (a.name == array.name) return &a.values;
+    if (a.name == name) return &a.values;
   return nullptr;
 }
 
@@ -195,7 +204,7 @@ class RunReader {
         kind_(table(kTrialKind)),
         start_{&table(kTrialD), &table(kTrialVx), &table(kTrialVy)},
         ending_(table(kRunEnding)),
-        type_(find(file, kRunType)),
+        type_(find(file, kRunType.name)),
         boundary_(table(kRunBoundary)),
         entry_{&table(kRunD), &table(kRunVx), &table(kRunVy)} {
     for (const auto* t : {&kind_, start_[0], start_[1], start_[2]})
@@ -203,6 +212,10 @@ class RunReader {
     for (const auto* t : {&boundary_, entry_[0], entry_[1], entry_[2]})
       if (t->size() != ending_.size()) refuse("runs");
     if (type_ != nullptr && type_->size() != ending_.size()) refuse("runs");
+    for (std::size_t c = 0; c < kCosts; ++c) {
+      costs_[c] = find(file, array_name(kCostNames[c]));
+      if (costs_[c] != nullptr && costs_[c]->size() != ending_.size()) refuse("runs");
+    }
   }
 
   [[nodiscard]] RunPool read() {
@@ -221,7 +234,7 @@ class RunReader {
     throw markov::BadFile(path_ + ": its gate runs do not add up: " + what);
   }
   [[nodiscard]] const std::vector<double>& table(const RunArray& array) const {
-    if (const auto* values = find(file_, array)) return *values;
+    if (const auto* values = find(file_, array.name)) return *values;
     throw markov::BadFile(path_ + ": no table " + array.name);
   }
   /// A whole number in [0, end).
@@ -252,6 +265,7 @@ class RunReader {
     FieldTrials& trials = kind == kScattered   ? pool.scattered.each
                           : kind == kFullTrial ? pool.starts[own].full
                                                : pool.starts[own].first;
+    Costs sum{};
     for (int k = 0; k < count; ++k, ++at_) {
       const std::string run = "run " + std::to_string(at_ + 1);
       const auto ending = static_cast<Ending>(whole(ending_[at_], 4, run));
@@ -259,12 +273,16 @@ class RunReader {
       const auto boundary = static_cast<Boundary>(whole(boundary_[at_], kBoundaries, run));
       const int type =
           type_ == nullptr ? 0 : whole((*type_)[at_], static_cast<double>(types_), run);
+      Costs costs;
+      for (std::size_t c = 0; c < kCosts; ++c)
+        sum[c] += costs[c] = costs_[c] == nullptr ? std::nan("") : (*costs_[c])[at_];
       trials.passages.push_back(
-          {ending, static_cast<std::uint8_t>(type), crossing(boundary, entry_, at_, run)});
+          {ending, static_cast<std::uint8_t>(type), crossing(boundary, entry_, at_, run), costs});
     }
     trials.passed.push_back(std::ssize(trials.passages));
     trials.final_gates.push_back(0);
     trials.endings.push_back({});
+    trials.costs.push_back(sum);
   }
 
   const MatrixFile& file_;
@@ -276,7 +294,8 @@ class RunReader {
   const std::vector<double>* type_;  // null: all are the first
   const std::vector<double>& boundary_;
   std::array<const std::vector<double>*, 3> entry_;
-  std::size_t at_ = 0;  // run
+  std::array<const std::vector<double>*, kCosts> costs_{};  // null: an older file
+  std::size_t at_ = 0;                                      // run
 };
 
 /// Follows trials through a field by their passages, to where and how they end there. False when
@@ -329,6 +348,7 @@ void scatter_others(RunPool& pool, int type) {
         each.passed.push_back(std::ssize(each.passages));
         each.final_gates.push_back(0);
         each.endings.push_back({});
+        each.costs.push_back(trials->costs[i]);
         pool.scattered.starts.push_back(s.start);
       }
   std::erase_if(pool.starts, is_other);

@@ -6,12 +6,14 @@
 namespace gatewalk::lattice {
 
 FieldTally field_trials(const Scene& scene, std::int64_t trials, std::uint64_t seed,
-                        const dynamics::Work& work) {
+                        const dynamics::Work& work, FieldCosts* costs) {
   const dynamics::StateSpace space = fixed_space(scene);
   const FieldGates gates = gates_of(scene);
   FieldTally tally(scene.field);
   work.in_pieces("field trials", trials, [&](dynamics::TrialRange range) {
-    tally += run_field(gates, scene.field, scene.start, space, seed, range);
+    FieldTrials each;
+    tally += run_field(gates, scene.field, scene.start, space, seed, range, &each);
+    if (costs != nullptr) costs->add(each);
   });
   check_outcomes(scene, RunsFrom::everywhere, seed, trials, tally.health, work);
   return tally;

@@ -1,0 +1,368 @@
+#include "cli/render/analysis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/scene.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using dynamics::Cost;
+using dynamics::kCosts;
+using lattice::FieldCosts;
+using lattice::Mean95;
+
+constexpr double kLevels[] = {0.05, 0.25, 0.5, 0.75, 0.95};
+
+Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
+Json interval(const std::array<double, 2>& i) { return std::isfinite(i[0]) ? Json(i) : Json(); }
+
+/// Work of both forces per mass and way forward: J / (kg m).
+double cost_of_transport(const dynamics::GateParams& p, double propulsion_work,
+                         double random_work) {
+  const double way = propulsion_work / p.forces.propulsion;
+  return way > 0.0 ? (propulsion_work + random_work) / (p.body.mass * way) : std::nan("");
+}
+
+/// Durations of walks with these endings, ascending.
+std::vector<double> durations_of(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
+  std::vector<double> out;
+  for (const markov::TimedWalk& w : a.walks)
+    if (!ending || w.ending == *ending) out.push_back(w.total);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// None of so few that it would say little.
+double quantile(const std::vector<double>& sorted, double level) {
+  constexpr std::size_t kFew = 50;
+  if (sorted.size() < kFew) return std::nan("");
+  const auto at = static_cast<std::size_t>(level * static_cast<double>(sorted.size()));
+  return sorted[std::min(at, sorted.size() - 1)];
+}
+
+Json quantiles_json(const std::function<double(double)>& quantile) {
+  Json json;
+  for (const double level : kLevels) json[fixed(100.0 * level, 0)] = or_null(quantile(level));
+  return json;
+}
+
+/// Means and standard deviations of one ending, or of all.
+struct Spent {
+  double share = 0.0;
+  std::array<double, kCosts> mean{}, sd{};
+  [[nodiscard]] double of(Cost c) const { return mean[static_cast<std::size_t>(c)]; }
+};
+
+Spent spent(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
+  Spent s;
+  for (std::size_t c = 0; c < kCosts; ++c) {
+    const auto& by_ending = a.totals.totals[c];
+    const markov::Moments m =
+        ending ? by_ending[static_cast<std::size_t>(*ending)] : markov::WalkTotals::all(by_ending);
+    s.share = m.share;
+    s.mean[c] = m.mean();
+    s.sd[c] = m.sd();
+  }
+  return s;
+}
+
+Spent spent(const FieldCosts& costs, std::optional<markov::Ending> ending) {
+  const FieldCosts::Sums sums = ending ? costs.of(*ending) : costs.all();
+  Spent s;
+  s.share = static_cast<double>(sums.trials) / static_cast<double>(costs.all().trials);
+  for (std::size_t c = 0; c < kCosts; ++c) {
+    s.mean[c] = sums.mean(static_cast<Cost>(c));
+    s.sd[c] = sums.sd(static_cast<Cost>(c));
+  }
+  return s;
+}
+
+Json to_json(const Spent& s, const dynamics::GateParams& p,
+             const std::function<double(double)>& quantile) {
+  Json json;
+  for (std::size_t c = 0; c < kCosts; ++c) {
+    const std::string key(dynamics::kCostNames[c].key);
+    json["mean_" + key] = or_null(s.mean[c]);
+    json["sd_" + key] = or_null(s.sd[c]);
+  }
+  json["quantiles_seconds"] = quantiles_json(quantile);
+  json["cost_of_transport_J_per_kg_m"] =
+      or_null(cost_of_transport(p, s.of(Cost::propulsion_work), s.of(Cost::random_work)));
+  return json;
+}
+
+/// "crossed      25.1   18 to 33    1490      35    1400    8.1"
+std::string line_of(const std::string& name, const Spent& s, const dynamics::GateParams& p,
+                    const std::function<double(double)>& quantile) {
+  const auto number = [](double x) {
+    return std::isfinite(x) ? padded(digits(std::stod(fixed(x, std::abs(x) < 10 ? 3 : 1))), 11)
+                            : padded("-", 11);
+  };
+  return padded(name, -11) + number(s.of(Cost::seconds)) +
+         padded(fixed(quantile(0.05), 2) + " to " + fixed(quantile(0.95), 2), 18) +
+         number(s.of(Cost::propulsion_work)) + number(s.of(Cost::random_work)) +
+         number(s.of(Cost::lost)) +
+         number(cost_of_transport(p, s.of(Cost::propulsion_work), s.of(Cost::random_work))) + "\n";
+}
+constexpr char kHeader[] =
+    "            mean time/s     5 to 95 %/s   work/J of: push     noise  taken/J   J/(kg m)\n";
+
+std::string with_interval(const Mean95& m, int decimals) {
+  return fixed(m.mean, decimals) + " [" + fixed(m.interval[0], decimals) + ", " +
+         fixed(m.interval[1], decimals) + "]";
+}
+
+const char* name_of(markov::Ending ending) {
+  return std::find_if(kEndingNames.begin(), kEndingNames.end(),
+                      [&](const EndingName& e) { return e.ending == ending; })
+      ->name;
+}
+const char* key_of(markov::Ending ending) {
+  return std::find_if(kEndingNames.begin(), kEndingNames.end(),
+                      [&](const EndingName& e) { return e.ending == ending; })
+      ->key;
+}
+
+/// {"i_x": ..., "i_y": ...}
+Json gate_json(std::int64_t cell, const lattice::FieldParams& field) {
+  return {{"i_x", cell % field.columns - field.start_column()}, {"i_y", cell / field.columns}};
+}
+
+}  // namespace
+
+const char* target_name(const AnalysedField& f) { return name_of(f.analysis.target); }
+
+DurationCurve duration_curve(const lattice::Analysis& a, markov::Ending ending) {
+  constexpr std::size_t kPoints = 200;
+  DurationCurve curve;
+  const std::vector<double> walks = durations_of(a, ending);
+  const std::size_t step = std::max<std::size_t>(1, walks.size() / kPoints);
+  const auto add = [&](std::size_t i) {
+    curve.seconds.push_back(walks[i]);
+    curve.share.push_back(static_cast<double>(i + 1) / static_cast<double>(walks.size()));
+  };
+  for (std::size_t i = 0; i + 1 < walks.size(); i += step) add(i);
+  if (!walks.empty()) add(walks.size() - 1);
+  return curve;
+}
+
+double most_of_starts(const lattice::Analysis& a) {
+  double most = 0.0;
+  for (const lattice::StartChance& s : a.starts) most = std::max(most, s.chance);
+  return most;
+}
+
+std::vector<lattice::ParameterEffect> sorted_effects(const lattice::Analysis& a) {
+  std::vector<lattice::ParameterEffect> effects = a.parameters;
+  std::stable_sort(effects.begin(), effects.end(), [](const auto& x, const auto& y) {
+    return std::abs(x.elasticity.mean) > std::abs(y.elasticity.mean);
+  });
+  return effects;
+}
+
+KolmogorovDistance duration_distance(const lattice::Analysis& a, const FieldCosts& costs,
+                                     std::optional<markov::Ending> ending) {
+  const std::vector<double> walks = durations_of(a, ending);
+  const auto steps = ending ? costs.durations(*ending) : costs.durations();
+  if (walks.empty() || steps.empty()) return {std::nan(""), std::nan("")};
+  // Trials are known to a bin, by its middle: walks are counted to the same.
+  const double half = 0.5 * costs.bin();
+  const auto n = static_cast<double>(steps.back().trials), m = static_cast<double>(walks.size());
+  double distance = 0.0;
+  for (const FieldCosts::Step& s : steps) {
+    const auto below = std::upper_bound(walks.begin(), walks.end(), s.seconds + half);
+    distance = std::max(distance, std::abs(static_cast<double>(s.trials) / n -
+                                           static_cast<double>(below - walks.begin()) / m));
+  }
+  constexpr double kSmirnov95 = 1.358;  // of the distance times sqrt(n m / (n + m))
+  return {distance, kSmirnov95 * std::sqrt(1.0 / n + 1.0 / m)};
+}
+
+Json to_json(const FieldCosts& costs, const dynamics::GateParams& p) {
+  Json json;
+  const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
+    const auto sums = ending ? costs.of(*ending) : costs.all();
+    if (sums.trials == 0) return;
+    const auto steps = ending ? costs.durations(*ending) : costs.durations();
+    json[key] = to_json(spent(costs, ending), p,
+                        [&](double level) { return lattice::quantile(steps, level); });
+    json[key]["trials"] = sums.trials;
+  };
+  add("all", {});
+  for (const EndingName& e : kEndingNames) add(e.key, e.ending);
+  return json;
+}
+
+std::string table_of(const FieldCosts& costs, const dynamics::GateParams& p) {
+  std::string table = kHeader;
+  const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
+    if ((ending ? costs.of(*ending) : costs.all()).trials == 0) return;
+    const auto steps = ending ? costs.durations(*ending) : costs.durations();
+    table += line_of(name, spent(costs, ending), p,
+                     [&](double level) { return lattice::quantile(steps, level); });
+  };
+  add("all", {});
+  for (const EndingName& e : kEndingNames) add(e.name, e.ending);
+  return table;
+}
+
+Json to_json(const AnalysedField& f) {
+  const lattice::Analysis& a = f.analysis;
+  const lattice::StartAnswer& start = f.prediction.starts.front();
+  const dynamics::GateParams& p = f.scene.gate;
+  Json json;
+  for (const EndingName& e : kEndingNames) {
+    const auto at = static_cast<std::size_t>(e.ending);
+    json["endings"][e.key] = {{"probability", start.endings.share[at]},
+                              {"interval_95", interval(start.endings.interval[at])}};
+  }
+  json["expected_gates"] = a.gates.mean;
+  json["expected_gates_95"] = interval(a.gates.interval);
+  const auto expected = [&](const std::string& key, Cost cost) {
+    const Mean95& m = a.costs[static_cast<std::size_t>(cost)];
+    json["expected_" + key] = or_null(m.mean);
+    json["expected_" + key + "_95"] = interval(m.interval);
+  };
+  expected("seconds", Cost::seconds);
+  expected("work_J", Cost::propulsion_work);
+  expected("random_work_J", Cost::random_work);
+  expected("lost_J", Cost::lost);
+  json["cost_of_transport_J_per_kg_m"] =
+      or_null(cost_of_transport(p, a.costs[static_cast<std::size_t>(Cost::propulsion_work)].mean,
+                                a.costs[static_cast<std::size_t>(Cost::random_work)].mean));
+  json["expected_visits"] = grid(a.totals.visits);
+  json["still_walking"] = a.totals.remainder;
+  const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
+    const Spent s = spent(a, ending);
+    if (!(s.share > 0.0)) return;
+    const auto walks = durations_of(a, ending);
+    json["by_ending"][key] = to_json(s, p, [&](double level) { return quantile(walks, level); });
+    json["by_ending"][key]["probability"] = s.share;
+    if (!f.direct) return;
+    const KolmogorovDistance d = duration_distance(a, f.direct->costs, ending);
+    json["by_ending"][key]["kolmogorov_distance"] = or_null(d.distance);
+    json["by_ending"][key]["kolmogorov_chance_95"] = or_null(d.chance_95);
+  };
+  add("all", {});
+  for (const EndingName& e : kEndingNames) add(e.key, e.ending);
+
+  json["quasi_stationary"] = Json();
+  if (a.endless) {
+    Json& q = json["quasi_stationary"] = Json::object();
+    q["survival_per_gate"] = a.endless->survival;
+    q["second_eigenvalue"] = a.endless->second;
+    q["spectral_gap"] = a.endless->spectral_gap();
+    q["rows_per_gate"] = a.endless->rows_per_cell;
+    for (std::size_t b = 0; b < a.endless_boundaries.size(); ++b)
+      q["boundaries"][std::string(dynamics::kBoundaryNames[b])] = a.endless_boundaries[b];
+    q["states"] = a.endless->states;
+  }
+  json["target"] = key_of(a.target);
+  json["target_probability"] = a.target_chance;
+  for (const lattice::StartChance& s : a.starts)
+    json["starts"].push_back({{"d_m", s.cell.d},
+                              {"vx_m_per_s", s.cell.vx},
+                              {"vy_m_per_s", s.cell.vy},
+                              {"probability", s.chance}});
+  json["paths"] = Json::array();
+  for (const markov::CellPath& path : a.paths) {
+    Json gates = Json::array();
+    for (const std::int64_t cell : path.cells) gates.push_back(gate_json(cell, f.scene.field));
+    json["paths"].push_back({{"probability", path.share}, {"gates", std::move(gates)}});
+  }
+  Json& s = json["sensitivities"] = Json::object();
+  s["of"] = key_of(a.target);
+  s["passed_gates"] = grid(a.passed);
+  s["less_trapping"] = grid(a.trapping);
+  s["less_trapping_by_state"] = a.state_trapping;
+  s["parameters"] = Json::array();
+  for (const lattice::ParameterEffect& e : sorted_effects(a))
+    s["parameters"].push_back(
+        {{"key", e.key},
+         {"value", e.value},
+         {"elasticity", e.elasticity.mean},
+         {"interval_95", e.elasticity.interval},
+         {"derivative", e.elasticity.mean * a.target_chance / e.value},
+         {"derivative_95", Json::array({e.elasticity.interval[0] * a.target_chance / e.value,
+                                        e.elasticity.interval[1] * a.target_chance / e.value})}});
+  s["gate_runs"] = a.parameter_runs;
+  s["seconds"] = a.parameter_seconds;
+  if (f.direct) {
+    json["direct"] = to_json(f.direct->costs, p);
+    json["direct"]["endings"] = endings(f.direct->tally.endings);
+    json["direct"]["trials"] = f.direct->tally.trials;
+  }
+  json["states"] = f.prediction.states;
+  json["gate_runs"] = f.prediction.gate_runs + a.parameter_runs;
+  json["accuracy_reached"] = f.prediction.reached;
+  json["seconds"] = f.prediction.seconds + a.seconds;
+  json["status"] = to_json(f.prediction.health);
+  return json;
+}
+
+std::string table_of(const AnalysedField& f) {
+  const lattice::Analysis& a = f.analysis;
+  const lattice::FieldParams& field = f.scene.field;
+  const dynamics::GateParams& p = f.scene.gate;
+  std::string table = endings_text(f.prediction.starts.front().endings,
+                                   "of all bodies, 95 % intervals that count everything") +
+                      limits_text(f.scene) + "\ngates visited  " + with_interval(a.gates, 3) +
+                      "\n\nby the chain\n" + kHeader;
+  const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
+    const Spent s = spent(a, ending);
+    if (!(s.share > 0.0)) return;
+    const auto walks = durations_of(a, ending);
+    table += line_of(name, s, p, [&](double level) { return quantile(walks, level); });
+  };
+  add("all", {});
+  for (const EndingName& e : kEndingNames) add(e.name, e.ending);
+  if (!std::isfinite(a.costs.front().mean))
+    table += "(the file is of an older version, which kept no durations: build it again)\n";
+  if (f.direct) {
+    const KolmogorovDistance d = duration_distance(a, f.direct->costs, {});
+    table += "by " + std::to_string(f.direct->tally.trials) + " trials of the full dynamics\n" +
+             table_of(f.direct->costs, p) +
+             "largest difference of the two distributions of time: " + fixed(d.distance, 4) +
+             " (chance: " + fixed(d.chance_95, 4) + ", 95 %)\n";
+  }
+  table +=
+      "work: of the propulsion and of the random force; taken: by the gates, from the body\n\n" +
+      map_of(a.totals.visits, "visits of each gate");
+  if (a.endless)
+    table += "\nbodies that go on for ever: " + percent(a.endless->survival, 1.0) +
+             " of them get through or out of each further gate; " +
+             fixed(a.endless->rows_per_cell, 2) + " rows a gate; what the start has left is " +
+             percent(a.endless->second / a.endless->survival, 1.0) + " of itself a gate later\n";
+  const std::string target = std::string("\"") + name_of(a.target) + "\"";
+  table += "\nmost frequent ways to " + target +
+           ", by the columns i_x of their gates (>: in the same row)\n";
+  for (const markov::CellPath& path : a.paths) {
+    table += padded(percent(path.share, 1.0, 4), 11) + " ";
+    std::int64_t row = -1;
+    for (const std::int64_t cell : path.cells) {
+      table += cell / field.columns == row ? ">" : " ";
+      row = cell / field.columns;
+      table += std::to_string(cell % field.columns - field.start_column());
+    }
+    table += "\n";
+  }
+  if (a.paths.empty()) table += "  (none)\n";
+  if (!a.parameters.empty()) {
+    table += "\nper cent that the chance of " + target + " (" + percent(a.target_chance, 1.0, 4) +
+             ") grows for 1 % more of each number, 95 %\n";
+    for (const lattice::ParameterEffect& e : sorted_effects(a))
+      table += padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) + "\n";
+  }
+  return table + std::to_string(f.prediction.gate_runs + a.parameter_runs) + " gate runs, " +
+         std::to_string(f.prediction.states) + " states, " +
+         fixed(f.prediction.seconds + a.seconds, 2) + " s\n";
+}
+
+}  // namespace gatewalk::cli

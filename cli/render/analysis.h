@@ -1,0 +1,62 @@
+#pragma once
+/// What a chain says beyond the final gates, as JSON, as a table and as a picture.
+
+#include <optional>
+#include <string>
+
+#include "cli/render/figure.h"
+#include "cli/render/json_fwd.h"
+#include "lattice/field_costs.h"
+#include "lattice/study/analysis.h"
+#include "lattice/study/pooled_prediction.h"
+
+namespace gatewalk::cli {
+
+/// The same field by trials of the full dynamics.
+struct DirectTrials {
+  lattice::FieldTally tally;
+  lattice::FieldCosts costs;
+};
+
+struct AnalysedField {
+  const lattice::Scene& scene;
+  const lattice::PooledPrediction& prediction;  // of the one start
+  const lattice::Analysis& analysis;
+  const std::optional<DirectTrials>& direct;
+};
+
+/// How far the durations of the chain's walks are from those of trials: the largest difference
+/// between their distribution functions (Kolmogorov), and what 95 % of so many trials of the same
+/// distribution have no more than. Of all, or of one ending; NaN where either has none.
+struct KolmogorovDistance {
+  double distance, chance_95;
+};
+[[nodiscard]] KolmogorovDistance duration_distance(const lattice::Analysis& analysis,
+                                                   const lattice::FieldCosts& costs,
+                                                   std::optional<markov::Ending> ending);
+
+/// What trials took, by how they ended: means, standard deviations, quantiles of the duration.
+[[nodiscard]] Json to_json(const lattice::FieldCosts& costs, const dynamics::GateParams& p);
+[[nodiscard]] std::string table_of(const lattice::FieldCosts& costs, const dynamics::GateParams& p);
+
+/// The target in words.
+[[nodiscard]] const char* target_name(const AnalysedField& field);
+/// The distribution function of the durations of the chain's walks with one ending, at some hundred
+/// points; empty where there are none.
+struct DurationCurve {
+  std::vector<double> seconds, share;
+};
+[[nodiscard]] DurationCurve duration_curve(const lattice::Analysis& analysis,
+                                           markov::Ending ending);
+/// The largest chance of the target from any start.
+[[nodiscard]] double most_of_starts(const lattice::Analysis& analysis);
+/// The parameters, those that matter most first.
+[[nodiscard]] std::vector<lattice::ParameterEffect> sorted_effects(
+    const lattice::Analysis& analysis);
+
+/// Without "made_by".
+[[nodiscard]] Json to_json(const AnalysedField& field);
+[[nodiscard]] std::string table_of(const AnalysedField& field);
+[[nodiscard]] Figure figure_of(const AnalysedField& field);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <cmath>
+
+#include "cli/render/analysis.h"
+#include "cli/render/field_figure.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr double kLeft = 66;
+constexpr const char* kCurveColours[] = {kFirstColour, kSecondColour, kThirdColour, kFourthColour,
+                                         kFifthColour};
+
+/// What the panels add to the script, and where the next one begins.
+struct Script {
+  const Sheet& sheet;
+  std::string text;
+  double top = 0.0;
+};
+
+/// How often gates are visited, and the most frequent ways.
+void add_visits(Script& out, const AnalysedField& f) {
+  const FieldMap map(f.analysis.totals.visits, 101, 101);
+  const markov::CellProbabilities shown = map.blocks_of(f.analysis.totals.visits);
+  std::string rows;
+  for (Eigen::Index r = 0; r < shown.rows(); ++r)
+    for (Eigen::Index c = 0; c < shown.cols(); ++c)
+      rows += std::to_string(c) + " " + std::to_string(r) + " " +
+              digits(std::sqrt(100.0 * shown(r, c))) + "\n";
+  const double side = 330.0, columns = static_cast<double>(shown.cols()),
+               lines = static_cast<double>(shown.rows());
+  const double cell = std::min(side / columns, 300.0 / lines);
+  const Box box{kLeft, kLeft + std::max(120.0, cell * columns), out.top + 50,
+                out.top + 50 + std::max(100.0, cell * lines)};
+  const RootScale scale(100.0 * shown.maxCoeff());
+  const bool blocks = map.rows.block > 1 || map.columns.block > 1;
+  std::string paths;
+  const auto most = std::min<std::size_t>(f.analysis.paths.size(), 5);
+  for (std::size_t k = 0; k < most && !blocks; ++k) {
+    // A little aside each, so that they do not hide each other.
+    const double aside = 0.09 * (static_cast<double>(k) - 0.5 * static_cast<double>(most - 1));
+    for (const std::int64_t cell_of_path : f.analysis.paths[k].cells) {
+      const std::int64_t column = cell_of_path % f.scene.field.columns,
+                         row = cell_of_path / f.scene.field.columns;
+      paths += digits(static_cast<double>(column - map.columns.first) + aside) + " " +
+               digits(static_cast<double>(row - map.rows.first) + aside) + "\n";
+    }
+    paths += "\n";
+  }
+  out.text += data_block("$visits", rows) + data_block("$paths", paths) + out.sheet.margins(box) +
+              kSequential + "set cbrange " + scale.range() +
+              "\nset border 3\nset tics out nomirror scale 0.5\nset xrange " +
+              range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
+              tics_of(map.columns, map.middle_column, box.right - box.left, 30) + "\nset ytics " +
+              tics_of(map.rows, 0, box.bottom - box.top, 22) + "\n" +
+              Sheet::axes("'column i_x'", "'row i_y'") +
+              out.sheet.text("visits of each gate, per 100 bodies", 8, out.top + 18) +
+              scale.colours(out.sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
+              "plot $visits" + cells();
+  if (!paths.empty())
+    out.text +=
+        ", $paths with lines lw 2 lc rgb '#ffffff', $paths with lines lw 1 lc rgb '#d55e00'";
+  out.text += "\nunset label\nunset colorbox\n";
+  if (!paths.empty())
+    out.text +=
+        out.sheet.text("lines: most frequent ways to \"" + std::string(target_name(f)) + "\"", 8,
+                       out.top + 36, kSmallFont);
+  out.top = box.bottom + 62;
+}
+
+/// Distribution functions of the durations, by ending.
+void add_durations(Script& out, const AnalysedField& f) {
+  std::vector<std::string> key;
+  std::string data, plots;
+  double longest = 0.0;
+  std::size_t colour = 0;
+  for (const EndingName& e : kEndingNames) {
+    const DurationCurve curve = duration_curve(f.analysis, e.ending);
+    const char* const ink = kCurveColours[colour++];
+    if (curve.seconds.empty()) continue;
+    longest = std::max(longest, curve.seconds.back());
+    std::string rows;
+    for (std::size_t i = 0; i < curve.seconds.size(); ++i)
+      rows += digits(curve.seconds[i]) + " " + digits(100.0 * curve.share[i]) + "\n";
+    const std::string name = std::string("$time_") + e.key;
+    data += data_block(name, rows);
+    const std::string style = std::string(" lw 2 lc rgb '") + ink + "'";
+    plots += (plots.empty() ? "plot " : ", ") + name + " using 1:2 with lines" + style;
+    key.push_back(std::string("with lines") + style + " title '" + e.name + "'");
+    if (!f.direct) continue;
+    std::string dots;
+    const auto steps = f.direct->costs.durations(e.ending);
+    for (int k = 1; k < 10 && !steps.empty(); ++k)
+      dots += digits(lattice::quantile(steps, 0.1 * k)) + " " + std::to_string(10 * k) + "\n";
+    if (dots.empty()) continue;
+    data += data_block(name + "_direct", dots);
+    plots += ", " + name + "_direct using 1:2 with points pt 7 ps 0.6 lc rgb '" + ink + "'";
+  }
+  if (plots.empty()) return;
+  out.text += out.sheet.text(f.direct ? "time, % of those that end so; points: full dynamics"
+                                      : "time, % of those that end so",
+                             8, out.top + 18);
+  const Box box{kLeft, 372, out.top + 36, out.top + 196};
+  out.text += data + kFrame + out.sheet.margins(box) + "set xrange [0:" + digits(1.02 * longest) +
+              "]\nset yrange [0:100]\nset xtics " + digits(tic_step(longest, 5)) +
+              "\nset ytics 25\nset grid ytics" + kThin + "\n" +
+              Sheet::axes("'time, s'", "'% ended'") + plots + "\nunset label\nunset grid\n" +
+              out.sheet.key(388, box.top, key);
+  out.text += kFrame;
+  out.top = box.bottom + 62;
+}
+
+/// The chance of the target from other starts with the start's own vx.
+void add_starts(Script& out, const AnalysedField& f) {
+  const auto& seen = f.analysis.space.trees().front().seen;
+  const double vx = f.scene.start.vx, most = 100.0 * most_of_starts(f.analysis);
+  if (!(seen[0][1] > seen[0][0] && seen[2][1] > seen[2][0] && most > 0.0)) return;
+  std::string rows;
+  const auto within = [](const std::array<double, 2>& range, const std::array<double, 2>& frame) {
+    return std::array<double, 2>{std::max(range[0], frame[0]), std::min(range[1], frame[1])};
+  };
+  for (const lattice::StartChance& s : f.analysis.starts) {
+    if (vx < s.cell.vx[0] || vx >= s.cell.vx[1]) continue;
+    const auto d = within(s.cell.d, seen[0]), vy = within(s.cell.vy, seen[2]);
+    if (!(d[1] > d[0] && vy[1] > vy[0])) continue;
+    rows += digits(0.5 * (d[0] + d[1])) + " " + digits(0.5 * (vy[0] + vy[1])) + " " +
+            digits(0.5 * (d[1] - d[0])) + " " + digits(0.5 * (vy[1] - vy[0])) + " " +
+            digits(std::sqrt(100.0 * s.chance)) + "\n";
+  }
+  if (rows.empty()) return;
+  const RootScale scale(most);
+  const Box box{kLeft, 372, out.top + 36, out.top + 216};
+  const auto range = [](const std::array<double, 2>& r) {
+    return "[" + digits(r[0]) + ":" + digits(r[1]) + "]";
+  };
+  out.text += data_block("$starts", rows) + kFrame + out.sheet.margins(box) + kSequential +
+              "set cbrange " + scale.range() + "\nset xrange " + range(seen[0]) + "\nset yrange " +
+              range(seen[2]) + "\nset xtics " + digits(tic_step(seen[0][1] - seen[0][0], 5)) +
+              "\nset ytics " + digits(tic_step(seen[2][1] - seen[2][0], 5)) + "\n" +
+              Sheet::axes("'start d, m'", "'start vy, m/s'") +
+              out.sheet.text(
+                  "\"" + std::string(target_name(f)) + "\" by start, %; vx " + digits(vx) + " m/s",
+                  8, out.top + 18) +
+              scale.colours(out.sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
+              "plot $starts using 1:2:3:4:5 with boxxyerror fillcolor palette fillstyle solid 1.0 "
+              "noborder\nunset label\nunset colorbox\n";
+  out.top = box.bottom + 62;
+}
+
+/// What would change the target's chance most.
+void add_parameters(Script& out, const AnalysedField& f) {
+  const auto effects = sorted_effects(f.analysis);
+  if (effects.empty()) return;
+  std::string rows, tics;
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const auto& e = effects[i].elasticity;
+    const std::string at = std::to_string(-static_cast<int>(i));
+    rows += digits(e.mean) + " " + at + " " + digits(e.interval[0]) + " " + digits(e.interval[1]) +
+            "\n";
+    const std::string name = literal(std::string(effects[i].key));
+    tics += (tics.empty() ? "" : ", ") + name.substr(0, name.rfind(" noenhanced")) + " " + at;
+    low = std::min(low, e.interval[0]);
+    high = std::max(high, e.interval[1]);
+  }
+  const double margin = 0.05 * (high - low);
+  const Box box{236, 488, out.top + 36, out.top + 36 + 22.0 * static_cast<double>(effects.size())};
+  out.text += data_block("$effects", rows) + kFrame + out.sheet.margins(box) + "set xrange [" +
+              digits(low - margin) + ":" + digits(high + margin) + "]\nset yrange [" +
+              digits(0.5 - static_cast<double>(effects.size())) + ":0.5]\nset xtics " +
+              digits(tic_step(high - low, 5)) + "\nset ytics (" + tics +
+              ") noenhanced font ',12' scale 0\nset xzeroaxis\nset arrow 1 from 0," +
+              digits(0.5 - static_cast<double>(effects.size())) + " to 0,0.5 nohead" + kThin +
+              "\nset xlabel '% more' offset 0,0.4\nunset ylabel\n" +
+              out.sheet.text("\"" + std::string(target_name(f)) +
+                                 "\": % more often for 1 % more of each number, 95 %",
+                             8, out.top + 18) +
+              "plot $effects using 1:2:3:4 with xerrorbars pt 7 ps 0.6 lw 1.5 lc rgb '" +
+              kFirstColour + "'\nunset label\nunset arrow 1\n";
+  out.top = box.bottom + 56;
+}
+
+std::string drawn(const AnalysedField& f, const Sheet& sheet, double& height) {
+  Script out{sheet, "set multiplot\nunset key\n", 0.0};
+  add_visits(out, f);
+  add_durations(out, f);
+  add_starts(out, f);
+  add_parameters(out, f);
+  height = out.top;
+  return out.text + "unset multiplot\n";
+}
+
+}  // namespace
+
+Figure figure_of(const AnalysedField& f) {
+  // Places are parts of the sheet's height, which its panels make.
+  double height = 0.0;
+  (void)drawn(f, Sheet{1000}, height);
+  const Sheet sheet{static_cast<int>(std::ceil(height))};
+  return {Sheet::kWidth, sheet.height, drawn(f, sheet, height), kFont};
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,401 @@
+#include "lattice/study/analysis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "dynamics/methods/method.h"
+#include "dynamics/quantile_bins.h"
+#include "dynamics/runs.h"
+#include "lattice/group_spread.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+/// Means over the draws behind each count, as the chain's nonzeros stand.
+std::vector<markov::Reward> rewards_of(const std::vector<std::int64_t>& counts,
+                                       const std::vector<CostSums>& sums) {
+  std::vector<markov::Reward> rewards(kCosts);
+  for (std::size_t c = 0; c < kCosts; ++c)
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const auto n = static_cast<double>(counts[i]);
+      rewards[c].mean.push_back(sums[i].sum[c] / n);
+      rewards[c].square.push_back(sums[i].squares[c] / n);
+    }
+  return rewards;
+}
+
+}  // namespace
+
+CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+                         const RunPool& pool, const StartTrials& start, TrialGroup group) {
+  const auto first = first_row(gates, kernel.space, start, group);
+  const auto first_sums = first_cost_sums(gates, kernel.space, start, group);
+  const auto sums = cost_sums(kernel, gates, pool, group);
+  markov::Rewards rewards;
+  for (std::size_t type = 0; type < kernel.counts.size(); ++type) {
+    const markov::Counts& k = kernel.counts[type];
+    std::vector<std::int64_t> counts(k.valuePtr(), k.valuePtr() + k.nonZeros());
+    std::vector<CostSums> costs = sums[type];
+    if (static_cast<int>(type) == gates.type_of(field.start_column(), 0))
+      for (std::size_t output = 0; output < first.size(); ++output)
+        if (first[output] > 0) {
+          counts.push_back(first[output]);
+          costs.push_back(first_sums[output]);
+        }
+    rewards.push_back(rewards_of(counts, costs));
+  }
+  return {chain_of(kernel, gates, field, {first}),
+          std::move(rewards),
+          {field.start_column(), 0, kernel.space.size()}};
+}
+
+namespace {
+
+/// A random number of the analysis.
+Random drawn(std::uint64_t seed, std::uint64_t row, std::int64_t i) {
+  return {Purpose::sensitivity, {seed, row, static_cast<std::uint64_t>(i)}};
+}
+
+/// How often walks that end in the target pass each state of each cell at each draw (without limit:
+/// at any draw): the share of the walks there, times their chance.
+class Passages {
+ public:
+  Passages(const CostedChain& c, const FieldParams& field, const markov::EndingChance& chance)
+      : chance_(chance),
+        limited_(field.max_gates > 0),
+        inputs_(c.chain.inputs()),
+        cells_(std::int64_t{field.columns} * field.rows) {
+    totals_ =
+        markov::walk_totals(c.chain, {field.columns, field.rows}, c.start, field.max_gates,
+                            c.rewards, [&](int draw, std::int64_t cell, int input, double share) {
+                              add(draw, cell, input, share * chance_(draw, cell, input));
+                            });
+  }
+
+  struct Place {
+    int draw = 1;
+    std::int64_t cell = 0;
+    int input = 0;
+  };
+  [[nodiscard]] const markov::WalkTotals& totals() const { return totals_; }
+  [[nodiscard]] double sum() const { return cumulative_.empty() ? 0.0 : cumulative_.back(); }
+  /// Calls use(place, weight) for all places that are passed.
+  template <class Use>
+  void each(Use use) const {
+    for (std::size_t i = 0; i < weights_.size(); ++i)
+      if (weights_[i] > 0.0) use(place(i), weights_[i]);
+  }
+  /// To be called before draw().
+  void add_up() {
+    double sum = 0.0;
+    for (const double w : weights_) cumulative_.push_back(sum += w);
+  }
+  /// A place drawn in proportion to its weight.
+  [[nodiscard]] Place draw(double uniform) const {
+    const auto at = std::upper_bound(cumulative_.begin(), cumulative_.end(), uniform * sum());
+    return place(static_cast<std::size_t>(
+        std::min<std::ptrdiff_t>(at - cumulative_.begin(), std::ssize(cumulative_) - 1)));
+  }
+
+ private:
+  void add(int draw, std::int64_t cell, int input, double weight) {
+    const std::int64_t layer = limited_ ? draw - 1 : 0;
+    const auto at = static_cast<std::size_t>((layer * cells_ + cell) * inputs_ + input);
+    if (at >= weights_.size())
+      weights_.resize(static_cast<std::size_t>((layer + 1) * cells_ * inputs_), 0.0);
+    weights_[at] += weight;
+  }
+  [[nodiscard]] Place place(std::size_t i) const {
+    const auto at = static_cast<std::int64_t>(i);
+    return {static_cast<int>(at / inputs_ / cells_) + 1, at / inputs_ % cells_,
+            static_cast<int>(at % inputs_)};
+  }
+
+  const markov::EndingChance& chance_;
+  bool limited_;
+  std::int64_t inputs_, cells_;
+  std::vector<double> weights_, cumulative_;  // (draws x cells x inputs)
+  markov::WalkTotals totals_;
+};
+
+/// Share of a row's draws that are trapped.
+double trapped_share(const markov::Chain& chain, int input) {
+  double share = 0.0;
+  for (markov::Probabilities::InnerIterator it(chain.matrix(), input); it; ++it)
+    if (chain.exits()[static_cast<std::size_t>(it.col())].next_input == markov::Exit::kTrapped)
+      share += it.value();
+  return share;
+}
+
+/// What numbers of the scene do to the chance of the target, to first order: in the places that
+/// bodies pass on their way there, gate runs with a little more and a little less of the number,
+/// under the same noise, and what the chain says of where they lead.
+class Parameters {
+ public:
+  Parameters(const Scene& scene, const RunPool& pool, const Kernel& kernel, const Crossing& start,
+             const CostedChain& c, const markov::EndingChance& chance, const Passages& passages,
+             const AnalysisOptions& options)
+      : field_(scene.field),
+        gates_(gates_of(scene)),
+        kernel_(kernel),
+        c_(c),
+        chance_(chance),
+        options_(options) {
+    std::vector<std::vector<Crossing>> entries = entries_of_leaves(kernel, gates_, pool);
+    entries.push_back({start});
+    at_start_ = chance(1, cell_of(c.start.column, c.start.row), c.start.input);
+    visits_ = passages.sum() / at_start_;
+    for (std::int64_t i = 0; i < options.runs; ++i) {
+      Random random = drawn(options.seed, 0, i);
+      const Passages::Place place = passages.draw(random.uniform());
+      const auto& there = entries[static_cast<std::size_t>(place.input)];
+      const auto column = static_cast<int>(place.cell % field_.columns),
+                 row = static_cast<int>(place.cell / field_.columns);
+      const auto k = random.below(std::ssize(there));
+      samples_.push_back({place, gates_.type_of(column, row), there[static_cast<std::size_t>(k)],
+                          chance(place.draw, place.cell, place.input)});
+    }
+  }
+
+  /// None where the number is zero, or cannot be changed.
+  [[nodiscard]] std::optional<ParameterEffect> effect(const ParamInfo& info) const {
+    const double value = info.get(gates_.types().front());
+    if (value == 0.0) return {};
+    const bool up = allowed(info, 1.0 + options_.relative_step),
+               down = allowed(info, 1.0 - options_.relative_step);
+    if (!up && !down) return {};
+    const std::vector<double> above = values(info, up ? 1.0 + options_.relative_step : 1.0),
+                              below = values(info, down ? 1.0 - options_.relative_step : 1.0);
+    const double step = (up ? options_.relative_step : 0.0) + (down ? options_.relative_step : 0.0);
+    const auto n = static_cast<double>(samples_.size());
+    double mean = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      mean += (above[i] - below[i]) / samples_[i].chance / n;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const double rest = (above[i] - below[i]) / samples_[i].chance - mean;
+      squares += rest * rest;
+    }
+    constexpr double kSigmas = 1.959964;
+    const double scale = visits_ / step, half = kSigmas * std::sqrt(squares / n / (n - 1.0));
+    return ParameterEffect{
+        info.key, value, {scale * mean, {scale * (mean - half), scale * (mean + half)}}};
+  }
+
+ private:
+  struct Sample {
+    Passages::Place place;
+    int type;
+    Crossing entry;
+    double chance;  // that of the state
+  };
+
+  [[nodiscard]] std::int64_t cell_of(int column, int row) const {
+    return std::int64_t{row} * field_.columns + column;
+  }
+
+  static std::vector<std::vector<Crossing>> entries_of_leaves(const Kernel& kernel,
+                                                              const FieldGates& gates,
+                                                              const RunPool& pool) {
+    std::vector<std::vector<Crossing>> entries(static_cast<std::size_t>(kernel.space.size()));
+    each_entry(pool, [&](const Crossing& entry, int type) {
+      const auto put = [&](const Crossing& c) {
+        entries[static_cast<std::size_t>(kernel.space.index_of(c).state)].push_back(c);
+      };
+      put(entry);
+      if (symmetric(gates.types()[static_cast<std::size_t>(type)])) put(mirrored(entry));
+    });
+    return entries;
+  }
+
+  [[nodiscard]] bool allowed(const ParamInfo& info, double factor) const {
+    return std::all_of(gates_.types().begin(), gates_.types().end(), [&](GateParams p) {
+      info.ref(p) *= factor;
+      if (!info.permits(info.get(p))) return false;
+      try {
+        (void)make_method(p);
+      } catch (const InvalidParameter&) {
+        return false;
+      }
+      return true;
+    });
+  }
+
+  /// The chance of the target behind a run of each sample, with that many times the number.
+  [[nodiscard]] std::vector<double> values(const ParamInfo& info, double factor) const {
+    std::vector<double> out(samples_.size());
+    for (int type = 0; type < std::ssize(gates_.types()); ++type) {
+      std::vector<std::size_t> here;
+      for (std::size_t i = 0; i < samples_.size(); ++i)
+        if (samples_[i].type == type) here.push_back(i);
+      GateParams p = gates_.types()[static_cast<std::size_t>(type)];
+      info.ref(p) *= factor;
+      const auto method = make_method(p);
+      carry_out_trials(
+          p, *method, std::ssize(here),
+          [&](RunSlot& slot) {
+            const std::size_t i = here[static_cast<std::size_t>(slot.trial)];
+            slot.start = entry_state(p, samples_[i].entry);
+            slot.force =
+                RandomForce(p.forces, drawn(options_.seed, 1, static_cast<std::int64_t>(i)));
+          },
+          [&](RunSlot& slot, const GateRun& run) {
+            const std::size_t i = here[static_cast<std::size_t>(slot.trial)];
+            out[i] = value_of(p, samples_[i].place, run);
+            return false;
+          });
+    }
+    return out;
+  }
+
+  [[nodiscard]] double value_of(const GateParams& p, const Passages::Place& place,
+                                const GateRun& run) const {
+    const auto is = [&](markov::Ending e) { return chance_.ending() == e ? 1.0 : 0.0; };
+    if (run.ending == Ending::trapped || run.ending == Ending::broken)
+      return is(markov::Ending::trapped);
+    const Crossing crossing = crossing_of(p, run.ending, run.exit);
+    const Move move = move_into(crossing.boundary);
+    const auto column = static_cast<int>(place.cell % field_.columns) + move.di_x,
+               row = static_cast<int>(place.cell / field_.columns) + move.di_y;
+    if (!field_.contains(column, row))
+      return is(markov::edge_before({field_.columns, field_.rows}, column, row));
+    if (place.draw == field_.max_gates) return is(markov::Ending::cut_off);
+    return chance_(place.draw + 1, cell_of(column, row), kernel_.space.index_of(crossing).state);
+  }
+
+  const FieldParams& field_;
+  FieldGates gates_;
+  const Kernel& kernel_;
+  const CostedChain& c_;
+  const markov::EndingChance& chance_;
+  const AnalysisOptions& options_;
+  double at_start_ = 0.0, visits_ = 0.0;
+  std::vector<Sample> samples_;
+};
+
+// Numbers that are how a scene is computed, not what it is.
+bool is_physical(std::string_view key) {
+  return !key.starts_with("run.") && key != "forces.random_rate_Hz" &&
+         key != "contact.impulse_threshold_Ns";
+}
+
+}  // namespace
+
+Analysis analyze(const Scene& scene, const RunPool& pool, const Crossing& start,
+                 const AnalysisOptions& options, const Work& work) {
+  const Stopwatch watch;
+  const std::size_t own = pool.place_of(start);
+  if (own == pool.starts.size())
+    throw std::invalid_argument("analysis: the start has no runs of its own");
+  const FieldGates gates = gates_of(scene);
+  const FieldParams& field = scene.field;
+  const markov::Field cells{field.columns, field.rows};
+  const auto tell = [&](std::int64_t done) { work.tell("analysis", done, kTrialGroups + 3); };
+
+  tell(0);
+  const Kernel kernel = kernel_of(gates, pool, options.per_leaf);
+  const CostedChain c = costed_chain(kernel, gates, field, pool, pool.starts[own]);
+  const markov::EndingChance chance(c.chain, cells, options.target, field.max_gates);
+  tell(1);
+  Passages passages(c, field, chance);
+  passages.add_up();
+
+  Analysis out{
+      .target = options.target,
+      .target_chance = chance(1, c.start.row * field.columns + c.start.column, c.start.input),
+      .totals = passages.totals(),
+      .gates = {},
+      .costs = {},
+      .walks = {},
+      .endless = {},
+      .endless_boundaries = {},
+      .starts = {},
+      .paths = {},
+      .passed = markov::CellProbabilities::Zero(field.rows, field.columns),
+      .trapping = markov::CellProbabilities::Zero(field.rows, field.columns),
+      .state_trapping = std::vector<double>(static_cast<std::size_t>(kernel.space.size())),
+      .space = kernel.space,
+      .parameters = {}};
+
+  // Means, and the same of eight groups of the trials.
+  std::vector<markov::WalkTotals> groups;
+  for (int g = 0; g < kTrialGroups; ++g) {
+    tell(2 + g);
+    const TrialGroup group{g, kTrialGroups};
+    const Kernel part = kernel_of(gates, pool, options.per_leaf, group);
+    const CostedChain of_group = costed_chain(part, gates, field, pool, pool.starts[own], group);
+    groups.push_back(markov::walk_totals(of_group.chain, cells, of_group.start, field.max_gates,
+                                         of_group.rewards));
+  }
+  const auto mean_95 = [&](const auto& value) {
+    std::vector<double> parts;
+    for (const markov::WalkTotals& g : groups) parts.push_back(value(g));
+    const double whole = value(out.totals), half = half_width_95(whole, parts);
+    return Mean95{whole, {whole - half, whole + half}};
+  };
+  out.gates = mean_95([](const markov::WalkTotals& t) { return t.visits.sum(); });
+  for (std::size_t k = 0; k < kCosts; ++k)
+    out.costs[k] = mean_95(
+        [k](const markov::WalkTotals& t) { return markov::WalkTotals::all(t.totals[k]).mean(); });
+  if (std::isfinite(out.costs[0].mean))
+    out.walks = markov::timed_walks(c.chain, cells, c.start, field.max_gates, c.rewards,
+                                    options.timed_walks, options.seed);
+  tell(kTrialGroups + 2);
+
+  std::vector<double> share(gates.types().size(), 0.0);
+  for (int row = 0; row < field.rows; ++row)
+    for (int column = 0; column < field.columns; ++column)
+      share[static_cast<std::size_t>(gates.type_of(column, row))] +=
+          1.0 / (static_cast<double>(field.rows) * field.columns);
+  try {
+    out.endless = markov::quasi_stationary(c.chain, share);
+    out.endless_boundaries.assign(kBoundaries, 0.0);
+    for (int state = 0; state < kernel.space.size(); ++state)
+      out.endless_boundaries[static_cast<std::size_t>(kernel.space.boundary(state))] +=
+          out.endless->states[static_cast<std::size_t>(state)];
+  } catch (const std::runtime_error&) {  // nobody comes far, or it does not settle
+  }
+
+  const std::int64_t first_cell = std::int64_t{c.start.row} * field.columns + c.start.column;
+  for (int state = 0; state < kernel.space.size(); ++state)
+    if (kernel.space.boundary(state) == Boundary::enter)
+      out.starts.push_back({kernel.space.cell(state), chance(1, first_cell, state)});
+  out.paths =
+      markov::most_frequent_paths(c.chain, cells, c.start, field.max_gates, chance, options.paths);
+
+  if (out.target_chance > 0.0) {
+    passages.each([&](const Passages::Place& place, double weight) {
+      const double part = weight / out.target_chance;
+      const auto column = place.cell % field.columns, row = place.cell / field.columns;
+      out.passed.data()[place.cell] += part;
+      const double trapped = trapped_share(c.chain.at(column, row), place.input);
+      if (options.target == markov::Ending::trapped || trapped >= 1.0) return;
+      const double effect = part * trapped / (1.0 - trapped);
+      out.trapping.data()[place.cell] += effect;
+      if (place.input < kernel.space.size())
+        out.state_trapping[static_cast<std::size_t>(place.input)] += effect;
+    });
+    if (options.runs > 0) {
+      const Stopwatch of_parameters;
+      const Parameters parameters(scene, pool, kernel, start, c, chance, passages, options);
+      std::vector<const ParamInfo*> infos;
+      for (const ParamInfo& info : gate_param_table())
+        if (is_physical(info.key)) infos.push_back(&info);
+      for (std::size_t k = 0; k < infos.size(); ++k) {
+        work.tell("gate runs for parameters", static_cast<std::int64_t>(k), std::ssize(infos));
+        if (auto effect = parameters.effect(*infos[k])) {
+          out.parameters.push_back(*effect);
+          out.parameter_runs += 2 * options.runs;
+        }
+      }
+      out.parameter_seconds = of_parameters.seconds();
+    }
+  }
+  out.seconds = watch.seconds();
+  return out;
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,92 @@
+#pragma once
+/// What a chain says beyond the final gates: how long bodies take and what work, how likely each
+/// start is to end in one way, which ways there lead, and what would change that most.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/work.h"
+#include "lattice/run_pool.h"
+#include "lattice/scene/scene.h"
+#include "markov/committor.h"
+#include "markov/paths.h"
+#include "markov/quasi_stationary.h"
+#include "markov/totals.h"
+
+namespace gatewalk::lattice {
+
+/// A field's chain from one start, with what its draws take: the quantities are those of
+/// dynamics::kCostNames. The start's row is the last one.
+struct CostedChain {
+  markov::FieldChain chain;
+  markov::Rewards rewards;
+  markov::Start start;
+};
+/// From the runs of one group of the trials, and that group's first runs from `start`.
+[[nodiscard]] CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates,
+                                       const FieldParams& field, const RunPool& pool,
+                                       const StartTrials& start, TrialGroup group = {});
+
+struct AnalysisOptions {
+  markov::Ending target = markov::Ending::far_edge;  // what starts, paths and influences are of
+  int per_leaf = dynamics::kEntriesPerLeaf;
+  std::int64_t timed_walks = 100'000;
+  std::size_t paths = 5;
+  std::int64_t runs = 20'000;   // gate runs to each side of a scene parameter; 0: none
+  double relative_step = 0.05;  // to each side
+  std::uint64_t seed = 1;
+};
+
+/// A mean with its 95 % interval: sampling, and what smaller states would change.
+struct Mean95 {
+  double mean = 0.0;
+  std::array<double, 2> interval{};
+};
+
+/// How the chance of the target answers to a number of the scene.
+struct ParameterEffect {
+  std::string_view key;  // dynamics::ParamInfo's
+  double value = 0.0;
+  /// d ln(chance) / d ln(value): per cent that the chance changes for one per cent of the value;
+  /// with 95 % interval (chance in these runs; the chain's own error is not in it).
+  Mean95 elasticity;
+};
+
+/// The chance of the target from one of the ways to enter the first gate from below.
+struct StartChance {
+  dynamics::Cell cell;
+  double chance = 0.0;
+};
+
+struct Analysis {
+  markov::Ending target{};
+  double target_chance = 0.0;
+  markov::WalkTotals totals;                       // quantities by dynamics::Cost
+  Mean95 gates;                                    // visited, and ...
+  std::array<Mean95, dynamics::kCosts> costs;      // ... what bodies took, of all of them
+  std::vector<markov::TimedWalk> walks;            // seconds
+  std::optional<markov::QuasiStationary> endless;  // none where nobody comes far
+  std::vector<double> endless_boundaries;          // its states by dynamics::Boundary
+  std::vector<StartChance> starts;
+  std::vector<markov::CellPath> paths;
+  /// (rows x columns) visits of bodies that end in the target, per body of these; and how much the
+  /// chance of the target would grow, in parts of it, were the gate's share of trapped bodies
+  /// smaller by a hundredth of itself, the others going on as the rest does: times 100.
+  markov::CellProbabilities passed, trapping;
+  std::vector<double> state_trapping;  // the latter by state of the kernel, in all gates together
+  dynamics::StateSpace space;          // of the kernel
+  std::vector<ParameterEffect> parameters;
+  std::int64_t parameter_runs = 0;
+  double seconds = 0.0, parameter_seconds = 0.0;
+};
+
+/// The pool must hold runs of `start`. Throws std::invalid_argument otherwise, and as
+/// markov::EndingChance for fields that are too large.
+[[nodiscard]] Analysis analyze(const Scene& scene, const RunPool& pool,
+                               const dynamics::Crossing& start, const AnalysisOptions& options,
+                               const dynamics::Work& work = {});
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,74 @@
+#include "markov/paths.h"
+
+#include <algorithm>
+#include <map>
+#include <queue>
+#include <utility>
+
+namespace gatewalk::markov {
+namespace {
+
+/// A path, or its beginning: then the walks that pass it are in these states of its last cell.
+struct Beginning {
+  double at_most = 0.0;  // of the share that any path has which begins so; of a path its share
+  std::vector<std::int64_t> cells;
+  std::vector<std::pair<int, double>> states;  // input, share; none: the path is complete
+  friend bool operator<(const Beginning& a, const Beginning& b) { return a.at_most < b.at_most; }
+};
+
+}  // namespace
+
+std::vector<CellPath> most_frequent_paths(const FieldChain& chain, const Field& field,
+                                          const Start& start, int max_cells,
+                                          const EndingChance& chance, std::size_t count,
+                                          std::size_t most_steps) {
+  validate(chain, field, start, max_cells);
+  const std::int64_t first = std::int64_t{start.row} * field.columns + start.column;
+  std::priority_queue<Beginning> open;
+  open.push({chance(1, first, start.input), {first}, {{start.input, 1.0}}});
+  std::vector<CellPath> paths;
+  for (std::size_t step = 0; step < most_steps && !open.empty() && paths.size() < count; ++step) {
+    const Beginning b = open.top();
+    open.pop();
+    if (!(b.at_most > 0.0)) break;
+    if (b.states.empty()) {
+      paths.push_back({b.cells, b.at_most});
+      continue;
+    }
+    const std::int64_t cell = b.cells.back(), column = cell % field.columns,
+                       row = cell / field.columns;
+    const int draw = static_cast<int>(b.cells.size());
+    const Chain& here = chain.at(column, row);
+    double ends = 0.0;
+    std::map<std::int64_t, std::map<int, double>> onward;  // by cell and input
+    for (const auto& [input, share] : b.states) {
+      if (!here.is_sampled(input) && chance.ending() == Ending::unsampled) ends += share;
+      for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
+        const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
+        const std::int64_t to_column = column + exit.di_x, to_row = row + exit.di_y;
+        const double p = share * it.value();
+        const bool inside =
+            to_column >= 0 && to_column < field.columns && to_row >= 0 && to_row < field.rows;
+        if (exit.next_input == Exit::kTrapped)
+          ends += chance.ending() == Ending::trapped ? p : 0.0;
+        else if (!inside)
+          ends += edge_before(field, to_column, to_row) == chance.ending() ? p : 0.0;
+        else if (draw == max_cells)
+          ends += chance.ending() == Ending::cut_off ? p : 0.0;
+        else
+          onward[to_row * field.columns + to_column][exit.next_input] += p;
+      }
+    }
+    if (ends > 0.0) open.push({ends, b.cells, {}});
+    for (const auto& [to, states] : onward) {
+      Beginning next{0.0, b.cells, {states.begin(), states.end()}};
+      next.cells.push_back(to);
+      for (const auto& [input, share] : next.states)
+        next.at_most += share * chance(draw + 1, to, input);
+      if (next.at_most > 0.0) open.push(std::move(next));
+    }
+  }
+  return paths;
+}
+
+}  // namespace gatewalk::markov

@@ -1,0 +1,29 @@
+#pragma once
+/// The ways through a field that walks take most often.
+
+#include <cstdint>
+#include <vector>
+
+#include "markov/committor.h"
+
+namespace gatewalk::markov {
+
+/// Cells (row * columns + column) from the start on, and the share of all walks that pass exactly
+/// these and then end in the way asked for.
+struct CellPath {
+  std::vector<std::int64_t> cells;
+  double share = 0.0;
+};
+
+/// The most frequent paths with the ending of `chance`, which is that of the same chain, field and
+/// limit; the most frequent first. Best first search: what is known of a path is its beginning with
+/// the share of the walks that pass it, and no way on from there has more than the share that ends
+/// so at all. Fewer than `count` when there are no more, or when `most_steps` beginnings have been
+/// looked at.
+[[nodiscard]] std::vector<CellPath> most_frequent_paths(const FieldChain& chain, const Field& field,
+                                                        const Start& start, int max_cells,
+                                                        const EndingChance& chance,
+                                                        std::size_t count,
+                                                        std::size_t most_steps = 20'000);
+
+}  // namespace gatewalk::markov

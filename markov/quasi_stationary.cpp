@@ -1,0 +1,93 @@
+#include "markov/quasi_stationary.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace gatewalk::markov {
+namespace {
+
+constexpr int kBlock = 8;  // vectors: the second eigenvalue settles as the ninth one lets it
+constexpr int kMostIterations = 20'000;
+constexpr double kTolerance = 1e-12;  // of the first eigenvalue; of the second its square root
+
+/// From state to state, transposed: left eigenvectors become right ones.
+Probabilities transposed_kernel(const FieldChain& chain, const std::vector<double>& share) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t c = 0; c < share.size(); ++c) {
+    const Chain& from = chain.chains()[c];
+    for (int input = 0; input < from.inputs(); ++input)
+      for (Probabilities::InnerIterator it(from.matrix(), input); it; ++it) {
+        const Exit& exit = from.exits()[static_cast<std::size_t>(it.col())];
+        if (exit.next_input != Exit::kTrapped)
+          entries.emplace_back(exit.next_input, input, share[c] * it.value());
+      }
+  }
+  Probabilities kernel(chain.inputs(), chain.inputs());
+  kernel.setFromTriplets(entries.begin(), entries.end());
+  return kernel;
+}
+
+}  // namespace
+
+QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<double>& share) {
+  if (share.size() != chain.chains().size())
+    throw std::invalid_argument("quasi-stationary: one share for each type of cell is needed");
+  const Probabilities kernel = transposed_kernel(chain, share);
+  const Eigen::Index n = kernel.rows(), block = std::min<Eigen::Index>(kBlock, n);
+  // Any block that is not orthogonal to what is sought: cosines of all kinds of wavelengths.
+  Eigen::MatrixXd v(n, block);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index k = 0; k < block; ++k)
+      v(i, k) =
+          std::cos(static_cast<double>(k * (2 * i + 1)) * (0.7 + 1.0 / static_cast<double>(n)));
+  double first = 0.0, second = 0.0;
+  for (int iteration = 0;; ++iteration) {
+    if (iteration == kMostIterations)
+      throw std::runtime_error("quasi-stationary: does not settle, the spectral gap is too small");
+    const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(v).householderQ() *
+                              Eigen::MatrixXd::Identity(n, block);
+    v = kernel * q;
+    const Eigen::MatrixXd small = q.transpose() * v;
+    std::vector<double> moduli;
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(small, false);
+    for (const auto& value : solver.eigenvalues()) moduli.push_back(std::abs(value));
+    std::sort(moduli.begin(), moduli.end(), std::greater<>());
+    const double was_first = first, was_second = second;
+    first = moduli[0];
+    second = moduli.size() > 1 ? moduli[1] : 0.0;
+    if (std::abs(first - was_first) <= kTolerance * first &&
+        std::abs(second - was_second) <= std::sqrt(kTolerance) * first)
+      break;
+  }
+  if (!(first > 0.0)) throw std::runtime_error("quasi-stationary: nobody gets into a second cell");
+  // The first vector alone, from positive numbers: nothing is subtracted.
+  Eigen::VectorXd states = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    Eigen::VectorXd next = kernel * states;
+    next /= next.sum();
+    const double change = (next - states).cwiseAbs().sum();
+    states = std::move(next);
+    if (change <= kTolerance) break;
+  }
+  QuasiStationary out;
+  out.states.assign(states.data(), states.data() + n);
+  out.survival = (kernel * states).sum();
+  out.second = second;
+  double rows = 0.0;
+  for (std::size_t c = 0; c < share.size(); ++c) {
+    const Chain& from = chain.chains()[c];
+    for (int input = 0; input < from.inputs(); ++input)
+      for (Probabilities::InnerIterator it(from.matrix(), input); it; ++it) {
+        const Exit& exit = from.exits()[static_cast<std::size_t>(it.col())];
+        if (exit.next_input != Exit::kTrapped)
+          rows += share[c] * states[input] * it.value() * exit.di_y;
+      }
+  }
+  out.rows_per_cell = rows / out.survival;
+  return out;
+}
+
+}  // namespace gatewalk::markov

@@ -1,0 +1,26 @@
+#pragma once
+/// What is left of walks that have been going on for long in an endless field.
+
+#include <vector>
+
+#include "markov/chain.h"
+
+namespace gatewalk::markov {
+
+/// Of the states that walks are in which have not been trapped yet, wherever they are.
+struct QuasiStationary {
+  std::vector<double> states;  // (inputs) sums to 1: the left eigenvector
+  double survival = 0.0;       // the largest eigenvalue: the chance to survive one more cell
+  double second = 0.0;  // the modulus of the second one: what the start has left goes with it
+  double rows_per_cell = 0.0;  // mean di_y of a move
+  [[nodiscard]] double spectral_gap() const { return survival - second; }
+};
+
+/// `share[c]`: of the field's cells that draw from chains[c]; all cells of the field are mixed as
+/// if each walk met its own field of them. By simultaneous iteration of a block of vectors
+/// (Rutishauser 1969). Throws std::invalid_argument for other numbers of shares,
+/// std::runtime_error when nobody survives or the iteration does not settle.
+[[nodiscard]] QuasiStationary quasi_stationary(const FieldChain& chain,
+                                               const std::vector<double>& share);
+
+}  // namespace gatewalk::markov

@@ -1,0 +1,288 @@
+#include "lattice/study/analysis.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "dynamics/ensemble.h"
+#include "dynamics/runs.h"
+#include "lattice/field_costs.h"
+#include "lattice/study/pooled_prediction.h"
+#include "lattice/study/tree_chain.h"
+#include "lattice/study/trials.h"
+#include "tests/support/threads.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+using markov::Ending;
+
+/// Some 3 of 10 bodies cross three rows of it.
+Scene open_scene() {
+  Scene scene;
+  scene.gate.forces.propulsion = 9.0;
+  scene.gate.forces.random = 30.0;
+  scene.field = {5, 3, 8};
+  scene.gate.run.method = "moreau";
+  scene.gate.run.step = 0.02;
+  scene.start = {4, 0, 1, 15};
+  return scene;
+}
+
+StartTrials some_trials(const Scene& scene, std::int64_t n) {
+  StartTrials s;
+  s.start = entry_of(scene.start);
+  (void)run_field(gates_of(scene), scene.field, scene.start, StateSpace::paper(scene.gate), 9,
+                  {0, n}, &s.full);
+  return s;
+}
+
+RunPool pool_of_trials(const Scene& scene, std::int64_t n) {
+  RunPool pool;
+  pool.starts.push_back(some_trials(scene, n));
+  return pool;
+}
+
+// ---- What runs and trials take ----
+
+TEST(Costs, OfARunAreThoseOfItsTrace) {
+  for (const char* method : {"stable", "moreau", "event", "paper"}) {
+    Scene scene = open_scene();
+    scene.gate.run.method = method;
+    scene.gate.run.step = default_step(scene.gate);
+    const auto made = make_method(scene.gate);
+    const GateTally lanes = run_gate_trials(scene.gate, scene.start, 3, {0, 1});
+    EXPECT_EQ(lanes.trials, 1);
+    RandomForce force = gate_force(scene.gate, 3, 0);
+    const GateTrace trace = trace_gate(scene.gate, *made, scene.start, force);
+    const Energies& end = trace.samples.back().energy;
+    const double left = end.mechanical() - end.body;  // in the beams, which a run counts as lost
+    EXPECT_NEAR(trace.run.propulsion_work, end.propulsion_work, 1e-9) << method;
+    EXPECT_NEAR(trace.run.random_work, end.random_work, 1e-9) << method;
+    EXPECT_NEAR(trace.run.lost, end.lost + left, 1e-9) << method;
+    EXPECT_NEAR(trace.run.seconds, trace.samples.back().time, 1e-9) << method;
+  }
+}
+
+// In lanes to the last bit (stable), or the last digits (moreau).
+TEST(Costs, OfLanesAreThoseOfThePlainMethod) {
+  for (const char* method : {"stable", "moreau"}) {
+    Scene scene = open_scene();
+    scene.gate.run.method = method;
+    scene.gate.run.step = default_step(scene.gate);
+    const auto made = make_method(scene.gate);
+    std::vector<GateRun> in_lanes(300);
+    carry_out_trials(
+        scene.gate, *made, std::ssize(in_lanes),
+        [&](RunSlot& slot) {
+          slot.start = scene.start;
+          slot.force = gate_force(scene.gate, 3, slot.trial);
+        },
+        [&](RunSlot& slot, const GateRun& run) {
+          in_lanes[static_cast<std::size_t>(slot.trial)] = run;
+          return false;
+        });
+    for (std::size_t i = 0; i < in_lanes.size(); ++i) {
+      const GateRun plain =
+          run_gate_trial(scene.gate, *made, scene.start, 3, static_cast<std::int64_t>(i));
+      if (std::string_view(method) == "stable") {
+        EXPECT_EQ(costs_of(in_lanes[i]), costs_of(plain)) << i;
+      } else if (in_lanes[i].ending == plain.ending) {
+        EXPECT_NEAR(in_lanes[i].random_work, plain.random_work,
+                    1e-6 * (1.0 + std::abs(plain.random_work)))
+            << i;
+      }
+    }
+  }
+}
+
+TEST(Costs, OfTrialsDoNotDependOnPiecesOrThreads) {
+  const Scene scene = open_scene();
+  const auto run = [&](const std::vector<TrialRange>& ranges) {
+    FieldCosts costs(scene.gate);
+    for (const TrialRange& range : ranges) {
+      FieldTrials each;
+      (void)run_field(scene.gate, scene.field, scene.start, StateSpace::paper(scene.gate), 9, range,
+                      &each);
+      costs.add(each);
+    }
+    return costs;
+  };
+  const FieldCosts whole = test::on_threads(1,
+                                            [&] {
+                                              return run({{0, 500}});
+                                            }),
+                   parts = test::on_threads(3, [&] {
+                     return run({{0, 1}, {1, 320}, {321, 179}});
+                   });
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    const auto ending = static_cast<Ending>(e);
+    EXPECT_EQ(whole.of(ending).trials, parts.of(ending).trials);
+    EXPECT_EQ(whole.of(ending).sum, parts.of(ending).sum);
+    EXPECT_EQ(whole.of(ending).squares, parts.of(ending).squares);
+  }
+  EXPECT_EQ(whole.all().trials, 500);
+  EXPECT_EQ(quantile(whole.durations(), 1.0), whole.durations().back().seconds);
+  EXPECT_LE(quantile(whole.durations(), 0.25), quantile(whole.durations(), 0.5));
+}
+
+// ---- The chain ----
+
+// With a leaf for each run nothing is pooled: the chain repeats the trials, with what they took.
+TEST(Analysis, LeavesOfOneRunTakeWhatTheTrialsTook) {
+  Scene scene = open_scene();
+  scene.gate.beams.stiffness_left = 300.0;  // no mirror images
+  const RunPool pool = pool_of_trials(scene, 300);
+  const FieldGates gates = gates_of(scene);
+  const Kernel kernel = kernel_of(gates, pool, 1);
+  const CostedChain c = costed_chain(kernel, gates, scene.field, pool, pool.starts[0]);
+  const auto totals = markov::walk_totals(c.chain, {5, 3}, c.start, 8, c.rewards);
+  FieldCosts own(scene.gate);
+  own.add(pool.starts[0].full);
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    const auto& sums = own.of(static_cast<Ending>(e));
+    EXPECT_NEAR(totals.endings[e], static_cast<double>(sums.trials) / 300.0, 1e-12);
+    if (sums.trials == 0) continue;
+    for (std::size_t k = 0; k < kCosts; ++k) {
+      const double mean = sums.mean(static_cast<Cost>(k));
+      EXPECT_NEAR(totals.totals[k][e].mean(), mean, 1e-9 * (1.0 + std::abs(mean))) << e << " " << k;
+      EXPECT_NEAR(totals.totals[k][e].sd(), sums.sd(static_cast<Cost>(k)),
+                  1e-5 * (1.0 + std::abs(mean)))
+          << e << " " << k;
+    }
+  }
+}
+
+// Mirror images count twice, and leaves share rows where there are several types.
+TEST(Analysis, CostsAreThoseOfAllRunsBehindACount) {
+  for (const bool mixed : {false, true}) {
+    Scene scene = open_scene();
+    if (mixed) {
+      scene = parse_scene(
+          "[field]\ncolumns = 5\nrows = 3\nmax_gates = 8\n[run]\nmethod = 'moreau'\nstep_s = "
+          "0.02\n[terrain]\nmap = ['.s.s.', 's.s.s', '.s.s.']\n[terrain.types.s]\n"
+          "beams.stiffness_left_Nm_per_rad = 200.0\n",
+          "mixed");
+      scene.start = {4, 0, 1, 15};
+    }
+    const FieldGates gates = gates_of(scene);
+    const RunPool pool = pool_of_trials(scene, 200);
+    const Kernel kernel = kernel_of(gates, pool);
+    const auto sums = cost_sums(kernel, gates, pool);
+    ASSERT_EQ(sums.size(), gates.types().size());
+    for (std::size_t type = 0; type < sums.size(); ++type) {
+      const markov::Counts& counts = kernel.counts[type];
+      ASSERT_EQ(std::ssize(sums[type]), counts.nonZeros());
+      for (Eigen::Index i = 0; i < counts.nonZeros(); ++i) {
+        // A trapped run lasts as long as it may; nobody is longer in a gate.
+        const bool trapped = counts.innerIndexPtr()[i] == kernel.space.trapped();
+        const auto n = static_cast<double>(counts.valuePtr()[i]);
+        const double seconds = sums[type][static_cast<std::size_t>(i)].sum[0] / n;
+        EXPECT_GT(seconds, 0.0);
+        EXPECT_LE(seconds, scene.gate.run.time_limit * (1.0 + 1e-9));
+        if (trapped) {
+          EXPECT_NEAR(seconds, scene.gate.run.time_limit, 1e-6);
+        }
+      }
+    }
+  }
+}
+
+TEST(Analysis, CostsComeBackFromAFile) {
+  const Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 100);
+  MatrixFile file{
+      Transitions(StateSpace(kernel_of(scene.gate, pool).space.trees(), {entry_of(scene.start)})),
+      {}};
+  file.arrays = arrays_of(pool);
+  const RunPool back = pool_of(file, scene, "file");
+  ASSERT_EQ(back.starts[0].full.passages.size(), pool.starts[0].full.passages.size());
+  for (std::size_t i = 0; i < pool.starts[0].full.passages.size(); ++i)
+    EXPECT_EQ(back.starts[0].full.passages[i].costs, pool.starts[0].full.passages[i].costs);
+  EXPECT_EQ(back.starts[0].full.costs, pool.starts[0].full.costs);
+  // An older file has none: not a number, which is no answer.
+  std::erase_if(file.arrays, [](const auto& a) { return a.name == "run_seconds"; });
+  const RunPool older = pool_of(file, scene, "file");
+  EXPECT_TRUE(std::isnan(older.starts[0].full.passages[0].costs[0]));
+}
+
+TEST(Analysis, AgreesWithTheFullDynamics) {
+  const Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 20'000);
+  const Analysis a = analyze(scene, pool, entry_of(scene.start), {.runs = 0});
+  FieldCosts costs(scene.gate);
+  FieldTrials each;
+  (void)run_field(scene.gate, scene.field, scene.start, StateSpace::paper(scene.gate), 777,
+                  {0, 20'000}, &each);
+  costs.add(each);
+  for (std::size_t k = 0; k < kCosts; ++k) {
+    const auto cost = static_cast<Cost>(k);
+    EXPECT_NEAR(a.costs[k].mean / costs.all().mean(cost), 1.0, 0.02) << kCostNames[k].key;
+  }
+  EXPECT_NEAR(a.totals.visits.sum(), a.gates.mean, 1e-9);
+  EXPECT_LT(a.gates.interval[0], a.gates.mean);
+  EXPECT_NEAR(a.target_chance, a.totals.endings[static_cast<std::size_t>(Ending::far_edge)], 1e-12);
+  double sum = 0.0;
+  for (const markov::CellPath& path : a.paths) sum += path.share;
+  EXPECT_GT(sum, 0.3 * a.target_chance);
+  EXPECT_LT(sum, a.target_chance);
+  // Those who cross pass each row.
+  for (Eigen::Index row = 0; row < 3; ++row) EXPECT_GE(a.passed.row(row).sum(), 1.0 - 1e-9);
+  ASSERT_TRUE(a.endless);
+  EXPECT_GT(a.endless->survival, a.endless->second);
+}
+
+// d ln(crossed) / d ln(value) against trials with a twentieth more and less of it.
+TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
+  const Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 10'000);
+  const Analysis a = analyze(scene, pool, entry_of(scene.start), {.runs = 20'000});
+  const auto crossed = [&](const char* key, double factor) {
+    Scene other = scene;
+    for (const ParamInfo& info : gate_param_table())
+      if (info.key == key) info.ref(other.gate) *= factor;
+    constexpr std::int64_t kTrials = 40'000;
+    const FieldTally t = run_field(other.gate, other.field, other.start,
+                                   StateSpace::paper(other.gate), 5, {0, kTrials});
+    return static_cast<double>(t.endings[static_cast<std::size_t>(Ending::far_edge)]) / kTrials;
+  };
+  int seen = 0;
+  for (const ParameterEffect& e : a.parameters) {
+    const bool asked = e.key == "forces.propulsion_N" || e.key == "forces.random_N" ||
+                       e.key == "beams.stiffness_left_Nm_per_rad" || e.key == "body.mass_kg";
+    if (!asked) continue;
+    ++seen;
+    const std::string key(e.key);
+    const double up = crossed(key.c_str(), 1.05), down = crossed(key.c_str(), 0.95);
+    const double central = (up - down) / 0.1 / a.target_chance;
+    const double chance =
+        std::sqrt((up * (1 - up) + down * (1 - down)) / 40'000.0) / 0.1 / a.target_chance;
+    const double half = 0.5 * (e.elasticity.interval[1] - e.elasticity.interval[0]);
+    EXPECT_NEAR(e.elasticity.mean, central, 1.5 * std::hypot(half, 2.0 * chance)) << key;
+  }
+  EXPECT_EQ(seen, 4);
+  EXPECT_GE(a.parameters.size(), 12u);
+}
+
+TEST(Analysis, IsTheSameOnAnyNumberOfThreads) {
+  const Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 500);
+  const auto run = [&] { return analyze(scene, pool, entry_of(scene.start), {.runs = 300}); };
+  const Analysis one = test::on_threads(1, run), three = test::on_threads(3, run);
+  ASSERT_EQ(one.parameters.size(), three.parameters.size());
+  for (std::size_t i = 0; i < one.parameters.size(); ++i)
+    EXPECT_EQ(one.parameters[i].elasticity.mean, three.parameters[i].elasticity.mean);
+  EXPECT_EQ(one.costs[0].mean, three.costs[0].mean);
+  EXPECT_EQ(one.costs[0].interval, three.costs[0].interval);
+}
+
+TEST(Analysis, NeedsRunsOfTheStart) {
+  const Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 50);
+  EXPECT_THROW((void)analyze(scene, pool, {Boundary::enter, 1, 2, 3}, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice

@@ -1,0 +1,229 @@
+#include "markov/totals.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <numeric>
+
+#include "markov/committor.h"
+#include "markov/paths.h"
+#include "markov/quasi_stationary.h"
+#include "tests/markov/chains.h"
+#include "tests/support/threads.h"
+
+namespace gatewalk::markov {
+namespace {
+
+using namespace test;
+
+/// Some time for each nonzero, with some spread.
+Rewards some_rewards(const FieldChain& chain, std::uint64_t seed) {
+  Words words(seed);
+  Rewards rewards;
+  for (const Chain& c : chain.chains()) {
+    Reward r;
+    for (Eigen::Index i = 0; i < c.matrix().nonZeros(); ++i) {
+      const double mean = 0.5 + 0.01 * words.below(300), sd = 0.002 * words.below(300) * mean;
+      r.mean.push_back(mean);
+      r.square.push_back(mean * mean + sd * sd);
+    }
+    rewards.push_back({r});
+  }
+  return rewards;
+}
+
+constexpr std::size_t at(Ending e) { return static_cast<std::size_t>(e); }
+
+// One cell; state 0 is trapped after 2 s with 1/4, else goes up and out after 1 or 3 s.
+TEST(WalkTotals, AreThoseDoneByHand) {
+  const Chain chain =
+      Chain::from_probabilities(matrix(1, 2, {{0, 0, 0.75}, {0, 1, 0.25}}), {{0, 0, 1}, {}});
+  const Rewards rewards = {{{{2.0, 2.0}, {5.0, 4.0}}}};
+  const WalkTotals two = walk_totals(chain, {1, 2}, {}, 0, rewards);
+  EXPECT_DOUBLE_EQ(two.endings[at(Ending::far_edge)], 0.5625);
+  EXPECT_DOUBLE_EQ(two.endings[at(Ending::trapped)], 0.25 + 0.75 * 0.25);
+  const Moments crossed = two.totals[0][at(Ending::far_edge)],
+                trapped = two.totals[0][at(Ending::trapped)];
+  EXPECT_DOUBLE_EQ(crossed.mean(), 4.0);
+  EXPECT_DOUBLE_EQ(crossed.sd(), std::sqrt(2.0));  // twice 1 or 3 s
+  // 2 s in 4 of 7 cases, else 2 s after 1 or 3 s.
+  EXPECT_NEAR(trapped.mean(), (4 * 2.0 + 3 * 4.0) / 7.0, 1e-15);
+  EXPECT_NEAR(trapped.square / trapped.share, (4 * 4.0 + 1.5 * 9.0 + 1.5 * 25.0) / 7.0, 1e-14);
+  EXPECT_DOUBLE_EQ(two.draws[at(Ending::far_edge)].mean(), 2.0);
+  EXPECT_DOUBLE_EQ(two.visits(0, 0), 1.0);
+  EXPECT_DOUBLE_EQ(two.visits(1, 0), 0.75);
+}
+
+TEST(WalkTotals, EndAsPropagationSays) {
+  Counts counts = lattice_counts(3);
+  empty_row(counts, 30);
+  const Chain chain = Chain::from_counts(counts, never_down());
+  for (const int limit : {1, 13, 0}) {
+    const FinalDistribution d =
+        propagate(chain, kNineByNine, kBottomCentre, {.max_cells = limit, .tolerance = 1e-13});
+    const WalkTotals t = walk_totals(chain, kNineByNine, kBottomCentre, limit);
+    for (std::size_t e = 0; e < kEndings; ++e) EXPECT_NEAR(t.endings[e], d.endings[e], 2e-12);
+    EXPECT_NEAR(t.visits.sum(), d.mean_steps, 1e-9);
+    EXPECT_NEAR(WalkTotals::all(t.draws).mean(), d.mean_steps, 1e-9);
+  }
+}
+
+// Times of walks have the moments that were asked for, and walks the endings.
+TEST(WalkTotals, AreThoseOfTimedWalks) {
+  std::vector<Chain> chains = {Chain::from_counts(lattice_counts(3), never_down()),
+                               Chain::from_counts(lattice_counts(4), never_down())};
+  std::vector<int> types(81);
+  for (std::size_t i = 0; i < types.size(); ++i) types[i] = i % 3 == 0;
+  const FieldChain field = FieldChain::by_cell(chains, 9, types);
+  const Rewards rewards = some_rewards(field, 8);
+  const WalkTotals exact = walk_totals(field, kNineByNine, kBottomCentre, 13, rewards);
+  constexpr std::int64_t kWalks = 200'000;
+  const auto walks = gatewalk::test::on_threads(
+      2, [&] { return timed_walks(field, kNineByNine, kBottomCentre, 13, rewards, kWalks, 5); });
+  for (const Ending e : {Ending::trapped, Ending::left_edge, Ending::far_edge}) {
+    Moments seen;
+    for (const TimedWalk& w : walks)
+      if (w.ending == e) {
+        seen.share += 1.0 / kWalks;
+        seen.sum += w.total / kWalks;
+        seen.square += w.total * w.total / kWalks;
+      }
+    const Moments& wanted = exact.totals[0][at(e)];
+    const double n = kWalks * wanted.share;
+    EXPECT_NEAR(seen.share, wanted.share, 4.0 * std::sqrt(wanted.share / kWalks));
+    EXPECT_NEAR(seen.mean(), wanted.mean(), 4.0 * wanted.sd() / std::sqrt(n));
+    EXPECT_NEAR(seen.sd() / wanted.sd(), 1.0, 6.0 / std::sqrt(n));
+  }
+  const auto one = gatewalk::test::on_threads(
+      1, [&] { return timed_walks(field, kNineByNine, kBottomCentre, 13, rewards, 500, 5); });
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].total, walks[i].total);
+    EXPECT_EQ(one[i].ending, walks[i].ending);
+  }
+}
+
+TEST(WalkTotals, RefuseRewardsOfAnotherChain) {
+  const Chain chain = Chain::from_counts(lattice_counts(3), never_down());
+  Rewards rewards = some_rewards(chain, 1);
+  rewards[0][0].mean.pop_back();
+  EXPECT_THROW((void)walk_totals(chain, kNineByNine, kBottomCentre, 13, rewards),
+               std::invalid_argument);
+  EXPECT_THROW((void)timed_walks(chain, kNineByNine, kBottomCentre, 13, {}, 1, 1),
+               std::invalid_argument);
+}
+
+// ---- The chance of an ending ----
+
+TEST(EndingChance, IsThatOfPropagationFromEverywhere) {
+  Counts counts = lattice_counts(7);
+  empty_row(counts, 30);
+  const Chain chain = Chain::from_counts(counts, never_down());
+  for (const int limit : {7, 0})
+    for (const Ending e : {Ending::far_edge, Ending::left_edge, Ending::right_edge, Ending::trapped,
+                           Ending::cut_off, Ending::unsampled}) {
+      if (limit == 0 && e == Ending::cut_off) continue;
+      const EndingChance chance(chain, {5, 6}, e, limit);
+      for (const Start& start : {Start{2, 0, 12}, Start{0, 5, 40}, Start{4, 3, 86}}) {
+        const FinalDistribution d =
+            propagate(chain, {5, 6}, start, {.max_cells = limit, .tolerance = 1e-14});
+        EXPECT_NEAR(chance(1, start.row * 5 + start.column, start.input), d.endings[at(e)], 1e-11)
+            << "ending " << at(e) << ", limit " << limit;
+      }
+    }
+}
+
+TEST(EndingChance, FewerDrawsAreLeftLater) {
+  const Chain chain = Chain::from_counts(lattice_counts(7), never_down());
+  const EndingChance seven(chain, {5, 6}, Ending::trapped, 7),
+      five(chain, {5, 6}, Ending::trapped, 5);
+  for (const int input : {0, 40, 86}) EXPECT_EQ(seven(3, 12, input), five(1, 12, input));
+  EXPECT_EQ(seven(8, 12, 0), 0.0);
+}
+
+// ---- Paths ----
+
+TEST(Paths, AreTheMostFrequentOfAll) {
+  const Chain chain = Chain::from_counts(lattice_counts(7), never_down());
+  const Field field{3, 3};
+  const Start start{1, 0, 12};
+  constexpr int kLimit = 6;
+  // All paths of walks by brute force.
+  std::map<std::vector<std::int64_t>, double> all;
+  const Eigen::MatrixXd p = chain.matrix();
+  const std::function<void(std::vector<std::int64_t>, const Eigen::VectorXd&)> follow =
+      [&](std::vector<std::int64_t> cells, const Eigen::VectorXd& states) {
+        const Eigen::VectorXd out = p.transpose() * states;
+        std::map<std::int64_t, Eigen::VectorXd> next;
+        for (int j = 0; j < 87; ++j) {
+          const Exit& exit = chain.exits()[static_cast<std::size_t>(j)];
+          const std::int64_t column = cells.back() % 3 + exit.di_x,
+                             row = cells.back() / 3 + exit.di_y;
+          if (row >= 3) all[cells] += out(j);
+          if (column < 0 || column >= 3 || row >= 3) continue;
+          next.try_emplace(row * 3 + column, Eigen::VectorXd::Zero(87)).first->second(j) += out(j);
+        }
+        if (static_cast<int>(cells.size()) == kLimit) return;
+        for (const auto& [to, there] : next) {
+          cells.push_back(to);
+          follow(cells, there);
+          cells.pop_back();
+        }
+      };
+  Eigen::VectorXd first = Eigen::VectorXd::Zero(87);
+  first(start.input) = 1.0;
+  follow({1}, first);
+
+  const EndingChance chance(chain, field, Ending::far_edge, kLimit);
+  const auto paths = most_frequent_paths(chain, field, start, kLimit, chance, all.size() + 5);
+  std::vector<double> shares;
+  for (const auto& [cells, share] : all)
+    if (share > 0.0) shares.push_back(share);
+  std::sort(shares.begin(), shares.end(), std::greater<>());
+  ASSERT_EQ(paths.size(), shares.size());
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    EXPECT_NEAR(paths[i].share, shares[i], 1e-15);
+    EXPECT_NEAR(all.at(paths[i].cells), paths[i].share, 1e-15);
+  }
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  EXPECT_NEAR(sum, chance(1, 1, start.input), 1e-14);
+}
+
+// ---- Quasi-stationary distribution ----
+
+TEST(QuasiStationary, IsTheFirstEigenvectorOfTheMatrix) {
+  const Chain chain = Chain::from_counts(lattice_counts(7), never_down());
+  const QuasiStationary q = quasi_stationary(chain, {1.0});
+  const Eigen::MatrixXd kernel = Eigen::MatrixXd(chain.matrix()).leftCols(87).transpose();
+  std::vector<double> moduli;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(kernel, false);
+  for (const auto& value : solver.eigenvalues()) moduli.push_back(std::abs(value));
+  std::sort(moduli.begin(), moduli.end(), std::greater<>());
+  EXPECT_NEAR(q.survival, moduli[0], 1e-12);
+  EXPECT_NEAR(q.second, moduli[1], 1e-5);
+  const Eigen::Map<const Eigen::VectorXd> states(q.states.data(), 87);
+  EXPECT_NEAR(states.sum(), 1.0, 1e-12);
+  EXPECT_LT((kernel * states - q.survival * states).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(QuasiStationary, IsKnownForTwoStates) {
+  // A half survives in each state, and goes to either alike: 0 to 0 and 1, 1 to 0 alone.
+  const Chain chain = Chain::from_probabilities(
+      matrix(2, 3, {{0, 0, 0.25}, {0, 1, 0.25}, {0, 2, 0.5}, {1, 0, 0.5}, {1, 2, 0.5}}),
+      {{0, 0, 1}, {1, 1, 0}, {}});
+  const QuasiStationary q = quasi_stationary(chain, {1.0});
+  EXPECT_NEAR(q.survival, 0.5, 1e-12);
+  EXPECT_NEAR(q.second, 0.25, 1e-6);
+  EXPECT_NEAR(q.states[0], 2.0 / 3.0, 1e-10);
+  EXPECT_NEAR(q.rows_per_cell, 2.0 / 3.0, 1e-10);  // moves to state 0 lead up
+}
+
+TEST(QuasiStationary, SaysWhereNobodySurvives) {
+  const Chain chain = Chain::from_probabilities(matrix(1, 2, {{0, 1, 1.0}}), {{0, 0, 1}, {}});
+  EXPECT_THROW((void)quasi_stationary(chain, {1.0}), std::runtime_error);
+  EXPECT_THROW((void)quasi_stationary(chain, {0.5, 0.5}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::markov
