@@ -1,5 +1,7 @@
 #include "markov/committor.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -172,7 +174,7 @@ EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending e
                                 " draws each, takes more than 4 GiB");
   values_.resize(static_cast<std::size_t>(numbers));
   for (std::int64_t layer = layers_ - 1; layer >= 0; --layer)
-    for (std::int64_t cell = 0; cell < cells_; ++cell) {
+    tbb::parallel_for(std::int64_t{0}, cells_, [&](std::int64_t cell) {
       const std::int64_t column = cell % field.columns, row = cell / field.columns;
       const Chain& here = chain.at(column, row);
       double* const out = values_.data() + (layer * cells_ + cell) * inputs_;
@@ -197,7 +199,7 @@ EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending e
         }
         out[input] = sum;
       }
-    }
+    });
 }
 
 }  // namespace gatewalk::markov

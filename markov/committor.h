@@ -31,7 +31,7 @@ struct Committor {
 class EndingChance {
  public:
   /// max_cells 0: no limit, as committor(). Memory: max_cells x rows x columns x inputs numbers;
-  /// throws std::invalid_argument above 4 GiB.
+  /// throws std::invalid_argument above 4 GiB. On all threads of the current TBB arena.
   EndingChance(const FieldChain& chain, const Field& field, Ending ending, int max_cells);
 
   /// From a cell (row * columns + column) in which the walk is to make its `draw`-th draw, from 1;

@@ -10,12 +10,18 @@
 ///              predict() by the solver asked for. Step by step: all planes of the field at a time; by
 ///              rows: the visits of a row by elimination or sums, then the next row. Plain references:
 ///              forward propagation (propagate) and one sparse solve (solve_absorption)
+///   Chain -> the chance of an ending from everywhere (committor.h), times and works of walks (totals.h),
+///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h)
 /// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
 /// cell limit, entered a state that was never sampled. The final cell is the last one inside.
 /// What a state means, and how large a cell is, this module does not know.
 // clang-format on
 
 #include "markov/chain.h"
+#include "markov/committor.h"
 #include "markov/formats/counts.h"
+#include "markov/paths.h"
 #include "markov/predict.h"
+#include "markov/quasi_stationary.h"
+#include "markov/totals.h"
 #include "markov/walk.h"

@@ -300,6 +300,34 @@ expect 2 'set has no meaning' "$gatewalk" reproduce -o paper --set forces.random
 (cd paper && eval "$(jq -r '.sections[] | select(.id == "fig9").commands[1]' report.json | sed "s#^gatewalk#$gatewalk#") --quiet --json again.json") || fail "reproduce: a command of the report does not work"
 jq -s '.[0].runs == .[1].runs' paper/again.json paper/data/fig9_300.json | grep -q true || fail "reproduce: a command of the report gives something else"
 
+# analyze: from a scene and from its file, the keys that scripts rely on; lattice takes as long.
+fast=(--set run.method=moreau --set field.rows=4 --set forces.propulsion_N=8.5)
+"$gatewalk" analyze "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --runs 300 --trials 4000 --json analysis.json --quiet
+holds '.endings.crossed.interval_95[0] < .endings.crossed.probability and .endings.trapped.probability > 0.3' analysis.json
+holds '([.expected_visits[][]] | add) as $visits | .expected_gates - $visits | fabs < 1e-9' analysis.json
+holds '(.expected_visits | length) == 4 and (.expected_visits[0] | length) == 9' analysis.json
+holds '(.expected_seconds / .direct.all.mean_seconds - 1 | fabs) < 0.06 and (.expected_work_J / .direct.all.mean_propulsion_work_J - 1 | fabs) < 0.08' analysis.json
+holds '.by_ending.all.kolmogorov_distance < 0.08 and .by_ending.crossed.mean_seconds > 0' analysis.json
+holds '.quasi_stationary | .survival_per_gate < 1 and .spectral_gap > 0 and ((.states | add) - 1 | fabs) < 1e-9' analysis.json
+holds '(.sensitivities.parameters | length) >= 12 and (.sensitivities.less_trapping | length) == 4' analysis.json
+holds '(.paths | length) == 5 and .paths[0].probability > .paths[4].probability and .paths[0].gates[0] == {"i_x": 0, "i_y": 0}' analysis.json
+"$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 -o fast.nc --quiet
+"$gatewalk" analyze fast.nc --runs 0 --json from_file.json --quiet
+holds '.gate_runs == 0 and .sensitivities.parameters == []' from_file.json
+[ "$(value .expected_seconds analysis.json)" = "$(value .expected_seconds from_file.json)" ] ||
+  fail "analyze: the file gave another time than its scene"
+"$gatewalk" analyze fast.nc --runs 300 --threads 1 --json - 2>/dev/null | jq 'del(.seconds, .sensitivities.seconds)' >one.json
+"$gatewalk" analyze fast.nc --runs 300 --threads 2 --json - 2>/dev/null | jq 'del(.seconds, .sensitivities.seconds)' | cmp -s - one.json ||
+  fail "analyze: another number of threads gave another answer"
+expect 2 'must be one of crossed' "$gatewalk" analyze fast.nc --target lost
+expect 2 'is of one start' "$gatewalk" analyze fast.nc --start 0,0,15 --start 1,0,15
+expect 2 'must lie between 0 and 0.5' "$gatewalk" analyze fast.nc --step 0.7
+"$gatewalk" build "$scenes/field.toml" --bins paper --trials 2 -o bins.nc --quiet
+expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc
+"$gatewalk" lattice "$scenes/field.toml" "${fast[@]}" --trials 500 --json lattice_costs.json --quiet
+holds '.costs.all | .trials == 500 and .mean_seconds > 0 and .quantiles_seconds["5"] < .quantiles_seconds["95"]' lattice_costs.json
+holds '([.costs | to_entries[] | select(.key != "all") | .value.trials] | add) == 500' lattice_costs.json
+
 # rare: every row's chance, the chain's beside it, as often as is asked for by direct trials.
 expect 0 '^chance to enter row 4: ' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 4 --accuracy 0.2 --trials 500 --json rare.json
 holds '.row == 4 and (.rows | length) == 4 and .probability > 0 and .interval_95[0] < .probability and .probability < .interval_95[1] and .chain > 0 and .relative_standard_error <= 0.2 and .gate_runs > 1000 and .rows[0].direct_entered > 0' rare.json

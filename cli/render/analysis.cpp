@@ -30,19 +30,19 @@ double cost_of_transport(const dynamics::GateParams& p, double propulsion_work,
   return way > 0.0 ? (propulsion_work + random_work) / (p.body.mass * way) : std::nan("");
 }
 
-/// Durations of walks with these endings, ascending.
+/// Durations of walks with these endings, ascending; none where they are too few to say much.
 std::vector<double> durations_of(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
   std::vector<double> out;
   for (const markov::TimedWalk& w : a.walks)
     if (!ending || w.ending == *ending) out.push_back(w.total);
+  constexpr std::size_t kFew = 50;
+  if (out.size() < kFew) out.clear();
   std::sort(out.begin(), out.end());
   return out;
 }
 
-/// None of so few that it would say little.
 double quantile(const std::vector<double>& sorted, double level) {
-  constexpr std::size_t kFew = 50;
-  if (sorted.size() < kFew) return std::nan("");
+  if (sorted.empty()) return std::nan("");
   const auto at = static_cast<std::size_t>(level * static_cast<double>(sorted.size()));
   return sorted[std::min(at, sorted.size() - 1)];
 }
@@ -102,11 +102,11 @@ Json to_json(const Spent& s, const dynamics::GateParams& p,
 std::string line_of(const std::string& name, const Spent& s, const dynamics::GateParams& p,
                     const std::function<double(double)>& quantile) {
   const auto number = [](double x) {
-    return std::isfinite(x) ? padded(digits(std::stod(fixed(x, std::abs(x) < 10 ? 3 : 1))), 11)
-                            : padded("-", 11);
+    return padded(fixed(x, std::abs(x) < 10 ? 3 : std::abs(x) < 1000 ? 1 : 0), 11);
   };
+  const double low = quantile(0.05), high = quantile(0.95);
   return padded(name, -11) + number(s.of(Cost::seconds)) +
-         padded(fixed(quantile(0.05), 2) + " to " + fixed(quantile(0.95), 2), 18) +
+         padded(std::isfinite(low) ? fixed(low, 2) + " to " + fixed(high, 2) : "-", 18) +
          number(s.of(Cost::propulsion_work)) + number(s.of(Cost::random_work)) +
          number(s.of(Cost::lost)) +
          number(cost_of_transport(p, s.of(Cost::propulsion_work), s.of(Cost::random_work))) + "\n";

@@ -9,7 +9,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr double kLeft = 66;
+constexpr double kLeft = 78;
 constexpr const char* kCurveColours[] = {kFirstColour, kSecondColour, kThirdColour, kFourthColour,
                                          kFifthColour};
 
@@ -29,7 +29,7 @@ void add_visits(Script& out, const AnalysedField& f) {
     for (Eigen::Index c = 0; c < shown.cols(); ++c)
       rows += std::to_string(c) + " " + std::to_string(r) + " " +
               digits(std::sqrt(100.0 * shown(r, c))) + "\n";
-  const double side = 330.0, columns = static_cast<double>(shown.cols()),
+  const double side = 318.0, columns = static_cast<double>(shown.cols()),
                lines = static_cast<double>(shown.rows());
   const double cell = std::min(side / columns, 300.0 / lines);
   const Box box{kLeft, kLeft + std::max(120.0, cell * columns), out.top + 50,
@@ -170,8 +170,8 @@ void add_parameters(Script& out, const AnalysedField& f) {
   out.text += data_block("$effects", rows) + kFrame + out.sheet.margins(box) + "set xrange [" +
               digits(low - margin) + ":" + digits(high + margin) + "]\nset yrange [" +
               digits(0.5 - static_cast<double>(effects.size())) + ":0.5]\nset xtics " +
-              digits(tic_step(high - low, 5)) + "\nset ytics (" + tics +
-              ") noenhanced font ',12' scale 0\nset xzeroaxis\nset arrow 1 from 0," +
+              digits(tic_step(high - low, 3)) + "\nset ytics (" + tics +
+              ") noenhanced font ',12' scale 0\nset arrow 1 from 0," +
               digits(0.5 - static_cast<double>(effects.size())) + " to 0,0.5 nohead" + kThin +
               "\nset xlabel '% more' offset 0,0.4\nunset ylabel\n" +
               out.sheet.text("\"" + std::string(target_name(f)) +

@@ -1,5 +1,7 @@
 #include "lattice/study/analysis.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -293,7 +295,7 @@ Analysis analyze(const Scene& scene, const RunPool& pool, const Crossing& start,
   const FieldGates gates = gates_of(scene);
   const FieldParams& field = scene.field;
   const markov::Field cells{field.columns, field.rows};
-  const auto tell = [&](std::int64_t done) { work.tell("analysis", done, kTrialGroups + 3); };
+  const auto tell = [&](std::int64_t done) { work.tell("analysis", done, 4); };
 
   tell(0);
   const Kernel kernel = kernel_of(gates, pool, options.per_leaf);
@@ -321,15 +323,15 @@ Analysis analyze(const Scene& scene, const RunPool& pool, const Crossing& start,
       .parameters = {}};
 
   // Means, and the same of eight groups of the trials.
-  std::vector<markov::WalkTotals> groups;
-  for (int g = 0; g < kTrialGroups; ++g) {
-    tell(2 + g);
+  tell(2);
+  std::vector<markov::WalkTotals> groups(kTrialGroups);
+  tbb::parallel_for(0, kTrialGroups, [&](int g) {
     const TrialGroup group{g, kTrialGroups};
     const Kernel part = kernel_of(gates, pool, options.per_leaf, group);
     const CostedChain of_group = costed_chain(part, gates, field, pool, pool.starts[own], group);
-    groups.push_back(markov::walk_totals(of_group.chain, cells, of_group.start, field.max_gates,
-                                         of_group.rewards));
-  }
+    groups[static_cast<std::size_t>(g)] = markov::walk_totals(of_group.chain, cells, of_group.start,
+                                                              field.max_gates, of_group.rewards);
+  });
   const auto mean_95 = [&](const auto& value) {
     std::vector<double> parts;
     for (const markov::WalkTotals& g : groups) parts.push_back(value(g));
@@ -343,7 +345,7 @@ Analysis analyze(const Scene& scene, const RunPool& pool, const Crossing& start,
   if (std::isfinite(out.costs[0].mean))
     out.walks = markov::timed_walks(c.chain, cells, c.start, field.max_gates, c.rewards,
                                     options.timed_walks, options.seed);
-  tell(kTrialGroups + 2);
+  tell(3);
 
   std::vector<double> share(gates.types().size(), 0.0);
   for (int row = 0; row < field.rows; ++row)
