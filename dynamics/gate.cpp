@@ -42,6 +42,20 @@ void settle_energy(const GateParams& p, const BodyState& start, GateRun& run) {
   run.lost = run.propulsion_work + run.random_work - (kinetic(run.exit) - kinetic(start));
 }
 
+void CostSums::add(const Costs& costs) {
+  for (std::size_t c = 0; c < kCosts; ++c) {
+    sum[c] += costs[c];
+    squares[c] += costs[c] * costs[c];
+  }
+}
+CostSums& CostSums::operator+=(const CostSums& other) {
+  for (std::size_t c = 0; c < kCosts; ++c) {
+    sum[c] += other.sum[c];
+    squares[c] += other.squares[c];
+  }
+  return *this;
+}
+
 Ending ending(const GateParams& p, const GateState& s) {
   if (!finite(s)) return Ending::broken;
   if (s.body.y > p.run.traverse_y) return Ending::traversed;

@@ -50,6 +50,14 @@ using Costs = std::array<double, kCosts>;
   return {run.seconds, run.propulsion_work, run.random_work, run.lost};
 }
 
+/// What runs took together, and the sum of the squares.
+struct CostSums {
+  Costs sum{}, squares{};
+  void add(const Costs& costs);
+  CostSums& operator+=(const CostSums& other);
+  friend bool operator==(const CostSums&, const CostSums&) = default;
+};
+
 /// How a run ends, and for one that traversed by which beam.
 enum class Outcome : std::uint8_t {
   traversed_left,   // the left beam had the larger deflection (Sec. III-B)

@@ -12,6 +12,7 @@ namespace gatewalk::dynamics {
 Transitions::Transitions(StateSpace state_space)
     : space(std::move(state_space)),
       rows(space.size()),
+      costs(space.size()),
       trials(space.size(), 0),
       clamped(space.size(), 0) {}
 
@@ -51,6 +52,7 @@ Transitions& Transitions::operator+=(const Transitions& o) {
     throw std::invalid_argument("transitions of two different state spaces cannot be added");
   for (int row = 0; row < space.size(); ++row) {
     for (const auto& [column, n] : o.rows[row]) rows[row][column] += n;
+    for (const auto& [column, sums] : o.costs[row]) costs[row][column] += sums;
     trials[row] += o.trials[row];
     clamped[row] += o.clamped[row];
   }
@@ -87,6 +89,7 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
   struct Arrival {
     int column = -1;
     bool clamped = false;
+    Costs costs{};
   };
   std::vector<std::int64_t> first_run{0};  // of each row, among all of these
   for (int row = 0; row < t.space.size(); ++row)
@@ -116,8 +119,10 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
           out.column = t.space.trapped();
         } else if (run.ending != Ending::broken) {
           const auto index = t.space.index_of(crossing_of(p, run.ending, run.exit));
-          out = {index.state, index.clamped};
+          out.column = index.state;
+          out.clamped = index.clamped;
         }
+        out.costs = costs_of(run);
         return false;
       });
 
@@ -127,6 +132,7 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
       const Arrival& out = outcomes[static_cast<std::size_t>(i)];
       if (out.column < 0) continue;
       ++t.rows[row][out.column];
+      t.costs[row][out.column].add(out.costs);
       ++t.trials[row];
       t.clamped[row] += out.clamped;
     }

@@ -17,8 +17,10 @@ struct Transitions {
 
   StateSpace space;
   std::vector<std::map<int, std::int64_t>> rows;  // (n) column -> count
-  std::vector<std::int64_t> trials;               // (n)
-  std::vector<std::int64_t> clamped;              // (n) crossings of this row outside every bin
+  /// (n) column -> what these runs took; no columns where nothing is known (older files, trees).
+  std::vector<std::map<int, CostSums>> costs;
+  std::vector<std::int64_t> trials;   // (n)
+  std::vector<std::int64_t> clamped;  // (n) crossings of this row outside every bin
   Health health;
 
   [[nodiscard]] Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor> counts() const;  // (n x n+1)

@@ -6,7 +6,6 @@
 namespace gatewalk::lattice {
 
 using dynamics::Cost;
-using dynamics::kCosts;
 
 void FieldCosts::add(const FieldTrials& trials) {
   for (std::size_t i = 0; i < trials.costs.size(); ++i) {
@@ -14,10 +13,7 @@ void FieldCosts::add(const FieldTrials& trials) {
     const auto e = static_cast<std::size_t>(*trials.endings[i]);
     Sums& s = sums_[e];
     ++s.trials;
-    for (std::size_t c = 0; c < kCosts; ++c) {
-      s.sum[c] += trials.costs[i][c];
-      s.squares[c] += trials.costs[i][c] * trials.costs[i][c];
-    }
+    s.add(trials.costs[i]);
     const double seconds = trials.costs[i][static_cast<std::size_t>(Cost::seconds)];
     ++durations_[e][std::llround(seconds / bin_)];
   }
@@ -36,10 +32,7 @@ FieldCosts::Sums FieldCosts::all() const {
   Sums all;
   for (const Sums& s : sums_) {
     all.trials += s.trials;
-    for (std::size_t c = 0; c < kCosts; ++c) {
-      all.sum[c] += s.sum[c];
-      all.squares[c] += s.squares[c];
-    }
+    all += s;
   }
   return all;
 }

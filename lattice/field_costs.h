@@ -21,9 +21,8 @@ class FieldCosts {
   void add(const FieldTrials& trials);
 
   /// Of trials with these endings.
-  struct Sums {
+  struct Sums : dynamics::CostSums {
     std::int64_t trials = 0;
-    dynamics::Costs sum{}, squares{};
     [[nodiscard]] double mean(dynamics::Cost cost) const;
     [[nodiscard]] double sd(dynamics::Cost cost) const;
   };

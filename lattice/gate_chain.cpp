@@ -163,13 +163,61 @@ StateSpace trees_in(const markov::CountsFile& in, const std::string& path) {
   return StateSpace(std::move(trees), points_in(in, path));
 }
 
+// What the runs behind each count took: tables in the order of the counts.
+constexpr const char* kCountCosts = "count_";
+std::string cost_array(const CostName& cost, bool squares, const std::string& type) {
+  return kCountCosts + std::string(cost.key) + (squares ? "_squared" : "") +
+         (type.empty() ? "" : "_of_" + type);
+}
+
+void add_costs(markov::CountsFile& out, const Transitions& t, const std::string& type) {
+  std::array<std::array<std::vector<double>, 2>, kCosts> tables;
+  for (std::size_t row = 0; row < t.rows.size(); ++row) {
+    if (t.costs[row].size() != t.rows[row].size()) return;
+    for (const auto& [column, sums] : t.costs[row])
+      for (std::size_t c = 0; c < kCosts; ++c) {
+        tables[c][0].push_back(sums.sum[c]);
+        tables[c][1].push_back(sums.squares[c]);
+      }
+  }
+  for (std::size_t c = 0; c < kCosts; ++c)
+    for (const bool squares : {false, true}) {
+      const std::string unit(kCostNames[c].unit);
+      out.arrays.push_back({cost_array(kCostNames[c], squares, type), squares ? unit + "2" : unit,
+                            std::string(squares ? "sum of squares" : "sum") + " over the runs of " +
+                                "each count: " + std::string(kCostNames[c].words),
+                            std::move(tables[c][squares])});
+    }
+}
+
+void read_costs(const markov::CountsFile& in, const std::string& type, const std::string& path,
+                Transitions& t) {
+  std::size_t counts = 0;
+  for (const auto& row : t.rows) counts += row.size();
+  for (std::size_t c = 0; c < kCosts; ++c)
+    for (const bool squares : {false, true}) {
+      const std::string name = cost_array(kCostNames[c], squares, type);
+      const std::vector<double>* const values = find_array(in, name);
+      if (!values) return;  // an older file
+      if (values->size() != counts)
+        throw markov::BadFile(path + ": " + name + " does not belong to the counts");
+      auto at = values->begin();
+      for (std::size_t row = 0; row < t.rows.size(); ++row)
+        for (const auto& [column, n] : t.rows[row]) {
+          CostSums& sums = t.costs[row][column];
+          (squares ? sums.squares : sums.sum)[c] = *at++;
+        }
+    }
+}
+
 /// Tables that do not belong to the state space.
 std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays) {
   std::erase_if(arrays, [](const markov::NamedArray& a) {
     const bool of_boundary =
         std::any_of(kBoundaryNames.begin(), kBoundaryNames.end(),
                     [&](std::string_view b) { return a.name.starts_with(std::string(b) + "_"); });
-    return of_boundary || a.name == kOpen || a.name.starts_with("point_");
+    return of_boundary || a.name == kOpen || a.name.starts_with("point_") ||
+           a.name.starts_with(kCountCosts);
   });
   return arrays;
 }
@@ -196,9 +244,13 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
   const Transitions& t = file.transitions;
   markov::CountsFile out;
   static_cast<markov::RowCounts&>(out) = row_counts(t);
-  for (const auto& [name, of_type] : file.types) out.types.emplace(name, row_counts(of_type));
+  add_costs(out, t, "");
+  for (const auto& [name, of_type] : file.types) {
+    out.types.emplace(name, row_counts(of_type));
+    add_costs(out, of_type, name);
+  }
   out.exits = exits_of(t.space);
-  out.arrays = file.arrays;
+  out.arrays.insert(out.arrays.end(), file.arrays.begin(), file.arrays.end());
   for (int b = 0; b < kBoundaries && t.space.has_trees(); ++b) add_tree(out, b, t.space.trees()[b]);
   for (int b = 0; b < kBoundaries && !t.space.has_trees(); ++b)
     for (const Axis& axis : kAxes)
@@ -249,8 +301,11 @@ MatrixFile read_matrix(const std::string& path) {
     if (in.exits != exits_of(space))
       throw markov::BadFile(path + ": exits are not those of its states");
     MatrixFile file{transitions_of(space, in), in.text, others_in(in.arrays)};
-    for (const auto& [name, of_type] : in.types)
-      file.types.emplace(name, transitions_of(space, of_type));
+    read_costs(in, "", path, file.transitions);
+    for (const auto& [name, of_type] : in.types) {
+      const auto at = file.types.emplace(name, transitions_of(space, of_type)).first;
+      read_costs(in, name, path, at->second);
+    }
     return file;
   } catch (const std::invalid_argument& e) {
     throw markov::BadFile(path + ": " + e.what());

@@ -287,13 +287,6 @@ double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldPa
          static_cast<double>(start.first_runs());
 }
 
-void CostSums::add(const Costs& costs) {
-  for (std::size_t c = 0; c < kCosts; ++c) {
-    sum[c] += costs[c];
-    squares[c] += costs[c] * costs[c];
-  }
-}
-
 std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const FieldGates& gates,
                                              const RunPool& pool, TrialGroup group) {
   const std::vector<std::size_t> images = images_of(gates);

@@ -97,17 +97,11 @@ struct Kernel {
 [[nodiscard]] Kernel kernel_of(const FieldGates& gates, const RunPool& pool,
                                int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {});
 
-/// What runs took together, and the sum of the squares.
-struct CostSums {
-  dynamics::Costs sum{}, squares{};
-  void add(const dynamics::Costs& costs);
-};
-
 /// What the runs behind each of the kernel's counts took: by type, in the order of the nonzeros.
-[[nodiscard]] std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel,
-                                                           const FieldGates& gates,
-                                                           const RunPool& pool,
-                                                           TrialGroup group = {});
+[[nodiscard]] std::vector<std::vector<dynamics::CostSums>> cost_sums(const Kernel& kernel,
+                                                                     const FieldGates& gates,
+                                                                     const RunPool& pool,
+                                                                     TrialGroup group = {});
 
 /// How often the start's own first runs of one group ended in each of the kernel's outputs (n + 1).
 /// A start in the middle of a symmetric gate has mirror images too.
@@ -116,10 +110,10 @@ struct CostSums {
                                                   const StartTrials& start, TrialGroup group = {});
 
 /// What these took (n + 1).
-[[nodiscard]] std::vector<CostSums> first_cost_sums(const FieldGates& gates,
-                                                    const dynamics::StateSpace& space,
-                                                    const StartTrials& start,
-                                                    TrialGroup group = {});
+[[nodiscard]] std::vector<dynamics::CostSums> first_cost_sums(const FieldGates& gates,
+                                                              const dynamics::StateSpace& space,
+                                                              const StartTrials& start,
+                                                              TrialGroup group = {});
 
 /// The same of trials that start anywhere: how often their first runs ended so.
 [[nodiscard]] std::vector<std::int64_t> first_row(const FieldGates& gates,

@@ -323,7 +323,9 @@ expect 2 'must be one of crossed' "$gatewalk" analyze fast.nc --target lost
 expect 2 'is of one start' "$gatewalk" analyze fast.nc --start 0,0,15 --start 1,0,15
 expect 2 'must lie between 0 and 0.5' "$gatewalk" analyze fast.nc --step 0.7
 "$gatewalk" build "$scenes/field.toml" --bins paper --trials 2 -o bins.nc --quiet
-expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc
+"$gatewalk" analyze bins.nc --runs 200 --json bins.json --quiet
+holds '.expected_seconds > 10 and .expected_seconds_95 == null and .endings.trapped.interval_95[0] > 0 and .quasi_stationary.survival_per_gate > 0' bins.json
+expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc --accuracy 0.1
 "$gatewalk" lattice "$scenes/field.toml" "${fast[@]}" --trials 500 --json lattice_costs.json --quiet
 holds '.costs.all | .trials == 500 and .mean_seconds > 0 and .quantiles_seconds["5"] < .quantiles_seconds["95"]' lattice_costs.json
 holds '([.costs | to_entries[] | select(.key != "all") | .value.trials] | add) == 500' lattice_costs.json

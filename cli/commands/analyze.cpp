@@ -2,10 +2,13 @@
 #include "cli/render/analysis.h"
 #include "cli/render/choice.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/prediction.h"
 #include "cli/render/scene.h"
+#include "lattice/study/analysis.h"
+#include "lattice/study/prediction.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
@@ -22,39 +25,89 @@ markov::Ending target_of(const Options& options) {
   throw UsageError("--target " + name + ": must be one of " + names);
 }
 
-/// What is analysed: gate runs of a scene, and how they are added to.
+/// What is analysed, and what is said of how it ends.
 struct Subject {
   lattice::Scene scene;
-  lattice::RunPool pool;
-  lattice::AccuracyOptions how;
-  std::optional<lattice::Settled> settled;
+  lattice::AnalysedChain chain;
+  lattice::EndingShares endings;
+  Json status, settled;
+  bool clean = true, reached = true;
+  std::int64_t gate_runs = 0;
+  int states = 0;
+  double seconds = 0.0;
 };
 
-Subject subject_of(const Options& options) {
+/// From gate runs, to which more are added until the error bar says enough.
+Subject from_runs(const Options& options, lattice::Scene scene, lattice::RunPool pool,
+                  const lattice::AccuracyOptions& how,
+                  const std::optional<lattice::Settled>& settled) {
+  auto prediction = lattice::predict_pooled(scene, pool, {scene.start}, how, options.work());
+  warn_of(options, prediction, how.accuracy);
+  auto chain = lattice::analysed_chain(scene, pool, lattice::entry_of(scene.start), how.per_leaf);
+  return {.scene = std::move(scene),
+          .chain = std::move(chain),
+          .endings = prediction.starts.front().endings,
+          .status = to_json(prediction.health),
+          .settled = settled ? to_json(*settled) : Json(),
+          .clean = status_of(options, prediction.health) == kFine,
+          .reached = prediction.reached,
+          .gate_runs = prediction.gate_runs,
+          .states = prediction.states,
+          .seconds = prediction.seconds};
+}
+
+/// From a matrix of bins.
+Subject from_bins(const Options& options, const lattice::SceneMatrix& m,
+                  const std::vector<lattice::PaperStart>& given) {
+  const std::string path = options.text("matrix");
+  for (const char* other : {"accuracy", "gate-runs"})
+    if (options.has(other))
+      throw UsageError(std::string("--") + other + ": " + path +
+                       " has bins and keeps no gate runs that could be added to");
+  const auto start =
+      ready_start(options, m, m.scene.start, given.empty() ? "the start" : title_of(given.front()));
+  const auto prediction = lattice::predict(lattice::field_of(m, path, {}), m.scene.field, {start},
+                                           {}, options.seed(), options.work());
+  const Json status = recorded_status(m.file);
+  return {
+      .scene = m.scene,
+      .chain = lattice::analysed_chain(m.scene, lattice::matrices_of(m.file, m.scene), start.start),
+      .endings = prediction.starts.front().shares,
+      .status = status,
+      .settled = recorded(m.file, path, "method"),
+      .clean = faults_recorded(status).empty(),
+      .states = m.file.transitions.space.size(),
+      .seconds = prediction.seconds};
+}
+
+Subject subject_of(const Options& options, const std::vector<lattice::PaperStart>& given) {
   const std::string path = options.text("matrix");
   lattice::AccuracyOptions how = accuracy_of(options);
+  const auto with_start = [&](lattice::Scene& scene) {
+    lattice::require_inside(given, scene);
+    if (!given.empty()) scene.start = lattice::entries_at(given).front();
+  };
   if (!is_matrix(path)) {
     if (options.has("scene"))
       throw UsageError(path +
-                       ": is no matrix, so it is read as a scene; a second one has no "
-                       "meaning beside it");
+                       ": is no matrix, so it is read as a scene; a second one has no meaning "
+                       "beside it");
     lattice::Scene scene = lattice::read_scene(path, options.overrides());
+    with_start(scene);
     if (scene.field.fidelity != lattice::Fidelity::active)
       throw UsageError(path + ": field.fidelity = \"" +
                        std::string(lattice::name_of(scene.field.fidelity)) +
                        "\" is not permitted for a chain: it has \"active\"");
-    auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
-    return {std::move(scene), {}, how, std::move(settled)};
+    const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+    return from_runs(options, std::move(scene), {}, how, settled);
   }
   lattice::SceneMatrix m = read_matrix(options);
-  if (!lattice::has_runs(m.file))
-    throw UsageError(path +
-                     ": has bins and keeps no gate runs; an analysis needs those of a matrix of "
-                     "trees (gatewalk build without --bins)");
+  with_start(m.scene);
+  if (!lattice::has_runs(m.file)) return from_bins(options, m, given);
   if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
   how.per_leaf = entries_per_leaf(m.file, path);
   lattice::RunPool pool = lattice::pool_of(m.file, m.scene, path);
-  return {std::move(m.scene), std::move(pool), how, {}};
+  return from_runs(options, std::move(m.scene), std::move(pool), how, {});
 }
 
 }  // namespace
@@ -69,7 +122,8 @@ int run_analyze(const Arguments& arguments) {
       "becomes of those who go on for ever, and which numbers of the scene change that most. From "
       "a scene, or from\n"
       "the gate runs that a matrix of trees keeps; runs are added until the error bar keeps "
-      "--accuracy.",
+      "--accuracy. From a matrix\n"
+      "of bins as it is, without error bars on times and works.",
       "gatewalk analyze scenes/field.toml --target left_side --json analysis.json");
   options.positional("matrix", "a scene, or a matrix file written by gatewalk build", true);
   options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
@@ -99,15 +153,9 @@ int run_analyze(const Arguments& arguments) {
     throw UsageError("--step: must lie between 0 and 0.5");
   const std::vector<lattice::PaperStart> given = given_starts(options);
   if (given.size() > 1) throw UsageError("--start: an analysis is of one start");
-  Subject s = subject_of(options);
-  lattice::require_inside(given, s.scene);
-  if (!given.empty()) s.scene.start = lattice::entries_at(given).front();
-
+  const Subject s = subject_of(options, given);
   const dynamics::Work work = options.work();
-  const auto prediction = lattice::predict_pooled(s.scene, s.pool, {s.scene.start}, s.how, work);
-  how.per_leaf = s.how.per_leaf;
-  const auto analysis =
-      lattice::analyze(s.scene, s.pool, lattice::entry_of(s.scene.start), how, work);
+  const auto analysis = lattice::analyze(s.scene, s.chain, how, work);
   std::optional<DirectTrials> direct;
   if (options.has("trials")) {
     lattice::FieldCosts costs(s.scene.gate);
@@ -115,17 +163,15 @@ int run_analyze(const Arguments& arguments) {
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }
 
-  const AnalysedField shown{s.scene, prediction, analysis, direct};
+  const AnalysedField shown{s.scene,   s.endings,   analysis, direct,
+                            s.reached, s.gate_runs, s.states, s.seconds};
   Json json = to_json(shown);
-  if (s.settled) json["method"] = to_json(*s.settled);
+  json["status"] = s.status;
+  if (!s.settled.is_null()) json["method"] = s.settled;
   json["made_by"] = to_json(options.provenance(s.scene));
-  options.give_out(json, table_of(shown) + method_line(s.settled));
-  warn_of(options, prediction, s.how.accuracy);
-  dynamics::Health health = prediction.health;
-  if (direct) health += direct->tally.health;
-  const int exit = status_of(options, health);
+  options.give_out(json, table_of(shown));
   options.draw([&] { return figure_of(shown); });
-  return exit;
+  return exit_status(options, s.clean);
 }
 
 }  // namespace gatewalk::cli

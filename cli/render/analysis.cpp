@@ -115,6 +115,7 @@ constexpr char kHeader[] =
     "            mean time/s     5 to 95 %/s   work/J of: push     noise  taken/J   J/(kg m)\n";
 
 std::string with_interval(const Mean95& m, int decimals) {
+  if (std::isnan(m.interval[0])) return fixed(m.mean, decimals);
   return fixed(m.mean, decimals) + " [" + fixed(m.interval[0], decimals) + ", " +
          fixed(m.interval[1], decimals) + "]";
 }
@@ -215,13 +216,12 @@ std::string table_of(const FieldCosts& costs, const dynamics::GateParams& p) {
 
 Json to_json(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
-  const lattice::StartAnswer& start = f.prediction.starts.front();
   const dynamics::GateParams& p = f.scene.gate;
   Json json;
   for (const EndingName& e : kEndingNames) {
     const auto at = static_cast<std::size_t>(e.ending);
-    json["endings"][e.key] = {{"probability", start.endings.share[at]},
-                              {"interval_95", interval(start.endings.interval[at])}};
+    json["endings"][e.key] = {{"probability", f.endings.share[at]},
+                              {"interval_95", interval(f.endings.interval[at])}};
   }
   json["expected_gates"] = a.gates.mean;
   json["expected_gates_95"] = interval(a.gates.interval);
@@ -299,11 +299,10 @@ Json to_json(const AnalysedField& f) {
     json["direct"]["endings"] = endings(f.direct->tally.endings);
     json["direct"]["trials"] = f.direct->tally.trials;
   }
-  json["states"] = f.prediction.states;
-  json["gate_runs"] = f.prediction.gate_runs + a.parameter_runs;
-  json["accuracy_reached"] = f.prediction.reached;
-  json["seconds"] = f.prediction.seconds + a.seconds;
-  json["status"] = to_json(f.prediction.health);
+  json["states"] = f.states;
+  json["gate_runs"] = f.gate_runs + a.parameter_runs;
+  json["accuracy_reached"] = f.reached;
+  json["seconds"] = f.seconds + a.seconds;
   return json;
 }
 
@@ -311,10 +310,13 @@ std::string table_of(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
   const lattice::FieldParams& field = f.scene.field;
   const dynamics::GateParams& p = f.scene.gate;
-  std::string table = endings_text(f.prediction.starts.front().endings,
-                                   "of all bodies, 95 % intervals that count everything") +
-                      limits_text(f.scene) + "\ngates visited  " + with_interval(a.gates, 3) +
-                      "\n\nby the chain\n" + kHeader;
+  std::string table =
+      endings_text(f.endings,
+                   std::isnan(f.analysis.gates.interval[0])
+                       ? "of all bodies; 95 % intervals that count the sampling of the matrix"
+                       : "of all bodies, 95 % intervals that count everything") +
+      limits_text(f.scene) + "\ngates visited  " + with_interval(a.gates, 3) +
+      "\n\nby the chain\n" + kHeader;
   const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
     if (!(s.share > 0.0)) return;
@@ -360,9 +362,8 @@ std::string table_of(const AnalysedField& f) {
     for (const lattice::ParameterEffect& e : sorted_effects(a))
       table += padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) + "\n";
   }
-  return table + std::to_string(f.prediction.gate_runs + a.parameter_runs) + " gate runs, " +
-         std::to_string(f.prediction.states) + " states, " +
-         fixed(f.prediction.seconds + a.seconds, 2) + " s\n";
+  return table + std::to_string(f.gate_runs + a.parameter_runs) + " gate runs, " +
+         std::to_string(f.states) + " states, " + fixed(f.seconds + a.seconds, 2) + " s\n";
 }
 
 }  // namespace gatewalk::cli

@@ -6,9 +6,9 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
+#include "lattice/ending_shares.h"
 #include "lattice/field_costs.h"
 #include "lattice/study/analysis.h"
-#include "lattice/study/pooled_prediction.h"
 
 namespace gatewalk::cli {
 
@@ -20,9 +20,13 @@ struct DirectTrials {
 
 struct AnalysedField {
   const lattice::Scene& scene;
-  const lattice::PooledPrediction& prediction;  // of the one start
+  const lattice::EndingShares& endings;
   const lattice::Analysis& analysis;
   const std::optional<DirectTrials>& direct;
+  bool reached = true;         // the accuracy asked for
+  std::int64_t gate_runs = 0;  // made for the chain
+  int states = 0;
+  double seconds = 0.0;  // of the prediction behind the endings
 };
 
 /// How far the durations of the chain's walks are from those of trials: the largest difference
@@ -54,7 +58,7 @@ struct DurationCurve {
 [[nodiscard]] std::vector<lattice::ParameterEffect> sorted_effects(
     const lattice::Analysis& analysis);
 
-/// Without "made_by".
+/// Without "status" and "made_by".
 [[nodiscard]] Json to_json(const AnalysedField& field);
 [[nodiscard]] std::string table_of(const AnalysedField& field);
 [[nodiscard]] Figure figure_of(const AnalysedField& field);

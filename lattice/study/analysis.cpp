@@ -57,6 +57,74 @@ CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates, const Fi
 
 namespace {
 
+/// Entries of the pool's runs by leaf, mirror images too.
+std::vector<std::vector<Crossing>> entries_of_leaves(const Kernel& kernel, const FieldGates& gates,
+                                                     const RunPool& pool) {
+  std::vector<std::vector<Crossing>> entries(static_cast<std::size_t>(kernel.space.size()));
+  each_entry(pool, [&](const Crossing& entry, int type) {
+    const auto put = [&](const Crossing& c) {
+      entries[static_cast<std::size_t>(kernel.space.index_of(c).state)].push_back(c);
+    };
+    put(entry);
+    if (symmetric(gates.types()[static_cast<std::size_t>(type)])) put(mirrored(entry));
+  });
+  return entries;
+}
+
+}  // namespace
+
+AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool, const Crossing& start,
+                             int per_leaf) {
+  const std::size_t own = pool.place_of(start);
+  if (own == pool.starts.size())
+    throw std::invalid_argument("analysis: the start has no runs of its own");
+  const FieldGates gates = gates_of(scene);
+  const auto chain_of_group = [&](TrialGroup group) {
+    return costed_chain(kernel_of(gates, pool, per_leaf, group), gates, scene.field, pool,
+                        pool.starts[own], group);
+  };
+  const Kernel kernel = kernel_of(gates, pool, per_leaf);
+  std::array<std::optional<CostedChain>, kTrialGroups> parts;
+  tbb::parallel_for(0, kTrialGroups, [&](int g) {
+    parts[static_cast<std::size_t>(g)] = chain_of_group({g, kTrialGroups});
+  });
+  std::vector<CostedChain> groups;
+  for (auto& part : parts) groups.push_back(std::move(*part));
+  auto entries = entries_of_leaves(kernel, gates, pool);
+  entries.push_back({start});
+  return {costed_chain(kernel, gates, scene.field, pool, pool.starts[own]), kernel.space,
+          std::move(groups), [entries = std::move(entries)](int state, Random& random) {
+            const auto& there = entries[static_cast<std::size_t>(state)];
+            return there[static_cast<std::size_t>(random.below(std::ssize(there)))];
+          }};
+}
+
+AnalysedChain analysed_chain(const Scene& scene, const std::vector<Transitions>& matrices,
+                             const markov::Start& start) {
+  markov::Rewards rewards;
+  for (const Transitions& t : matrices) {
+    std::vector<std::int64_t> counts;
+    std::vector<CostSums> sums;
+    CostSums unknown;
+    unknown.sum.fill(std::nan(""));
+    unknown.squares.fill(std::nan(""));
+    for (std::size_t row = 0; row < t.rows.size(); ++row)
+      for (const auto& [column, n] : t.rows[row]) {
+        const auto known = t.costs[row].find(column);
+        counts.push_back(n);
+        sums.push_back(known == t.costs[row].end() ? unknown : known->second);
+      }
+    rewards.push_back(rewards_of(counts, sums));
+  }
+  const StateSpace& space = matrices.front().space;
+  return {{make_chain(gates_of(scene), matrices), std::move(rewards), start},
+          space,
+          {},
+          [space](int state, Random& random) { return space.sample(state, random); }};
+}
+
+namespace {
+
 /// A random number of the analysis.
 Random drawn(std::uint64_t seed, std::uint64_t row, std::int64_t i) {
   return {Purpose::sensitivity, {seed, row, static_cast<std::uint64_t>(i)}};
@@ -138,27 +206,21 @@ double trapped_share(const markov::Chain& chain, int input) {
 /// under the same noise, and what the chain says of where they lead.
 class Parameters {
  public:
-  Parameters(const Scene& scene, const RunPool& pool, const Kernel& kernel, const Crossing& start,
-             const CostedChain& c, const markov::EndingChance& chance, const Passages& passages,
-             const AnalysisOptions& options)
+  /// `at_start`: the chance of the target there.
+  Parameters(const Scene& scene, const AnalysedChain& chain, const markov::EndingChance& chance,
+             double at_start, const Passages& passages, const AnalysisOptions& options)
       : field_(scene.field),
         gates_(gates_of(scene)),
-        kernel_(kernel),
-        c_(c),
+        space_(chain.space),
         chance_(chance),
-        options_(options) {
-    std::vector<std::vector<Crossing>> entries = entries_of_leaves(kernel, gates_, pool);
-    entries.push_back({start});
-    at_start_ = chance(1, cell_of(c.start.column, c.start.row), c.start.input);
-    visits_ = passages.sum() / at_start_;
+        options_(options),
+        visits_(passages.sum() / at_start) {
     for (std::int64_t i = 0; i < options.runs; ++i) {
       Random random = drawn(options.seed, 0, i);
       const Passages::Place place = passages.draw(random.uniform());
-      const auto& there = entries[static_cast<std::size_t>(place.input)];
       const auto column = static_cast<int>(place.cell % field_.columns),
                  row = static_cast<int>(place.cell / field_.columns);
-      const auto k = random.below(std::ssize(there));
-      samples_.push_back({place, gates_.type_of(column, row), there[static_cast<std::size_t>(k)],
+      samples_.push_back({place, gates_.type_of(column, row), chain.entry(place.input, random),
                           chance(place.draw, place.cell, place.input)});
     }
   }
@@ -197,20 +259,6 @@ class Parameters {
 
   [[nodiscard]] std::int64_t cell_of(int column, int row) const {
     return std::int64_t{row} * field_.columns + column;
-  }
-
-  static std::vector<std::vector<Crossing>> entries_of_leaves(const Kernel& kernel,
-                                                              const FieldGates& gates,
-                                                              const RunPool& pool) {
-    std::vector<std::vector<Crossing>> entries(static_cast<std::size_t>(kernel.space.size()));
-    each_entry(pool, [&](const Crossing& entry, int type) {
-      const auto put = [&](const Crossing& c) {
-        entries[static_cast<std::size_t>(kernel.space.index_of(c).state)].push_back(c);
-      };
-      put(entry);
-      if (symmetric(gates.types()[static_cast<std::size_t>(type)])) put(mirrored(entry));
-    });
-    return entries;
   }
 
   [[nodiscard]] bool allowed(const ParamInfo& info, double factor) const {
@@ -265,16 +313,15 @@ class Parameters {
     if (!field_.contains(column, row))
       return is(markov::edge_before({field_.columns, field_.rows}, column, row));
     if (place.draw == field_.max_gates) return is(markov::Ending::cut_off);
-    return chance_(place.draw + 1, cell_of(column, row), kernel_.space.index_of(crossing).state);
+    return chance_(place.draw + 1, cell_of(column, row), space_.index_of(crossing).state);
   }
 
   const FieldParams& field_;
   FieldGates gates_;
-  const Kernel& kernel_;
-  const CostedChain& c_;
+  const StateSpace& space_;
   const markov::EndingChance& chance_;
   const AnalysisOptions& options_;
-  double at_start_ = 0.0, visits_ = 0.0;
+  double visits_;  // of bodies that end in the target
   std::vector<Sample> samples_;
 };
 
@@ -286,20 +333,17 @@ bool is_physical(std::string_view key) {
 
 }  // namespace
 
-Analysis analyze(const Scene& scene, const RunPool& pool, const Crossing& start,
-                 const AnalysisOptions& options, const Work& work) {
+Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisOptions& options,
+                 const Work& work) {
   const Stopwatch watch;
-  const std::size_t own = pool.place_of(start);
-  if (own == pool.starts.size())
-    throw std::invalid_argument("analysis: the start has no runs of its own");
   const FieldGates gates = gates_of(scene);
   const FieldParams& field = scene.field;
+  const CostedChain& c = chain.chain;
+  const StateSpace& space = chain.space;
   const markov::Field cells{field.columns, field.rows};
-  const auto tell = [&](std::int64_t done) { work.tell("analysis", done, 4); };
+  const auto tell = [&](std::int64_t done) { work.tell("analysis", done, 3); };
 
   tell(0);
-  const Kernel kernel = kernel_of(gates, pool, options.per_leaf);
-  const CostedChain c = costed_chain(kernel, gates, field, pool, pool.starts[own]);
   const markov::EndingChance chance(c.chain, cells, options.target, field.max_gates);
   tell(1);
   Passages passages(c, field, chance);
@@ -318,24 +362,22 @@ Analysis analyze(const Scene& scene, const RunPool& pool, const Crossing& start,
       .paths = {},
       .passed = markov::CellProbabilities::Zero(field.rows, field.columns),
       .trapping = markov::CellProbabilities::Zero(field.rows, field.columns),
-      .state_trapping = std::vector<double>(static_cast<std::size_t>(kernel.space.size())),
-      .space = kernel.space,
+      .state_trapping = std::vector<double>(static_cast<std::size_t>(space.size())),
+      .space = space,
       .parameters = {}};
 
   // Means, and the same of eight groups of the trials.
   tell(2);
-  std::vector<markov::WalkTotals> groups(kTrialGroups);
-  tbb::parallel_for(0, kTrialGroups, [&](int g) {
-    const TrialGroup group{g, kTrialGroups};
-    const Kernel part = kernel_of(gates, pool, options.per_leaf, group);
-    const CostedChain of_group = costed_chain(part, gates, field, pool, pool.starts[own], group);
-    groups[static_cast<std::size_t>(g)] = markov::walk_totals(of_group.chain, cells, of_group.start,
-                                                              field.max_gates, of_group.rewards);
+  std::vector<markov::WalkTotals> groups(chain.groups.size());
+  tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+    const CostedChain& part = chain.groups[g];
+    groups[g] = markov::walk_totals(part.chain, cells, part.start, field.max_gates, part.rewards);
   });
   const auto mean_95 = [&](const auto& value) {
     std::vector<double> parts;
     for (const markov::WalkTotals& g : groups) parts.push_back(value(g));
-    const double whole = value(out.totals), half = half_width_95(whole, parts);
+    const double whole = value(out.totals),
+                 half = parts.empty() ? std::nan("") : half_width_95(whole, parts);
     return Mean95{whole, {whole - half, whole + half}};
   };
   out.gates = mean_95([](const markov::WalkTotals& t) { return t.visits.sum(); });
@@ -355,16 +397,16 @@ Analysis analyze(const Scene& scene, const RunPool& pool, const Crossing& start,
   try {
     out.endless = markov::quasi_stationary(c.chain, share);
     out.endless_boundaries.assign(kBoundaries, 0.0);
-    for (int state = 0; state < kernel.space.size(); ++state)
-      out.endless_boundaries[static_cast<std::size_t>(kernel.space.boundary(state))] +=
+    for (int state = 0; state < space.size(); ++state)
+      out.endless_boundaries[static_cast<std::size_t>(space.boundary(state))] +=
           out.endless->states[static_cast<std::size_t>(state)];
   } catch (const std::runtime_error&) {  // nobody comes far, or it does not settle
   }
 
   const std::int64_t first_cell = std::int64_t{c.start.row} * field.columns + c.start.column;
-  for (int state = 0; state < kernel.space.size(); ++state)
-    if (kernel.space.boundary(state) == Boundary::enter)
-      out.starts.push_back({kernel.space.cell(state), chance(1, first_cell, state)});
+  for (int state = 0; state < space.size(); ++state)
+    if (space.boundary(state) == Boundary::enter)
+      out.starts.push_back({space.cell(state), chance(1, first_cell, state)});
   out.paths =
       markov::most_frequent_paths(c.chain, cells, c.start, field.max_gates, chance, options.paths);
 
@@ -377,12 +419,12 @@ Analysis analyze(const Scene& scene, const RunPool& pool, const Crossing& start,
       if (options.target == markov::Ending::trapped || trapped >= 1.0) return;
       const double effect = part * trapped / (1.0 - trapped);
       out.trapping.data()[place.cell] += effect;
-      if (place.input < kernel.space.size())
+      if (place.input < space.size())
         out.state_trapping[static_cast<std::size_t>(place.input)] += effect;
     });
     if (options.runs > 0) {
       const Stopwatch of_parameters;
-      const Parameters parameters(scene, pool, kernel, start, c, chance, passages, options);
+      const Parameters parameters(scene, chain, chance, out.target_chance, passages, options);
       std::vector<const ParamInfo*> infos;
       for (const ParamInfo& info : gate_param_table())
         if (is_physical(info.key)) infos.push_back(&info);

@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "dynamics/random.h"
 #include "dynamics/work.h"
 #include "lattice/run_pool.h"
 #include "lattice/scene/scene.h"
@@ -19,20 +21,39 @@
 namespace gatewalk::lattice {
 
 /// A field's chain from one start, with what its draws take: the quantities are those of
-/// dynamics::kCostNames. The start's row is the last one.
+/// dynamics::kCostNames.
 struct CostedChain {
   markov::FieldChain chain;
   markov::Rewards rewards;
   markov::Start start;
 };
-/// From the runs of one group of the trials, and that group's first runs from `start`.
+/// From the runs of one group of the trials, and that group's first runs from `start`, whose row is
+/// the last one.
 [[nodiscard]] CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates,
                                        const FieldParams& field, const RunPool& pool,
                                        const StartTrials& start, TrialGroup group = {});
 
+/// What is analysed.
+struct AnalysedChain {
+  CostedChain chain;
+  dynamics::StateSpace space;  // of its states; of trees without the start, whose row follows
+  std::vector<CostedChain> groups{};  // kTrialGroups, of groups of the trials; or none
+  /// An entry into a gate that belongs to the state, drawn.
+  std::function<dynamics::Crossing(int state, dynamics::Random& random)> entry;
+};
+/// Of trees, from the pool's runs; with error bars. Throws std::invalid_argument when the pool has
+/// no runs of `start`.
+[[nodiscard]] AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool,
+                                           const dynamics::Crossing& start,
+                                           int per_leaf = dynamics::kEntriesPerLeaf);
+/// Of matrices, one for each of gates_of(scene).types(). What runs took is not a number where they
+/// do not know it.
+[[nodiscard]] AnalysedChain analysed_chain(const Scene& scene,
+                                           const std::vector<dynamics::Transitions>& matrices,
+                                           const markov::Start& start);
+
 struct AnalysisOptions {
   markov::Ending target = markov::Ending::far_edge;  // what starts, paths and influences are of
-  int per_leaf = dynamics::kEntriesPerLeaf;
   std::int64_t timed_walks = 100'000;
   std::size_t paths = 5;
   std::int64_t runs = 20'000;   // gate runs to each side of a scene parameter; 0: none
@@ -40,7 +61,8 @@ struct AnalysisOptions {
   std::uint64_t seed = 1;
 };
 
-/// A mean with its 95 % interval: sampling, and what smaller states would change.
+/// A mean with its 95 % interval: sampling, and what smaller states would change; not a number
+/// without groups.
 struct Mean95 {
   double mean = 0.0;
   std::array<double, 2> interval{};
@@ -76,17 +98,15 @@ struct Analysis {
   /// chance of the target would grow, in parts of it, were the gate's share of trapped bodies
   /// smaller by a hundredth of itself, the others going on as the rest does: times 100.
   markov::CellProbabilities passed, trapping;
-  std::vector<double> state_trapping;  // the latter by state of the kernel, in all gates together
-  dynamics::StateSpace space;          // of the kernel
+  std::vector<double> state_trapping;  // the latter by state, in all gates together
+  dynamics::StateSpace space;          // of the chain
   std::vector<ParameterEffect> parameters;
   std::int64_t parameter_runs = 0;
   double seconds = 0.0, parameter_seconds = 0.0;
 };
 
-/// The pool must hold runs of `start`. Throws std::invalid_argument otherwise, and as
-/// markov::EndingChance for fields that are too large.
-[[nodiscard]] Analysis analyze(const Scene& scene, const RunPool& pool,
-                               const dynamics::Crossing& start, const AnalysisOptions& options,
-                               const dynamics::Work& work = {});
+/// Throws std::invalid_argument as markov::EndingChance for fields that are too large.
+[[nodiscard]] Analysis analyze(const Scene& scene, const AnalysedChain& chain,
+                               const AnalysisOptions& options, const dynamics::Work& work = {});
 
 }  // namespace gatewalk::lattice

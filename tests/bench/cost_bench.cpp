@@ -4,9 +4,11 @@
 ///   size walks MATRIX N THREADS | size field MATRIX SIDE GATES
 ///                study,what,size,threads,seconds,peak_MiB,note
 ///   evaluations  evaluations of gaps and forces per trial, by method
-///   lanes N      outcomes of N trials in lanes beside those of the plain methods
-///   budget MATRIX  full dynamics to a total variation of 0.01 beside one exact prediction
+///   registers SCENES  time of a trial by `stable` in the registers of each instruction set, and
+///   plainly lanes N      outcomes of N trials in lanes beside those of the plain methods budget
+///   MATRIX  full dynamics to a total variation of 0.01 beside one exact prediction
 
+#include <hwy/targets.h>
 #include <sys/resource.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -15,9 +17,11 @@
 #include <chrono>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "lattice/scene/scene.h"
 #include "markov/markov.h"
 #include "scenes.h"
 
@@ -178,6 +182,56 @@ void lanes(std::int64_t trials) {
     }
 }
 
+/// Interleaved rounds, the least of each.
+void registers(const std::string& scenes) {
+  struct Subject {
+    std::string name;
+    GateParams p;
+    dynamics::BodyState start;
+  };
+  std::vector<Subject> subjects = {{"A", bench::by(bench::condition('A'), "stable"), {}},
+                                   {"B", bench::by(bench::condition('B'), "stable"), {}}};
+  for (const char* name : {"single_gate", "field", "soft_left", "wading", "undamped", "stiff"}) {
+    const lattice::Scene scene = lattice::read_scene(scenes + "/" + name + ".toml", {});
+    subjects.push_back({name, scene.gate, scene.start});
+  }
+  // Of what there is: all, 256 bits, none (0: one by one).
+  std::vector<std::pair<std::string, std::int64_t>> sets = {{"plain", 0}};
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
+    sets.emplace_back(hwy::TargetName(target), target);
+  constexpr int kRounds = 7;
+  constexpr std::int64_t kTrials = 4000, kPlainTrials = 1000;
+  std::vector<double> best(subjects.size() * sets.size(), std::numeric_limits<double>::infinity());
+  for (int round = 0; round < kRounds; ++round)
+    for (std::size_t i = 0; i < best.size(); ++i) {
+      const auto& [name, p, start] = subjects[i / sets.size()];
+      const std::int64_t target = sets[i % sets.size()].second;
+      double microseconds = 0.0;
+      if (target == 0) {
+        const auto method = dynamics::make_method(p);
+        microseconds =
+            1e6 / kPlainTrials * seconds([&] {
+              for (std::int64_t t = 0; t < kPlainTrials; ++t)
+                static_cast<void>(dynamics::run_gate_trial(p, *method, start, bench::kSeed, t));
+            });
+      } else {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        tbb::task_arena arena(1);
+        microseconds =
+            1e6 / kTrials * seconds([&] {
+              arena.execute([&] {
+                static_cast<void>(dynamics::run_gate_trials(p, start, bench::kSeed, {0, kTrials}));
+              });
+            });
+      }
+      best[i] = std::min(best[i], microseconds);
+    }
+  for (std::size_t i = 0; i < best.size(); ++i)
+    std::cout << subjects[i / sets.size()].name << ',' << sets[i % sets.size()].first << ','
+              << best[i] << ',' << best[i - i % sets.size()] / best[i] << '\n';
+}
+
 void budget(const std::string& matrix) {
   constexpr double kGoal = 0.01;
   const auto line = [](const char* key, double value) { std::cout << key << ',' << value << '\n'; };
@@ -239,10 +293,12 @@ int run(const std::vector<std::string>& a) {
     evaluations();
   else if (study == "lanes")
     lanes(std::stoll(a.at(1)));
+  else if (study == "registers")
+    registers(a.at(1));
   else if (study == "budget")
     budget(a.at(1));
   else
-    throw std::invalid_argument("which study? size, evaluations, lanes or budget");
+    throw std::invalid_argument("which study? size, evaluations, lanes, registers or budget");
   return 0;
 }
 

@@ -157,6 +157,16 @@ Debian's builds.
     yield from table(read_csv(f"{folder}/lanes.csv"), {
         "": "condition", "method": "method", "trials each": "trials", "random force": "noise",
         "total variation": "total_variation", "chance (mean)": "chance", "chance (95 %)": "chance_95", "p": "p"})
+    yield ("`stable` in the registers of each instruction set that this machine has: times as many trials as the plain "
+           "loop in the same rounds (best of seven).\n")
+    sets = defaultdict(dict)
+    for r in read_csv(f"{folder}/registers.csv"):
+        sets[r["scene"]]["scene"] = r["scene"]
+        sets[r["scene"]][r["registers"]] = float(r["times_plain"])
+        if r["registers"] == "plain":
+            sets[r["scene"]]["plain"] = float(r["microseconds"])
+    names = [n for n in next(iter(sets.values())) if n not in ("scene", "plain")]
+    yield from table(sets.values(), {"": "scene", "plain, us": "plain", **{n: n for n in names}})
     yield "Work: evaluations of gaps and forces per trial.\n"
     work = defaultdict(dict)
     for r in read_csv(f"{folder}/evaluations.csv"):

@@ -103,10 +103,11 @@ say "3. Cost against size"
 
 say "4. Lanes beside plain runs, evaluations, time to a total variation of 0.01"
 { echo "condition,method,trials,noise,total_variation,chance,chance_95,p"; cost lanes 100000; } >"$work/lanes.csv"
+{ echo "scene,registers,microseconds,times_plain"; cost registers "$root/scenes"; } >"$work/registers.csv"
 { echo "scene,method,step_s,trials,steps_per_trial,evaluations_per_trial"; cost evaluations; } >"$work/evaluations.csv"
 { echo "what,value"; cost budget "$work/matrix.nc"; } >"$work/budget.csv"
 
-cp "$work"/{size,lanes,evaluations,budget}.csv "$folder"
+cp "$work"/{size,lanes,registers,evaluations,budget}.csv "$folder"
 /usr/bin/python3 "$here/report.py" "$work" "$folder"
 gnuplot -c "$here/plot.gp" "$folder"
 light_or_dark "$folder/peers.svg"

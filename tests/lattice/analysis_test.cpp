@@ -208,10 +208,49 @@ TEST(Analysis, CostsComeBackFromAFile) {
   EXPECT_TRUE(std::isnan(older.starts[0].full.passages[0].costs[0]));
 }
 
+TEST(Analysis, BinsKeepWhatTheirRunsTook) {
+  const Scene scene = open_scene();
+  const StateSpace space = StateSpace::paper(scene.gate);
+  Transitions whole(space), pieces(space);
+  add_trials(whole, scene.gate, 1, {0, 60});
+  for (const TrialRange& range : {TrialRange{0, 7}, TrialRange{7, 53}})
+    add_trials(pieces, scene.gate, 1, range);
+  EXPECT_EQ(whole.costs, pieces.costs);
+  for (int row = 0; row < space.size(); ++row) {
+    ASSERT_EQ(whole.costs[row].size(), whole.rows[row].size());
+    const auto trapped = whole.rows[row].find(space.trapped());
+    if (trapped == whole.rows[row].end()) continue;
+    EXPECT_NEAR(whole.costs[row].at(space.trapped()).sum[0],
+                static_cast<double>(trapped->second) * scene.gate.run.time_limit, 1e-6);
+  }
+  const std::string path = std::filesystem::temp_directory_path() / "analysis_test.nc";
+  write_matrix(path, {whole, {}});
+  const MatrixFile back = read_matrix(path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(back.transitions.costs, whole.costs);
+  EXPECT_TRUE(back.arrays.empty());
+
+  const ChainStart start = chain_start(space, scene.field, scene.start);
+  const Analysis a = analyze(scene, analysed_chain(scene, {whole}, start.start), {.runs = 0});
+  FieldCosts costs(scene.gate);
+  FieldTrials each;
+  (void)run_field(scene.gate, scene.field, scene.start, space, 777, {0, 4000}, &each);
+  costs.add(each);
+  EXPECT_NEAR(a.costs[0].mean / costs.all().mean(Cost::seconds), 1.0, 0.25);  // the bins' own error
+  EXPECT_TRUE(std::isnan(a.costs[0].interval[0]));
+  // Without the runs' costs there is no answer, rather than a wrong one.
+  whole.costs.assign(whole.costs.size(), {});
+  const Analysis b = analyze(scene, analysed_chain(scene, {whole}, start.start), {.runs = 0});
+  EXPECT_TRUE(std::isnan(b.costs[0].mean));
+  EXPECT_TRUE(b.walks.empty());
+  EXPECT_EQ(a.target_chance, b.target_chance);
+}
+
 TEST(Analysis, AgreesWithTheFullDynamics) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 20'000);
-  const Analysis a = analyze(scene, pool, entry_of(scene.start), {.runs = 0});
+  const Analysis a =
+      analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {.runs = 0});
   FieldCosts costs(scene.gate);
   FieldTrials each;
   (void)run_field(scene.gate, scene.field, scene.start, StateSpace::paper(scene.gate), 777,
@@ -238,7 +277,8 @@ TEST(Analysis, AgreesWithTheFullDynamics) {
 TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 10'000);
-  const Analysis a = analyze(scene, pool, entry_of(scene.start), {.runs = 20'000});
+  const Analysis a =
+      analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {.runs = 20'000});
   const auto crossed = [&](const char* key, double factor) {
     Scene other = scene;
     for (const ParamInfo& info : gate_param_table())
@@ -269,7 +309,9 @@ TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
 TEST(Analysis, IsTheSameOnAnyNumberOfThreads) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 500);
-  const auto run = [&] { return analyze(scene, pool, entry_of(scene.start), {.runs = 300}); };
+  const auto run = [&] {
+    return analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {.runs = 300});
+  };
   const Analysis one = test::on_threads(1, run), three = test::on_threads(3, run);
   ASSERT_EQ(one.parameters.size(), three.parameters.size());
   for (std::size_t i = 0; i < one.parameters.size(); ++i)
@@ -281,7 +323,8 @@ TEST(Analysis, IsTheSameOnAnyNumberOfThreads) {
 TEST(Analysis, NeedsRunsOfTheStart) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 50);
-  EXPECT_THROW((void)analyze(scene, pool, {Boundary::enter, 1, 2, 3}, {}), std::invalid_argument);
+  EXPECT_THROW((void)analysed_chain(scene, pool, {Boundary::enter, 1, 2, 3}),
+               std::invalid_argument);
 }
 
 }  // namespace
