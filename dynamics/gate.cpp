@@ -38,7 +38,8 @@ void settle_energy(const GateParams& p, const BodyState& start, GateRun& run) {
   const auto kinetic = [&](const BodyState& b) {
     return 0.5 * p.body.mass * (b.vx * b.vx + b.vy * b.vy);
   };
-  run.propulsion_work = p.forces.propulsion * (run.exit.y - start.y);
+  run.forward = run.exit.y - start.y;
+  run.propulsion_work = p.forces.propulsion * run.forward;
   run.lost = run.propulsion_work + run.random_work - (kinetic(run.exit) - kinetic(start));
 }
 

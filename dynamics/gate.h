@@ -19,6 +19,7 @@ struct GateRun {
   Ending ending = Ending::broken;
   BodyState exit;                                   // state at the end, in this gate's frame
   double seconds = 0.0;                             // simulated time
+  double forward = 0.0;                             // m, from its start
   double propulsion_work = 0.0, random_work = 0.0;  // J, of the two forces
   double lost = 0.0;  // J: their work, less what the body has gained: to hits, dampers and drag,
                       // and what is left in the beams
@@ -27,11 +28,11 @@ struct GateRun {
   Watch watch;  // largest deflections, faults, work done
 };
 
-/// Fills in propulsion_work and lost, from where the run began, its exit and random_work.
+/// Fills in forward, propulsion_work and lost, from where the run began, its exit and random_work.
 void settle_energy(const GateParams& p, const BodyState& start, GateRun& run);
 
 /// What a run takes.
-enum class Cost : std::uint8_t { seconds, propulsion_work, random_work, lost };
+enum class Cost : std::uint8_t { seconds, forward, propulsion_work, random_work, lost };
 /// Its name in files, with the unit, and in words.
 struct CostName {
   std::string_view key, unit, words;
@@ -39,15 +40,16 @@ struct CostName {
 /// All of them, in the order of Cost.
 inline constexpr std::array kCostNames{
     CostName{"seconds", "s", "duration"},
-    CostName{"propulsion_work_J", "J", "work of the propulsion"},
+    CostName{"forward_m", "m", "way forward"},
+    CostName{"work_J", "J", "work of the propulsion"},
     CostName{"random_work_J", "J", "work of the random force"},
-    CostName{"lost_J", "J", "energy that the gate took from the body"},
+    CostName{"lost_J", "J", "energy lost: to hits, dampers and drag, and left in the beams"},
 };
 inline constexpr std::size_t kCosts = kCostNames.size();
 /// By Cost.
 using Costs = std::array<double, kCosts>;
 [[nodiscard]] inline Costs costs_of(const GateRun& run) {
-  return {run.seconds, run.propulsion_work, run.random_work, run.lost};
+  return {run.seconds, run.forward, run.propulsion_work, run.random_work, run.lost};
 }
 
 /// What runs took together, and the sum of the squares.

@@ -192,21 +192,28 @@ void add_costs(markov::CountsFile& out, const Transitions& t, const std::string&
 
 void read_costs(const markov::CountsFile& in, const std::string& type, const std::string& path,
                 Transitions& t) {
-  std::size_t counts = 0;
+  std::array<std::array<const std::vector<double>*, 2>, kCosts> tables;
+  std::size_t counts = 0, missing = 0;
   for (const auto& row : t.rows) counts += row.size();
   for (std::size_t c = 0; c < kCosts; ++c)
     for (const bool squares : {false, true}) {
       const std::string name = cost_array(kCostNames[c], squares, type);
-      const std::vector<double>* const values = find_array(in, name);
-      if (!values) return;  // an older file
-      if (values->size() != counts)
+      const auto* const table = tables[c][squares] = find_array(in, name);
+      missing += table == nullptr;
+      if (table != nullptr && table->size() != counts)
         throw markov::BadFile(path + ": " + name + " does not belong to the counts");
-      auto at = values->begin();
-      for (std::size_t row = 0; row < t.rows.size(); ++row)
-        for (const auto& [column, n] : t.rows[row]) {
-          CostSums& sums = t.costs[row][column];
-          (squares ? sums.squares : sums.sum)[c] = *at++;
-        }
+    }
+  if (missing == 2 * kCosts) return;  // an older file
+  if (missing > 0) throw markov::BadFile(path + ": some tables of what runs took are missing");
+  std::size_t at = 0;
+  for (std::size_t row = 0; row < t.rows.size(); ++row)
+    for (const auto& [column, n] : t.rows[row]) {
+      CostSums& sums = t.costs[row][column];
+      for (std::size_t c = 0; c < kCosts; ++c) {
+        sums.sum[c] = (*tables[c][0])[at];
+        sums.squares[c] = (*tables[c][1])[at];
+      }
+      ++at;
     }
 }
 

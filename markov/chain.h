@@ -7,6 +7,7 @@
 #include <Eigen/SparseCore>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -124,6 +125,21 @@ inline constexpr std::array<Ending, 4> kEdges{Ending::far_edge, Ending::left_edg
   if (row >= field.rows) return Ending::far_edge;
   if (row < 0) return Ending::near_edge;
   return column < 0 ? Ending::left_edge : Ending::right_edge;
+}
+
+/// What becomes of a walk that has drawn `exit` in cell (column, row): its ending, or none, and the
+/// cell becomes the next one. With its last draw it is cut off where it would go on.
+[[nodiscard]] constexpr std::optional<Ending> follow(const Field& field, const Exit& exit,
+                                                     bool last_draw, std::int64_t& column,
+                                                     std::int64_t& row) {
+  if (exit.next_input == Exit::kTrapped) return Ending::trapped;
+  const std::int64_t to_column = column + exit.di_x, to_row = row + exit.di_y;
+  if (to_column < 0 || to_column >= field.columns || to_row < 0 || to_row >= field.rows)
+    return edge_before(field, to_column, to_row);
+  if (last_draw) return Ending::cut_off;
+  column = to_column;
+  row = to_row;
+  return {};
 }
 
 /// Where a walk begins: cell (column, row), both from 0, and the input state there.

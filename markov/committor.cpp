@@ -183,18 +183,11 @@ EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending e
         double sum = !here.is_sampled(input) && ending == Ending::unsampled ? 1.0 : 0.0;
         for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
           const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
-          const std::int64_t to_column = column + exit.di_x, to_row = row + exit.di_y;
-          const bool inside =
-              to_column >= 0 && to_column < field.columns && to_row >= 0 && to_row < field.rows;
-          double value;
-          if (exit.next_input == Exit::kTrapped)
-            value = ending == Ending::trapped ? 1.0 : 0.0;
-          else if (!inside)
-            value = edge_before(field, to_column, to_row) == ending ? 1.0 : 0.0;
-          else if (layer + 1 == layers_)
-            value = ending == Ending::cut_off ? 1.0 : 0.0;
-          else
-            value = next[(to_row * field.columns + to_column) * inputs_ + exit.next_input];
+          std::int64_t to_column = column, to_row = row;
+          const auto ends = follow(field, exit, layer + 1 == layers_, to_column, to_row);
+          const double value =
+              ends ? (*ends == ending ? 1.0 : 0.0)
+                   : next[(to_row * field.columns + to_column) * inputs_ + exit.next_input];
           sum += it.value() * value;
         }
         out[input] = sum;

@@ -34,11 +34,11 @@ class EndingChance {
   /// throws std::invalid_argument above 4 GiB. On all threads of the current TBB arena.
   EndingChance(const FieldChain& chain, const Field& field, Ending ending, int max_cells);
 
-  /// From a cell (row * columns + column) in which the walk is to make its `draw`-th draw, from 1;
-  /// 0 behind the last one. Without limit any number will do.
+  /// From a cell (row * columns + column) in which the walk is to make its `draw`-th draw, counted
+  /// from 1; behind the last one it is cut off. Without limit the number says nothing.
   [[nodiscard]] double operator()(int draw, std::int64_t cell, std::int64_t input) const {
     const std::int64_t layer = max_cells_ == 0 ? 0 : draw - 1;
-    if (layer >= layers_) return 0.0;
+    if (layer >= layers_) return ending_ == Ending::cut_off ? 1.0 : 0.0;
     return values_[static_cast<std::size_t>((layer * cells_ + cell) * inputs_ + input)];
   }
   [[nodiscard]] Ending ending() const { return ending_; }

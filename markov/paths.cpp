@@ -18,21 +18,24 @@ struct Beginning {
 
 }  // namespace
 
-std::vector<CellPath> most_frequent_paths(const FieldChain& chain, const Field& field,
-                                          const Start& start, int max_cells,
-                                          const EndingChance& chance, std::size_t count,
-                                          std::size_t most_steps) {
+FrequentPaths most_frequent_paths(const FieldChain& chain, const Field& field, const Start& start,
+                                  int max_cells, const EndingChance& chance, std::size_t count,
+                                  std::size_t most_steps) {
   validate(chain, field, start, max_cells);
   const std::int64_t first = std::int64_t{start.row} * field.columns + start.column;
   std::priority_queue<Beginning> open;
   open.push({chance(1, first, start.input), {first}, {{start.input, 1.0}}});
-  std::vector<CellPath> paths;
-  for (std::size_t step = 0; step < most_steps && !open.empty() && paths.size() < count; ++step) {
+  FrequentPaths found;
+  for (std::size_t step = 0; !open.empty() && found.paths.size() < count; ++step) {
+    if (step == most_steps) {
+      found.gave_up = true;
+      break;
+    }
     const Beginning b = open.top();
     open.pop();
     if (!(b.at_most > 0.0)) break;
     if (b.states.empty()) {
-      paths.push_back({b.cells, b.at_most});
+      found.paths.push_back({b.cells, b.at_most});
       continue;
     }
     const std::int64_t cell = b.cells.back(), column = cell % field.columns,
@@ -45,16 +48,10 @@ std::vector<CellPath> most_frequent_paths(const FieldChain& chain, const Field& 
       if (!here.is_sampled(input) && chance.ending() == Ending::unsampled) ends += share;
       for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
         const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
-        const std::int64_t to_column = column + exit.di_x, to_row = row + exit.di_y;
+        std::int64_t to_column = column, to_row = row;
         const double p = share * it.value();
-        const bool inside =
-            to_column >= 0 && to_column < field.columns && to_row >= 0 && to_row < field.rows;
-        if (exit.next_input == Exit::kTrapped)
-          ends += chance.ending() == Ending::trapped ? p : 0.0;
-        else if (!inside)
-          ends += edge_before(field, to_column, to_row) == chance.ending() ? p : 0.0;
-        else if (draw == max_cells)
-          ends += chance.ending() == Ending::cut_off ? p : 0.0;
+        if (const auto ending = follow(field, exit, draw == max_cells, to_column, to_row))
+          ends += *ending == chance.ending() ? p : 0.0;
         else
           onward[to_row * field.columns + to_column][exit.next_input] += p;
       }
@@ -68,7 +65,7 @@ std::vector<CellPath> most_frequent_paths(const FieldChain& chain, const Field& 
       if (next.at_most > 0.0) open.push(std::move(next));
     }
   }
-  return paths;
+  return found;
 }
 
 }  // namespace gatewalk::markov

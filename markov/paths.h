@@ -15,15 +15,18 @@ struct CellPath {
   double share = 0.0;
 };
 
+struct FrequentPaths {
+  std::vector<CellPath> paths;  // the most frequent first
+  bool gave_up = false;         // the search took too long: there are more
+};
+
 /// The most frequent paths with the ending of `chance`, which is that of the same chain, field and
-/// limit; the most frequent first. Best first search: what is known of a path is its beginning with
+/// limit. Best first search: what is known of a path is its beginning with
 /// the share of the walks that pass it, and no way on from there has more than the share that ends
-/// so at all. Fewer than `count` when there are no more, or when `most_steps` beginnings have been
-/// looked at.
-[[nodiscard]] std::vector<CellPath> most_frequent_paths(const FieldChain& chain, const Field& field,
-                                                        const Start& start, int max_cells,
-                                                        const EndingChance& chance,
-                                                        std::size_t count,
-                                                        std::size_t most_steps = 20'000);
+/// so at all. It gives up when `most_steps` beginnings have been looked at.
+[[nodiscard]] FrequentPaths most_frequent_paths(const FieldChain& chain, const Field& field,
+                                                const Start& start, int max_cells,
+                                                const EndingChance& chance, std::size_t count,
+                                                std::size_t most_steps = 20'000);
 
 }  // namespace gatewalk::markov

@@ -65,7 +65,9 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
   if (!(first > 0.0)) throw std::runtime_error("quasi-stationary: nobody gets into a second cell");
   // The first vector alone, from positive numbers: nothing is subtracted.
   Eigen::VectorXd states = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0;; ++iteration) {
+    if (iteration == kMostIterations)
+      throw std::runtime_error("quasi-stationary: does not settle, the spectral gap is too small");
     Eigen::VectorXd next = kernel * states;
     next /= next.sum();
     const double change = (next - states).cwiseAbs().sum();

@@ -64,7 +64,6 @@ class Wave {
   std::vector<bool> reached_;
 };
 
-constexpr double kTolerance = 1e-12;
 constexpr int kMostSteps = 100'000;
 
 }  // namespace
@@ -82,7 +81,8 @@ Moments WalkTotals::all(const std::array<Moments, kEndings>& by_ending) {
 }
 
 WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start& start,
-                       int max_cells, const Rewards& rewards, const EachState& each) {
+                       int max_cells, const Rewards& rewards, const EachState& each,
+                       double tolerance) {
   validate(chain, field, start, max_cells);
   const std::size_t quantities = quantities_of(chain, rewards);
   const std::int64_t cells = std::int64_t{field.columns} * field.rows;
@@ -136,15 +136,9 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
                 p * (square + 2.0 * sum * r.mean[nonzero] + from[0] * r.square[nonzero]);
           }
           const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
-          const std::int64_t to_column = column + exit.di_x, to_row = row + exit.di_y;
-          const bool inside =
-              to_column >= 0 && to_column < field.columns && to_row >= 0 && to_row < field.rows;
-          if (exit.next_input == Exit::kTrapped) {
-            end(Ending::trapped, moved.data(), draw);
-          } else if (!inside) {
-            end(edge_before(field, to_column, to_row), moved.data(), draw);
-          } else if (draw == max_cells) {
-            end(Ending::cut_off, moved.data(), draw);
+          std::int64_t to_column = column, to_row = row;
+          if (const auto ending = follow(field, exit, draw == max_cells, to_column, to_row)) {
+            end(*ending, moved.data(), draw);
           } else {
             walking += moved[0];
             double* const to = next.reach(to_row * field.columns + to_column, exit.next_input);
@@ -156,7 +150,7 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
     now.clear();
     std::swap(now, next);
     out.remainder = max_cells == 0 || draw < max_cells ? walking : 0.0;
-    if (walking == 0.0 || (max_cells == 0 && walking <= kTolerance)) break;
+    if (walking == 0.0 || (max_cells == 0 && walking <= tolerance)) break;
   }
   return out;
 }
@@ -214,15 +208,8 @@ std::vector<TimedWalk> timed_walks(const FieldChain& chain, const Field& field, 
       const Reward& r = rewards[type].front();
       walk.total += gamma_quantile(r.mean[nonzero], r.square[nonzero], uniform(words[1]));
       const Exit& exit = here.exits()[static_cast<std::size_t>(output)];
-      if (exit.next_input == Exit::kTrapped) return;
-      column += exit.di_x;
-      row += exit.di_y;
-      if (column < 0 || column >= field.columns || row < 0 || row >= field.rows) {
-        walk.ending = edge_before(field, column, row);
-        return;
-      }
-      if (draw == most) {
-        walk.ending = Ending::cut_off;
+      if (const auto ending = follow(field, exit, draw == most, column, row)) {
+        walk.ending = *ending;
         return;
       }
       input = exit.next_input;

@@ -38,7 +38,7 @@ struct WalkTotals {
   std::array<Moments, kEndings> draws{};  // how many, by ending
   std::vector<std::array<Moments, kEndings>> totals{};  // by quantity and ending
 
-  /// Of all walks, and of those that leave the field.
+  /// Of all walks together.
   [[nodiscard]] static Moments all(const std::array<Moments, kEndings>& by_ending);
 };
 
@@ -47,12 +47,12 @@ struct WalkTotals {
 using EachState = std::function<void(int draw, std::int64_t cell, int input, double share)>;
 
 /// First and second moments, exact: propagated step by step with the shares of the walks, as
-/// markov::propagate does with these. Without limit of cells until no more than 1e-12 of the walks
-/// are on their way, or 10^5 steps are done (`remainder`). Throws std::invalid_argument when
-/// rewards do not belong to the chain, and as validate().
+/// markov::propagate does with these. Without limit of cells until no more than `tolerance` of
+/// the walks are on their way, or 10^5 steps are done (`remainder`). Throws std::invalid_argument
+/// when rewards do not belong to the chain, and as validate().
 [[nodiscard]] WalkTotals walk_totals(const FieldChain& chain, const Field& field,
                                      const Start& start, int max_cells, const Rewards& rewards = {},
-                                     const EachState& each = {});
+                                     const EachState& each = {}, double tolerance = 1e-12);
 
 /// How a walk ended, and its total of the first quantity.
 struct TimedWalk {

@@ -306,10 +306,10 @@ fast=(--set run.method=moreau --set field.rows=4 --set forces.propulsion_N=8.5)
 holds '.endings.crossed.interval_95[0] < .endings.crossed.probability and .endings.trapped.probability > 0.3' analysis.json
 holds '([.expected_visits[][]] | add) as $visits | .expected_gates - $visits | fabs < 1e-9' analysis.json
 holds '(.expected_visits | length) == 4 and (.expected_visits[0] | length) == 9' analysis.json
-holds '(.expected_seconds / .direct.all.mean_seconds - 1 | fabs) < 0.06 and (.expected_work_J / .direct.all.mean_propulsion_work_J - 1 | fabs) < 0.08' analysis.json
+holds '(.expected_seconds / .direct.costs.all.mean_seconds - 1 | fabs) < 0.06 and (.expected_work_J / .direct.costs.all.mean_work_J - 1 | fabs) < 0.08' analysis.json
 holds '.by_ending.all.kolmogorov_distance < 0.08 and .by_ending.crossed.mean_seconds > 0' analysis.json
 holds '.quasi_stationary | .survival_per_gate < 1 and .spectral_gap > 0 and ((.states | add) - 1 | fabs) < 1e-9' analysis.json
-holds '(.sensitivities.parameters | length) >= 12 and (.sensitivities.less_trapping | length) == 4' analysis.json
+holds '(.sensitivities.parameters | length) >= 14 and .sensitivities.gate_runs > 8000 and .paths_complete and (.sensitivities.less_trapping | length) == 4' analysis.json
 holds '(.paths | length) == 5 and .paths[0].probability > .paths[4].probability and .paths[0].gates[0] == {"i_x": 0, "i_y": 0}' analysis.json
 "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 -o fast.nc --quiet
 "$gatewalk" analyze fast.nc --runs 0 --json from_file.json --quiet
@@ -321,6 +321,8 @@ holds '.gate_runs == 0 and .sensitivities.parameters == []' from_file.json
   fail "analyze: another number of threads gave another answer"
 expect 2 'must be one of crossed' "$gatewalk" analyze fast.nc --target lost
 expect 2 'is of one start' "$gatewalk" analyze fast.nc --start 0,0,15 --start 1,0,15
+expect 2 'must be 0, or 100 or more' "$gatewalk" analyze fast.nc --runs 1
+expect 0 'nobody ends so' "$gatewalk" analyze fast.nc --set field.max_gates=0 --target cut_off --runs 100
 expect 2 'must lie between 0 and 0.5' "$gatewalk" analyze fast.nc --step 0.7
 "$gatewalk" build "$scenes/field.toml" --bins paper --trials 2 -o bins.nc --quiet
 "$gatewalk" analyze bins.nc --runs 200 --json bins.json --quiet

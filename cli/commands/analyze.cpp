@@ -31,7 +31,7 @@ struct Subject {
   lattice::AnalysedChain chain;
   lattice::EndingShares endings;
   Json status, settled;
-  bool clean = true, reached = true;
+  bool clean = true, from_trials = false, reached = true;
   std::int64_t gate_runs = 0;
   int states = 0;
   double seconds = 0.0;
@@ -50,6 +50,7 @@ Subject from_runs(const Options& options, lattice::Scene scene, lattice::RunPool
           .status = to_json(prediction.health),
           .settled = settled ? to_json(*settled) : Json(),
           .clean = status_of(options, prediction.health) == kFine,
+          .from_trials = prediction.starts.front().from_trials,
           .reached = prediction.reached,
           .gate_runs = prediction.gate_runs,
           .states = prediction.states,
@@ -128,7 +129,7 @@ int run_analyze(const Arguments& arguments) {
   options.positional("matrix", "a scene, or a matrix file written by gatewalk build", true);
   options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
   add_accuracy(options, "0.02; that of a matrix");
-  add_starts(options, "the scene's start; one at most");
+  options.add_texts("start", "D,VX,VY", "where a body starts (default: the scene's start)");
   options.add_text("target", "ENDING",
                    "what starts, paths and influences are of: crossed, left_side, right_side, "
                    "trapped or cut_off",
@@ -149,6 +150,7 @@ int run_analyze(const Arguments& arguments) {
                                .runs = options.count("runs", 0, 10'000'000),
                                .relative_step = options.has("step") ? options.number("step") : 0.05,
                                .seed = options.seed()};
+  if (how.runs > 0 && how.runs < 100) throw UsageError("--runs: must be 0, or 100 or more");
   if (!(how.relative_step > 0.0 && how.relative_step < 0.5))
     throw UsageError("--step: must lie between 0 and 0.5");
   const std::vector<lattice::PaperStart> given = given_starts(options);
@@ -163,15 +165,19 @@ int run_analyze(const Arguments& arguments) {
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }
 
-  const AnalysedField shown{s.scene,   s.endings,   analysis, direct,
+  const AnalysedField shown{s.scene,   s.endings,   analysis, direct,   s.from_trials,
                             s.reached, s.gate_runs, s.states, s.seconds};
   Json json = to_json(shown);
   json["status"] = s.status;
+  json["sensitivities"]["status"] = to_json(analysis.parameter_health);
   if (!s.settled.is_null()) json["method"] = s.settled;
   json["made_by"] = to_json(options.provenance(s.scene));
   options.give_out(json, table_of(shown));
+  dynamics::Health rest = analysis.parameter_health;
+  if (direct) rest += direct->tally.health;
+  const bool clean = status_of(options, rest) == kFine;
   options.draw([&] { return figure_of(shown); });
-  return exit_status(options, s.clean);
+  return exit_status(options, s.clean && clean);
 }
 
 }  // namespace gatewalk::cli

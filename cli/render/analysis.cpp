@@ -18,16 +18,16 @@ using dynamics::kCosts;
 using lattice::FieldCosts;
 using lattice::Mean95;
 
+constexpr std::int64_t kFew = 50;  // walks or trials
 constexpr double kLevels[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
 Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 Json interval(const std::array<double, 2>& i) { return std::isfinite(i[0]) ? Json(i) : Json(); }
 
 /// Work of both forces per mass and way forward: J / (kg m).
-double cost_of_transport(const dynamics::GateParams& p, double propulsion_work,
+double cost_of_transport(const dynamics::GateParams& p, double forward, double work,
                          double random_work) {
-  const double way = propulsion_work / p.forces.propulsion;
-  return way > 0.0 ? (propulsion_work + random_work) / (p.body.mass * way) : std::nan("");
+  return forward > 0.0 ? (work + random_work) / (p.body.mass * forward) : std::nan("");
 }
 
 /// Durations of walks with these endings, ascending; none where they are too few to say much.
@@ -35,8 +35,7 @@ std::vector<double> durations_of(const lattice::Analysis& a, std::optional<marko
   std::vector<double> out;
   for (const markov::TimedWalk& w : a.walks)
     if (!ending || w.ending == *ending) out.push_back(w.total);
-  constexpr std::size_t kFew = 50;
-  if (out.size() < kFew) out.clear();
+  if (std::ssize(out) < kFew) out.clear();
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -58,6 +57,10 @@ struct Spent {
   double share = 0.0;
   std::array<double, kCosts> mean{}, sd{};
   [[nodiscard]] double of(Cost c) const { return mean[static_cast<std::size_t>(c)]; }
+  [[nodiscard]] double cost_of_transport(const dynamics::GateParams& p) const {
+    return cli::cost_of_transport(p, of(Cost::forward), of(Cost::propulsion_work),
+                                  of(Cost::random_work));
+  }
 };
 
 Spent spent(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
@@ -93,8 +96,7 @@ Json to_json(const Spent& s, const dynamics::GateParams& p,
     json["sd_" + key] = or_null(s.sd[c]);
   }
   json["quantiles_seconds"] = quantiles_json(quantile);
-  json["cost_of_transport_J_per_kg_m"] =
-      or_null(cost_of_transport(p, s.of(Cost::propulsion_work), s.of(Cost::random_work)));
+  json["cost_of_transport_J_per_kg_m"] = or_null(s.cost_of_transport(p));
   return json;
 }
 
@@ -108,11 +110,10 @@ std::string line_of(const std::string& name, const Spent& s, const dynamics::Gat
   return padded(name, -11) + number(s.of(Cost::seconds)) +
          padded(std::isfinite(low) ? fixed(low, 2) + " to " + fixed(high, 2) : "-", 18) +
          number(s.of(Cost::propulsion_work)) + number(s.of(Cost::random_work)) +
-         number(s.of(Cost::lost)) +
-         number(cost_of_transport(p, s.of(Cost::propulsion_work), s.of(Cost::random_work))) + "\n";
+         number(s.of(Cost::lost)) + number(s.cost_of_transport(p)) + "\n";
 }
 constexpr char kHeader[] =
-    "            mean time/s     5 to 95 %/s   work/J of: push     noise  taken/J   J/(kg m)\n";
+    "            mean time/s     5 to 95 %/s   work/J of: push     noise   lost/J   J/(kg m)\n";
 
 std::string with_interval(const Mean95& m, int decimals) {
   if (std::isnan(m.interval[0])) return fixed(m.mean, decimals);
@@ -172,15 +173,23 @@ KolmogorovDistance duration_distance(const lattice::Analysis& a, const FieldCost
                                      std::optional<markov::Ending> ending) {
   const std::vector<double> walks = durations_of(a, ending);
   const auto steps = ending ? costs.durations(*ending) : costs.durations();
-  if (walks.empty() || steps.empty()) return {std::nan(""), std::nan("")};
-  // Trials are known to a bin, by its middle: walks are counted to the same.
+  if (walks.empty() || steps.empty() || steps.back().trials < kFew)
+    return {std::nan(""), std::nan("")};
+  // Trials are known to a bin, by its middle: walks are counted to the same. Between two bins the
+  // trials' function stays, and the walks' grows.
   const double half = 0.5 * costs.bin();
   const auto n = static_cast<double>(steps.back().trials), m = static_cast<double>(walks.size());
-  double distance = 0.0;
+  const auto walks_until = [&](double seconds) {
+    return static_cast<double>(std::upper_bound(walks.begin(), walks.end(), seconds) -
+                               walks.begin()) /
+           m;
+  };
+  double distance = 0.0, before = 0.0;
   for (const FieldCosts::Step& s : steps) {
-    const auto below = std::upper_bound(walks.begin(), walks.end(), s.seconds + half);
-    distance = std::max(distance, std::abs(static_cast<double>(s.trials) / n -
-                                           static_cast<double>(below - walks.begin()) / m));
+    const double trials = static_cast<double>(s.trials) / n;
+    distance = std::max({distance, std::abs(before - walks_until(s.seconds - half)),
+                         std::abs(trials - walks_until(s.seconds + half))});
+    before = trials;
   }
   constexpr double kSmirnov95 = 1.358;  // of the distance times sqrt(n m / (n + m))
   return {distance, kSmirnov95 * std::sqrt(1.0 / n + 1.0 / m)};
@@ -234,9 +243,7 @@ Json to_json(const AnalysedField& f) {
   expected("work_J", Cost::propulsion_work);
   expected("random_work_J", Cost::random_work);
   expected("lost_J", Cost::lost);
-  json["cost_of_transport_J_per_kg_m"] =
-      or_null(cost_of_transport(p, a.costs[static_cast<std::size_t>(Cost::propulsion_work)].mean,
-                                a.costs[static_cast<std::size_t>(Cost::random_work)].mean));
+  json["cost_of_transport_J_per_kg_m"] = or_null(spent(a, {}).cost_of_transport(p));
   json["expected_visits"] = grid(a.totals.visits);
   json["still_walking"] = a.totals.remainder;
   const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
@@ -254,53 +261,62 @@ Json to_json(const AnalysedField& f) {
   for (const EndingName& e : kEndingNames) add(e.key, e.ending);
 
   json["quasi_stationary"] = Json();
+  if (!a.endless) json["why_not_quasi_stationary"] = a.why_not_endless;
   if (a.endless) {
     Json& q = json["quasi_stationary"] = Json::object();
     q["survival_per_gate"] = a.endless->survival;
     q["second_eigenvalue"] = a.endless->second;
     q["spectral_gap"] = a.endless->spectral_gap();
+    q["kept_per_gate"] = a.endless->second / a.endless->survival;
     q["rows_per_gate"] = a.endless->rows_per_cell;
     for (std::size_t b = 0; b < a.endless_boundaries.size(); ++b)
       q["boundaries"][std::string(dynamics::kBoundaryNames[b])] = a.endless_boundaries[b];
     q["states"] = a.endless->states;
   }
+  json["answer_from"] = f.from_trials ? "trials" : "chain";
   json["target"] = key_of(a.target);
   json["target_probability"] = a.target_chance;
+  json["starts"] = Json::array();
   for (const lattice::StartChance& s : a.starts)
     json["starts"].push_back({{"d_m", s.cell.d},
                               {"vx_m_per_s", s.cell.vx},
                               {"vy_m_per_s", s.cell.vy},
-                              {"probability", s.chance}});
+                              {"probability", or_null(s.chance)}});
   json["paths"] = Json::array();
-  for (const markov::CellPath& path : a.paths) {
+  for (const markov::CellPath& path : a.paths.paths) {
     Json gates = Json::array();
     for (const std::int64_t cell : path.cells) gates.push_back(gate_json(cell, f.scene.field));
     json["paths"].push_back({{"probability", path.share}, {"gates", std::move(gates)}});
   }
+  json["paths_complete"] = !a.paths.gave_up;
   Json& s = json["sensitivities"] = Json::object();
   s["of"] = key_of(a.target);
   s["passed_gates"] = grid(a.passed);
-  s["less_trapping"] = grid(a.trapping);
-  s["less_trapping_by_state"] = a.state_trapping;
+  s["less_trapping"] = a.trapping.size() > 0 ? grid(a.trapping) : Json();
+  s["less_trapping_by_state"] = a.state_trapping.empty() ? Json() : Json(a.state_trapping);
   s["parameters"] = Json::array();
-  for (const lattice::ParameterEffect& e : sorted_effects(a))
-    s["parameters"].push_back(
-        {{"key", e.key},
-         {"value", e.value},
-         {"elasticity", e.elasticity.mean},
-         {"interval_95", e.elasticity.interval},
-         {"derivative", e.elasticity.mean * a.target_chance / e.value},
-         {"derivative_95", Json::array({e.elasticity.interval[0] * a.target_chance / e.value,
-                                        e.elasticity.interval[1] * a.target_chance / e.value})}});
-  s["gate_runs"] = a.parameter_runs;
+  for (const lattice::ParameterEffect& e : sorted_effects(a)) {
+    const double unit = a.target_chance / e.value;
+    s["parameters"].push_back({{"key", e.key},
+                               {"value", or_null(e.value)},
+                               {"elasticity", e.elasticity.mean},
+                               {"interval_95", interval(e.elasticity.interval)},
+                               {"with_more", or_null(e.more)},
+                               {"with_less", or_null(e.less)},
+                               {"bends", e.bends},
+                               {"derivative", or_null(e.elasticity.mean * unit)},
+                               {"derivative_95", interval({e.elasticity.interval[0] * unit,
+                                                           e.elasticity.interval[1] * unit})}});
+  }
+  s["gate_runs"] = a.parameter_health.runs;
   s["seconds"] = a.parameter_seconds;
   if (f.direct) {
-    json["direct"] = to_json(f.direct->costs, p);
-    json["direct"]["endings"] = endings(f.direct->tally.endings);
-    json["direct"]["trials"] = f.direct->tally.trials;
+    json["direct"] = {{"trials", f.direct->tally.trials},
+                      {"endings", endings(f.direct->tally.endings)},
+                      {"costs", to_json(f.direct->costs, p)}};
   }
   json["states"] = f.states;
-  json["gate_runs"] = f.gate_runs + a.parameter_runs;
+  json["gate_runs"] = f.gate_runs + a.parameter_health.runs;
   json["accuracy_reached"] = f.reached;
   json["seconds"] = f.seconds + a.seconds;
   return json;
@@ -335,17 +351,22 @@ std::string table_of(const AnalysedField& f) {
              " (chance: " + fixed(d.chance_95, 4) + ", 95 %)\n";
   }
   table +=
-      "work: of the propulsion and of the random force; taken: by the gates, from the body\n\n" +
-      map_of(a.totals.visits, "visits of each gate");
+      "work: of the propulsion and of the random force; lost: to hits, dampers and drag, and left "
+      "in the beams\n\n" +
+      map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
   if (a.endless)
     table += "\nbodies that go on for ever: " + percent(a.endless->survival, 1.0) +
              " of them get through or out of each further gate; " +
              fixed(a.endless->rows_per_cell, 2) + " rows a gate; what the start has left is " +
              percent(a.endless->second / a.endless->survival, 1.0) + " of itself a gate later\n";
   const std::string target = std::string("\"") + name_of(a.target) + "\"";
+  if (f.from_trials)
+    table +=
+        "\nthe endings above are the trials' own shares, which are more certain here; the chain's "
+        "are behind all else\n";
   table += "\nmost frequent ways to " + target +
            ", by the columns i_x of their gates (>: in the same row)\n";
-  for (const markov::CellPath& path : a.paths) {
+  for (const markov::CellPath& path : a.paths.paths) {
     table += padded(percent(path.share, 1.0, 4), 11) + " ";
     std::int64_t row = -1;
     for (const std::int64_t cell : path.cells) {
@@ -355,14 +376,24 @@ std::string table_of(const AnalysedField& f) {
     }
     table += "\n";
   }
-  if (a.paths.empty()) table += "  (none)\n";
+  if (a.paths.gave_up)
+    table += "  (the search for more was given up: there are very many ways)\n";
+  else if (a.paths.paths.empty())
+    table += "  (none)\n";
+  if (!(a.target_chance > 0.0))
+    table += "nobody ends so: nothing can be said of what would change it\n";
   if (!a.parameters.empty()) {
     table += "\nper cent that the chance of " + target + " (" + percent(a.target_chance, 1.0, 4) +
              ") grows for 1 % more of each number, 95 %\n";
     for (const lattice::ParameterEffect& e : sorted_effects(a))
-      table += padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) + "\n";
+      table += padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) +
+               (std::isnan(e.elasticity.interval[0]) ? " (a single run makes a tenth of it)" : "") +
+               (e.bends ? " (with more of it " + fixed(e.more, 2) + ", with less " +
+                              fixed(e.less, 2) + ")"
+                        : "") +
+               "\n";
   }
-  return table + std::to_string(f.gate_runs + a.parameter_runs) + " gate runs, " +
+  return table + std::to_string(f.gate_runs + a.parameter_health.runs) + " gate runs, " +
          std::to_string(f.states) + " states, " + fixed(f.seconds + a.seconds, 2) + " s\n";
 }
 

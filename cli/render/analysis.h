@@ -23,6 +23,7 @@ struct AnalysedField {
   const lattice::EndingShares& endings;
   const lattice::Analysis& analysis;
   const std::optional<DirectTrials>& direct;
+  bool from_trials = false;    // the endings are the trials' own shares
   bool reached = true;         // the accuracy asked for
   std::int64_t gate_runs = 0;  // made for the chain
   int states = 0;
@@ -31,7 +32,7 @@ struct AnalysedField {
 
 /// How far the durations of the chain's walks are from those of trials: the largest difference
 /// between their distribution functions (Kolmogorov), and what 95 % of so many trials of the same
-/// distribution have no more than. Of all, or of one ending; NaN where either has none.
+/// distribution have no more than. Of all, or of one ending; NaN where either has fewer than 50.
 struct KolmogorovDistance {
   double distance, chance_95;
 };

@@ -37,11 +37,11 @@ void add_visits(Script& out, const AnalysedField& f) {
   const RootScale scale(100.0 * shown.maxCoeff());
   const bool blocks = map.rows.block > 1 || map.columns.block > 1;
   std::string paths;
-  const auto most = std::min<std::size_t>(f.analysis.paths.size(), 5);
+  const auto most = std::min<std::size_t>(f.analysis.paths.paths.size(), 5);
   for (std::size_t k = 0; k < most && !blocks; ++k) {
     // A little aside each, so that they do not hide each other.
     const double aside = 0.09 * (static_cast<double>(k) - 0.5 * static_cast<double>(most - 1));
-    for (const std::int64_t cell_of_path : f.analysis.paths[k].cells) {
+    for (const std::int64_t cell_of_path : f.analysis.paths.paths[k].cells) {
       const std::int64_t column = cell_of_path % f.scene.field.columns,
                          row = cell_of_path / f.scene.field.columns;
       paths += digits(static_cast<double>(column - map.columns.first) + aside) + " " +
@@ -122,7 +122,7 @@ void add_starts(Script& out, const AnalysedField& f) {
     return std::array<double, 2>{std::max(range[0], frame[0]), std::min(range[1], frame[1])};
   };
   for (const lattice::StartChance& s : f.analysis.starts) {
-    if (vx < s.cell.vx[0] || vx >= s.cell.vx[1]) continue;
+    if (vx < s.cell.vx[0] || vx >= s.cell.vx[1] || std::isnan(s.chance)) continue;
     const auto d = within(s.cell.d, seen[0]), vy = within(s.cell.vy, seen[2]);
     if (!(d[1] > d[0] && vy[1] > vy[0])) continue;
     rows += digits(0.5 * (d[0] + d[1])) + " " + digits(0.5 * (vy[0] + vy[1])) + " " +
@@ -158,12 +158,13 @@ void add_parameters(Script& out, const AnalysedField& f) {
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const auto& e = effects[i].elasticity;
     const std::string at = std::to_string(-static_cast<int>(i));
-    rows += digits(e.mean) + " " + at + " " + digits(e.interval[0]) + " " + digits(e.interval[1]) +
-            "\n";
+    const bool known = std::isfinite(e.interval[0]);  // else a point alone
+    const double from = known ? e.interval[0] : e.mean, to = known ? e.interval[1] : e.mean;
+    rows += digits(e.mean) + " " + at + " " + digits(from) + " " + digits(to) + "\n";
     const std::string name = literal(std::string(effects[i].key));
     tics += (tics.empty() ? "" : ", ") + name.substr(0, name.rfind(" noenhanced")) + " " + at;
-    low = std::min(low, e.interval[0]);
-    high = std::max(high, e.interval[1]);
+    low = std::min(low, from);
+    high = std::max(high, to);
   }
   const double margin = 0.05 * (high - low);
   const Box box{236, 488, out.top + 36, out.top + 36 + 22.0 * static_cast<double>(effects.size())};

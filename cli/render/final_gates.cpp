@@ -115,9 +115,10 @@ std::string short_percent(double share) {
   return fixed(100.0 * share, share < 0.0995 ? 1 : 0);
 }
 
-std::string map_of(const markov::CellProbabilities& shares, const std::string& what) {
+std::string map_of(const markov::CellProbabilities& shares, const std::string& what,
+                   const std::string& unit) {
   const FieldMap map(shares, 40, 15);
-  std::string text = what + ", % of trials (i_y upwards, i_x to the right";
+  std::string text = what + ", " + unit + " (i_y upwards, i_x to the right";
   if (map.rows.block > 1 || map.columns.block > 1)
     text += "; blocks of " + std::to_string(map.columns.block) + " x " +
             std::to_string(map.rows.block) + " gates: i_x in their middle, i_y at their lower end";

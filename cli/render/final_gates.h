@@ -55,7 +55,8 @@ struct FieldMap {
 /// The field seen from above, farthest row on top, in percent. Of fields too large to print: where
 /// all but next to nothing lies, in blocks if need be.
 [[nodiscard]] std::string map_of(const markov::CellProbabilities& shares,
-                                 const std::string& what = "final gate");
+                                 const std::string& what = "final gate",
+                                 const std::string& unit = "% of trials");
 /// The map of the trapped, below the first one; empty for fields too large to print and where none
 /// is.
 [[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares);

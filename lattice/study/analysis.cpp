@@ -1,5 +1,6 @@
 #include "lattice/study/analysis.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -134,16 +135,20 @@ Random drawn(std::uint64_t seed, std::uint64_t row, std::int64_t i) {
 /// at any draw): the share of the walks there, times their chance.
 class Passages {
  public:
-  Passages(const CostedChain& c, const FieldParams& field, const markov::EndingChance& chance)
+  /// `at_start`: the chance of the target there. Without limit of gates walks are followed until
+  /// those left are few beside the ones that get there.
+  Passages(const CostedChain& c, const FieldParams& field, const markov::EndingChance& chance,
+           double at_start)
       : chance_(chance),
         limited_(field.max_gates > 0),
         inputs_(c.chain.inputs()),
         cells_(std::int64_t{field.columns} * field.rows) {
-    totals_ =
-        markov::walk_totals(c.chain, {field.columns, field.rows}, c.start, field.max_gates,
-                            c.rewards, [&](int draw, std::int64_t cell, int input, double share) {
-                              add(draw, cell, input, share * chance_(draw, cell, input));
-                            });
+    totals_ = markov::walk_totals(
+        c.chain, {field.columns, field.rows}, c.start, field.max_gates, c.rewards,
+        [&](int draw, std::int64_t cell, int input, double share) {
+          add(draw, cell, input, share * chance_(draw, cell, input));
+        },
+        at_start > 0.0 ? std::min(1e-12, 1e-6 * at_start) : 1e-12);
   }
 
   struct Place {
@@ -159,7 +164,7 @@ class Passages {
     for (std::size_t i = 0; i < weights_.size(); ++i)
       if (weights_[i] > 0.0) use(place(i), weights_[i]);
   }
-  /// To be called before draw().
+  /// To be called before draw() and sum().
   void add_up() {
     double sum = 0.0;
     for (const double w : weights_) cumulative_.push_back(sum += w);
@@ -226,30 +231,63 @@ class Parameters {
   }
 
   /// None where the number is zero, or cannot be changed.
-  [[nodiscard]] std::optional<ParameterEffect> effect(const ParamInfo& info) const {
-    const double value = info.get(gates_.types().front());
-    if (value == 0.0) return {};
-    const bool up = allowed(info, 1.0 + options_.relative_step),
-               down = allowed(info, 1.0 - options_.relative_step);
-    if (!up && !down) return {};
-    const std::vector<double> above = values(info, up ? 1.0 + options_.relative_step : 1.0),
-                              below = values(info, down ? 1.0 - options_.relative_step : 1.0);
-    const double step = (up ? options_.relative_step : 0.0) + (down ? options_.relative_step : 0.0);
-    const auto n = static_cast<double>(samples_.size());
-    double mean = 0.0, squares = 0.0;
-    for (std::size_t i = 0; i < samples_.size(); ++i)
-      mean += (above[i] - below[i]) / samples_[i].chance / n;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const double rest = (above[i] - below[i]) / samples_[i].chance - mean;
-      squares += rest * rest;
+  [[nodiscard]] std::optional<ParameterEffect> effect(const ParamInfo& info) {
+    if (base_.empty()) base_ = values(info, 1.0);
+    double value = info.get(gates_.types().front());
+    bool any = false;
+    for (const GateParams& p : gates_.types()) {
+      any = any || info.get(p) != 0.0;
+      if (info.get(p) != value) value = std::nan("");
     }
-    constexpr double kSigmas = 1.959964;
-    const double scale = visits_ / step, half = kSigmas * std::sqrt(squares / n / (n - 1.0));
-    return ParameterEffect{
-        info.key, value, {scale * mean, {scale * (mean - half), scale * (mean + half)}}};
+    const double step = options_.relative_step;
+    const bool up = allowed(info, 1.0 + step), down = allowed(info, 1.0 - step);
+    if (!any || (!up && !down)) return {};
+    const std::vector<double> above = up ? values(info, 1.0 + step) : base_,
+                              below = down ? values(info, 1.0 - step) : base_;
+    Terms both, more, less, bend;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const double unit = visits_ / (samples_[i].chance * step);
+      if (!std::isfinite(above[i] + below[i] + base_[i])) continue;  // broken, which health says
+      both.add(unit * (above[i] - below[i]) / (up && down ? 2.0 : 1.0));
+      more.add(unit * (above[i] - base_[i]));
+      less.add(unit * (base_[i] - below[i]));
+      bend.add(unit * (above[i] + below[i] - 2.0 * base_[i]));
+    }
+    ParameterEffect e{info.key, value, both.mean_95()};
+    e.more = up ? more.mean() : std::nan("");
+    e.less = down ? less.mean() : std::nan("");
+    const Mean95 difference = bend.mean_95();
+    constexpr double kSure = 1.5;  // half widths of 95 %: 3 in 1000 by chance
+    const double half = difference.mean - difference.interval[0];
+    e.bends = up && down && std::abs(difference.mean) > kSure * half;
+    return e;
   }
+  [[nodiscard]] const Health& health() const { return health_; }
 
  private:
+  /// A mean of independent terms.
+  struct Terms {
+    std::int64_t n = 0;
+    double sum = 0.0, squares = 0.0, sizes = 0.0, largest = 0.0;
+    void add(double x) {
+      ++n;
+      sum += x;
+      squares += x * x;
+      sizes += std::abs(x);
+      largest = std::max(largest, std::abs(x));
+    }
+    [[nodiscard]] double mean() const { return sum / static_cast<double>(n); }
+    /// Without interval where a single term makes a tenth of all: then there are larger ones that
+    /// were not seen.
+    [[nodiscard]] Mean95 mean_95() const {
+      constexpr double kSigmas = 1.959964, kMostOfOne = 0.1;
+      if (n < 2 || largest > kMostOfOne * sizes) return {mean(), {std::nan(""), std::nan("")}};
+      const auto count = static_cast<double>(n);
+      const double variance = std::max(0.0, squares / count - mean() * mean()),
+                   half = kSigmas * std::sqrt(variance / (count - 1.0));
+      return {mean(), {mean() - half, mean() + half}};
+    }
+  };
   struct Sample {
     Passages::Place place;
     int type;
@@ -261,11 +299,19 @@ class Parameters {
     return std::int64_t{row} * field_.columns + column;
   }
 
+  /// A gate with so many times the number; steps still fit into a hold of the random force.
+  static GateParams changed(GateParams p, const ParamInfo& info, double factor) {
+    info.ref(p) *= factor;
+    if (info.key == "forces.random_rate_Hz") p.run.step /= factor;
+    return p;
+  }
+
   [[nodiscard]] bool allowed(const ParamInfo& info, double factor) const {
-    return std::all_of(gates_.types().begin(), gates_.types().end(), [&](GateParams p) {
-      info.ref(p) *= factor;
+    return std::all_of(gates_.types().begin(), gates_.types().end(), [&](const GateParams& gate) {
+      const GateParams p = changed(gate, info, factor);
       if (!info.permits(info.get(p))) return false;
       try {
+        dynamics::validate(p);
         (void)make_method(p);
       } catch (const InvalidParameter&) {
         return false;
@@ -274,15 +320,16 @@ class Parameters {
     });
   }
 
-  /// The chance of the target behind a run of each sample, with that many times the number.
-  [[nodiscard]] std::vector<double> values(const ParamInfo& info, double factor) const {
+  /// The chance of the target behind a run of each sample, with that many times the number; NaN
+  /// where it broke.
+  [[nodiscard]] std::vector<double> values(const ParamInfo& info, double factor) {
     std::vector<double> out(samples_.size());
+    tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do
     for (int type = 0; type < std::ssize(gates_.types()); ++type) {
       std::vector<std::size_t> here;
       for (std::size_t i = 0; i < samples_.size(); ++i)
         if (samples_[i].type == type) here.push_back(i);
-      GateParams p = gates_.types()[static_cast<std::size_t>(type)];
-      info.ref(p) *= factor;
+      const GateParams p = changed(gates_.types()[static_cast<std::size_t>(type)], info, factor);
       const auto method = make_method(p);
       carry_out_trials(
           p, *method, std::ssize(here),
@@ -294,25 +341,26 @@ class Parameters {
           },
           [&](RunSlot& slot, const GateRun& run) {
             const std::size_t i = here[static_cast<std::size_t>(slot.trial)];
+            health.local().add(p, run);
             out[i] = value_of(p, samples_[i].place, run);
             return false;
           });
     }
+    for (const Health& part : health) health_ += part;
     return out;
   }
 
   [[nodiscard]] double value_of(const GateParams& p, const Passages::Place& place,
                                 const GateRun& run) const {
     const auto is = [&](markov::Ending e) { return chance_.ending() == e ? 1.0 : 0.0; };
-    if (run.ending == Ending::trapped || run.ending == Ending::broken)
-      return is(markov::Ending::trapped);
+    if (run.ending == Ending::broken) return std::nan("");
+    if (run.ending == Ending::trapped) return is(markov::Ending::trapped);
     const Crossing crossing = crossing_of(p, run.ending, run.exit);
     const Move move = move_into(crossing.boundary);
     const auto column = static_cast<int>(place.cell % field_.columns) + move.di_x,
                row = static_cast<int>(place.cell / field_.columns) + move.di_y;
     if (!field_.contains(column, row))
       return is(markov::edge_before({field_.columns, field_.rows}, column, row));
-    if (place.draw == field_.max_gates) return is(markov::Ending::cut_off);
     return chance_(place.draw + 1, cell_of(column, row), space_.index_of(crossing).state);
   }
 
@@ -323,12 +371,28 @@ class Parameters {
   const AnalysisOptions& options_;
   double visits_;  // of bodies that end in the target
   std::vector<Sample> samples_;
+  std::vector<double> base_;  // values of the scene as it is
+  Health health_;
 };
 
 // Numbers that are how a scene is computed, not what it is.
 bool is_physical(std::string_view key) {
-  return !key.starts_with("run.") && key != "forces.random_rate_Hz" &&
+  return key != "run.step_s" && key != "run.event_tolerance_m" && key != "run.tolerance" &&
          key != "contact.impulse_threshold_Ns";
+}
+
+/// Throws where the states of all cells take too much memory: some waves of shares and totals, and
+/// chances by draw.
+void require_memory(const CostedChain& c, const FieldParams& field, std::size_t groups) {
+  constexpr double kMostBytes = 8.0 * (1 << 30);
+  const double states = static_cast<double>(field.columns) * field.rows * c.chain.inputs();
+  const double numbers =
+      2.0 * (1.0 + 2.0 * kCosts) * (groups == 0 ? 1.0 : 2.0) + 3.0 * std::max(1, field.max_gates);
+  if (states * numbers * sizeof(double) > kMostBytes)
+    throw std::invalid_argument(
+        "analysis: the states of " + std::to_string(field.columns) + " x " +
+        std::to_string(field.rows) +
+        " gates take more than 8 GiB; ask for fewer states (--accuracy, build --states) or gates");
 }
 
 }  // namespace
@@ -343,28 +407,32 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
   const markov::Field cells{field.columns, field.rows};
   const auto tell = [&](std::int64_t done) { work.tell("analysis", done, 3); };
 
+  require_memory(c, field, chain.groups.size());
   tell(0);
   const markov::EndingChance chance(c.chain, cells, options.target, field.max_gates);
   tell(1);
-  Passages passages(c, field, chance);
+  const std::int64_t first_cell = std::int64_t{c.start.row} * field.columns + c.start.column;
+  const double at_start = chance(1, first_cell, c.start.input);
+  Passages passages(c, field, chance, at_start);
   passages.add_up();
 
-  Analysis out{
-      .target = options.target,
-      .target_chance = chance(1, c.start.row * field.columns + c.start.column, c.start.input),
-      .totals = passages.totals(),
-      .gates = {},
-      .costs = {},
-      .walks = {},
-      .endless = {},
-      .endless_boundaries = {},
-      .starts = {},
-      .paths = {},
-      .passed = markov::CellProbabilities::Zero(field.rows, field.columns),
-      .trapping = markov::CellProbabilities::Zero(field.rows, field.columns),
-      .state_trapping = std::vector<double>(static_cast<std::size_t>(space.size())),
-      .space = space,
-      .parameters = {}};
+  Analysis out{.target = options.target,
+               .target_chance = at_start,
+               .totals = passages.totals(),
+               .gates = {},
+               .costs = {},
+               .walks = {},
+               .endless = {},
+               .why_not_endless = {},
+               .endless_boundaries = {},
+               .starts = {},
+               .paths = {},
+               .passed = markov::CellProbabilities::Zero(field.rows, field.columns),
+               .trapping = {},
+               .state_trapping = {},
+               .space = space,
+               .parameters = {},
+               .parameter_health = {}};
 
   // Means, and the same of eight groups of the trials.
   tell(2);
@@ -400,23 +468,30 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     for (int state = 0; state < space.size(); ++state)
       out.endless_boundaries[static_cast<std::size_t>(space.boundary(state))] +=
           out.endless->states[static_cast<std::size_t>(state)];
-  } catch (const std::runtime_error&) {  // nobody comes far, or it does not settle
+  } catch (const std::runtime_error& e) {
+    out.why_not_endless = e.what();
   }
 
-  const std::int64_t first_cell = std::int64_t{c.start.row} * field.columns + c.start.column;
+  const markov::Chain& first = c.chain.at(c.start.column, c.start.row);
   for (int state = 0; state < space.size(); ++state)
     if (space.boundary(state) == Boundary::enter)
-      out.starts.push_back({space.cell(state), chance(1, first_cell, state)});
+      out.starts.push_back({space.cell(state),
+                            first.is_sampled(state) ? chance(1, first_cell, state) : std::nan("")});
   out.paths =
       markov::most_frequent_paths(c.chain, cells, c.start, field.max_gates, chance, options.paths);
 
   if (out.target_chance > 0.0) {
+    const bool of_trapped = options.target == markov::Ending::trapped;
+    if (!of_trapped) {
+      out.trapping = out.passed;
+      out.state_trapping.resize(static_cast<std::size_t>(space.size()));
+    }
     passages.each([&](const Passages::Place& place, double weight) {
       const double part = weight / out.target_chance;
       const auto column = place.cell % field.columns, row = place.cell / field.columns;
       out.passed.data()[place.cell] += part;
       const double trapped = trapped_share(c.chain.at(column, row), place.input);
-      if (options.target == markov::Ending::trapped || trapped >= 1.0) return;
+      if (of_trapped || trapped >= 1.0) return;  // nobody goes on from there
       const double effect = part * trapped / (1.0 - trapped);
       out.trapping.data()[place.cell] += effect;
       if (place.input < space.size())
@@ -424,17 +499,15 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     });
     if (options.runs > 0) {
       const Stopwatch of_parameters;
-      const Parameters parameters(scene, chain, chance, out.target_chance, passages, options);
+      Parameters parameters(scene, chain, chance, out.target_chance, passages, options);
       std::vector<const ParamInfo*> infos;
       for (const ParamInfo& info : gate_param_table())
         if (is_physical(info.key)) infos.push_back(&info);
       for (std::size_t k = 0; k < infos.size(); ++k) {
         work.tell("gate runs for parameters", static_cast<std::int64_t>(k), std::ssize(infos));
-        if (auto effect = parameters.effect(*infos[k])) {
-          out.parameters.push_back(*effect);
-          out.parameter_runs += 2 * options.runs;
-        }
+        if (auto effect = parameters.effect(*infos[k])) out.parameters.push_back(*effect);
       }
+      out.parameter_health = parameters.health();
       out.parameter_seconds = of_parameters.seconds();
     }
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,7 +39,8 @@ struct AnalysedChain {
   CostedChain chain;
   dynamics::StateSpace space;  // of its states; of trees without the start, whose row follows
   std::vector<CostedChain> groups{};  // kTrialGroups, of groups of the trials; or none
-  /// An entry into a gate that belongs to the state, drawn.
+  /// An entry into a gate that belongs to the state, drawn: of those seen, in gates of any type; of
+  /// bins anywhere in the bin.
   std::function<dynamics::Crossing(int state, dynamics::Random& random)> entry;
 };
 /// Of trees, from the pool's runs; with error bars. Throws std::invalid_argument when the pool has
@@ -57,7 +59,7 @@ struct AnalysisOptions {
   std::int64_t timed_walks = 100'000;
   std::size_t paths = 5;
   std::int64_t runs = 20'000;   // gate runs to each side of a scene parameter; 0: none
-  double relative_step = 0.05;  // to each side
+  double relative_step = 0.05;  // of the number, to each side
   std::uint64_t seed = 1;
 };
 
@@ -68,16 +70,21 @@ struct Mean95 {
   std::array<double, 2> interval{};
 };
 
-/// How the chance of the target answers to a number of the scene.
+/// How the chance of the target answers to a number of the scene, of all types of gates together.
 struct ParameterEffect {
   std::string_view key;  // dynamics::ParamInfo's
-  double value = 0.0;
-  /// d ln(chance) / d ln(value): per cent that the chance changes for one per cent of the value;
-  /// with 95 % interval (chance in these runs; the chain's own error is not in it).
+  double value = 0.0;    // NaN where types differ in it
+  /// Per cent that the chance changes for one per cent of the value: (P+ - P-) / (2 P step), to
+  /// first order in what the number does at each gate, with 95 % interval (chance in these runs;
+  /// the chain's own error is not in it; NaN where one run in ten thousands says it all).
   Mean95 elasticity;
+  double more = 0.0, less = 0.0;  // the same to one side each, with more and with less of the
+                                  // number; NaN where the scene does not permit it
+  bool bends = false;             // these differ by more than chance: no single number says it
 };
 
-/// The chance of the target from one of the ways to enter the first gate from below.
+/// The chance of the target from one of the ways to enter the first gate from below; NaN where no
+/// run did.
 struct StartChance {
   dynamics::Cell cell;
   double chance = 0.0;
@@ -90,22 +97,24 @@ struct Analysis {
   Mean95 gates;                                    // visited, and ...
   std::array<Mean95, dynamics::kCosts> costs;      // ... what bodies took, of all of them
   std::vector<markov::TimedWalk> walks;            // seconds
-  std::optional<markov::QuasiStationary> endless;  // none where nobody comes far
-  std::vector<double> endless_boundaries;          // its states by dynamics::Boundary
+  std::optional<markov::QuasiStationary> endless;  // none: see below
+  std::string why_not_endless;
+  std::vector<double> endless_boundaries;  // its states by dynamics::Boundary
   std::vector<StartChance> starts;
-  std::vector<markov::CellPath> paths;
-  /// (rows x columns) visits of bodies that end in the target, per body of these; and how much the
-  /// chance of the target would grow, in parts of it, were the gate's share of trapped bodies
-  /// smaller by a hundredth of itself, the others going on as the rest does: times 100.
+  markov::FrequentPaths paths;
+  /// (rows x columns) visits of bodies that end in the target, per body of these; and per cent that
+  /// the chance of the target would grow were one per cent fewer trapped in the gate (d ln P / d
+  /// -ln of the share trapped, the others going on as the rest does). Of the target "trapped", and
+  /// of one that nobody ends in, the latter is empty.
   markov::CellProbabilities passed, trapping;
   std::vector<double> state_trapping;  // the latter by state, in all gates together
   dynamics::StateSpace space;          // of the chain
   std::vector<ParameterEffect> parameters;
-  std::int64_t parameter_runs = 0;
+  dynamics::Health parameter_health;  // of the runs behind them
   double seconds = 0.0, parameter_seconds = 0.0;
 };
 
-/// Throws std::invalid_argument as markov::EndingChance for fields that are too large.
+/// Throws std::invalid_argument for fields whose states would take more than some 8 GiB.
 [[nodiscard]] Analysis analyze(const Scene& scene, const AnalysedChain& chain,
                                const AnalysisOptions& options, const dynamics::Work& work = {});
 

@@ -58,9 +58,9 @@ def analysis(lines):
             f"  seconds {a['expected_seconds']:.2f} beside {all_['mean_seconds']:.2f} "
             f"({ratio(a['expected_seconds'], all_['mean_seconds'])}, chance {100 * se / all_['mean_seconds']:.2f} %), "
             f"gates {a['expected_gates']:.3f}\n"
-            f"  work of the propulsion {ratio(a['expected_work_J'], all_['mean_propulsion_work_J'])}, "
+            f"  work of the propulsion {ratio(a['expected_work_J'], all_['mean_work_J'])}, "
             f"of the random force {ratio(a['expected_random_work_J'], all_['mean_random_work_J'])}, "
-            f"taken by the gates {ratio(a['expected_lost_J'], all_['mean_lost_J'])}\n"
+            f"lost {ratio(a['expected_lost_J'], all_['mean_lost_J'])}\n"
             f"  distribution of the time: Kolmogorov distance {ks:.4f} (chance {chance:.4f})\n"
             f"  the analysis took {a['seconds']:.1f} s")
 

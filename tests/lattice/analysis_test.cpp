@@ -59,6 +59,7 @@ TEST(Costs, OfARunAreThoseOfItsTrace) {
     const GateTrace trace = trace_gate(scene.gate, *made, scene.start, force);
     const Energies& end = trace.samples.back().energy;
     const double left = end.mechanical() - end.body;  // in the beams, which a run counts as lost
+    EXPECT_EQ(trace.run.forward, trace.run.exit.y - scene.start.y) << method;
     EXPECT_NEAR(trace.run.propulsion_work, end.propulsion_work, 1e-9) << method;
     EXPECT_NEAR(trace.run.random_work, end.random_work, 1e-9) << method;
     EXPECT_NEAR(trace.run.lost, end.lost + left, 1e-9) << method;
@@ -264,7 +265,7 @@ TEST(Analysis, AgreesWithTheFullDynamics) {
   EXPECT_LT(a.gates.interval[0], a.gates.mean);
   EXPECT_NEAR(a.target_chance, a.totals.endings[static_cast<std::size_t>(Ending::far_edge)], 1e-12);
   double sum = 0.0;
-  for (const markov::CellPath& path : a.paths) sum += path.share;
+  for (const markov::CellPath& path : a.paths.paths) sum += path.share;
   EXPECT_GT(sum, 0.3 * a.target_chance);
   EXPECT_LT(sum, a.target_chance);
   // Those who cross pass each row.

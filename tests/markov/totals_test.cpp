@@ -140,6 +140,7 @@ TEST(EndingChance, FewerDrawsAreLeftLater) {
       five(chain, {5, 6}, Ending::trapped, 5);
   for (const int input : {0, 40, 86}) EXPECT_EQ(seven(3, 12, input), five(1, 12, input));
   EXPECT_EQ(seven(8, 12, 0), 0.0);
+  EXPECT_EQ(EndingChance(chain, {5, 6}, Ending::cut_off, 7)(8, 12, 0), 1.0);
 }
 
 // ---- Paths ----
@@ -176,7 +177,10 @@ TEST(Paths, AreTheMostFrequentOfAll) {
   follow({1}, first);
 
   const EndingChance chance(chain, field, Ending::far_edge, kLimit);
-  const auto paths = most_frequent_paths(chain, field, start, kLimit, chance, all.size() + 5);
+  const auto found = most_frequent_paths(chain, field, start, kLimit, chance, all.size() + 5);
+  EXPECT_FALSE(found.gave_up);
+  const auto& paths = found.paths;
+  EXPECT_TRUE(most_frequent_paths(chain, field, start, kLimit, chance, 3, 1).gave_up);
   std::vector<double> shares;
   for (const auto& [cells, share] : all)
     if (share > 0.0) shares.push_back(share);
