@@ -10,13 +10,14 @@
 ///              predict() by the solver asked for. Step by step: all planes of the field at a time; by
 ///              rows: the visits of a row by elimination or sums, then the next row. Plain references:
 ///              forward propagation (propagate) and one sparse solve (solve_absorption)
-///   Small fields exactly, in any kind of number (absorbing.h, field_states.h),
-///              states taken together (lumping.h)
+///   Small fields exactly, in any kind of number (absorbing.h, field_states.h), blocks of cells as
+///              cells (blocks.h), states taken together (lumping.h)
 /// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
 /// cell limit, entered a state that was never sampled. The final cell is the last one inside.
 /// What a state means, and how large a cell is, this module does not know.
 // clang-format on
 
+#include "markov/blocks.h"
 #include "markov/chain.h"
 #include "markov/field_states.h"
 #include "markov/formats/counts.h"
