@@ -120,6 +120,20 @@ TEST(Lumping, OfNothingIsTheChain) {
   EXPECT_TRUE(Eigen::MatrixXd(lumping.chain.matrix()) == Eigen::MatrixXd(chain.matrix()));
 }
 
+// All states as one: it still goes up, left, right and down.
+TEST(Lumping, TellsDirectionsApart) {
+  const Counts counts = test::boundary_counts(1);
+  const Lumping lumping = lump(Chain::from_counts(counts, test::boundary_exits_down()),
+                               {0, 0, 0, 0, 0}, {0.0, 0.0, 1.0, 0.0, 0.0});
+  EXPECT_EQ(lumping.chain.exits(),
+            (std::vector<Exit>{{0, 0, 1}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {}}));
+  const double total = Eigen::MatrixXd(counts.cast<double>()).row(2).sum();
+  const Eigen::MatrixXd p = lumping.chain.matrix();
+  EXPECT_NEAR(p(0, 2), static_cast<double>(counts.coeff(2, 2) + counts.coeff(2, 4)) / total,
+              kFewEps);
+  EXPECT_NEAR(p(0, 3), static_cast<double>(counts.coeff(2, 3)) / total, kFewEps);
+}
+
 TEST(Lumping, WeightsOfCountsAddThem) {
   const Counts counts = test::lattice_counts(1);
   const std::vector<int> group_of = boundaries();
