@@ -12,14 +12,19 @@
 ///              forward propagation (propagate) and one sparse solve (solve_absorption)
 ///   Chain -> the chance of an ending from everywhere (committor.h), times and works of walks (totals.h),
 ///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h)
+///   Small fields exactly, in any kind of number (absorbing.h, field_states.h), blocks of cells as
+///              cells (blocks.h), states taken together (lumping.h)
 /// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
 /// cell limit, entered a state that was never sampled. The final cell is the last one inside.
 /// What a state means, and how large a cell is, this module does not know.
 // clang-format on
 
+#include "markov/blocks.h"
 #include "markov/chain.h"
 #include "markov/committor.h"
+#include "markov/field_states.h"
 #include "markov/formats/counts.h"
+#include "markov/lumping.h"
 #include "markov/paths.h"
 #include "markov/predict.h"
 #include "markov/quasi_stationary.h"

@@ -97,6 +97,25 @@ inline Counts lattice_counts(std::uint64_t seed) {
   return counts;
 }
 
+/// Five states, one a boundary: entered from below (0), by a move to the left (1, 3) or to the
+/// right (2, 4). The last output is trapped.
+inline std::vector<Exit> boundary_exits() {
+  return {{0, 0, 1}, {1, -1, 0}, {2, 1, 0}, {3, -1, 0}, {4, 1, 0}, {}};
+}
+/// The same with moves down in state 3.
+inline std::vector<Exit> boundary_exits_down() {
+  auto exits = boundary_exits();
+  exits[3] = {3, 0, -1};
+  return exits;
+}
+inline Counts boundary_counts(std::uint64_t seed) {
+  Words words(seed);
+  Counts counts(5, 6);
+  for (int row = 0; row < 5; ++row)
+    for (int column = 0; column < 6; ++column) counts.insert(row, column) = 1 + words.below(20);
+  return counts;
+}
+
 inline void empty_row(Counts& counts, int row) {
   counts.prune([row](Eigen::Index r, Eigen::Index, std::int64_t) { return r != row; });
 }

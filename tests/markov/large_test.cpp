@@ -4,8 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
+#include <iostream>
+#include <utility>
 
+#include "blocks_support.h"
 #include "chains.h"
+#include "markov/blocks.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 #include "tests/support/long.h"
@@ -118,6 +123,78 @@ TEST(LargeField, RowsAndColumnsAreChainsOfTheirOwn) {
   const auto columns = propagate(without(false), {kSide, 1}, {kSide / 2, 0, 12});
   EXPECT_LE((d.final_cells.rowwise().sum() - rows.final_cells.col(0)).abs().maxCoeff(), 1e-12);
   EXPECT_LE((d.final_cells.colwise().sum() - columns.final_cells.row(0)).abs().maxCoeff(), 1e-12);
+}
+
+/// Seconds of processor time, told in a long run.
+template <class Work>
+auto timed(const char* what, Work work) {
+  const std::clock_t begin = std::clock();
+  auto result = work();
+  if (gatewalk::test::usual_or_full(0, 1) != 0)
+    std::cout << what << ": " << static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC << " s"
+              << std::endl;
+  return result;
+}
+
+/// Chains of the paper's shape in cells of three types, by one pattern of 9 x 9 cells again and
+/// again.
+FieldChain patterned(const Field& cells) {
+  test::Words words(5);
+  std::vector<int> pattern;
+  for (int cell = 0; cell < 81; ++cell) pattern.push_back(words.below(3));
+  return test::repeated({keeping_on(1e-3), keeping_on(0.01), keeping_on(0.03)}, {9, 9}, pattern,
+                        cells);
+}
+
+// Blocks of 9 x 1 cells make uniform rows of it, 9 x 9 (of 3 x 3 blocks of 3 x 3 cells) one type.
+void expect_same_in_both_blocks(int side, bool and_in_cells) {
+  const Field cells{side, side};
+  const Start start{side / 2, 0, 12};
+  const FieldChain chain = patterned(cells);
+  const PredictOptions options{.tolerance = 1e-13};
+  const auto wide = timed("blocks of 9 x 1", [&] { return block_field(chain, {9, 1}, {start}); });
+  const auto in_wide = timed("prediction in them", [&] {
+    return predict(wide.chain, wide.field(cells), {wide.start(start)}, options).front();
+  });
+  expect_whole(in_wide);
+  const auto small = timed("blocks of 3 x 3", [&] { return block_field(chain, {3, 3}, {start}); });
+  const auto square = timed("blocks of 3 x 3 of these", [&] {
+    return block_field(small.chain, {3, 3}, {small.start(start)});
+  });
+  ASSERT_EQ(square.chain.chains().size(), 1u);
+  const Field squares{side / 9, side / 9};
+  const auto in_squares = timed("prediction in them", [&] {
+    return predict(square.chain, squares, {square.start(small.start(start))}, options).front();
+  });
+  test::expect_same_in_blocks(in_wide, in_squares, {1, 9}, 1e-12);
+  if (!and_in_cells) return;
+  const auto fine =
+      timed("prediction in cells", [&] { return predict(chain, cells, {start}, options).front(); });
+  test::expect_same_in_blocks(fine, in_wide, {9, 1}, 1e-12);
+  test::expect_same_in_blocks(fine, in_squares, {9, 9}, 1e-12);
+}
+
+TEST(LargeField, ARepeatedPatternInBlocks) {
+  expect_same_in_both_blocks(gatewalk::test::usual_or_full(45, 297), true);
+}
+TEST(LargeField, AMillionCellsInBlocks) {
+  expect_same_in_both_blocks(gatewalk::test::usual_or_full(90, 999), false);
+}
+
+// One type: there the cells' own rows are the faster way.
+TEST(LargeField, OneTypeInBlocks) {
+  const int side = gatewalk::test::usual_or_full(45, 999);
+  const Field cells{side, side};
+  const Start start{side / 2, 0, 12};
+  const Chain chain = keeping_on(1e-3);
+  const PredictOptions options{.tolerance = 1e-13};
+  const auto blocks = timed("blocks of 3 x 3", [&] { return block_field(chain, {3, 3}, {start}); });
+  const auto coarse = timed("prediction in them", [&] {
+    return predict(blocks.chain, blocks.field(cells), {blocks.start(start)}, options).front();
+  });
+  const auto fine =
+      timed("prediction in cells", [&] { return predict(chain, cells, {start}, options).front(); });
+  test::expect_same_in_blocks(fine, coarse, {3, 3}, 1e-12);
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+#pragma once
+/// A number that lies between two doubles, with sums, products and quotients rounded outwards.
+
+#include <cmath>
+#include <limits>
+
+namespace gatewalk::markov {
+
+/// Not negative, as chances and visits are. The bounds hold whatever the compiler does: a sum,
+/// product or quotient rounded to the nearest double is less than one double away from the exact
+/// one, so its two neighbours enclose it. (Boost's interval switches the processor's rounding mode
+/// instead, which optimising compilers do not respect without -frounding-math.)
+struct Enclosure {
+  double lo = 0.0, hi = 0.0;
+
+  Enclosure() = default;
+  Enclosure(double exactly)  // NOLINT(google-explicit-constructor): a double is an enclosure
+      : lo(exactly), hi(exactly) {}
+  Enclosure(double low, double high) : lo(low), hi(high) {}
+
+  friend Enclosure operator+(const Enclosure& a, const Enclosure& b) {
+    if (a.hi == 0.0) return b;
+    if (b.hi == 0.0) return a;
+    return {down(a.lo + b.lo), up(a.hi + b.hi)};
+  }
+  friend Enclosure operator*(const Enclosure& a, const Enclosure& b) {
+    if (a.hi == 0.0 || b.hi == 0.0) return 0.0;
+    return {down(a.lo * b.lo), up(a.hi * b.hi)};
+  }
+  friend Enclosure operator/(const Enclosure& a, const Enclosure& b) {
+    if (a.hi == 0.0) return 0.0;
+    return {down(a.lo / b.hi), up(a.hi / b.lo)};
+  }
+  Enclosure& operator+=(const Enclosure& b) { return *this = *this + b; }
+  Enclosure& operator/=(const Enclosure& b) { return *this = *this / b; }
+
+  /// Comparisons are true when they certainly hold.
+  friend bool operator==(const Enclosure&, const Enclosure&) = default;
+  friend bool operator>(const Enclosure& a, const Enclosure& b) { return a.lo > b.hi; }
+  friend bool operator>=(const Enclosure& a, const Enclosure& b) { return a.lo >= b.hi; }
+  friend bool operator<=(const Enclosure& a, const Enclosure& b) { return a.hi <= b.lo; }
+
+ private:
+  static double down(double x) { return x > 0.0 ? std::nextafter(x, 0.0) : 0.0; }
+  static double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
+};
+
+}  // namespace gatewalk::markov

@@ -1,0 +1,98 @@
+#include "markov/field_states.h"
+
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+namespace gatewalk::markov {
+namespace {
+
+class Reached {
+ public:
+  Reached(const FieldChain& chain, const Field& field, int most_states)
+      : chain_(chain), most_states_(most_states), f_{field, {}, {}, {}} {}
+
+  FieldStates from(const std::vector<Start>& starts) && {
+    for (const Start& s : starts) {
+      validate(chain_, f_.field, s, 0);
+      state(s);
+    }
+    for (std::size_t i = 0; i < f_.states.size(); ++i) draw(static_cast<int>(i));
+    return std::move(f_);
+  }
+
+ private:
+  [[nodiscard]] bool is_sampled(const Start& s) const {
+    return chain_.at(s.column, s.row).is_sampled(s.input);
+  }
+
+  /// The number of a state, a new one if it is reached for the first time.
+  int state(const Start& s) {
+    const std::int64_t cell = std::int64_t{s.row} * f_.field.columns + s.column;
+    const auto [it, is_new] =
+        states_.try_emplace(cell * chain_.inputs() + s.input, static_cast<int>(f_.states.size()));
+    if (is_new) {
+      if (static_cast<int>(f_.states.size()) == most_states_)
+        throw std::invalid_argument(
+            "field: more than " + std::to_string(most_states_) + " states of " +
+            std::to_string(f_.field.columns) + " x " + std::to_string(f_.field.rows) +
+            " cells can be reached; take fewer cells, or a chain of fewer states");
+      f_.states.push_back(s);
+    }
+    return it->second;
+  }
+
+  int end(Ending why, int column, int row, const Start& beyond) {
+    const auto [it, is_new] = ends_.try_emplace(
+        {static_cast<int>(why), column, row, beyond.column, beyond.row, beyond.input},
+        static_cast<int>(f_.ends.size()));
+    if (is_new) f_.ends.push_back({why, column, row, beyond});
+    return it->second;
+  }
+
+  void draw(int from) {
+    const Start s = f_.states[static_cast<std::size_t>(from)];
+    if (!is_sampled(s)) {
+      f_.draws.push_back({from, true, end(Ending::unsampled, s.column, s.row, {})});
+      return;
+    }
+    const Chain& chain = chain_.at(s.column, s.row);
+    for (Probabilities::InnerIterator it(chain.matrix(), s.input); it; ++it) {
+      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
+      const auto output = static_cast<int>(it.col());
+      const auto ends = [&](Ending why, int column, int row, const Start& beyond) {
+        f_.draws.push_back({from, true, end(why, column, row, beyond), output, it.value()});
+      };
+      const Start next{s.column + exit.di_x, s.row + exit.di_y, exit.next_input};
+      const Field& field = f_.field;
+      if (exit.next_input == Exit::kTrapped)
+        ends(Ending::trapped, s.column, s.row, {});
+      else if (next.column < 0 || next.column >= field.columns || next.row < 0 ||
+               next.row >= field.rows)
+        ends(edge_before(field, next.column, next.row), s.column, s.row, next);
+      else if (!is_sampled(next))
+        ends(Ending::unsampled, next.column, next.row, {});
+      else
+        f_.draws.push_back({from, false, state(next), output, it.value()});
+    }
+  }
+
+  const FieldChain& chain_;
+  const int most_states_;
+  FieldStates f_;
+  std::unordered_map<std::int64_t, int> states_;  // by cell * inputs + input
+  std::map<std::array<int, 6>, int> ends_;        // by all that tells them apart
+};
+
+}  // namespace
+
+FieldStates field_states(const FieldChain& chain, const Field& field,
+                         const std::vector<Start>& starts, int most_states) {
+  if (starts.empty()) throw std::invalid_argument("field: no start is given");
+  return Reached(chain, field, most_states).from(starts);
+}
+
+}  // namespace gatewalk::markov
