@@ -50,10 +50,11 @@ std::string power_text(const Effect& effect) {
   return effect.power ? fixed(100.0 * *effect.power, 0) + " %" : "-";
 }
 
-constexpr int kName = -12, kShare = 10, kCell = 17;
+constexpr int kName = -12, kShare = 10, kCell = 20;
 
 std::string share_text(const lattice::StartAnswer& a, std::size_t e) {
-  return padded(fixed(100.0 * a.final.endings[place(kEndingNames[e])], 2), kShare);
+  return padded(with_interval(a.final.endings[place(kEndingNames[e])], {std::nan(""), 0.0}),
+                kShare);
 }
 
 std::string sureness(const ExperimentOptions& options) {
