@@ -60,10 +60,13 @@ struct Predicted {
   lattice::PooledPrediction prediction;
 };
 
-/// As gatewalk predict does.
-Predicted predicted(const Options& options, lattice::Scene& scene) {
+/// As gatewalk predict does. What is to be said of a scene's keys is said of the `first` one.
+Predicted predicted(const Options& options, lattice::Scene& scene, bool first) {
   const lattice::AccuracyOptions how = accuracy_of(options);
-  Predicted p{settle_method(options, scene, lattice::RunsFrom::everywhere), {}};
+  constexpr auto kFrom = lattice::RunsFrom::everywhere;
+  Predicted p{first ? settle_method(options, scene, kFrom)
+                    : lattice::settle_method(scene, kFrom, options.seed(), options.work()),
+              {}};
   lattice::RunPool pool;
   p.prediction = lattice::predict_pooled(scene, pool, {scene.start}, how, options.work());
   warn_of(options, p.prediction, how.accuracy);
@@ -105,8 +108,8 @@ int run_power(const Arguments& arguments) {
   auto other = other_scene(options, scene);
   (void)accuracy_of(options);
 
-  const Predicted first = predicted(options, scene);
-  const auto second = other ? std::optional(predicted(options, *other)) : std::nullopt;
+  const Predicted first = predicted(options, scene, true);
+  const auto second = other ? std::optional(predicted(options, *other, false)) : std::nullopt;
   const lattice::StartAnswer& answer = first.prediction.starts.front();
   const dynamics::Work work = options.work();
   work.tell("power of experiments", 0, 1);

@@ -168,8 +168,9 @@ dynamics::Transitions all_up(const Scene& scene) {
 }
 ObservedComparison validated(const SeenEndings& seen) {
   const Scene scene = straight_up();
-  return *validate_chain(scene, {all_up(scene)}, {{0.0, 0.0, 15.0}},
-                         {.trials = 1000, .null_draws = 499, .seed = 3, .observed = seen})
+  return *validate_chain(
+              scene, {all_up(scene)}, {{0.0, 0.0, 15.0}},
+              {.trials = 1000, .walks = {}, .null_draws = 499, .seed = 3, .observed = seen})
               .starts.front()
               .observed;
 }
@@ -216,9 +217,10 @@ TEST(CompareObserved, AFewThatDoNotCrossAreSeenInEitherTable) {
 
 TEST(CompareObserved, BelongsToOneStart) {
   const Scene scene = straight_up();
-  EXPECT_THROW((void)validate_chain(scene, {all_up(scene)}, {{0, 0, 15}, {1, 0, 15}},
-                                    {.trials = 10, .null_draws = 9, .observed = sixty(60)}),
-               std::invalid_argument);
+  EXPECT_THROW(
+      (void)validate_chain(scene, {all_up(scene)}, {{0, 0, 15}, {1, 0, 15}},
+                           {.trials = 10, .walks = {}, .null_draws = 9, .observed = sixty(60)}),
+      std::invalid_argument);
 }
 
 // ---- Two samples, judged together ----
@@ -261,6 +263,7 @@ TEST(JudgeTwoSamples, FindsNoMoreThanTheLevelWhereNothingDiffers) {
     for (std::uint64_t k = 0; k < kRepeats; ++k)
       found += judge(sample(60, 1, k, together), sample(400, 2, k, together), 199, k).differs();
     EXPECT_LE(found / kRepeats, 0.05 + 4 * std::sqrt(0.05 * 0.95 / kRepeats)) << together;
+    RecordProperty(together ? "found_together" : "found_apart", std::to_string(found / kRepeats));
   }
 }
 

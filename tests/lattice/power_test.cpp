@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,13 @@ using dynamics::Random;
 using Pairs = std::vector<std::pair<double, double>>;
 
 constexpr PowerGoal kGoal{.power = 0.8, .level = 0.05};
+
+/// Into the test's entry of --gtest_output=json: how often so many trials found something.
+void record(const std::string& name, std::int64_t trials, double seen, double without) {
+  testing::Test::RecordProperty(
+      "found_" + name, std::to_string(seen) + " with " + std::to_string(trials) + " trials, " +
+                           std::to_string(without) + " without a difference");
+}
 
 double choose(int n, int k) {
   double c = 1.0;
@@ -120,9 +128,11 @@ TEST(TrialsForShare, KeepWhatTheyPromise) {
     };
     const double error = std::sqrt(0.8 * 0.2 / kRepeats),
                  at_level = std::sqrt(0.05 * 0.95 / kRepeats);
-    EXPECT_NEAR(found(truth), power_of_share(n, expected, truth, 0.05), 4 * error);
+    const double seen = found(truth), without = found(expected);
+    EXPECT_NEAR(seen, power_of_share(n, expected, truth, 0.05), 4 * error);
     EXPECT_GE(power_of_share(n, expected, truth, 0.05), 0.8);
-    EXPECT_LE(found(expected), 0.05 + 4 * at_level);
+    EXPECT_LE(without, 0.05 + 4 * at_level);
+    record(std::to_string(expected), n, seen, without);
   }
 }
 
@@ -212,8 +222,10 @@ TEST(TrialsForTotalVariation, KeepWhatTheyPromise) {
     return count / kRepeats;
   };
   const double error = std::sqrt(0.8 * 0.2 / kRepeats);
-  EXPECT_NEAR(found(truth, 11), 0.8, 4 * error);
-  EXPECT_LE(found(base, 12), 0.05 + 4 * std::sqrt(0.05 * 0.95 / kRepeats));
+  const double seen = found(truth, 11), without = found(base, 12);
+  EXPECT_NEAR(seen, 0.8, 4 * error);
+  EXPECT_LE(without, 0.05 + 4 * std::sqrt(0.05 * 0.95 / kRepeats));
+  record("gates", n, seen, without);
   // The least that so many trials show is what they were asked for.
   EXPECT_NEAR(smallest_total_variation(gates, n, kGoal, 1).value(), 0.2, 0.01);
 }
@@ -233,8 +245,10 @@ TEST(TrialsForTwo, KeepWhatTheyPromise) {
           judge({sampled(a, n, seed, k), {}}, {sampled(p, n, seed + 1, k), {}}, 399, k).differs();
     return count / kRepeats;
   };
-  EXPECT_NEAR(found(b, 21), 0.8, 4 * std::sqrt(0.8 * 0.2 / kRepeats));
-  EXPECT_LE(found(a, 31), 0.05 + 4 * std::sqrt(0.05 * 0.95 / kRepeats));
+  const double seen = found(b, 21), without = found(a, 31);
+  EXPECT_NEAR(seen, 0.8, 4 * std::sqrt(0.8 * 0.2 / kRepeats));
+  EXPECT_LE(without, 0.05 + 4 * std::sqrt(0.05 * 0.95 / kRepeats));
+  record("two", n, seen, without);
   EXPECT_FALSE(trials_for_two(first, first.shares, kGoal, 1));
 }
 
