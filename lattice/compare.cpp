@@ -13,6 +13,7 @@
 
 #include "dynamics/random.h"
 #include "lattice/draws.h"
+#include "lattice/gate_statistics.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -20,99 +21,10 @@ namespace {
 using dynamics::Purpose;
 using dynamics::Random;
 
-/// Rows of the streams of Purpose::comparison: one for each use, so that no two share their draws.
-enum Use : std::uint64_t {
-  kDeals = 0,
-  kExactDraws = 1,
-  kSamples = 2,
-  kSwaps = 3,
-  kPooledDraws = 4,
-  kJudgements = 5
-};
-
 void require_same_shape(Eigen::Index rows_a, Eigen::Index cols_a, Eigen::Index rows_b,
                         Eigen::Index cols_b) {
   if (rows_a != rows_b || cols_a != cols_b)
     throw std::invalid_argument("compare: the two fields differ in size");
-}
-
-/// The gates that either distribution can reach, and the distances between them.
-struct Support {
-  std::vector<Eigen::Index> gates;  // linear index
-  Eigen::MatrixXd distance;
-};
-
-Support support_of(const CellProbabilities& pooled) {
-  Support s;
-  for (Eigen::Index i = 0; i < pooled.size(); ++i)
-    if (pooled.data()[i] > 0.0) s.gates.push_back(i);
-  return s;
-}
-
-/// Fills in the distances between the gates.
-Support with_distances(Support s, Eigen::Index columns) {
-  const auto n = static_cast<Eigen::Index>(s.gates.size());
-  s.distance.resize(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const auto dx = static_cast<double>(s.gates[i] % columns - s.gates[j] % columns);
-      const auto dy = static_cast<double>(s.gates[i] / columns - s.gates[j] / columns);
-      s.distance(i, j) = std::hypot(dx, dy);
-    }
-  return s;
-}
-
-Support affordable_support_of(const CellProbabilities& pooled) {
-  Support s = support_of(pooled);
-  return s.gates.size() <= kMostEnergyGates ? with_distances(std::move(s), pooled.cols()) : s;
-}
-
-/// NaN for a support without distances.
-double energy_of(const Eigen::VectorXd& difference, const Support& s) {
-  if (s.distance.size() == 0) return std::numeric_limits<double>::quiet_NaN();
-  return -difference.dot(s.distance * difference);
-}
-
-Eigen::VectorXd on_support(const CellProbabilities& p, const Support& s) {
-  Eigen::VectorXd v(static_cast<Eigen::Index>(s.gates.size()));
-  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = p.data()[s.gates[i]];
-  return v;
-}
-
-/// Gates of a smaller expected share than this are rare in a sample of n: under 5 trials expected.
-/// 0, none, when nearly all would be.
-double rare_share(const Eigen::VectorXd& expected, std::int64_t n) {
-  const double rare = 5.0 / static_cast<double>(n);
-  return (expected.array() < rare).select(expected, 0.0).sum() < 0.5 ? rare : 0.0;
-}
-
-/// Statistics that grow with the difference.
-struct Statistics {
-  double chi_squared = 0.0, total_variation = 0.0, energy = 0.0;
-};
-
-/// a, b: shares on the support; `expected`: shares against whose sampling noise a difference
-/// counts; gates of a smaller expected share than `rare` count as one.
-Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
-                      const Eigen::VectorXd& expected, double rare, const Support& support) {
-  const Eigen::VectorXd difference = a - b;
-  Statistics s;
-  // Rare gates count as one: alone, a single trial in one of them would outweigh all others.
-  double rare_difference = 0.0, rare_expected = 0.0;
-  for (Eigen::Index i = 0; i < difference.size(); ++i) {
-    if (expected[i] < rare) {
-      rare_difference += difference[i];
-      rare_expected += expected[i];
-    } else {
-      s.chi_squared += difference[i] * difference[i] / expected[i];
-    }
-  }
-  if (rare_difference != 0.0)
-    s.chi_squared += rare_expected > 0.0 ? rare_difference * rare_difference / rare_expected
-                                         : std::numeric_limits<double>::infinity();
-  s.total_variation = 0.5 * difference.cwiseAbs().sum();
-  s.energy = energy_of(difference, support);
-  return s;
 }
 
 /// p-values and the null's total variation over `null_draws` calls of draw(k), in any order.
@@ -151,15 +63,48 @@ Eigen::VectorXd drawn_counts(const std::vector<double>& cumulative, std::int64_t
   return counts;
 }
 
-/// Shares of `n` draws from other shares, as a few binomials.
-Eigen::VectorXd drawn_shares(const Eigen::VectorXd& p, std::int64_t n, Random& random) {
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(p.size()));
-  multinomial(n, {p.data(), counts.size()}, counts, random);
-  Eigen::VectorXd drawn(p.size());
-  for (Eigen::Index i = 0; i < p.size(); ++i)
-    drawn[i] = static_cast<double>(counts[static_cast<std::size_t>(i)]) / static_cast<double>(n);
-  return drawn;
-}
+/// Two samples, whose trials are dealt out anew for the null of a permutation test. Of more than
+/// kMostDealt together, both are drawn from the pooled shares instead.
+class TwoSamples {
+ public:
+  /// `pooled`: counts of both together in these places, `shares` of all; the samples' sizes.
+  TwoSamples(const CellCounts& pooled, Eigen::VectorXd shares,
+             const std::vector<Eigen::Index>& places, std::int64_t first, std::int64_t second)
+      : shares_(std::move(shares)), first_(first), second_(second) {
+    if (!are_dealt()) return;
+    trials_.reserve(static_cast<std::size_t>(first + second));
+    for (std::size_t i = 0; i < places.size(); ++i)
+      trials_.insert(trials_.end(), static_cast<std::size_t>(pooled.data()[places[i]]),
+                     static_cast<std::int32_t>(i));
+  }
+
+  [[nodiscard]] bool are_dealt() const { return first_ + second_ <= kMostDealt; }
+
+  /// Shares of the first and of the second sample.
+  [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::VectorXd> anew(Random& random) const {
+    const auto n = static_cast<double>(first_), m = static_cast<double>(second_);
+    if (!are_dealt()) {
+      Eigen::VectorXd of_first = drawn_shares(shares_, first_, random);
+      return {std::move(of_first), drawn_shares(shares_, second_, random)};
+    }
+    // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
+    const bool first_is_smaller = first_ <= second_;
+    std::vector<std::int32_t> deck = trials_;
+    Eigen::VectorXd hand = Eigen::VectorXd::Zero(shares_.size());
+    for (std::int64_t i = 0; i < std::min(first_, second_); ++i) {
+      const std::int64_t j = i + random.below(first_ + second_ - i);
+      std::swap(deck[static_cast<std::size_t>(i)], deck[static_cast<std::size_t>(j)]);
+      hand[deck[static_cast<std::size_t>(i)]] += 1.0;
+    }
+    const Eigen::VectorXd rest = shares_ * static_cast<double>(first_ + second_) - hand;
+    return {(first_is_smaller ? hand : rest) / n, (first_is_smaller ? rest : hand) / m};
+  }
+
+ private:
+  Eigen::VectorXd shares_;
+  std::int64_t first_, second_;
+  std::vector<std::int32_t> trials_;  // every pooled trial, as its place
+};
 
 }  // namespace
 
@@ -270,36 +215,12 @@ Comparison compare(const CellCounts& sample, const CellCounts& other, std::int64
   const double rare = rare_share(expected, std::min(n, m));
   const Statistics seen =
       statistics(on_support(a, support), on_support(b, support), expected, rare, support);
-  if (n + m > kMostDealt) {
-    fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-      Random random(Purpose::comparison, {seed, kPooledDraws, static_cast<std::uint64_t>(k)});
-      const Eigen::VectorXd of_a = drawn_shares(expected, n, random);
-      return statistics(of_a, drawn_shares(expected, m, random), expected, rare, support);
-    });
-    return c;
-  }
-  std::vector<std::int32_t> trials;  // every pooled trial, as its place in the support
-  trials.reserve(n + m);
-  for (std::size_t i = 0; i < support.gates.size(); ++i)
-    trials.insert(trials.end(), pooled_counts.data()[support.gates[i]],
-                  static_cast<std::int32_t>(i));
+  const TwoSamples both(pooled_counts, expected, support.gates, n, m);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, kDeals, static_cast<std::uint64_t>(k)});
-    // Deal out the smaller hand only (Fisher-Yates); the rest is the other hand.
-    const bool first_is_smaller = n <= m;
-    const std::int64_t small = std::min(n, m);
-    std::vector<std::int32_t> deck = trials;
-    Eigen::VectorXd hand = Eigen::VectorXd::Zero(expected.size());
-    for (std::int64_t i = 0; i < small; ++i) {
-      const std::int64_t j = i + random.below(n + m - i);
-      std::swap(deck[i], deck[j]);
-      hand[deck[i]] += 1.0;
-    }
-    const Eigen::VectorXd rest = expected * static_cast<double>(n + m) - hand;
-    const Eigen::VectorXd& of_a = first_is_smaller ? hand : rest;
-    const Eigen::VectorXd& of_b = first_is_smaller ? rest : hand;
-    return statistics(of_a / static_cast<double>(n), of_b / static_cast<double>(m), expected, rare,
-                      support);
+    Random random(Purpose::comparison,
+                  {seed, both.are_dealt() ? kDeals : kPooledDraws, static_cast<std::uint64_t>(k)});
+    const auto [of_a, of_b] = both.anew(random);
+    return statistics(of_a, of_b, expected, rare, support);
   });
   return c;
 }
@@ -407,8 +328,34 @@ std::vector<Outcome> outcomes_of(const markov::FinalDistribution& prediction,
 }
 
 constexpr std::size_t kGateTests = 3;
-using Tests =
-    std::array<double, kGateTests + markov::kEndings>;  // statistics, as Judgement lists them
+/// Statistics, as Judgement lists them; NaN: not asked for.
+using Tests = std::array<double, kGateTests + markov::kEndings>;
+
+Tests nothing_asked() {
+  Tests t;
+  t.fill(std::numeric_limits<double>::quiet_NaN());
+  return t;
+}
+
+void add_gates(Tests& t, const Statistics& s) {
+  t[0] = s.total_variation;
+  t[1] = s.energy;
+  t[2] = s.chi_squared;
+}
+
+template <class Shares>
+void add_endings(Tests& t, const Shares& a, const Shares& b) {
+  for (std::size_t e = 0; e < markov::kEndings; ++e) t[kGateTests + e] = std::abs(a[e] - b[e]);
+}
+
+using Endings = std::array<double, markov::kEndings>;
+
+Endings shares_of(const SeenEndings& seen) {
+  Endings shares{};
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    shares[e] = static_cast<double>(seen.endings[e]) / static_cast<double>(seen.trials());
+  return shares;
+}
 
 /// The verdict on the last row, which was seen; the rows before it are the null's.
 Judgement judgement_of(const std::vector<Tests>& all) {
@@ -420,6 +367,7 @@ Judgement judgement_of(const std::vector<Tests>& all) {
   j.null_draws = std::ssize(all) - 1;
   std::tie(j.chance_total_variation, j.chance_total_variation_95) = mean_and_95(tv);
   j.p = looked.p;
+  j.single_level = looked.single_level(Judgement::kLevel);
   j.total_variation = looked.tests[0];
   j.energy = looked.tests[1];
   j.chi_squared = looked.tests[2];
@@ -429,17 +377,30 @@ Judgement judgement_of(const std::vector<Tests>& all) {
 
 }  // namespace
 
+std::int64_t SeenEndings::trials() const {
+  return has_gates() ? final_gates.sum()
+                     : std::accumulate(endings.begin(), endings.end(), std::int64_t{0});
+}
+
+bool SeenEndings::has_endings() const {
+  return std::any_of(endings.begin(), endings.end(), [](std::int64_t n) { return n > 0; });
+}
+
 Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
                 const std::vector<markov::FinalDistribution>& replicates, std::int64_t null_draws,
                 std::uint64_t seed) {
   const CellProbabilities& base = prediction.final_cells;
-  require_same_shape(seen.final_gates.rows(), seen.final_gates.cols(), base.rows(), base.cols());
+  if (seen.has_gates())
+    require_same_shape(seen.final_gates.rows(), seen.final_gates.cols(), base.rows(), base.cols());
   if (null_draws < 1 || replicates.empty())
     throw std::invalid_argument("judge: needs draws and a resampled matrix at least");
   for (const auto& r : replicates)
     require_same_shape(r.final_cells.rows(), r.final_cells.cols(), base.rows(), base.cols());
-  const CellProbabilities sample = shares(seen.final_gates);
-  const std::int64_t n = seen.final_gates.sum();
+  const std::int64_t n = seen.trials();
+  if (n < 1) throw std::invalid_argument("judge: a sample without trials");
+  const CellProbabilities sample =
+      seen.has_gates() ? shares(seen.final_gates)
+                       : CellProbabilities(CellProbabilities::Zero(base.rows(), base.cols()));
   const auto trials = static_cast<double>(n);
 
   CellProbabilities reached = sample + base;
@@ -451,28 +412,24 @@ Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& predic
   std::vector<double> weights;
   for (const Outcome& o : outcomes) weights.push_back(o.probability);
 
-  const auto tests = [&](const Eigen::VectorXd& gates,
-                         const std::array<double, markov::kEndings>& endings,
+  const auto tests = [&](const Eigen::VectorXd& gates, const Endings& endings,
                          const markov::FinalDistribution& against) {
-    const Statistics s =
-        statistics(gates, on_support(against.final_cells, support), expected, rare, support);
-    Tests t{s.total_variation, s.energy, s.chi_squared};
-    for (std::size_t e = 0; e < markov::kEndings; ++e)
-      t[kGateTests + e] = std::abs(endings[e] - against.endings[e]);
+    Tests t = nothing_asked();
+    if (seen.has_gates())
+      add_gates(
+          t, statistics(gates, on_support(against.final_cells, support), expected, rare, support));
+    if (seen.has_endings()) add_endings(t, endings, against.endings);
     return t;
   };
   std::vector<Tests> all(static_cast<std::size_t>(null_draws) +
                          1);  // the null's, then what was seen
-  std::array<double, markov::kEndings> ended{};
-  for (std::size_t e = 0; e < markov::kEndings; ++e)
-    ended[e] = static_cast<double>(seen.endings[e]) / trials;
-  all.back() = tests(on_support(sample, support), ended, prediction);
+  all.back() = tests(on_support(sample, support), shares_of(seen), prediction);
   tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kJudgements, static_cast<std::uint64_t>(k)});
     std::vector<std::int64_t> counts(weights.size());
     multinomial(n, weights, counts, random);
     Eigen::VectorXd gates = Eigen::VectorXd::Zero(expected.size());
-    std::array<double, markov::kEndings> endings{};
+    Endings endings{};
     for (std::size_t o = 0; o < outcomes.size(); ++o) {
       const double share = static_cast<double>(counts[o]) / trials;
       gates[outcomes[o].place] += share;
@@ -482,6 +439,60 @@ Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& predic
         tests(gates, endings, replicates[static_cast<std::size_t>(k) % replicates.size()]);
   });
 
+  return judgement_of(all);
+}
+
+Judgement judge(const SeenEndings& seen, const SeenEndings& other, std::int64_t null_draws,
+                std::uint64_t seed) {
+  const bool gates = seen.has_gates() && other.has_gates(),
+             endings = seen.has_endings() && other.has_endings();
+  const std::int64_t n = seen.trials(), m = other.trials();
+  if (null_draws < 1) throw std::invalid_argument("judge: needs draws at least");
+  if (n < 1 || m < 1 || !(gates || endings))
+    throw std::invalid_argument("judge: a sample without trials, or nothing in common");
+  if (gates)
+    require_same_shape(seen.final_gates.rows(), seen.final_gates.cols(), other.final_gates.rows(),
+                       other.final_gates.cols());
+
+  const CellCounts pooled_gates =
+      gates ? CellCounts(seen.final_gates + other.final_gates) : CellCounts(CellCounts::Zero(1, 1));
+  const Support support = affordable_support_of(pooled_gates.cast<double>());
+  const Eigen::VectorXd expected =
+      on_support(pooled_gates.cast<double>() / static_cast<double>(n + m), support);
+  const double rare = gates ? rare_share(expected, std::min(n, m)) : 0.0;
+  const TwoSamples both_gates(pooled_gates, expected, support.gates, n, m);
+
+  // The endings, and behind them trials without one (of runs that stopped being finite).
+  CellCounts pooled_endings = CellCounts::Zero(1, markov::kEndings + 1);
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    pooled_endings.data()[e] = seen.endings[e] + other.endings[e];
+  pooled_endings(0, markov::kEndings) = n + m - pooled_endings.sum();
+  std::vector<Eigen::Index> places(markov::kEndings + 1);
+  std::iota(places.begin(), places.end(), 0);
+  const TwoSamples both_endings(
+      pooled_endings,
+      pooled_endings.row(0).transpose().cast<double>().matrix() / static_cast<double>(n + m),
+      places, n, m);
+
+  const auto tests = [&](const auto& of_gates, const auto& a, const auto& b) {
+    Tests t = nothing_asked();
+    if (gates) add_gates(t, statistics(of_gates.first, of_gates.second, expected, rare, support));
+    if (endings) add_endings(t, a, b);
+    return t;
+  };
+  std::vector<Tests> all(static_cast<std::size_t>(null_draws) +
+                         1);  // the null's, then what was seen
+  using Pair = std::pair<Eigen::VectorXd, Eigen::VectorXd>;
+  all.back() = tests(gates ? Pair{on_support(shares(seen.final_gates), support),
+                                  on_support(shares(other.final_gates), support)}
+                           : Pair{},
+                     shares_of(seen), shares_of(other));
+  tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) {
+    Random random(Purpose::comparison, {seed, kDealtJudgements, static_cast<std::uint64_t>(k)});
+    const Pair of_gates = gates ? both_gates.anew(random) : Pair{};
+    const Pair of_endings = endings ? both_endings.anew(random) : Pair{};
+    all[static_cast<std::size_t>(k)] = tests(of_gates, of_endings.first, of_endings.second);
+  });
   return judgement_of(all);
 }
 

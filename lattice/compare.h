@@ -85,10 +85,15 @@ inline constexpr std::int64_t kMostDealt = std::int64_t{1} << 22;
 [[nodiscard]] Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
                                  std::int64_t null_draws, std::uint64_t seed);
 
-/// How trials of the full dynamics ended: where, and how.
+/// How trials of the full dynamics, or of an experiment, ended: where, and how. Of an experiment
+/// either may not have been counted.
 struct SeenEndings {
-  CellCounts final_gates;                                // (rows x columns), all trials
-  std::array<std::int64_t, markov::kEndings> endings{};  // by Ending
+  CellCounts final_gates{};                              // (rows x columns), all trials; or empty
+  std::array<std::int64_t, markov::kEndings> endings{};  // by Ending; or all 0
+
+  [[nodiscard]] bool has_gates() const { return final_gates.size() > 0; }
+  [[nodiscard]] bool has_endings() const;
+  [[nodiscard]] std::int64_t trials() const;
 };
 
 /// One test of "the chain is right": do trials of the dynamics differ from the chain's prediction
@@ -98,12 +103,13 @@ struct Judgement {
   using Test = LookedAt::Test;
   static constexpr double kLevel = 0.05;
 
-  Test total_variation, energy,
-      chi_squared;  // of the final gates; energy NaN above kMostEnergyGates
+  /// Of the final gates; energy NaN above kMostEnergyGates. NaN here and below: not counted.
+  Test total_variation, energy, chi_squared;
   std::array<Test, markov::kEndings> endings;  // |difference of the shares|, by Ending
   double p = 1.0;                              // of all together: the smallest adjusted one
   double chance_total_variation = 0.0;         // mean over the null draws
   double chance_total_variation_95 = 0.0;      // 95 % of them have no more
+  double single_level = 0.0;  // the largest p of one of them alone that is a finding
   std::int64_t null_draws = 0;
 
   /// The verdict; it agrees with every adjusted p-value.
@@ -117,6 +123,14 @@ struct Judgement {
 /// Throws std::invalid_argument for fields of different sizes, no trials or no draws.
 [[nodiscard]] Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
                               const std::vector<markov::FinalDistribution>& replicates,
+                              std::int64_t null_draws, std::uint64_t seed);
+
+/// One test of "both samples come from one distribution", in what both have counted: permutation
+/// test, the pooled trials dealt out anew (of more than kMostDealt together drawn anew). Gates and
+/// endings are dealt out each for themselves, as an experiment may not say which belong together:
+/// p-values adjusted for looking at all are those of independent tables, rather too large
+/// than too small. Throws std::invalid_argument as the other.
+[[nodiscard]] Judgement judge(const SeenEndings& seen, const SeenEndings& other,
                               std::int64_t null_draws, std::uint64_t seed);
 
 }  // namespace gatewalk::lattice

@@ -9,6 +9,19 @@
 
 namespace gatewalk::lattice {
 
+/// The five that a gate chain has, with their names in files and in tables. (It has no way out
+/// backwards; states never sampled are told apart.)
+struct EndingName {
+  markov::Ending ending;
+  const char *key, *name;
+};
+inline constexpr std::array<EndingName, 5> kEndingNames{
+    {{markov::Ending::far_edge, "crossed", "crossed"},
+     {markov::Ending::left_edge, "left_side", "left side"},
+     {markov::Ending::right_edge, "right_side", "right side"},
+     {markov::Ending::trapped, "trapped", "trapped"},
+     {markov::Ending::cut_off, "cut_off", "cut off"}}};
+
 /// Shares of all, with 95 % intervals (NaN: none), by markov::Ending.
 struct EndingShares {
   std::array<double, markov::kEndings> share{};

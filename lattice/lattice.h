@@ -11,6 +11,7 @@
 ///   independence.h, gates_ahead.h  does a chain forget what matters?
 ///   ending_shares.h how trials, walks or a prediction end, with intervals
 ///   draws.h       binomial and multinomial counts
+///   power.h       how many trials show a difference
 ///
 /// Included by name: scene/ (scene files, bins, matrices of a scene), study/ (what commands compute).
 // clang-format on
@@ -24,4 +25,5 @@
 #include "lattice/independence.h"
 #include "lattice/looked_at.h"
 #include "lattice/matrix_noise.h"
+#include "lattice/power.h"
 #include "lattice/reference.h"

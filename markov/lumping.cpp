@@ -9,9 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "markov/absorbing.h"
-#include "markov/field_states.h"
-#include "markov/sum.h"
+#include "markov/totals.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -122,34 +120,17 @@ Lumping lump(const Chain& chain, const std::vector<int>& group_of,
 
 std::vector<double> expected_visits(const FieldChain& chain, const Field& field, const Start& start,
                                     int max_cells) {
-  constexpr int kMostStates = 10'000'000;
-  constexpr int kMostSteps = 1'000'000;
-  constexpr double kTolerance = 1e-13;
-  validate(chain, field, start, max_cells);
-  const FieldStates f = field_states(chain, field, {start}, kMostStates);
-  std::vector<double> visits(f.states.size()), now(visits), next(visits);
-  now.front() = 1.0;
-  double walking = 1.0;
-  for (int step = 0; max_cells == 0 || step < max_cells; ++step) {
-    if (walking <= kTolerance) break;
-    if (step == kMostSteps)
-      throw std::runtime_error("expected visits: after " + std::to_string(step) +
-                               " steps a share of " + std::to_string(walking) + " still walks");
-    std::fill(next.begin(), next.end(), 0.0);
-    for (std::size_t s = 0; s < now.size(); ++s) visits[s] += now[s];
-    for (const FieldStates::Draw& draw : f.draws)  // next = now Q
-      if (!draw.is_end)
-        next[static_cast<std::size_t>(draw.to)] +=
-            now[static_cast<std::size_t>(draw.from)] * draw.p;
-    std::swap(now, next);
-    CompensatedSum sum;
-    for (const double mass : now) sum += mass;
-    walking = sum.value();
-  }
-  std::vector<double> of_input(static_cast<std::size_t>(chain.inputs()));
-  for (std::size_t s = 0; s < visits.size(); ++s)
-    of_input[static_cast<std::size_t>(f.states[s].input)] += visits[s];
-  return of_input;
+  std::vector<double> visits(static_cast<std::size_t>(chain.inputs()), 0.0);
+  const WalkTotals totals =
+      walk_totals(chain, field, start, max_cells, {},
+                  [&](int, std::int64_t, int input, double share) {
+                    visits[static_cast<std::size_t>(input)] += share;
+                  },
+                  1e-13);
+  if (totals.remainder > 1e-13)
+    throw std::runtime_error("expected visits: a share of " + std::to_string(totals.remainder) +
+                             " still walks");
+  return visits;
 }
 
 LumpingError lumping_error(const FieldChain& fine, const FieldChain& lumped,

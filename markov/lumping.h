@@ -30,9 +30,8 @@ struct Lumping {
 [[nodiscard]] Lumping lump(const Chain& chain, const std::vector<int>& group_of,
                            const std::vector<double>& weights);
 
-/// Expected visits of each input state (inputs), over all cells; max_cells 0: no limit. Step by
-/// step until at most 1e-13 of the walks are left: throws std::runtime_error if 10^6 steps do not
-/// do.
+/// Expected visits of each input state (inputs), over all cells (walk_totals); max_cells 0: no
+/// limit. Throws std::runtime_error where more than 1e-13 of the walks never end.
 [[nodiscard]] std::vector<double> expected_visits(const FieldChain& chain, const Field& field,
                                                   const Start& start, int max_cells = 0);
 

@@ -308,6 +308,7 @@ holds '([.expected_visits[][]] | add) as $visits | .expected_gates - $visits | f
 holds '(.expected_visits | length) == 4 and (.expected_visits[0] | length) == 9' analysis.json
 holds '(.expected_seconds / .direct.costs.all.mean_seconds - 1 | fabs) < 0.06 and (.expected_work_J / .direct.costs.all.mean_work_J - 1 | fabs) < 0.08' analysis.json
 holds '.by_ending.all.kolmogorov_distance < 0.08 and .by_ending.crossed.mean_seconds > 0' analysis.json
+holds '.lumping.error.final_gates > 0 and .lumping.largest_difference > 0' analysis.json
 holds '.quasi_stationary | .survival_per_gate < 1 and .spectral_gap > 0 and ((.states | add) - 1 | fabs) < 1e-9' analysis.json
 holds '(.sensitivities.parameters | length) >= 14 and .sensitivities.gate_runs > 8000 and .paths_complete and (.sensitivities.less_trapping | length) == 4' analysis.json
 holds '(.paths | length) == 5 and .paths[0].probability > .paths[4].probability and .paths[0].gates[0] == {"i_x": 0, "i_y": 0}' analysis.json
@@ -617,6 +618,79 @@ many=$(peak "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 
 "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --start 4,5,10 --json validate.json --quiet
 holds '.starts | length == 1' validate.json
 holds '.starts[0].exact | .p_values.chi_squared > 0 and .rmse_per_100_floor > 0 and .total_variation >= 0' validate.json
+
+# An experiment's counts: read as people write them, held against dynamics and chain, one verdict.
+"$gatewalk" lattice "$scenes/field.toml" --trials 60 --seed 77 --json sixty.json --quiet
+jq -r '["ending", "count"], (.endings | to_entries[] | [.key, .value]) | @csv' sixty.json >ends.csv
+jq -r '["gate_x", "gate_y", "count"], (.final_gates | to_entries[] | .key as $y | .value | to_entries[] | [.key - 4, $y, .value]) | @csv' sixty.json >gates.csv
+beside=(validate "$scenes/field.toml" --matrix m.nc --null-draws 499)
+"$gatewalk" "${beside[@]}" --observed ends.csv --observed gates.csv --trials 2000 --json observed.json >observed.txt 2>err.txt || fail "validate --observed: $(cat err.txt)"
+[ -s err.txt ] && fail "validate --observed warns of: $(cat err.txt)"
+# The scene's own start, not Table IV's four; and the sixty trials themselves.
+holds '.starts | length == 1 and .[0].start.d_m == 0 and .[0].start.vy_m_per_s == 15' observed.json
+jq -s '.[0].observed as $seen | .[1] | $seen.endings == .endings and $seen.final_gates == .final_gates and $seen.endings_95 == .endings_95' observed.json sixty.json | grep -q true ||
+  fail "validate --observed: not what was observed"
+holds '.observed | .trials == 60 and .files == ["ends.csv", "gates.csv"] and (.against_dynamics.differs | not) and (.verdict | startswith("these 60 trials do not differ from the dynamics by more than chance (p = "))' observed.json
+holds '.observed.against_dynamics | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .null_draws == 499 and (.final_gates | .corrcoef_floor > 0 and .total_variation > 0) and .p_endings.trapped > 0' observed.json
+holds '.observed.smallest_difference | .power == 0.8 and .level == 0.05 and .final_gates_total_variation > 0.1 and .endings_total_variation > 0.05 and (.endings_percentage_points | length == 5 and .trapped.more > 5 and .trapped.fewer > 5 and .crossed.fewer == null)' observed.json
+grep -q '^these 60 trials do not differ' observed.txt || fail "validate --observed: no verdict in the table"
+head -1 observed.txt | grep -q '^Observed: 60 trials, beside 2000 of the full dynamics' || fail "validate --observed: the experiment does not come first"
+# All else is as without it.
+"$gatewalk" "${beside[@]}" --trials 2000 --start 0,0,15 --json without.json --quiet
+jq -S 'walk(if type == "object" then del(.seconds, .speed_ratio, .made_by, .observed) else . end)' observed.json >with.txt
+jq -S 'walk(if type == "object" then del(.seconds, .speed_ratio, .made_by) else . end)' without.json | cmp -s - with.txt || fail "--observed changes what validate says beside it"
+# One table alone; the number of trials follows; a difference in plain words.
+printf 'ending,count\ncrossed,60\n' >far.csv
+expect 0 '^these 60 trials differ from the dynamics by more than chance (p = 0.00[0-9]): more cross, 100.00 ' "$gatewalk" "${beside[@]}" --observed far.csv --json far.json
+grep -q 'no row for .*trapped, which counts as 0 (dynamics: ' out.txt || fail "validate --observed: an ending that is left out is not named"
+holds '.trials == 10000 and (.observed | (has("final_gates") | not) and .against_dynamics.p_adjusted.total_variation == null and .against_chain.differs)' far.json
+printf '\357\273\277# roaches\r\n\r\n "gate_y" ,gate_x,"count"\r\n8, -4 ,"60"\r\n' >corner.csv
+expect 0 '^these 60 trials differ from the dynamics by more than chance (p = 0.002): they end in other gates, total variation 1.000' "$gatewalk" "${beside[@]}" --trials 2000 --observed corner.csv --start 4,5,10 --json corner.json
+holds '.starts[0].start.d_m == 4 and .observed.final_gates[8][0] == 60 and (.observed | has("endings") | not)' corner.json
+expect 0 'trials 100 for 60 observed: .* take 1200 or more' "$gatewalk" "${beside[@]}" --trials 100 --observed gates.csv
+# Refused before any work, naming file, line, column and what is allowed.
+refused() { printf "$2" >bad.csv; expect 2 "$1" timeout 20 "$gatewalk" validate "$scenes/field.toml" --matrix-trials 1e12 --observed bad.csv; }
+refused 'bad.csv:1: unknown column "gatex": the first line must be gate_x,gate_y,count or ending,count' 'gatex,gate_y,count\n'
+refused 'bad.csv:1: the columns must be' 'gate_x,count\n0,1\n'
+refused 'bad.csv:2: column gate_x: "5" is not permitted: must be a whole number from -4 to 4 (field.columns = 9)' 'gate_x,gate_y,count\n5,0,1\n'
+refused 'bad.csv:2: column gate_y: "9" is not permitted: must be a whole number from 0 to 8 (field.rows = 9)' 'gate_x,gate_y,count\n4,9,1\n'
+refused 'bad.csv:2: column count: "-1" is not permitted: must be a whole number from 0' 'gate_x,gate_y,count\n4,8,-1\n'
+refused 'bad.csv:2: column count: "1.5" is not permitted' 'ending,count\ncrossed,1.5\n'
+refused 'bad.csv:2: column ending: "turned back" is not permitted: must be one of crossed, left_side, right_side, trapped, cut_off' 'ending,count\nturned back,1\n'
+refused 'bad.csv:3: gate_x = 0, gate_y = 0 was given in line 2 already' 'gate_x,gate_y,count\n0,0,1\n0,0,2\n'
+refused 'bad.csv:3: ending trapped was given already' 'ending,count\ntrapped,1\ntrapped,1\n'
+refused 'bad.csv: has no trial' 'ending,count\ntrapped,0\n'
+refused 'bad.csv: is empty' ''
+expect 2 'ends.csv has 60\|far.csv: ends.csv has endings too' "$gatewalk" "${beside[@]}" --observed ends.csv --observed far.csv
+printf 'ending,count\ncrossed,59\n' >fewer.csv
+expect 2 'gates.csv has 60 trials, fewer.csv 59: both must be of the same trials' "$gatewalk" "${beside[@]}" --observed gates.csv --observed fewer.csv
+expect 2 'observed nosuch.csv: cannot be read' "$gatewalk" "${beside[@]}" --observed nosuch.csv
+expect 2 'belong to one start, --start gives 2' "$gatewalk" "${beside[@]}" --observed ends.csv --start 0,0,15 --start 4,5,10
+expect 2 'are the same file' "$gatewalk" "${beside[@]}" --observed gates.csv --observed ends.csv --json ends.csv
+
+# power: how many trials; what so many show; two scenes.
+power=(power "$scenes/field.toml" --accuracy 0.05)
+"$gatewalk" "${power[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --versus beams.stiffness_right_Nm_per_rad=200 --json power.json >power.txt 2>err.txt || fail "power: $(cat err.txt)"
+holds '.power == 0.8 and .level == 0.05 and .trials == 60 and .error_95 <= 0.05 and ((.endings | add) - 1 | fabs) < 1e-6' power.json
+holds '[.from_prediction.endings[] | length == 4 and (map(.trials) | . == (sort | reverse)) and (map(.trials_if_all_are_looked_at >= .trials) | all) and (map(.power) | . == sort)] | all' power.json
+holds '.from_prediction.endings | [.trapped[].percentage_points] == [2, 5, 10, 20] and .trapped[3].trials > 20 and .trapped[3].trials < 80' power.json
+holds '.from_prediction.final_gates | [.[].total_variation] == [0.05, 0.1, 0.2] and .[0].trials > 3 * .[1].trials and .[1].trials > 3 * .[2].trials and .[2].power < 0.8' power.json
+holds '.smallest_difference | .final_gates_total_variation > 0.2 and .endings_percentage_points.trapped.more > 10 and .endings_percentage_points_if_all_are_looked_at.trapped.more > .endings_percentage_points.trapped.more' power.json
+holds '.versus | .set == ["beams.stiffness_left_Nm_per_rad=200", "beams.stiffness_right_Nm_per_rad=200"] and (.scene | test("stiffness_left_Nm_per_rad = 200")) and .apart.final_gates.trials > 2 and (.apart.endings | length) == 5' power.json
+grep -q '^Trials needed, for 80 % power at a level of 5 %' power.txt || fail "power: no table"
+grep -q '^Versus beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right' power.txt || fail "power: does not name the other scene"
+"$gatewalk" "${power[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --versus beams.stiffness_right_Nm_per_rad=200 --json again.json --threads 1 --quiet
+cmp -s power.json again.json || fail "power: another number of threads gave another file"
+# The same prediction as predict's.
+"$gatewalk" predict "$scenes/field.toml" --accuracy 0.05 --json predicted.json --quiet
+jq -s '.[0].endings == .[1].endings and .[0].final_gates == .[1].final_gates and .[0].error_95 == .[1].error_95' power.json predicted.json | grep -q true || fail "power: not the prediction of predict"
+expect 2 'power 1.2: must lie in \[0.5, 0.99\]' "$gatewalk" "${power[@]}" --power 1.2
+expect 2 'level 0: must lie in \[0.01, 0.25\]' "$gatewalk" "${power[@]}" --level 0
+expect 2 'trials 0: must be at least 1 and at most 100000' "$gatewalk" "${power[@]}" --trials 0
+expect 2 'versus: field.columns and field.rows must stay' "$gatewalk" "${power[@]}" --versus field.rows=5
+expect 2 '^gatewalk: --versus forces.randm_N=20: unknown key forces.randm_N; the closest known key is forces.random_N' "$gatewalk" "${power[@]}" --versus forces.randm_N=20
+expect 2 'fidelity = "all" is not permitted for a chain' "$gatewalk" "${power[@]}" --set field.fidelity=all --set run.method=moreau
+expect 2 'start.y_m must be 0' "$gatewalk" "${power[@]}" --set start.y_m=1
 
 # chart-chain: three files in a folder that it makes; errors and their parts are distributions'.
 chart() { "$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 150 --runs-limit 1e3 --bins 0.5 --bins 1 \

@@ -1,18 +1,26 @@
+#include <algorithm>
+
 #include "cli/arguments.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
+#include "cli/render/observed.h"
 #include "cli/render/states.h"
 #include "cli/render/validation.h"
 
 namespace gatewalk::cli {
 namespace {
 
+/// Of an experiment's trials: so many of the dynamics, and the chance in these is small beside its
+/// own. And at least so many.
+constexpr std::int64_t kTrialsPerObserved = 20, kLeastBesideObserved = 10'000;
+
 /// A matrix to validate, and what its file or its making says of it.
 struct Subject {
   lattice::SceneMatrix matrix;
   std::vector<lattice::PaperStart> starts;
+  std::optional<lattice::Observed> observed;
   Json status, settled, states;
 };
 
@@ -22,27 +30,57 @@ lattice::SceneMatrix matrix_of(lattice::Scene scene, std::vector<dynamics::Trans
   return m;
 }
 
+/// An experiment is of the scene's start, or of the one that is given.
+std::vector<lattice::PaperStart> starts_for(const Options& options, const lattice::Scene& scene) {
+  if (!options.has("observed")) return starts_of(options, scene);
+  auto starts = options.has("start") ? given_starts(options)
+                                     : std::vector<lattice::PaperStart>{lattice::own_start(scene)};
+  if (starts.size() > 1)
+    throw UsageError("--observed: the counts belong to one start, --start gives " +
+                     std::to_string(starts.size()));
+  return starts;
+}
+
+std::optional<lattice::Observed> experiment_of(const Options& options,
+                                               const lattice::Scene& scene) {
+  if (!options.has("observed")) return {};
+  return lattice::read_observed(options.texts("observed"), scene.field);
+}
+
+/// What the trials cannot show, or have not been asked.
+void warn_of_experiment(const Options& options, const lattice::Observed& observed,
+                        const lattice::StartValidation& v) {
+  const std::int64_t n = observed.seen.trials();
+  if (options.has("trials") && v.dynamics.trials < kTrialsPerObserved * n)
+    options.warn("--trials " + std::to_string(v.dynamics.trials) + " for " + std::to_string(n) +
+                 " observed: chance in the dynamics' own trials hides differences too; take " +
+                 std::to_string(kTrialsPerObserved * n) + " or more");
+  options.warn(endings_not_listed(observed, v));
+}
+
 Subject read_subject(const Options& options) {
   const std::string path = options.text("matrix");
   lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
-  auto starts = starts_of(options, m.scene);
+  auto starts = starts_for(options, m.scene);
   lattice::require_inside(starts, m.scene);
   (void)lattice::entries_at(starts);
+  auto observed = experiment_of(options, m.scene);
   add_starts_to(m, path, options, lattice::entries_at(starts));
   require_inside_bins(options, starts, m.scene, m.file.transitions.space);
   Json status = recorded_status(m.file), settled = recorded(m.file, path, "method"),
        states = recorded(m.file, path, "state_space");
-  return {std::move(m), std::move(starts), std::move(status), std::move(settled),
-          std::move(states)};
+  return {std::move(m),      std::move(starts),  std::move(observed),
+          std::move(status), std::move(settled), std::move(states)};
 }
 
 Subject build_subject(const Options& options) {
   const std::int64_t trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
   lattice::Scene scene = options.read_scene();
   const lattice::BinsChoice choice = bins_choice(options, scene, options.has("matrix-trials"));
-  auto starts = starts_of(options, scene);
+  auto starts = starts_for(options, scene);
   lattice::require_inside(starts, scene);
   const auto bodies = lattice::entries_at(starts);
+  auto observed = experiment_of(options, scene);
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   if (tree && options.has("matrix-trials"))
     throw UsageError("--matrix-trials is of runs per state of bins: --bins tree takes --accuracy");
@@ -59,15 +97,23 @@ Subject build_subject(const Options& options) {
     warn_of(options, *chain.prediction, how.accuracy.accuracy);
     Json status = to_json(chain.transitions.front().health),
          states = to_json(chain, how.accuracy.accuracy);
-    return {matrix_of(std::move(scene), std::move(chain.transitions)), std::move(starts),
-            std::move(status), settled ? to_json(*settled) : Json(), std::move(states)};
+    return {matrix_of(std::move(scene), std::move(chain.transitions)),
+            std::move(starts),
+            std::move(observed),
+            std::move(status),
+            settled ? to_json(*settled) : Json(),
+            std::move(states)};
   }
   const lattice::States states = states_of(options, scene, choice, bodies);
   for (const std::string& text : complaints(states)) options.warn(text);
   auto built = lattice::build_matrices(scene, states, trials, options.seed(), options.work());
   Json status = to_json(built.front().health);
-  return {matrix_of(std::move(scene), std::move(built)), std::move(starts), std::move(status),
-          settled ? to_json(*settled) : Json(), to_json(states)};
+  return {matrix_of(std::move(scene), std::move(built)),
+          std::move(starts),
+          std::move(observed),
+          std::move(status),
+          settled ? to_json(*settled) : Json(),
+          to_json(states)};
 }
 
 }  // namespace
@@ -84,11 +130,22 @@ int run_validate(const Arguments& arguments) {
       "In JSON, trials_and_matrix is that verdict; p_values count chance in the trials (and "
       "walks)\n"
       "alone. Last it asks whether the gate before, the visit or the row tell more than the "
-      "state.",
+      "state.\n"
+      "With --observed, counts of an experiment are held against both, and the smallest "
+      "differences\n"
+      "are said that so many trials could have shown.",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.scene();
-  options.add_trials_and_seed("trials of the full dynamics per start");
+  options.add_count("trials", "N",
+                    "trials of the full dynamics per start (default: 100; with --observed 10000, "
+                    "or 20 times as many as were observed)");
+  options.add_seed();
   options.add_strict();
+  options.add_texts("observed", "FILE.csv",
+                    "counts of an experiment from this start, to hold against both: columns "
+                    "gate_x,gate_y,count (final gates, i_x and i_y) or ending,count (crossed, "
+                    "left_side, right_side, trapped, cut_off); a file of each may be given");
+  options.reads("observed", [](const std::string& file) { return file; });
   options.input_file("matrix", "matrix to validate; without it one is built from the scene");
   options.add_count("matrix-trials", "N",
                     "bins: runs per input state of the matrix that is built (default: 100)");
@@ -103,11 +160,12 @@ int run_validate(const Arguments& arguments) {
   options.add_figure("final gates of dynamics and chain, and their difference");
   if (!options.parse(arguments)) return kFine;
   constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
-  lattice::ValidationOptions how{.trials = options.trials(),
+  lattice::ValidationOptions how{.trials = options.has("trials") ? options.trials() : 100,
                                  .walks = {},
                                  .null_draws = {},
                                  .seed = options.seed(),
-                                 .force_memory = options.has("memory")};
+                                 .force_memory = options.has("memory"),
+                                 .observed = {}};
   if (options.has("walks")) how.walks = options.count("walks");
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
   if (const auto starts = given_starts(options);
@@ -122,6 +180,11 @@ int run_validate(const Arguments& arguments) {
             (std::string_view(other) == "bins" ? "has its states already" : "is built already"));
   const dynamics::Stopwatch watch;
   const Subject subject = options.has("matrix") ? read_subject(options) : build_subject(options);
+  if (const auto& observed = subject.observed) {
+    how.observed = observed->seen;
+    if (!options.has("trials"))
+      how.trials = std::max(kLeastBesideObserved, kTrialsPerObserved * observed->seen.trials());
+  }
   const lattice::Scene& scene = subject.matrix.scene;
   const auto matrices = lattice::matrices_of(subject.matrix.file, scene);
   const ValidatedMatrix matrix{matrices,       options.text("matrix"), watch.seconds(),
@@ -130,8 +193,14 @@ int run_validate(const Arguments& arguments) {
   const auto result = lattice::validate_chain(scene, matrices, subject.starts, how, options.work());
 
   Json json = to_json(result, matrix);
+  std::string table = table_of(result, scene, matrix);
+  if (const auto& experiment = result.starts.front().observed) {
+    json["observed"] = to_json(*experiment, result.starts.front(), options.texts("observed"));
+    table = table_of(*experiment, result.starts.front()) + "\n" + table;
+  }
   json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, table_of(result, scene, matrix));
+  options.give_out(json, table);
+  if (subject.observed) warn_of_experiment(options, *subject.observed, result.starts.front());
   const int exit = status_of(options, result.health);
   options.draw([&] { return figure_of(result); });
   return exit;

@@ -26,6 +26,23 @@ Json to_json(const lattice::Comparison& c) {
   return j;
 }
 
+Json to_json(const lattice::Judgement& j) {
+  Json adjusted = {{"total_variation", j.total_variation.p_adjusted},
+                   {"energy_distance", j.energy.p_adjusted},
+                   {"chi_squared", j.chi_squared.p_adjusted}};
+  for (const EndingName& e : kEndingNames)
+    adjusted["endings"][e.key] = j.endings[static_cast<std::size_t>(e.ending)].p_adjusted;
+  adjusted["endings"]["never_sampled"] =
+      j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted;
+  return {{"differs", j.differs()},
+          {"p", j.p},
+          {"level", lattice::Judgement::kLevel},
+          {"p_adjusted", adjusted},
+          {"total_variation_by_chance",
+           {{"mean", j.chance_total_variation}, {"at_95", j.chance_total_variation_95}}},
+          {"null_draws", j.null_draws}};
+}
+
 namespace {
 
 template <class Cells>

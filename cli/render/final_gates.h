@@ -12,11 +12,14 @@
 
 namespace gatewalk::lattice {
 struct Comparison;
-}
+struct Judgement;
+}  // namespace gatewalk::lattice
 
 namespace gatewalk::cli {
 
 [[nodiscard]] Json to_json(const lattice::Comparison& c);
+/// What one test of all statistics counted.
+[[nodiscard]] Json to_json(const lattice::Judgement& j);
 [[nodiscard]] Json grid(const markov::CellCounts& cells);
 [[nodiscard]] Json grid(const markov::CellProbabilities& cells);
 
@@ -61,18 +64,8 @@ struct FieldMap {
 /// is.
 [[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares);
 
-/// The five that a gate chain has, with their names in JSON and in tables. (It has no way out
-/// backwards; states never sampled are told apart.)
-struct EndingName {
-  markov::Ending ending;
-  const char *key, *name;
-};
-inline constexpr std::array<EndingName, 5> kEndingNames{
-    {{markov::Ending::far_edge, "crossed", "crossed"},
-     {markov::Ending::left_edge, "left_side", "left side"},
-     {markov::Ending::right_edge, "right_side", "right side"},
-     {markov::Ending::trapped, "trapped", "trapped"},
-     {markov::Ending::cut_off, "cut_off", "cut off"}}};
+using lattice::EndingName;
+using lattice::kEndingNames;
 /// {"crossed": ..., "left_side": ..., ...}: counts, shares, or [low, high] (null: no interval).
 [[nodiscard]] Json endings(const std::array<std::int64_t, markov::kEndings>& counts);
 [[nodiscard]] Json endings(const std::array<double, markov::kEndings>& shares);

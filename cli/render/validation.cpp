@@ -49,29 +49,11 @@ std::string verdict(const lattice::StartValidation& r) {
   return text;
 }
 
-/// What the one test counted.
-Json to_json(const lattice::Judgement& j, std::int64_t resampled) {
-  Json adjusted = {{"total_variation", j.total_variation.p_adjusted},
-                   {"energy_distance", j.energy.p_adjusted},
-                   {"chi_squared", j.chi_squared.p_adjusted}};
-  for (const EndingName& e : kEndingNames)
-    adjusted["endings"][e.key] = j.endings[static_cast<std::size_t>(e.ending)].p_adjusted;
-  adjusted["endings"]["never_sampled"] =
-      j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted;
-  return {{"differs", j.differs()},
-          {"p", j.p},
-          {"level", lattice::Judgement::kLevel},
-          {"p_adjusted", adjusted},
-          {"total_variation_by_chance",
-           {{"mean", j.chance_total_variation}, {"at_95", j.chance_total_variation_95}}},
-          {"null_draws", j.null_draws},
-          {"resampled_matrices", resampled}};
-}
-
 Json to_json(const lattice::StartValidation& r) {
   Json j;
   j["verdict"] = verdict(r);
-  j["trials_and_matrix"] = to_json(r.judgement, r.resampled);
+  j["trials_and_matrix"] = cli::to_json(r.judgement);
+  j["trials_and_matrix"]["resampled_matrices"] = r.resampled;
   j["start"] = {{"d_m", r.start.d},
                 {"vx_m_per_s", r.start.vx},
                 {"vy_m_per_s", r.start.vy},

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
+#include "lattice/scene/csv.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/toml_text.h"
 
@@ -54,34 +54,23 @@ std::vector<MapRow> rows_of_file(const TerrainSetting& given) {
     throw SceneError(given.where() + ": terrain.map_file" + shown_value(*given.value) +
                      " is not permitted: must be the name of a file, such as \"terrain.csv\"");
   const std::string path = (std::filesystem::path(given.folder) / name->get()).string();
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw SceneError(given.where() + ": terrain.map_file: " + path + " cannot be read");
+  const auto lines = lines_of(path);
+  if (!lines) throw SceneError(given.where() + ": terrain.map_file: " + path + " cannot be read");
   std::vector<MapRow> rows;
-  std::string text;
-  for (std::size_t line = 1; std::getline(file, text); ++line) {
-    if (text.ends_with('\r')) text.pop_back();
-    rows.push_back({text, path + ":" + std::to_string(line)});
-  }
+  for (const std::string& text : *lines)
+    rows.push_back({text, path + ":" + std::to_string(rows.size() + 1)});
   while (!rows.empty() && rows.back().text.empty()) rows.pop_back();
   return rows;
 }
 
 /// The names in a row: separated by commas, or a letter each.
 std::vector<std::string> names_in(const std::string& row, int columns) {
-  std::vector<std::string> names;
   if (columns > 1 && row.find(',') == row.npos) {
+    std::vector<std::string> names;
     for (const char c : row) names.emplace_back(1, c);
     return names;
   }
-  for (std::size_t at = 0; at <= row.size();) {
-    const std::size_t end = std::min(row.find(',', at), row.size());
-    const std::string name = row.substr(at, end - at);
-    const std::size_t first = std::min(name.find_first_not_of(" \t"), name.size());
-    names.push_back(name.substr(first, name.find_last_not_of(" \t") + 1 - first));
-    at = end + 1;
-  }
-  return names;
+  return csv_fields(row).value_or(std::vector{row});
 }
 
 std::string all_names(const Terrain& terrain) {

@@ -26,13 +26,18 @@ std::vector<PaperStart> table_iv(const dynamics::GateParams& p) {
 
 }  // namespace
 
+PaperStart own_start(const Scene& scene) {
+  const dynamics::BodyState& own = scene.start;
+  return {own.x, own.vx, own.vy, {}, {}, own.y};
+}
+
 std::vector<PaperStart> usual_starts(const Scene& scene) {
   const std::vector<PaperStart> papers = table_iv(scene.gate);
   const dynamics::BodyState &own = scene.start, first = papers.front().body();
   const bool the_papers = own.x == 0.0 && own.y == 0.0 && own.vx == 0.0 &&
                           std::abs(own.vy - first.vy) <= 1e-12 * first.vy;
   if (the_papers && !scene.terrain && papers_field(scene)) return papers;
-  return {{own.x, own.vx, own.vy, {}, {}, own.y}};
+  return {own_start(scene)};
 }
 
 std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& starts) {

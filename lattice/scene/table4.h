@@ -18,7 +18,9 @@ struct PaperStart {
   [[nodiscard]] dynamics::BodyState body() const { return {d, y, vx, vy}; }
 };
 
-/// The scene's start, or those of Table IV, in the scene's own units, in the paper's field with the
+/// The scene's start.
+[[nodiscard]] PaperStart own_start(const Scene& scene);
+/// The same, or those of Table IV, in the scene's own units, in the paper's field with the
 /// paper's start.
 [[nodiscard]] std::vector<PaperStart> usual_starts(const Scene& scene);
 /// The bodies of starts of a chain. Throws std::invalid_argument when one does not start on the

@@ -12,6 +12,7 @@
 #include "dynamics/quantile_bins.h"
 #include "dynamics/runs.h"
 #include "lattice/group_spread.h"
+#include "markov/lumping.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -381,6 +382,34 @@ bool is_physical(std::string_view key) {
          key != "contact.impulse_threshold_Ns";
 }
 
+/// The chain with a state for each boundary, and the start's own.
+std::optional<Analysis::Lumped> lumped_to_boundaries(const CostedChain& c, const StateSpace& space,
+                                                     const FieldParams& field) {
+  const markov::Field cells{field.columns, field.rows};
+  std::vector<int> group(static_cast<std::size_t>(c.chain.inputs()), kBoundaries);
+  for (int state = 0; state < space.size(); ++state)
+    if (state != c.start.input)
+      group[static_cast<std::size_t>(state)] = static_cast<int>(space.boundary(state));
+  try {
+    const auto visits = markov::expected_visits(c.chain, cells, c.start, field.max_gates);
+    std::vector<markov::Chain> chains;
+    Analysis::Lumped lumped;
+    for (const markov::Chain& chain : c.chain.chains()) {
+      markov::Lumping of_type = markov::lump(chain, group, visits);
+      lumped.largest = std::max(lumped.largest, of_type.largest);
+      chains.push_back(std::move(of_type.chain));
+    }
+    const auto error =
+        markov::lumping_error(c.chain, c.chain.with(std::move(chains)), group, cells, c.start,
+                              {.max_cells = field.max_gates});
+    lumped.endings = error.endings;
+    lumped.final_gates = error.final_cells;
+    return lumped;
+  } catch (const std::exception&) {  // a boundary without states, walks without end
+    return {};
+  }
+}
+
 /// Throws where the states of all cells take too much memory: some waves of shares and totals, and
 /// chances by draw.
 void require_memory(const CostedChain& c, const FieldParams& field, std::size_t groups) {
@@ -431,7 +460,8 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
                .trapping = {},
                .state_trapping = {},
                .space = space,
-               .parameters = {},
+               .boundaries = {},
+      .parameters = {},
                .parameter_health = {}};
 
   // Means, and the same of eight groups of the trials.
@@ -472,6 +502,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     out.why_not_endless = e.what();
   }
 
+  out.boundaries = lumped_to_boundaries(c, space, field);
   const markov::Chain& first = c.chain.at(c.start.column, c.start.row);
   for (int state = 0; state < space.size(); ++state)
     if (space.boundary(state) == Boundary::enter)

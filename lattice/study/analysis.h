@@ -109,6 +109,12 @@ struct Analysis {
   markov::CellProbabilities passed, trapping;
   std::vector<double> state_trapping;  // the latter by state, in all gates together
   dynamics::StateSpace space;          // of the chain
+  /// One state for each boundary, weighted by visits: how far rows of one group differ at most (a
+  /// mean over groups), and the total variation that it costs; none where it cannot be made.
+  struct Lumped {
+    double largest = 0.0, endings = 0.0, final_gates = 0.0;
+  };
+  std::optional<Lumped> boundaries;
   std::vector<ParameterEffect> parameters;
   dynamics::Health parameter_health;  // of the runs behind them
   double seconds = 0.0, parameter_seconds = 0.0;

@@ -212,7 +212,11 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
           .walks_seconds = walked.seconds,
           .exact_seconds = exact_seconds,
           .force = setup.options.force_memory ? std::optional(run_anew(setup, start, seen.trials))
-                                              : std::nullopt};
+                                              : std::nullopt,
+          .observed = setup.options.observed
+                          ? std::optional(compare_observed(*setup.options.observed, tally, exact,
+                                                           resampled, draws, seed))
+                          : std::nullopt};
 }
 
 /// By state, those of all types one behind the other: the first of those with the same runs.
@@ -238,6 +242,8 @@ Validation validate_chain(const Scene& scene, const std::vector<dynamics::Transi
                           const dynamics::Work& work) {
   if (options.trials < 1 || options.walks.value_or(1) < 1)
     throw std::invalid_argument("validate: needs a trial and a walk at least");
+  if (options.observed && starts.size() != 1)
+    throw std::invalid_argument("validate: an experiment belongs to one start");
   constexpr std::int64_t kMostGates = 100'000;
   if (std::int64_t{scene.field.columns} * scene.field.rows > kMostGates)
     throw std::invalid_argument("validate compares fields of up to " + std::to_string(kMostGates) +

@@ -15,6 +15,7 @@
 #include "lattice/scene/scene.h"
 #include "lattice/scene/table4.h"
 #include "lattice/study/memory.h"
+#include "lattice/study/observed.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 
@@ -69,6 +70,8 @@ struct ValidationOptions {
   std::uint64_t seed = 1;
   /// Runs the trials again with the random force drawn anew at crossings (ForceMemory).
   bool force_memory = false;
+  /// Counts of an experiment from the start, to hold against both; then there is one start.
+  std::optional<SeenEndings> observed{};
 };
 
 /// Everything about one start. Trials, walks and p-values belong to the options' seed.
@@ -86,7 +89,8 @@ struct StartValidation {
   double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;  // total variation of their predictions
   EndingShares dynamics_endings, walks_endings, exact_endings;
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
-  std::optional<ForceMemory> force{};  // if asked for
+  std::optional<ForceMemory> force{};            // if asked for
+  std::optional<ObservedComparison> observed{};  // if there is an experiment
 
   [[nodiscard]] Finding finding() const {
     return finding_of(judgement.differs(), exact_against.total_variation,
@@ -107,9 +111,9 @@ struct Validation {
 inline constexpr std::int64_t kMostRemembered = 100'000;
 
 /// Compares the chain of these matrices, one for each of gates_of(scene).types(), with the full
-/// dynamics from each start. Some 50 predictions of
-/// every gate are kept: throws std::invalid_argument for fields of more than 100 000 gates, and as
-/// chain_start and run_field do.
+/// dynamics from each start. Some 50 predictions of every gate are kept: throws
+/// std::invalid_argument for fields of more than 100 000 gates, for an experiment and several
+/// starts, and as chain_start and run_field do.
 [[nodiscard]] Validation validate_chain(const Scene& scene,
                                         const std::vector<dynamics::Transitions>& matrices,
                                         const std::vector<PaperStart>& starts,

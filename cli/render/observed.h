@@ -1,0 +1,25 @@
+#pragma once
+/// An experiment's counts beside the model, as JSON and as a table.
+
+#include <string>
+#include <vector>
+
+#include "cli/render/json_fwd.h"
+#include "lattice/study/observed.h"
+#include "lattice/study/validation.h"
+
+namespace gatewalk::cli {
+
+/// `v`: the model's side of it. `files`: that it was read from. Its "verdict" is one sentence: does
+/// it differ, in what, how sure.
+[[nodiscard]] Json to_json(const lattice::ObservedComparison& c, const lattice::StartValidation& v,
+                           const std::vector<std::string>& files);
+[[nodiscard]] std::string table_of(const lattice::ObservedComparison& c,
+                                   const lattice::StartValidation& v);
+
+/// Endings that the table of counts has no row of, and the model has: they count as 0. Empty if
+/// there are none.
+[[nodiscard]] std::string endings_not_listed(const lattice::Observed& observed,
+                                             const lattice::StartValidation& v);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,211 @@
+#include "cli/render/power.h"
+
+#include <cmath>
+
+#include "cli/render/final_gates.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using lattice::Effect;
+using lattice::ExperimentOptions;
+
+std::size_t place(const EndingName& e) { return static_cast<std::size_t>(e.ending); }
+
+Json to_json(const lattice::StartAnswer& a) {
+  Json json;
+  json["endings"] = endings(a.final.endings);
+  json["endings_95"] = endings_95(a.endings);
+  json["final_gates"] = grid(a.final.final_cells);
+  json["answer_from"] = a.from_trials ? "trials" : "chain";
+  json["error_95"] = a.error.total_variation;
+  return json;
+}
+
+/// `of_ending`: endings are looked at by themselves or all together.
+Json to_json(const Effect& effect, const ExperimentOptions& options, bool of_ending) {
+  Json json;
+  json[of_ending ? "percentage_points" : "total_variation"] =
+      (of_ending ? 100.0 : 1.0) * effect.difference;
+  json["trials"] = or_null(effect.trials);
+  if (of_ending) json["trials_if_all_are_looked_at"] = or_null(effect.trials_of_all);
+  if (options.trials) json["power"] = or_null(effect.power);
+  json["within_error_of_prediction"] = effect.within_error;
+  return json;
+}
+
+std::string trials_text(const std::optional<std::int64_t>& trials) {
+  return trials ? std::to_string(*trials) : ">" + std::to_string(lattice::kMostPlanned);
+}
+
+/// "29 (41)", with ? where the prediction may be as much off.
+std::string effect_text(const Effect& effect) {
+  return trials_text(effect.trials) + " (" + trials_text(effect.trials_of_all) + ")" +
+         (effect.within_error ? "?" : " ");
+}
+
+std::string power_text(const Effect& effect) {
+  return effect.power ? fixed(100.0 * *effect.power, 0) + " %" : "-";
+}
+
+constexpr int kName = -12, kShare = 10, kCell = 20;
+
+std::string share_text(const lattice::StartAnswer& a, std::size_t e) {
+  return padded(with_interval(a.final.endings[place(kEndingNames[e])], {std::nan(""), 0.0}),
+                kShare);
+}
+
+std::string sureness(const ExperimentOptions& options) {
+  return digits(100.0 * options.goal.power) + " % power at a level of " +
+         digits(100.0 * options.goal.level) + " %";
+}
+
+std::string needed_table(const PlannedExperiment& p) {
+  std::string text = "\nTrials needed, for " + sureness(p.options) +
+                     ", to see that an ending is so many percentage points more or less often\n"
+                     "(the worse of both) than predicted; in brackets, if all endings are looked "
+                     "at:\n\n" +
+                     padded("", kName) + padded("predicted", kShare);
+  for (const double d : lattice::kShareDifferences)
+    text += padded(digits(100.0 * d) + " points ", kCell);
+  text += "\n";
+  for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
+    text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
+    for (const Effect& effect : p.plan.endings[e].effects)
+      text += padded(effect_text(effect), kCell);
+    text += "\n";
+  }
+  text +=
+      "\nthat the final gates differ by a total variation of so much, spread over all of them "
+      "(the hardest to see):\n\n" +
+      padded("", kName) + padded("", kShare);
+  for (const double d : lattice::kTotalVariations) text += padded(digits(d) + " ", kCell);
+  text += "\n" + padded("final gates", kName) + padded("", kShare);
+  for (const Effect& effect : p.plan.final_gates)
+    text += padded(trials_text(effect.trials) + (effect.within_error ? "?" : " "), kCell);
+  return text + "\n";
+}
+
+std::string power_table(const PlannedExperiment& p) {
+  const std::string n = std::to_string(*p.options.trials);
+  std::string text = "\nWhat " + n +
+                     " trials show: how likely a difference of so many points is found, and "
+                     "the smallest that is found in\n" +
+                     digits(100.0 * p.options.goal.power) +
+                     " % of such experiments; in brackets, if all endings are looked at:\n\n" +
+                     padded("", kName) + padded("predicted", kShare);
+  for (const double d : lattice::kShareDifferences)
+    text += padded(digits(100.0 * d) + " points", 11);
+  text += padded("smallest", 16) + "\n";
+  for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
+    const lattice::EndingPlan& plan = p.plan.endings[e];
+    text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
+    for (const Effect& effect : plan.effects) text += padded(power_text(effect), 11);
+    text += padded(text_of(plan.least), 16) + "  (" + text_of(plan.least_of_all) + ")\n";
+  }
+  text += padded("final gates", kName) + padded("", kShare);
+  for (std::size_t k = 0; k < p.plan.final_gates.size(); ++k)
+    text +=
+        "  TV " + digits(lattice::kTotalVariations[k]) + ": " + power_text(p.plan.final_gates[k]);
+  return text + "  smallest TV " +
+         (p.plan.least_total_variation ? fixed(*p.plan.least_total_variation, 3) : "none") + "\n";
+}
+
+std::string versus_table(const PlannedExperiment& p) {
+  std::string keys;
+  for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
+  std::string text =
+      "\nVersus " + keys + ": trials of each of the two, for\n" + sureness(p.options) +
+      ", to tell them apart; in brackets, if all endings are looked at:\n\n" + padded("", kName) +
+      padded("predicted", kShare) + padded("versus", kShare) + padded("trials of each ", kCell);
+  if (p.options.trials)
+    text += padded("power of " + std::to_string(*p.options.trials) + " each", 20);
+  text += "\n";
+  const auto power = [&](const Effect& effect) {
+    return p.options.trials ? padded(power_text(effect), 20) : "";
+  };
+  for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
+    const Effect& effect = p.apart->endings[e];
+    text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e) +
+            share_text(*p.other, e) + padded(effect_text(effect), kCell) + power(effect) + "\n";
+  }
+  const Effect& gates = p.apart->final_gates;
+  return text + padded("final gates", kName) +
+         padded("total variation " + fixed(gates.difference, 3), 2 * kShare) +
+         padded(trials_text(gates.trials) + (gates.within_error ? "?" : " "), kCell) +
+         power(gates) + "\n";
+}
+
+bool any_within_error(const PlannedExperiment& p) {
+  bool any = false;
+  for (const lattice::EndingPlan& e : p.plan.endings)
+    for (const Effect& effect : e.effects) any = any || effect.within_error;
+  for (const Effect& effect : p.plan.final_gates) any = any || effect.within_error;
+  if (!p.apart) return any;
+  for (const Effect& effect : p.apart->endings) any = any || effect.within_error;
+  return any || p.apart->final_gates.within_error;
+}
+
+}  // namespace
+
+Json to_json(const lattice::SmallestDifference& d) {
+  const auto points = [](const std::optional<double>& x) { return x ? Json(100.0 * *x) : Json(); };
+  return {{"more", points(d.more)}, {"fewer", points(d.fewer)}};
+}
+
+std::string text_of(const lattice::SmallestDifference& d) {
+  const auto text = [](const char* sign, const std::optional<double>& x) {
+    return x ? sign + fixed(100.0 * *x, 1) : std::string("none");
+  };
+  return text("+", d.more) + " / " + text("-", d.fewer);
+}
+
+Json to_json(const PlannedExperiment& p) {
+  Json json = to_json(p.prediction);
+  json["power"] = p.options.goal.power;
+  json["level"] = p.options.goal.level;
+  if (p.options.trials) json["trials"] = *p.options.trials;
+  Json& off = json["from_prediction"];
+  for (std::size_t e = 0; e < kEndingNames.size(); ++e)
+    for (const Effect& effect : p.plan.endings[e].effects)
+      off["endings"][kEndingNames[e].key].push_back(to_json(effect, p.options, true));
+  for (const Effect& effect : p.plan.final_gates)
+    off["final_gates"].push_back(to_json(effect, p.options, false));
+  if (p.options.trials) {
+    Json& least = json["smallest_difference"];
+    for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
+      const lattice::EndingPlan& plan = p.plan.endings[e];
+      least["endings_percentage_points"][kEndingNames[e].key] = to_json(plan.least);
+      least["endings_percentage_points_if_all_are_looked_at"][kEndingNames[e].key] =
+          to_json(plan.least_of_all);
+    }
+    least["final_gates_total_variation"] = or_null(p.plan.least_total_variation);
+  }
+  if (!p.apart) return json;
+  Json& versus = json["versus"];
+  versus["set"] = p.versus;
+  versus.update(to_json(*p.other));
+  for (std::size_t e = 0; e < kEndingNames.size(); ++e)
+    versus["apart"]["endings"][kEndingNames[e].key] = to_json(p.apart->endings[e], p.options, true);
+  versus["apart"]["final_gates"] = to_json(p.apart->final_gates, p.options, false);
+  versus["scene"] = lattice::to_toml(*p.other_scene);
+  return json;
+}
+
+std::string table_of(const PlannedExperiment& p) {
+  std::string text =
+      endings_text(p.prediction.endings, "of all bodies as predicted, 95 % intervals") +
+      "error: at most " + fixed(p.prediction.error.total_variation, 4) +
+      " in total variation of the final gates, 95 times in 100\n" + needed_table(p);
+  if (p.options.trials) text += power_table(p);
+  if (p.apart) text += versus_table(p);
+  if (any_within_error(p))
+    text +=
+        "\n?: the prediction may itself be as far off as this difference; a smaller --accuracy "
+        "makes it better.\n";
+  return text;
+}
+
+}  // namespace gatewalk::cli

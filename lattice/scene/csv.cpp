@@ -1,0 +1,48 @@
+#include "lattice/scene/csv.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace gatewalk::lattice {
+
+std::optional<std::vector<std::string>> lines_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) return {};
+  std::vector<std::string> lines;
+  for (std::string text; std::getline(file, text);) {
+    if (lines.empty() && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+    if (text.ends_with('\r')) text.pop_back();
+    lines.push_back(text);
+  }
+  return lines;
+}
+
+std::optional<std::vector<std::string>> csv_fields(std::string_view line) {
+  constexpr const char* kSpace = " \t";
+  std::vector<std::string> fields;
+  for (std::size_t at = 0;;) {
+    const std::size_t first = std::min(line.find_first_not_of(kSpace, at), line.size());
+    std::string field;
+    if (first < line.size() && line[first] == '"') {
+      at = first + 1;
+      for (;; ++at) {
+        if (at >= line.size()) return {};
+        if (line[at] == '"' && line.substr(at + 1, 1) != "\"") break;
+        if (line[at] == '"') ++at;  // two stand for one
+        field += line[at];
+      }
+      at = std::min(line.find_first_not_of(kSpace, at + 1), line.size());
+      if (at < line.size() && line[at] != ',') return {};
+    } else {
+      at = std::min(line.find(',', first), line.size());
+      field = line.substr(first, at - first);
+      field.erase(field.find_last_not_of(kSpace) + 1);
+    }
+    fields.push_back(std::move(field));
+    if (at == line.size()) return fields;
+    ++at;  // the comma
+  }
+}
+
+}  // namespace gatewalk::lattice

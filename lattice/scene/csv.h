@@ -1,0 +1,19 @@
+#pragma once
+/// Files of values between commas (RFC 4180), as spreadsheets write them.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gatewalk::lattice {
+
+/// The lines of a file without their ends (LF or CRLF) and without a byte-order mark; none when it
+/// cannot be read.
+[[nodiscard]] std::optional<std::vector<std::string>> lines_of(const std::string& path);
+
+/// The fields of a line, without the spaces around them; those in quotation marks without these.
+/// None when a quotation mark is not closed, or closed within a field.
+[[nodiscard]] std::optional<std::vector<std::string>> csv_fields(std::string_view line);
+
+}  // namespace gatewalk::lattice

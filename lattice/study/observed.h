@@ -1,0 +1,56 @@
+#pragma once
+/// Counts of an experiment, and the model held against them.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lattice/compare.h"
+#include "lattice/ending_shares.h"
+#include "lattice/field.h"
+#include "lattice/power.h"
+#include "lattice/reference.h"
+
+namespace gatewalk::lattice {
+
+/// What an experiment has counted of one start.
+struct Observed {
+  SeenEndings seen;
+  std::array<bool, markov::kEndings> listed{};  // endings that its table has a row of
+};
+
+/// Reads tables of counts: final gates (columns gate_x, gate_y and count, i_x and i_y as
+/// everywhere; gates without a row have none), endings (ending and count, by the keys of
+/// kEndingNames), or a file of each. Throws std::invalid_argument naming file, line and column for
+/// anything else, for counts that add up to nothing, and for two tables of different totals.
+[[nodiscard]] Observed read_observed(const std::vector<std::string>& paths,
+                                     const FieldParams& field);
+
+/// The least differences from a model that so many trials show in `goal.power` of all experiments,
+/// where all are looked at and `goal.level` of experiments may find what is not there.
+struct LeastDifferences {
+  PowerGoal goal;
+  /// Total variation of the kind that is hardest to see; none: of that kind not even the largest
+  /// is seen, or nothing was counted.
+  std::optional<double> final_gates{}, endings{};
+  std::array<SmallestDifference, markov::kEndings> by_ending{};
+};
+
+/// An experiment beside the full dynamics and the chain.
+struct ObservedComparison {
+  SeenEndings seen;
+  EndingShares endings{std::array<double, markov::kEndings>{}};  // where they were counted
+  std::optional<Comparison> dynamics_gates{}, chain_gates{};     // where gates were counted
+  Judgement against_dynamics, against_chain;
+  LeastDifferences least;  // from the chain's prediction, taken as exact
+};
+
+/// `replicates` as judge() takes them. Throws std::invalid_argument as judge().
+[[nodiscard]] ObservedComparison compare_observed(
+    const SeenEndings& seen, const FieldTally& dynamics, const markov::FinalDistribution& chain,
+    const std::vector<markov::FinalDistribution>& replicates, std::int64_t null_draws,
+    std::uint64_t seed);
+
+}  // namespace gatewalk::lattice
