@@ -1,5 +1,6 @@
 #pragma once
-/// How likely walks are to leave a field over its far edge, from every state of every cell.
+/// How likely walks are to leave a field over its far edge, from every state of every cell; and to
+/// enter every row, from one start.
 
 #include <vector>
 
@@ -23,5 +24,11 @@ struct Committor {
 /// std::invalid_argument for moves to a row below and fields of another size than the chain's,
 /// std::runtime_error when 10^5 sweeps do not do.
 [[nodiscard]] Committor committor(const FieldChain& chain, const Field& field);
+
+/// Chance that a walk without limit of cells from there enters rows start.row + 1, ..., field.rows;
+/// the last is to leave over the far edge. Row by row from the start, by the same sweeps, with the
+/// same relative accuracy. Throws as committor, and std::invalid_argument for moves over a row.
+[[nodiscard]] std::vector<double> row_chances(const FieldChain& chain, const Field& field,
+                                              const Start& start);
 
 }  // namespace gatewalk::markov
