@@ -297,12 +297,6 @@ class Pool {
   Health health_;
 };
 
-/// The committor of the chain's start, for each row.
-std::vector<double> chances(const markov::FieldChain& chain, const FieldParams& field) {
-  return markov::row_chances(chain, {field.columns, field.rows},
-                             {field.start_column(), 0, chain.inputs() - 1});
-}
-
 }  // namespace
 
 RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const Work& work) {
@@ -311,13 +305,18 @@ RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const 
   const FieldGates gates = gates_of(deep);
   const Pool pool(deep, options.most_runs / 4, options.seed, work);
   RareEvent event{.splitting = {}, .chain = {}, .pool_runs = pool.gate_runs()};
-  event.chain = chances(pool.chain(pool.kernel(gates, kEntriesPerLeaf), deep), deep.field);
+  {
+    const markov::FieldChain chain = pool.chain(pool.kernel(gates, kEntriesPerLeaf), deep);
+    event.chain = markov::row_chances(chain, {deep.field.columns, deep.field.rows},
+                                      {deep.field.start_column(), 0, chain.inputs() - 1});
+  }
   event.chain_seconds = watch.seconds();
 
-  // As far as the chain knows a way: all entries into rows behind that are worth the same.
+  // As far as the chain knows a way, which is one of larger leaves too: all entries into rows
+  // behind that are worth the same.
   const Kernel kernel = pool.kernel(gates, kPerLeafOfValues);
-  const std::vector<double> ways = chances(pool.chain(kernel, deep), deep.field);
-  const auto known = static_cast<int>(std::find(ways.begin(), ways.end(), 0.0) - ways.begin());
+  const auto known = static_cast<int>(std::find(event.chain.begin(), event.chain.end(), 0.0) -
+                                      event.chain.begin());
   markov::Committor values;
   std::vector<double> least;  // by row
   if (known > 0) {
