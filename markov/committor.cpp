@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,17 +47,33 @@ struct Moves {
   }
 };
 
+std::vector<Moves> moves_by_type(const FieldChain& chain, Ending ending) {
+  std::vector<Moves> moves;
+  for (const Chain& c : chain.chains()) {
+    for (const Exit& exit : c.exits())
+      if (exit.di_y < 0) throw std::invalid_argument("committor: a move leads to a row below");
+    moves.emplace_back(c, ending);
+  }
+  return moves;
+}
+
+[[noreturn]] void refuse_circles(int row) {
+  throw std::runtime_error("committor: row " + std::to_string(row) +
+                           " of the field does not settle in " + std::to_string(kMostSweeps) +
+                           " sweeps: walks circle in it");
+}
+
 class Rows {
  public:
   Rows(const FieldChain& chain, const Field& field, Ending ending)
       : chain_(chain),
         field_(field),
         ending_(ending),
+        moves_(moves_by_type(chain, ending)),
         all_{field.columns, field.rows, chain.inputs(), {}},
         from_above_(static_cast<std::size_t>(field.columns) *
                     static_cast<std::size_t>(chain.inputs())) {
     all_.values.resize(from_above_.size() * static_cast<std::size_t>(field.rows));
-    for (const Chain& c : chain.chains()) moves_.emplace_back(c, ending);
   }
 
   Committor solve() && {
@@ -130,9 +147,7 @@ class Rows {
       const double most = *std::max_element(begin, begin + from_above_.size());
       if (change <= kTolerance * most) return;
     }
-    throw std::runtime_error("committor: row " + std::to_string(row) +
-                             " of the field does not settle in " + std::to_string(kMostSweeps) +
-                             " sweeps: walks circle in it");
+    refuse_circles(row);
   }
 
   const FieldChain& chain_;
@@ -147,9 +162,6 @@ class Rows {
 
 Committor committor(const FieldChain& chain, const Field& field, Ending ending) {
   validate(chain, field, {}, 0);
-  for (const Chain& c : chain.chains())
-    for (const Exit& exit : c.exits())
-      if (exit.di_y < 0) throw std::invalid_argument("committor: a move leads to a row below");
   return Rows(chain, field, ending).solve();
 }
 
@@ -193,6 +205,51 @@ EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending e
         out[input] = sum;
       }
     });
+}
+
+std::vector<double> row_chances(const FieldChain& chain, const Field& field, const Start& start) {
+  validate(chain, field, start, 0);
+  const std::vector<Moves> moves = moves_by_type(chain, Ending::far_edge);
+  for (const Moves& m : moves)
+    for (const Moves::Entry& e : m.entries)
+      if (e.di_y > 1) throw std::invalid_argument("committor: a move leads over a row");
+  const auto inputs = static_cast<std::size_t>(chain.inputs());
+  const auto at = [&](int column) { return static_cast<std::size_t>(column) * inputs; };
+  // (columns x inputs) of a row: shares of walks that have entered and not gone on yet; of the next
+  // row.
+  std::vector<double> waiting(at(field.columns), 0.0), above(waiting.size()), here(inputs);
+  waiting[at(start.column) + static_cast<std::size_t>(start.input)] = 1.0;
+  std::vector<double> chances;
+  for (int row = start.row; row < field.rows; ++row) {
+    double up = 0.0;
+    std::fill(above.begin(), above.end(), 0.0);
+    const auto pass_on = [&](int column) {
+      const Moves& m = moves[static_cast<std::size_t>(chain.type_of(column, row))];
+      const auto begin = waiting.begin() + static_cast<std::ptrdiff_t>(at(column));
+      std::copy_n(begin, inputs, here.begin());
+      std::fill_n(begin, inputs, 0.0);
+      for (std::size_t input = 0; input < inputs; ++input) {
+        if (here[input] == 0.0) continue;
+        for (std::size_t i = m.up[input]; i < m.up[input + 1]; ++i) {
+          const auto& [p, di_x, di_y, next] = m.entries[i];
+          const double share = here[input] * p;
+          if (di_y > 0) up += share;
+          if (column + di_x >= 0 && column + di_x < field.columns)
+            (di_y > 0 ? above : waiting)[at(column + di_x) + static_cast<std::size_t>(next)] +=
+                share;
+        }
+      }
+    };
+    double left = 1.0;
+    for (int sweep = 0; left > kTolerance * up; ++sweep) {
+      if (sweep == kMostSweeps) refuse_circles(row);
+      for (int i = 0; i < field.columns; ++i) pass_on(sweep % 2 == 0 ? i : field.columns - 1 - i);
+      left = std::accumulate(waiting.begin(), waiting.end(), 0.0);
+    }
+    chances.push_back(up);
+    waiting.swap(above);
+  }
+  return chances;
 }
 
 }  // namespace gatewalk::markov

@@ -1,6 +1,7 @@
 #pragma once
 /// How likely walks are to end in one way, from every state of every cell: the committor of their
-/// leaving over the far edge, the same of any other ending, and with a limit of cells.
+/// leaving over the far edge, the same of any other ending, and with a limit of cells; and to enter
+/// every row, from one start.
 
 #include <cstdint>
 #include <vector>
@@ -49,5 +50,11 @@ class EndingChance {
   std::int64_t cells_, inputs_, layers_;
   std::vector<double> values_;  // (layers x cells x inputs)
 };
+
+/// Chance that a walk without limit of cells from there enters rows start.row + 1, ..., field.rows;
+/// the last is to leave over the far edge. Row by row from the start, by the same sweeps, with the
+/// same relative accuracy. Throws as committor, and std::invalid_argument for moves over a row.
+[[nodiscard]] std::vector<double> row_chances(const FieldChain& chain, const Field& field,
+                                              const Start& start);
 
 }  // namespace gatewalk::markov

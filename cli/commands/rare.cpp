@@ -10,20 +10,20 @@ namespace gatewalk::cli {
 namespace {
 
 /// How many of so many trials enter the rows; none without --trials.
-DirectRows direct_rows(const Options& options, lattice::Scene scene, int row) {
+DirectRows direct_rows(const Options& options, const lattice::Scene& scene, int row) {
   DirectRows direct;
   if (!options.has("trials")) return direct;
   direct.trials = options.trials();
-  scene.field.rows = row;
-  scene.field.max_gates = 0;
   const dynamics::Stopwatch watch;
-  const auto tally = lattice::field_trials(scene, direct.trials, options.seed(), options.work());
+  const auto tally = lattice::field_trials(lattice::up_to_row(scene, row), direct.trials,
+                                           options.seed(), options.work());
   direct.seconds = watch.seconds();
-  std::int64_t beyond = tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)];
-  direct.entered.assign(static_cast<std::size_t>(row), beyond);
+  direct.entered.assign(static_cast<std::size_t>(row),
+                        tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
+  std::int64_t behind = 0;  // last gates; those of bodies over the far edge are among them
   for (int r = row - 1; r > 0; --r) {
-    beyond += tally.final_gates.row(r).sum();
-    direct.entered[static_cast<std::size_t>(r) - 1] = beyond;
+    behind += tally.final_gates.row(r).sum();
+    direct.entered[static_cast<std::size_t>(r) - 1] = behind;
   }
   return direct;
 }
@@ -44,7 +44,7 @@ int run_rare(const Arguments& arguments) {
   options.scene();
   options.add_count("row", "N",
                     "the row to enter, counted from 0 (default: one behind the field's "
-                    "last: the field is crossed)");
+                    "last: the field is crossed); at most the rows of a terrain");
   options.add_number("accuracy", "R", "relative standard error to reach (default: 0.05)");
   options.add_count("gate-runs", "N", "at most so many gate runs, about", "2e7");
   options.add_count("trials", "N", "also run N trials directly, to compare");
@@ -60,6 +60,7 @@ int run_rare(const Arguments& arguments) {
     throw UsageError("--accuracy: must lie between 0 and 1");
   lattice::Scene scene = options.read_scene();
   how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 2001)) : scene.field.rows;
+  (void)lattice::up_to_row(scene, how.row);  // refuses before any work
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   const lattice::RareEvent event = lattice::rare_event(scene, how, options.work());
   const DirectRows direct = direct_rows(options, scene, how.row);

@@ -276,10 +276,11 @@ Json to_json(const AnalysedField& f) {
   json["answer_from"] = f.from_trials ? "trials" : "chain";
   json["lumping"] = Json();
   if (a.boundaries)
-    json["lumping"] = {{"states", "one for each boundary"},
-                       {"largest_difference", a.boundaries->largest},
-                       {"error", {{"endings", a.boundaries->endings},
-                                  {"final_gates", a.boundaries->final_gates}}}};
+    json["lumping"] = {
+        {"states", "one for each boundary"},
+        {"largest_difference", a.boundaries->largest},
+        {"error",
+         {{"endings", a.boundaries->endings}, {"final_gates", a.boundaries->final_gates}}}};
   json["target"] = key_of(a.target);
   json["target_probability"] = a.target_chance;
   json["starts"] = Json::array();

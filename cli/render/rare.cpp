@@ -37,12 +37,16 @@ Json to_json(const lattice::RareEvent& event, const DirectRows& direct) {
   json["reached"] = s.reached;
   json["gate_runs"] = s.gate_runs + event.pool_runs;
   json["split_trials"] = s.trials;
+  json["chain_seconds"] = event.chain_seconds;
   json["seconds"] = event.seconds;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Json row = to_json(s.rows[r]);
     row["row"] = r + 1;
     row["chain"] = event.chain[r];
-    if (direct.trials > 0) row["direct_entered"] = direct.entered[r];
+    if (direct.trials > 0) {
+      row["direct_entered"] = direct.entered[r];
+      row["direct_interval_95"] = dynamics::share_interval(direct.entered[r], direct.trials);
+    }
     json["rows"].push_back(std::move(row));
   }
   if (direct.trials > 0) json["direct"] = {{"trials", direct.trials}, {"seconds", direct.seconds}};

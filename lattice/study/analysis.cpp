@@ -399,9 +399,8 @@ std::optional<Analysis::Lumped> lumped_to_boundaries(const CostedChain& c, const
       lumped.largest = std::max(lumped.largest, of_type.largest);
       chains.push_back(std::move(of_type.chain));
     }
-    const auto error =
-        markov::lumping_error(c.chain, c.chain.with(std::move(chains)), group, cells, c.start,
-                              {.max_cells = field.max_gates});
+    const auto error = markov::lumping_error(c.chain, c.chain.with(std::move(chains)), group, cells,
+                                             c.start, {.max_cells = field.max_gates});
     lumped.endings = error.endings;
     lumped.final_gates = error.final_cells;
     return lumped;
@@ -461,7 +460,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
                .state_trapping = {},
                .space = space,
                .boundaries = {},
-      .parameters = {},
+               .parameters = {},
                .parameter_health = {}};
 
   // Means, and the same of eight groups of the trials.

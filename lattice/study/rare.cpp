@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,7 +36,7 @@ struct Body {
 
 /// What all trials of a call share.
 struct Aim {
-  const GateParams& p;
+  const FieldGates& gates;
   int columns, target;
   double start_value;
   const EntryValue& value;
@@ -59,14 +61,15 @@ class Trial {
   /// Takes a body's run, and adds to `next` the bodies that go on from it.
   void take(Body body, const GateRun& run, std::vector<Body>& next) {
     if (run.ending == Ending::trapped || run.ending == Ending::broken) return;
-    const Crossing entry = crossing_of(aim_.p, run.ending, run.exit);
+    const GateParams& p = aim_.gates.at(body.column, body.row);
+    const Crossing entry = crossing_of(p, run.ending, run.exit);
     const Move move = move_into(entry.boundary);
     body.column += move.di_x;
     body.row += move.di_y;
     if (body.column < 0 || body.column >= aim_.columns) return;
     if (move.di_y > 0) entered_[static_cast<std::size_t>(body.row) - 1] += body.weight;
     if (body.row == aim_.target) return;
-    body.from = shifted_into_next(aim_.p, run.ending, run.exit);
+    body.from = shifted_into_next(p, run.ending, run.exit);
     const double worth = aim_.value(body.column, body.row, entry);
     if (!(worth > 0.0)) throw std::invalid_argument("splitting: a value is not positive");
     const double parts = body.weight * worth / aim_.start_value;
@@ -124,23 +127,63 @@ std::array<double, 2> RowChance::interval_95() const {
           std::min(1.0, probability * (1.0 + kSigmas * relative_standard_error))};
 }
 
+Scene up_to_row(const Scene& scene, int row) {
+  if (row < 1) throw std::invalid_argument("the row to enter must be 1 or more");
+  Scene deep = scene;
+  deep.field.rows = row;
+  deep.field.max_gates = 0;
+  if (!scene.terrain) return deep;
+  if (row > scene.field.rows)
+    throw std::invalid_argument(
+        scene.source + ": the terrain has " + std::to_string(scene.field.rows) +
+        " rows; the row to enter (--row) must be at most " + std::to_string(scene.field.rows) +
+        (scene.terrain->shares.empty() ? "" : ", or field.rows larger: as many are drawn"));
+  deep.terrain->type_of_cell.resize(static_cast<std::size_t>(deep.field.columns) *
+                                    static_cast<std::size_t>(row));  // the near rows
+  return deep;
+}
+
 Splitting split(const Scene& scene, double start_value, const EntryValue& value,
                 const SplittingOptions& options, const Work& work) {
-  if (options.row < 1) throw std::invalid_argument("splitting: the row must be 1 or more");
+  const FieldGates gates = gates_of(up_to_row(scene, options.row));
   if (!(start_value > 0.0)) throw std::invalid_argument("splitting: a value is not positive");
   if (scene.field.fidelity != Fidelity::active)
     throw InvalidParameter("field.fidelity", "field.fidelity must be \"active\" for splitting");
-  require_no_terrain(scene, "splitting");
-  const auto method = make_method(scene.gate);
+  std::vector<std::unique_ptr<const Method>> methods;
+  for (const GateParams& p : gates.types()) methods.push_back(make_method(p));
+  const GateParams& first = gates.at(scene.field.start_column(), 0);
   Splitting result;
   Sums sums(options.row);
-  const Aim aim{scene.gate,
-                scene.field.columns,
-                options.row,
-                start_value,
-                value,
-                options.seed,
-                stream_row(scene.gate, scene.start)};
+  const Aim aim{gates,        scene.field.columns,           options.row, start_value, value,
+                options.seed, stream_row(first, scene.start)};
+  /// Each body's run through its gate; those in gates of one type together.
+  const auto run_all = [&](std::vector<Body>& bodies) {
+    std::vector<GateRun> runs(bodies.size());
+    std::vector<std::vector<std::size_t>> of_type(gates.types().size());
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      of_type[static_cast<std::size_t>(gates.type_of(bodies[i].column, bodies[i].row))].push_back(
+          i);
+    for (std::size_t type = 0; type < of_type.size(); ++type) {
+      const std::vector<std::size_t>& wave = of_type[type];
+      const GateParams& p = gates.types()[type];
+      carry_out_trials(
+          p, *methods[type], std::ssize(wave),
+          [&](RunSlot& slot) {
+            const Body& body = bodies[wave[static_cast<std::size_t>(slot.trial)]];
+            slot.start = body.from;
+            slot.force = body.force;
+            slot.force.enter(p.forces);
+          },
+          [&](RunSlot& slot, const GateRun& run) {
+            const std::size_t i = wave[static_cast<std::size_t>(slot.trial)];
+            runs[i] = run;
+            bodies[i].force = slot.force;
+            return false;
+          });
+      for (const std::size_t i : wave) result.health.add(p, runs[i]);
+    }
+    return runs;
+  };
   // Gate by gate: all bodies of a block run through one gate, so that many are in flight at a time.
   const auto run_block = [&](TrialRange range) {
     std::vector<Trial> trials;
@@ -148,28 +191,13 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
     for (std::int64_t i = 0; i < range.count; ++i) {
       Trial& t = trials.emplace_back(aim, range.first + i);
       bodies.push_back({i, scene.field.start_column(), 0, 1.0, scene.start,
-                        RandomForce(scene.gate.forces, t.random())});
+                        RandomForce(first.forces, t.random())});
     }
     while (!bodies.empty()) {
       work.tell("split trials", range.first, range.first + range.count);
-      std::vector<GateRun> runs(bodies.size());
-      carry_out_trials(
-          scene.gate, *method, std::ssize(bodies),
-          [&](RunSlot& slot) {
-            const Body& body = bodies[static_cast<std::size_t>(slot.trial)];
-            slot.start = body.from;
-            slot.force = body.force;
-          },
-          [&](RunSlot& slot, const GateRun& run) {
-            const auto i = static_cast<std::size_t>(slot.trial);
-            runs[i] = run;
-            bodies[i].force = slot.force;
-            return false;
-          });
-      for (std::size_t i = 0; i < bodies.size(); ++i) {
-        result.health.add(scene.gate, runs[i]);
+      const std::vector<GateRun> runs = run_all(bodies);
+      for (std::size_t i = 0; i < bodies.size(); ++i)
         trials[static_cast<std::size_t>(bodies[i].trial)].take(bodies[i], runs[i], next);
-      }
       bodies = std::exchange(next, {});
     }
     for (const Trial& t : trials) sums.add(t.entered());
@@ -209,65 +237,106 @@ constexpr int kPerLeafOfValues = 40;
 // given some chance.
 constexpr double kLeastValue = 0.02;
 
-/// The committor for each target row 1 .. rows, of bodies from the start: first rows of a kernel.
-std::vector<double> chances(const Kernel& kernel, const FieldGates& gates,
-                            const std::vector<std::int64_t>& first, const FieldParams& field) {
-  const markov::FieldChain chain = chain_of(kernel, gates, field, {first});
-  const int start = chain.inputs() - 1;
-  std::vector<double> out;
-  // The chance to enter row r of a field is that to leave one of r rows; these are solved from
-  // the far edge, so the answer for r rows is row `rows - r` of the largest one.
-  const markov::Committor all = markov::committor(chain, {field.columns, field.rows});
-  for (int r = 1; r <= field.rows; ++r)
-    out.push_back(all(field.start_column(), field.rows - r, start));
-  return out;
-}
+/// Trials for the chain.
+constexpr std::int64_t kPoolTrials = 60'000;
+
+/// The pool of a field: full trials from its start, no more than take so many gate runs, about.
+class Pool {
+ public:
+  Pool(const Scene& scene, std::int64_t most_runs, std::uint64_t seed, const Work& work)
+      : seed_(seed), work_(work) {
+    pool_.starts.push_back({.start = entry_of(scene.start)});
+    if (gates_of(scene).types().size() == 1) {
+      run_in(scene, kPoolTrials, most_runs);
+    } else {
+      run_in(scene, kPoolTrials / 2, most_runs / 2);
+      const std::vector<int>& map = scene.terrain->type_of_cell;
+      const std::set<int> types(map.begin(), map.end());
+      const std::int64_t parts = 2 * std::ssize(types);
+      for (const int type : types) {
+        Scene plain = scene;
+        std::vector<int>& cells = plain.terrain->type_of_cell;
+        std::fill(cells.begin(), cells.end(), type);
+        const auto start = static_cast<std::size_t>(scene.field.start_column());
+        cells[start] = map[start];
+        run_in(plain, kPoolTrials / parts, most_runs / parts);
+      }
+    }
+    check_outcomes(scene, RunsFrom::everywhere, seed, std::ssize(start().full.final_gates), health_,
+                   work);
+  }
+
+  /// Leaves of so many entries at least.
+  [[nodiscard]] Kernel kernel(const FieldGates& gates, int per_leaf) const {
+    return kernel_of(gates, pool_, per_leaf);
+  }
+  /// In the field of the scene, which has the same types of gates.
+  [[nodiscard]] markov::FieldChain chain(const Kernel& kernel, const Scene& scene) const {
+    const FieldGates gates = gates_of(scene);
+    return chain_of(kernel, gates, scene.field, {first_row(gates, kernel.space, start())});
+  }
+  [[nodiscard]] std::int64_t gate_runs() const { return gate_runs_; }
+  [[nodiscard]] const Health& health() const { return health_; }
+
+ private:
+  [[nodiscard]] const StartTrials& start() const { return pool_.starts.front(); }
+
+  void run_in(const Scene& scene, std::int64_t trials, std::int64_t most_runs) {
+    PoolRunner runner(scene, seed_, most_runs, work_);
+    constexpr std::int64_t kFirst = 100;  // then it knows how many gates a trial takes
+    runner.run_full(pool_.starts.front(), kFirst);
+    if (runner.may_go_on()) runner.run_full(pool_.starts.front(), trials - kFirst);
+    gate_runs_ += runner.gate_runs;
+    health_ += runner.health;
+  }
+
+  std::uint64_t seed_;
+  const Work& work_;
+  RunPool pool_;
+  std::int64_t gate_runs_ = 0;
+  Health health_;
+};
 
 }  // namespace
 
 RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const Work& work) {
   const Stopwatch watch;
-  require_no_terrain(scene, "splitting");
-  Scene deep = scene;
-  deep.field.rows = options.row;
-  deep.field.max_gates = 0;
-  constexpr std::int64_t kPoolRuns = 60'000;
-  const std::int64_t pool_runs = std::min(kPoolRuns, options.most_runs / 4);
-  PoolRunner runner(deep, options.seed, pool_runs, work);
-  RunPool pool;
-  pool.starts.push_back({.start = entry_of(scene.start)});
-  StartTrials& start = pool.starts.front();
-  while (runner.may_go_on())
-    runner.run_full(start,
-                    static_cast<std::int64_t>(static_cast<double>(pool_runs - runner.gate_runs) /
-                                              runner.gates_per_trial()));
-  runner.finish();
-
-  const FieldGates gates(deep.gate);
-  RareEvent event{.splitting = {}, .chain = {}, .pool_runs = runner.gate_runs};
-  const Kernel fine = kernel_of(gates, pool);
-  event.chain = chances(fine, gates, first_row(gates, fine.space, start), deep.field);
-  const Kernel coarse = kernel_of(gates, pool, kPerLeafOfValues);
-  markov::Committor values = markov::committor(
-      chain_of(coarse, gates, deep.field, {first_row(gates, coarse.space, start)}),
-      {deep.field.columns, options.row});
-  const auto of_row =
-      static_cast<std::size_t>(values.columns) * static_cast<std::size_t>(values.inputs);
-  for (std::size_t row = 0; row < values.values.size(); row += of_row) {
-    const auto begin = values.values.begin() + static_cast<std::ptrdiff_t>(row),
-               end = begin + static_cast<std::ptrdiff_t>(of_row);
-    double least = kLeastValue * *std::max_element(begin, end);
-    if (least == 0.0) least = 1.0;  // the chain knows no way: every entry is worth the same
-    std::for_each(begin, end, [&](double& v) { v = std::max(v, least); });
+  const Scene deep = up_to_row(scene, options.row);
+  const FieldGates gates = gates_of(deep);
+  const Pool pool(deep, options.most_runs / 4, options.seed, work);
+  RareEvent event{.splitting = {}, .chain = {}, .pool_runs = pool.gate_runs()};
+  {
+    const markov::FieldChain chain = pool.chain(pool.kernel(gates, kEntriesPerLeaf), deep);
+    event.chain = markov::row_chances(chain, {deep.field.columns, deep.field.rows},
+                                      {deep.field.start_column(), 0, chain.inputs() - 1});
   }
-  const double at_start = values(deep.field.start_column(), 0, values.inputs - 1);
+  event.chain_seconds = watch.seconds();
+
+  // As far as the chain knows a way, which is one of larger leaves too: all entries into rows
+  // behind that are worth the same.
+  const Kernel kernel = pool.kernel(gates, kPerLeafOfValues);
+  const auto known = static_cast<int>(std::find(event.chain.begin(), event.chain.end(), 0.0) -
+                                      event.chain.begin());
+  markov::Committor values;
+  std::vector<double> least;  // by row
+  if (known > 0) {
+    const Scene part = up_to_row(deep, known);
+    values = markov::committor(pool.chain(kernel, part), {part.field.columns, known});
+    const std::ptrdiff_t of_row = std::ptrdiff_t{values.columns} * values.inputs;
+    for (auto row = values.values.begin(); row != values.values.end(); row += of_row)
+      least.push_back(kLeastValue * *std::max_element(row, row + of_row));
+  }
+  const auto worth = [&](int column, int row, int state) {
+    return row < known ? std::max(values(column, row, state), least[static_cast<std::size_t>(row)])
+                       : 1.0;
+  };
   event.splitting = split(
-      deep, at_start,
+      deep, worth(deep.field.start_column(), 0, values.inputs - 1),
       [&](int column, int row, const Crossing& entry) {
-        return values(column, row, coarse.space.index_of(entry).state);
+        return worth(column, row, kernel.space.index_of(entry).state);
       },
       options, work);
-  event.splitting.health += runner.health;
+  event.splitting.health += pool.health();
   event.seconds = watch.seconds();
   return event;
 }

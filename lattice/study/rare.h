@@ -41,13 +41,17 @@ struct Splitting {
   dynamics::Health health;
 };
 
+/// The scene with as many rows of gates as there are before `row`, and no limit of gates. Throws
+/// std::invalid_argument where its terrain has fewer, and for a row below 1.
+[[nodiscard]] Scene up_to_row(const Scene& scene, int row);
+
 /// Full trials from the scene's start, without limit of gates. A body of weight w that enters a
 /// gate of value v is to weigh v0/v, v0 the value of the start: within a factor of two it goes on
 /// as it is; else it becomes a whole number of bodies of such weights, by chance so that the mean
 /// is w, each with random forces of its own from then on. The weights that enter a row add up to an
 /// unbiased estimate of the chance to enter it, whatever the values. The same bits on any number of
 /// threads. Throws dynamics::InvalidParameter, also for another fidelity than `active`;
-/// std::invalid_argument for a row below 1 and a value that is not positive.
+/// std::invalid_argument as up_to_row and for a value that is not positive.
 [[nodiscard]] Splitting split(const Scene& scene, double start_value, const EntryValue& value,
                               const SplittingOptions& options, const dynamics::Work& work = {});
 
@@ -55,10 +59,13 @@ struct RareEvent {
   Splitting splitting;
   std::vector<double> chain;  // (options.row) the chain's own answers: rows 1, 2, ...
   std::int64_t pool_runs = 0;
-  double seconds = 0.0;
+  double chain_seconds = 0.0;  // of the pool and the chain's answers
+  double seconds = 0.0;        // of all
 };
 
-/// The same with the committor of a chain that full trials make first.
+/// The same with the committor of a chain that full trials make first. Where gates are of several
+/// types half of these run through fields of one type each, but for the first gate: else types that
+/// stand far from the start would be seen by few bodies.
 [[nodiscard]] RareEvent rare_event(const Scene& scene, const SplittingOptions& options,
                                    const dynamics::Work& work = {});
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "markov/predict.h"
 #include "tests/markov/chains.h"
@@ -49,6 +50,38 @@ TEST(Committor, TakesCellsOfSeveralTypes) {
 TEST(Committor, RefusesMovesDown) {
   const Chain chain = Chain::from_counts(lattice_counts(3), lattice_exits());
   EXPECT_THROW((void)committor(chain, {5, 6}), std::invalid_argument);
+  EXPECT_THROW((void)row_chances(chain, {5, 6}, {}), std::invalid_argument);
+}
+
+// To enter row r is to leave a field of r rows: two routes, from the far edge and from the start.
+TEST(RowChances, AreTheCommittorsOfAllRows) {
+  const Chain one = Chain::from_counts(lattice_counts(3), never_down()),
+              other = Chain::from_counts(lattice_counts(5), never_down());
+  const int columns = 5, rows = 7;
+  std::vector<int> types;
+  for (int cell = 0; cell < columns * rows; ++cell) types.push_back(cell * cell % 3 == 1);
+  const auto chain_of_rows = [&](int r) {
+    return FieldChain::by_cell({one, other}, columns, {types.begin(), types.begin() + columns * r});
+  };
+  for (const int input : {0, 40, 86}) {
+    const auto chances = row_chances(chain_of_rows(rows), {columns, rows}, {1, 0, input});
+    ASSERT_EQ(chances.size(), 7u);
+    for (int r = 1; r <= rows; ++r) {
+      const double c = committor(chain_of_rows(r), {columns, r})(1, 0, input);
+      EXPECT_NEAR(chances[static_cast<std::size_t>(r) - 1] / c, 1.0, 1e-9) << r << " " << input;
+    }
+  }
+}
+
+TEST(RowChances, KeepTheirDigitsWhereTheyAreSmall) {
+  const double q = 0.01;
+  const Chain chain =
+      Chain::from_probabilities(matrix(1, 2, {{0, 0, q}, {0, 1, 1 - q}}), {{0, 0, 1}, {}});
+  const auto chances = row_chances(chain, {3, 100}, {1, 40, 0});
+  ASSERT_EQ(chances.size(), 60u);
+  EXPECT_NEAR(chances.back() / std::pow(q, 60), 1.0, 1e-12);
+  const Chain closed = Chain::from_probabilities(matrix(1, 2, {{0, 1, 1.0}}), {{0, 0, 1}, {}});
+  EXPECT_EQ(row_chances(closed, {3, 2}, {1, 0, 0}), (std::vector<double>{0.0, 0.0}));
 }
 
 }  // namespace
