@@ -150,6 +150,9 @@ bool any_within_error(const PlannedExperiment& p) {
 
 }  // namespace
 
+Json or_null(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
+Json or_null(const std::optional<std::int64_t>& x) { return x ? Json(*x) : Json(); }
+
 Json to_json(const lattice::SmallestDifference& d) {
   const auto points = [](const std::optional<double>& x) { return x ? Json(100.0 * *x) : Json(); };
   return {{"more", points(d.more)}, {"fewer", points(d.fewer)}};

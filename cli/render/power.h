@@ -13,11 +13,8 @@
 namespace gatewalk::cli {
 
 /// null for none.
-template <class T>
-[[nodiscard]] Json or_null(const std::optional<T>& x) {
-  return x ? Json(*x) : Json();
-}
-
+[[nodiscard]] Json or_null(const std::optional<double>& x);
+[[nodiscard]] Json or_null(const std::optional<std::int64_t>& x);
 /// In percentage points: {"more", "fewer"}, null for none.
 [[nodiscard]] Json to_json(const lattice::SmallestDifference& d);
 /// "+17.1 / -8.2"
