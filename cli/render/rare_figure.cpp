@@ -20,8 +20,7 @@ Figure figure_of(const lattice::RareEvent& event, const DirectRows& direct) {
       least = std::min(least, event.chain[r]);
     }
     if (const lattice::RowChance& c = s.rows[r]; c.probability > 0.0) {
-      const auto interval = c.interval_95();
-      split += row(r, c.probability, {std::max(interval[0], 0.1 * c.probability), interval[1]});
+      split += row(r, c.probability, c.interval_95());
       least = std::min(least, c.probability);
     }
     if (direct.trials > 0 && direct.entered[r] > 0)

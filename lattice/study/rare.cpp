@@ -122,9 +122,8 @@ struct Sums {
 }  // namespace
 
 std::array<double, 2> RowChance::interval_95() const {
-  constexpr double kSigmas = 1.959964;
-  return {std::max(0.0, probability * (1.0 - kSigmas * relative_standard_error)),
-          std::min(1.0, probability * (1.0 + kSigmas * relative_standard_error))};
+  const double factor = std::exp(1.959964 * relative_standard_error);
+  return {probability / factor, std::min(1.0, probability * factor)};
 }
 
 Scene up_to_row(const Scene& scene, int row) {

@@ -30,6 +30,7 @@ struct SplittingOptions {
 struct RowChance {
   double probability = 0.0;
   double relative_standard_error = 0.0;  // NaN where no body came
+  /// Of its logarithm, in which such estimates are less skewed.
   [[nodiscard]] std::array<double, 2> interval_95() const;
 };
 
