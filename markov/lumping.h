@@ -26,7 +26,7 @@ struct Lumping {
 /// state's row counts in its group's, as expected_visits() do, or the counts of each row: then rows
 /// of counts are added. Groups without weight take their rows alike. Rows never sampled are left
 /// out; a group of such rows was never sampled. Throws std::invalid_argument for other groups and
-/// weights. For a field of several types lump each chain with the same groups (FieldChain::with).
+/// weights. For a field of several types lump each chain with the same groups.
 [[nodiscard]] Lumping lump(const Chain& chain, const std::vector<int>& group_of,
                            const std::vector<double>& weights);
 

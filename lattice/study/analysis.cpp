@@ -384,6 +384,7 @@ bool is_physical(std::string_view key) {
 
 /// The chain with a state for each boundary, and the start's own.
 std::optional<Analysis::Lumped> lumped_to_boundaries(const CostedChain& c, const StateSpace& space,
+                                                     const FieldGates& gates,
                                                      const FieldParams& field) {
   const markov::Field cells{field.columns, field.rows};
   std::vector<int> group(static_cast<std::size_t>(c.chain.inputs()), kBoundaries);
@@ -399,12 +400,12 @@ std::optional<Analysis::Lumped> lumped_to_boundaries(const CostedChain& c, const
       lumped.largest = std::max(lumped.largest, of_type.largest);
       chains.push_back(std::move(of_type.chain));
     }
-    const auto error = markov::lumping_error(c.chain, c.chain.with(std::move(chains)), group, cells,
-                                             c.start, {.max_cells = field.max_gates});
+    const auto error = markov::lumping_error(c.chain, field_chain(gates, std::move(chains)), group,
+                                             cells, c.start, {.max_cells = field.max_gates});
     lumped.endings = error.endings;
     lumped.final_gates = error.final_cells;
     return lumped;
-  } catch (const std::exception&) {  // a boundary without states, walks without end
+  } catch (const std::runtime_error&) {  // walks without end
     return {};
   }
 }
@@ -501,7 +502,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     out.why_not_endless = e.what();
   }
 
-  out.boundaries = lumped_to_boundaries(c, space, field);
+  out.boundaries = lumped_to_boundaries(c, space, gates, field);
   const markov::Chain& first = c.chain.at(c.start.column, c.start.row);
   for (int state = 0; state < space.size(); ++state)
     if (space.boundary(state) == Boundary::enter)
