@@ -39,7 +39,7 @@ struct CostName {
 };
 /// All of them, in the order of Cost.
 inline constexpr std::array kCostNames{
-    CostName{"seconds", "s", "duration"},
+    CostName{"time_s", "s", "duration"},
     CostName{"forward_m", "m", "way forward"},
     CostName{"work_J", "J", "work of the propulsion"},
     CostName{"random_work_J", "J", "work of the random force"},

@@ -47,8 +47,8 @@ double quantile(const std::vector<double>& sorted, double level) {
 }
 
 Json quantiles_json(const std::function<double(double)>& quantile) {
-  Json json;
-  for (const double level : kLevels) json[fixed(100.0 * level, 0)] = or_null(quantile(level));
+  Json json = Json::array();
+  for (const double level : kLevels) json.push_back(or_null(quantile(level)));
   return json;
 }
 
@@ -95,7 +95,7 @@ Json to_json(const Spent& s, const dynamics::GateParams& p,
     json["mean_" + key] = or_null(s.mean[c]);
     json["sd_" + key] = or_null(s.sd[c]);
   }
-  json["quantiles_seconds"] = quantiles_json(quantile);
+  json["quantiles_time_s"] = quantiles_json(quantile);
   json["cost_of_transport_J_per_kg_m"] = or_null(s.cost_of_transport(p));
   return json;
 }

@@ -204,7 +204,7 @@ TEST(Analysis, CostsComeBackFromAFile) {
     EXPECT_EQ(back.starts[0].full.passages[i].costs, pool.starts[0].full.passages[i].costs);
   EXPECT_EQ(back.starts[0].full.costs, pool.starts[0].full.costs);
   // An older file has none: not a number, which is no answer.
-  std::erase_if(file.arrays, [](const auto& a) { return a.name == "run_seconds"; });
+  std::erase_if(file.arrays, [](const auto& a) { return a.name == "run_time_s"; });
   const RunPool older = pool_of(file, scene, "file");
   EXPECT_TRUE(std::isnan(older.starts[0].full.passages[0].costs[0]));
 }

@@ -27,7 +27,8 @@ struct Twin {
       int l, t, m;
     };
     // Longer suffixes first.
-    static constexpr std::array<Unit, 12> kUnits{{{"_Nms_per_rad", 2, -1, 1},
+    static constexpr std::array<Unit, 13> kUnits{{{"_J_per_kg_m", 1, -2, 0},
+                                                  {"_Nms_per_rad", 2, -1, 1},
                                                   {"_Nm_per_rad", 2, -2, 1},
                                                   {"_Ns_per_m", 0, -1, 1},
                                                   {"_m_per_s", 1, -1, 0},
