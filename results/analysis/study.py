@@ -49,14 +49,14 @@ def analysis(lines):
         inside = sum(v["interval_95"][0] <= ends[e][1] <= v["interval_95"][1]
                      for e, v in a["endings"].items())
         all_ = d["costs"]["all"]
-        se = all_["sd_seconds"] / math.sqrt(TRIALS)
+        se = all_["sd_time_s"] / math.sqrt(TRIALS)
         ks, chance = (b["by_ending"]["all"][k] for k in ("kolmogorov_distance", "kolmogorov_chance_95"))
         ratio = lambda ours, theirs: f"{100 * (ours / theirs - 1):+.2f} %"
         lines.append(
             f"{name}\n  endings: largest difference {abs(ends[worst][0] - ends[worst][1]):.4f} "
             f"({worst}), {inside} of {len(ends)} inside the interval\n"
-            f"  seconds {a['expected_seconds']:.2f} beside {all_['mean_seconds']:.2f} "
-            f"({ratio(a['expected_seconds'], all_['mean_seconds'])}, chance {100 * se / all_['mean_seconds']:.2f} %), "
+            f"  seconds {a['expected_seconds']:.2f} beside {all_['mean_time_s']:.2f} "
+            f"({ratio(a['expected_seconds'], all_['mean_time_s'])}, chance {100 * se / all_['mean_time_s']:.2f} %), "
             f"gates {a['expected_gates']:.3f}\n"
             f"  work of the propulsion {ratio(a['expected_work_J'], all_['mean_work_J'])}, "
             f"of the random force {ratio(a['expected_random_work_J'], all_['mean_random_work_J'])}, "
