@@ -180,7 +180,7 @@ void add_parameters(Script& out, const AnalysedField& f) {
                              8, out.top + 18) +
               "plot $effects using 1:2:3:4 with xerrorbars pt 7 ps 0.6 lw 1.5 lc rgb '" +
               kFirstColour + "'\nunset label\nunset arrow 1\n";
-  out.top = box.bottom + 56;
+  out.top = box.bottom + 66;
 }
 
 std::string drawn(const AnalysedField& f, const Sheet& sheet, double& height) {
