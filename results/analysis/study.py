@@ -72,7 +72,7 @@ def derivatives(lines):
     begin = time.monotonic()
     a = run("analyze", *DERIVATIVES, "--accuracy", "0.01", "--runs", "40000", "--seed", "1")
     seconds = time.monotonic() - begin
-    inside = 0
+    inside = known = 0
     parameters = a["sensitivities"]["parameters"]
     for p in parameters:
         crossed = []
@@ -86,12 +86,13 @@ def derivatives(lines):
         base = a["target_probability"]
         central = (crossed[0] - crossed[1]) / width / base
         half = 1.96 * math.sqrt(sum(c * (1 - c) for c in crossed) / TRIALS) / width / base
-        low, high = p["interval_95"]
+        low, high = p["interval_95"] or (-math.inf, math.inf)  # none: a single run makes a tenth of it
         overlap = low <= central + half and central - half <= high
-        inside += low <= central <= high
+        known += p["interval_95"] is not None
+        inside += p["interval_95"] is not None and low <= central <= high
         lines.append(f"  {p['key']:33} {p['elasticity']:7.2f} [{low:.2f}, {high:.2f}]   dynamics {central:7.2f} "
                      f"[{central - half:.2f}, {central + half:.2f}]{'' if overlap else '  apart'}")
-    lines.append(f"  {inside} of {len(parameters)} central differences lie inside the chain's interval; "
+    lines.append(f"  {inside} of {known} central differences lie inside the chain's interval, {known} of {len(parameters)} have one; "
                  f"{len(parameters)} numbers took {a['sensitivities']['seconds']:.1f} s, all of it {seconds:.1f} s")
 
 
