@@ -359,13 +359,15 @@ std::string table_of(const AnalysedField& f) {
   }
   table +=
       "work: of the propulsion and of the random force; lost: to hits, dampers and drag, and left "
-      "in the beams\n\n" +
+      "in the beams;\nJ/(kg m): cost of transport, work of both forces per mass and way "
+      "forward\n\n" +
       map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
   if (a.endless)
     table += "\nbodies that go on for ever: " + percent(a.endless->survival, 1.0) +
              " of them get through or out of each further gate; " +
-             fixed(a.endless->rows_per_cell, 2) + " rows a gate; what the start has left is " +
-             percent(a.endless->second / a.endless->survival, 1.0) + " of itself a gate later\n";
+             fixed(a.endless->rows_per_cell, 2) + " rows a gate; from gate to gate " +
+             percent(a.endless->second / a.endless->survival, 1.0) +
+             " is left of what tells where they started\n";
   const std::string target = std::string("\"") + name_of(a.target) + "\"";
   if (f.from_trials)
     table +=
@@ -393,12 +395,19 @@ std::string table_of(const AnalysedField& f) {
     table += "\nper cent that the chance of " + target + " (" + percent(a.target_chance, 1.0, 4) +
              ") grows for 1 % more of each number, 95 %\n";
     for (const lattice::ParameterEffect& e : sorted_effects(a))
-      table += padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) +
-               (std::isnan(e.elasticity.interval[0]) ? " (a single run makes a tenth of it)" : "") +
-               (e.bends ? " (with more of it " + fixed(e.more, 2) + ", with less " +
-                              fixed(e.less, 2) + ")"
-                        : "") +
-               "\n";
+      table +=
+          padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) +
+          (std::isnan(e.elasticity.interval[0]) ? " (no interval: a single run makes a tenth of it)"
+                                                : "") +
+          (e.bends
+               ? " (with more of it " + fixed(e.more, 2) + ", with less " + fixed(e.less, 2) + ")"
+               : "") +
+          "\n";
+    table +=
+        "for small changes of one number at a time, in gates of all types; intervals count chance "
+        "in "
+        "these gate runs,\nnot the chain's own error, which a smaller --accuracy makes small; "
+        "--set KEY=VALUE says what a large change does\n";
   }
   return table + std::to_string(f.gate_runs + a.parameter_health.runs) + " gate runs, " +
          std::to_string(f.states) + " states, " + fixed(f.seconds + a.seconds, 2) + " s\n";
