@@ -6,6 +6,9 @@
 
 namespace gatewalk::dynamics {
 
+/// 95 % of a normal distribution lie within so many standard deviations of its mean.
+inline constexpr double kNormal95 = 1.959963984540054;
+
 /// What share of all trials a count of some stands for, with 95 %: Jeffreys' interval (Brown, Cai
 /// and DasGupta, Interval estimation for a binomial proportion, Statist. Sci. 16, 2001). [low,
 /// high]; low is 0 for no trial, high 1 for all of them.

@@ -5,6 +5,7 @@
 /// when it lay outside every bin, and `sample` puts a body back into a state's range.
 
 #include <array>
+#include <numeric>
 #include <string_view>
 #include <vector>
 
@@ -56,6 +57,10 @@ struct Bins {
 struct Cell {
   Boundary boundary = Boundary::enter;
   std::array<double, 2> d{}, vx{}, vy{};
+  [[nodiscard]] Crossing middle() const {
+    return {boundary, std::midpoint(d[0], d[1]), std::midpoint(vx[0], vx[1]),
+            std::midpoint(vy[0], vy[1])};
+  }
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 

@@ -138,9 +138,9 @@ markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
 
 }  // namespace
 
-void each_entry(const RunPool& pool,
+void each_entry(const RunPool& pool, TrialGroup group,
                 const std::function<void(const Crossing& entry, int type)>& use) {
-  each_kernel_run(pool, {}, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
     use(entry, run.type);
   });
 }

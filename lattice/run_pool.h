@@ -50,15 +50,15 @@ struct RunPool {
   [[nodiscard]] std::int64_t trials() const;
 };
 
-/// Calls use(entry, type of the gate) for all runs of the pool but the starts' own first ones and
-/// those that broke.
-void each_entry(const RunPool& pool,
-                const std::function<void(const dynamics::Crossing& entry, int type)>& use);
-
 /// Trials number group, group + of, group + 2 of, ... of every start.
 struct TrialGroup {
   std::int64_t group = 0, of = 1;
 };
+
+/// Calls use(entry, type of the gate) for all runs of the group's trials but the starts' own first
+/// ones and those that broke.
+void each_entry(const RunPool& pool, TrialGroup group,
+                const std::function<void(const dynamics::Crossing& entry, int type)>& use);
 
 /// Where entries were seen: the least boxes around those of some neighbouring leaves of a boundary.
 /// A box may hold places between its leaves where none was.

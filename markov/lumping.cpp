@@ -96,6 +96,7 @@ Lumping lump(const Chain& chain, const std::vector<int>& group_of,
     Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(std::ssize(exits));
     for (std::size_t i = 0; i < rows.size(); ++i)
       mean += shares(static_cast<Eigen::Index>(i)) * rows[i];
+    if (rows.size() > 1) mean /= mean.sum();  // 1 but for the rounding of very many
     for (std::size_t i = 0; i < rows.size(); ++i) {
       group.mean += shares(static_cast<Eigen::Index>(i)) * total_variation(rows[i], mean);
       for (std::size_t j = 0; j < i; ++j)

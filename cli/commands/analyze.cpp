@@ -1,3 +1,6 @@
+#include <array>
+#include <charconv>
+
 #include "cli/arguments.h"
 #include "cli/render/analysis.h"
 #include "cli/render/choice.h"
@@ -25,14 +28,34 @@ markov::Ending target_of(const Options& options) {
   throw UsageError("--target " + name + ": must be one of " + names);
 }
 
+/// "3,1,2". Throws UsageError for anything else.
+lattice::LumpingParts lumping_of(const Options& options) {
+  constexpr int kMost = 1000;
+  std::array<int, 3> parts{};
+  const std::string text = options.text("lump");
+  const char *at = text.data(), *const end = at + text.size();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto [next, error] = std::from_chars(at, end, parts[i]);
+    const bool ends_well = i + 1 < parts.size() ? next != end && *next == ',' : next == end;
+    if (error != std::errc() || !ends_well || parts[i] < 1 || parts[i] > kMost)
+      throw UsageError("--lump " + text + ": must be three whole numbers from 1 to " +
+                       std::to_string(kMost) + ": parts of d, of vx and of vy, as in 3,1,2");
+    at = next + 1;
+  }
+  return {parts[0], parts[1], parts[2]};
+}
+
 /// What is analysed, and what is said of how it ends.
 struct Subject {
   lattice::Scene scene;
   lattice::AnalysedChain chain;
+  std::optional<lattice::RunPool> pool{};  // none of bins
   lattice::EndingShares endings;
   Json status, settled;
   bool clean = true, from_trials = false, reached = true;
   std::int64_t gate_runs = 0;
+  int per_leaf = 0;            // of the pool's trees, and ...
+  std::int64_t most_runs = 0;  // ... how many gate runs may still be added to it
   int states = 0;
   double seconds = 0.0;
 };
@@ -46,6 +69,7 @@ Subject from_runs(const Options& options, lattice::Scene scene, lattice::RunPool
   auto chain = lattice::analysed_chain(scene, pool, lattice::entry_of(scene.start), how.per_leaf);
   return {.scene = std::move(scene),
           .chain = std::move(chain),
+          .pool = std::move(pool),
           .endings = prediction.starts.front().endings,
           .status = to_json(prediction.health),
           .settled = settled ? to_json(*settled) : Json(),
@@ -53,6 +77,8 @@ Subject from_runs(const Options& options, lattice::Scene scene, lattice::RunPool
           .from_trials = prediction.starts.front().from_trials,
           .reached = prediction.reached,
           .gate_runs = prediction.gate_runs,
+          .per_leaf = how.per_leaf,
+          .most_runs = how.most_runs - prediction.gate_runs,
           .states = prediction.states,
           .seconds = prediction.seconds};
 }
@@ -136,28 +162,44 @@ int run_analyze(const Arguments& arguments) {
                    "crossed");
   options.add_count("runs", "N",
                     "gate runs with a little more, and as many with a little less of each number "
-                    "of the scene; 0: none",
+                    "of the scene,\nand as many again for the intervals; 0: none",
                     "20000");
-  options.add_number("step", "PART", "how much more and less, as a part of it (default: 0.05)");
+  options.add_number("step", "PART", "how much more and less, as a part of it (default: 0.02)");
+  options.add_text(
+      "lump", "D,VX,VY",
+      "into how many parts the states of each boundary are cut by d, vx and vy, to see "
+      "what so few\nstates would cost",
+      "1,1,1");
   options.add_count("paths", "N", "the most frequent ways through the field", "5");
   options.add_count("trials", "N", "also run N trials of the full dynamics, to compare");
   options.add_seed();
   options.add_strict();
   options.add_figure("visits and paths, durations, starts and influences");
   if (!options.parse(arguments)) return kFine;
-  lattice::AnalysisOptions how{.target = target_of(options),
-                               .paths = static_cast<std::size_t>(options.count("paths", 0, 1000)),
-                               .runs = options.count("runs", 0, 10'000'000),
-                               .relative_step = options.has("step") ? options.number("step") : 0.05,
-                               .seed = options.seed()};
-  if (how.runs > 0 && how.runs < 100) throw UsageError("--runs: must be 0, or 100 or more");
-  if (!(how.relative_step > 0.0 && how.relative_step < 0.5))
+  const lattice::AnalysisOptions how{
+      .target = target_of(options),
+      .paths = static_cast<std::size_t>(options.count("paths", 0, 1000)),
+      .lumping = lumping_of(options),
+      .seed = options.seed()};
+  const lattice::ParameterOptions parameters{
+      .runs = options.count("runs", 0, 10'000'000),
+      .relative_step = options.has("step") ? options.number("step") : 0.02,
+      .seed = options.seed()};
+  if (parameters.runs > 0 && parameters.runs < 100)
+    throw UsageError("--runs: must be 0, or 100 or more");
+  if (!(parameters.relative_step > 0.0 && parameters.relative_step < 0.5))
     throw UsageError("--step: must lie between 0 and 0.5");
   const std::vector<lattice::PaperStart> given = given_starts(options);
   if (given.size() > 1) throw UsageError("--start: an analysis is of one start");
-  const Subject s = subject_of(options, given);
+  Subject s = subject_of(options, given);
   const dynamics::Work work = options.work();
   const auto analysis = lattice::analyze(s.scene, s.chain, how, work);
+  lattice::ParameterEffects effects;
+  if (parameters.runs > 0 && s.pool)
+    effects = lattice::parameter_effects(s.scene, *s.pool, how.target, parameters, s.per_leaf,
+                                         s.most_runs, work);
+  else if (parameters.runs > 0)
+    effects = lattice::parameter_effects(s.scene, s.chain, how.target, parameters, work);
   std::optional<DirectTrials> direct;
   if (options.has("trials")) {
     lattice::FieldCosts costs(s.scene.gate);
@@ -165,15 +207,15 @@ int run_analyze(const Arguments& arguments) {
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }
 
-  const AnalysedField shown{s.scene,   s.endings,   analysis, direct,   s.from_trials,
-                            s.reached, s.gate_runs, s.states, s.seconds};
+  const AnalysedField shown{s.scene,       s.endings, analysis,    effects,  direct,
+                            s.from_trials, s.reached, s.gate_runs, s.states, s.seconds};
   Json json = to_json(shown);
   json["status"] = s.status;
-  json["sensitivities"]["status"] = to_json(analysis.parameter_health);
+  json["sensitivities"]["status"] = to_json(effects.health);
   if (!s.settled.is_null()) json["method"] = s.settled;
   json["made_by"] = to_json(options.provenance(s.scene));
   options.give_out(json, table_of(shown));
-  dynamics::Health rest = analysis.parameter_health;
+  dynamics::Health rest = effects.health;
   if (direct) rest += direct->tally.health;
   const bool clean = status_of(options, rest) == kFine;
   options.draw([&] { return figure_of(shown); });

@@ -132,6 +132,30 @@ const char* key_of(markov::Ending ending) {
       ->key;
 }
 
+/// By type of gates_of(scene).types(): its names in the terrain, "s/t" where two are alike; empty
+/// where there is one.
+std::vector<std::string> type_names(const lattice::Scene& scene) {
+  if (!scene.terrain) return {};
+  std::vector<std::string> names(lattice::gates_of(scene).types().size());
+  if (names.size() == 1) return {};
+  names.front() = lattice::kOwnGate;
+  const std::vector<int> gate_type = lattice::gate_types(scene);
+  for (std::size_t i = 0; i < gate_type.size(); ++i) {
+    std::string& name = names[static_cast<std::size_t>(gate_type[i])];
+    name += (name.empty() ? "" : "/") + scene.terrain->types[i].name;
+  }
+  return names;
+}
+
+/// ". 1.20, s 0.44"
+template <class Number>
+std::string by_type(const std::vector<std::string>& names, Number number) {
+  std::string text;
+  for (std::size_t t = 0; t < names.size(); ++t)
+    text += (t == 0 ? "" : ", ") + names[t] + " " + fixed(number(t), 2);
+  return text;
+}
+
 /// {"i_x": ..., "i_y": ...}
 Json gate_json(std::int64_t cell, const lattice::FieldParams& field) {
   return {{"i_x", cell % field.columns - field.start_column()}, {"i_y", cell / field.columns}};
@@ -157,12 +181,12 @@ DurationCurve duration_curve(const lattice::Analysis& a, markov::Ending ending) 
 
 double most_of_starts(const lattice::Analysis& a) {
   double most = 0.0;
-  for (const lattice::StartChance& s : a.starts) most = std::max(most, s.chance);
+  for (const lattice::StartChance& s : a.starts) most = std::max(most, s.chance.mean);
   return most;
 }
 
-std::vector<lattice::ParameterEffect> sorted_effects(const lattice::Analysis& a) {
-  std::vector<lattice::ParameterEffect> effects = a.parameters;
+std::vector<lattice::ParameterEffect> sorted_effects(const AnalysedField& f) {
+  std::vector<lattice::ParameterEffect> effects = f.parameters.effects;
   std::stable_sort(effects.begin(), effects.end(), [](const auto& x, const auto& y) {
     return std::abs(x.elasticity.mean) > std::abs(y.elasticity.mean);
   });
@@ -252,6 +276,9 @@ Json to_json(const AnalysedField& f) {
     const auto walks = durations_of(a, ending);
     json["by_ending"][key] = to_json(s, p, [&](double level) { return quantile(walks, level); });
     json["by_ending"][key]["probability"] = s.share;
+    for (std::size_t c = 0; c < kCosts && ending; ++c)
+      json["by_ending"][key]["mean_" + std::string(dynamics::kCostNames[c].key) + "_95"] =
+          interval(a.costs_of[static_cast<std::size_t>(*ending)][c].interval);
     if (!f.direct) return;
     const KolmogorovDistance d = duration_distance(a, f.direct->costs, ending);
     json["by_ending"][key]["kolmogorov_distance"] = or_null(d.distance);
@@ -275,12 +302,14 @@ Json to_json(const AnalysedField& f) {
   }
   json["answer_from"] = f.from_trials ? "trials" : "chain";
   json["lumping"] = Json();
-  if (a.boundaries)
+  if (a.lumped)
     json["lumping"] = {
-        {"states", "one for each boundary"},
-        {"largest_difference", a.boundaries->largest},
-        {"error",
-         {{"endings", a.boundaries->endings}, {"final_gates", a.boundaries->final_gates}}}};
+        {"states",
+         a.lumping.parts() == 1 ? Json("one for each boundary") : Json("parts of each boundary")},
+        {"parts", {a.lumping.d, a.lumping.vx, a.lumping.vy}},
+        {"count", a.lumped->states},
+        {"largest_difference", a.lumped->largest},
+        {"error", {{"endings", a.lumped->endings}, {"final_gates", a.lumped->final_gates}}}};
   json["target"] = key_of(a.target);
   json["target_probability"] = a.target_chance;
   json["starts"] = Json::array();
@@ -288,7 +317,8 @@ Json to_json(const AnalysedField& f) {
     json["starts"].push_back({{"d_m", s.cell.d},
                               {"vx_m_per_s", s.cell.vx},
                               {"vy_m_per_s", s.cell.vy},
-                              {"probability", or_null(s.chance)}});
+                              {"probability", or_null(s.chance.mean)},
+                              {"interval_95", interval(s.chance.interval)}});
   json["paths"] = Json::array();
   for (const markov::CellPath& path : a.paths.paths) {
     Json gates = Json::array();
@@ -301,9 +331,17 @@ Json to_json(const AnalysedField& f) {
   s["passed_gates"] = grid(a.passed);
   s["less_trapping"] = a.trapping.size() > 0 ? grid(a.trapping) : Json();
   s["less_trapping_by_state"] = a.state_trapping.empty() ? Json() : Json(a.state_trapping);
+  const std::vector<std::string> types = type_names(f.scene);
+  s["less_trapping_by_type"] = Json();
+  for (std::size_t t = 0; t < types.size() && !a.type_trapping.empty(); ++t)
+    s["less_trapping_by_type"][types[t]] = a.type_trapping[t];
   s["parameters"] = Json::array();
-  for (const lattice::ParameterEffect& e : sorted_effects(a)) {
-    const double unit = a.target_chance / e.value;
+  for (const lattice::ParameterEffect& e : sorted_effects(f)) {
+    const double unit = f.parameters.chance / e.value;
+    Json of_type;
+    for (std::size_t t = 0; t < e.of_type.size(); ++t)
+      of_type[types[t]] = {{"elasticity", e.of_type[t].mean},
+                           {"interval_95", interval(e.of_type[t].interval)}};
     s["parameters"].push_back({{"key", e.key},
                                {"value", or_null(e.value)},
                                {"elasticity", e.elasticity.mean},
@@ -311,21 +349,23 @@ Json to_json(const AnalysedField& f) {
                                {"with_more", or_null(e.more)},
                                {"with_less", or_null(e.less)},
                                {"bends", e.bends},
+                               {"of_type", std::move(of_type)},
                                {"derivative", or_null(e.elasticity.mean * unit)},
                                {"derivative_95", interval({e.elasticity.interval[0] * unit,
                                                            e.elasticity.interval[1] * unit})}});
   }
-  s["gate_runs"] = a.parameter_health.runs;
-  s["seconds"] = a.parameter_seconds;
+  s["gate_runs"] = f.parameters.health.runs;
+  s["seconds"] = f.parameters.seconds;
+  s["added_gate_runs"] = f.parameters.added_runs;
   if (f.direct) {
     json["direct"] = {{"trials", f.direct->tally.trials},
                       {"endings", endings(f.direct->tally.endings)},
                       {"costs", to_json(f.direct->costs, p)}};
   }
   json["states"] = f.states;
-  json["gate_runs"] = f.gate_runs + a.parameter_health.runs;
+  json["gate_runs"] = f.gate_runs + f.parameters.health.runs;
   json["accuracy_reached"] = f.reached;
-  json["seconds"] = f.seconds + a.seconds;
+  json["seconds"] = f.seconds + a.seconds + f.parameters.seconds;
   return json;
 }
 
@@ -369,6 +409,7 @@ std::string table_of(const AnalysedField& f) {
              percent(a.endless->second / a.endless->survival, 1.0) +
              " is left of what tells where they started\n";
   const std::string target = std::string("\"") + name_of(a.target) + "\"";
+  const std::vector<std::string> types = type_names(f.scene);
   if (f.from_trials)
     table +=
         "\nthe endings above are the trials' own shares, which are more certain here; the chain's "
@@ -391,26 +432,38 @@ std::string table_of(const AnalysedField& f) {
     table += "  (none)\n";
   if (!(a.target_chance > 0.0))
     table += "nobody ends so: nothing can be said of what would change it\n";
-  if (!a.parameters.empty()) {
+  if (!f.parameters.effects.empty()) {
     table += "\nper cent that the chance of " + target + " (" + percent(a.target_chance, 1.0, 4) +
              ") grows for 1 % more of each number, 95 %\n";
-    for (const lattice::ParameterEffect& e : sorted_effects(a))
+    for (const lattice::ParameterEffect& e : sorted_effects(f))
       table +=
           padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) +
           (std::isnan(e.elasticity.interval[0]) ? " (no interval: a single run makes a tenth of it)"
                                                 : "") +
+          (e.of_type.empty()
+               ? ""
+               : "  of it: " + by_type(types, [&](std::size_t t) { return e.of_type[t].mean; })) +
           (e.bends
                ? " (with more of it " + fixed(e.more, 2) + ", with less " + fixed(e.less, 2) + ")"
                : "") +
           "\n";
     table +=
-        "for small changes of one number at a time, in gates of all types; intervals count chance "
-        "in "
-        "these gate runs,\nnot the chain's own error, which a smaller --accuracy makes small; "
-        "--set KEY=VALUE says what a large change does\n";
+        "for small changes of one number at a time, in gates of all types; intervals count "
+        "everything" +
+        std::string(std::isnan(a.gates.interval[0]) ? " but the matrix's own error" : "") +
+        ";\n--set KEY=VALUE says what a large change does\n";
   }
-  return table + std::to_string(f.gate_runs + a.parameter_health.runs) + " gate runs, " +
-         std::to_string(f.states) + " states, " + fixed(f.seconds + a.seconds, 2) + " s\n";
+  if (!types.empty() && !a.type_trapping.empty())
+    table += "\nper cent that it grows for 1 % fewer trapped, by type of the gate: " +
+             by_type(types, [&](std::size_t t) { return a.type_trapping[t]; }) + "\n";
+  if (a.lumped && a.lumping.parts() > 1)
+    table += "\nwith " + std::to_string(a.lumped->states) +
+             " states (--lump), total variation to this chain: endings " +
+             fixed(a.lumped->endings, 4) + ", final gates " + fixed(a.lumped->final_gates, 4) +
+             "\n";
+  return table + std::to_string(f.gate_runs + f.parameters.health.runs) + " gate runs, " +
+         std::to_string(f.states) + " states, " +
+         fixed(f.seconds + a.seconds + f.parameters.seconds, 2) + " s\n";
 }
 
 }  // namespace gatewalk::cli

@@ -22,6 +22,7 @@ struct AnalysedField {
   const lattice::Scene& scene;
   const lattice::EndingShares& endings;
   const lattice::Analysis& analysis;
+  const lattice::ParameterEffects& parameters;
   const std::optional<DirectTrials>& direct;
   bool from_trials = false;    // the endings are the trials' own shares
   bool reached = true;         // the accuracy asked for
@@ -56,8 +57,7 @@ struct DurationCurve {
 /// The largest chance of the target from any start.
 [[nodiscard]] double most_of_starts(const lattice::Analysis& analysis);
 /// The parameters, those that matter most first.
-[[nodiscard]] std::vector<lattice::ParameterEffect> sorted_effects(
-    const lattice::Analysis& analysis);
+[[nodiscard]] std::vector<lattice::ParameterEffect> sorted_effects(const AnalysedField& field);
 
 /// Without "status" and "made_by".
 [[nodiscard]] Json to_json(const AnalysedField& field);

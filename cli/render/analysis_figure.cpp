@@ -122,12 +122,12 @@ void add_starts(Script& out, const AnalysedField& f) {
     return std::array<double, 2>{std::max(range[0], frame[0]), std::min(range[1], frame[1])};
   };
   for (const lattice::StartChance& s : f.analysis.starts) {
-    if (vx < s.cell.vx[0] || vx >= s.cell.vx[1] || std::isnan(s.chance)) continue;
+    if (vx < s.cell.vx[0] || vx >= s.cell.vx[1] || std::isnan(s.chance.mean)) continue;
     const auto d = within(s.cell.d, seen[0]), vy = within(s.cell.vy, seen[2]);
     if (!(d[1] > d[0] && vy[1] > vy[0])) continue;
     rows += digits(0.5 * (d[0] + d[1])) + " " + digits(0.5 * (vy[0] + vy[1])) + " " +
             digits(0.5 * (d[1] - d[0])) + " " + digits(0.5 * (vy[1] - vy[0])) + " " +
-            digits(std::sqrt(100.0 * s.chance)) + "\n";
+            digits(std::sqrt(100.0 * s.chance.mean)) + "\n";
   }
   if (rows.empty()) return;
   const RootScale scale(most);
@@ -151,7 +151,7 @@ void add_starts(Script& out, const AnalysedField& f) {
 
 /// What would change the target's chance most.
 void add_parameters(Script& out, const AnalysedField& f) {
-  const auto effects = sorted_effects(f.analysis);
+  const auto effects = sorted_effects(f);
   if (effects.empty()) return;
   std::string rows, tics;
   double low = 0.0, high = 0.0;

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dynamics/share.h"
+
 namespace gatewalk::lattice {
 namespace {
 
@@ -138,7 +140,7 @@ PairedDifference paired_difference(std::int64_t only_first, std::int64_t only_se
   const double n = static_cast<double>(trials) + 2.0;
   const auto more = static_cast<double>(only_second - only_first);
   const auto unlike = static_cast<double>(only_first + only_second) + 1.0;
-  const double half = 1.959963984540054 * std::sqrt(unlike - more * more / n) / n;
+  const double half = dynamics::kNormal95 * std::sqrt(unlike - more * more / n) / n;
   return {more / static_cast<double>(trials), more / n - half, more / n + half};
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "dynamics/runs.h"
+#include "dynamics/share.h"
 #include "lattice/gate_chain.h"
 #include "lattice/scene/settle.h"
 #include "lattice/study/pool_runner.h"
@@ -122,7 +123,7 @@ struct Sums {
 }  // namespace
 
 std::array<double, 2> RowChance::interval_95() const {
-  const double factor = std::exp(1.959964 * relative_standard_error);
+  const double factor = std::exp(dynamics::kNormal95 * relative_standard_error);
   return {probability / factor, std::min(1.0, probability * factor)};
 }
 

@@ -232,7 +232,7 @@ TEST(Analysis, BinsKeepWhatTheirRunsTook) {
   EXPECT_TRUE(back.arrays.empty());
 
   const ChainStart start = chain_start(space, scene.field, scene.start);
-  const Analysis a = analyze(scene, analysed_chain(scene, {whole}, start.start), {.runs = 0});
+  const Analysis a = analyze(scene, analysed_chain(scene, {whole}, start.start), {});
   FieldCosts costs(scene.gate);
   FieldTrials each;
   (void)run_field(scene.gate, scene.field, scene.start, space, 777, {0, 4000}, &each);
@@ -241,7 +241,7 @@ TEST(Analysis, BinsKeepWhatTheirRunsTook) {
   EXPECT_TRUE(std::isnan(a.costs[0].interval[0]));
   // Without the runs' costs there is no answer, rather than a wrong one.
   whole.costs.assign(whole.costs.size(), {});
-  const Analysis b = analyze(scene, analysed_chain(scene, {whole}, start.start), {.runs = 0});
+  const Analysis b = analyze(scene, analysed_chain(scene, {whole}, start.start), {});
   EXPECT_TRUE(std::isnan(b.costs[0].mean));
   EXPECT_TRUE(b.walks.empty());
   EXPECT_EQ(a.target_chance, b.target_chance);
@@ -250,8 +250,7 @@ TEST(Analysis, BinsKeepWhatTheirRunsTook) {
 TEST(Analysis, AgreesWithTheFullDynamics) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 20'000);
-  const Analysis a =
-      analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {.runs = 0});
+  const Analysis a = analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {});
   FieldCosts costs(scene.gate);
   FieldTrials each;
   (void)run_field(scene.gate, scene.field, scene.start, StateSpace::paper(scene.gate), 777,
@@ -277,9 +276,9 @@ TEST(Analysis, AgreesWithTheFullDynamics) {
 // d ln(crossed) / d ln(value) against trials with a twentieth more and less of it.
 TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
   const Scene scene = open_scene();
-  const RunPool pool = pool_of_trials(scene, 10'000);
-  const Analysis a =
-      analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {.runs = 20'000});
+  RunPool pool = pool_of_trials(scene, 10'000);
+  const ParameterEffects a =
+      parameter_effects(scene, pool, Ending::far_edge, {.runs = 20'000, .relative_step = 0.05});
   const auto crossed = [&](const char* key, double factor) {
     Scene other = scene;
     for (const ParamInfo& info : gate_param_table())
@@ -290,33 +289,38 @@ TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
     return static_cast<double>(t.endings[static_cast<std::size_t>(Ending::far_edge)]) / kTrials;
   };
   int seen = 0;
-  for (const ParameterEffect& e : a.parameters) {
+  for (const ParameterEffect& e : a.effects) {
     const bool asked = e.key == "forces.propulsion_N" || e.key == "forces.random_N" ||
                        e.key == "beams.stiffness_left_Nm_per_rad" || e.key == "body.mass_kg";
     if (!asked) continue;
     ++seen;
     const std::string key(e.key);
     const double up = crossed(key.c_str(), 1.05), down = crossed(key.c_str(), 0.95);
-    const double central = (up - down) / 0.1 / a.target_chance;
+    const double central = (up - down) / 0.1 / a.chance;
     const double chance =
-        std::sqrt((up * (1 - up) + down * (1 - down)) / 40'000.0) / 0.1 / a.target_chance;
+        std::sqrt((up * (1 - up) + down * (1 - down)) / 40'000.0) / 0.1 / a.chance;
     const double half = 0.5 * (e.elasticity.interval[1] - e.elasticity.interval[0]);
     EXPECT_NEAR(e.elasticity.mean, central, 1.5 * std::hypot(half, 2.0 * chance)) << key;
   }
   EXPECT_EQ(seen, 4);
-  EXPECT_GE(a.parameters.size(), 12u);
+  EXPECT_GE(a.effects.size(), 12u);
 }
 
 TEST(Analysis, IsTheSameOnAnyNumberOfThreads) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 500);
+  const auto effects = [&] {
+    RunPool own = pool;
+    return parameter_effects(scene, own, Ending::far_edge, {.runs = 300}).effects;
+  };
+  const auto few = test::on_threads(1, effects), many = test::on_threads(3, effects);
+  ASSERT_EQ(few.size(), many.size());
+  for (std::size_t i = 0; i < few.size(); ++i)
+    EXPECT_EQ(few[i].elasticity.mean, many[i].elasticity.mean);
   const auto run = [&] {
-    return analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {.runs = 300});
+    return analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {});
   };
   const Analysis one = test::on_threads(1, run), three = test::on_threads(3, run);
-  ASSERT_EQ(one.parameters.size(), three.parameters.size());
-  for (std::size_t i = 0; i < one.parameters.size(); ++i)
-    EXPECT_EQ(one.parameters[i].elasticity.mean, three.parameters[i].elasticity.mean);
   EXPECT_EQ(one.costs[0].mean, three.costs[0].mean);
   EXPECT_EQ(one.costs[0].interval, three.costs[0].interval);
 }

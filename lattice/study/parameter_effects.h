@@ -1,0 +1,71 @@
+#pragma once
+/// How the chance of an ending answers to the numbers of a scene.
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/health.h"
+#include "dynamics/work.h"
+#include "lattice/scene/scene.h"
+#include "lattice/study/costed_chain.h"
+#include "lattice/study/passages.h"
+
+namespace gatewalk::lattice {
+
+/// A mean with its 95 % interval; not a number where that is not known.
+struct Mean95 {
+  double mean = 0.0;
+  std::array<double, 2> interval{};
+};
+
+struct ParameterEffect {
+  std::string_view key;  // dynamics::ParamInfo's
+  double value = 0.0;    // NaN where types differ in it
+  /// Per cent that the chance changes for one per cent of the value in gates of all types: (P+ -
+  /// P-) / (2 P step), to first order in what the number does at each gate. The interval counts
+  /// chance in these gate runs and the chain's own error, of chains without groups only the
+  /// former; none where one run makes a tenth of it.
+  Mean95 elasticity;
+  std::vector<Mean95> of_type;    // the same, of gates of one type alone; they add up to it
+  double more = 0.0, less = 0.0;  // the same to one side each, with more and with less of the
+                                  // number; NaN where the scene does not permit it
+  bool bends = false;             // these differ by more than chance: no single number says it
+};
+
+struct ParameterOptions {
+  std::int64_t runs = 20'000;   // gate runs to each side of a number, and as many for its interval
+  double relative_step = 0.02;  // of the number, to each side
+  std::uint64_t seed = 1;
+};
+
+struct ParameterEffects {
+  double chance = 0.0;                   // of the target, by this chain
+  std::vector<ParameterEffect> effects;  // of the numbers that can be changed; none where the
+                                         // chance is zero
+  std::int64_t added_runs = 0;           // to the pool
+  dynamics::Health health;               // of the runs behind them
+  double seconds = 0.0;
+};
+
+/// In the places that bodies pass on their way to the target: gate runs with a little more and a
+/// little less of each number under the same noise, and what the chain says of where they lead. The
+/// same with each of the chain's groups, for the interval. What runs take is not used.
+[[nodiscard]] ParameterEffects parameter_effects(const Scene& scene, const AnalysedChain& chain,
+                                                 markov::Ending target,
+                                                 const ParameterOptions& options,
+                                                 const dynamics::Work& work = {});
+
+/// The same of the chain of a pool, from its runs of the scene's start. So that the chain's error
+/// is no more than chance makes in the runs for parameters, full trials are added until it has 25
+/// times as many, `most_runs` new gate runs at most; its states grow with the square root of that.
+/// Throws as predict_pooled.
+[[nodiscard]] ParameterEffects parameter_effects(const Scene& scene, RunPool& pool,
+                                                 markov::Ending target,
+                                                 const ParameterOptions& options,
+                                                 int per_leaf = dynamics::kEntriesPerLeaf,
+                                                 std::int64_t most_runs = 20'000'000,
+                                                 const dynamics::Work& work = {});
+
+}  // namespace gatewalk::lattice
