@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <vector>
 
 #include "lattice/scene/csv.h"
+#include "lattice/scene/grey_picture.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/toml_text.h"
 
@@ -13,7 +15,7 @@ namespace gatewalk::lattice {
 namespace {
 
 constexpr std::size_t kMostTypes = 100;
-constexpr const char* kKeys = "map, map_file, random, seed and types";
+constexpr const char* kKeys = "map, map_file, grey, random, seed and types";
 
 bool is_name(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -48,12 +50,15 @@ std::vector<MapRow> rows_given(const TerrainSetting& map) {
   return rows;
 }
 
-std::vector<MapRow> rows_of_file(const TerrainSetting& given) {
+std::string path_of(const TerrainSetting& given) {
   const auto* name = given.value->as_string();
   if (!name)
     throw SceneError(given.where() + ": terrain.map_file" + shown_value(*given.value) +
                      " is not permitted: must be the name of a file, such as \"terrain.csv\"");
-  const std::string path = (std::filesystem::path(given.folder) / name->get()).string();
+  return (std::filesystem::path(given.folder) / name->get()).string();
+}
+
+std::vector<MapRow> rows_of_file(const TerrainSetting& given, const std::string& path) {
   const auto lines = lines_of(path);
   if (!lines) throw SceneError(given.where() + ": terrain.map_file: " + path + " cannot be read");
   std::vector<MapRow> rows;
@@ -110,6 +115,58 @@ std::vector<int> cells_of(const std::vector<MapRow>& rows, const std::string& wh
     }
   }
   return types;
+}
+
+/// Types by grey value, as terrain.grey says.
+std::map<int, int> types_by_grey(const TerrainSettings& settings, const Terrain& terrain) {
+  std::map<int, int> types;
+  for (const auto& [key, given] : settings) {
+    if (!key.starts_with("grey.")) continue;
+    const std::string name = key.substr(key.find('.') + 1);
+    const std::string begin = given.where() + ": terrain." + key + shown_value(*given.value);
+    const int type = type_named(terrain, name);
+    if (type < 0)
+      throw SceneError(begin + ": " + printable(name) + " is no type of gate: there are " +
+                       all_names(terrain));
+    const auto* grey = given.value->as_integer();
+    if (!grey || grey->get() < 0 || grey->get() > 255)
+      throw SceneError(begin +
+                       " is not permitted: must be a whole number from 0 (black) to 255 "
+                       "(white)");
+    if (!types.emplace(static_cast<int>(grey->get()), type).second)
+      throw SceneError(begin + " is not permitted: another type has it");
+  }
+  return types;
+}
+
+std::vector<int> cells_of_picture(const TerrainSetting& given, const std::string& path,
+                                  const std::map<int, int>& types, const FieldParams& field) {
+  const std::string begin = given.where() + ": terrain.map_file: " + path + ": ";
+  std::string greys;
+  for (const auto& [grey, type] : types)
+    greys += (greys.empty() ? "" : ", ") + std::to_string(grey);
+  if (types.empty())
+    throw SceneError(begin +
+                     "a picture needs the grey value of each type: terrain.grey = { s = 0, "
+                     "\".\" = 255 }");
+  GreyPicture picture;
+  try {
+    picture = read_grey_png(path, field.columns, field.rows);
+  } catch (const std::runtime_error& e) {
+    throw SceneError(begin + e.what());
+  }
+  std::vector<int> cells(picture.grey.size());
+  for (int r = 0; r < field.rows; ++r)
+    for (int c = 0; c < field.columns; ++c) {
+      const int grey = picture.grey[static_cast<std::size_t>(r * field.columns + c)];
+      const auto type = types.find(grey);
+      if (type == types.end())
+        throw SceneError(begin + "row " + std::to_string(r + 1) + ", column " +
+                         std::to_string(c + 1) + " has the grey value " + std::to_string(grey) +
+                         ": terrain.grey has " + greys);
+      cells[static_cast<std::size_t>((field.rows - 1 - r) * field.columns + c)] = type->second;
+    }
+  return cells;
 }
 
 std::map<std::string, double> shares_of(const TerrainSettings& settings, const Terrain& terrain) {
@@ -171,9 +228,9 @@ void add_terrain(TerrainSettings& settings, const toml::table& document, const O
     const std::string name(key.str());
     if (name == "map" || name == "map_file" || name == "seed") {
       add(name, node);
-    } else if (name == "random") {
-      for (const auto& [type, share] : table_at(node, "terrain.random", origin))
-        add("random." + std::string(type.str()), share);
+    } else if (name == "random" || name == "grey") {
+      for (const auto& [type, number] : table_at(node, "terrain." + name, origin))
+        add(name + "." + std::string(type.str()), number);
     } else if (name == "types") {
       for (const auto& [type, keys] : table_at(node, "terrain.types", origin))
         add_type(std::string(type.str()), keys);
@@ -221,14 +278,23 @@ std::optional<Terrain> terrain_of(const TerrainSettings& settings, const FieldPa
     if (!is_random) throw SceneError(begin + " has no meaning without terrain.random");
     terrain.seed = static_cast<std::uint64_t>(whole->get());
   }
+  const auto greys = types_by_grey(settings, terrain);
+  const std::string path = file != settings.end() ? path_of(file->second) : "";
+  if (!greys.empty() && !is_png(path)) {
+    const auto grey = settings.lower_bound("grey.");
+    throw SceneError(grey->second.where() + ": terrain." + grey->first +
+                     " has no meaning without a picture: terrain.map_file = \"NAME.png\"");
+  }
   if (is_random) {
     terrain.shares = shares_of(settings, terrain);
     terrain.type_of_cell = drawn_map(terrain, field);
   } else if (map != settings.end()) {
     terrain.type_of_cell =
         cells_of(rows_given(map->second), map->second.where() + ": terrain.map", terrain, field);
+  } else if (is_png(path)) {
+    terrain.type_of_cell = cells_of_picture(file->second, path, greys, field);
   } else {
-    terrain.type_of_cell = cells_of(rows_of_file(file->second),
+    terrain.type_of_cell = cells_of(rows_of_file(file->second, path),
                                     file->second.where() + ": terrain.map_file", terrain, field);
   }
   return terrain;

@@ -2,6 +2,7 @@
 #include "lattice/scene/terrain.h"
 
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -109,6 +110,71 @@ TEST(Terrain, AMapMayBeAFileBesideTheScene) {
       << message("none.csv");
 }
 
+// A pixel is a gate; the upper row is the far side.
+TEST(Terrain, AMapMayBeAPicture) {
+  const std::filesystem::path folder = testing::TempDir();
+  const std::string grey = "grey = { s = 0, t = 128, \".\" = 255 }\n";
+  const auto write = [&](png_uint_32 format, std::vector<png_byte> pixels, png_uint_32 columns) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = columns;
+    image.height = 2;
+    image.format = format;
+    ASSERT_NE(0, png_image_write_to_file(&image, (folder / "map.png").c_str(), 0, pixels.data(), 0,
+                                         nullptr));
+  };
+  const auto read = [&](const std::string& keys) {
+    std::ofstream(folder / "scene.toml") << kField << "[terrain]\nmap_file = \"map.png\"\n"
+                                         << keys << kTypes;
+    return read_scene((folder / "scene.toml").string(), {});
+  };
+  const auto message = [&](const std::string& keys) {
+    try {
+      (void)read(keys);
+    } catch (const SceneError& e) {
+      return std::string(e.what());
+    }
+    return std::string("(accepted)");
+  };
+  const std::vector<png_byte> map{0, 255, 128, 255, 255, 0};
+  const std::vector<int> cells{0, 0, 1, 1, 0, 2};
+  write(PNG_FORMAT_GRAY, map, 3);
+  EXPECT_EQ(read(grey).terrain->type_of_cell, cells);
+  const Scene again = parse_scene(to_toml(read(grey)), "again");  // letters then
+  EXPECT_EQ(again.terrain->type_of_cell, cells);
+  EXPECT_TRUE(contains(message(""), "a picture needs the grey value of each type"));
+  EXPECT_TRUE(contains(message("grey = { s = 0, \".\" = 255 }\n"),
+                       "map.png: row 1, column 3 has the grey value 128: terrain.grey has 0, 255"));
+  EXPECT_TRUE(
+      contains(message("grey = { s = 0, q = 3 }\n"),
+               "scene.toml:5: terrain.grey.q = 3: q is no type of gate: there are ., s, t"));
+  EXPECT_TRUE(contains(message("grey = { s = 0, t = 0 }\n"), "another type has it"));
+  EXPECT_TRUE(contains(message("grey = { s = 0, t = 256 }\n"), "from 0 (black) to 255 (white)"));
+
+  std::vector<png_byte> colours;
+  for (const png_byte value : map) colours.insert(colours.end(), 3, value);
+  write(PNG_FORMAT_RGB, colours, 3);
+  EXPECT_EQ(read(grey).terrain->type_of_cell, cells);
+  colours[4] = 254;
+  write(PNG_FORMAT_RGB, colours, 3);
+  EXPECT_TRUE(contains(message(grey), "row 1, column 2 has the colour 255, 254, 255"));
+  write(PNG_FORMAT_GA, {0, 255, 0, 255, 0, 255, 0, 255, 0, 7, 0, 255}, 3);
+  EXPECT_TRUE(contains(message(grey), "row 2, column 2 is not opaque"));
+  write(PNG_FORMAT_GRAY, {0, 0, 0, 0}, 2);
+  EXPECT_TRUE(
+      contains(message(grey), "is 2 pixels wide and 2 high, the field has 3 columns and 2"));
+  std::ofstream(folder / "map.png") << "none";
+  EXPECT_TRUE(contains(message(grey), "map.png: cannot be read: "));
+  std::filesystem::remove(folder / "map.png");
+  EXPECT_TRUE(contains(message(grey), "map.png: cannot be read: "));
+  try {
+    (void)with_map("map = [\"s.t\", \"..s\"]\n" + grey);
+    FAIL();
+  } catch (const SceneError& e) {
+    EXPECT_TRUE(contains(e.what(), "has no meaning without a picture")) << e.what();
+  }
+}
+
 // A share of each type as often as asked for, the same for the same seed, and where a gate is
 // (counted from the start's column) whatever the size of the field.
 TEST(Terrain, DrawsAMapByShares) {
@@ -166,7 +232,7 @@ TEST(Terrain, ErrorsNameFileLineKeyAndWhatIsAllowed) {
   says("map = [\"s.t\", \"...\"]\nrandom = { s = 0.1 }",
        "must have one of map, map_file and random");
   says("", "must have one of map, map_file and random");
-  says("maps = 1", "x.toml:4: unknown key terrain.maps; [terrain] has map, map_file, random");
+  says("maps = 1", "x.toml:4: unknown key terrain.maps; [terrain] has map, map_file, grey, random");
   const std::string map = "map = [\"...\", \"...\"]";
   for (const std::string key : {"body.mass_kg", "beams.joint_x_m", "beams.joint_y_m",
                                 "run.time_limit_s", "run.method", "field.rows", "start.x_m"})
