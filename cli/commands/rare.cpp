@@ -68,7 +68,7 @@ int run_rare(const Arguments& arguments) {
   Json json = to_json(event, direct);
   if (settled) json["method"] = to_json(*settled);
   json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, table_of(event, direct) + method_line(settled));
+  options.give_out(json, table_of(event, direct, scene.field) + method_line(settled));
   if (!event.splitting.reached)
     options.warn("the relative standard error of " + digits(how.accuracy) +
                  " was not reached with " + std::to_string(how.most_runs) +

@@ -196,7 +196,7 @@ int run_validate(const Arguments& arguments) {
   std::string table = table_of(result, scene, matrix);
   if (const auto& experiment = result.starts.front().observed) {
     json["observed"] = to_json(*experiment, result.starts.front(), options.texts("observed"));
-    table = table_of(*experiment, result.starts.front()) + "\n" + table;
+    table = table_of(*experiment, result.starts.front());
   }
   json["made_by"] = to_json(options.provenance(scene));
   options.give_out(json, table);

@@ -8,6 +8,7 @@
 #include "cli/render/json.h"
 #include "cli/render/power.h"
 #include "cli/render/text.h"
+#include "cli/render/validation.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -106,7 +107,7 @@ std::string from_on(const std::optional<double>& total_variation) {
 }
 
 /// One sentence; p-values belong to the differences that it names.
-std::string verdict(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
+std::string verdict_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   const Judgement &d = c.against_dynamics, &k = c.against_chain;
   const std::string these = "these " + std::to_string(c.seen.trials()) + " trials ",
                     in_dynamics = "the dynamics by more than chance (" + p_of(d) + ")",
@@ -127,7 +128,7 @@ std::string verdict(const lattice::ObservedComparison& c, const lattice::StartVa
 Json to_json(const lattice::ObservedComparison& c, const lattice::StartValidation& v,
              const std::vector<std::string>& files) {
   Json json;
-  json["verdict"] = verdict(c, v);
+  json["verdict"] = verdict_of(c, v);
   json["files"] = files;
   json["trials"] = c.seen.trials();
   if (c.seen.has_endings()) {
@@ -143,13 +144,14 @@ Json to_json(const lattice::ObservedComparison& c, const lattice::StartValidatio
 
 std::string table_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   const std::int64_t n = c.seen.trials();
-  std::string text = "Observed: " + std::to_string(n) + " trials, beside " +
-                     std::to_string(v.dynamics.trials) +
-                     " of the full dynamics and the exact chain. p: how often chance makes as "
-                     "large a\ndifference in anything that is looked at. Seen from: a smaller "
-                     "difference from the model is missed by\nmore than " +
-                     fixed(100.0 - 100.0 * c.least.goal.power, 0) + " of 100 experiments of " +
-                     std::to_string(n) + " trials.\n\n";
+  std::string text =
+      "Observed: " + std::to_string(n) + " trials, beside " + std::to_string(v.dynamics.trials) +
+      " of the full dynamics and the exact chain. p: how often chance makes as "
+      "large a\ndifference in anything that is looked at. Seen from: a smaller "
+      "difference from the model is missed by\nmore than " +
+      fixed(100.0 - 100.0 * c.least.goal.power, 0) + " of 100 experiments of " + std::to_string(n) +
+      " trials (+: more than the model, -: fewer; none: not even none at all would "
+      "be seen).\n\n";
   if (c.seen.has_endings()) text += "Endings, % with 95 % intervals\n" + endings_part(c, v);
   if (c.seen.has_endings() && c.seen.has_gates()) text += "\n";
   if (c.seen.has_gates()) {
@@ -159,8 +161,10 @@ std::string table_of(const lattice::ObservedComparison& c, const lattice::StartV
             "A total variation (TV) of the final gates is seen " + from_on(c.least.final_gates) +
             " if it is spread over all gates, the hardest to see.\n";
   }
-  text += "\n" + verdict(c, v) + "\n";
-  return text;
+  std::string said = verdict_of(c, v);
+  for (std::size_t at = 0; (at = said.find("; ", at)) != said.npos;) said.replace(at, 2, ";\n  ");
+  return text + "\n" + said + "\n\nWhether the chain is to be trusted: " + verdict(v) +
+         ".\n(More of that without --observed, and in --json.)\n";
 }
 
 std::string endings_not_listed(const lattice::Observed& observed,

@@ -94,7 +94,9 @@ std::string power_table(const PlannedExperiment& p) {
                      " trials show: how likely a difference of so many points is found, and "
                      "the smallest that is found in\n" +
                      digits(100.0 * p.options.goal.power) +
-                     " % of such experiments; in brackets, if all endings are looked at:\n\n" +
+                     " % of such experiments\n(+: more, -: fewer than predicted; none: not even "
+                     "none at all is found so often); in "
+                     "brackets, if all endings are looked at:\n\n" +
                      padded("", kName) + padded("predicted", kShare);
   for (const double d : lattice::kShareDifferences)
     text += padded(digits(100.0 * d) + " points", 11);

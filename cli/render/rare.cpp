@@ -1,5 +1,6 @@
 #include "cli/render/rare.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "cli/render/health.h"
@@ -27,6 +28,19 @@ Json to_json(const lattice::RowChance& c) {
           {"relative_standard_error", known ? Json(c.relative_standard_error) : Json()}};
 }
 
+/// Independent trials whose share has the same relative standard error.
+double trials_needed(const lattice::RowChance& c) {
+  return (1.0 - c.probability) /
+         (c.probability * c.relative_standard_error * c.relative_standard_error);
+}
+
+/// "53000", "1.2e+15"
+std::string rounded(double n) {
+  const double unit = std::pow(10.0, std::floor(std::log10(n)) - 1.0);
+  const double two_digits = unit * std::round(n / unit);
+  return n < 1e9 ? fixed(two_digits, 0) : chance(two_digits);
+}
+
 }  // namespace
 
 Json to_json(const lattice::RareEvent& event, const DirectRows& direct) {
@@ -34,6 +48,8 @@ Json to_json(const lattice::RareEvent& event, const DirectRows& direct) {
   Json json = to_json(s.rows.back());
   json["row"] = s.rows.size();
   json["chain"] = event.chain.back();
+  json["direct_trials_needed"] =
+      s.rows.back().probability > 0.0 ? Json(trials_needed(s.rows.back())) : Json();
   json["reached"] = s.reached;
   json["gate_runs"] = s.gate_runs + event.pool_runs;
   json["split_trials"] = s.trials;
@@ -54,7 +70,8 @@ Json to_json(const lattice::RareEvent& event, const DirectRows& direct) {
   return json;
 }
 
-std::string table_of(const lattice::RareEvent& event, const DirectRows& direct) {
+std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
+                     const lattice::FieldParams& field) {
   const lattice::Splitting& s = event.splitting;
   const lattice::RowChance& last = s.rows.back();
   std::string table =
@@ -62,8 +79,15 @@ std::string table_of(const lattice::RareEvent& event, const DirectRows& direct) 
   if (last.probability > 0.0)
     table += " " + interval(last.interval_95()) + ", relative standard error " +
              fixed(100 * last.relative_standard_error, 1) + " %";
-  table += "\nthe chain alone says " + chance(event.chain.back()) +
-           "\n\n   row      chance              95 %            chain";
+  table += "\nthe chain alone says " + chance(event.chain.back());
+  if (last.probability > 0.0)
+    table += "; direct simulation would need " + rounded(trials_needed(last)) +
+             " trials for the same error";
+  if (field.max_gates > 0)
+    table += "\nbodies go on for as long as it takes: field.max_gates = " +
+             std::to_string(field.max_gates) +
+             ", which predict and lattice keep, does not count here";
+  table += "\n\n   row      chance              95 %            chain";
   if (direct.trials > 0) table += "      direct simulation, 95 %";
   table += "\n";
   for (std::size_t r = 0; r < s.rows.size(); ++r) {

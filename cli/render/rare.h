@@ -20,7 +20,8 @@ struct DirectRows {
 };
 
 [[nodiscard]] Json to_json(const lattice::RareEvent& event, const DirectRows& direct);
-[[nodiscard]] std::string table_of(const lattice::RareEvent& event, const DirectRows& direct);
+[[nodiscard]] std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
+                                   const lattice::FieldParams& field);
 [[nodiscard]] Figure figure_of(const lattice::RareEvent& event, const DirectRows& direct);
 
 }  // namespace gatewalk::cli

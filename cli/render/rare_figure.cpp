@@ -33,12 +33,12 @@ Figure figure_of(const lattice::RareEvent& event, const DirectRows& direct) {
   if (!chain.empty())
     plot += std::string("$chain using 1:2 with lines lw 2 lc rgb '") + kSecondColour +
             "' title 'chain', ";
+  if (!trials.empty())  // beside the others
+    plot += std::string("$direct using ($1+0.25):2:3:4 with yerrorbars pt 4 ps 0.5 lc rgb '") +
+            kThirdColour + "' title '" + std::to_string(direct.trials) + " direct trials, 95 %', ";
   if (!split.empty())
     plot += std::string("$split using 1:2:3:4 with yerrorbars pt 7 ps 0.5 lc rgb '") +
             kFirstColour + "' title 'splitting, 95 %', ";
-  if (!trials.empty())
-    plot += std::string("$direct using 1:2:3:4 with yerrorbars pt 4 ps 0.9 lc rgb '") +
-            kThirdColour + "' title '" + std::to_string(direct.trials) + " direct trials, 95 %', ";
   return {Sheet::kWidth, sheet.height,
           data_block("$chain", chain) + data_block("$split", split) +
               data_block("$direct", trials) + sheet.margins(box) +

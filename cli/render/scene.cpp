@@ -83,7 +83,7 @@ std::string table_of(const std::vector<lattice::KeyInfo>& keys) {
 }
 
 std::string commented(const lattice::Scene& scene) {
-  const std::vector<lattice::KeyInfo> keys = lattice::describe(scene);
+  std::vector<lattice::KeyInfo> keys = lattice::describe(scene);
   std::string text =
       "# A scene for gatewalk: one body, one gate with two beams, a field of such gates. Units are "
       "in the keys.\n"
@@ -95,8 +95,10 @@ std::string commented(const lattice::Scene& scene) {
   std::size_t width = 0;
   const auto leaf = [](const lattice::KeyInfo& k) { return k.key.substr(k.key.find('.') + 1); };
   const auto of_terrain = [](const lattice::KeyInfo& k) { return k.key.starts_with("terrain."); };
-  for (const lattice::KeyInfo& k : keys)
+  for (lattice::KeyInfo& k : keys) {
+    if (k.source == "derived") k.value = digits(std::stod(k.value));  // nobody reads them back
     if (!of_terrain(k)) width = std::max(width, leaf(k).size() + k.value.size() + 5);
+  }
   for (const lattice::KeyInfo& k : keys) {
     if (of_terrain(k)) break;  // as a table below
     if (const std::string own = k.key.substr(0, k.key.find('.')); own != table)

@@ -13,9 +13,6 @@
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
-namespace {
-
-Json to_json(const lattice::MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; }
 
 std::string verdict(const lattice::StartValidation& r) {
   const lattice::Judgement& j = r.judgement;
@@ -48,6 +45,10 @@ std::string verdict(const lattice::StartValidation& r) {
         " (chance: " + fixed(j.chance_total_variation, 3) + ")");
   return text;
 }
+
+namespace {
+
+Json to_json(const lattice::MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; }
 
 Json to_json(const lattice::StartValidation& r) {
   Json j;

@@ -19,6 +19,9 @@ struct ValidatedMatrix {
   const Json &status, &settled, &states;  // null where there is none
 };
 
+/// One sentence: whether the chain agrees with the dynamics from one start.
+[[nodiscard]] std::string verdict(const lattice::StartValidation& r);
+
 /// Without "made_by".
 [[nodiscard]] Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix);
 [[nodiscard]] std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,

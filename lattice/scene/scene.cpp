@@ -75,7 +75,7 @@ const std::vector<SceneKey>& scene_keys() {
         all.push_back({kMethodKey,
                        [](Scene& s) { return Slot(&s.gate.run.method); },
                        {},
-                       "how time is stepped, see dynamics/methods/method.h"});
+                       "how time is stepped: auto, stable, moreau, event, penalty or paper"});
       }
       all.push_back({info.key, [&info](Scene& s) { return Slot(&info.ref(s.gate)); },
                      [&info](const Scene&) {
