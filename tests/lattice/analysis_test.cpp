@@ -8,6 +8,9 @@
 #include "dynamics/ensemble.h"
 #include "dynamics/runs.h"
 #include "lattice/field_costs.h"
+#include "lattice/study/lumped_chain.h"
+#include "lattice/study/parameter_effects.h"
+#include "lattice/study/passages.h"
 #include "lattice/study/pooled_prediction.h"
 #include "lattice/study/tree_chain.h"
 #include "lattice/study/trials.h"
@@ -278,7 +281,7 @@ TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
   const Scene scene = open_scene();
   RunPool pool = pool_of_trials(scene, 10'000);
   const ParameterEffects a =
-      parameter_effects(scene, pool, Ending::far_edge, {.runs = 20'000, .relative_step = 0.05});
+      parameter_effects(scene, pool, Ending::far_edge, {.runs = 10'000, .relative_step = 0.05});
   const auto crossed = [&](const char* key, double factor) {
     Scene other = scene;
     for (const ParamInfo& info : gate_param_table())
@@ -304,6 +307,68 @@ TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
   }
   EXPECT_EQ(seen, 4);
   EXPECT_GE(a.effects.size(), 12u);
+}
+
+// What a number does in gates of one type adds up to what it does in all.
+TEST(Analysis, PartsOfTypesAddUp) {
+  Scene scene = parse_scene(
+      "[field]\ncolumns = 5\nrows = 3\nmax_gates = 8\n[forces]\npropulsion_N = 9.0\nrandom_N = "
+      "30.0\n[run]\nmethod = 'moreau'\nstep_s = 0.02\n[terrain]\nmap = ['.s.s.', 's.s.s', "
+      "'.s.s.']\n[terrain.types.s]\nbeams.stiffness_left_Nm_per_rad = 200.0\n",
+      "mixed");
+  scene.start = {4, 0, 1, 15};
+  RunPool pool = pool_of_trials(scene, 2000);
+  const auto effects =
+      parameter_effects(scene, pool, Ending::far_edge, {.runs = 2000, .relative_step = 0.05})
+          .effects;
+  ASSERT_GE(effects.size(), 12u);
+  for (const ParameterEffect& e : effects) {
+    ASSERT_EQ(e.of_type.size(), 2u) << e.key;
+    EXPECT_NEAR(e.of_type[0].mean + e.of_type[1].mean, e.elasticity.mean,
+                1e-9 * (1.0 + std::abs(e.elasticity.mean)))
+        << e.key;
+  }
+}
+
+TEST(Analysis, DrawnPlacesStandForAllThatArePassed) {
+  const Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 2000);
+  const AnalysedChain chain = analysed_chain(scene, pool, entry_of(scene.start));
+  const Passages passages(chain.chain, scene.field, Ending::far_edge);
+  double draws = 0.0, to_target = 0.0;
+  passages.each([&](const Passages::Place& place, double share) {
+    draws += share;
+    to_target += share * passages.chance(place);
+  });
+  EXPECT_NEAR(draws, passages.totals().visits.sum(), 1e-9);
+  const Passages::Draws drawn(passages);
+  constexpr int kDraws = 20'000;
+  double mean = 0.0, of_target = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    const Passages::Place place = drawn.place((i + 0.5) / kDraws);
+    mean += drawn.weight(place) / kDraws;
+    of_target += drawn.weight(place) * passages.chance(place) / kDraws;
+  }
+  EXPECT_NEAR(mean / draws, 1.0, 0.02);
+  EXPECT_NEAR(of_target / to_target, 1.0, 0.02);
+}
+
+// Down to a part for each state, about, which loses nothing.
+TEST(Analysis, MorePartsLoseLess) {
+  const Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 2000);
+  const AnalysedChain chain = analysed_chain(scene, pool, entry_of(scene.start));
+  const Passages passages(chain.chain, scene.field, Ending::far_edge);
+  const auto lumped = [&](const LumpingParts& parts) {
+    return lumped_chain(chain, gates_of(scene), scene.field, passages.state_visits(), parts)
+        .value();
+  };
+  const LumpedChain boundaries = lumped({}), some = lumped({2, 1, 3}), all = lumped({99, 99, 99});
+  EXPECT_EQ(boundaries.states, kBoundaries + 1);
+  EXPECT_EQ(some.states, 6 * kBoundaries + 1);
+  EXPECT_LT(some.final_gates, boundaries.final_gates);
+  EXPECT_GT(all.states, chain.space.size() - 20);  // those that nobody visits stay together
+  EXPECT_LT(all.final_gates, 0.01 * some.final_gates);
 }
 
 TEST(Analysis, IsTheSameOnAnyNumberOfThreads) {
