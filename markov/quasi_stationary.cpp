@@ -13,20 +13,26 @@ constexpr int kBlock = 8;  // vectors: the second eigenvalue settles as the nint
 constexpr int kMostIterations = 20'000;
 constexpr double kTolerance = 1e-12;  // of the first eigenvalue; of the second its square root
 
-/// From state to state, transposed: left eigenvectors become right ones.
-Probabilities transposed_kernel(const FieldChain& chain, const std::vector<double>& share) {
+struct Kernel {
+  Probabilities from_to;  // transposed: left eigenvectors become right ones
+  Eigen::VectorXd rows;   // (inputs) that a draw leads further, times its chance
+};
+
+Kernel kernel_of(const FieldChain& chain, const std::vector<double>& share) {
   std::vector<Eigen::Triplet<double>> entries;
+  Kernel kernel{{chain.inputs(), chain.inputs()}, Eigen::VectorXd::Zero(chain.inputs())};
   for (std::size_t c = 0; c < share.size(); ++c) {
     const Chain& from = chain.chains()[c];
     for (int input = 0; input < from.inputs(); ++input)
       for (Probabilities::InnerIterator it(from.matrix(), input); it; ++it) {
         const Exit& exit = from.exits()[static_cast<std::size_t>(it.col())];
-        if (exit.next_input != Exit::kTrapped)
-          entries.emplace_back(exit.next_input, input, share[c] * it.value());
+        if (exit.next_input == Exit::kTrapped) continue;
+        const double p = share[c] * it.value();
+        entries.emplace_back(exit.next_input, input, p);
+        kernel.rows[input] += p * exit.di_y;
       }
   }
-  Probabilities kernel(chain.inputs(), chain.inputs());
-  kernel.setFromTriplets(entries.begin(), entries.end());
+  kernel.from_to.setFromTriplets(entries.begin(), entries.end());
   return kernel;
 }
 
@@ -35,7 +41,7 @@ Probabilities transposed_kernel(const FieldChain& chain, const std::vector<doubl
 QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<double>& share) {
   if (share.size() != chain.chains().size())
     throw std::invalid_argument("quasi-stationary: one share for each type of cell is needed");
-  const Probabilities kernel = transposed_kernel(chain, share);
+  const auto [kernel, rows] = kernel_of(chain, share);
   const Eigen::Index n = kernel.rows(), block = std::min<Eigen::Index>(kBlock, n);
   // Any block that is not orthogonal to what is sought: cosines of all kinds of wavelengths.
   Eigen::MatrixXd v(n, block);
@@ -78,17 +84,7 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
   out.states.assign(states.data(), states.data() + n);
   out.survival = (kernel * states).sum();
   out.second = second;
-  double rows = 0.0;
-  for (std::size_t c = 0; c < share.size(); ++c) {
-    const Chain& from = chain.chains()[c];
-    for (int input = 0; input < from.inputs(); ++input)
-      for (Probabilities::InnerIterator it(from.matrix(), input); it; ++it) {
-        const Exit& exit = from.exits()[static_cast<std::size_t>(it.col())];
-        if (exit.next_input != Exit::kTrapped)
-          rows += share[c] * states[input] * it.value() * exit.di_y;
-      }
-  }
-  out.rows_per_cell = rows / out.survival;
+  out.rows_per_cell = rows.dot(states) / out.survival;
   return out;
 }
 
