@@ -285,8 +285,8 @@ lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatr
   return start;
 }
 
-int status_of(const Options& options, const dynamics::Health& health) {
-  options.warn(complaint(health));
+int status_of(const Options& options, const dynamics::Health& health, const std::string& where) {
+  if (const std::string said = complaint(health); !said.empty()) options.warn(where + said);
   return exit_status(options, health.clean());
 }
 

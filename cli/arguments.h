@@ -90,7 +90,8 @@ void require_inside_bins(const Options& options, const std::vector<lattice::Pape
                                               const dynamics::BodyState& body,
                                               const std::string& name);
 
-/// exit_status of a result with this health; warns of the faults seen.
-[[nodiscard]] int status_of(const Options& options, const dynamics::Health& health);
+/// exit_status of a result with this health; warns of the faults seen, `where` first.
+[[nodiscard]] int status_of(const Options& options, const dynamics::Health& health,
+                            const std::string& where = "");
 
 }  // namespace gatewalk::cli

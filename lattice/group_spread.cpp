@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "dynamics/random.h"
@@ -67,6 +68,12 @@ double half_width_95(double whole, const std::vector<double>& groups) {
   for (const double g : groups) squares += (g - mean) * (g - mean);
   const double error = std::sqrt(squares / (n * (n - 1.0)));
   return std::hypot(kQuantile * error, kBiasLeft * (mean - whole));
+}
+
+Mean95 mean_95(double whole, const std::vector<double>& groups) {
+  const double half =
+      groups.empty() ? std::numeric_limits<double>::quiet_NaN() : half_width_95(whole, groups);
+  return {whole, {whole - half, whole + half}};
 }
 
 GroupSpread::GroupSpread(const markov::FinalDistribution& whole,

@@ -27,6 +27,13 @@ struct Error95 {
 /// them. Their spread is sampling; their mean less the whole's, what larger states would change.
 [[nodiscard]] double half_width_95(double whole, const std::vector<double>& groups);
 
+/// A number with that interval; without groups, or where it is not known, one of NaN.
+struct Mean95 {
+  double mean = 0.0;
+  std::array<double, 2> interval{};
+};
+[[nodiscard]] Mean95 mean_95(double whole, const std::vector<double>& groups);
+
 class GroupSpread {
  public:
   /// `groups`: two or more, from disjoint parts of the trials of equal size. Throws

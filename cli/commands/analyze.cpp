@@ -48,7 +48,7 @@ lattice::LumpingParts lumping_of(const Options& options) {
 /// What is analysed, and what is said of how it ends.
 struct Subject {
   lattice::Scene scene;
-  lattice::AnalysedChain chain;
+  std::optional<lattice::AnalysedChain> chain;
   std::optional<lattice::RunPool> pool{};  // none of bins
   lattice::EndingShares endings;
   Json status, settled;
@@ -116,9 +116,8 @@ Subject subject_of(const Options& options, const std::vector<lattice::PaperStart
   };
   if (!is_matrix(path)) {
     if (options.has("scene"))
-      throw UsageError(path +
-                       ": is no matrix, so it is read as a scene; a second one has no meaning "
-                       "beside it");
+      throw UsageError(path + ": is no matrix, so it is read as a scene; a second one, \"" +
+                       options.text("scene") + "\", has no meaning beside it");
     lattice::Scene scene = lattice::read_scene(path, options.overrides());
     with_start(scene);
     if (scene.field.fidelity != lattice::Fidelity::active)
@@ -160,10 +159,11 @@ int run_analyze(const Arguments& arguments) {
                    "what starts, paths and influences are of: crossed, left_side, right_side, "
                    "trapped or cut_off",
                    "crossed");
-  options.add_count("runs", "N",
-                    "gate runs with a little more, and as many with a little less of each number "
-                    "of the scene,\nand as many again for the intervals; 0: none",
-                    "20000");
+  options.add_count(
+      "runs", "N",
+      "gate runs with a little more, and as many with a little less of each number "
+      "of the scene,\nand as many again for the intervals, on top of --gate-runs; 0: none",
+      "20000");
   options.add_number("step", "PART", "how much more and less, as a part of it (default: 0.02)");
   options.add_text(
       "lump", "D,VX,VY",
@@ -182,7 +182,7 @@ int run_analyze(const Arguments& arguments) {
       .lumping = lumping_of(options),
       .seed = options.seed()};
   const lattice::ParameterOptions parameters{
-      .runs = options.count("runs", 0, 10'000'000),
+      .runs = options.count("runs", 0, 1'000'000),
       .relative_step = options.has("step") ? options.number("step") : 0.02,
       .seed = options.seed()};
   if (parameters.runs > 0 && parameters.runs < 100)
@@ -193,13 +193,14 @@ int run_analyze(const Arguments& arguments) {
   if (given.size() > 1) throw UsageError("--start: an analysis is of one start");
   Subject s = subject_of(options, given);
   const dynamics::Work work = options.work();
-  const auto analysis = lattice::analyze(s.scene, s.chain, how, work);
+  const auto analysis = lattice::analyze(s.scene, *s.chain, how, work);
+  if (s.pool) s.chain.reset();  // that for parameters is larger
   lattice::ParameterEffects effects;
   if (parameters.runs > 0 && s.pool)
     effects = lattice::parameter_effects(s.scene, *s.pool, how.target, parameters, s.per_leaf,
                                          s.most_runs, work);
   else if (parameters.runs > 0)
-    effects = lattice::parameter_effects(s.scene, s.chain, how.target, parameters, work);
+    effects = lattice::parameter_effects(s.scene, *s.chain, how.target, parameters, work);
   std::optional<DirectTrials> direct;
   if (options.has("trials")) {
     lattice::FieldCosts costs(s.scene.gate);
@@ -207,17 +208,27 @@ int run_analyze(const Arguments& arguments) {
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }
 
-  const AnalysedField shown{s.scene,       s.endings, analysis,    effects,  direct,
-                            s.from_trials, s.reached, s.gate_runs, s.states, s.seconds};
+  const AnalysedField shown{s.scene,
+                            s.endings,
+                            analysis,
+                            effects,
+                            direct,
+                            s.from_trials,
+                            s.reached,
+                            s.gate_runs,
+                            s.states,
+                            s.seconds,
+                            parameters.relative_step};
   Json json = to_json(shown);
   json["status"] = s.status;
   json["sensitivities"]["status"] = to_json(effects.health);
   if (!s.settled.is_null()) json["method"] = s.settled;
   json["made_by"] = to_json(options.provenance(s.scene));
   options.give_out(json, table_of(shown));
-  dynamics::Health rest = effects.health;
-  if (direct) rest += direct->tally.health;
-  const bool clean = status_of(options, rest) == kFine;
+  const bool clean_effects =
+      status_of(options, effects.health, "in gates with changed numbers ") == kFine;
+  const bool clean =
+      clean_effects && (!direct || status_of(options, direct->tally.health) == kFine);
   options.draw([&] { return figure_of(shown); });
   return exit_status(options, s.clean && clean);
 }

@@ -99,7 +99,9 @@ int predict_scene(const Options& options) {
   for (const char* other : {"scene", "row", "first-runs"})
     if (options.has(other))
       throw UsageError(path + ": is no matrix, so it is read as a scene; " +
-                       (std::string_view(other) == "scene" ? "" : "--") + other +
+                       (std::string_view(other) == "scene"
+                            ? "a second one, \"" + options.text(other) + "\","
+                            : std::string("--") + other) +
                        " has no meaning beside it");
   if (options.text("solver") != "auto")
     throw UsageError("--solver has no meaning for a scene: it is for a matrix");

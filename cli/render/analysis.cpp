@@ -335,6 +335,12 @@ Json to_json(const AnalysedField& f) {
   s["less_trapping_by_type"] = Json();
   for (std::size_t t = 0; t < types.size() && !a.type_trapping.empty(); ++t)
     s["less_trapping_by_type"][types[t]] = a.type_trapping[t];
+  json["types"] = Json();
+  for (std::size_t t = 0; t < types.size(); ++t)
+    json["types"][types[t]] = {
+        {"visits", a.types[t].visits},
+        {"trapped", a.types[t].trapped},
+        {"trapped_per_visit", or_null(a.types[t].trapped / a.types[t].visits)}};
   s["parameters"] = Json::array();
   for (const lattice::ParameterEffect& e : sorted_effects(f)) {
     const double unit = f.parameters.chance / e.value;
@@ -349,12 +355,15 @@ Json to_json(const AnalysedField& f) {
                                {"with_more", or_null(e.more)},
                                {"with_less", or_null(e.less)},
                                {"bends", e.bends},
+                               {"left_out", e.left_out},
                                {"of_type", std::move(of_type)},
                                {"derivative", or_null(e.elasticity.mean * unit)},
                                {"derivative_95", interval({e.elasticity.interval[0] * unit,
                                                            e.elasticity.interval[1] * unit})}});
   }
+  s["probability"] = f.parameters.chance;
   s["gate_runs"] = f.parameters.health.runs;
+  s["chain_gate_runs"] = f.parameters.pool_runs;
   s["seconds"] = f.parameters.seconds;
   s["added_gate_runs"] = f.parameters.added_runs;
   if (f.direct) {
@@ -417,7 +426,7 @@ std::string table_of(const AnalysedField& f) {
   table += "\nmost frequent ways to " + target +
            ", by the columns i_x of their gates (>: in the same row)\n";
   for (const markov::CellPath& path : a.paths.paths) {
-    table += padded(percent(path.share, 1.0, 4), 11) + " ";
+    table += padded(percents(path.share) + " %", 11) + " ";
     std::int64_t row = -1;
     for (const std::int64_t cell : path.cells) {
       table += cell / field.columns == row ? ">" : " ";
@@ -430,16 +439,15 @@ std::string table_of(const AnalysedField& f) {
     table += "  (the search for more was given up: there are very many ways)\n";
   else if (a.paths.paths.empty())
     table += "  (none)\n";
-  if (!(a.target_chance > 0.0))
+  if (!(a.target_chance > 0.0) && f.parameters.effects.empty())
     table += "nobody ends so: nothing can be said of what would change it\n";
   if (!f.parameters.effects.empty()) {
-    table += "\nper cent that the chance of " + target + " (" + percent(a.target_chance, 1.0, 4) +
-             ") grows for 1 % more of each number, 95 %\n";
+    table += "\nper cent that the chance of " + target + " (" + percents(f.parameters.chance) +
+             " %) grows for 1 % more of each number, 95 %\n";
     for (const lattice::ParameterEffect& e : sorted_effects(f))
       table +=
           padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) +
-          (std::isnan(e.elasticity.interval[0]) ? " (no interval: a single run makes a tenth of it)"
-                                                : "") +
+          (std::isnan(e.elasticity.interval[0]) ? " (no interval: too few runs make it)" : "") +
           (e.of_type.empty()
                ? ""
                : "  of it: " + by_type(types, [&](std::size_t t) { return e.of_type[t].mean; })) +
@@ -447,16 +455,32 @@ std::string table_of(const AnalysedField& f) {
                ? " (with more of it " + fixed(e.more, 2) + ", with less " + fixed(e.less, 2) + ")"
                : "") +
           "\n";
-    table +=
-        "for small changes of one number at a time, in gates of all types; intervals count "
-        "everything" +
-        std::string(std::isnan(a.gates.interval[0]) ? " but the matrix's own error" : "") +
-        ";\n--set KEY=VALUE says what a large change does\n";
+    table += std::isnan(a.gates.interval[0])
+                 ? "a matrix of bins does not tell how far off these are, and its states are "
+                   "coarse: a scene "
+                   "tells more\n"
+                 : "one number at a time, in gates of all types; intervals count chance and the "
+                   "chain's own "
+                   "error; --set KEY=VALUE\nsays what a large change does\n";
+    const double largest = std::abs(sorted_effects(f).front().elasticity.mean) * f.step;
+    constexpr double kSmall = 0.3;
+    if (largest > kSmall)
+      table += "the chance changes by " + percent(largest, 1.0, 0) + " in a step of " +
+               percent(f.step, 1.0) + ", so the first are rough: a smaller --step is more exact\n";
   }
-  if (!types.empty() && !a.type_trapping.empty())
-    table += "\nper cent that it grows for 1 % fewer trapped, by type of the gate: " +
-             by_type(types, [&](std::size_t t) { return a.type_trapping[t]; }) + "\n";
-  if (a.lumped && a.lumping.parts() > 1)
+  if (!types.empty()) {
+    table += "\nby type of the gate: visits per body " +
+             by_type(types, [&](std::size_t t) { return a.types[t].visits; }) +
+             "; trapped there, % of these visits " + by_type(types, [&](std::size_t t) {
+               return 100.0 * a.types[t].trapped / a.types[t].visits;
+             });
+    if (!a.type_trapping.empty())
+      table += ";\nper cent that \"" + std::string(name_of(a.target)) +
+               "\" grows for 1 % fewer of these " +
+               by_type(types, [&](std::size_t t) { return a.type_trapping[t]; });
+    table += "\n";
+  }
+  if (a.lumped)
     table += "\nwith " + std::to_string(a.lumped->states) +
              " states (--lump), total variation to this chain: endings " +
              fixed(a.lumped->endings, 4) + ", final gates " + fixed(a.lumped->final_gates, 4) +

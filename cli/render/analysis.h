@@ -9,6 +9,7 @@
 #include "lattice/ending_shares.h"
 #include "lattice/field_costs.h"
 #include "lattice/study/analysis.h"
+#include "lattice/study/parameter_effects.h"
 
 namespace gatewalk::cli {
 
@@ -29,6 +30,7 @@ struct AnalysedField {
   std::int64_t gate_runs = 0;  // made for the chain
   int states = 0;
   double seconds = 0.0;  // of the prediction behind the endings
+  double step = 0.0;     // of the parameters
 };
 
 /// How far the durations of the chain's walks are from those of trials: the largest difference

@@ -166,6 +166,7 @@ void add_parameters(Script& out, const AnalysedField& f) {
     low = std::min(low, from);
     high = std::max(high, to);
   }
+  if (!(high > low)) high = 1.0;  // nothing changes it
   const double margin = 0.05 * (high - low);
   const Box box{236, 488, out.top + 36, out.top + 36 + 22.0 * static_cast<double>(effects.size())};
   out.text += data_block("$effects", rows) + kFrame + out.sheet.margins(box) + "set xrange [" +

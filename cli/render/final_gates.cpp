@@ -164,7 +164,8 @@ Json by_name(const Values& values) {
   return j;
 }
 
-/// A share in % with two decimals, or two digits if that would be 0.
+}  // namespace
+
 std::string percents(double share) {
   if (!(share > 0.0 && share < 5e-5)) return fixed(100.0 * share, 2);
   std::ostringstream text;
@@ -172,8 +173,6 @@ std::string percents(double share) {
   text << 100.0 * share;
   return text.str();
 }
-
-}  // namespace
 
 Json endings(const std::array<std::int64_t, markov::kEndings>& counts) { return by_name(counts); }
 Json endings(const std::array<double, markov::kEndings>& shares) { return by_name(shares); }

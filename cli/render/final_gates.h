@@ -70,6 +70,8 @@ using lattice::kEndingNames;
 [[nodiscard]] Json endings(const std::array<std::int64_t, markov::kEndings>& counts);
 [[nodiscard]] Json endings(const std::array<double, markov::kEndings>& shares);
 [[nodiscard]] Json endings_95(const lattice::EndingShares& shares);
+/// A share in % with two decimals, or two digits if that would be 0.
+[[nodiscard]] std::string percents(double share);
 /// A line each: "crossed      0.02 %  [0.00, 0.05]"; `of` ends the first one.
 [[nodiscard]] std::string endings_text(const lattice::EndingShares& shares, const std::string& of);
 /// "17.61 [16.87, 18.37]", in %; "17.61" without an interval.

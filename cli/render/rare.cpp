@@ -28,6 +28,10 @@ Json to_json(const lattice::RowChance& c) {
           {"relative_standard_error", known ? Json(c.relative_standard_error) : Json()}};
 }
 
+bool has_error(const lattice::RowChance& c) {
+  return c.probability > 0.0 && c.probability < 1.0 && c.relative_standard_error > 0.0;
+}
+
 /// Independent trials whose share has the same relative standard error.
 double trials_needed(const lattice::RowChance& c) {
   return (1.0 - c.probability) /
@@ -49,7 +53,7 @@ Json to_json(const lattice::RareEvent& event, const DirectRows& direct) {
   json["row"] = s.rows.size();
   json["chain"] = event.chain.back();
   json["direct_trials_needed"] =
-      s.rows.back().probability > 0.0 ? Json(trials_needed(s.rows.back())) : Json();
+      has_error(s.rows.back()) ? Json(trials_needed(s.rows.back())) : Json();
   json["reached"] = s.reached;
   json["gate_runs"] = s.gate_runs + event.pool_runs;
   json["split_trials"] = s.trials;
@@ -80,11 +84,13 @@ std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
     table += " " + interval(last.interval_95()) + ", relative standard error " +
              fixed(100 * last.relative_standard_error, 1) + " %";
   table += "\nthe chain alone says " + chance(event.chain.back());
-  if (last.probability > 0.0)
+  if (has_error(last))
     table += "; direct simulation would need " + rounded(trials_needed(last)) +
              " trials for the same error";
+  table += "\nof a field of " + std::to_string(field.columns) +
+           " columns: who leaves it by a side does not come back";
   if (field.max_gates > 0)
-    table += "\nbodies go on for as long as it takes: field.max_gates = " +
+    table += "; bodies go on for as long as it takes:\nfield.max_gates = " +
              std::to_string(field.max_gates) +
              ", which predict and lattice keep, does not count here";
   table += "\n\n   row      chance              95 %            chain";

@@ -12,7 +12,8 @@
 namespace gatewalk::cli {
 
 std::string limits_text(const lattice::Scene& scene) {
-  std::string text = "(trapped: still in a gate after " + quantity(scene.gate.run.time_limit, "s");
+  std::string text = "(trapped: still in the same gate " +
+                     quantity(scene.gate.run.time_limit, "s") + " after entering it";
   if (scene.field.max_gates > 0)
     text += "; cut off: would go on from gate number " + std::to_string(scene.field.max_gates) +
             ", the limit field.max_gates, 0 for none";

@@ -2,11 +2,42 @@
 
 #include <png.h>
 
+#include <array>
+#include <cctype>
+#include <fstream>
 #include <stdexcept>
+#include <string_view>
 
 namespace gatewalk::lattice {
 
-bool is_png(const std::string& path) { return path.ends_with(".png") || path.ends_with(".PNG"); }
+bool is_png(const std::string& path) {
+  std::string ending = path.size() < 4 ? "" : path.substr(path.size() - 4);
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".png";
+}
+
+namespace {
+
+/// Whether a PNG has a gamma of its own, by which libpng would change its values: chunk gAMA,
+/// before the first of the picture's own, with another value than that of sRGB.
+bool has_gamma(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  file.ignore(8);
+  for (std::array<unsigned char, 12> chunk{};;) {  // length, name, first four bytes of the content
+    if (!file.read(reinterpret_cast<char*>(chunk.data()), chunk.size())) return false;
+    const auto number = [&](std::size_t at) {
+      return std::uint32_t{chunk[at]} << 24 | std::uint32_t{chunk[at + 1]} << 16 |
+             std::uint32_t{chunk[at + 2]} << 8 | std::uint32_t{chunk[at + 3]};
+    };
+    const std::string_view name(reinterpret_cast<const char*>(chunk.data()) + 4, 4);
+    constexpr std::uint32_t kOfSrgb = 45455;
+    if (name == "gAMA") return number(8) != kOfSrgb;
+    if (name == "IDAT") return false;
+    file.seekg(std::int64_t{number(0)}, std::ios::cur);  // 4 of the content read, 4 of the checksum
+  }
+}
+
+}  // namespace
 
 GreyPicture read_grey_png(const std::string& path, int columns, int rows) {
   png_image image{};
@@ -16,7 +47,11 @@ GreyPicture read_grey_png(const std::string& path, int columns, int rows) {
     ~Freed() { png_image_free(&image); }
   } const freed{image};
   if (png_image_begin_read_from_file(&image, path.c_str()) == 0)
-    throw std::runtime_error(std::string("cannot be read: ") + image.message);
+    throw std::runtime_error(std::string("cannot be read as a PNG: ") + image.message);
+  if (has_gamma(path))
+    throw std::runtime_error(
+        "has a gamma of its own (chunk gAMA), which changes its grey values: "
+        "must be written without");
   if (image.width != static_cast<png_uint_32>(columns) ||
       image.height != static_cast<png_uint_32>(rows))
     throw std::runtime_error("is " + std::to_string(image.width) + " pixels wide and " +
@@ -28,7 +63,7 @@ GreyPicture read_grey_png(const std::string& path, int columns, int rows) {
   image.format = PNG_FORMAT_RGBA;
   std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));
   if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0)
-    throw std::runtime_error(std::string("cannot be read: ") + image.message);
+    throw std::runtime_error(std::string("cannot be read as a PNG: ") + image.message);
   GreyPicture picture{columns, rows, {}};
   for (std::size_t i = 0; i < pixels.size(); i += 4) {
     const png_byte* const p = pixels.data() + i;

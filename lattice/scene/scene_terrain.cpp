@@ -103,8 +103,10 @@ std::vector<int> cells_of(const std::vector<MapRow>& rows, const std::string& wh
     const std::string begin = row.where + ": row " + std::to_string(r + 1) + " of the map";
     const std::vector<std::string> names = names_in(row.text, field.columns);
     if (std::ssize(names) != field.columns)
-      throw SceneError(begin + " has " + std::to_string(names.size()) +
-                       " gates, field.columns = " + std::to_string(field.columns));
+      throw SceneError(
+          begin + " has " + std::to_string(names.size()) +
+          " gates, field.columns = " + std::to_string(field.columns) +
+          (row.text.find(';') == row.text.npos ? "" : "; names are set apart by commas"));
     for (int c = 0; c < field.columns; ++c) {
       const std::string& name = names[static_cast<std::size_t>(c)];
       const int type = type_named(terrain, name);
@@ -123,7 +125,8 @@ std::map<int, int> types_by_grey(const TerrainSettings& settings, const Terrain&
   for (const auto& [key, given] : settings) {
     if (!key.starts_with("grey.")) continue;
     const std::string name = key.substr(key.find('.') + 1);
-    const std::string begin = given.where() + ": terrain." + key + shown_value(*given.value);
+    const std::string begin = given.where() + ": terrain.grey." +
+                              (name == kOwnGate ? "\".\"" : name) + shown_value(*given.value);
     const int type = type_named(terrain, name);
     if (type < 0)
       throw SceneError(begin + ": " + printable(name) + " is no type of gate: there are " +
@@ -282,8 +285,9 @@ std::optional<Terrain> terrain_of(const TerrainSettings& settings, const FieldPa
   const std::string path = file != settings.end() ? path_of(file->second) : "";
   if (!greys.empty() && !is_png(path)) {
     const auto grey = settings.lower_bound("grey.");
-    throw SceneError(grey->second.where() + ": terrain." + grey->first +
-                     " has no meaning without a picture: terrain.map_file = \"NAME.png\"");
+    throw SceneError(
+        grey->second.where() +
+        ": terrain.grey has no meaning without a picture: terrain.map_file = \"NAME.png\"");
   }
   if (is_random) {
     terrain.shares = shares_of(settings, terrain);

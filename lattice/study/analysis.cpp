@@ -39,12 +39,6 @@ void require_memory(const CostedChain& c, const FieldParams& field, bool with_gr
         " gates take more than 8 GiB; ask for fewer states (--accuracy, build --states) or gates");
 }
 
-/// None without groups.
-Mean95 mean_95(double whole, const std::vector<double>& groups) {
-  const double half = groups.empty() ? std::nan("") : half_width_95(whole, groups);
-  return {whole, {whole - half, whole + half}};
-}
-
 }  // namespace
 
 Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisOptions& options,
@@ -90,6 +84,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
                .trapping = {},
                .state_trapping = {},
                .type_trapping = {},
+               .types = {},
                .space = space,
                .lumping = options.lumping,
                .lumped = lumped};
@@ -144,6 +139,15 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     }
     out.starts.push_back(start);
   }
+
+  out.types.resize(gates.types().size());
+  passages.each([&](const Passages::Place& place, double share) {
+    const auto column = static_cast<int>(place.cell % field.columns),
+               row = static_cast<int>(place.cell / field.columns);
+    Analysis::Type& type = out.types[static_cast<std::size_t>(gates.type_of(column, row))];
+    type.visits += share;
+    type.trapped += share * trapped_share(c.chain.at(column, row), place.input);
+  });
 
   if (out.target_chance > 0.0) {
     const bool of_trapped = options.target == markov::Ending::trapped;

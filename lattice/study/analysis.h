@@ -8,12 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/health.h"
 #include "dynamics/work.h"
+#include "lattice/group_spread.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/costed_chain.h"
 #include "lattice/study/lumped_chain.h"
-#include "lattice/study/parameter_effects.h"
 #include "markov/paths.h"
 #include "markov/quasi_stationary.h"
 #include "markov/totals.h"
@@ -57,7 +56,11 @@ struct Analysis {
   markov::CellProbabilities passed, trapping;
   std::vector<double> state_trapping;  // the latter by state, in all gates together
   std::vector<double> type_trapping;   // and by type of gates_of(scene).types()
-  dynamics::StateSpace space;          // of the chain
+  struct Type {
+    double visits = 0.0, trapped = 0.0;  // expected, of a body
+  };
+  std::vector<Type> types;     // by gates_of(scene).types()
+  dynamics::StateSpace space;  // of the chain
   LumpingParts lumping;
   std::optional<LumpedChain> lumped;  // none where it cannot be made
   double seconds = 0.0;

@@ -10,7 +10,6 @@
 #include "dynamics/contact.h"
 #include "dynamics/methods/method.h"
 #include "dynamics/runs.h"
-#include "dynamics/share.h"
 #include "lattice/group_spread.h"
 #include "lattice/study/pool_runner.h"
 
@@ -19,27 +18,21 @@ namespace {
 
 using namespace dynamics;
 
-/// A mean of independent terms.
+/// A mean.
 struct Terms {
   std::int64_t n = 0;
-  double sum = 0.0, squares = 0.0, sizes = 0.0, largest = 0.0;
+  double sum = 0.0, sizes = 0.0, largest = 0.0;
   void add(double x) {
     ++n;
     sum += x;
-    squares += x * x;
     sizes += std::abs(x);
     largest = std::max(largest, std::abs(x));
   }
   [[nodiscard]] double mean() const { return sum / static_cast<double>(n); }
-  [[nodiscard]] double half_width_95() const {
-    const auto count = static_cast<double>(n);
-    const double variance = std::max(0.0, squares / count - mean() * mean());
-    return kNormal95 * std::sqrt(variance / (count - 1.0));
-  }
   /// Then there are larger ones that were not seen.
-  [[nodiscard]] bool one_says_it_all() const {
+  [[nodiscard]] bool few_make_it() const {
     constexpr double kMostOfOne = 0.1;
-    return n < 2 || largest > kMostOfOne * sizes;
+    return !(largest < kMostOfOne * sizes);
   }
 };
 
@@ -96,23 +89,42 @@ class Parameters {
     };
     const std::vector<double> above = up ? with(1.0 + step) : as_it_is_,
                               below = down ? with(1.0 - step) : as_it_is_;
-    const double sides = up && down ? 2.0 : 1.0;
-    const auto both = [&](std::size_t i) { return (above[i] - below[i]) / sides; };
-    const auto all = [](std::size_t) { return true; };
-    // The others are left out.
-    const auto whole = [&](std::size_t i) {
+    const auto used = [&](std::size_t i) {
       return std::isfinite(above[i] + below[i] + as_it_is_[i]);
     };
-    ParameterEffect e{info.key, value, mean_95(whole, all, both), {}};
+    const auto sides = [&](auto counted) {
+      return Sides{terms(used, counted, [&](std::size_t i) { return above[i] - as_it_is_[i]; }),
+                   terms(used, counted, [&](std::size_t i) { return as_it_is_[i] - below[i]; }),
+                   terms(used, counted, [&](std::size_t i) { return above[i] - below[i]; })};
+    };
+    const auto all = [](std::size_t) { return true; };
+    const Sides changes = sides(all);
+    const auto more = [&](const Sides& s, std::size_t part) {
+      return compounded(s.more[part].mean(), part) / step;
+    };
+    const auto less = [&](const Sides& s, std::size_t part) {
+      return -compounded(-s.less[part].mean(), part) / step;
+    };
+    const auto both = [&](const Sides& s, std::size_t part) {
+      return (more(s, part) + less(s, part)) / (up && down ? 2.0 : 1.0);
+    };
+    ParameterEffect e{info.key, value, {}, {}};
+    e.left_out =
+        1.0 - static_cast<double>(changes.both.front().n) / static_cast<double>(options_.runs);
+    constexpr double kMostLeftOut = 0.05;
+    const auto central = [&](const Sides& s) {
+      const bool few = s.both.front().few_make_it() || e.left_out > kMostLeftOut;
+      return of_parts(few, [&](std::size_t part) { return both(s, part); });
+    };
+    e.elasticity = central(changes);
     for (int type = 0; type < std::ssize(gates_.types()) && gates_.types().size() > 1; ++type)
-      e.of_type.push_back(mean_95(
-          whole, [&](std::size_t i) { return samples_[i].type == type; }, both));
-    const auto more = [&](std::size_t i) { return above[i] - as_it_is_[i]; };
-    const auto less = [&](std::size_t i) { return as_it_is_[i] - below[i]; };
-    e.more = up ? mean_95(whole, all, more).mean : std::nan("");
-    e.less = down ? mean_95(whole, all, less).mean : std::nan("");
-    const Mean95 bend = mean_95(whole, all, [&](std::size_t i) { return more(i) - less(i); });
-    constexpr double kSure = 1.5;  // half widths of 95 %: 3 in 1000 by chance
+      e.of_type.push_back(central(sides([&](std::size_t i) { return samples_[i].type == type; })));
+    e.more = up ? more(changes, 0) : std::nan("");
+    e.less = down ? less(changes, 0) : std::nan("");
+    const Mean95 bend = of_parts(changes.both.front().few_make_it(), [&](std::size_t part) {
+      return more(changes, part) - less(changes, part);
+    });
+    constexpr double kSure = 1.5;  // half widths of 95 %: 9 in 1000 by chance
     e.bends = up && down && std::abs(bend.mean) > kSure * (bend.mean - bend.interval[0]);
     return e;
   }
@@ -130,6 +142,7 @@ class Parameters {
     int type;
     Crossing entry;
     double weight;  // of walks there
+    double room;    // in the gate as it is
   };
 
   /// A random number of the analysis: of the samples' places and of their runs' noise.
@@ -149,30 +162,45 @@ class Parameters {
           draws.place((static_cast<double>(i) + random.uniform()) / static_cast<double>(count));
       const auto column = static_cast<int>(place.cell % field_.columns),
                  row = static_cast<int>(place.cell / field_.columns);
-      samples_.push_back({parts_.size() - 1, place, gates_.type_of(column, row),
-                          chain.entry(place.input, random), draws.weight(place)});
+      const int type = gates_.type_of(column, row);
+      const Crossing entry = chain.entry(place.input, random);
+      samples_.push_back({parts_.size() - 1, place, type, entry, draws.weight(place),
+                          room(gates_.types()[static_cast<std::size_t>(type)], entry)});
     }
   }
 
-  /// Of the samples in question, the others being zero: part of a sum over all.
-  template <class Whole, class Counted, class Change>
-  [[nodiscard]] Mean95 mean_95(Whole whole, Counted counted, Change change) const {
+  /// By part: relative changes of the chance, to first order, of which these are the terms.
+  struct Sides {
+    std::vector<Terms> more, less, both;
+  };
+  /// Of the samples in question, the others being zero.
+  template <class Used, class Counted, class Change>
+  [[nodiscard]] std::vector<Terms> terms(Used used, Counted counted, Change change) const {
     std::vector<Terms> terms(parts_.size());
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const Sample& s = samples_[i];
-      if (!whole(i)) continue;
-      const double unit = parts_[s.part].passages.at_start() * options_.relative_step;
-      terms[s.part].add(counted(i) ? s.weight * change(i) / unit : 0.0);
+      if (used(i))
+        terms[s.part].add(counted(i) ? s.weight * change(i) / parts_[s.part].passages.at_start()
+                                     : 0.0);
     }
-    const double mean = terms.front().mean();
-    double half = std::nan("");
-    if (!terms.front().one_says_it_all()) {
-      std::vector<double> groups;
-      for (std::size_t g = 1; g < terms.size(); ++g) groups.push_back(terms[g].mean());
-      // The groups' spread has the chance of as many runs in it as the whole has.
-      half = groups.empty() ? terms.front().half_width_95() : half_width_95(mean, groups);
-    }
-    return {mean, {mean - half, mean + half}};
+    return terms;
+  }
+
+  /// Changes of the gates on the way multiply: of the sum of n small ones, what n equal ones do
+  /// together.
+  [[nodiscard]] double compounded(double sum, std::size_t part) const {
+    const double gates = parts_[part].passages.draws_to_target();
+    return std::pow(std::max(0.0, 1.0 + sum / gates), gates) - 1.0;
+  }
+
+  /// `value(part)`: of the whole, 0, and of each group. The groups' spread has the chance of as
+  /// many runs in it as the whole has.
+  template <class Value>
+  [[nodiscard]] Mean95 of_parts(bool few_make_it, Value value) const {
+    std::vector<double> groups;
+    for (std::size_t part = 1; part < parts_.size() && !few_make_it; ++part)
+      groups.push_back(value(part));
+    return mean_95(value(0), groups);
   }
 
   [[nodiscard]] bool allowed(const ParamInfo& info, double factor) const {
@@ -197,11 +225,15 @@ class Parameters {
     std::vector<double> out(samples_.size());
     tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do
     for (int type = 0; type < std::ssize(gates_.types()); ++type) {
+      const GateParams p = change(gates_.types()[static_cast<std::size_t>(type)]);
       std::vector<std::size_t> here;
-      for (std::size_t i = 0; i < samples_.size(); ++i)
-        if (samples_[i].type == type) here.push_back(i);
-      const GateParams& as_it_is = gates_.types()[static_cast<std::size_t>(type)];
-      const GateParams p = change(as_it_is);
+      for (std::size_t i = 0; i < samples_.size(); ++i) {
+        if (samples_[i].type != type) continue;
+        if (room(p, samples_[i].entry) < std::min(0.0, samples_[i].room))
+          out[i] = std::nan("");
+        else
+          here.push_back(i);
+      }
       const auto method = make_method(p);
       carry_out_trials(
           p, *method, std::ssize(here),
@@ -212,11 +244,6 @@ class Parameters {
           },
           [&](RunSlot& slot, const GateRun& run) {
             const std::size_t i = here[static_cast<std::size_t>(slot.trial)];
-            const Crossing& entry = samples_[i].entry;
-            if (room(p, entry) < std::min(0.0, room(as_it_is, entry))) {
-              out[i] = std::nan("");
-              return false;
-            }
             health.local().add(p, run);
             out[i] = value_of(p, samples_[i], run);
             return false;
@@ -281,27 +308,34 @@ ParameterEffects parameter_effects(const Scene& scene, RunPool& pool, markov::En
                                    const ParameterOptions& options, int per_leaf,
                                    std::int64_t most_runs, const Work& work) {
   const Stopwatch watch;
-  constexpr double kPoolOfRuns = 25.0;
+  constexpr std::int64_t kPoolOfRuns = 25;
   const Crossing start = entry_of(scene.start);
   const std::size_t own = pool.place_of(start);
   if (own == pool.starts.size())
     throw std::invalid_argument("parameters: the start has no runs of its own");
-  const auto had = static_cast<double>(pool.gate_runs()),
-             lacking = kPoolOfRuns * static_cast<double>(options.runs) - had;
+  const std::int64_t had = pool.gate_runs();
   PoolRunner runner(scene, options.seed, most_runs, work);
-  if (lacking > 0.0 && runner.may_go_on()) {
-    const double gates_per_trial =
-        had / static_cast<double>(std::max<std::int64_t>(1, pool.trials()));
-    runner.run_full(pool.starts[own], static_cast<std::int64_t>(lacking / gates_per_trial));
+  const auto lacking = [&] {
+    return static_cast<double>(std::min(kPoolOfRuns * options.runs - pool.gate_runs(),
+                                        most_runs - runner.gate_runs)) /
+           runner.gates_per_trial();  // of which the first trials tell
+  };
+  if (lacking() > 0.0) {
+    do
+      runner.run_full(pool.starts[own], runner.gate_runs == 0
+                                            ? PoolRunner::kLeastTrials
+                                            : static_cast<std::int64_t>(lacking()));
+    while (lacking() > PoolRunner::kLeastTrials);
     runner.finish();
   }
   const auto runs = static_cast<double>(pool.gate_runs());
-  const double leaf = std::max(per_leaf * std::sqrt(runs / had),
+  const double leaf = std::max(per_leaf * std::sqrt(runs / static_cast<double>(had)),
                                2.0 * runs / most_states(scene.field));  // with mirror images
   const auto chain = analysed_chain(scene, pool, start, static_cast<int>(std::ceil(leaf)));
   ParameterEffects out = parameter_effects(scene, chain, target, options, work);
   out.health += runner.health;
   out.added_runs = runner.gate_runs;
+  out.pool_runs = pool.gate_runs();
   out.seconds = watch.seconds();
   return out;
 }

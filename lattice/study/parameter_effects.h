@@ -1,37 +1,34 @@
 #pragma once
 /// How the chance of an ending answers to the numbers of a scene.
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "dynamics/health.h"
 #include "dynamics/work.h"
+#include "lattice/group_spread.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/costed_chain.h"
 #include "lattice/study/passages.h"
 
 namespace gatewalk::lattice {
 
-/// A mean with its 95 % interval; not a number where that is not known.
-struct Mean95 {
-  double mean = 0.0;
-  std::array<double, 2> interval{};
-};
-
 struct ParameterEffect {
   std::string_view key;  // dynamics::ParamInfo's
   double value = 0.0;    // NaN where types differ in it
   /// Per cent that the chance changes for one per cent of the value in gates of all types: (P+ -
-  /// P-) / (2 P step), to first order in what the number does at each gate. The interval counts
-  /// chance in these gate runs and the chain's own error, of chains without groups only the
-  /// former; none where one run makes a tenth of it.
+  /// P-) / (2 P step). What the number does at each gate is taken to first order; over the gates of
+  /// a way to the target these changes multiply. The interval counts chance in these gate runs and
+  /// the chain's own error: of its groups. None where few runs make it: one of them a tenth of it,
+  /// none in one of the groups, or more than one in twenty left out.
   Mean95 elasticity;
-  std::vector<Mean95> of_type;    // the same, of gates of one type alone; they add up to it
+  std::vector<Mean95> of_type;    // the same, in gates of one type alone
   double more = 0.0, less = 0.0;  // the same to one side each, with more and with less of the
                                   // number; NaN where the scene does not permit it
   bool bends = false;             // these differ by more than chance: no single number says it
+  /// Share of the places where bodies cannot enter a gate that is changed so, or where runs broke.
+  double left_out = 0.0;
 };
 
 struct ParameterOptions {
@@ -45,6 +42,7 @@ struct ParameterEffects {
   std::vector<ParameterEffect> effects;  // of the numbers that can be changed; none where the
                                          // chance is zero
   std::int64_t added_runs = 0;           // to the pool
+  std::int64_t pool_runs = 0;            // in it then
   dynamics::Health health;               // of the runs behind them
   double seconds = 0.0;
 };
@@ -59,8 +57,8 @@ struct ParameterEffects {
 
 /// The same of the chain of a pool, from its runs of the scene's start. So that the chain's error
 /// is no more than chance makes in the runs for parameters, full trials are added until it has 25
-/// times as many, `most_runs` new gate runs at most; its states grow with the square root of that.
-/// Throws as predict_pooled.
+/// times as many, `most_runs` new gate runs at most, about; its states grow with the square root of
+/// that. Throws as predict_pooled.
 [[nodiscard]] ParameterEffects parameter_effects(const Scene& scene, RunPool& pool,
                                                  markov::Ending target,
                                                  const ParameterOptions& options,

@@ -22,6 +22,7 @@ Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Endin
       c.chain, {field.columns, field.rows}, c.start, field.max_gates,
       with_costs ? c.rewards : markov::Rewards{},
       [&](int draw, std::int64_t cell, int input, double share) {
+        to_target_ += share * chance_(draw, cell, input);
         state_visits_[static_cast<std::size_t>(input)] += share;
         const std::size_t at = index(draw, cell, input);
         if (at >= shares_.size())

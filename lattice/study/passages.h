@@ -33,6 +33,8 @@ class Passages {
   [[nodiscard]] double at_start() const { return at_start_; }
   /// What all walks add up, and how they end.
   [[nodiscard]] const markov::WalkTotals& totals() const { return totals_; }
+  /// Draws of a walk that ends in the target, on average; not a number where none does.
+  [[nodiscard]] double draws_to_target() const { return to_target_ / at_start_; }
   /// Expected draws of a walk in each state (inputs).
   [[nodiscard]] const std::vector<double>& state_visits() const { return state_visits_; }
 
@@ -68,7 +70,7 @@ class Passages {
   [[nodiscard]] Place place(std::size_t i) const;
 
   markov::EndingChance chance_;
-  double at_start_;
+  double at_start_, to_target_ = 0.0;
   bool limited_;
   std::int64_t inputs_, cells_;
   std::vector<double> state_visits_;

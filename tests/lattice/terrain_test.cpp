@@ -163,10 +163,19 @@ TEST(Terrain, AMapMayBeAPicture) {
   write(PNG_FORMAT_GRAY, {0, 0, 0, 0}, 2);
   EXPECT_TRUE(
       contains(message(grey), "is 2 pixels wide and 2 high, the field has 3 columns and 2"));
+  // A gamma of the file's own would change its values in silence.
+  write(PNG_FORMAT_GRAY, map, 3);
+  std::ifstream plain(folder / "map.png", std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(plain), {});
+  plain.close();
+  if (const auto old = bytes.find("gAMA"); old != bytes.npos) bytes.erase(old - 4, 16);
+  bytes.insert(33, std::string("\0\0\0\4gAMA\0\1\x86\xa0\x31\xe8\x96\x5f", 16));  // 1.0
+  std::ofstream(folder / "map.png", std::ios::binary) << bytes;
+  EXPECT_TRUE(contains(message(grey), "has a gamma of its own")) << message(grey);
   std::ofstream(folder / "map.png") << "none";
-  EXPECT_TRUE(contains(message(grey), "map.png: cannot be read: "));
+  EXPECT_TRUE(contains(message(grey), "map.png: cannot be read as a PNG: "));
   std::filesystem::remove(folder / "map.png");
-  EXPECT_TRUE(contains(message(grey), "map.png: cannot be read: "));
+  EXPECT_TRUE(contains(message(grey), "map.png: cannot be read as a PNG: "));
   try {
     (void)with_map("map = [\"s.t\", \"..s\"]\n" + grey);
     FAIL();
