@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Times, work and derivatives of gatewalk analyze beside the full dynamics.
-#   results/analysis/run.sh [GATEWALK]      about 15 minutes on two cores, needs python3
+#   results/analysis/run.sh [GATEWALK]      about 25 minutes on two cores, needs python3
 # Writes summary.txt, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

@@ -28,7 +28,7 @@ TRIALS = 100_000
 DERIVATIVES = FIELD + ["--set", "field.rows=3", "--set", "forces.propulsion_N=8.5", "--set",
                        "forces.random_N=25"]
 STEP = 0.01  # the tips of the beams just meet at 1 to 2 % more or less
-DERIVATIVE_TRIALS = 400_000
+DERIVATIVE_TRIALS = 1_000_000
 
 
 def run(*words):
