@@ -107,13 +107,13 @@ std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
   if (map.rows.block > 1 || map.columns.block > 1)
     blocks = ", blocks of " + std::to_string(map.columns.block) + " x " +
              std::to_string(map.rows.block) + " gates";
-  std::string out =
-      sheet.margins(box) + "set border 3\nset tics out nomirror scale 0.5\nset xrange " +
-      range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
-      tics_of(map.columns, map.middle_column, plan.map_width, 30) + "\nset ytics " +
-      tics_of(map.rows, 0, plan.map_height, 22) + "\n" + Sheet::axes("'column i_x'", "'row i_y'") +
-      sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
-      scale.colours(sheet, plan.colours());
+  std::string out = sheet.margins(box) +
+                    "set border 3\nset tics out nomirror scale 0.5\nset xrange " +
+                    range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
+                    tics_of(map.columns, map.middle_column, plan.map_width, 30) + "\nset ytics " +
+                    tics_of(map.rows, 0, plan.map_height, 22) + "\n" + Sheet::map_axes() +
+                    sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
+                    scale.colours(sheet, plan.colours());
   out += image(data);
   if (plan.cell_width >= 26 && plan.cell_height >= 15)
     out += ", '' using 1:2:4:" + ink(std::sqrt(scale.most())) +
