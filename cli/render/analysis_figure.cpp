@@ -54,7 +54,8 @@ void add_visits(Script& out, const AnalysedField& f) {
               "\nset border 3\nset tics out nomirror scale 0.5\nset xrange " +
               range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
               tics_of(map.columns, map.middle_column, box.right - box.left, 30) + "\nset ytics " +
-              tics_of(map.rows, 0, box.bottom - box.top, 22) + "\n" + Sheet::map_axes() +
+              tics_of(map.rows, 0, box.bottom - box.top, 22) + "\n" +
+              Sheet::map_axes(map.rows.first + map.rows.count) +
               out.sheet.text("visits of each gate, per 100 bodies", 8, out.top + 18) +
               scale.colours(out.sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
               "plot $visits" + cells();

@@ -111,7 +111,8 @@ std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
                     "set border 3\nset tics out nomirror scale 0.5\nset xrange " +
                     range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
                     tics_of(map.columns, map.middle_column, plan.map_width, 30) + "\nset ytics " +
-                    tics_of(map.rows, 0, plan.map_height, 22) + "\n" + Sheet::map_axes() +
+                    tics_of(map.rows, 0, plan.map_height, 22) + "\n" +
+                    Sheet::map_axes(map.rows.first + map.rows.count) +
                     sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
                     scale.colours(sheet, plan.colours());
   out += image(data);

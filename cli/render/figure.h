@@ -2,6 +2,7 @@
 /// What the figures of several commands share: text for gnuplot, one look.
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,10 +49,11 @@ struct Sheet {
   [[nodiscard]] static std::string axes(const std::string& x, const std::string& y) {
     return "set xlabel " + x + " offset 0,0.4\nset ylabel " + y + " offset 0.8,0\n";
   }
-  /// Those of a map of gates, whose ticks are short.
-  [[nodiscard]] static std::string map_axes(bool with_columns = true) {
+  /// Those of a map of so many rows of gates: the fewer digits its ticks have the further from
+  /// them.
+  [[nodiscard]] static std::string map_axes(std::int64_t rows, bool with_columns = true) {
     return std::string("set xlabel ") + (with_columns ? "'column i_x'" : "''") +
-           " offset 0,0.4\nset ylabel 'row i_y' offset 0.2,0\n";
+           " offset 0,0.4\nset ylabel 'row i_y' offset " + (rows > 10 ? "0.8" : "0.2") + ",0\n";
   }
   /// A text that begins at this place, its middle at this height; until "unset label".
   [[nodiscard]] std::string text(const std::string& text, double left, double middle,

@@ -75,7 +75,8 @@ Figure figure_of(const lattice::Validation& v) {
            "set border 15\nset xrange " + range_of(row.map.columns) + "\nset yrange " +
            range_of(row.map.rows) + "\nset xtics " +
            tics_of(row.map.columns, row.map.middle_column, kMapWidth, 34) + "\nset ytics " +
-           tics_of(row.map.rows, 0, row.height, 22) + "\n" + Sheet::map_axes(last);
+           tics_of(row.map.rows, 0, row.height, 22) + "\n" +
+           Sheet::map_axes(row.map.rows.first + row.map.rows.count, last);
     const auto panel = [&](int i, const char* name, const std::string& data) {
       const std::string block = name + tag;
       out += data_block(block, data) +

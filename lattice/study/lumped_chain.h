@@ -25,7 +25,8 @@ struct LumpedChain {
   double endings = 0.0, final_gates = 0.0;  // total variation to the chain's
 };
 
-/// `visits`: of each of the chain's states. None where walks of either chain do not end.
+/// `visits`: of each of the chain's states, in gates of all types, by which rows of a part count.
+/// None where walks of either chain do not end.
 [[nodiscard]] std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain,
                                                       const FieldGates& gates,
                                                       const FieldParams& field,
