@@ -444,10 +444,12 @@ std::string table_of(const AnalysedField& f) {
   if (!f.parameters.effects.empty()) {
     table += "\nper cent that the chance of " + target + " (" + percents(f.parameters.chance) +
              " %) grows for 1 % more of each number, 95 %\n";
+    const bool of_bins = std::isnan(a.gates.interval[0]);
     for (const lattice::ParameterEffect& e : sorted_effects(f))
       table +=
           padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) +
-          (std::isnan(e.elasticity.interval[0]) ? " (no interval: too few runs make it)" : "") +
+          (std::isnan(e.elasticity.interval[0]) && !of_bins ? " (no interval: too few runs make it)"
+                                                            : "") +
           (e.of_type.empty()
                ? ""
                : "  of it: " + by_type(types, [&](std::size_t t) { return e.of_type[t].mean; })) +
@@ -455,13 +457,11 @@ std::string table_of(const AnalysedField& f) {
                ? " (with more of it " + fixed(e.more, 2) + ", with less " + fixed(e.less, 2) + ")"
                : "") +
           "\n";
-    table += std::isnan(a.gates.interval[0])
+    table += of_bins
                  ? "a matrix of bins does not tell how far off these are, and its states are "
-                   "coarse: a scene "
-                   "tells more\n"
+                   "coarse: a scene tells more\n"
                  : "one number at a time, in gates of all types; intervals count chance and the "
-                   "chain's own "
-                   "error; --set KEY=VALUE\nsays what a large change does\n";
+                   "chain's own error; --set KEY=VALUE\nsays what a large change does\n";
     const double largest = std::abs(sorted_effects(f).front().elasticity.mean) * f.step;
     constexpr double kSmall = 0.3;
     if (largest > kSmall)

@@ -52,7 +52,7 @@ class Passages {
     explicit Draws(const Passages& passages);
     /// The place of a number in (0, 1).
     [[nodiscard]] Place place(double uniform) const;
-    /// Walks there per place drawn: sum over places drawn of weight * f = sum of share * f, mean.
+    /// The mean of weight * f over places drawn is the sum of share * f over all places.
     [[nodiscard]] double weight(const Place& at) const {
       return 2.0 / (passages_.chance(at) / to_target_.back() + 1.0 / all_.back());
     }

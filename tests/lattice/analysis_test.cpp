@@ -330,6 +330,22 @@ TEST(Analysis, PartsOfTypesAddUp) {
   }
 }
 
+// Over several gates changes multiply: much less of a number takes no more than there is.
+TEST(Analysis, ALargeChangeTakesNoMoreThanThereIs) {
+  const Scene scene = open_scene();
+  RunPool pool = pool_of_trials(scene, 2000);
+  constexpr double kStep = 0.45;
+  bool takes_most = false;
+  for (const ParameterEffect& e :
+       parameter_effects(scene, pool, Ending::far_edge, {.runs = 1000, .relative_step = kStep})
+           .effects) {
+    if (std::isnan(e.less)) continue;
+    EXPECT_LE(e.less * kStep, 1.0) << e.key;
+    takes_most = takes_most || (e.key == "forces.propulsion_N" && e.less * kStep > 0.8);
+  }
+  EXPECT_TRUE(takes_most);
+}
+
 TEST(Analysis, DrawnPlacesStandForAllThatArePassed) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
