@@ -74,6 +74,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
                .totals = passages.totals(),
                .gates = {},
                .costs = {},
+               .costs_of = {},
                .walks = {},
                .endless = {},
                .why_not_endless = {},
@@ -106,13 +107,13 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     out.walks = markov::timed_walks(c.chain, cells, c.start, field.max_gates, c.rewards,
                                     options.timed_walks, options.seed);
 
-  std::vector<double> share(gates.types().size(), 0.0);
+  std::vector<double> type_share(gates.types().size(), 0.0);
   for (int row = 0; row < field.rows; ++row)
     for (int column = 0; column < field.columns; ++column)
-      share[static_cast<std::size_t>(gates.type_of(column, row))] +=
+      type_share[static_cast<std::size_t>(gates.type_of(column, row))] +=
           1.0 / (static_cast<double>(field.rows) * field.columns);
   try {
-    out.endless = markov::quasi_stationary(c.chain, share);
+    out.endless = markov::quasi_stationary(c.chain, type_share);
     out.endless_boundaries.assign(kBoundaries, 0.0);
     for (int state = 0; state < space.size(); ++state)
       out.endless_boundaries[static_cast<std::size_t>(space.boundary(state))] +=
@@ -141,12 +142,12 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
   }
 
   out.types.resize(gates.types().size());
-  passages.each([&](const Passages::Place& place, double share) {
+  passages.each([&](const Passages::Place& place, double visits) {
     const auto column = static_cast<int>(place.cell % field.columns),
                row = static_cast<int>(place.cell / field.columns);
     Analysis::Type& type = out.types[static_cast<std::size_t>(gates.type_of(column, row))];
-    type.visits += share;
-    type.trapped += share * trapped_share(c.chain.at(column, row), place.input);
+    type.visits += visits;
+    type.trapped += visits * trapped_share(c.chain.at(column, row), place.input);
   });
 
   if (out.target_chance > 0.0) {
@@ -156,8 +157,8 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
       out.state_trapping.resize(static_cast<std::size_t>(space.size()));
       out.type_trapping.resize(gates.types().size());
     }
-    passages.each([&](const Passages::Place& place, double share) {
-      const double part = share * passages.chance(place) / out.target_chance;
+    passages.each([&](const Passages::Place& place, double visits) {
+      const double part = visits * passages.chance(place) / out.target_chance;
       const auto column = static_cast<int>(place.cell % field.columns),
                  row = static_cast<int>(place.cell / field.columns);
       out.passed.data()[place.cell] += part;

@@ -149,6 +149,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
   const std::size_t n = starts.size();
   PoolAnswers said{.whole = {},
                    .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},
+                   .kernels = {},
                    .unseen = {},
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.nonzeros()};
