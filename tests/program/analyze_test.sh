@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# analyze: from a scene and from its file.   analyze_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+# analyze: from a scene and from its file, the keys that scripts rely on; lattice takes as long.
+fast=(--set run.method=moreau --set field.rows=4 --set forces.propulsion_N=8.5)
+"$gatewalk" analyze "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --runs 300 --trials 4000 --json analysis.json --quiet
+holds '.endings.crossed.interval_95[0] < .endings.crossed.probability and .endings.trapped.probability > 0.3' analysis.json
+holds '([.expected_visits[][]] | add) as $visits | .expected_gates - $visits | fabs < 1e-9' analysis.json
+holds '(.expected_visits | length) == 4 and (.expected_visits[0] | length) == 9' analysis.json
+holds '(.expected_seconds / .direct.costs.all.mean_time_s - 1 | fabs) < 0.06 and (.expected_work_J / .direct.costs.all.mean_work_J - 1 | fabs) < 0.08' analysis.json
+holds '.by_ending.all.kolmogorov_distance < 0.08 and .by_ending.crossed.mean_time_s > 0' analysis.json
+holds '.lumping.error.final_gates > 0 and .lumping.largest_difference > 0' analysis.json
+holds '.quasi_stationary | .survival_per_gate < 1 and .spectral_gap > 0 and ((.states | add) - 1 | fabs) < 1e-9' analysis.json
+holds '(.sensitivities.parameters | length) >= 14 and .sensitivities.gate_runs > 8000 and .paths_complete and (.sensitivities.less_trapping | length) == 4' analysis.json
+holds '(.paths | length) == 5 and .paths[0].probability > .paths[4].probability and .paths[0].gates[0] == {"i_x": 0, "i_y": 0}' analysis.json
+"$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 -o fast.nc --quiet
+"$gatewalk" analyze fast.nc --runs 0 --json from_file.json --quiet
+holds '.gate_runs == 0 and .sensitivities.parameters == []' from_file.json
+[ "$(value .expected_seconds analysis.json)" = "$(value .expected_seconds from_file.json)" ] ||
+  fail "analyze: the file gave another time than its scene"
+"$gatewalk" analyze fast.nc --runs 300 --threads 1 --json - 2>/dev/null | jq 'del(.seconds, .sensitivities.seconds)' >one.json
+"$gatewalk" analyze fast.nc --runs 300 --threads 2 --json - 2>/dev/null | jq 'del(.seconds, .sensitivities.seconds)' | cmp -s - one.json ||
+  fail "analyze: another number of threads gave another answer"
+expect 2 'must be one of crossed' "$gatewalk" analyze fast.nc --target lost
+expect 2 'is of one start' "$gatewalk" analyze fast.nc --start 0,0,15 --start 1,0,15
+expect 2 'must be 0, or 100 or more' "$gatewalk" analyze fast.nc --runs 1
+expect 0 'nobody ends so' "$gatewalk" analyze fast.nc --set field.max_gates=0 --target cut_off --runs 100
+expect 2 'must lie between 0 and 0.5' "$gatewalk" analyze fast.nc --step 0.7
+for lump in 3,1 3,1,2,1 0,1,1 3,1,x; do expect 2 'must be three whole numbers from 1 to 1000' "$gatewalk" analyze fast.nc --lump $lump; done
+expect 0 'states (--lump), total variation to this chain: endings 0' "$gatewalk" analyze fast.nc --runs 0 --lump 3,1,2 --json lump.json
+holds '.lumping | .parts == [3, 1, 2] and .count > 6 and .count <= 31 and .error.final_gates > 0' lump.json
+"$gatewalk" build "$scenes/field.toml" --bins paper --trials 2 -o bins.nc --quiet
+"$gatewalk" analyze bins.nc --runs 200 --json bins.json --quiet
+holds '.expected_seconds > 10 and .expected_seconds_95 == null and .endings.trapped.interval_95[0] > 0 and .quasi_stationary.survival_per_gate > 0' bins.json
+expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc --accuracy 0.1
+"$gatewalk" lattice "$scenes/field.toml" "${fast[@]}" --trials 500 --json lattice_costs.json --quiet
+holds '.costs.all | .trials == 500 and .mean_time_s > 0 and .quantiles_time_s[0] < .quantiles_time_s[4]' lattice_costs.json
+holds '([.costs | to_entries[] | select(.key != "all") | .value.trials] | add) == 500' lattice_costs.json
+
+finish

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# validate --observed: the counts of an experiment.   experiment_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+paper_matrix m.nc
+# An experiment's counts: read as people write them, held against dynamics and chain, one verdict.
+"$gatewalk" lattice "$scenes/field.toml" --trials 60 --seed 77 --json sixty.json --quiet
+jq -r '["ending", "count"], (.endings | to_entries[] | [.key, .value]) | @csv' sixty.json >ends.csv
+jq -r '["gate_x", "gate_y", "count"], (.final_gates | to_entries[] | .key as $y | .value | to_entries[] | [.key - 4, $y, .value]) | @csv' sixty.json >gates.csv
+beside=(validate "$scenes/field.toml" --matrix m.nc --null-draws 499)
+"$gatewalk" "${beside[@]}" --observed ends.csv --observed gates.csv --trials 2000 --json observed.json >observed.txt 2>err.txt || fail "validate --observed: $(cat err.txt)"
+[ -s err.txt ] && fail "validate --observed warns of: $(cat err.txt)"
+# The scene's own start, not Table IV's four; and the sixty trials themselves.
+holds '.starts | length == 1 and .[0].start.d_m == 0 and .[0].start.vy_m_per_s == 15' observed.json
+jq -s '.[0].observed as $seen | .[1] | $seen.endings == .endings and $seen.final_gates == .final_gates and $seen.endings_95 == .endings_95' observed.json sixty.json | grep -q true ||
+  fail "validate --observed: not what was observed"
+holds '.observed | .trials == 60 and .files == ["ends.csv", "gates.csv"] and (.against_dynamics.differs | not) and (.verdict | startswith("these 60 trials do not differ from the dynamics by more than chance (p = "))' observed.json
+holds '.observed.against_dynamics | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .null_draws == 499 and (.final_gates | .corrcoef_floor > 0 and .total_variation > 0) and .p_endings.trapped > 0' observed.json
+holds '.observed.smallest_difference | .power == 0.8 and .level == 0.05 and .final_gates_total_variation > 0.1 and .endings_total_variation > 0.05 and (.endings_percentage_points | length == 5 and .trapped.more > 5 and .trapped.fewer > 5 and .crossed.fewer == null)' observed.json
+grep -q '^these 60 trials do not differ' observed.txt || fail "validate --observed: no verdict in the table"
+head -1 observed.txt | grep -q '^Observed: 60 trials, beside 2000 of the full dynamics' || fail "validate --observed: the experiment does not come first"
+# All else is as without it.
+"$gatewalk" "${beside[@]}" --trials 2000 --start 0,0,15 --json without.json --quiet
+jq -S 'walk(if type == "object" then del(.seconds, .speed_ratio, .made_by, .observed) else . end)' observed.json >with.txt
+jq -S 'walk(if type == "object" then del(.seconds, .speed_ratio, .made_by) else . end)' without.json | cmp -s - with.txt || fail "--observed changes what validate says beside it"
+# One table alone; the number of trials follows; a difference in plain words.
+printf 'ending,count\ncrossed,60\n' >far.csv
+expect 0 '^these 60 trials differ from the dynamics by more than chance (p = 0.00[0-9]): more cross, 100.00 ' "$gatewalk" "${beside[@]}" --observed far.csv --json far.json
+grep -q 'no row for .*trapped, which counts as 0 (dynamics: ' out.txt || fail "validate --observed: an ending that is left out is not named"
+holds '.trials == 10000 and (.observed | (has("final_gates") | not) and .against_dynamics.p_adjusted.total_variation == null and .against_chain.differs)' far.json
+printf '\357\273\277# roaches\r\n\r\n "gate_y" ,gate_x,"count"\r\n8, -4 ,"60"\r\n' >corner.csv
+expect 0 '^these 60 trials differ from the dynamics by more than chance (p = 0.002): they end in other gates, total variation 1.000' "$gatewalk" "${beside[@]}" --trials 2000 --observed corner.csv --start 4,5,10 --json corner.json
+holds '.starts[0].start.d_m == 4 and .observed.final_gates[8][0] == 60 and (.observed | has("endings") | not)' corner.json
+expect 0 'trials 100 for 60 observed: .* take 1200 or more' "$gatewalk" "${beside[@]}" --trials 100 --observed gates.csv
+# Refused before any work, naming file, line, column and what is allowed.
+refused() { printf "$2" >bad.csv; expect 2 "$1" timeout 20 "$gatewalk" validate "$scenes/field.toml" --matrix-trials 1e12 --observed bad.csv; }
+refused 'bad.csv:1: unknown column "gatex": the first line must be gate_x,gate_y,count or ending,count' 'gatex,gate_y,count\n'
+refused 'bad.csv:1: the columns must be' 'gate_x,count\n0,1\n'
+refused 'bad.csv:2: column gate_x: "5" is not permitted: must be a whole number from -4 to 4 (field.columns = 9)' 'gate_x,gate_y,count\n5,0,1\n'
+refused 'bad.csv:2: column gate_y: "9" is not permitted: must be a whole number from 0 to 8 (field.rows = 9)' 'gate_x,gate_y,count\n4,9,1\n'
+refused 'bad.csv:2: column count: "-1" is not permitted: must be a whole number from 0' 'gate_x,gate_y,count\n4,8,-1\n'
+refused 'bad.csv:2: column count: "1.5" is not permitted' 'ending,count\ncrossed,1.5\n'
+refused 'bad.csv:2: column ending: "turned back" is not permitted: must be one of crossed, left_side, right_side, trapped, cut_off' 'ending,count\nturned back,1\n'
+refused 'bad.csv:3: gate_x = 0, gate_y = 0 was given in line 2 already' 'gate_x,gate_y,count\n0,0,1\n0,0,2\n'
+refused 'bad.csv:3: ending trapped was given already' 'ending,count\ntrapped,1\ntrapped,1\n'
+refused 'bad.csv: has no trial' 'ending,count\ntrapped,0\n'
+refused 'bad.csv: is empty' ''
+expect 2 'ends.csv has 60\|far.csv: ends.csv has endings too' "$gatewalk" "${beside[@]}" --observed ends.csv --observed far.csv
+printf 'ending,count\ncrossed,59\n' >fewer.csv
+expect 2 'gates.csv has 60 trials, fewer.csv 59: both must be of the same trials' "$gatewalk" "${beside[@]}" --observed gates.csv --observed fewer.csv
+expect 2 'observed nosuch.csv: cannot be read' "$gatewalk" "${beside[@]}" --observed nosuch.csv
+expect 2 'belong to one start, --start gives 2' "$gatewalk" "${beside[@]}" --observed ends.csv --start 0,0,15 --start 4,5,10
+expect 2 'are the same file' "$gatewalk" "${beside[@]}" --observed gates.csv --observed ends.csv --json ends.csv
+
+finish

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# power: how many trials.   power_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+# power: how many trials; what so many show; two scenes.
+power=(power "$scenes/field.toml" --accuracy 0.05)
+"$gatewalk" "${power[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --versus beams.stiffness_right_Nm_per_rad=200 --json power.json >power.txt 2>err.txt || fail "power: $(cat err.txt)"
+holds '.power == 0.8 and .level == 0.05 and .trials == 60 and .error_95 <= 0.05 and ((.endings | add) - 1 | fabs) < 1e-6' power.json
+holds '[.from_prediction.endings[] | length == 4 and (map(.trials) | . == (sort | reverse)) and (map(.trials_if_all_are_looked_at >= .trials) | all) and (map(.power) | . == sort)] | all' power.json
+holds '.from_prediction.endings | [.trapped[].percentage_points] == [2, 5, 10, 20] and .trapped[3].trials > 20 and .trapped[3].trials < 80' power.json
+holds '.from_prediction.final_gates | [.[].total_variation] == [0.05, 0.1, 0.2] and .[0].trials > 3 * .[1].trials and .[1].trials > 3 * .[2].trials and .[2].power < 0.8' power.json
+holds '.smallest_difference | .final_gates_total_variation > 0.2 and .endings_percentage_points.trapped.more > 10 and .endings_percentage_points_if_all_are_looked_at.trapped.more > .endings_percentage_points.trapped.more' power.json
+holds '.versus | .set == ["beams.stiffness_left_Nm_per_rad=200", "beams.stiffness_right_Nm_per_rad=200"] and (.scene | test("stiffness_left_Nm_per_rad = 200")) and .apart.final_gates.trials > 2 and (.apart.endings | length) == 5' power.json
+grep -q '^Trials needed, for 80 % power at a level of 5 %' power.txt || fail "power: no table"
+grep -q '^Versus beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right' power.txt || fail "power: does not name the other scene"
+"$gatewalk" "${power[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --versus beams.stiffness_right_Nm_per_rad=200 --json again.json --threads 1 --quiet
+cmp -s power.json again.json || fail "power: another number of threads gave another file"
+# The same prediction as predict's.
+"$gatewalk" predict "$scenes/field.toml" --accuracy 0.05 --json predicted.json --quiet
+jq -s '.[0].endings == .[1].endings and .[0].final_gates == .[1].final_gates and .[0].error_95 == .[1].error_95' power.json predicted.json | grep -q true || fail "power: not the prediction of predict"
+expect 2 'power 1.2: must lie in \[0.5, 0.99\]' "$gatewalk" "${power[@]}" --power 1.2
+expect 2 'level 0: must lie in \[0.01, 0.25\]' "$gatewalk" "${power[@]}" --level 0
+expect 2 'trials 0: must be at least 1 and at most 100000' "$gatewalk" "${power[@]}" --trials 0
+expect 2 'versus: field.columns and field.rows must stay' "$gatewalk" "${power[@]}" --versus field.rows=5
+expect 2 '^gatewalk: --versus forces.randm_N=20: unknown key forces.randm_N; the closest known key is forces.random_N' "$gatewalk" "${power[@]}" --versus forces.randm_N=20
+expect 2 'fidelity = "all" is not permitted for a chain' "$gatewalk" "${power[@]}" --set field.fidelity=all --set run.method=moreau
+expect 2 'start.y_m must be 0' "$gatewalk" "${power[@]}" --set start.y_m=1
+
+finish

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# reproduce: everything is there, what is done is not done again.   reproduce_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+# reproduce: everything is there, each claim has a verdict; what is done is not done again; the page asks nobody.
+"$gatewalk" reproduce -o paper --quick >out.txt 2>&1 &
+pid=$!
+for _ in $(seq 120); do [ "$(jq length paper/data/done.json 2>/dev/null || echo 0)" -ge 1 ] && break; sleep 0.5; done
+kill -TERM $pid
+wait $pid
+[ $? = 130 ] || fail "reproduce: SIGTERM gives another status"
+[ "$(jq length paper/data/done.json)" -ge 1 ] || fail "reproduce: nothing was done in a minute"
+expect 0 'reproduced, .* agree, .* cannot be told, .* differ' "$gatewalk" reproduce -o paper --quick
+grep -q '^[1-9].* studies are done already' out.txt || fail "reproduce: did not go on where it was"
+expect 0 'studies are done already' "$gatewalk" reproduce -o paper --quick
+head -c 1000 paper/data/fig12.json >half && mv half paper/data/fig12.json
+expect 0 '\[30/30\]  fig12' "$gatewalk" reproduce -o paper --quick
+echo '[1]' >paper/data/done.json
+"$gatewalk" reproduce -o paper --quick --quiet &
+pid=$!
+sleep 1
+expect 1 'another gatewalk reproduce works in it' "$gatewalk" reproduce -o paper --quick
+wait $pid || fail "reproduce: an odd record stopped it"
+jq '.quick = false' paper/report.json >full && cp paper/report.json keep && mv full paper/report.json
+expect 2 'holds a full report' "$gatewalk" reproduce -o paper --quick
+mv keep paper/report.json
+for figure in fig5 fig6 fig8 fig9 fig11 fig12 thirteen_eight barriers table4 speed crossings; do
+  for end in csv svg pdf; do [ -s paper/$figure.$end ] || fail "reproduce: no $figure.$end"; done
+done
+holds '(.claims | length) >= 30 and (.claims | map(.verdict | IN("reproduced", "agrees", "cannot tell", "differs")) | all)' paper/report.json
+holds '(.claims | map(.see)) - (.sections | map(.id)) == []' paper/report.json
+holds '[.sections[] | select(.id != "replay") | .commands | length] | min >= 1' paper/report.json
+[ "$(tail -n +2 paper/claims.csv | wc -l)" = "$(jq '.claims | length' paper/report.json)" ] || fail "reproduce: claims.csv has other claims"
+expect 2 'missing -o' "$gatewalk" reproduce
+expect 2 'set has no meaning' "$gatewalk" reproduce -o paper --set forces.random_N=1
+# A command of the report, run where it says.
+(cd paper && eval "$(jq -r '.sections[] | select(.id == "fig9").commands[1]' report.json | sed "s#^gatewalk#$gatewalk#") --quiet --json again.json") || fail "reproduce: a command of the report does not work"
+jq -s '.[0].runs == .[1].runs' paper/again.json paper/data/fig9_300.json | grep -q true || fail "reproduce: a command of the report gives something else"
+
+finish

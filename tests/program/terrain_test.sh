@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Gates of several types.   terrain_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+# Gates of several types: a matrix for each in one file, the same field for chain and dynamics.
+mixed="$scenes/mixed.toml --set run.method=moreau"
+expect 0 '^terrain.types.u.forces.propulsion_N  *8.0 ' "$gatewalk" scene $mixed
+"$gatewalk" scene $mixed --json mixed.json --quiet
+holds '(.map | length == 9 and all(test("^[.su]{9}$"))) and (.map | join("") | test("s.*u"))' mixed.json
+"$gatewalk" scene $mixed --new >again.toml
+"$gatewalk" scene again.toml --json again.json --quiet
+jq -s '.[0].map == .[1].map' mixed.json again.json | grep -q true || fail "scene --new: another map"
+"$gatewalk" build $mixed --bins paper --trials 3 -o mixed.nc --json mixed.json --quiet
+holds '(.types | keys) == ["s", "u"] and .types.u.counts > 200' mixed.json
+expect 0 '^  type u  ' "$gatewalk" show mixed.nc
+expect 0 'outputs of input 13' "$gatewalk" show mixed.nc --type u --row 13
+expect 2 'has no such type' "$gatewalk" show mixed.nc --type x
+expect 0 '^trapped' "$gatewalk" walk mixed.nc --walks 1000
+expect 0 '^trapped' "$gatewalk" predict mixed.nc --set terrain.seed=6
+expect 0 '^trapped' "$gatewalk" predict $mixed --accuracy 0.1 --quiet
+expect 0 'not asked of a field with several types' "$gatewalk" validate $mixed --matrix mixed.nc --trials 100
+expect 2 'terrain.types.u.forces.propulsion_N: 9 here, 8 there' "$gatewalk" predict mixed.nc $mixed --set terrain.types.u.forces.propulsion_N=9
+expect 2 'none here' "$gatewalk" walk mixed.nc "$scenes/field.toml" --set run.method=moreau
+expect 2 'which says what stands where' "$gatewalk" predict mixed.nc --row 2=mixed.nc
+expect 2 'not permitted for a comparison of fidelities' "$gatewalk" chart-field $mixed --trials 2 -o x
+expect 0 'has no effect here: one gate is run' "$gatewalk" gate $mixed --trials 20 --quiet
+"$gatewalk" trace $mixed --field --trial 3 --json trace.json --replay trace.html --quiet
+holds '(.types | length) == 3 and (.type_of_gate | length) == 81 and .types[2].propulsion_N == 8' trace.json
+
+finish

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# validate: the chain beside the full dynamics.   validate_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+paper_matrix m.nc
+# validate: endings and one verdict that no p-value beside it contradicts.
+"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 300 --walks 500 --start 4.3,5.1,10.2 --start 0,0,15 --json ends-validate.json >ends-validate.txt 2>/dev/null
+head -1 ends-validate.txt | grep -q '^Endings, % of 300 trials' || fail "validate: the endings do not come first"
+grep -q '^   d   vx    vy  |  *crossed  *left side  *right side  *trapped  *cut off  *p$' ends-validate.txt || fail "validate: no header of the starts"
+[ "$(grep -c '^ 4\.3  5\.1  10\.2  | ' ends-validate.txt)" -ge 5 ] || fail "validate: labels of starts are rounded"
+holds '[.starts[] | (.endings.dynamics | add) == 300 and (.endings.walks | add) + .never_sampled == 500 and ((.endings.exact | add) + .never_sampled - 1 | fabs) < 1e-12] | all' ends-validate.json
+holds '[.starts[].trials_and_matrix | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .differs == (.p <= .level) and .null_draws >= 999 and .resampled_matrices == 999] | all' ends-validate.json
+holds '[.starts[] | (.verdict | test("differs")) == .trials_and_matrix.differs] | all' ends-validate.json
+# Is it Markov? Every question has its p and its sentence; the held force only when asked for.
+holds '.markov | .walks == 600 and (.verdict | test("chain forgets")) and ([.gates_ahead, .gate_before, .visit, .row | .p > 0 and .p <= .p_adjusted and (.sentence | length > 20)] | all) and (.gates_ahead.steps | length == 7)' ends-validate.json
+holds '[.starts[] | has("force_memory")] | any | not' ends-validate.json
+grep -q '^Is it Markov?' ends-validate.txt || fail "validate: does not say whether it is Markov"
+expect 0 'drawn anew at every crossing' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 30 --start 0,0,15 --memory --null-draws 99
+# Beyond what is sensible: refused by name, with the range, before any work.
+for value in 0 1e15; do expect 2 "null-draws.*at least 1 and at most 100000" "$gatewalk" validate "$scenes/field.toml" --null-draws $value --matrix-trials 1e12; done
+expect 2 'walks 0: must be at least 1' "$gatewalk" validate "$scenes/field.toml" --walks 0 --matrix-trials 1e12
+expect 2 'trials.*at most 1e15' "$gatewalk" validate "$scenes/field.toml" --trials 2000000000000000 --matrix-trials 1e12
+expect 2 'inside the gate' "$gatewalk" validate "$scenes/field.toml" --start 25,0,15 --matrix-trials 1e12
+# Walks take no memory each: a million and twenty million the same.
+peak() {
+  python3 -c 'import resource, subprocess, sys; subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True); print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)' "$@"
+}
+few=$(peak "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --start 0,0,15 --walks 1e5 --null-draws 9 --threads 2 --quiet)
+many=$(peak "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --start 0,0,15 --walks 2e7 --null-draws 9 --threads 2 --quiet)
+[ $((many - few)) -lt 20000 ] || fail "validate: twenty million walks take $((many - few)) KiB more"
+
+# A start that the paper's table has not.
+"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --start 4,5,10 --json validate.json --quiet
+holds '.starts | length == 1' validate.json
+holds '.starts[0].exact | .p_values.chi_squared > 0 and .rmse_per_100_floor > 0 and .total_variation >= 0' validate.json
+
+expect 2 'no meaning' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --matrix-trials 5
+expect 2 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --start 0,0,-15 --start 0,0,15
+expect 2 'start   0    0  -15 lies outside the chain' "$gatewalk" validate "$scenes/field.toml" --bins paper --trials 20 --start 0,0,-15
+"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 --quiet --json out.json
+holds '[.starts[].start.clamped] == [false, false, false, false]' out.json
+holds '[.starts[].verdict | test("^the chain (agrees with|differs from) the dynamics .*p [=<] ")] | all' out.json
+# The paper's numbers stand beside its own body and beams only.
+expect 0 'fewer than 4' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20
+expect 0 '|     -  ' "$gatewalk" validate "$scenes/field.toml" --trials 20 --matrix-trials 2 --set body.mass_kg=2
+grep -q 'fewer than 4' out.txt && fail "validate: the paper's numbers beside another body"
+# A start and a seed have their own noise, the same in every command.
+"$gatewalk" lattice "$scenes/field.toml" --trials 200 --seed 5 --json start.json --quiet
+"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --seed 5 --start 4,5,10 --start 0,0,15 --json starts.json --quiet
+jq -s '.[0].final_gates == .[1].starts[1].final_gates.dynamics' start.json starts.json | grep -q true ||
+  fail "validate and lattice ran other trials for the same start"
+
+finish
