@@ -34,7 +34,7 @@ run lattice "$scenes/robot.toml" --trials 1000 --figure ../lattice_robot.svg
 run validate "$field" --bins paper --matrix-trials 20 --trials 500 --figure ../validate.svg
 run analyze "$field" --set run.method=moreau --accuracy 0.05 --runs 300 --trials 2000 --target left_side --figure ../analyze.svg
 run analyze "$field" --set run.method=moreau --set field.columns=61 --set field.rows=40 --set field.max_gates=30 --accuracy 0.1 --runs 0 --figure ../analyze_large.svg
-run rare "$field" --set run.method=moreau --row 8 --accuracy 0.2 --trials 2000 --figure ../rare.svg
+run rare "$field" --set run.method=moreau --row 8 --accuracy 0.2 --gate-runs 40000 --trials 2000 --figure ../rare.svg
 run trace "$scenes/soft_left.toml" --trials 5 --figure ../trace.svg
 run trace "$field" --field --trials 4 --figure ../trace_field.svg
 # Studies draw into their folders; --figure draws the same again, stability's with all maps.

@@ -1,8 +1,10 @@
-# What every part of the command line's contract starts with: sourced with GATEWALK ROOT in $1 and $2.
+# What every part of the command line's contract starts with: sourced with GATEWALK ROOT [KEEP] in $1 to $3.
+# KEEP: a folder for what other tests look at.
 # shellcheck shell=bash
 set -u
 gatewalk=$(realpath "$1")
 scenes=$(realpath "$2")/scenes
+keep=${3:+$(realpath -m "$3")}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

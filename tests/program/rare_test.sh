@@ -3,14 +3,14 @@
 . "$(dirname "$0")/preamble.sh"
 
 # rare: every row's chance, the chain's beside it, as often as is asked for by direct trials.
-expect 0 '^chance to enter row 4: ' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 4 --accuracy 0.2 --trials 500 --json rare.json
+expect 0 '^chance to enter row 4: ' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 4 --accuracy 0.2 --gate-runs 40000 --trials 500 --json rare.json
 holds '.row == 4 and (.rows | length) == 4 and .probability > 0 and .interval_95[0] < .probability and .probability < .interval_95[1] and .chain > 0 and .relative_standard_error <= 0.2 and .gate_runs > 1000 and .rows[0].direct_entered > 0 and .rows[0].direct_interval_95[0] > 0 and .chain_seconds < .seconds' rare.json
 expect 2 'must lie between 0 and 1' "$gatewalk" rare "$scenes/field.toml" --accuracy 5
 expect 0 'was not reached' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 12 --accuracy 0.01 --gate-runs 20000
-expect 0 '^chance to enter row 3: ' "$gatewalk" rare "$scenes/mixed.toml" --set run.method=moreau --row 3 --accuracy 0.2 --trials 500 --json rare.json
+expect 0 '^chance to enter row 3: ' "$gatewalk" rare "$scenes/mixed.toml" --set run.method=moreau --row 3 --accuracy 0.2 --gate-runs 40000 --trials 500 --json rare.json
 holds '(.rows | length) == 3 and .rows[2].probability > 0 and .rows[2].chain > 0 and .rows[2].direct_entered > 0' rare.json
 "$gatewalk" lattice "$scenes/mixed.toml" --set run.method=moreau --set field.max_gates=0 --trials 500 --quiet --json lattice.json
-"$gatewalk" rare "$scenes/mixed.toml" --set run.method=moreau --row 9 --accuracy 0.5 --trials 500 --quiet --json rare.json
+"$gatewalk" rare "$scenes/mixed.toml" --set run.method=moreau --row 9 --gate-runs 40000 --trials 500 --quiet --json rare.json
 jq -s '[range(8) as $r | .[0].final_gates[$r + 1:] | flatten | add] + [.[0].endings.crossed] == [.[1].rows[].direct_entered]' lattice.json rare.json | grep -q true || fail "rare: other direct trials than lattice"
 expect 2 'mixed.toml: the terrain has 9 rows; the row to enter (--row) must be at most 9, or field.rows larger' "$gatewalk" rare "$scenes/mixed.toml" --row 10
 

@@ -81,11 +81,15 @@ const distance = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 let wrong = 0, least = Infinity;
 const scratch = mkdtempSync(join(tmpdir(), 'gatewalk-figures-'));
 try {
-  for (const file of files) {
-    const svg = readFileSync(file, 'utf8'), width = Number(/<svg[^>]*?\bviewBox="0 0 (\d+)/s.exec(svg)?.[1] ?? /<svg[^>]*?\bwidth="(\d+)/s.exec(svg)[1]);
-    const page = join(scratch, 'figure.html');
-    writeFileSync(page, `<!doctype html><meta charset="utf-8"><body style="margin:0">${svg.replace(/^[^]*?<svg/, `<svg style="width:${width}px"`)}`);
-    await browse(page, {viewport: {width: width + 20, height: 1000}}, async (page, faults) => {
+  // One browser shows all of them, one after the other.
+  const shown = join(scratch, 'figure.html');
+  writeFileSync(shown, '');
+  await browse(shown, {}, async (page, faults) => {
+    for (const file of files) {
+      const svg = readFileSync(file, 'utf8'), width = Number(/<svg[^>]*?\bviewBox="0 0 (\d+)/s.exec(svg)?.[1] ?? /<svg[^>]*?\bwidth="(\d+)/s.exec(svg)[1]);
+      writeFileSync(shown, `<!doctype html><meta charset="utf-8"><body style="margin:0">${svg.replace(/^[^]*?<svg/, `<svg style="width:${width}px"`)}`);
+      await page.setViewportSize({width: width + 20, height: 1000});
+      await page.reload();
       const seen = await page.evaluate(texts_of, {width, points: kPrintedPoints, least: kLeastPoints});
       const colours = seen.series.flatMap(s => s.colours.slice(0, 1).map(c => ({name: s.name, rgb: linear(c.match(/\d+/g).slice(0, 3).map(Number))})));
       colours.forEach((a, i) => colours.slice(i + 1).forEach(b => {
@@ -94,10 +98,12 @@ try {
         least = Math.min(least, d);
         if (d < kLeastDistance) seen.faults.push(`"${a.name}" and "${b.name}" look alike without green (${d.toFixed(3)})`);
       }));
-      for (const f of [...faults, ...seen.faults]) console.error(`${file}: ${f}`);
-      wrong += faults.length + seen.faults.length;
-    });
-  }
+      for (const f of [...faults.splice(0), ...seen.faults]) {
+        console.error(`${file}: ${f}`);
+        ++wrong;
+      }
+    }
+  });
 } finally {
   rmSync(scratch, {recursive: true, force: true});
 }
