@@ -1,125 +1,234 @@
 #!/usr/bin/env bash
-# Whether two programs of gatewalk write the same results: JSON, CSV, NetCDF and tables of many command lines, byte by
-# byte, but for what names the program itself (version, commit) and what was timed.
-#   tests/same_results.sh OLD NEW [SCENES]     OLD, NEW: programs; SCENES: folder of scenes (scenes/)
-set -eu
+# Whether two programs of gatewalk write the same results: JSON, CSV, NetCDF, tables, figures and pages of many command
+# lines, byte by byte, but for what names the program itself (version, commit) and what was timed.
+#   tests/same_results.sh [--lines PATTERN] OLD NEW [SCENES]
+# OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds.
+# Status 1: some differ; 2: nothing was compared.
+# To see that it finds what it should, change a constant in a copy of the sources, say kMaxPhase in
+# dynamics/methods/stable.cpp or kQuantile in lattice/group_spread.cpp, and compare the programs.
+set -euf
+pattern=.
+if [ "${1-}" = --lines ]; then
+  pattern=$2
+  shift 2
+fi
 for tool in jq ncdump; do command -v $tool >/dev/null || { echo "$tool is missing" >&2; exit 2; }; done
 old=$(realpath "$1") new=$(realpath "$2")
 scenes=$(realpath "${3:-$(dirname "$0")/../scenes}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-same=0 other=0
+mkdir "$work/inputs"
 
-# The command lines; each writes into the folder that it runs in.
+# The command lines, behind the exit status that each must have; each writes into the folder that it runs in.
 lines() {
-  cat <<'END'
-gate field.toml --trials 300 --json out.json
-gate single_gate.toml --set run.method=paper --trials 200 --json out.json
-gate soft_left.toml --set run.method=moreau --trials 500 --json out.json
-gate soft_left.toml --set run.method=event --trials 100 --json out.json
-gate single_gate.toml --set run.method=penalty --trials 50 --json out.json
-gate stiff.toml --set run.method=auto --trials 200 --json out.json
-gate own.toml --trials 200 --json out.json
-scene own.toml --json out.json
-scene field.toml
-sweep single_gate.toml --vary forces.propulsion_N=4:1:9 --vary forces.random_N=0,20 --trials 50 --csv out.csv --json out.json
-landscape single_gate.toml --trials 100 -o out
-landscape own.toml -o out
-trace soft_left.toml --trials 4 --csv out.csv --netcdf out.nc --json out.json --replay out.html
-trace field.toml --field --trials 2 --seed 3 --json out.json --netcdf out.nc
-build field.toml --trials 30 -o m.nc
-build own.toml --trials 20 -o m.nc
-build field.toml --bins 2 --trials 3 -o m.nc
-build field.toml --bins auto --trials 20 -o m.nc
-show matrix.nc --json out.json
-show own.nc --json out.json
-walk matrix.nc --walks 2000 --json out.json
-walk own.nc --walks 2000 --json out.json
-predict matrix.nc --json out.json
-predict matrix.nc --set field.max_gates=0 --json out.json
-predict matrix.nc --set field.max_gates=0 --solver klu --json out.json
-predict matrix.nc --solver propagate --json out.json
-predict matrix.nc --row 3=soft.nc --json out.json
-predict own.nc --json out.json
-lattice field.toml --trials 100 --json out.json
-lattice own.toml --trials 50 --json out.json
-lattice field.toml --set run.method=moreau --set field.fidelity=all --trials 30 --json out.json
-lattice field.toml --set run.method=moreau --set field.fidelity=remember --trials 30 --json out.json
-validate field.toml --trials 50 --json out.json --quiet
-validate field.toml --matrix matrix.nc --start 0,0,15 --trials 80 --walks 300 --json out.json --quiet
-validate own.toml --trials 40 --matrix-trials 20 --json out.json --quiet
-chart soft_left.toml --trials 40 --repeats 1 --methods stable,moreau -o out
-chart-field field.toml --trials 20 -o out
-chart-chain field.toml --start 0,0,15 --truth-trials 400 --runs-limit 20000 --bins 0.5 -o out
-stability -o out --quick
-gate nothing.toml
-gate field.toml --set body.mass_kg=-1
-build field.toml --trials 2
-predict field.toml
+  grep -E -e "$pattern" <<'END'
+0 gate field.toml --trials 300 --json out.json --figure out.svg
+0 gate field.toml --set forces.random_rate_Hz=0.05 --trials 100 --json out.json
+0 gate single_gate.toml --set run.method=paper --trials 200 --json out.json
+0 gate soft_left.toml --set run.method=moreau --trials 500 --json out.json
+0 gate soft_left.toml --set run.method=event --trials 100 --json out.json
+0 gate single_gate.toml --set run.method=penalty --trials 50 --json out.json
+0 gate stiff.toml --set run.method=auto --trials 200 --json out.json
+0 gate overdamped.toml --trials 300 --json out.json
+0 gate undamped.toml --trials 200 --json out.json
+0 gate wading.toml --set run.method=event --trials 50 --json out.json
+0 gate robot.toml --trials 500 --json out.json
+0 gate own.toml --trials 200 --json out.json
+0 gate mixed.toml --trials 100 --json out.json
+0 gate elastic.toml --trials 200 --json out.json
+1 gate single_gate.toml --set run.method=paper --trials 50 --strict --json out.json
+0 scene field.toml
+0 scene own.toml --json out.json
+0 scene own.toml --new -o new.toml
+0 scene mixed.toml --json out.json
+0 scene map.toml --set forces.propulsion_N=8 --json out.json
+0 sweep single_gate.toml --vary forces.propulsion_N=4:1:9 --vary forces.random_N=0,20 --trials 50 --csv out.csv --json out.json --figure out.svg
+0 sweep soft_left.toml --vary run.method=stable,moreau,event,penalty,paper --trials 30 --csv out.csv
+0 sweep fig8.toml --trials 3 --csv out.csv
+0 sweep own.toml --vary body.radius_m=0.06:0.01:0.1 --trials 100 --csv out.csv --figure out.svg
+0 landscape single_gate.toml --trials 100 -o out
+0 landscape own.toml -o out
+0 landscape soft_left.toml --beam right -o out
+0 trace soft_left.toml --trials 4 --csv out.csv --netcdf out.nc --json out.json --replay out.html --figure out.svg
+0 trace field.toml --field --trials 2 --seed 3 --json out.json --netcdf out.nc
+0 trace map.toml --field --trials 3 --csv out.csv --replay out.html
+0 trace overdamped.toml --trials 2 --csv out.csv
+0 trace soft_left.toml --set run.time_limit_s=0.3 --video out.gif
+0 trace own.toml --set run.method=event --trials 20 --only exited --csv out.csv
+0 build field.toml --trials 30 -o m.nc
+0 build own.toml --trials 20 -o m.nc
+0 build field.toml --bins 2 --trials 3 -o m.nc
+0 build field.toml --bins auto --trials 20 -o m.nc
+0 build bins.toml --trials 5 -o m.nc --json out.json
+0 build map.toml --bins paper --trials 3 -o m.nc --json out.json
+0 build field.toml --accuracy 0.1 -o m.nc --json out.json
+0 build soft_left.toml --bins tree --gate-runs 2000 -o m.nc
+0 build robot.toml --accuracy 0.2 --starts all -o m.nc
+0 build field.toml --accuracy 0.1 --states 60 --starts=-5:5,-5:5,12:16 -o m.nc
+0 build mixed.toml --set run.method=moreau --accuracy 0.2 -o m.nc
+0 show matrix.nc --json out.json
+0 show matrix.nc --row 13
+0 show own.nc --rows
+0 show tree.nc --json out.json --figure out.svg
+0 show mixed.nc --type u --json out.json
+0 walk matrix.nc --walks 2000 --json out.json --figure out.svg
+0 walk own.nc --walks 2000 --json out.json
+0 walk tree.nc --walks 2000 --set field.max_gates=0 --json out.json
+0 walk mixed.nc --walks 2000 --json out.json
+0 predict matrix.nc --json out.json --figure out.svg
+0 predict matrix.nc --set field.max_gates=0 --json out.json
+0 predict matrix.nc --set field.max_gates=0 --solver klu --json out.json
+0 predict matrix.nc --set field.max_gates=0 --set field.columns=61 --set field.rows=40 --json out.json
+0 predict matrix.nc --solver propagate --start 0,0,15 --start 4,5,10.5 --json out.json
+0 predict matrix.nc --row 3=soft.nc --json out.json
+0 predict own.nc --json out.json
+0 predict tree.nc --json out.json
+0 predict tree.nc --start 4,5,10 --start=-17,13,12 --json out.json --figure out.svg
+0 predict tree.nc --start 4,5,10 --first-runs 0
+0 predict mixed.nc --set terrain.seed=6 --json out.json
+0 predict mixed.nc --set field.max_gates=0 --json out.json
+0 predict field.toml --accuracy 0.1 --json out.json --figure out.svg
+0 predict field.toml --set beams.stiffness_left_Nm_per_rad=250 --accuracy 0.1 --json out.json
+0 predict own.toml --accuracy 0.1 --json out.json
+0 predict robot.toml --accuracy 0.1 --start 0.02,0,0.4 --json out.json
+0 predict overdamped.toml --set field.rows=4 --set run.traverse_y_m=60 --accuracy 0.2 --json out.json
+0 predict field.toml --set run.method=event --accuracy 0.2 --gate-runs 1500 --json out.json
+0 predict mixed.toml --accuracy 0.2 --json out.json
+0 predict map.toml --accuracy 0.2 --json out.json --figure out.svg
+0 lattice field.toml --trials 100 --json out.json --figure out.svg
+0 lattice own.toml --trials 50 --json out.json
+0 lattice field.toml --set run.method=moreau --set field.fidelity=all --trials 30 --json out.json
+0 lattice field.toml --set run.method=moreau --set field.fidelity=remember --trials 30 --json out.json
+0 lattice field.toml --set run.method=penalty --trials 3 --json out.json
+0 lattice mixed.toml --set run.method=moreau --trials 100 --json out.json
+0 lattice map.toml --trials 100 --json out.json
+0 analyze field.toml --set run.method=moreau --accuracy 0.1 --runs 200 --trials 100 --json out.json --figure out.svg
+0 analyze tree.nc --runs 0 --lump 3,1,2 --target trapped --json out.json
+0 analyze matrix.nc --runs 100 --json out.json
+0 analyze map.toml --set run.method=moreau --accuracy 0.2 --runs 100 --json out.json
+0 rare field.toml --set run.method=moreau --row 5 --gate-runs 20000 --trials 100 --json out.json --figure out.svg
+0 rare mixed.toml --set run.method=moreau --row 3 --gate-runs 20000 --json out.json
+0 validate field.toml --trials 50 --json out.json --quiet
+0 validate field.toml --matrix matrix.nc --start 0,0,15 --trials 80 --walks 300 --memory --json out.json --figure out.svg
+0 validate own.toml --trials 40 --matrix-trials 20 --json out.json --quiet
+0 validate field.toml --matrix tree.nc --trials 60 --start 0,0,15 --null-draws 99 --json out.json
+0 validate mixed.toml --set run.method=moreau --matrix mixed.nc --trials 60 --null-draws 99 --json out.json
+0 validate field.toml --matrix matrix.nc --observed gates.csv --observed ends.csv --trials 200 --null-draws 99 --json out.json
+0 power field.toml --accuracy 0.1 --trials 60 --json out.json
+0 power field.toml --accuracy 0.1 --versus beams.stiffness_left_Nm_per_rad=200 --json out.json
+0 chart soft_left.toml --trials 40 --repeats 1 --methods stable,moreau -o out
+0 chart-field field.toml --trials 20 -o out
+0 chart-chain field.toml --start 0,0,15 --truth-trials 400 --runs-limit 20000 --bins 0.5 -o out
+0 stability -o out --quick
+0 reproduce -o out --quick
+2 gate nothing.toml
+2 gate field.toml --set body.mass_kg=-1
+2 gate field.toml --set body.mas_kg=1
+2 gate wrong.toml
+2 scene wrong_map.toml
+2 sweep field.toml --vary forces.random_N=1:0:2
+2 build field.toml --trials 2
+2 build field.toml --bins tree --trials 5 -o m.nc
+2 walk matrix.nc --set forces.random_N=12
+2 predict matrix.nc --accuracy 0.1
+2 predict mixed.nc --row 2=mixed.nc
+2 lattice field.toml --set field.fidelity=all
+2 analyze tree.nc --target lost
+2 rare mixed.toml --row 10
+2 validate field.toml --matrix matrix.nc --observed wrong.csv
+2 power field.toml --power 1.2
 END
 }
 
-cat >"$work/own.toml" <<'END'
+# What they read: scenes beside those of the folder, an experiment's counts, and matrices that OLD builds.
+cp $(find "$scenes" -name '*.toml') "$work/inputs"
+cd "$work/inputs"
+cat >own.toml <<'END'
 body = { mass_kg = 0.25, radius_m = 0.08 }
 forces = { random_N = 0.4 }
 END
-cp "$scenes"/*.toml "$work"
-(cd "$work" && "$old" build field.toml --trials 20 -o matrix.nc --quiet && "$old" build own.toml --trials 20 -o own.nc --quiet &&
-  "$old" build field.toml --set beams.stiffness_left_Nm_per_rad=300 --trials 20 -o soft.nc --quiet) \
-  >/dev/null 2>"$work/log" || { cat "$work/log" >&2; exit 2; }
+cat >elastic.toml <<'END'
+beams = { stiffness_right_Nm_per_rad = 0, damping_Nms_per_rad = 500 }
+forces = { propulsion_N = 0, random_N = 10, random_rate_Hz = 5, drag_Ns_per_m = 1 }
+contact = { restitution = 1, tip_restitution = 1 }
+run = { method = "moreau", step_s = 0.004 }
+start = { vx_m_per_s = -10, vy_m_per_s = 15 }
+END
+cat >map.toml <<'END'
+forces = { propulsion_N = 8, random_N = 50 }
+field = { columns = 5, rows = 4 }
+terrain.map_file = "map.csv"
+terrain.types.s.beams.stiffness_left_Nm_per_rad = 200.0
+terrain.types.s.beams.stiffness_right_Nm_per_rad = 200.0
+terrain.types.w.forces.drag_Ns_per_m = 0.2
+terrain.types.w.contact.restitution = 0.4
+END
+printf '%s\n' .s.s. w.w.w s...s ..w.. >map.csv
+sed 's/map.csv/wrong_map.csv/' map.toml >wrong_map.toml
+printf '%s\n' .s.s. w.x.w s...s ..w.. >wrong_map.csv
+printf 'body.radius_m = 10\n[beams]\nlength_m = "long"\n' >wrong.toml
+{ cat field.toml; printf '[bins]\nEN_d_m = [-25, -5, 5, 25]\nEN_vx_m_per_s = [-20, 0, 20]\n'; } >bins.toml
+printf 'ending,count\ntrapped,50\nleft_side,6\nright_side,4\n' >ends.csv
+printf 'gate_x,gate_y,count\n0,0,8\n0,1,20\n1,1,12\n-1,2,20\n' >gates.csv
+printf 'gate_x,gate_y,count\n0,9,8\n' >wrong.csv
+lines >"$work/lines" || { echo "no line has '$pattern'" >&2; exit 2; }
+while read -r name arguments; do
+  grep -q -w "$name.nc" "$work/lines" || continue
+  "$old" build $arguments -o "$name.nc" --quiet >/dev/null 2>"$work/log" || { cat "$work/log" >&2; exit 2; }
+done <<'END'
+matrix field.toml --trials 20
+own own.toml --trials 20
+soft field.toml --set beams.stiffness_left_Nm_per_rad=300 --trials 20
+tree field.toml --accuracy 0.1
+mixed mixed.toml --set run.method=moreau --bins paper --trials 3
+END
 
-# What may differ: who made it, and seconds.
-plain() {
-  case $1 in
-    *.json) jq -S 'walk(if type == "object" then del(.version, .commit, .program, .machine) | with_entries(select(.key | test("(^|_)seconds?(_|$)|_per_second|faster|speed_?up|^cost|machine|^timing") | not)) else . end)' "$1" ;;
-    *.nc) ncdump "$1" | grep -v -E 'made_by|program|checksum|commit|version|^netcdf ' ;;
-    *.svg | *.html | *.mp4) ;;  # drawn of the same numbers
-    *) sed -E 's/[0-9]+\.[0-9]+ s\b//g; s/gatewalk [0-9][^ ]*//g' "$1" ;;
+# What a file says but for what may differ: who made it, and what was timed. Where a table consists of times, its words
+# stay; its other numbers are in the JSON beside it. What chart-chain charts depends on the times.
+plain() {  # COMMAND FILE
+  case $1:$2 in
+    *.json) jq -S 'walk(if type == "object" then del(.version, .commit, .program, .machine) | with_entries(select(.key | test("'"$timed"'") | not)) else . end)' "$2" ;;
+    *.nc) ncdump "$2" | grep -v -E '^\t\t:(program|version|commit|checksum) = |^netcdf ' ;;
+    chart*.svg | chart-chain:*.txt | chart-chain:*.csv) ;;
+    chart*.txt | chart*.csv) sed -E 's/[0-9.]+(e[-+][0-9]+)?/N/g; s/ +/ /g' "$2" ;;
+    *.txt) sed -E '/ dynamics\/exact  trial\/walk$/,/^$/d; s/[0-9.]+ s([;,]|$)/... s\1/g' "$2" ;;
+    *) cat "$2" ;;
   esac
 }
-# A word that OLD itself writes otherwise when it runs again was timed: it and its column stand as
-# "timed".
-again=(again1 again2 again3)
-words() { awk -F '[ ,]+' 'FNR == 1 { ++file }
-  file == 1 { first[FNR] = $0; next }
-  file <= runs { n = split(first[FNR], a); for (i = 1; i <= n; ++i) timed[NF, i] += a[i] != $i; next }
-  { line = ""; for (i = 1; i <= NF; ++i) line = line " " (timed[NF, i] ? "timed" : $i); print line }' "$@"; }
+timed='^(seconds|(run|direct|chain)_seconds|(micro)?seconds_per_trial|speed_ratio|(build|exact|walks_[0-9]+)_s|one_thread_s_per_.*|chain_pays_.*|summary|direct_simulation)$'
 
-while read -r line; do
-  for side in old "${again[@]}" new; do
-    rm -rf "${work:?}/$side"
-    mkdir "$work/$side"
-    cp "$work"/*.toml "$work"/*.nc "$work/$side"
-    program=$old
-    [ $side = new ] && program=$new
-    (cd "$work/$side" && "$program" $line >stdout.txt 2>stderr.txt && echo 0 >status.txt || echo "$?" >status.txt)
-    rm "$work/$side"/*.toml "$work/$side"/matrix.nc "$work/$side"/own.nc "$work/$side"/soft.nc
+compare() {  # NUMBER of the line
+  local wanted line command side file differ=() here=$work/$1
+  read -r wanted line < <(sed -n "$1p" "$work/lines")
+  command=${line%% *}
+  for side in old new; do
+    mkdir -p "$here/$side"
+    cp -r "$work/inputs/." "$here/$side"
+    cd "$here/$side"
+    local status=0
+    "${!side}" $line >stdout.txt 2>stderr.txt || status=$?
+    [ $status = "$wanted" ] || differ+=("status $status of $side: $(head -n 1 stderr.txt)")
+    (cd "$work/inputs" && ls) | xargs rm -f
   done
-  differ=()
-  # The last lines are refused; a line that fails otherwise compares nothing.
-  case $line in *nothing.toml* | *mass_kg=-1* | "build field.toml --trials 2" | "predict field.toml") wanted=2 ;; *) wanted=0 ;; esac
-  [ "$(cat "$work/old/status.txt")" = $wanted ] || differ+=("status $(cat "$work/old/status.txt"): $(head -n 1 "$work/old/stderr.txt")")
-  [ "$(cd "$work/old" && find . -type f | sort)" = "$(cd "$work/new" && find . -type f | sort)" ] || differ+=("other files")
+  cd "$here"
+  [ -n "$(find old -type f -size +0)" ] || differ+=("wrote nothing")
+  [ "$(cd old && find . -type f | sort)" = "$(cd new && find . -type f | sort)" ] || differ+=("other files")
   while read -r file; do
-    for side in old "${again[@]}" new; do
-      if [ -f "$work/$side/$file" ]; then plain "$work/$side/$file"; fi >"$work/$side.plain"
-    done
-    [ -s "$work/old.plain" ] || { cmp -s "$work/old.plain" "$work/new.plain" || differ+=("$file"); continue; }  # an empty one has no words
-    for side in old new; do
-      cp "$work/$side.plain" "$work/last.plain"
-      words runs=4 "$work/old.plain" "$work/again1.plain" "$work/again2.plain" "$work/again3.plain" "$work/last.plain" >"$work/$side.words"
-    done
-    if ! cmp -s "$work/old.words" "$work/new.words"; then
-      differ+=("$file")
-      diff "$work/old.words" "$work/new.words" | head -n 6 || true
-    fi
-  done < <(cd "$work/old" && find . -type f)
+    [ -f "new/$file" ] || continue
+    for side in old new; do plain "$command" "$side/$file" >$side.plain; done
+    cmp -s old.plain new.plain || differ+=("$file"$'\n'"$(diff old.plain new.plain | head -n 6 | cut -c1-300)")
+  done < <(cd old && find . -type f | sort)
   if [ ${#differ[@]} = 0 ]; then
-    same=$((same + 1))
+    echo same >"$work/$1.verdict"
   else
-    other=$((other + 1))
-    echo "DIFFERS: gatewalk $line: ${differ[*]}"
+    printf 'DIFFERS: gatewalk %s: %s\n' "$line" "${differ[*]}"
   fi
-done < <(lines)
+  rm -r "$here"
+}
+export old new work timed
+export -f compare plain
+seq "$(wc -l <"$work/lines")" | xargs -P "$(nproc)" -I{} bash -c 'set -euf; compare {}' || true
+same=$(find "$work" -maxdepth 1 -name '*.verdict' | wc -l)
+other=$(($(wc -l <"$work/lines") - same))
 echo "$same command lines with the same results, $other with others"
 [ "$other" = 0 ]
