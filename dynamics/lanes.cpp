@@ -7,8 +7,6 @@
 
 #include "dynamics/methods/march.h"
 
-// Registers whose length is not known when this is compiled hold no state here.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dynamics/lanes.cpp"
 #include <hwy/foreach_target.h>

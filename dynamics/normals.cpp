@@ -1,7 +1,5 @@
 #include "dynamics/random.h"
 
-// As in lanes.cpp: registers whose length is not known when this is compiled cannot be members.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dynamics/normals.cpp"
 #include <hwy/foreach_target.h>

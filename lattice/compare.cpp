@@ -157,7 +157,7 @@ NoiseFloor noise_floor(double s, std::int64_t gates, std::int64_t trials,
 }
 
 // Beyond this the logarithms of factorials (3e13) leave less than two digits; no study goes there.
-constexpr std::int64_t kMostTrials = std::int64_t{1} << 40;
+constexpr std::int64_t kMostTrialsAsked = std::int64_t{1} << 40;
 
 double expected_total_variation(const CellProbabilities& p, std::int64_t trials) {
   if (trials < 1) throw std::invalid_argument("expected_total_variation: needs at least one trial");
@@ -179,7 +179,8 @@ std::int64_t trials_for(const CellProbabilities& p, double total_variation) {
   if (!(total_variation > 0.0))
     throw std::invalid_argument("trials_for: a total variation must be > 0");
   std::int64_t enough = 1;
-  while (expected_total_variation(p, enough) > total_variation && enough < kMostTrials) enough *= 2;
+  while (expected_total_variation(p, enough) > total_variation && enough < kMostTrialsAsked)
+    enough *= 2;
   std::int64_t low = enough / 2;  // too few, or 0
   while (enough - low > 1) {
     const std::int64_t middle = low + (enough - low) / 2;

@@ -12,7 +12,7 @@ namespace {
 
 using dynamics::Random;
 
-constexpr std::int64_t kMostTrials = std::int64_t{1} << 53;  // whole numbers of a double
+constexpr std::int64_t kMostDrawn = std::int64_t{1} << 53;  // whole numbers of a double
 constexpr double kFew = 10.0;  // expected successes up to which they are counted up one by one
 
 /// By inversion: P(0), P(1), ... are taken from a uniform until it is used up. p <= 1/2, n p <
@@ -66,7 +66,7 @@ std::int64_t by_rejection(double n, double p, Random& random) {
 }  // namespace
 
 std::int64_t binomial(std::int64_t trials, double p, Random& random) {
-  if (trials < 0 || trials > kMostTrials || !(p >= 0.0 && p <= 1.0))
+  if (trials < 0 || trials > kMostDrawn || !(p >= 0.0 && p <= 1.0))
     throw std::invalid_argument("binomial: trials " + std::to_string(trials) +
                                 " must lie in [0, 2^53], p " + std::to_string(p) + " in [0, 1]");
   if (trials == 0 || p == 0.0) return 0;

@@ -76,7 +76,7 @@ std::string array_name(int boundary, const TreeArray& array) {
 }
 
 // Only a space that is open, or has points, has these.
-constexpr const char* kOpen = "outermost_bins_are_open";
+constexpr const char* kOpenBins = "outermost_bins_are_open";
 constexpr const char* kPointBoundary = "point_boundary";
 constexpr std::array<double Crossing::*, 3> kPointAxes{&Crossing::d, &Crossing::vx, &Crossing::vy};
 
@@ -154,7 +154,7 @@ StateSpace bins_in(const markov::CountsFile& in, const std::string& path) {
       if (const auto* values = find_array(in, name)) bins[b].*axis.edges = *values;
       if ((bins[b].*axis.edges).empty()) throw markov::BadFile(path + ": no bin edges " + name);
     }
-  return StateSpace(std::move(bins), find_array(in, kOpen) != nullptr, points_in(in, path));
+  return StateSpace(std::move(bins), find_array(in, kOpenBins) != nullptr, points_in(in, path));
 }
 
 StateSpace trees_in(const markov::CountsFile& in, const std::string& path) {
@@ -223,7 +223,7 @@ std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays
     const bool of_boundary =
         std::any_of(kBoundaryNames.begin(), kBoundaryNames.end(),
                     [&](std::string_view b) { return a.name.starts_with(std::string(b) + "_"); });
-    return of_boundary || a.name == kOpen || a.name.starts_with("point_") ||
+    return of_boundary || a.name == kOpenBins || a.name.starts_with("point_") ||
            a.name.starts_with(kCountCosts);
   });
   return arrays;
@@ -268,7 +268,7 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
                             t.space.bins()[b].*axis.edges});
   if (t.space.open() && !t.space.has_trees())
     out.arrays.push_back(
-        {kOpen, "1", "the outermost bins take what lies beyond their edges", {1.0}});
+        {kOpenBins, "1", "the outermost bins take what lies beyond their edges", {1.0}});
   if (!t.space.points().empty()) {
     std::vector<double> boundary;
     for (const Crossing& c : t.space.points()) boundary.push_back(static_cast<double>(c.boundary));

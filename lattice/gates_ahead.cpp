@@ -18,7 +18,7 @@ constexpr std::uint64_t kDeals = 1u << 20;
 
 /// What each run of a state led to, state by state: the state entered, kTrapped, or, of the last
 /// run of a walk that was stopped, -2 less the state entered.
-struct Outcomes {
+struct OutcomeSeen {
   static constexpr std::int32_t kTrapped = StateWalks::kTrapped;
   std::vector<std::int32_t> all;    // (runs)
   std::vector<std::int64_t> first;  // (states + 1)
@@ -28,7 +28,7 @@ struct Outcomes {
     return stops(outcome) ? -2 - outcome : outcome;
   }
 
-  explicit Outcomes(const StateWalks& w) : all(w.state.size()), first(w.way.size() + 1) {
+  explicit OutcomeSeen(const StateWalks& w) : all(w.state.size()), first(w.way.size() + 1) {
     for (const std::int32_t s : w.state) ++first[static_cast<std::size_t>(s) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<std::int64_t> at = first;
@@ -47,7 +47,7 @@ struct Outcomes {
 /// Shares of walks that begin in each state, by where they are 0, 1, ... `most` gates ahead:
 /// (states x ways + 1) each. A state without runs goes on as those that are entered its way do, or
 /// all if there are none.
-std::vector<Table> powers(const StateWalks& w, const Outcomes& outcomes, int most) {
+std::vector<Table> powers(const StateWalks& w, const OutcomeSeen& outcomes, int most) {
   const auto states = static_cast<Eigen::Index>(w.way.size());
   std::vector<Table> ahead{Table::Zero(states, w.ways + 1)};
   for (Eigen::Index s = 0; s < states; ++s) ahead[0](s, w.way[s]) = 1.0;
@@ -59,8 +59,8 @@ std::vector<Table> powers(const StateWalks& w, const Outcomes& outcomes, int mos
       const auto n = static_cast<double>(outcomes.runs(s));
       if (n == 0.0) continue;
       for (auto i = outcomes.first[s]; i < outcomes.first[s + 1]; ++i) {
-        const std::int32_t to = Outcomes::entered(outcomes.all[i]);
-        if (to == Outcomes::kTrapped)
+        const std::int32_t to = OutcomeSeen::entered(outcomes.all[i]);
+        if (to == OutcomeSeen::kTrapped)
           table(s, w.ways) += 1.0;
         else
           table.row(s) += before.row(to);
@@ -99,12 +99,12 @@ class Seen {
     for (int at = 0; at < length; ++at)
       for (int k = 0; k <= std::min(at, most_); ++k)
         counts_[k](w_.way[states[at - k]], w_.way[states[at]]) += 1.0;
-    const std::int32_t end = Outcomes::entered(last);
+    const std::int32_t end = OutcomeSeen::entered(last);
     // From its i-th last run it gets to the end in i gates.
     for (int i = 1; i <= std::min(length, most_); ++i)
       for (int k = i; k <= most_; ++k) {
         const std::int32_t from = w_.way[states[length - i]];
-        if (end == Outcomes::kTrapped)
+        if (end == OutcomeSeen::kTrapped)
           counts_[k](from, w_.ways) += 1.0;
         else
           counts_[k].row(from) += ahead_[k - i].row(end);
@@ -140,7 +140,7 @@ Counts excess(Counts seen, const Counts& predicted, const std::vector<std::int64
 
 /// Walks from the same first states, every state's outcomes dealt out anew: seen less predicted,
 /// as shares of the runs. Runs in circles that no walk gets into are left out.
-Counts dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, Outcomes outcomes,
+Counts dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, OutcomeSeen outcomes,
                     dynamics::Random random) {
   for (std::size_t s = 0; s < w.way.size(); ++s)
     for (auto i = outcomes.first[s]; i + 1 < outcomes.first[s + 1]; ++i)
@@ -163,7 +163,7 @@ Counts dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, Outcom
 }
 
 /// Between two tables of one step.
-double total_variation(const Table& excess) { return 0.5 * excess.cwiseAbs().sum(); }
+double half_sum(const Table& excess) { return 0.5 * excess.cwiseAbs().sum(); }
 
 /// Step number `gates`, with what chance makes of it; `null`: the excess of every draw.
 GatesAhead::Step step_of(int gates, const Table& seen, const Table& predicted,
@@ -173,7 +173,7 @@ GatesAhead::Step step_of(int gates, const Table& seen, const Table& predicted,
   step.seen.assign(seen.data(), seen.data() + seen.size());
   step.predicted.assign(predicted.data(), predicted.data() + predicted.size());
   std::vector<double> distances, values(null.size());
-  for (const Counts& n : null) distances.push_back(total_variation(n[gates]));
+  for (const Counts& n : null) distances.push_back(half_sum(n[gates]));
   std::tie(step.chance, step.chance_95) = mean_and_95(distances);
   for (std::size_t c = 0; c < step.seen.size(); ++c) {
     for (std::size_t k = 0; k < null.size(); ++k) values[k] = null[k][gates].data()[c];
@@ -228,7 +228,7 @@ GatesAhead gates_ahead(const StateWalks& walks, int most, std::int64_t null_draw
     throw std::invalid_argument("gates ahead: from 2 to " + std::to_string(kMostGatesAhead));
   if (walks.walks() == 0) throw std::invalid_argument("gates ahead: no walks");
   if (null_draws < 1) throw std::invalid_argument("gates ahead: null_draws must be at least 1");
-  const Outcomes outcomes(walks);
+  const OutcomeSeen outcomes(walks);
   const std::vector<Table> ahead = powers(walks, outcomes, most);
   Seen seen(walks, ahead);
   for (std::int64_t walk = 0; walk < walks.walks(); ++walk) {
@@ -253,10 +253,10 @@ GatesAhead gates_ahead(const StateWalks& walks, int most, std::int64_t null_draw
   const auto all = static_cast<double>(result.runs);
   std::vector<double> distances;  // (draws + 1 x steps)
   for (const Counts& n : null)
-    for (int k = 2; k <= most; ++k) distances.push_back(total_variation(n[k]));
+    for (int k = 2; k <= most; ++k) distances.push_back(half_sum(n[k]));
   for (int k = 2; k <= most; ++k) {
     const Table shares = seen.counts()[k] / all, powers_say = expected[k] / all;
-    distances.push_back(total_variation(shares - powers_say));
+    distances.push_back(half_sum(shares - powers_say));
     result.steps.push_back(step_of(k, shares, powers_say, null));
   }
   const LookedAt looked(distances, result.steps.size());

@@ -162,14 +162,14 @@ Pooled pooled_of(const Strata& strata) {
   return pooled;
 }
 
-struct Differences {
+struct PooledDifferences {
   Eigen::VectorXd pooled;  // (cells)
   double squares = 0.0;    // state by state, over its runs
 };
 
-Differences differences(const Strata& strata, const std::vector<std::int32_t>& outcome) {
+PooledDifferences differences(const Strata& strata, const std::vector<std::int32_t>& outcome) {
   const int cells = strata.cells();
-  Differences d{Eigen::VectorXd::Zero(cells)};
+  PooledDifferences d{Eigen::VectorXd::Zero(cells)};
   Eigen::VectorXd table(cells);
   for (std::size_t s = 0; s < strata.ends.size(); ++s) {
     table = -Eigen::Map<const Eigen::VectorXd>(
@@ -209,7 +209,7 @@ std::vector<double> all_statistics(const Strata& strata, const Pooled& pooled,
       for (std::size_t i = strata.begin(s); i + 1 < strata.ends[s]; ++i)
         std::swap(outcome[i], outcome[i + static_cast<std::size_t>(random.below(
                                               static_cast<std::int64_t>(strata.ends[s] - i)))]);
-    const Differences d = differences(strata, outcome);
+    const PooledDifferences d = differences(strata, outcome);
     double* const row = &all[k * kStatistics];
     row[kPooled] = (pooled.whitening * d.pooled).squaredNorm();
     row[kStrongest] = strongest(pooled, d.pooled).second;

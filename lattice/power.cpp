@@ -217,7 +217,7 @@ SmallestDifference smallest_difference(std::int64_t trials, double expected,
 namespace {
 
 /// As many as fit a fixed amount of work: each multiplies with a matrix of gates x gates.
-std::int64_t draws_for(Eigen::Index outcomes) {
+std::int64_t draws_of_power(Eigen::Index outcomes) {
   const std::int64_t gates = std::min<std::int64_t>(outcomes, kMostEnergyGates);
   return std::clamp<std::int64_t>(20'000'000 / (outcomes + gates * gates / 8 + 1), 400, 4000);
 }
@@ -232,7 +232,7 @@ Outcomes on(const Support& support, const CellProbabilities& prediction) {
             const Statistics s = statistics(a, b, expected, rare_share(expected, trials), support);
             return std::vector<double>{s.total_variation, s.energy, s.chi_squared};
           },
-          draws_for(gates)};
+          draws_of_power(gates)};
 }
 
 }  // namespace
@@ -257,7 +257,7 @@ Outcomes ending_outcomes(const std::array<double, markov::kEndings>& prediction)
         const Eigen::VectorXd apart = (a - b).cwiseAbs();
         return std::vector<double>(apart.begin(), apart.end());
       },
-      draws_for(static_cast<Eigen::Index>(prediction.size()))};
+      draws_of_power(static_cast<Eigen::Index>(prediction.size()))};
 }
 
 SimulatedTest::SimulatedTest(const Outcomes& expected, std::int64_t trials, double level,

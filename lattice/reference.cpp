@@ -19,7 +19,7 @@ namespace {
 using namespace dynamics;
 
 /// One trial's part of the tally.
-struct Trial {
+struct RunningTrial {
   std::optional<markov::Ending> ending;  // none: a run stopped being finite
   std::int32_t column = 0, row = 0;
   int gates = 0;  // visited
@@ -37,7 +37,7 @@ struct Trial {
 
 /// Takes the result of a trial's run through one gate. The crossing into the next gate; none when
 /// the trial ends here.
-std::optional<Crossing> follow(Trial& t, const FieldGates& gates, const FieldParams& field,
+std::optional<Crossing> follow(RunningTrial& t, const FieldGates& gates, const FieldParams& field,
                                const StateSpace& space, const GateRun& run, bool keep_passages) {
   const auto type = static_cast<std::uint8_t>(gates.type_of(t.column, t.row));
   const GateParams& p = gates.types()[type];
@@ -75,7 +75,7 @@ RandomForce field_force(const GateParams& p, const BodyState& start, std::uint64
   return {p.forces, Random(Purpose::field, stream)};
 }
 
-void tally_trial(FieldTally& tally, const Trial& t) {
+void tally_trial(FieldTally& tally, const RunningTrial& t) {
   ++tally.final_gates(t.row, t.column);
   const bool trapped = t.ending == markov::Ending::trapped,
              cut_off = t.ending == markov::Ending::cut_off;
@@ -145,7 +145,8 @@ struct Wave {
 /// Carries out all runs of `trials`, each gate fresh: in waves, the trials in gates of one type
 /// together. A trial goes on in its slot while the type stays the same; else it waits for the next
 /// wave of its own.
-void run_active(std::vector<Trial>& trials, const FieldGates& gates, const FieldParams& field,
+void run_active(std::vector<RunningTrial>& trials, const FieldGates& gates,
+                const FieldParams& field,
                 const std::function<const BodyState&(std::int64_t)>& start_of,
                 const std::function<RandomForce(std::int64_t)>& force_of, const StateSpace& space,
                 bool keep_passages, HeldForce held) {
@@ -173,13 +174,13 @@ void run_active(std::vector<Trial>& trials, const FieldGates& gates, const Field
           },
           [&](RunSlot& slot, const GateRun& run) {
             const std::int64_t i = wave[slot.trial];
-            Trial& t = trials[i];
+            RunningTrial& t = trials[i];
             if (!follow(t, gates, field, space, run, keep_passages)) return false;
             slot.start = shifted_into_next(p, run.ending, run.exit);
             if (held == HeldForce::drawn_anew) slot.force.drop_hold();
             const auto next = static_cast<std::size_t>(gates.type_of(t.column, t.row));
             if (next == type) return true;
-            t.waiting = std::make_unique<Trial::Waiting>(slot.start, slot.force);
+            t.waiting = std::make_unique<RunningTrial::Waiting>(slot.start, slot.force);
             const std::lock_guard lock(waves[next].mutex);
             waves[next].trials.push_back(i);
             return false;
@@ -196,8 +197,8 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
   for (const GateParams& p : gates.types()) validate(p, field);
   const GateParams& p = gates.at(field.start_column(), 0);
   const bool keep_passages = each != nullptr && each->keep_passages;
-  std::vector<Trial> trials(range.count);
-  for (Trial& t : trials) t.column = field.start_column();
+  std::vector<RunningTrial> trials(range.count);
+  for (RunningTrial& t : trials) t.column = field.start_column();
   const auto force_of = [&](std::int64_t i) {
     return field_force(p, start_of(i), seed, range.first + i);
   };
@@ -225,9 +226,9 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
   FieldTally tally(field);
   tally.held.add(range);
   tally.trials = range.count;
-  for (const Trial& t : trials) tally_trial(tally, t);
+  for (const RunningTrial& t : trials) tally_trial(tally, t);
   if (each != nullptr)
-    for (const Trial& t : trials) {
+    for (const RunningTrial& t : trials) {
       each->final_gates.push_back(t.row * field.columns + t.column);
       each->endings.push_back(t.ending);
       each->costs.push_back(t.costs);
@@ -270,7 +271,7 @@ FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const 
   for (const GateParams& p : gates.types()) validate(p, field);
   const GateParams& first = gates.at(field.start_column(), 0);
   const StateSpace space = StateSpace::paper(first);  // `follow` counts with it; nobody asks here
-  Trial t;
+  RunningTrial t;
   t.column = field.start_column();
   RandomForce force = field_force(first, start, seed, trial);
   FieldTrace trace;

@@ -15,7 +15,7 @@
 namespace gatewalk::markov {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_blocks(const std::string& what) {
   throw std::invalid_argument("blocks: " + what);
 }
 
@@ -92,8 +92,8 @@ Chain block_chain(const std::vector<Chain>& chains, const Field& block,
       const double chance = chances(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(e));
       if (chance == 0.0) continue;
       if (output_of[e] < 0)
-        refuse("walks get into a state never sampled within a block of " + size_of(block) +
-               " cells");
+        refuse_blocks("walks get into a state never sampled within a block of " + size_of(block) +
+                      " cells");
       p.emplace_back(static_cast<int>(i), output_of[e], chance);
     }
   }
@@ -106,7 +106,7 @@ Chain block_chain(const std::vector<Chain>& chains, const Field& block,
 
 Field BlockField::field(const Field& cells) const {
   if (cells.columns % block.columns != 0 || cells.rows % block.rows != 0)
-    refuse(size_of(cells) + " cells are not whole blocks of " + size_of(block));
+    refuse_blocks(size_of(cells) + " cells are not whole blocks of " + size_of(block));
   return {cells.columns / block.columns, cells.rows / block.rows};
 }
 
@@ -116,28 +116,28 @@ Start BlockField::start(const Start& in_cells) const {
     return e.column == column.cell && e.row == row.cell && e.input == in_cells.input;
   });
   if (entry == entries.end())
-    refuse("input " + std::to_string(in_cells.input) + " of cell (" +
-           std::to_string(in_cells.column) + ", " + std::to_string(in_cells.row) +
-           ") is no way into a block; give it as a start");
+    refuse_blocks("input " + std::to_string(in_cells.input) + " of cell (" +
+                  std::to_string(in_cells.column) + ", " + std::to_string(in_cells.row) +
+                  ") is no way into a block; give it as a start");
   return {column.block, row.block, static_cast<int>(entry - entries.begin())};
 }
 
 BlockField block_field(const FieldChain& chain, const Field& block,
                        const std::vector<Start>& starts) {
-  if (block.columns < 1 || block.rows < 1) refuse("a block of " + size_of(block) + " cells");
+  if (block.columns < 1 || block.rows < 1) refuse_blocks("a block of " + size_of(block) + " cells");
   if (chain.columns() % block.columns != 0 || chain.rows() % block.rows != 0)
-    refuse("types of " + std::to_string(chain.columns()) + " columns and " +
-           std::to_string(chain.rows()) + " rows (0: any) do not fill blocks of " + size_of(block) +
-           " cells");
+    refuse_blocks("types of " + std::to_string(chain.columns()) + " columns and " +
+                  std::to_string(chain.rows()) + " rows (0: any) do not fill blocks of " +
+                  size_of(block) + " cells");
   for (const Start& s : starts)
     if (s.input < 0 || s.input >= chain.inputs() || s.column < 0 || s.row < 0)
-      refuse("a start lies outside the field, or has none of the " +
-             std::to_string(chain.inputs()) + " states");
+      refuse_blocks("a start lies outside the field, or has none of the " +
+                    std::to_string(chain.inputs()) + " states");
   const std::vector<Start> entries = entries_of(chain, block, starts);
   if (std::ssize(entries) > kMostDenseStates)
-    refuse(std::to_string(entries.size()) + " ways into a block of " + size_of(block) +
-           " cells; at most " + std::to_string(kMostDenseStates) + " are possible");
-  if (entries.empty()) refuse("no move leads out of a cell, and no start is given");
+    refuse_blocks(std::to_string(entries.size()) + " ways into a block of " + size_of(block) +
+                  " cells; at most " + std::to_string(kMostDenseStates) + " are possible");
+  if (entries.empty()) refuse_blocks("no move leads out of a cell, and no start is given");
   std::map<Key, int> input_of;
   for (std::size_t i = 0; i < entries.size(); ++i)
     input_of[key(block, entries[i])] = static_cast<int>(i);

@@ -13,7 +13,7 @@
 namespace gatewalk::markov {
 namespace {
 
-constexpr double kTolerance = 1e-12;
+constexpr double kSweepTolerance = 1e-12;
 constexpr int kMostSweeps = 100'000;
 
 /// A chain's entries by row, those that stay within a row of the field apart from those that leave
@@ -63,9 +63,9 @@ std::vector<Moves> moves_by_type(const FieldChain& chain, Ending ending) {
                            " sweeps: walks circle in it");
 }
 
-class Rows {
+class CommittorRows {
  public:
-  Rows(const FieldChain& chain, const Field& field, Ending ending)
+  CommittorRows(const FieldChain& chain, const Field& field, Ending ending)
       : chain_(chain),
         field_(field),
         ending_(ending),
@@ -145,7 +145,7 @@ class Rows {
         change = std::max(change, renew(sweep % 2 == 0 ? i : field_.columns - 1 - i, row));
       const double* const begin = cell(0, row);
       const double most = *std::max_element(begin, begin + from_above_.size());
-      if (change <= kTolerance * most) return;
+      if (change <= kSweepTolerance * most) return;
     }
     refuse_circles(row);
   }
@@ -162,7 +162,7 @@ class Rows {
 
 Committor committor(const FieldChain& chain, const Field& field, Ending ending) {
   validate(chain, field, {}, 0);
-  return Rows(chain, field, ending).solve();
+  return CommittorRows(chain, field, ending).solve();
 }
 
 EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending ending,
@@ -241,7 +241,7 @@ std::vector<double> row_chances(const FieldChain& chain, const Field& field, con
       }
     };
     double left = 1.0;
-    for (int sweep = 0; left > kTolerance * up; ++sweep) {
+    for (int sweep = 0; left > kSweepTolerance * up; ++sweep) {
       if (sweep == kMostSweeps) refuse_circles(row);
       for (int i = 0; i < field.columns; ++i) pass_on(sweep % 2 == 0 ? i : field.columns - 1 - i);
       left = std::accumulate(waiting.begin(), waiting.end(), 0.0);

@@ -14,7 +14,7 @@
 namespace gatewalk::markov {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_lumping(const std::string& what) {
   throw std::invalid_argument("lumping: " + what);
 }
 
@@ -22,21 +22,23 @@ int number_of_groups(const Chain& chain, const std::vector<int>& group_of,
                      const std::vector<double>& weights) {
   const auto inputs = static_cast<std::size_t>(chain.inputs());
   if (group_of.size() != inputs || weights.size() != inputs)
-    refuse(std::to_string(group_of.size()) + " groups and " + std::to_string(weights.size()) +
-           " weights for " + std::to_string(inputs) + " states");
+    refuse_lumping(std::to_string(group_of.size()) + " groups and " +
+                   std::to_string(weights.size()) + " weights for " + std::to_string(inputs) +
+                   " states");
   std::vector<char> is_named(inputs);
   for (std::size_t i = 0; i < inputs; ++i) {
     if (group_of[i] < 0 || group_of[i] >= chain.inputs())
-      refuse("state " + std::to_string(i + 1) + " (counted from 1) is in group " +
-             std::to_string(group_of[i]) + " of " + std::to_string(inputs) + " at most");
+      refuse_lumping("state " + std::to_string(i + 1) + " (counted from 1) is in group " +
+                     std::to_string(group_of[i]) + " of " + std::to_string(inputs) + " at most");
     if (!(weights[i] >= 0.0 && std::isfinite(weights[i])))
-      refuse("the weight of state " + std::to_string(i + 1) +
-             " (counted from 1) is negative or no number");
+      refuse_lumping("the weight of state " + std::to_string(i + 1) +
+                     " (counted from 1) is negative or no number");
     is_named[static_cast<std::size_t>(group_of[i])] = 1;
   }
   const auto groups = std::find(is_named.begin(), is_named.end(), 0) - is_named.begin();
   for (const int g : group_of)
-    if (g >= groups) refuse("group " + std::to_string(groups) + " has no state, but later ones do");
+    if (g >= groups)
+      refuse_lumping("group " + std::to_string(groups) + " has no state, but later ones do");
   return static_cast<int>(groups);
 }
 
@@ -139,8 +141,8 @@ LumpingError lumping_error(const FieldChain& fine, const FieldChain& lumped,
                            const PredictOptions& options) {
   validate(fine, field, start, options.max_cells);
   if (std::ssize(group_of) != fine.inputs())
-    refuse(std::to_string(group_of.size()) + " groups for " + std::to_string(fine.inputs()) +
-           " states");
+    refuse_lumping(std::to_string(group_of.size()) + " groups for " +
+                   std::to_string(fine.inputs()) + " states");
   const Start of_group{start.column, start.row, group_of[static_cast<std::size_t>(start.input)]};
   LumpingError error;
   error.fine = std::move(predict(fine, field, {start}, options).front());

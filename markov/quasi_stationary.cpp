@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kBlock = 8;  // vectors: the second eigenvalue settles as the ninth one lets it
 constexpr int kMostIterations = 20'000;
-constexpr double kTolerance = 1e-12;  // of the first eigenvalue; of the second its square root
+constexpr double kEigenTolerance = 1e-12;  // of the first eigenvalue; of the second its square root
 
 struct Kernel {
   Probabilities from_to;  // transposed: left eigenvectors become right ones
@@ -64,8 +64,8 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
     const double was_first = first, was_second = second;
     first = moduli[0];
     second = moduli.size() > 1 ? moduli[1] : 0.0;
-    if (std::abs(first - was_first) <= kTolerance * first &&
-        std::abs(second - was_second) <= std::sqrt(kTolerance) * first)
+    if (std::abs(first - was_first) <= kEigenTolerance * first &&
+        std::abs(second - was_second) <= std::sqrt(kEigenTolerance) * first)
       break;
   }
   if (!(first > 0.0)) throw std::runtime_error("quasi-stationary: nobody gets into a second cell");
@@ -78,7 +78,7 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
     next /= next.sum();
     const double change = (next - states).cwiseAbs().sum();
     states = std::move(next);
-    if (change <= kTolerance) break;
+    if (change <= kEigenTolerance) break;
   }
   QuasiStationary out;
   out.states.assign(states.data(), states.data() + n);

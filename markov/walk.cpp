@@ -14,8 +14,6 @@
 #include <stdexcept>
 #include <string>
 
-// Registers whose length is not known when this is compiled cannot stand in arrays.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "markov/walk.cpp"
 #include <hwy/foreach_target.h>

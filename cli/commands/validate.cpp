@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kTrialsPerObserved = 20, kLeastBesideObserved = 10'000;
 
 /// A matrix to validate, and what its file or its making says of it.
-struct Subject {
+struct Validated {
   lattice::SceneMatrix matrix;
   std::vector<lattice::PaperStart> starts;
   std::optional<lattice::Observed> observed;
@@ -58,7 +58,7 @@ void warn_of_experiment(const Options& options, const lattice::Observed& observe
   options.warn(endings_not_listed(observed, v));
 }
 
-Subject read_subject(const Options& options) {
+Validated read_subject(const Options& options) {
   const std::string path = options.text("matrix");
   lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
   auto starts = starts_for(options, m.scene);
@@ -73,7 +73,7 @@ Subject read_subject(const Options& options) {
           std::move(status), std::move(settled), std::move(states)};
 }
 
-Subject build_subject(const Options& options) {
+Validated build_subject(const Options& options) {
   const std::int64_t trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
   lattice::Scene scene = options.read_scene();
   const lattice::BinsChoice choice = bins_choice(options, scene, options.has("matrix-trials"));
@@ -179,7 +179,7 @@ int run_validate(const Arguments& arguments) {
             std::string("--") + other + " has no meaning beside --matrix: that one " +
             (std::string_view(other) == "bins" ? "has its states already" : "is built already"));
   const dynamics::Stopwatch watch;
-  const Subject subject = options.has("matrix") ? read_subject(options) : build_subject(options);
+  const Validated subject = options.has("matrix") ? read_subject(options) : build_subject(options);
   if (const auto& observed = subject.observed) {
     how.observed = observed->seen;
     if (!options.has("trials"))

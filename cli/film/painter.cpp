@@ -28,7 +28,7 @@ void Painter::check() const {
     throw std::runtime_error(std::string("cairo cannot draw: ") + cairo_status_to_string(status));
 }
 
-void Painter::fill(const Box& b, Colour c, double alpha) {
+void Painter::fill(const PictureBox& b, Colour c, double alpha) {
   cairo_rectangle(cr_.get(), b.x0, b.y0, b.x1 - b.x0, b.y1 - b.y0);
   fill(c, alpha);
 }
@@ -98,7 +98,7 @@ void Painter::text(double x, double y, double size, std::string words, Colour c,
   cairo_show_text(cr_.get(), words.c_str());
 }
 
-Painter::Clip::Clip(Painter& painter, const Box& box) : cr_(painter.cr_.get()) {
+Painter::Clip::Clip(Painter& painter, const PictureBox& box) : cr_(painter.cr_.get()) {
   cairo_save(cr_);
   cairo_rectangle(cr_, box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0);
   cairo_clip(cr_);

@@ -19,7 +19,7 @@ constexpr Colour rgb(int hex) {
 }
 
 /// From one corner to the other.
-struct Box {
+struct PictureBox {
   double x0, y0, x1, y1;
 };
 
@@ -31,7 +31,7 @@ class Painter {
   /// Rows of blue, green, red, nothing. Throws std::runtime_error when cairo could not draw.
   [[nodiscard]] std::string_view pixels() const;
 
-  void fill(const Box& b, Colour c, double alpha = 1.0);
+  void fill(const PictureBox& b, Colour c, double alpha = 1.0);
   void line(Point a, Point b, Colour c, double width, double alpha = 1.0);
   void arrow(Point a, Point b, Colour c, double thick);
   /// Outlines; what is drawn of them comes next.
@@ -49,7 +49,7 @@ class Painter {
   /// While it lives, nothing is drawn outside of the box, and lines have round ends.
   class Clip {
    public:
-    Clip(Painter& painter, const Box& box);
+    Clip(Painter& painter, const PictureBox& box);
     ~Clip() { cairo_restore(cr_); }
     Clip(const Clip&) = delete;
     Clip& operator=(const Clip&) = delete;

@@ -28,13 +28,13 @@ constexpr Colour kText = rgb(0x1b1f24), kMuted = rgb(0x59626d), kLine = rgb(0xd5
 constexpr Colour colour_of(Side side) { return side == kLeft ? kBlue : kRed; }
 
 /// A text for the picture: with a true minus sign.
-std::string shown(std::string text) {
+std::string with_minus(std::string text) {
   if (const std::size_t minus = text.starts_with('>') ? 1 : 0; text[minus] == '-')
     text.replace(minus, 1, "−");
   return text;
 }
 
-std::string whole(double x) { return shown(std::to_string(std::lround(x))); }
+std::string whole(double x) { return with_minus(std::to_string(std::lround(x))); }
 
 }  // namespace
 
@@ -64,8 +64,8 @@ std::string_view Picture::draw(double time) {
   painter_.fill({0, 0, kPictureWidth, kPictureHeight}, kPaper);
   text(32, 46, 24, film_.title, kText, true, kPictureWidth - 64);
   text(32, 72, 16, about_.label, kMuted, false, kPictureWidth - 64);
-  const Box all = bounds();
-  constexpr Box kArea{32, 92, 920, kPictureHeight - 28};
+  const PictureBox all = bounds();
+  constexpr PictureBox kArea{32, 92, 920, kPictureHeight - 28};
   if (film_.is_field()) {
     // The field on the left, what the following camera sees on the right.
     const double fit = (kArea.y1 - kArea.y0) * (all.x1 - all.x0) / (all.y1 - all.y0);
@@ -86,7 +86,7 @@ std::string_view Picture::draw(double time) {
 }
 
 /// The field, or one gate with all places that the run visits.
-Box Picture::bounds() const {
+PictureBox Picture::bounds() const {
   const double margin = 3.0 * unit_.length, radius = film_.gate.body.radius;
   if (film_.is_field())
     return {(first_column() - 0.5) * film_.width() - margin, -radius - margin,
@@ -105,7 +105,7 @@ Box Picture::bounds() const {
 
 /// The body among the beams in a part of the picture, which shows at least the part `seen` (m) of
 /// the world.
-void Picture::stage(const Box& box, const Scenery& s, const Box& seen) {
+void Picture::stage(const PictureBox& box, const Scenery& s, const PictureBox& seen) {
   const double scale =
       std::min((box.x1 - box.x0) / (seen.x1 - seen.x0), (box.y1 - box.y0) / (seen.y1 - seen.y0));
   const View view{.box = box,
@@ -233,7 +233,7 @@ void Picture::rule(const View& view) {
 
 /// Time, contacts, forces and energies, from x on: bars of now, words and numbers of `said`.
 void Picture::panel(double x, const Scenery& now, const Scenery& said) {
-  text(x, 124, 40, shown(reading(now.time, "s", 0.01 * unit_.time)), kText, true);
+  text(x, 124, 40, with_minus(reading(now.time, "s", 0.01 * unit_.time)), kText, true);
   if (now.time >= run_.end())
     text(x, 154, 17, "ended: " + about_.ending, kText, true, kRightEdge - x);
   else if (film_.is_field())
@@ -275,7 +275,7 @@ void Picture::legend(double x, double& y, const Scenery& said) {
   }
   const auto force = [&](Colour c, const char* name, double newton) {
     painter_.arrow({x, y - 5}, {x + 26, y - 5}, c, 4.0);
-    words(name, shown(reading(newton, "N", 0.1 * unit_.force())));
+    words(name, with_minus(reading(newton, "N", 0.1 * unit_.force())));
     y += 27;
   };
   force(kOrange, "propulsion", film_.gate_at(said.i_x, said.i_y).forces.propulsion);
@@ -295,8 +295,8 @@ void Picture::bars(double x, double& y, const char* heading, const std::vector<B
   for (const auto& [name, energy, most, colour] : bars) {
     const double step = step_of(0.1 * unit_.energy(), most);
     text(x, y, 16, name, kText);
-    text(kRightEdge, y, 16, shown(reading(run_.value(said.at, energy), "J", step)), kText, false,
-         -160);
+    text(kRightEdge, y, 16, with_minus(reading(run_.value(said.at, energy), "J", step)), kText,
+         false, -160);
     painter_.fill({x, y + 7, kRightEdge, y + 15}, kLine);
     if (most > 0.0) {
       const double share = std::clamp(run_.value(now.at, energy) / most, 0.0, 1.0);

@@ -25,19 +25,19 @@ class Picture {
  private:
   /// Part of the world (m), drawn into a part of the picture.
   struct View {
-    Box box;       // of the picture
-    Point centre;  // m
-    double scale;  // points per m
-    double thick;  // of a beam
+    PictureBox box;  // of the picture
+    Point centre;    // m
+    double scale;    // points per m
+    double thick;    // of a beam
     [[nodiscard]] Point operator()(Point p) const {
       return {0.5 * (box.x0 + box.x1) + (p.x - centre.x) * scale,
               0.5 * (box.y0 + box.y1) - (p.y - centre.y) * scale};
     }
   };
 
-  [[nodiscard]] Box bounds() const;
+  [[nodiscard]] PictureBox bounds() const;
   [[nodiscard]] int first_column() const { return -film_.field.start_column(); }
-  void stage(const Box& box, const Scenery& s, const Box& seen);
+  void stage(const PictureBox& box, const Scenery& s, const PictureBox& seen);
   void gates(const View& view, const Scenery& s);
   void trail(const View& view, const Scenery& s);
   void moving_beam(const View& view, const Scenery& s, dynamics::Side side);

@@ -155,7 +155,7 @@ std::string table4_panel(int first) {
 }
 
 /// From the least to the largest of some numbers, NaN aside.
-struct Range {
+struct AxisRange {
   double low = HUGE_VAL, high = -HUGE_VAL;
   void see(double x) {
     low = std::fmin(low, x);
@@ -186,7 +186,7 @@ Section table4(const Findings& f) {
   std::string lines, starts;
   int at = 0;
   double upper_end = 1.0;
-  Range corrcoef_exact, corrcoef_walks, rmse_exact, rmse_walks;
+  AxisRange corrcoef_exact, corrcoef_walks, rmse_exact, rmse_walks;
   Among within, on_exact, on_walks;
   for (const ValidatedStart& s : f.field.starts) {
     const auto& [corrcoef, rmse, corrcoef_floor, rmse_floor] = s.exact;

@@ -87,8 +87,8 @@ Spent spent(const FieldCosts& costs, std::optional<markov::Ending> ending) {
   return s;
 }
 
-Json to_json(const Spent& s, const dynamics::GateParams& p,
-             const std::function<double(double)>& quantile) {
+Json spent_json(const Spent& s, const dynamics::GateParams& p,
+                const std::function<double(double)>& quantile) {
   Json json;
   for (std::size_t c = 0; c < kCosts; ++c) {
     const std::string key(dynamics::kCostNames[c].key);
@@ -121,7 +121,7 @@ std::string with_interval(const Mean95& m, int decimals) {
          fixed(m.interval[1], decimals) + "]";
 }
 
-const char* name_of(markov::Ending ending) {
+const char* target_word(markov::Ending ending) {
   return std::find_if(kEndingNames.begin(), kEndingNames.end(),
                       [&](const EndingName& e) { return e.ending == ending; })
       ->name;
@@ -163,7 +163,7 @@ Json gate_json(std::int64_t cell, const lattice::FieldParams& field) {
 
 }  // namespace
 
-const char* target_name(const AnalysedField& f) { return name_of(f.analysis.target); }
+const char* target_name(const AnalysedField& f) { return target_word(f.analysis.target); }
 
 DurationCurve duration_curve(const lattice::Analysis& a, markov::Ending ending) {
   constexpr std::size_t kPoints = 200;
@@ -225,8 +225,8 @@ Json to_json(const FieldCosts& costs, const dynamics::GateParams& p) {
     const auto sums = ending ? costs.of(*ending) : costs.all();
     if (sums.trials == 0) return;
     const auto steps = ending ? costs.durations(*ending) : costs.durations();
-    json[key] = to_json(spent(costs, ending), p,
-                        [&](double level) { return lattice::quantile(steps, level); });
+    json[key] = spent_json(spent(costs, ending), p,
+                           [&](double level) { return lattice::quantile(steps, level); });
     json[key]["trials"] = sums.trials;
   };
   add("all", {});
@@ -274,7 +274,7 @@ Json to_json(const AnalysedField& f) {
     const Spent s = spent(a, ending);
     if (!(s.share > 0.0)) return;
     const auto walks = durations_of(a, ending);
-    json["by_ending"][key] = to_json(s, p, [&](double level) { return quantile(walks, level); });
+    json["by_ending"][key] = spent_json(s, p, [&](double level) { return quantile(walks, level); });
     json["by_ending"][key]["probability"] = s.share;
     for (std::size_t c = 0; c < kCosts && ending; ++c)
       json["by_ending"][key]["mean_" + std::string(dynamics::kCostNames[c].key) + "_95"] =
@@ -417,7 +417,7 @@ std::string table_of(const AnalysedField& f) {
              fixed(a.endless->rows_per_cell, 2) + " rows a gate; from gate to gate " +
              percent(a.endless->second / a.endless->survival, 1.0) +
              " is left of what tells where they started\n";
-  const std::string target = std::string("\"") + name_of(a.target) + "\"";
+  const std::string target = std::string("\"") + target_word(a.target) + "\"";
   const std::vector<std::string> types = type_names(f.scene);
   if (f.from_trials)
     table +=
@@ -475,7 +475,7 @@ std::string table_of(const AnalysedField& f) {
                return 100.0 * a.types[t].trapped / a.types[t].visits;
              });
     if (!a.type_trapping.empty())
-      table += ";\nper cent that \"" + std::string(name_of(a.target)) +
+      table += ";\nper cent that \"" + std::string(target_word(a.target)) +
                "\" grows for 1 % fewer of these " +
                by_type(types, [&](std::size_t t) { return a.type_trapping[t]; });
     table += "\n";

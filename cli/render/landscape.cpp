@@ -21,7 +21,7 @@ Json to_json(const dynamics::Pass& pass) {
           {"way_m", pass.way}};
 }
 
-const char* name_of(dynamics::BeamsThatPush beams) {
+const char* beams_word(dynamics::BeamsThatPush beams) {
   if (beams == dynamics::kBothBeams) return "both";
   return beams[dynamics::kLeft] ? "left" : "right";
 }
@@ -31,7 +31,7 @@ const char* name_of(dynamics::BeamsThatPush beams) {
 Json to_json(const dynamics::Passes& passes) {
   Json json;
   json["spacing_m"] = passes.coarse.spacing;
-  json["beams"] = name_of(passes.beams);
+  json["beams"] = beams_word(passes.beams);
   json["start_kinetic_energy_J"] = passes.kinetic_energy;
   json["passes"] = Json::array();
   for (const GridPasses* grid : {&passes.coarse, &passes.fine})

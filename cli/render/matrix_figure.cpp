@@ -14,7 +14,7 @@ using dynamics::Transitions;
 
 /// States of one boundary, the starts, or the column of the trapped, with their place in the
 /// picture.
-struct Group {
+struct StateGroup {
   std::string name;
   int first, states, blocks;
   double from = 0.0, size = 0.0;  // px
@@ -26,11 +26,11 @@ constexpr double kSide = 330.0, kGap = 3.0, kLeast = 18.0;
 constexpr int kMostBlocks = 120;  // about, each way
 
 /// Widths in proportion to the blocks, but none less than kLeast.
-void place(std::vector<Group>& groups) {
+void place(std::vector<StateGroup>& groups) {
   const double room = kSide - kGap * static_cast<double>(groups.size() - 1);
   const auto taken = [&](double each) {
     double sum = 0.0;
-    for (const Group& g : groups) sum += std::max(kLeast, each * g.blocks);
+    for (const StateGroup& g : groups) sum += std::max(kLeast, each * g.blocks);
     return sum;
   };
   double low = 0.0, high = room;
@@ -39,15 +39,15 @@ void place(std::vector<Group>& groups) {
     (taken(middle) < room ? low : high) = middle;
   }
   double at = 0.0;
-  for (Group& g : groups) {
+  for (StateGroup& g : groups) {
     g.from = at;
     g.size = std::max(kLeast, low * g.blocks);
     at += g.size + kGap;
   }
 }
 
-std::vector<Group> groups_of(const StateSpace& space, int per_block, bool with_trapped) {
-  std::vector<Group> groups;
+std::vector<StateGroup> groups_of(const StateSpace& space, int per_block, bool with_trapped) {
+  std::vector<StateGroup> groups;
   const auto add = [&](const std::string& name, int first, int states) {
     if (states > 0) groups.push_back({name, first, states, (states + per_block - 1) / per_block});
   };
@@ -67,8 +67,8 @@ std::vector<Group> groups_of(const StateSpace& space, int per_block, bool with_t
 
 /// Chances, in %, of the blocks of a group of rows to those of a group of columns; below zero where
 /// no row has runs.
-std::vector<std::vector<double>> chances(const Transitions& t, const Group& rows,
-                                         const Group& columns, int per_block) {
+std::vector<std::vector<double>> chances(const Transitions& t, const StateGroup& rows,
+                                         const StateGroup& columns, int per_block) {
   std::vector<std::vector<double>> all(static_cast<std::size_t>(rows.blocks));
   for (int i = 0; i < rows.blocks; ++i) {
     std::vector<double>& sums = all[static_cast<std::size_t>(i)];
@@ -102,14 +102,14 @@ Figure figure_of(const Transitions& t) {
   std::string cells, ground, labels;
   double most = 0.0;
   int object = 0;
-  const auto rectangle = [&](const Group& r, int begin, int end, const Group& c,
+  const auto rectangle = [&](const StateGroup& r, int begin, int end, const StateGroup& c,
                              const char* colour) {
     ground += "set object " + std::to_string(++object) + " rectangle from " + digits(c.from) + "," +
               digits(r.edge(begin)) + " to " + digits(c.from + c.size) + "," + digits(r.edge(end)) +
               " behind fillcolor rgb '" + colour + "' fillstyle solid noborder\n";
   };
-  for (const Group& r : rows)
-    for (const Group& c : columns) {
+  for (const StateGroup& r : rows)
+    for (const StateGroup& c : columns) {
       rectangle(r, 0, r.blocks, c, "#e4e4e4");
       const auto shares = chances(t, r, c, per_block);
       for (int i = 0; i < r.blocks; ++i)
@@ -128,10 +128,10 @@ Figure figure_of(const Transitions& t) {
     labels += "set label " + literal(text) + " at " + place + " font '," +
               std::to_string(kSmallFont) + "'\n";
   };
-  for (const Group& r : rows)
+  for (const StateGroup& r : rows)
     label(r.name + (r.states > 1 ? " " + std::to_string(r.states) : ""),
           "-6," + digits(r.from + 0.5 * r.size) + " right");
-  for (const Group& c : columns)
+  for (const StateGroup& c : columns)
     label(c.name, digits(c.from + 0.5 * c.size) + "," + digits(kSide + 8) +
                       (c.size > 8.0 * static_cast<double>(c.name.size()) ? " center offset 0,-0.3"
                                                                          : " right rotate by 90"));

@@ -15,7 +15,7 @@ namespace {
 
 using lattice::Judgement;
 
-std::size_t place(const EndingName& e) { return static_cast<std::size_t>(e.ending); }
+std::size_t index_of(const EndingName& e) { return static_cast<std::size_t>(e.ending); }
 
 /// What bodies do that end so, in the order of kEndingNames: "fewer cross".
 constexpr std::array<const char*, kEndingNames.size()> kDo{
@@ -38,7 +38,7 @@ std::string differences(const lattice::ObservedComparison& c, const Judgement& j
   std::string text;
   const auto say = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
   for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
-    const std::size_t at = place(kEndingNames[e]);
+    const std::size_t at = index_of(kEndingNames[e]);
     if (!j.differs(kEndingNames[e].ending)) continue;
     say(std::string(c.endings.share[at] < model.share[at] ? "fewer " : "more ") + kDo[e] + ", " +
         with_interval(c.endings.share[at], c.endings.interval[at]) + " % of them, " +
@@ -53,7 +53,7 @@ std::string differences(const lattice::ObservedComparison& c, const Judgement& j
 
 Json against(const std::optional<lattice::Comparison>& gates, const Judgement& j) {
   Json json = cli::to_json(j);
-  for (const EndingName& e : kEndingNames) json["p_endings"][e.key] = j.endings[place(e)].p;
+  for (const EndingName& e : kEndingNames) json["p_endings"][e.key] = j.endings[index_of(e)].p;
   if (gates) json["final_gates"] = cli::to_json(*gates);
   return json;
 }
@@ -64,7 +64,7 @@ Json to_json(const lattice::LeastDifferences& least, const lattice::SeenEndings&
   if (!seen.has_endings()) return json;
   json["endings_total_variation"] = or_null(least.endings);
   for (const EndingName& e : kEndingNames)
-    json["endings_percentage_points"][e.key] = cli::to_json(least.by_ending[place(e)]);
+    json["endings_percentage_points"][e.key] = cli::to_json(least.by_ending[index_of(e)]);
   return json;
 }
 
@@ -80,7 +80,7 @@ std::string endings_part(const lattice::ObservedComparison& c, const lattice::St
   const auto column = [&](const std::string& header, const lattice::EndingShares& shares) {
     std::vector<std::string> cells{header};
     for (const EndingName& e : kEndingNames)
-      cells.push_back(with_interval(shares.share[place(e)], shares.interval[place(e)]));
+      cells.push_back(with_interval(shares.share[index_of(e)], shares.interval[index_of(e)]));
     std::size_t width = 0;
     for (const std::string& cell : cells) width = std::max(width, cell.size());
     for (std::string& cell : cells) cell = padded(cell, static_cast<int>(width) + 2);
@@ -92,7 +92,7 @@ std::string endings_part(const lattice::ObservedComparison& c, const lattice::St
   std::string text = padded("", 10) + observed[0] + dynamics[0] + chain[0] +
                      "  p: dynamics   chain    seen from, points\n";
   for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
-    const std::size_t at = place(kEndingNames[e]);
+    const std::size_t at = index_of(kEndingNames[e]);
     text += padded(kEndingNames[e].name, -10) + observed[e + 1] + dynamics[e + 1] + chain[e + 1] +
             padded(p_text(c.against_dynamics.endings[at].p_adjusted), 13) +
             padded(p_text(c.against_chain.endings[at].p_adjusted), 8) + "      " +
@@ -173,8 +173,8 @@ std::string endings_not_listed(const lattice::Observed& observed,
   if (!observed.seen.has_endings()) return "";
   std::string text;
   for (const EndingName& e : kEndingNames) {
-    const double share = v.dynamics_endings.share[place(e)];
-    if (observed.listed[place(e)] || share < kWorthASentence) continue;
+    const double share = v.dynamics_endings.share[index_of(e)];
+    if (observed.listed[index_of(e)] || share < kWorthASentence) continue;
     text += (text.empty() ? "the table of endings has no row for " : ", ") + std::string(e.key) +
             ", which counts as 0 (dynamics: " + percent(share, 1.0) + ")";
     if (e.ending == markov::Ending::cut_off)

@@ -17,7 +17,7 @@ std::string chance(double x) {
   return text;
 }
 
-std::string interval(const std::array<double, 2>& i) {
+std::string interval_text(const std::array<double, 2>& i) {
   return "[" + chance(i[0]) + ", " + chance(i[1]) + "]";
 }
 
@@ -81,7 +81,7 @@ std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
   std::string table =
       "chance to enter row " + std::to_string(s.rows.size()) + ": " + chance(last.probability);
   if (last.probability > 0.0)
-    table += " " + interval(last.interval_95()) + ", relative standard error " +
+    table += " " + interval_text(last.interval_95()) + ", relative standard error " +
              fixed(100 * last.relative_standard_error, 1) + " %";
   table += "\nthe chain alone says " + chance(event.chain.back());
   if (has_error(last))
@@ -99,14 +99,14 @@ std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const lattice::RowChance& c = s.rows[r];
     table += padded(std::to_string(r + 1), 6) + padded(chance(c.probability), 12) +
-             padded(c.probability > 0.0 ? interval(c.interval_95()) : "-", 24) +
+             padded(c.probability > 0.0 ? interval_text(c.interval_95()) : "-", 24) +
              padded(chance(event.chain[r]), 12);
     if (direct.trials > 0) {
       const auto [low, high] = dynamics::share_interval(direct.entered[r], direct.trials);
       table += padded(chance(static_cast<double>(direct.entered[r]) /
                              static_cast<double>(direct.trials)),
                       12) +
-               padded(interval({low, high}), 24);
+               padded(interval_text({low, high}), 24);
     }
     table += "\n";
   }

@@ -108,9 +108,9 @@ std::string cells_of(const FinishedMap& m, const DrawnAxis& x, const DrawnAxis& 
 }
 
 /// The maps of one kind, three methods in a row, and a key in the place of the sixth.
-class Group {
+class PanelGroup {
  public:
-  Group(std::span<const FinishedMap> maps, double top, std::string tag)
+  PanelGroup(std::span<const FinishedMap> maps, double top, std::string tag)
       : maps_(maps), top_(top), tag_(std::move(tag)) {
     for (const FinishedMap& m : maps_)
       for (const dynamics::Border& border : dynamics::borders(m.map))
@@ -201,7 +201,7 @@ class Group {
 }  // namespace
 
 Figure figure_of(std::span<const FinishedMap> maps) {
-  std::vector<Group> groups;
+  std::vector<PanelGroup> groups;
   double height = 0.0;
   for (std::size_t begin = 0, end = 0; begin < maps.size(); begin = end) {
     while (end < maps.size() && maps[end].map.kind == maps[begin].map.kind) ++end;
@@ -211,7 +211,7 @@ Figure figure_of(std::span<const FinishedMap> maps) {
   }
   const Sheet sheet{static_cast<int>(height)};
   std::string out = "set multiplot\nunset ylabel\n";
-  for (Group& group : groups) out += group.drawn_on(sheet);
+  for (PanelGroup& group : groups) out += group.drawn_on(sheet);
   return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
 }
 

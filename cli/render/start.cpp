@@ -13,14 +13,14 @@ Json to_json(const lattice::PaperStart& start) {
 }
 
 StartTexts::StartTexts(const std::vector<lattice::PaperStart>& starts) : texts(starts.size()) {
-  struct Column {
+  struct TextColumn {
     const char* name;
     double lattice::PaperStart::*value;
     int width;  // at least
   };
   for (const auto& [name, value, least] :
-       {Column{"d", &lattice::PaperStart::d, 4}, Column{"vx", &lattice::PaperStart::vx, 5},
-        Column{"vy", &lattice::PaperStart::vy, 5}}) {
+       {TextColumn{"d", &lattice::PaperStart::d, 4}, TextColumn{"vx", &lattice::PaperStart::vx, 5},
+        TextColumn{"vy", &lattice::PaperStart::vy, 5}}) {
     std::vector<std::string> numbers;
     int width = least;
     for (const lattice::PaperStart& s : starts) {

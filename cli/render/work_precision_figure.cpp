@@ -52,18 +52,18 @@ struct Drawn {
 };
 
 /// One of the errors of a chart: the bound that the reference sets to all, and its own error.
-struct Kind {
+struct OutcomeKind {
   double limit, own;
   std::function<Drawn(const ChartPoint&)> value;
 };
-Kind outcomes_of(const WorkPrecision& chart) {
+OutcomeKind outcomes_of(const WorkPrecision& chart) {
   return {chart.outcome_limit(), chart.reference.own.outcomes.total_variation,
           [&chart](const ChartPoint& p) {
             const dynamics::WeakError& e = p.errors.outcomes;
             return Drawn{e.total_variation, e.standard_error, chart.outcome_bound(p.errors)};
           }};
 }
-Kind positions_of(const WorkPrecision& chart) {
+OutcomeKind positions_of(const WorkPrecision& chart) {
   return {chart.position_limit(), chart.reference.own.strong.position,
           [&chart](const ChartPoint& p) {
             const dynamics::StrongError& e = p.errors.strong;
@@ -94,7 +94,7 @@ struct Ranges {
 
   explicit Ranges(const std::vector<WorkPrecision>& charts) {
     for (const WorkPrecision& chart : charts) {
-      const auto see = [&](Range& range, const Kind& kind) {
+      const auto see = [&](Range& range, const OutcomeKind& kind) {
         range.see(kind.limit);
         for (const ChartPoint& p : chart.points)
           if (p.ran()) range.see(kind.value(p).height());
@@ -111,7 +111,7 @@ struct Ranges {
 
 /// Least time per trial against error, all methods. What is below its bound is drawn there, as
 /// less than that; what has parted, on top.
-std::string panel(const WorkPrecision& chart, const Kind& kind, const Range& range,
+std::string panel(const WorkPrecision& chart, const OutcomeKind& kind, const Range& range,
                   const std::string& tag) {
   std::string blocks, plot = "plot ";
   const auto element = [&](const std::string& text) {

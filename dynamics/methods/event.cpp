@@ -7,10 +7,11 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kMaxPhase = 1000.0;  // rad or e-folds of a beam in one hold of the random force
-constexpr int kMostPieces = 2000;     // events in one hold before contact is forced
-constexpr int kMostLooks = 100000;    // for contact in one flight
-constexpr int kMostAttempts = 100;    // Runge-Kutta steps tried for one accepted
+constexpr double kMaxHoldPhase =
+    1000.0;                         // rad or e-folds of a beam in one hold of the random force
+constexpr int kMostPieces = 2000;   // events in one hold before contact is forced
+constexpr int kMostLooks = 100000;  // for contact in one flight
+constexpr int kMostAttempts = 100;  // Runge-Kutta steps tried for one accepted
 
 constexpr std::array<double, 2> kNotSeen{std::numeric_limits<double>::quiet_NaN(),
                                          std::numeric_limits<double>::quiet_NaN()};
@@ -162,12 +163,12 @@ EventMethod::EventMethod(const GateParams& p)
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
   const double inertia = p.beams.inertia();
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
-  if (!(rate * hold_ <= kMaxPhase)) {
+  if (!(rate * hold_ <= kMaxHoldPhase)) {
     std::ostringstream text;
     text << "run.method = \"event\" is not permitted for these beams: their fastest rate, from "
          << "beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
          << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate << " 1/s; at most "
-         << kMaxPhase / hold_ << " 1/s (" << kMaxPhase << " times forces.random_rate_Hz)";
+         << kMaxHoldPhase / hold_ << " 1/s (" << kMaxHoldPhase << " times forces.random_rate_Hz)";
     throw InvalidParameter("run.method", text.str());
   }
 }

@@ -9,9 +9,9 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kMaxPhase = 0.5;    // rad or e-folds of a beam per substep
-constexpr int kContactHalvings = 4;  // for a held contact that turns fast or changes its kind
-constexpr int kMaxHits = 50;         // in one substep, then hits end in constraints
+constexpr double kMaxSubstepPhase = 0.5;  // rad or e-folds of a beam per substep
+constexpr int kContactHalvings = 4;       // for a held contact that turns fast or changes its kind
+constexpr int kMaxHits = 50;              // in one substep, then hits end in constraints
 
 /// How often `phase` must be halved, up to `limit` times, not to exceed `most`.
 int halvings_for(double phase, double most, int limit) {
@@ -26,7 +26,7 @@ void refuse_too_fast(const GateParams& p) {
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
   const double inertia = p.beams.inertia();
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
-  const double longest = std::ldexp(kMaxPhase, StableMethod::kMaxHalvings) / rate;  // s
+  const double longest = std::ldexp(kMaxSubstepPhase, StableMethod::kMaxHalvings) / rate;  // s
   if (p.run.step <= longest) return;
   std::ostringstream text;
   text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
@@ -78,7 +78,7 @@ StableMethod::Limits::Limits(const GateParams& p)
     swing[side] = p.beams.stiffness(side) / inertia;
     swing_root[side] = std::sqrt(swing[side]);
     const double rate = std::max(swing_root[side], p.beams.damping / inertia);
-    halvings[side] = halvings_for(p.run.step * rate, kMaxPhase, kMaxHalvings);
+    halvings[side] = halvings_for(p.run.step * rate, kMaxSubstepPhase, kMaxHalvings);
   }
 }
 

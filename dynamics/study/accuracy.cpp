@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kStep = "run.step_s";
 constexpr std::string_view kTolerance = "run.event_tolerance_m";
 
-const ParamInfo& info(std::string_view key) {
+const ParamInfo& info_of(std::string_view key) {
   const auto table = gate_param_table();
   return *std::find_if(table.begin(), table.end(),
                        [key](const ParamInfo& i) { return i.key == key; });
@@ -85,7 +85,7 @@ WeakError weak_error(std::span<const TrialEnd> a, std::span<const TrialEnd> b, i
 
 GateParams Setting::applied_to(GateParams p) const {
   p.run.method = method;
-  info(key).ref(p) = value;
+  info_of(key).ref(p) = value;
   return p;
 }
 

@@ -11,21 +11,21 @@ namespace {
 
 using namespace dynamics;
 
-struct Axis {
+struct BinKey {
   std::string_view name;
   std::vector<double> Bins::*edges;
 };
-constexpr std::array<Axis, 3> kAxes{Axis{"d_m", &Bins::d}, Axis{"vx_m_per_s", &Bins::vx},
-                                    Axis{"vy_m_per_s", &Bins::vy}};
+constexpr std::array<BinKey, 3> kBinKeys{BinKey{"d_m", &Bins::d}, BinKey{"vx_m_per_s", &Bins::vx},
+                                         BinKey{"vy_m_per_s", &Bins::vy}};
 
-std::string key_of(int boundary, const Axis& axis) {
+std::string key_of(int boundary, const BinKey& axis) {
   return std::string(kBoundaryNames[boundary]) + "_" + std::string(axis.name);
 }
 
 std::string all_keys() {
   std::string names;
   for (int b = 0; b < kBoundaries; ++b)
-    for (const Axis& axis : kAxes) names += (names.empty() ? "" : ", ") + key_of(b, axis);
+    for (const BinKey& axis : kBinKeys) names += (names.empty() ? "" : ", ") + key_of(b, axis);
   return names;
 }
 
@@ -74,7 +74,7 @@ std::vector<GivenEdges> edges_in(const toml::table& document,
   for (const auto& [key, value] : *node->as_table()) {
     const std::string at = origin(value.source().begin.line), name(key.str());
     for (int b = 0; b < kBoundaries; ++b)
-      for (const Axis& axis : kAxes)
+      for (const BinKey& axis : kBinKeys)
         if (name == key_of(b, axis))
           all.push_back(
               {b, axis.edges, "bins." + name, at, numbers_in(value, at + ": bins." + name)});
@@ -114,7 +114,7 @@ std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<Given
 std::string bins_toml(const SceneBins& bins) {
   std::string lines = "[bins]\n";
   for (int b = 0; b < kBoundaries; ++b)
-    for (const Axis& axis : kAxes)
+    for (const BinKey& axis : kBinKeys)
       lines += key_of(b, axis) + " = " + text(bins[b].*axis.edges) + "\n";
   return lines;
 }

@@ -172,7 +172,7 @@ std::vector<int> cells_of_picture(const TerrainSetting& given, const std::string
   return cells;
 }
 
-std::map<std::string, double> shares_of(const TerrainSettings& settings, const Terrain& terrain) {
+std::map<std::string, double> type_shares(const TerrainSettings& settings, const Terrain& terrain) {
   std::map<std::string, double> shares;
   double sum = 0.0;
   for (const auto& [key, given] : settings) {
@@ -290,7 +290,7 @@ std::optional<Terrain> terrain_of(const TerrainSettings& settings, const FieldPa
         ": terrain.grey has no meaning without a picture: terrain.map_file = \"NAME.png\"");
   }
   if (is_random) {
-    terrain.shares = shares_of(settings, terrain);
+    terrain.shares = type_shares(settings, terrain);
     terrain.type_of_cell = drawn_map(terrain, field);
   } else if (map != settings.end()) {
     terrain.type_of_cell =

@@ -122,10 +122,10 @@ double median(std::vector<double> values) {
 }
 
 /// Adds trials of the starts whose answers are not certain enough, until all are.
-class Prediction {
+class PredictionRun {
  public:
-  Prediction(const Scene& scene, RunPool& pool, const std::vector<BodyState>& starts,
-             const AccuracyOptions& options, const Work& work)
+  PredictionRun(const Scene& scene, RunPool& pool, const std::vector<BodyState>& starts,
+                const AccuracyOptions& options, const Work& work)
       : scene_(scene),
         pool_(pool),
         options_(options),
@@ -321,7 +321,7 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
                                 const std::vector<BodyState>& starts,
                                 const AccuracyOptions& options, const Work& work) {
   require_fine(options);
-  return Prediction(scene, pool, starts, options, work).carry_out();
+  return PredictionRun(scene, pool, starts, options, work).carry_out();
 }
 
 StartRange usual_range(const Scene& scene) {

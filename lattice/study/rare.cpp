@@ -45,9 +45,9 @@ struct Aim {
 };
 
 /// What becomes of one trial's bodies.
-class Trial {
+class SplitTrial {
  public:
-  Trial(const Aim& aim, std::int64_t number)
+  SplitTrial(const Aim& aim, std::int64_t number)
       : aim_(aim),
         number_(static_cast<std::uint64_t>(number)),
         chance_(random()),
@@ -186,10 +186,10 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
   };
   // Gate by gate: all bodies of a block run through one gate, so that many are in flight at a time.
   const auto run_block = [&](TrialRange range) {
-    std::vector<Trial> trials;
+    std::vector<SplitTrial> trials;
     std::vector<Body> bodies, next;
     for (std::int64_t i = 0; i < range.count; ++i) {
-      Trial& t = trials.emplace_back(aim, range.first + i);
+      SplitTrial& t = trials.emplace_back(aim, range.first + i);
       bodies.push_back({i, scene.field.start_column(), 0, 1.0, scene.start,
                         RandomForce(first.forces, t.random())});
     }
@@ -200,7 +200,7 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
         trials[static_cast<std::size_t>(bodies[i].trial)].take(bodies[i], runs[i], next);
       bodies = std::exchange(next, {});
     }
-    for (const Trial& t : trials) sums.add(t.entered());
+    for (const SplitTrial& t : trials) sums.add(t.entered());
   };
   // Rounds: each as many trials as the last ones say are wanted, at most eight times those so far.
   constexpr std::int64_t kFirst = 1000;

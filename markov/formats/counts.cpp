@@ -34,9 +34,9 @@ constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 const std::string kTypeGroup = "type_";
 const std::set<std::string> kOwnAttributes = {"format", "format_version", "checksum"};
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+[[noreturn]] void refuse_counts(const std::string& what) { throw std::invalid_argument(what); }
 
-std::string row_name(std::int64_t row) {
+std::string named_row(std::int64_t row) {
   return "row " + std::to_string(row + 1) + " (counted from 1)";
 }
 
@@ -52,43 +52,44 @@ void check_name(const std::string& name, const std::set<std::string>& taken) {
   bool legal = !name.empty() && name.size() < 128 && is_letter(name.front());
   for (const char c : name) legal = legal && (is_letter(c) || is_digit(c) || c == '_');
   if (!legal) {
-    refuse("name \"" + name + "\": must be letters, digits and _, and begin with a letter");
+    refuse_counts("name \"" + name + "\": must be letters, digits and _, and begin with a letter");
   }
-  if (taken.contains(name)) refuse("name \"" + name + "\" is taken");
+  if (taken.contains(name)) refuse_counts("name \"" + name + "\" is taken");
 }
 
 void check_text(const std::string& name, const std::string& text) {
   if (text.size() > kMostTextBytes) {
-    refuse("text of \"" + name + "\" has " + std::to_string(text.size()) + " bytes, more than " +
-           std::to_string(kMostTextBytes));
+    refuse_counts("text of \"" + name + "\" has " + std::to_string(text.size()) +
+                  " bytes, more than " + std::to_string(kMostTextBytes));
   }
-  if (text.find('\0') != std::string::npos) refuse("text of \"" + name + "\" holds a zero byte");
+  if (text.find('\0') != std::string::npos)
+    refuse_counts("text of \"" + name + "\" holds a zero byte");
 }
 
 void check_rows(const RowCounts& file) {
   const std::int64_t n_in = file.counts.rows();
   if (static_cast<std::int64_t>(file.trials.size()) != n_in ||
       static_cast<std::int64_t>(file.clamped.size()) != n_in) {
-    refuse("trials and clamped must have one number for each of the " + std::to_string(n_in) +
-           " rows");
+    refuse_counts("trials and clamped must have one number for each of the " +
+                  std::to_string(n_in) + " rows");
   }
   for (std::int64_t row = 0; row < n_in; ++row) {
     std::int64_t sum = 0;
     for (Counts::InnerIterator it(file.counts, row); it; ++it) {
-      if (it.value() < 0) refuse(row_name(row) + ": a count is negative");
+      if (it.value() < 0) refuse_counts(named_row(row) + ": a count is negative");
       if (__builtin_add_overflow(sum, it.value(), &sum)) {
-        refuse(row_name(row) + ": the sum of counts overflows");
+        refuse_counts(named_row(row) + ": the sum of counts overflows");
       }
     }
     const std::int64_t trials = file.trials[static_cast<std::size_t>(row)];
     const std::int64_t clamped = file.clamped[static_cast<std::size_t>(row)];
     if (sum != trials) {
-      refuse(row_name(row) + ": counts add up to " + std::to_string(sum) + ", trials are " +
-             std::to_string(trials));
+      refuse_counts(named_row(row) + ": counts add up to " + std::to_string(sum) + ", trials are " +
+                    std::to_string(trials));
     }
     if (clamped < 0 || clamped > trials) {
-      refuse(row_name(row) + ": " + std::to_string(clamped) + " clamped of " +
-             std::to_string(trials) + " trials");
+      refuse_counts(named_row(row) + ": " + std::to_string(clamped) + " clamped of " +
+                    std::to_string(trials) + " trials");
     }
   }
 }
@@ -112,11 +113,11 @@ void check_content(const CountsFile& file) {
   for (const auto& [name, rows] : file.types) {
     check_name(kTypeGroup + name, taken);
     if (rows.counts.rows() != file.counts.rows() || rows.counts.cols() != file.counts.cols())
-      refuse("type " + name + ": its counts are of another size than the others");
+      refuse_counts("type " + name + ": its counts are of another size than the others");
     try {
       check_rows(rows);
     } catch (const std::invalid_argument& error) {
-      refuse("type " + name + ": " + error.what());
+      refuse_counts("type " + name + ": " + error.what());
     }
   }
 }
@@ -354,15 +355,15 @@ class Reader {
       result.startVec(i);
       for (; k < count.size() && row[k] == i; ++k) {
         if (column[k] < 0 || column[k] >= result.cols()) {
-          throw std::runtime_error(row_name(i) + ": column " + std::to_string(column[k]) +
+          throw std::runtime_error(named_row(i) + ": column " + std::to_string(column[k]) +
                                    " is out of range");
         }
         if (k > 0 && row[k - 1] == row[k] && column[k - 1] >= column[k]) {
-          throw std::runtime_error(row_name(i) + ": column " + std::to_string(column[k]) +
+          throw std::runtime_error(named_row(i) + ": column " + std::to_string(column[k]) +
                                    " is repeated or out of order");
         }
         if (count[k] < 1) {
-          throw std::runtime_error(row_name(i) + ": count " + std::to_string(count[k]) +
+          throw std::runtime_error(named_row(i) + ": count " + std::to_string(count[k]) +
                                    " is not positive");
         }
         result.insertBack(i, column[k]) = count[k];

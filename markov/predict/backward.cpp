@@ -183,8 +183,8 @@ class AdjointPredictor::Backward {
   }
 
   /// What one draw ends with in the cells of a colour.
-  [[nodiscard]] std::vector<Reward> rewards(const Window& w, int colour, bool is_last) const {
-    std::vector<Reward> all;
+  [[nodiscard]] std::vector<GatherReward> rewards(const Window& w, int colour, bool is_last) const {
+    std::vector<GatherReward> all;
     each_place(w, [&](std::int64_t column, std::int64_t row, Layout::Place p) {
       if (p.colour != colour) return;
       if (!question_.why) all.push_back({p.at, kDrawn});

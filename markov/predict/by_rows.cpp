@@ -23,10 +23,10 @@ constexpr double kRoundingOnly = 1e-14;  // a residual that refinement makes no 
 
 /// Without limit, one row of the field after the other, all starts side by side: the mass that
 /// enters a row from below, the visits it makes there, and what goes up from them.
-class Rows {
+class PredictionRows {
  public:
-  Rows(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
-       const PredictOptions& options)
+  PredictionRows(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
+                 const PredictOptions& options)
       : plan_(plan),
         field_(field),
         tolerance_(options.tolerance_of(PredictOptions::Solver::rows) / (field.rows + 1)),
@@ -287,7 +287,7 @@ class Rows {
 std::vector<FinalDistribution> predict_by_rows(const PredictionPlan& plan, const Field& field,
                                                const std::vector<Start>& starts,
                                                const PredictOptions& options) {
-  Rows rows(plan, field, starts, options);
+  PredictionRows rows(plan, field, starts, options);
   const std::vector<StartTally> tallies = rows.run();
   std::vector<FinalDistribution> results;
   // A move is rounded twice: into a row's equations, and in what they still miss.

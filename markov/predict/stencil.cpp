@@ -2,8 +2,6 @@
 
 #include <type_traits>
 
-// Registers whose length is not known when this is compiled cannot stand in arrays.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "markov/predict/stencil.cpp"
 #include <hwy/foreach_target.h>
@@ -108,7 +106,7 @@ void in_blocks(std::ptrdiff_t first, std::ptrdiff_t last, Block block) {
 }
 
 void gather_in_registers(const GatherPass& pass, const std::vector<Range>& ranges,
-                         const std::vector<Reward>& rewards, const double* HWY_RESTRICT from,
+                         const std::vector<GatherReward>& rewards, const double* HWY_RESTRICT from,
                          double* HWY_RESTRICT to) {
   for (int plane = 0; plane < pass.planes; ++plane) {
     for (const Range& r : ranges)
@@ -116,7 +114,7 @@ void gather_in_registers(const GatherPass& pass, const std::vector<Range>& range
         gather_block<Width>(pass, plane, from, to, c);
       });
     const double* const shares = pass.shares + std::ptrdiff_t{plane} * pass.shares_per_plane;
-    for (const Reward& r : rewards) to[plane * pass.stride + r.place] += shares[r.share];
+    for (const GatherReward& r : rewards) to[plane * pass.stride + r.place] += shares[r.share];
   }
 }
 
@@ -152,7 +150,7 @@ void apply_pass(const StencilPass& pass, const double* from, double* to, std::pt
 }
 
 void gather(const GatherPass& pass, const std::vector<Range>& ranges,
-            const std::vector<Reward>& rewards, const double* from, double* to) {
+            const std::vector<GatherReward>& rewards, const double* from, double* to) {
   HWY_DYNAMIC_DISPATCH(gather_in_registers)(pass, ranges, rewards, from, to);
 }
 

@@ -63,7 +63,7 @@ struct GatherTerm {
 };
 
 /// `share` of the plane's own shares is added at a place.
-struct Reward {
+struct GatherReward {
   std::ptrdiff_t place;
   int share;
 };
@@ -83,7 +83,7 @@ struct GatherPass {
 /// at multiples of kLanes:
 /// to[plane][c] = mask[c] * sum of p * from[source][c + offset], then the rewards.
 void gather(const GatherPass& pass, const std::vector<Range>& ranges,
-            const std::vector<Reward>& rewards, const double* from, double* to);
+            const std::vector<GatherReward>& rewards, const double* from, double* to);
 
 /// to += from, in `count` planes from the first on.
 void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,
