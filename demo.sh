@@ -21,10 +21,11 @@ say "3. What infinitely many walks would give"
 build/gatewalk predict demo-out/matrix.nc scenes/field.toml --json demo-out/prediction.json
 
 say "4. Against the full dynamics, for the four starts of the paper's Table IV"
-build/gatewalk validate scenes/field.toml --matrix demo-out/matrix.nc --trials 10000 --seed 1 \
+build/gatewalk validate scenes/field.toml --matrix demo-out/matrix.nc --trials 1000 --seed 1 \
   --json demo-out/validation.json
 
 say "5. Every claim of the paper, quickly: open demo-out/paper/report.html"
 build/gatewalk reproduce -o demo-out/paper --quick
 
 say "Computed in $(($(date +%s) - started)) s. Everything is in demo-out/; README.md says how to go on."
+command -v ffmpeg >/dev/null || echo "Films (gatewalk trace --video) also need ffmpeg: apt-get install ffmpeg"

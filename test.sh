@@ -3,7 +3,8 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 . ./.ci/prepare
-packages+=(chromium clang-format)  # shows the pages to their tests; checks the layout of the code
+# Results and films as others read them, a browser that shows the pages, the layout of the code.
+packages+=(libgtest-dev jq netcdf-bin ffmpeg chromium clang-format)
 # Some machines bring an npm of their own, which Debian's package would conflict with.
 command -v npm >/dev/null || packages+=(npm)
 build_gatewalk -DBUILD_TESTING=ON

@@ -21,11 +21,6 @@ const SweepPoint& fig12_at(const Findings& f, double damping, double force, doub
   return f.fig12.at(
       {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}, {kLeftStiffness, k_left}});
 }
-std::vector<double> stiffnesses() {
-  std::vector<double> k;
-  for (double x = 100; x <= 500; x += 50) k.push_back(x);
-  return k;
-}
 
 std::vector<Claim> claims_of(const Findings& f) {
   return {rises_with_propulsion(f),

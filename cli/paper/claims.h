@@ -77,6 +77,5 @@ Claim thirteen_steps(const Findings& f);
 [[nodiscard]] Share fig8_at(const Findings& f, double damping, double force, double random);
 [[nodiscard]] const SweepPoint& fig12_at(const Findings& f, double damping, double force,
                                          double random, double k_left);
-[[nodiscard]] std::vector<double> stiffnesses();  // of Table II's left beam, N m/rad
 
 }  // namespace gatewalk::cli

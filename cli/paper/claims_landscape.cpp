@@ -12,7 +12,7 @@ Claim accord(const Findings& f) {
   std::string shown;
   for (const double damping : {50.0, 10.0}) {
     std::vector<std::pair<double, Share>> points;  // height, share that does not traverse
-    for (const double k : stiffnesses()) {
+    for (const double k : f.fig12.values(kLeftStiffness)) {
       const auto found = f.barriers.find(static_cast<int>(k));
       if (found == f.barriers.end()) continue;
       const double height = found->second.fine.above_basin;

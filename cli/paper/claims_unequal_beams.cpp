@@ -13,7 +13,7 @@ Claim softer_side(const Findings& f) {
   for (const double damping : {50.0, 10.0})
     for (const double force : {7.0, 8.0})
       for (double random = 10; random <= 60; random += 10)
-        for (const double k : stiffnesses()) {
+        for (const double k : f.fig12.values(kLeftStiffness)) {
           if (k == 500) continue;
           const SweepPoint& cell = fig12_at(f, damping, force, random, k);
           const Share right = cell.right_share();
@@ -131,7 +131,7 @@ Claim right_share_falls(const Findings& f, bool strong) {
            strong ? std::vector<double>{40, 50, 60} : std::vector<double>{10, 20, 30}) {
         std::vector<Share> told;
         std::vector<double> where, counted;
-        for (const double k : stiffnesses()) {
+        for (const double k : f.fig12.values(kLeftStiffness)) {
           const SweepPoint& cell = fig12_at(f, damping, force, random, k);
           const Share s = cell.right_share();
           if (s.whole < 10)
@@ -150,7 +150,7 @@ Claim right_share_falls(const Findings& f, bool strong) {
                     " settings of propulsion, random force and damping, higher in " +
                     std::to_string(trend.down) + ".";
   if (trend.falling > 0)
-    why += " " + of(trend.falling, trend.steps) + " steps of 50 go the other way, by up to " +
+    why += " " + of(trend.falling, trend.steps) + " steps go the other way, by up to " +
            number(100 * trend.largest_fall, 1) + " points (from " + number(trend.at) + ").";
   if (trend.lower > 0)
     why += " Of all falls between two stiffnesses 100 trials a cell would show " +
@@ -172,7 +172,7 @@ Claim fig12_propulsion(const Findings& f) {
   double softest = 1e9;
   std::int64_t trials = 0;
   for (const double damping : {50.0, 10.0})
-    for (const double k : stiffnesses())
+    for (const double k : f.fig12.values(kLeftStiffness))
       for (double random = 10; random <= 60; random += 10) {
         const Share seven = fig12_at(f, damping, 7, random, k).traversed_share(),
                     eight = fig12_at(f, damping, 8, random, k).traversed_share();

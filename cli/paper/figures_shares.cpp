@@ -122,17 +122,19 @@ Section fig12(const Findings& f) {
   const Sheet sheet{static_cast<int>(kTop + kNext + kTall + 86)};
   const Box bar{kRight + kWide + 12, kRight + kWide + 24, kTop, kTop + kTall};
   std::string data, panels;
+  const std::vector<double> stiffnesses = f.fig12.values(kLeftStiffness);
+  const double half = 0.5 * (stiffnesses.at(1) - stiffnesses[0]);  // of a cell
   for (const int damping : {50, 10})
     for (const int force : {7, 8}) {
       std::string shares, few;
-      for (int k = 100; k <= 500; k += 50)
+      for (const double k : stiffnesses)
         for (int random = 10; random <= 60; random += 10) {
           const SweepPoint& cell = f.fig12.at(
               {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}, {kLeftStiffness, k}});
           const Share s = cell.right_share();
           csv.row(damping, force, random, k, static_cast<double>(cell.trials),
                   static_cast<double>(s.whole), s.value, s.low, s.high);
-          const std::string place = std::to_string(random) + " " + std::to_string(k) + " ";
+          const std::string place = std::to_string(random) + " " + digits(k) + " ";
           grey += s.whole < kFew;
           if (s.whole < kFew)
             few += place + "(" + std::to_string(s.whole) + ")\n";
@@ -149,11 +151,11 @@ Section fig12(const Findings& f) {
                 first ? "k_L (N m/rad)" : "", 54) +
           words(sheet, "F_prop = " + std::to_string(force) + " N, d = " + std::to_string(damping),
                 left, top - 14, kSmallFont) +
-          "plot " + name + cells(5, 25) +
+          "plot " + name + cells(5, half) +
           ", '' using 1:2:4:($3 < 20 || $3 > 80 ? 0xffffff : 0x000000) with "
           "labels tc rgb variable font ',12', " +
-          name +
-          "_few using 1:2:(5):(25) with boxxyerror fillstyle solid noborder lc rgb "
+          name + "_few using 1:2:(5):(" + digits(half) +
+          ") with boxxyerror fillstyle solid noborder lc rgb "
           "'#a8a8a8', '' using 1:2:3 with labels tc rgb '#000000' font ',12'\nunset label\n"
           "unset colorbox\n";
     }
@@ -176,8 +178,9 @@ Section fig12(const Findings& f) {
           sheet, data,
           std::string(kDiverging) +
               words(sheet, "past the right beam, % of the traversed; k_R = 500 N m/rad", 8, 18) +
-              kSmallTics +
-              "set border 15\nset cbrange [0:100]\nset xrange [5:65]\nset yrange [75:525]\n"
+              kSmallTics + "set border 15\nset cbrange [0:100]\nset xrange [5:65]\nset yrange [" +
+              digits(stiffnesses.front() - half) + ":" + digits(stiffnesses.back() + half) +
+              "]\n"
               "set xtics 10\nset ytics 100\nset cbtics 25 font ',12' offset -0.8,0\n"
               "set colorbox user origin screen " +
               sheet.at(bar.left, bar.bottom) + " size screen " + digits(12.0 / Sheet::kWidth) +

@@ -3,6 +3,7 @@
 #include "cli/render/text.h"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 namespace gatewalk::cli {
@@ -157,6 +158,12 @@ const SweepPoint& Sweep::at(const At& where) const {
     text += " " + std::string(key) + "=" +
             (std::isnan(value.number) ? value.text : Json(value.number).dump());
   throw std::out_of_range("the sweep has no point at" + text);
+}
+
+std::vector<double> Sweep::values(std::string_view key) const {
+  std::set<double> values;
+  for (const SweepPoint& point : points) values.insert(point.at(key).number);
+  return {values.begin(), values.end()};
 }
 
 std::string ValidatedStart::label() const {

@@ -55,6 +55,7 @@ struct Sweep {
   std::vector<SweepPoint> points;  // at least one
   /// The point at which these keys have these values. Throws std::out_of_range if there is none.
   [[nodiscard]] const SweepPoint& at(const At& where) const;
+  [[nodiscard]] std::vector<double> values(std::string_view key) const;  // ascending
 };
 
 // ---- trace

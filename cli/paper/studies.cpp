@@ -71,9 +71,13 @@ struct Studies {
 /// and 8 % of Fig. 9.
 void add_sweeps(Studies& s) {
   const std::string damping = "beams.damping_Nms_per_rad=50,10";
-  s.sweep("fig8", 84, s.quick ? 200 : 10000,
+  s.sweep("fig8", 84, s.quick ? 1000 : 10000,
           {"scenes/fig8.toml", "--vary", "forces.random_N=0:10:60"});
-  s.sweep("fig12", 216, s.quick ? 100 : 5000, {"scenes/fig12.toml"});
+  if (s.quick)
+    s.sweep("fig12", 120, 1000,
+            {"scenes/fig12.toml", "--vary", std::string(kLeftStiffness) + "=100:100:500"});
+  else
+    s.sweep("fig12", 216, 5000, {"scenes/fig12.toml"});
   s.tried("tried_method", 12,
           {"--vary", "run.method=stable,event,moreau,paper", "--vary", damping + ",0"});
   s.tried("tried_step", 10,
@@ -86,7 +90,7 @@ void add_sweeps(Studies& s) {
   s.tried("tried_start", 4, {"--vary", "start.vy_m_per_s=5,10", "--vary", damping});
   s.tried("tried_random", 6, {"--vary", "forces.random_N=20,40,60", "--vary", damping});
   s.tried("tried_propulsion", 14, {"--vary", "forces.propulsion_N=8:0.5:11", "--vary", damping});
-  s.sweep("paper_method", 4, s.quick ? 500 : 20000,
+  s.sweep("paper_method", 4, s.quick ? 4000 : 20000,
           {kSoft, "--vary", "run.method=paper,event", "--vary", damping});
 }
 
@@ -123,7 +127,8 @@ void add_validations(Studies& s) {
         {kField, "--accuracy", s.quick ? "0.05" : "0.01", "--seed", "1", "--figure",
          "prediction.svg"},
         s.quick ? 1 : 5);
-  s.validate("field", s.quick ? 1000 : 10000, {kField}, s.quick ? 4 : 20);
+  s.validate("field", s.quick ? 5000 : 10000,
+             s.quick ? Words{kField, "--null-draws", "99"} : Words{kField}, s.quick ? 5 : 20);
   s.validate("field_paper_method", s.quick ? 200 : 2000, {kField, "--set", "run.method=paper"},
              s.quick ? 3 : 10);
   const Words one_start{"--start", "0,0,15", "--null-draws", "99"};
@@ -131,7 +136,7 @@ void add_validations(Studies& s) {
     arguments.insert(arguments.end(), one_start.begin(), one_start.end());
     return arguments;
   };
-  s.validate("field_no_drag", s.quick ? 300 : 3000,
+  s.validate("field_no_drag", s.quick ? 1000 : 3000,
              with({kField, "--set", "forces.drag_Ns_per_m=0", "--set", set(kDamping, 10)}), 2);
   for (const int random : {10, 20, 40})
     s.validate("field_random_" + std::to_string(random), s.quick ? 300 : 3000,
