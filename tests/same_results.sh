@@ -4,8 +4,8 @@
 #   tests/same_results.sh [--lines PATTERN] OLD NEW [SCENES]
 # OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds.
 # Status 1: some differ; 2: nothing was compared.
-# To see that it finds what it should, change a constant in a copy of the sources, say kMaxPhase in
-# dynamics/methods/stable.cpp or kQuantile in lattice/group_spread.cpp, and compare the programs.
+# To see that it finds what it should, change a constant in a copy of the sources, say kQuantile in
+# lattice/group_spread.cpp, and compare the programs.
 set -euf
 pattern=.
 if [ "${1-}" = --lines ]; then
@@ -29,6 +29,7 @@ lines() {
 0 gate soft_left.toml --set run.method=event --trials 100 --json out.json
 0 gate single_gate.toml --set run.method=penalty --trials 50 --json out.json
 0 gate stiff.toml --set run.method=auto --trials 200 --json out.json
+0 trace stiff.toml --trials 2 --csv out.csv
 0 gate overdamped.toml --trials 300 --json out.json
 0 gate undamped.toml --trials 200 --json out.json
 0 gate wading.toml --set run.method=event --trials 50 --json out.json
@@ -188,7 +189,7 @@ END
 plain() {  # COMMAND FILE
   case $1:$2 in
     *.json) jq -S --arg timed "$timed" "$nameless" "$2" ;;
-    *.nc) ncdump "$2" | grep -v -E '^\t\t:(program|version|commit|checksum) = |^netcdf ' ;;
+    *.nc) ncdump "$2" | grep -v -E '^[[:space:]]+:(program|version|commit|checksum) = |^netcdf ' ;;
     chart*.svg | chart-chain:*.txt | chart-chain:*.csv) ;;
     chart*.txt | chart*.csv) sed -E 's/[0-9.]+(e[-+][0-9]+)?/N/g; s/ +/ /g' "$2" ;;
     *.txt) sed -E '/ dynamics\/exact  trial\/walk$/,/^$/d; s/[0-9.]+ s([;,]|$)/... s\1/g' "$2" ;;
