@@ -70,7 +70,7 @@ std::string shell_quoted(const std::string& word) {
 using Strings = std::vector<std::string>;
 
 /// The map that a file names, if it is a scene. (What a pipe holds is read only once.)
-std::string map_of(const std::string& path) {
+std::string map_named_in(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return "";
   try {
@@ -301,7 +301,7 @@ std::vector<Options::NamedFile> Options::inputs() const {
   const auto add = [&](const std::string& name, const std::string& path) {
     if (path.empty() || path == "-") return;
     files.emplace_back(name + " " + path, path);
-    if (const std::string map = map_of(path); !map.empty())
+    if (const std::string map = map_named_in(path); !map.empty())
       files.emplace_back(map + " (the map of " + path + ")", map);
   };
   const auto each = [&](const std::string& option, const auto& take) {

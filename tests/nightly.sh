@@ -28,7 +28,7 @@ odr() {
   fi
   rm -r "$small"
   cmake -S . -B build-odr -G Ninja -DCMAKE_CXX_COMPILER=g++ -DCMAKE_AR="$(command -v gcc-ar)" -DCMAKE_RANLIB="$(command -v gcc-ranlib)" \
-    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_UNITY_BUILD=OFF -DBUILD_TESTING=OFF
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_FLAGS="$flags" -DGATEWALK_BATCHES=OFF -DBUILD_TESTING=OFF
   cmake --build build-odr --target gatewalk
 }
 
