@@ -12,17 +12,17 @@ started=$(date +%s)
 say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
 
 say "1. The matrix: 100 short runs of one gate for each of 87 input states"
-build/gatewalk build scenes/field.toml --bins paper --trials 100 --seed 1 -o demo-out/matrix.nc
+build/gatewalk build scenes/field.toml --bins paper --trials 100 --seed 1 -o demo-out/matrix.nc --force
 
 say "2. A million walks through the field, each gate one draw from the matrix"
-build/gatewalk walk demo-out/matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json demo-out/walks.json
+build/gatewalk walk demo-out/matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json demo-out/walks.json --force
 
 say "3. What infinitely many walks would give"
-build/gatewalk predict demo-out/matrix.nc scenes/field.toml --json demo-out/prediction.json
+build/gatewalk predict demo-out/matrix.nc scenes/field.toml --json demo-out/prediction.json --force
 
 say "4. Against the full dynamics, for the four starts of the paper's Table IV"
 build/gatewalk validate scenes/field.toml --matrix demo-out/matrix.nc --trials 1000 --seed 1 \
-  --json demo-out/validation.json
+  --json demo-out/validation.json --force
 
 say "5. Every claim of the paper, quickly: open demo-out/paper/report.html"
 build/gatewalk reproduce -o demo-out/paper --quick

@@ -10,12 +10,15 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <optional>
 
 #include "cli/render/json.h"
+#include "cli/terminal/backup.h"
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
+#include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
@@ -35,7 +38,7 @@ namespace {
 /// Options that cannot change a result, left out of the recorded command.
 bool shapes_nothing(const std::string& name) {
   return name == "threads" || name == "quiet" || name == "json" || name == "output" ||
-         name == "strict" || name == "figure";
+         name == "strict" || name == "figure" || name == "force";
 }
 
 /// An option as users write it.
@@ -65,6 +68,18 @@ std::string shell_quoted(const std::string& word) {
 }
 
 using Strings = std::vector<std::string>;
+
+/// The map that a file names, if it is a scene. (What a pipe holds is read only once.)
+std::string map_named_in(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return "";
+  try {
+    return lattice::map_file_in(lattice::scene_text(path),
+                                std::filesystem::path(path).parent_path().string());
+  } catch (const lattice::SceneError&) {  // no scene, or none that can be read
+    return "";
+  }
+}
 
 }  // namespace
 
@@ -119,7 +134,8 @@ struct Options::State {
   std::vector<Output> output_files{{"json", Content::text}};
   std::vector<std::string> folder_files;  // what is written into the folder of --output
   std::vector<std::pair<std::string, std::function<std::string(const std::string&)>>> reads;
-  std::string needs_output;  // what to call the value of -o, if it must be given
+  std::map<std::string, Backup> backups;  // by the file that is replaced
+  std::string needs_output;               // what to call the value of -o, if it must be given
 
   template <class T>
   void add(const std::string& name, po::typed_value<T>* value, const std::string& shown,
@@ -137,10 +153,20 @@ Options::Options(std::string synopsis, std::string about, std::string example)
                                "write the result as JSON; - is standard output")(
       "threads", po::value<int>()->default_value(0)->value_name("N"),
       "threads to use, 0: all; never changes a result")(
+      "force", "replace files that are there; without it they are kept, as FILE.~1~ and so on")(
       "quiet", "no progress, no remarks, no table when there is JSON")("help,h", "this page");
 }
 
-Options::~Options() = default;
+Options::~Options() {
+  try {
+    std::string kept;
+    for (auto& [path, backup] : state_->backups)
+      if (const std::string name = backup.settle(); !name.empty())
+        kept += (kept.empty() ? "what was there is kept as " : ", ") + name;
+    if (talk()) warn(kept);
+  } catch (const std::exception&) {  // the files are in order, nobody is told
+  }
+}
 
 // ---- What is declared ----
 
@@ -273,7 +299,10 @@ struct Options::NamedFile {
 std::vector<Options::NamedFile> Options::inputs() const {
   std::vector<NamedFile> files;
   const auto add = [&](const std::string& name, const std::string& path) {
-    if (!path.empty() && path != "-") files.emplace_back(name + " " + path, path);
+    if (path.empty() || path == "-") return;
+    files.emplace_back(name + " " + path, path);
+    if (const std::string map = map_named_in(path); !map.empty())
+      files.emplace_back(map + " (the map of " + path + ")", map);
   };
   const auto each = [&](const std::string& option, const auto& take) {
     if (!has(option)) return;
@@ -356,6 +385,10 @@ void Options::check_files() {
     others.push_back(output);
   }
 
+  const auto require_replaceable = [&](const std::string& path) {
+    require_writable(path);
+    if (path != "-" && !has("force")) (void)Backup(path);
+  };
   const auto check = [](const std::string& option, const auto& act) {
     try {
       act();
@@ -364,7 +397,8 @@ void Options::check_files() {
     }
   };
   for (const State::Output& output : state_->output_files)
-    if (has(output.name)) check(shown(output.name), [&] { require_writable(text(output.name)); });
+    if (has(output.name))
+      check(shown(output.name), [&] { require_replaceable(text(output.name)); });
   if (has("figure")) {
     if (!can_be_drawn(text("figure")))
       throw UsageError("--figure " + text("figure") + ": must end in .svg, .pdf or .png");
@@ -375,7 +409,7 @@ void Options::check_files() {
     require_possible_folder(folder);
     if (!std::filesystem::is_directory(folder)) return;
     for (const std::string& file : state_->folder_files)
-      require_writable((std::filesystem::path(folder) / file).string());
+      require_replaceable((std::filesystem::path(folder) / file).string());
   });
 }
 
@@ -386,6 +420,7 @@ bool Options::parse(const Arguments& arguments) {
       .add_options()("set", po::value<Strings>()->composing()->value_name("KEY=VALUE"),
                      "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what "
                      "the file leaves out stays as it follows from the file");
+  reads("set", [](const std::string& given) { return lattice::map_file_in(given, ""); });
   po::options_description all;
   all.add(state_->own).add(state_->shared).add(state_->hidden);
   using namespace po::command_line_style;
@@ -509,12 +544,22 @@ void Options::remark(const std::string& text) const {
 void Options::give_out(const Json& json, const std::string& table, int indent) const {
   const std::string target = text("json");
   if (target != "-" && (target.empty() || talk())) write_text_atomically("-", table);
-  if (!target.empty()) write_text_atomically(target, text_of(json, indent) + "\n");
+  if (!target.empty()) write(target, text_of(json, indent) + "\n");
+}
+
+void Options::keep_old(const std::string& path) const {
+  if (path != "-" && !has("force")) state_->backups.try_emplace(path, path);
+}
+
+void Options::write(const std::string& path, std::string_view text) const {
+  keep_old(path);
+  write_text_atomically(path, text);
 }
 
 void Options::draw(const std::function<Figure()>& picture) const {
   if (!has("figure")) return;
   try {
+    keep_old(text("figure"));
     cli::draw(text("figure"), picture(), about());
   } catch (const std::runtime_error& e) {
     throw std::runtime_error("no figure: " + std::string(e.what()) + "; the numbers are written");
@@ -526,21 +571,25 @@ AboutFigure Options::about() const {
 }
 
 ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)
-    : folder_(options.text("output")), files_(files), about_(options.about()) {
+    : options_(options), folder_(options.text("output")), files_(files) {
   require_folder(folder_);
 }
 
 void ResultFolder::write(const std::string& csv_file, const std::string& csv,
                          const std::string& json_file, const Json& json) const {
   for (const std::string& file : files_)
-    if (file.ends_with(".svg")) std::filesystem::remove(path(file));
-  write_text_atomically(path(csv_file), csv);
-  write_text_atomically(path(json_file), text_of(json) + "\n");
+    if (file.ends_with(".svg")) {
+      options_.keep_old(path(file));
+      std::filesystem::remove(path(file));
+    }
+  options_.write(path(csv_file), csv);
+  options_.write(path(json_file), text_of(json) + "\n");
 }
 
 void ResultFolder::draw(const std::string& file, const Figure& figure) const {
   try {
-    cli::draw(path(file), figure, about_);
+    options_.keep_old(path(file));
+    cli::draw(path(file), figure, options_.about());
   } catch (const std::runtime_error& e) {
     throw std::runtime_error("no figure: " + std::string(e.what()) + "; the other files in " +
                              folder_ + " are written");

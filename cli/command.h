@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -44,9 +45,9 @@ class UsageError : public std::runtime_error {
 
 inline constexpr std::int64_t kMostCount = 1'000'000'000'000'000;  // doubles are exact up to here
 
-/// Options of one command with the shared ones: --threads, --quiet, --json, --help. They know which
-/// files are read and which are written: parse() refuses an output that is an input or another
-/// output, and one that cannot be written, before any work.
+/// Options of one command with the shared ones: --threads, --quiet, --json, --force, --help. They
+/// know which files are read, also those that a scene names, and which are written: parse() refuses
+/// an output that is an input or another output, and one that cannot be written, before any work.
 class Options {
  public:
   /// `synopsis` e.g. "gate SCENE [options]"; `about` and `example` complete the help page.
@@ -141,6 +142,12 @@ class Options {
   /// FILE the table too, unless --quiet.
   /// `indent` -1: JSON on one line, for long arrays.
   void give_out(const Json& json, const std::string& table, int indent = 2) const;
+  /// To be called before an output is written: what is there is kept as a Backup until the command
+  /// is done, unless there is --force or it is written again. Then it is said which backups stay.
+  /// Throws std::runtime_error.
+  void keep_old(const std::string& path) const;
+  /// keep_old and write_text_atomically.
+  void write(const std::string& path, std::string_view text) const;
   /// Draws the picture that --figure asks for, if it does, when the result has been given out.
   /// Throws std::runtime_error, which says so, when gnuplot fails.
   void draw(const std::function<Figure()>& picture) const;
@@ -160,8 +167,8 @@ class Options {
 /// The folder of -o: the numbers of a study and the figures drawn of them.
 class ResultFolder {
  public:
-  /// `files`: all that are written into it. Makes the folder if need be. Throws std::runtime_error
-  /// when it cannot be written to.
+  /// `files`: all that are written into it; `options` must outlive it. Makes the folder if need be.
+  /// Throws std::runtime_error when it cannot be written to.
   ResultFolder(const Options& options, const std::vector<std::string>& files);
   /// Each file replaces the one before as a whole. First old figures go: they shall not stand
   /// beside new numbers.
@@ -172,9 +179,9 @@ class ResultFolder {
   [[nodiscard]] std::string path(const std::string& file) const;
 
  private:
+  const Options& options_;
   std::string folder_;
   std::vector<std::string> files_;
-  AboutFigure about_;
 };
 
 /// The exit status of a command whose result is written: with --strict, kFailure when the result's

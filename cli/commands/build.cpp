@@ -19,6 +19,7 @@ int give_out(const Options& options, const lattice::Scene& scene, const MadeMatr
   lattice::MatrixFile file{made.matrices.front(), record_of(made, scene, options.provenance(scene)),
                            std::move(runs)};
   lattice::put_matrices(file, scene, made.matrices);
+  options.keep_old(path);
   lattice::write_matrix(path, file);
   Json json = summary_json(made, file, path);
   json["made_by"] = to_json(options.provenance(scene));

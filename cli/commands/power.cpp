@@ -5,6 +5,7 @@
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "lattice/scene/map_file.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -88,6 +89,7 @@ int run_power(const Arguments& arguments) {
   options.scene();
   options.add_texts("versus", "KEY=VALUE",
                     "the scene to tell this one from has this key otherwise (may be repeated)");
+  options.reads("versus", [](const std::string& given) { return lattice::map_file_in(given, ""); });
   options.add_count("trials", "N",
                     "also: what N trials show (with --versus, N of each scene), at most 100000");
   options.add_number("power", "P", "how often a difference is to be found (default: 0.8)");

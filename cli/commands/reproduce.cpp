@@ -26,8 +26,10 @@ int run_reproduce(const Arguments& arguments) {
   if (options.has("json") && options.text("json") != "-")
     throw UsageError("--json takes only - here: DIR/report.json is written anyway");
   try {
-    const Reproduction r =
-        reproduce({.folder = folder, .quick = options.has("quick"), .talk = options.talk()});
+    const Reproduction r = reproduce({.folder = folder,
+                                      .quick = options.has("quick"),
+                                      .talk = options.talk(),
+                                      .force = options.has("force")});
     if (options.has("json"))
       options.give_out(r.report, "", -1);
     else if (options.talk())

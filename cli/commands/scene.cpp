@@ -1,8 +1,6 @@
-#include <filesystem>
-
+#include "cli/render/scene.h"
 #include "cli/command.h"
 #include "cli/render/json.h"
-#include "cli/render/scene.h"
 #include "cli/terminal/output.h"
 
 namespace gatewalk::cli {
@@ -37,16 +35,12 @@ int run_scene(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (options.has("output") && !options.has("new"))
     throw UsageError("--output has no meaning without --new");
-  const std::string file = options.text("output");
-  if (!file.empty() && file != "-" && std::filesystem::is_regular_file(file))
-    throw UsageError("--output " + file +
-                     ": is there already, and may hold a scene of yours; name another file");
   const lattice::Scene scene = options.has("scene")
                                    ? options.read_scene()
                                    : lattice::parse_scene(as_text(options.overrides()), "--set");
   if (options.has("new")) {
     if (options.has("json")) throw UsageError("--json has no meaning beside --new");
-    write_text_atomically(file.empty() ? "-" : file, commented(scene));
+    options.write(options.has("output") ? options.text("output") : "-", commented(scene));
     return kFine;
   }
   const std::vector<lattice::KeyInfo> keys = lattice::describe(scene);

@@ -77,7 +77,7 @@ int run_sweep(const Arguments& arguments) {
     write_text_atomically("-", csv_of(axes, points));
     if (!options.text("json").empty()) options.give_out(json, "");
   } else {
-    if (!csv.empty()) write_text_atomically(csv, csv_of(axes, points));
+    if (!csv.empty()) options.write(csv, csv_of(axes, points));
     options.give_out(json, table_of(scene, axes, points));
   }
   dynamics::Health health;

@@ -8,7 +8,6 @@
 #include "cli/render/json.h"
 #include "cli/render/recording.h"
 #include "cli/render/text.h"
-#include "cli/terminal/output.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -94,16 +93,18 @@ int run_trace(const Arguments& arguments) {
   const lattice::Recordings recordings = lattice::record_trials(scene, wanted, options.work());
 
   const Json made_by = to_json(options.provenance(scene));
-  if (options.has("csv")) write_text_atomically(options.text("csv"), csv_of(scene, recordings));
+  if (options.has("csv")) options.write(options.text("csv"), csv_of(scene, recordings));
   if (options.has("netcdf"))
-    write_text_atomically(options.text("netcdf"), netcdf_of(scene, recordings, made_by));
+    options.write(options.text("netcdf"), netcdf_of(scene, recordings, made_by));
   Json json = Json::object();
   if (options.has("replay") || options.has("video") || options.has("json")) {
     const Film film = film_of(scene, recordings);
     if (options.has("replay") || options.has("json")) json = to_json(film);
-    if (options.has("replay")) write_text_atomically(options.text("replay"), replay_page(json));
-    if (options.has("video"))
+    if (options.has("replay")) options.write(options.text("replay"), replay_page(json));
+    if (options.has("video")) {
+      options.keep_old(options.text("video"));
       write_video(options.text("video"), film, {.speed = speed}, options.work());
+    }
     if (options.has("json"))
       for (std::size_t i = 0; i < recordings.runs.size(); ++i)
         json["runs"][i].update(details_of(scene, recordings.runs[i], wanted.across_field));

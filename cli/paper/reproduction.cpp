@@ -174,7 +174,7 @@ class Records {
   static std::string run(const Study& s, const dynamics::Work& work) {
     std::string remarks;
     Arguments arguments = s.arguments;
-    arguments.words.insert(arguments.words.end(), {"--quiet", "--json", file_of(s)});
+    arguments.words.insert(arguments.words.end(), {"--quiet", "--force", "--json", file_of(s)});
     arguments.work = work;
     arguments.warned = [&](const std::string& text) { remarks += "gatewalk: " + text + "\n"; };
     if (const int status = s.run(arguments); status != kFine)
@@ -324,6 +324,11 @@ std::string Reproduction::tally() const {
 Reproduction reproduce(const ReproductionOptions& options) {
   const std::string& folder = options.folder;
   require_folder(folder);
+  if (!options.force && !std::filesystem::is_empty(folder) &&
+      !std::filesystem::exists(std::filesystem::path(folder) / kDone))
+    throw UsageError("-o " + folder +
+                     ": is not empty and holds no report, so files of yours could be replaced; "
+                     "choose another folder, or give --force");
   require_folder(folder + "/data");
   require_folder(folder + "/scenes");
   require_gnuplot();
@@ -335,6 +340,7 @@ Reproduction reproduce(const ReproductionOptions& options) {
     throw UsageError(folder +
                      " holds a full report, which --quick would replace; choose another folder");
   require_no_scene_of_ones_own(folder);
+  if (!std::filesystem::exists(kDone)) write_text_atomically(kDone, "{}\n");
   const std::vector<Study> studies = paper_studies(options.quick);
   const Json scenes = write_scenes();
   // No old page beside new figures, should this be stopped between them.

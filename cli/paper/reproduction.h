@@ -13,6 +13,7 @@ struct ReproductionOptions {
   std::string folder;  // is made if there is none
   bool quick = false;  // fewer trials
   bool talk = true;    // a line on standard output for every study
+  bool force = false;  // also in a folder with files of others
 };
 
 struct Reproduction {

@@ -60,18 +60,25 @@ GreyPicture read_grey_png(const std::string& path, int columns, int rows) {
                              " rows: a pixel is a gate");
   if ((image.format & PNG_FORMAT_FLAG_LINEAR) != 0)
     throw std::runtime_error("has 16 bits a pixel: must have 8 or fewer");
-  image.format = PNG_FORMAT_RGBA;
+  // Pixels of a palette are left as they are: libpng makes black of those beyond its end.
+  const bool has_palette = (image.format & PNG_FORMAT_FLAG_COLORMAP) != 0;
+  image.format = has_palette ? PNG_FORMAT_RGBA_COLORMAP : PNG_FORMAT_RGBA;
   std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));
-  if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0)
+  std::array<png_byte, std::size_t{256} * 4> palette{};
+  if (png_image_finish_read(&image, nullptr, pixels.data(), 0, palette.data()) == 0)
     throw std::runtime_error(std::string("cannot be read as a PNG: ") + image.message);
   GreyPicture picture{columns, rows, {}};
-  for (std::size_t i = 0; i < pixels.size(); i += 4) {
-    const png_byte* const p = pixels.data() + i;
+  const std::size_t count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  for (std::size_t i = 0; i < count; ++i) {
     const auto refuse = [&](const std::string& what) {
-      const auto pixel = static_cast<int>(i / 4);
+      const auto pixel = static_cast<int>(i);
       throw std::runtime_error("row " + std::to_string(pixel / columns + 1) + ", column " +
                                std::to_string(pixel % columns + 1) + " " + what);
     };
+    if (has_palette && pixels[i] >= image.colormap_entries)
+      refuse("has colour " + std::to_string(pixels[i]) + " of a palette of " +
+             std::to_string(image.colormap_entries) + ", counted from 0");
+    const png_byte* const p = has_palette ? &palette[std::size_t{4} * pixels[i]] : &pixels[4 * i];
     if (p[3] != 255) refuse("is not opaque");
     if (p[0] != p[1] || p[1] != p[2])
       refuse("has the colour " + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " +

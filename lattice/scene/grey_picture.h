@@ -16,8 +16,8 @@ struct GreyPicture {
 };
 
 /// Of 8 bits a pixel or fewer; RGB and palettes will do where all colours are grey. Throws
-/// std::runtime_error saying what is wrong: it cannot be read, is of another size, has a colour or
-/// a pixel that is not opaque.
+/// std::runtime_error saying what is wrong: it cannot be read, is of another size, has a colour,
+/// a pixel that is not opaque, or one beyond the end of its palette.
 [[nodiscard]] GreyPicture read_grey_png(const std::string& path, int columns, int rows);
 
 }  // namespace gatewalk::lattice

@@ -20,6 +20,7 @@
 #include "dynamics/methods/method.h"
 #include "lattice/scene/digits.h"
 #include "lattice/scene/edit_distance.h"
+#include "lattice/scene/map_file.h"
 #include "lattice/scene/scene_bins.h"
 #include "lattice/scene/scene_terrain.h"
 #include "lattice/scene/toml_text.h"
@@ -547,6 +548,16 @@ std::string scene_text(const std::string& path) {
   if (text.starts_with("\x89HDF"))
     throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
   return text;
+}
+
+std::string map_file_in(std::string_view text, const std::string& folder) {
+  try {
+    const toml::table document = parse_toml(text, [](std::size_t) { return std::string(); });
+    const auto file = document[kTerrainTable]["map_file"].value<std::string>();
+    return file ? (std::filesystem::path(folder) / *file).string() : "";
+  } catch (const SceneError&) {
+    return "";
+  }
 }
 
 Scene parse_scene(std::string_view text, std::string name,

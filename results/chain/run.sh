@@ -10,5 +10,5 @@ gatewalk=$(realpath "${1:-$root/build/gatewalk}")  # scenes are named from the r
 cd "$root"
 
 "$gatewalk" chart-chain "scenes/field.toml" --truth-trials 1e5 --visited 1000 --seed 1 \
-  -o "$here" >"$here/chain.txt"
+  -o "$here" --force >"$here/chain.txt"
 manifest "results/chain/run.sh" >"$here/manifest.txt"

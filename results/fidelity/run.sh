@@ -10,5 +10,5 @@ gatewalk=$(realpath "${1:-$root/build/gatewalk}")  # scenes are named from the r
 cd "$root"
 
 "$gatewalk" chart-field "scenes/field.toml" --trials 10000 --seed 1 --set run.step_s=0.001 \
-  -o "$here" >"$here/fidelity.txt"
+  -o "$here" --force >"$here/fidelity.txt"
 manifest "results/fidelity/run.sh" >"$here/manifest.txt"

@@ -19,7 +19,7 @@ for seed in $(seq $millions); do
   { time "$gatewalk" lattice "${field[@]}" --set field.rows=40 --set field.max_gates=0 --trials 1e6 --seed "$seed" \
     --json "$work/direct$seed.json" --quiet >/dev/null 2>&1; } 2>>"$work/direct.txt"
 done
-{ time "$gatewalk" rare "${field[@]}" --row 40 --accuracy 0.03 --gate-runs 1e8 --seed 1 --json "$here/rare.json" \
+{ time "$gatewalk" rare "${field[@]}" --row 40 --accuracy 0.03 --gate-runs 1e8 --seed 1 --json "$here/rare.json" --force \
   --quiet >/dev/null 2>&1; } 2>"$work/rare.txt"
 
 # Of direct trials Wilson's interval.

@@ -9,5 +9,5 @@ gatewalk=$(realpath "${1:-$root/build/gatewalk}")  # scenes are named from the r
 . "$root/results/manifest.sh"
 cd "$root"
 
-"$gatewalk" stability --seed 1 -o "$here" >"$here/stability.txt"
+"$gatewalk" stability --seed 1 -o "$here" --force >"$here/stability.txt"
 manifest "results/stability/run.sh" >"$here/manifest.txt"

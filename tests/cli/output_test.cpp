@@ -20,12 +20,14 @@
 #include <thread>
 #include <vector>
 
+#include "cli/terminal/backup.h"
 #include "cli/terminal/interrupt.h"
 
 // These stand in front of the C library's in this test program: the k-th call can be made to fail.
 namespace {
 struct Faults {
   int fsync = 0, rename = 0;       // 0: none, k: the k-th from now
+  int link = 0;                    // so many: the file system knows no second names
   std::function<void()> at_fsync;  // what happens before a sync
 } faults;
 
@@ -44,6 +46,15 @@ extern "C" int fsync(int fd) {
 extern "C" int rename(const char* from, const char* to) noexcept {
   if (strikes(faults.rename, EIO)) return -1;
   return static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
+
+extern "C" int link(const char* from, const char* to) noexcept {
+  if (faults.link > 0) {
+    --faults.link;
+    errno = EPERM;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_linkat, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
 
 namespace gatewalk::cli {
@@ -324,6 +335,95 @@ TEST_F(Output, AFolderThatCannotBeSyncedIsNoSilentSuccess) {
             path("a") + ": is written, but its folder could not be synced: Input/output error");
   EXPECT_EQ(read(path("a")), "new");
   EXPECT_EQ(names(), std::vector<std::string>{"a"});
+}
+
+// ---- What an output replaces
+
+TEST_F(Output, WhatIsReplacedIsKeptUnderTheFirstFreeNumber) {
+  for (const std::string text : {"first", "second", "third"}) {
+    Backup old(path("a"));
+    write_text_atomically(path("a"), text);
+    const std::string kept = old.settle();
+    EXPECT_EQ(kept, text == "first" ? "" : path(text == "second" ? "a.~1~" : "a.~2~"));
+  }
+  EXPECT_EQ(read(path("a")) + read(path("a.~1~")) + read(path("a.~2~")), "thirdfirstsecond");
+  fs::remove(path("a.~1~"));
+  Backup old(path("a"));
+  fs::remove(path("a"));
+  EXPECT_EQ(old.settle(), path("a.~1~"));
+  EXPECT_EQ(read(path("a.~1~")), "third");
+  EXPECT_EQ(old.settle(), "");
+  EXPECT_EQ(names(), (std::vector<std::string>{"a.~1~", "a.~2~"}));
+}
+
+TEST_F(Output, WhatStaysAsItWasNeedsNoBackup) {
+  write_text_atomically(path("a"), "text");
+  ::chmod(path("a").c_str(), 0600);
+  { const Backup unused(path("a")); }
+  for (const std::string text : {"text", "texts"}) {
+    Backup old(path("a"));
+    write_text_atomically(path("a"), text);
+    EXPECT_EQ(old.settle(), text == "text" ? "" : path("a.~1~"));
+  }
+  struct stat status = {};
+  ASSERT_EQ(::stat(path("a.~1~").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600u);
+  EXPECT_EQ(names(), (std::vector<std::string>{"a", "a.~1~"}));
+}
+
+TEST_F(Output, AWriteThatFailsLeavesNoBackup) {
+  write_text_atomically(path("a"), "old");
+  {
+    const Backup old(path("a"));
+    faults.rename = 1;
+    EXPECT_NE(refusal(path("a"), "new"), "(written)");
+  }
+  EXPECT_EQ(read(path("a")), "old");
+  EXPECT_EQ(names(), std::vector<std::string>{"a"});
+}
+
+TEST_F(Output, NothingIsKeptOfWhatCannotBeLost) {
+  std::ofstream(path("empty"));
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  for (const std::string& name :
+       {path("none"), path("empty"), path("pipe"), std::string("/dev/null")}) {
+    Backup old(name);
+    EXPECT_EQ(old.settle(), "") << name;
+  }
+  EXPECT_EQ(names(), (std::vector<std::string>{"empty", "pipe"}));
+}
+
+TEST_F(Output, WhatCannotBeKeptIsRefused) {
+  const auto refused = [](const std::string& name) {
+    try {
+      const Backup old(name);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("(kept)");
+  };
+  const std::string longest(255, 'n');
+  write_text_atomically(path(longest), "old");
+  EXPECT_NE(refused(path(longest)).find("File name too long; --force replaces it"),
+            std::string::npos);
+  write_text_atomically(path("a"), "old");
+  for (int i = 1; i <= 99; ++i) {
+    EXPECT_EQ(refused(path("a")), "(kept)") << i;
+    write_text_atomically(path("a.~" + std::to_string(i) + "~"), "older");
+  }
+  EXPECT_NE(refused(path("a")).find("99 backups of it"), std::string::npos) << refused(path("a"));
+  EXPECT_EQ(names().size(), 101u);
+}
+
+TEST_F(Output, AFileThatMayHaveNoSecondNameIsCopied) {
+  write_text_atomically(path("a"), "old");
+  faults.link = 3;  // of the first, and of the second under the first's name and its own
+  Backup old(path("a"));
+  Backup another(path("a"));
+  write_text_atomically(path("a"), "new");
+  EXPECT_EQ(old.settle(), path("a.~1~"));
+  EXPECT_EQ(another.settle(), path("a.~2~"));
+  EXPECT_EQ(read(path("a.~1~")) + read(path("a.~2~")), "oldold");
 }
 
 // ---- Signals in the middle of a write, in a child process

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "lattice/compare.h"
+#include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/prediction.h"
 #include "lattice/study/tree_chain.h"
@@ -110,6 +111,15 @@ TEST(Terrain, AMapMayBeAFileBesideTheScene) {
       << message("none.csv");
 }
 
+TEST(Terrain, TheFileThatASceneNamesIsKnownWithoutReadingIt) {
+  EXPECT_EQ(map_file_in("[terrain]\nmap_file = \"map.csv\"\n", "scenes"), "scenes/map.csv");
+  EXPECT_EQ(map_file_in("terrain.map_file = '/a/map.csv'", "scenes"), "/a/map.csv");
+  EXPECT_EQ(map_file_in("terrain = { map_file = \"map.csv\" }", ""), "map.csv");
+  for (const char* other : {"", "[terrain]\nmap = [\".\"]\n", "terrain.map_file = 3",
+                            "map_file = \"map.csv\"", "terrain = 1", "no scene", "[[["})
+    EXPECT_EQ(map_file_in(other, "scenes"), "") << other;
+}
+
 // A pixel is a gate; the upper row is the far side.
 TEST(Terrain, AMapMayBeAPicture) {
   const std::filesystem::path folder = testing::TempDir();
@@ -163,6 +173,36 @@ TEST(Terrain, AMapMayBeAPicture) {
   write(PNG_FORMAT_GRAY, {0, 0, 0, 0}, 2);
   EXPECT_TRUE(
       contains(message(grey), "is 2 pixels wide and 2 high, the field has 3 columns and 2"));
+  // A palette, of which the file then loses the last colour.
+  const auto write_palette = [&](std::vector<png_byte> pixels, bool is_cut) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = 3;
+    image.height = 2;
+    image.format = PNG_FORMAT_GRAY | PNG_FORMAT_FLAG_COLORMAP;
+    image.colormap_entries = 4;
+    const std::array<png_byte, 4> palette{0, 128, 255, 7};
+    ASSERT_NE(0, png_image_write_to_file(&image, (folder / "map.png").c_str(), 0, pixels.data(), 0,
+                                         palette.data()));
+    if (!is_cut) return;
+    std::ifstream file(folder / "map.png", std::ios::binary);
+    std::string bytes(std::istreambuf_iterator<char>(file), {});
+    const auto at = bytes.find("PLTE");
+    ASSERT_NE(at, bytes.npos);
+    bytes.replace(at - 4, 24,
+                  std::string("\0\0\0\x09PLTE\0\0\0\x80\x80\x80\xff\xff\xff\xc1\xd2\xdd\xa3", 21));
+    std::ofstream(folder / "map.png", std::ios::binary) << bytes;
+  };
+  for (const bool is_cut : {false, true}) {
+    write_palette({0, 2, 1, 2, 2, 0}, is_cut);
+    EXPECT_EQ(read(grey).terrain->type_of_cell, cells);
+  }
+  write_palette({0, 2, 1, 2, 3, 0}, false);
+  EXPECT_TRUE(contains(message(grey), "map.png: row 2, column 2 has the grey value 7"));
+  write_palette({0, 2, 1, 2, 3, 0}, true);
+  EXPECT_TRUE(contains(message(grey),
+                       "map.png: row 2, column 2 has colour 3 of a palette of 3, counted from 0"))
+      << message(grey);
   // A gamma of the file's own would change its values in silence.
   write(PNG_FORMAT_GRAY, map, 3);
   std::ifstream plain(folder / "map.png", std::ios::binary);

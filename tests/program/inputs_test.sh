@@ -67,8 +67,31 @@ rm -f table.txt err.txt out.txt
 [ "$(inputs)" = "$untouched" ] || fail "an input was destroyed"
 [ "$(ls folder | wc -l)" = 0 ] || fail "refused commands left $(ls folder)"
 mkdir -p folder/scenes && echo '# my own' >folder/scenes/field.toml
-expect 2 'would be replaced; choose another folder' "$gatewalk" reproduce -o folder --quick
+expect 2 'is not empty and holds no report, .* choose another folder, or give --force' "$gatewalk" reproduce -o folder --quick
+[ "$(find folder -type f)" = folder/scenes/field.toml ] || fail "reproduce, refused, wrote $(find folder -type f)"
+expect 2 'would be replaced; choose another folder' "$gatewalk" reproduce -o folder --quick --force
 [ "$(cat folder/scenes/field.toml)" = '# my own' ] || fail "reproduce replaced a scene of the user's own"
+# Nor a file that a scene names, wherever the scene itself is named.
+mkdir maps
+printf '.s.\n...\n' >maps/map.csv
+cp maps/map.csv maps/other.csv
+printf 'field = { columns = 3, rows = 2 }\n[terrain]\nmap_file = "map.csv"\n[terrain.types.s.forces]\npropulsion_N = 6\n' >maps/map.toml
+inputs() { cat "$work"/safe/maps/*.csv "$work/safe/maps/map.toml" | cksum; }
+untouched=$(inputs)
+other='terrain.map_file="maps/other.csv"'
+destroys "$gatewalk" gate maps/map.toml --json maps/map.csv
+destroys "$gatewalk" gate maps/map.toml --force --json folder/../maps/map.csv
+destroys "$gatewalk" gate maps/map.toml --set "$other" --json maps/other.csv
+destroys "$gatewalk" gate maps/map.toml --set "$other" --json maps/map.csv
+destroys "$gatewalk" gate own.toml --set field.columns=3 --set field.rows=2 --set "$other" --json maps/other.csv
+destroys "$gatewalk" build maps/map.toml -o maps/map.csv
+destroys "$gatewalk" predict m.nc maps/map.toml --json maps/map.csv
+destroys "$gatewalk" predict maps/map.toml --figure plot.svg --json maps/map.csv
+destroys "$gatewalk" scene maps/map.toml --new -o maps/map.csv
+destroys "$gatewalk" power maps/map.toml --versus "$other" --json maps/other.csv
+destroys "$gatewalk" chart own.toml maps/map.toml -o folder --json maps/map.csv
+cd maps && destroys "$gatewalk" trace map.toml --csv map.csv; cd ..
+destroys "$gatewalk" validate maps/map.toml --matrix m.nc --json maps/map.csv
 cd ..
 
 finish

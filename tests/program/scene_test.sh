@@ -11,7 +11,9 @@ holds '[.keys[] | select(.key == "beams.length_m" or .key == "run.traverse_y_m")
 for file in three.toml mine.toml; do "$gatewalk" gate $file --trials 50 --quiet --json out-$file.json; done
 jq -s 'map(del(.made_by)) | .[0] == .[1]' out-three.toml.json out-mine.toml.json | grep -q true || fail "scene --new: another scene"
 holds '.made_by.derived | index("run.time_limit_s") != null' out-three.toml.json
-expect 2 'is there already' "$gatewalk" scene three.toml --new -o mine.toml
+echo '# edited' >>mine.toml
+expect 0 'kept as mine.toml.~1~$' "$gatewalk" scene three.toml --new -o mine.toml
+[ "$(tail -n 1 mine.toml.~1~)" = '# edited' ] || fail "scene --new: an edited scene is lost"
 expect 0 'three.toml leaves out keys, .*beams.length_m = 0.2,' "$gatewalk" gate three.toml --trials 10
 # What the file leaves out follows from the file, whatever is overridden.
 "$gatewalk" scene three.toml --set forces.propulsion_N=1.6 --json set.json --quiet
