@@ -525,7 +525,10 @@ Provenance Options::provenance(const lattice::Scene& scene) const {
   return p;
 }
 
-dynamics::Work Options::work() const { return state_->work.value_or(watched_work(talk())); }
+dynamics::Work Options::work() const {
+  if (!state_->work) state_->work = watched_work(talk());
+  return *state_->work;
+}
 
 void Options::warn(const std::string& text) const {
   if (text.empty()) return;

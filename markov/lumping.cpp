@@ -124,12 +124,11 @@ Lumping lump(const Chain& chain, const std::vector<int>& group_of,
 std::vector<double> expected_visits(const FieldChain& chain, const Field& field, const Start& start,
                                     int max_cells) {
   std::vector<double> visits(static_cast<std::size_t>(chain.inputs()), 0.0);
-  const WalkTotals totals = walk_totals(
-      chain, field, start, max_cells, {},
-      [&](int, std::int64_t, int input, double share) {
-        visits[static_cast<std::size_t>(input)] += share;
-      },
-      1e-13);
+  const WalkTotals totals = walk_totals(chain, field, start, max_cells, {},
+                                        [&](int, std::int64_t, int input, double share) {
+                                          visits[static_cast<std::size_t>(input)] += share;
+                                        },
+                                        {.all = 1e-13});
   if (totals.remainder > 1e-13)
     throw std::runtime_error("expected visits: a share of " + std::to_string(totals.remainder) +
                              " still walks");

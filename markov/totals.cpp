@@ -66,24 +66,9 @@ class Wave {
 
 constexpr int kMostSteps = 100'000;
 
-}  // namespace
-
-double Moments::sd() const { return std::sqrt(std::max(0.0, square / share - mean() * mean())); }
-
-Moments WalkTotals::all(const std::array<Moments, kEndings>& by_ending) {
-  Moments sum;
-  for (const Moments& m : by_ending) {
-    sum.share += m.share;
-    sum.sum += m.sum;
-    sum.square += m.square;
-  }
-  return sum;
-}
-
-WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start& start,
-                       int max_cells, const Rewards& rewards, const EachState& each,
-                       double tolerance) {
-  validate(chain, field, start, max_cells);
+WalkTotals totals_by_steps(const FieldChain& chain, const Field& field, const Start& start,
+                           int max_cells, const Rewards& rewards, const EachState& each,
+                           double tolerance) {
   const std::size_t quantities = quantities_of(chain, rewards);
   const std::int64_t cells = std::int64_t{field.columns} * field.rows;
   Wave now(cells, chain.inputs(), quantities), next(cells, chain.inputs(), quantities);
@@ -153,6 +138,222 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
     if (walking == 0.0 || (max_cells == 0 && walking <= tolerance)) break;
   }
   return out;
+}
+
+/// Without limit of cells, one row of the field after the other: what enters a row is moved on
+/// within it, by sweeps to both sides, until next to nothing is left to move.
+class TotalsByRows {
+ public:
+  TotalsByRows(const FieldChain& chain, const Field& field, const Start& start,
+               const Rewards& rewards, const EachState& each, const WalkTolerance& tolerance)
+      : chain_(chain),
+        field_(field),
+        start_(start),
+        each_(each),
+        tolerance_(tolerance),
+        inputs_(chain.inputs()),
+        quantities_(1 + quantities_of(chain, rewards)),
+        stride_(1 + 2 * quantities_) {
+    for (std::size_t type = 0; type < chain.chains().size(); ++type)
+      add_draws(chain.chains()[type], rewards.empty() ? std::vector<Reward>{} : rewards[type]);
+    const double states =
+        static_cast<double>(field.rows) * field.columns * static_cast<double>(inputs_);
+    least_ = tolerance.all / states;
+    if (tolerance.chance)
+      least_to_target_ =
+          tolerance.of_target *
+          (*tolerance.chance)(1, std::int64_t{start.row} * field.columns + start.column,
+                              start.input) /
+          states;
+    waiting_.resize(static_cast<std::size_t>(highest_) + 1);
+    for (auto& row : waiting_) row.resize(numbers_of_row());
+    visits_.resize(static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(inputs_));
+    out_.visits = CellProbabilities::Zero(field.rows, field.columns);
+    ended_.resize(kEndings * stride_);
+  }
+
+  WalkTotals run() {
+    at(0, start_.column, start_.input)[0] = 1.0;
+    for (int row = start_.row; row < field_.rows; ++row) {
+      leave(row);
+      count(row);
+      std::fill(waiting_.front().begin(), waiting_.front().end(), 0.0);
+      std::rotate(waiting_.begin(), waiting_.begin() + 1, waiting_.end());
+    }
+    out_.totals.resize(quantities_ - 1);
+    for (std::size_t e = 0; e < kEndings; ++e) {
+      const double* const sums = ended_.data() + e * stride_;
+      out_.endings[e] = sums[0];
+      out_.draws[e] = moments(sums, 0);
+      for (std::size_t q = 1; q < quantities_; ++q) out_.totals[q - 1][e] = moments(sums, q);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// A nonzero: where it leads, its chance, and in `rewards_` its means and mean squares, draws
+  /// first.
+  struct Draw {
+    double p;
+    int next, di_x, di_y;
+  };
+  struct Draws {
+    std::vector<Draw> all;
+    std::vector<double> rewards;     // (draws x 2 x quantities)
+    std::vector<std::size_t> first;  // (inputs + 1)
+  };
+
+  void add_draws(const Chain& chain, const std::vector<Reward>& rewards) {
+    Draws draws;
+    std::size_t nonzero = 0;
+    for (int input = 0; input < chain.inputs(); ++input) {
+      draws.first.push_back(draws.all.size());
+      for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it, ++nonzero) {
+        const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
+        draws.all.push_back({it.value(), exit.next_input, exit.di_x, exit.di_y});
+        highest_ = std::max(highest_, exit.di_y);
+        draws.rewards.push_back(1.0);
+        for (const Reward& r : rewards) draws.rewards.push_back(r.mean[nonzero]);
+        draws.rewards.push_back(1.0);
+        for (const Reward& r : rewards) draws.rewards.push_back(r.square[nonzero]);
+      }
+    }
+    draws.first.push_back(draws.all.size());
+    draws_.push_back(std::move(draws));
+  }
+  [[nodiscard]] std::size_t numbers_of_row() const {
+    return static_cast<std::size_t>(field_.columns) * static_cast<std::size_t>(inputs_) * stride_;
+  }
+  /// Numbers of walks that are about to draw: their share, sums of their totals so far, and of the
+  /// squares. In a row above the present one.
+  [[nodiscard]] double* at(int above, std::int64_t column, std::int64_t input) {
+    return waiting_[static_cast<std::size_t>(above)].data() +
+           static_cast<std::size_t>(column * inputs_ + input) * stride_;
+  }
+  [[nodiscard]] Moments moments(const double* sums, std::size_t q) const {
+    return {sums[0], sums[1 + q], sums[1 + quantities_ + q]};
+  }
+  [[nodiscard]] bool is_little(double share, std::int64_t cell, int input) const {
+    return share <= least_ &&
+           (!tolerance_.chance || share * (*tolerance_.chance)(1, cell, input) <= least_to_target_);
+  }
+
+  /// All that waits in the row moves on, but what is so little that all of it together is too.
+  void leave(int row) {
+    bool any = true;
+    for (int sweep = 0; any && sweep < kMostSteps; ++sweep) {
+      any = false;
+      for (int i = 0; i < field_.columns; ++i)
+        any = draw(sweep % 2 == 0 ? i : field_.columns - 1 - i, row) || any;
+    }
+    for (std::int64_t state = 0; state < field_.columns * inputs_; ++state)
+      out_.remainder += waiting_.front()[static_cast<std::size_t>(state) * stride_];
+  }
+
+  /// One draw of all walks in a cell. Whether there were any.
+  bool draw(int column, int row) {
+    const std::int64_t cell = std::int64_t{row} * field_.columns + column;
+    const auto type = static_cast<std::size_t>(chain_.type_of(column, row));
+    const Draws& draws = draws_[type];
+    bool any = false;
+    std::vector<double>& from = from_;
+    for (int input = 0; input < inputs_; ++input) {
+      double* const here = at(0, column, input);
+      if (here[0] == 0.0 || is_little(here[0], cell, input)) continue;
+      any = true;
+      from.assign(here, here + stride_);
+      std::fill_n(here, stride_, 0.0);
+      const auto first = draws.first[static_cast<std::size_t>(input)],
+                 last = draws.first[static_cast<std::size_t>(input) + 1];
+      if (first == last) {
+        double* const ended = ended_.data() + static_cast<std::size_t>(Ending::unsampled) * stride_;
+        for (std::size_t k = 0; k < stride_; ++k) ended[k] += from[k];
+        continue;
+      }
+      visits_[static_cast<std::size_t>(column * inputs_ + input)] += from[0];
+      for (std::size_t i = first; i < last; ++i) {
+        const Draw& d = draws.all[i];
+        std::int64_t to_column = column, to_row = row;
+        const auto ending = follow(field_, {d.next, d.di_x, d.di_y}, false, to_column, to_row);
+        add(d.p, draws.rewards.data() + i * 2 * quantities_,
+            ending ? ended_.data() + static_cast<std::size_t>(*ending) * stride_
+                   : at(d.di_y, to_column, d.next));
+      }
+    }
+    return any;
+  }
+  /// Of the walks `from_` those that draw with chance p what takes so much.
+  void add(double p, const double* rewards, double* to) const {
+    const double share = p * from_[0];
+    const double *const sum = from_.data() + 1, *const square = sum + quantities_,
+                        *const mean = rewards, *const mean_square = rewards + quantities_;
+    double *const to_sum = to + 1, *const to_square = to_sum + quantities_;
+    to[0] += share;
+    for (std::size_t q = 0; q < quantities_; ++q) {
+      to_sum[q] += p * sum[q] + share * mean[q];
+      to_square[q] += p * (square[q] + 2.0 * sum[q] * mean[q]) + share * mean_square[q];
+    }
+  }
+
+  /// Visits of the row's states.
+  void count(int row) {
+    for (std::int64_t column = 0; column < field_.columns; ++column) {
+      const std::int64_t cell = row * field_.columns + column;
+      for (int input = 0; input < inputs_; ++input) {
+        double& share = visits_[static_cast<std::size_t>(column * inputs_ + input)];
+        if (share == 0.0) continue;
+        out_.visits.data()[cell] += share;
+        if (each_) each_(1, cell, input, share);
+        share = 0.0;
+      }
+    }
+  }
+
+  const FieldChain& chain_;
+  const Field field_;
+  const Start start_;
+  const EachState& each_;
+  const WalkTolerance& tolerance_;
+  const std::int64_t inputs_;
+  const std::size_t quantities_, stride_;  // draws are the first quantity
+  int highest_ = 0;                        // di_y
+  double least_ = 0.0, least_to_target_ = 0.0;
+  std::vector<Draws> draws_;                  // by type
+  std::vector<std::vector<double>> waiting_;  // this row, the row above, ...
+  std::vector<double> from_;                  // walks in hand
+  std::vector<double> visits_;                // (columns x inputs) of the row
+  std::vector<double> ended_;                 // (endings x stride)
+  WalkTotals out_;
+};
+
+bool goes_down(const FieldChain& chain) {
+  for (const Chain& c : chain.chains())
+    for (const Exit& exit : c.exits())
+      if (exit.di_y < 0) return true;
+  return false;
+}
+
+}  // namespace
+
+double Moments::sd() const { return std::sqrt(std::max(0.0, square / share - mean() * mean())); }
+
+Moments WalkTotals::all(const std::array<Moments, kEndings>& by_ending) {
+  Moments sum;
+  for (const Moments& m : by_ending) {
+    sum.share += m.share;
+    sum.sum += m.sum;
+    sum.square += m.square;
+  }
+  return sum;
+}
+
+WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start& start,
+                       int max_cells, const Rewards& rewards, const EachState& each,
+                       const WalkTolerance& tolerance) {
+  validate(chain, field, start, max_cells);
+  if (max_cells == 0 && !goes_down(chain))
+    return TotalsByRows(chain, field, start, rewards, each, tolerance).run();
+  return totals_by_steps(chain, field, start, max_cells, rewards, each, tolerance.all);
 }
 
 namespace {

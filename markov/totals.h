@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "markov/chain.h"
+#include "markov/committor.h"
 #include "markov/predict.h"
 
 namespace gatewalk::markov {
@@ -46,13 +47,23 @@ struct WalkTotals {
 /// this cell (row * columns + column) and state.
 using EachState = std::function<void(int draw, std::int64_t cell, int input, double share)>;
 
-/// First and second moments, exact: propagated step by step with the shares of the walks, as
-/// markov::propagate does with these. Without limit of cells until no more than `tolerance` of
-/// the walks are on their way, or 10^5 steps are done (`remainder`). Throws std::invalid_argument
-/// when rewards do not belong to the chain, and as validate().
+/// Without limit of cells: which walks are followed no further (`remainder`).
+struct WalkTolerance {
+  double all = 1e-12;                    // that share of all walks ...
+  const EndingChance* chance = nullptr;  // ... but of those that end so ...
+  double of_target = 1e-9;               // ... only that share of them
+};
+
+/// First and second moments, exact: propagated with the shares of the walks. With a limit of cells
+/// step by step, as markov::propagate does; without, row by row, the draws of a walk are not told
+/// apart (`each` is told of draw 1), and a row is left after 10^5 sweeps at the latest. Where moves
+/// lead to a row below, step by step until no more than `tolerance.all` of the walks are on their
+/// way, or 10^5 steps are done. Throws std::invalid_argument when rewards do not belong to the
+/// chain, and as validate().
 [[nodiscard]] WalkTotals walk_totals(const FieldChain& chain, const Field& field,
                                      const Start& start, int max_cells, const Rewards& rewards = {},
-                                     const EachState& each = {}, double tolerance = 1e-12);
+                                     const EachState& each = {},
+                                     const WalkTolerance& tolerance = {});
 
 /// How a walk ended, and its total of the first quantity.
 struct TimedWalk {

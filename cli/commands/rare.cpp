@@ -46,7 +46,9 @@ int run_rare(const Arguments& arguments) {
                     "the row to enter, counted from 0 (default: one behind the field's "
                     "last: the field is crossed); at most the rows of a terrain");
   options.add_number("accuracy", "R", "relative standard error to reach (default: 0.05)");
-  options.add_count("gate-runs", "N", "at most so many gate runs, about", "2e7");
+  options.add_count("gate-runs", "N",
+                    "at most so many gate runs, about (default: 2e7, and 100 000 trials as long as "
+                    "nobody gets there)");
   options.add_count("trials", "N", "also run N trials directly, to compare");
   options.add_seed();
   options.add_strict();
@@ -54,8 +56,11 @@ int run_rare(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::SplittingOptions how{
       .accuracy = options.has("accuracy") ? options.number("accuracy") : 0.05,
-      .most_runs = options.count("gate-runs", 1000),
       .seed = options.seed()};
+  if (options.has("gate-runs")) {
+    how.most_runs = options.count("gate-runs", 1000);
+    how.most_in_vain = how.most_runs;
+  }
   if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
     throw UsageError("--accuracy: must lie between 0 and 1");
   lattice::Scene scene = options.read_scene();
@@ -69,7 +74,10 @@ int run_rare(const Arguments& arguments) {
   if (settled) json["method"] = to_json(*settled);
   json["made_by"] = to_json(options.provenance(scene));
   options.give_out(json, table_of(event, direct, scene.field) + method_line(settled));
-  if (!event.splitting.reached)
+  if (const lattice::Splitting& s = event.splitting; !(s.rows.back().probability > 0.0))
+    options.warn("none of " + std::to_string(s.trials) + " trials entered row " +
+                 std::to_string(how.row) + "; --gate-runs N goes on for so many gate runs");
+  else if (!s.reached)
     options.warn("the relative standard error of " + digits(how.accuracy) +
                  " was not reached with " + std::to_string(how.most_runs) +
                  " gate runs; --gate-runs allows more");

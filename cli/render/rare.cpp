@@ -24,7 +24,7 @@ std::string interval_text(const std::array<double, 2>& i) {
 Json to_json(const lattice::RowChance& c) {
   const bool known = c.probability > 0.0;
   return {{"probability", c.probability},
-          {"interval_95", known ? Json(c.interval_95()) : Json()},
+          {"interval_95", c.interval_95()},
           {"relative_standard_error", known ? Json(c.relative_standard_error) : Json()}};
 }
 
@@ -78,11 +78,13 @@ std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
                      const lattice::FieldParams& field) {
   const lattice::Splitting& s = event.splitting;
   const lattice::RowChance& last = s.rows.back();
-  std::string table =
-      "chance to enter row " + std::to_string(s.rows.size()) + ": " + chance(last.probability);
+  std::string table = "chance to enter row " + std::to_string(s.rows.size()) + ": ";
   if (last.probability > 0.0)
-    table += " " + interval_text(last.interval_95()) + ", relative standard error " +
-             fixed(100 * last.relative_standard_error, 1) + " %";
+    table += chance(last.probability) + " " + interval_text(last.interval_95()) +
+             ", relative standard error " + fixed(100 * last.relative_standard_error, 1) + " %";
+  else
+    table += "none of " + std::to_string(s.trials) + " trials did: at most " +
+             chance(last.at_most) + " (two-sided 95 %)";
   table += "\nthe chain alone says " + chance(event.chain.back());
   if (has_error(last))
     table += "; direct simulation would need " + rounded(trials_needed(last)) +
@@ -99,8 +101,7 @@ std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const lattice::RowChance& c = s.rows[r];
     table += padded(std::to_string(r + 1), 6) + padded(chance(c.probability), 12) +
-             padded(c.probability > 0.0 ? interval_text(c.interval_95()) : "-", 24) +
-             padded(chance(event.chain[r]), 12);
+             padded(interval_text(c.interval_95()), 24) + padded(chance(event.chain[r]), 12);
     if (direct.trials > 0) {
       const auto [low, high] = dynamics::share_interval(direct.entered[r], direct.trials);
       table += padded(chance(static_cast<double>(direct.entered[r]) /

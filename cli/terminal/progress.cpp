@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
-#include <optional>
 
 #include "cli/terminal/interrupt.h"
 
@@ -34,6 +34,21 @@ std::string clock_text(double seconds) {
   return text;
 }
 
+/// "some 40 s", "some 3 min", "some 5 h".
+std::string rough_duration(double seconds) {
+  constexpr double kMinute = 60.0, kHour = 3600.0, kDay = 24.0 * kHour;
+  if (!(seconds < 100.0 * kDay)) return "over 100 days";
+  const auto some = [&](double unit, const char* name) {
+    return "some " + std::to_string(std::llround(seconds / unit)) + name;
+  };
+  if (seconds >= 100.0 * kMinute) return some(kHour, " h");
+  return seconds >= 100.0 ? some(kMinute, " min") : some(1.0, " s");
+}
+
+int whole_percent(std::int64_t done, std::int64_t total) {
+  return static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total));
+}
+
 /// Columns of the terminal, so that the line never wraps and leaves a trail.
 std::size_t terminal_columns() {
   winsize size = {};
@@ -42,16 +57,32 @@ std::size_t terminal_columns() {
 
 }  // namespace
 
-Progress::Progress(std::string label, std::int64_t total, bool enabled)
+Progress::Progress(std::string label, std::int64_t total, bool enabled, const Lines& lines)
     : label_(std::move(label)),
       total_(total),
-      visible_(enabled && total > 0 && ::isatty(STDERR_FILENO) == 1),
+      enabled_(enabled),
+      at_terminal_(::isatty(STDERR_FILENO) == 1),
+      lines_(lines),
       start_(Clock::now()),
-      last_drawn_(start_) {}
+      last_drawn_(start_),
+      last_line_(start_) {}
+
+void Progress::begin(std::string label, std::int64_t total) {
+  label_ = std::move(label);
+  total_ = total;
+  estimated_ = false;
+  start_ = last_drawn_ = Clock::now();
+}
 
 void Progress::update(std::int64_t done) {
-  if (!visible_) return;
-  const auto now = Clock::now();
+  if (!enabled_ || total_ <= 0) return;
+  if (at_terminal_)
+    redraw(done, Clock::now());
+  else
+    write_line(done, Clock::now());
+}
+
+void Progress::redraw(std::int64_t done, Clock::time_point now) {
   if (now - last_drawn_ < kRedraw) return;
   last_drawn_ = now;
   drawn_ = true;
@@ -60,9 +91,7 @@ void Progress::update(std::int64_t done) {
   const double rate = static_cast<double>(done) / elapsed;
   const double left = static_cast<double>(total_ - done) / rate;  // inf while nothing is done
   char figures[48];
-  std::snprintf(figures, sizeof figures, " %3d%%  %.3g/s  ",
-                static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_)),
-                rate);
+  std::snprintf(figures, sizeof figures, " %3d%%  %.3g/s  ", whole_percent(done, total_), rate);
   std::string line =
       label_ + figures + clock_text(elapsed) + " elapsed, " + clock_text(left) + " left";
   line.resize(std::min(line.size(), terminal_columns() - 1));
@@ -70,29 +99,49 @@ void Progress::update(std::int64_t done) {
   std::fflush(stderr);
 }
 
+void Progress::write_line(std::int64_t done, Clock::time_point now) {
+  const double elapsed = seconds_between(start_, now);
+  const double left =
+      elapsed * static_cast<double>(total_ - done) / static_cast<double>(done);  // inf at first
+  if (!estimated_ && done > 0 && 30 * (now - start_) >= lines_.every) {
+    estimated_ = true;
+    if (elapsed + left > std::chrono::duration<double>(lines_.every).count()) {
+      *lines_.out << "gatewalk: " << label_ << ": " << rough_duration(elapsed + left) << std::endl;
+      last_line_ = now;
+      return;
+    }
+  }
+  if (now - last_line_ < lines_.every) return;
+  last_line_ = now;
+  *lines_.out << "gatewalk: " << label_ << ": " << whole_percent(done, total_) << " %";
+  if (done > 0) *lines_.out << ", " << rough_duration(left) << " left";
+  *lines_.out << std::endl;
+}
+
 void Progress::finish() {
   if (drawn_) std::fputs("\r\x1b[K", stderr);
   drawn_ = false;
 }
 
-dynamics::Work watched_work(bool show_progress) {
-  struct Line {
-    std::string what;
+dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines) {
+  struct Watched {
+    Progress progress;
+    std::string what;       // the part in hand; empty: none
     std::int64_t most = 0;  // done; checks at the end of a part begin at its start again
-    std::optional<Progress> progress;
   };
-  const auto line = std::make_shared<Line>();
-  return {[line, show_progress](std::string_view what, std::int64_t done, std::int64_t total) {
+  const std::shared_ptr<Watched> watched(new Watched{{"", 0, show_progress, lines}, {}});
+  return {[watched](std::string_view what, std::int64_t done, std::int64_t total) {
     if (done >= total) {
-      line->progress.reset();
+      watched->progress.finish();
+      watched->what.clear();
       return;
     }
     if (interrupted()) throw Interrupted{};
-    if (!line->progress || what != line->what) {
-      line->progress.emplace(line->what = what, total, show_progress);
-      line->most = 0;
+    if (what != watched->what) {
+      watched->progress.begin(watched->what = what, total);
+      watched->most = 0;
     }
-    line->progress->update(line->most = std::max(line->most, done));
+    watched->progress.update(watched->most = std::max(watched->most, done), total);
   }};
 }
 

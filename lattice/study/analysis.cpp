@@ -26,12 +26,13 @@ double trapped_share(const markov::Chain& chain, int input) {
   return share;
 }
 
-/// Throws where the states of all cells take too much memory: some waves of shares and totals, and
-/// chances and passages by draw; as much again for all groups.
+/// Throws where the states of all cells take too much memory: chances and passages, with a limit by
+/// draw and beside some waves of shares and totals; as much again for all groups.
 void require_memory(const CostedChain& c, const FieldParams& field, bool with_groups) {
   constexpr double kMostBytes = 8.0 * (1 << 30);
   const double states = static_cast<double>(field.columns) * field.rows * c.chain.inputs();
-  const double numbers = 2.0 * (1.0 + 2.0 * kCosts) + 4.0 * std::max(1, field.max_gates);
+  const double numbers =
+      field.max_gates > 0 ? 2.0 * (1.0 + 2.0 * kCosts) + 4.0 * field.max_gates : 4.0;
   if (states * numbers * sizeof(double) * (with_groups ? 2.0 : 1.0) > kMostBytes)
     throw std::invalid_argument(
         "analysis: the states of " + std::to_string(field.columns) + " x " +
@@ -53,13 +54,15 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
 
   require_memory(c, field, !chain.groups.empty());
   tell(0);
-  const Passages passages(c, field, options.target);
-  tell(1);
+  std::optional<Passages> whole;
   std::vector<Passages> groups;
+  tbb::parallel_invoke([&] { whole.emplace(c, field, options.target); },
+                       [&] { groups = passages_of_groups(chain, field, options.target); });
+  const Passages& passages = *whole;
+  tell(1);
   markov::FrequentPaths paths;
   std::optional<LumpedChain> lumped;
   tbb::parallel_invoke(
-      [&] { groups = passages_of_groups(chain, field, options.target); },
       [&] {
         paths = markov::most_frequent_paths(c.chain, cells, c.start, field.max_gates,
                                             passages.chance(), options.paths);

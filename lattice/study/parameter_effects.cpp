@@ -1,6 +1,7 @@
 #include "lattice/study/parameter_effects.h"
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -289,10 +290,13 @@ ParameterEffects parameter_effects(const Scene& scene, const AnalysedChain& chai
   for (const ParamInfo& info : gate_param_table())
     if (is_physical(info.key)) infos.push_back(&info);
   work.tell(kRuns, 0, std::ssize(infos));
-  const Passages passages(chain.chain, scene.field, target, false);
+  std::optional<Passages> whole;
+  std::vector<Passages> groups;
+  tbb::parallel_invoke([&] { whole.emplace(chain.chain, scene.field, target, false); },
+                       [&] { groups = passages_of_groups(chain, scene.field, target, false); });
+  const Passages& passages = *whole;
   ParameterEffects out{.chance = passages.at_start(), .effects = {}, .health = {}};
   if (passages.at_start() > 0.0) {
-    const auto groups = passages_of_groups(chain, scene.field, target, false);
     Parameters parameters(scene, chain, passages, groups, options);
     for (std::size_t k = 0; k < infos.size(); ++k) {
       work.tell(kRuns, static_cast<std::int64_t>(k), std::ssize(infos));

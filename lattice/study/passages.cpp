@@ -17,7 +17,6 @@ Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Endin
       inputs_(c.chain.inputs()),
       cells_(std::int64_t{field.columns} * field.rows),
       state_visits_(static_cast<std::size_t>(c.chain.inputs()), 0.0) {
-  constexpr double kLeft = 1e-12, kLeftOfTarget = 1e-6;
   totals_ = markov::walk_totals(
       c.chain, {field.columns, field.rows}, c.start, field.max_gates,
       with_costs ? c.rewards : markov::Rewards{},
@@ -29,7 +28,7 @@ Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Endin
           shares_.resize(index(draw, cells_ - 1, 0) + static_cast<std::size_t>(inputs_), 0.0);
         shares_[at] += share;
       },
-      at_start_ > 0.0 ? std::min(kLeft, kLeftOfTarget * at_start_) : kLeft);
+      {.chance = &chance_});
 }
 
 Passages::Draws::Draws(const Passages& passages) : passages_(passages) {

@@ -23,6 +23,8 @@ using namespace dynamics;
 
 // A body whose weight is within this factor of what it should be goes on as it is.
 constexpr double kWindow = 2.0;
+constexpr double kAbove95 = 0.025;  // of a two-sided 95 % interval, beyond either end
+
 // Of one entry; and of one trial's: then bodies are no longer split, which costs accuracy only.
 constexpr int kMostCopies = 100;
 constexpr std::uint64_t kMostOfTrial = std::uint64_t{1} << 20;
@@ -114,15 +116,33 @@ struct Sums {
   [[nodiscard]] RowChance chance(std::size_t r) const {
     const auto n = static_cast<double>(trials);
     const double mean = sum[r] / n;
-    if (!(mean > 0.0)) return {0.0, std::numeric_limits<double>::quiet_NaN()};
+    if (!(mean > 0.0)) return {0.0, std::numeric_limits<double>::quiet_NaN(), none_seen(r)};
     const double variance = std::max(0.0, squares[r] / n / mean / mean - 1.0);
     return {mean, std::sqrt(variance / (n - 1.0))};
+  }
+
+ private:
+  /// What the chance of a row is at most that no body entered; 2.5 % may lie above. None of m
+  /// independent trials did what happens with chance g: g <= 1 - 0.025^(1/m). Rows are entered one
+  /// after the other, so the chance is at most that of the last row seen times g, where m trials
+  /// got to that row: as many as their weights count for, (sum w)^2 / sum w^2 (Kish, Survey
+  /// Sampling, 1965), as bodies of a trial are not independent. Half of the 2.5 % for each factor.
+  [[nodiscard]] double none_seen(std::size_t r) const {
+    const auto at_most = [](double above, double m) { return -std::expm1(std::log(above) / m); };
+    while (r > 0 && !(sum[r - 1] > 0.0)) --r;
+    if (r == 0) return at_most(kAbove95, static_cast<double>(trials));
+    constexpr double kNormalAboveHalf = 2.241402727604947;  // 1.25 % lie above
+    const RowChance seen = chance(r - 1);
+    const double factor = std::exp(kNormalAboveHalf * seen.relative_standard_error);
+    return std::min(1.0, seen.probability * factor) *
+           at_most(0.5 * kAbove95, sum[r - 1] * sum[r - 1] / squares[r - 1]);
   }
 };
 
 }  // namespace
 
 std::array<double, 2> RowChance::interval_95() const {
+  if (!(probability > 0.0)) return {0.0, at_most};
   const double factor = std::exp(dynamics::kNormal95 * relative_standard_error);
   return {probability / factor, std::min(1.0, probability * factor)};
 }
@@ -184,6 +204,7 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
     }
     return runs;
   };
+  std::int64_t wanted_in_all = 0;
   // Gate by gate: all bodies of a block run through one gate, so that many are in flight at a time.
   const auto run_block = [&](TrialRange range) {
     std::vector<SplitTrial> trials;
@@ -194,7 +215,7 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
                         RandomForce(first.forces, t.random())});
     }
     while (!bodies.empty()) {
-      work.tell("split trials", range.first, range.first + range.count);
+      work.tell("split trials", range.first, wanted_in_all);
       const std::vector<GateRun> runs = run_all(bodies);
       for (std::size_t i = 0; i < bodies.size(); ++i)
         trials[static_cast<std::size_t>(bodies[i].trial)].take(bodies[i], runs[i], next);
@@ -206,8 +227,9 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
   constexpr std::int64_t kFirst = 1000;
   for (std::int64_t more = kFirst; more > 0;) {
     constexpr std::int64_t kBlock = 4096;
-    for (const std::int64_t end = sums.trials + more; sums.trials < end;)
-      run_block({sums.trials, std::min(kBlock, end - sums.trials)});
+    wanted_in_all = sums.trials + more;
+    while (sums.trials < wanted_in_all)
+      run_block({sums.trials, std::min(kBlock, wanted_in_all - sums.trials)});
     const double error = sums.chance(sums.sum.size() - 1).relative_standard_error;
     result.reached = error <= options.accuracy;
     if (result.reached) break;
@@ -216,7 +238,10 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
         std::isfinite(error) ? 1.1 * n * std::pow(error / options.accuracy, 2.0) - n : 8.0 * n;
     const double affordable = static_cast<double>(options.most_runs - result.health.runs) * n /
                               static_cast<double>(result.health.runs);
-    more = static_cast<std::int64_t>(std::min({std::max(wanted, 0.1 * n), 8.0 * n, affordable}));
+    const double in_vain =
+        std::isfinite(error) ? affordable : static_cast<double>(options.most_in_vain) - n;
+    more = static_cast<std::int64_t>(
+        std::min({std::max(wanted, 0.1 * n), 8.0 * n, affordable, in_vain}));
   }
   result.trials = sums.trials;
   result.gate_runs = result.health.runs;
@@ -237,8 +262,9 @@ constexpr int kPerLeafOfValues = 40;
 // given some chance.
 constexpr double kLeastValue = 0.02;
 
-/// Trials for the chain.
-constexpr std::int64_t kPoolTrials = 60'000;
+/// Trials for the chain, in a field of one type fewer where so many of them get to the target: of
+/// a way that bodies often go an eighth of the trials tells enough.
+constexpr std::int64_t kPoolTrials = 60'000, kFewestPoolTrials = kPoolTrials / 8, kAtTarget = 200;
 
 /// The pool of a field: full trials from its start, no more than take so many gate runs, about.
 class Pool {
@@ -247,7 +273,7 @@ class Pool {
       : seed_(seed), work_(work) {
     pool_.starts.push_back({.start = entry_of(scene.start)});
     if (gates_of(scene).types().size() == 1) {
-      run_in(scene, kPoolTrials, most_runs);
+      run_until_known(scene, most_runs);
     } else {
       run_in(scene, kPoolTrials / 2, most_runs / 2);
       const std::vector<int>& map = scene.terrain->type_of_cell;
@@ -281,11 +307,30 @@ class Pool {
  private:
   [[nodiscard]] const StartTrials& start() const { return pool_.starts.front(); }
 
+  static constexpr std::int64_t kFirst = 100;  // then a runner knows how many gates a trial takes
+
   void run_in(const Scene& scene, std::int64_t trials, std::int64_t most_runs) {
     PoolRunner runner(scene, seed_, most_runs, work_);
-    constexpr std::int64_t kFirst = 100;  // then it knows how many gates a trial takes
     runner.run_full(pool_.starts.front(), kFirst);
     if (runner.may_go_on()) runner.run_full(pool_.starts.front(), trials - kFirst);
+    add(runner);
+  }
+  /// Twice as many trials again and again, until the way to the target is known; fewer also where
+  /// nobody leaves the first gate.
+  void run_until_known(const Scene& scene, std::int64_t most_runs) {
+    PoolRunner runner(scene, seed_, most_runs, work_);
+    const auto& endings = start().full.endings;
+    runner.run_full(pool_.starts.front(), kFirst);
+    for (std::int64_t trials = kFewestPoolTrials; trials <= kPoolTrials && runner.may_go_on();
+         trials *= 2) {
+      runner.run_full(pool_.starts.front(), trials - std::ssize(endings));
+      if (std::count(endings.begin(), endings.end(), markov::Ending::far_edge) >= kAtTarget ||
+          runner.gates_per_trial() == 1.0)
+        break;
+    }
+    add(runner);
+  }
+  void add(const PoolRunner& runner) {
     gate_runs_ += runner.gate_runs;
     health_ += runner.health;
   }
@@ -305,12 +350,14 @@ RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const 
   const FieldGates gates = gates_of(deep);
   const Pool pool(deep, options.most_runs / 4, options.seed, work);
   RareEvent event{.splitting = {}, .chain = {}, .pool_runs = pool.gate_runs()};
+  work.tell("chain", 0, 2);
   {
     const markov::FieldChain chain = pool.chain(pool.kernel(gates, kEntriesPerLeaf), deep);
     event.chain = markov::row_chances(chain, {deep.field.columns, deep.field.rows},
                                       {deep.field.start_column(), 0, chain.inputs() - 1});
   }
   event.chain_seconds = watch.seconds();
+  work.tell("chain", 1, 2);
 
   // As far as the chain knows a way, which is one of larger leaves too: all entries into rows
   // behind that are worth the same.

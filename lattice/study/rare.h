@@ -23,14 +23,17 @@ struct SplittingOptions {
   int row = 0;                          // the target: entering it, rows counted from 0
   double accuracy = 0.05;               // relative standard error that ends it
   std::int64_t most_runs = 20'000'000;  // gate runs, about
+  std::int64_t most_in_vain = 100'000;  // trials while no body has come to the target
   std::uint64_t seed = 1;
 };
 
 /// Chance to enter one row.
 struct RowChance {
   double probability = 0.0;
-  double relative_standard_error = 0.0;  // NaN where no body came
-  /// Of its logarithm, in which such estimates are less skewed.
+  double relative_standard_error = 0.0;  // NaN where no body came; and then ...
+  double at_most = 1.0;                  // ... the upper end of the interval
+  /// Of its logarithm, in which such estimates are less skewed; two-sided, from 0 where no body
+  /// came.
   [[nodiscard]] std::array<double, 2> interval_95() const;
 };
 
@@ -64,9 +67,10 @@ struct RareEvent {
   double seconds = 0.0;        // of all
 };
 
-/// The same with the committor of a chain that full trials make first. Where gates are of several
-/// types half of these run through fields of one type each, but for the first gate: else types that
-/// stand far from the start would be seen by few bodies.
+/// The same with the committor of a chain that full trials make first, 60 000, or down to an eighth
+/// of that where some hundreds of them enter the row or none leaves the first gate. Where gates are
+/// of several types half of these run through fields of one type each, but for the first gate: else
+/// types that stand far from the start would be seen by few bodies.
 [[nodiscard]] RareEvent rare_event(const Scene& scene, const SplittingOptions& options,
                                    const dynamics::Work& work = {});
 

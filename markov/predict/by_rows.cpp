@@ -4,6 +4,7 @@
 #include <string>
 
 #include "markov/predict/plan.h"
+#include "markov/staying.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -248,8 +249,9 @@ class PredictionRows {
       const RowElimination& elimination = chain.elimination->get();
       const double width = field_.columns,
                    rows = field_.rows;  // whatever the starts: same bits in any company
-      const double sums = std::log(std::clamp(tolerance_, 1e-280, 0.1)) /
-                          std::log(std::clamp(chain.stays, 1e-6, 1.0 - 1e-9));
+      const double sums =
+          std::log(std::clamp(tolerance_, 1e-280, 0.1)) /
+          std::log(std::clamp(chain.stay->get(chain.sideways, plan_.inputs), 1e-6, 1.0 - 1e-9));
       const double by_sums = rows * sums * static_cast<double>(chain.sideways.terms.size()) *
                              std::ceil(width / kLanes);
       const double by_elimination = std::min(width, 0.5 * sums) * elimination.column_cost() +
@@ -283,6 +285,17 @@ class PredictionRows {
 };
 
 }  // namespace
+
+double LazyStay::per_move(const Stencil& sideways, int inputs) {
+  return staying_per_move(inputs, [&](auto use) {
+    for (const auto& groups : sideways.passes)
+      for (const Group& g : groups)
+        for (int i = g.begin; i < g.end; ++i) {
+          const Term& term = sideways.terms[static_cast<std::size_t>(i)];
+          use(term.source, g.target, term.p);
+        }
+  });
+}
 
 std::vector<FinalDistribution> predict_by_rows(const PredictionPlan& plan, const Field& field,
                                                const std::vector<Start>& starts,

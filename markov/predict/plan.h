@@ -3,6 +3,7 @@
 /// what has ended of the walks from one start.
 
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,21 @@ inline constexpr double kNothing = 1e-280;
 /// by the first move, by the second, ...
 enum Tally : int { kTallyTotal, kTallyTrapped, kTallyUnsampled, kTallyMoved };
 
+/// staying_per_move() of a chain, found when it is first asked for. Thread-safe.
+class LazyStay {
+ public:
+  /// `sideways`: the moves within a row, of so many inputs.
+  [[nodiscard]] double get(const Stencil& sideways, int inputs) const {
+    std::call_once(made_, [&] { per_move_ = per_move(sideways, inputs); });
+    return per_move_;
+  }
+
+ private:
+  [[nodiscard]] static double per_move(const Stencil& sideways, int inputs);
+  mutable std::once_flag made_;
+  mutable double per_move_ = 1.0;
+};
+
 /// A chain as stencils.
 struct PreparedChain {
   std::vector<int> walking_inputs, unsampled;  // of the inputs that are entered
@@ -29,8 +45,8 @@ struct PreparedChain {
   std::vector<Stencil> upwards;                // by 1 row, 2 rows, ...
   Stencil ends;                                // to the planes of a Tally but the first
   Stencil walking;                             // to kTallyTotal: all that walks on
-  std::unique_ptr<const LazyRowElimination> elimination;  // none where it cannot be used
-  double stays = 0.0;  // largest chance to stay in the row, of inputs entered sideways
+  std::unique_ptr<const LazyRowElimination> elimination;          // none where it cannot be used
+  std::unique_ptr<LazyStay> stay = std::make_unique<LazyStay>();  // of `sideways`
 };
 
 struct PredictionPlan {

@@ -38,7 +38,6 @@ PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
   for (int input = 0; input < plan.inputs; ++input) {
     const auto i = static_cast<std::size_t>(input);
     std::fill(shares.begin(), shares.end(), 0.0);
-    double stays = 0.0;
     if (!is_entered[i])
       continue;  // no mass but that of a start, of which the first draw is made apart
     if (chain.is_sampled(input)) {
@@ -60,12 +59,8 @@ PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
       moves.push_back(entry);
       if (exit.di_y > 0) upwards[static_cast<std::size_t>(exit.di_y) - 1].push_back(entry);
       if (exit.di_y == 0 && from_below[i]) first_sideways.push_back(entry);
-      if (exit.di_y == 0 && sideways[i]) {
-        further_sideways.push_back(entry);
-        stays += it.value();
-      }
+      if (exit.di_y == 0 && sideways[i]) further_sideways.push_back(entry);
     }
-    prepared.stays = std::max(prepared.stays, stays);
     for (std::size_t ending = 0; ending < shares.size(); ++ending)
       if (shares[ending] > 0.0)
         ends.push_back({static_cast<int>(ending), 0, input, shares[ending]});

@@ -12,6 +12,7 @@
 #include <functional>
 #include <limits>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -140,6 +141,78 @@ TEST(Progress, StaysSilentWhereThereIsNoTerminal) {
     progress.update(5);
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// ---- Lines, where standard error is no terminal
+
+/// What `work` writes to the stream it is given, with standard error in a file.
+std::string in_lines(milliseconds every, const std::function<void(const Progress::Lines&)>& work) {
+  std::ostringstream out;
+  testing::internal::CaptureStderr();
+  work({&out, every});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  return out.str();
+}
+
+TEST(ProgressLines, SayHowLongAPartTakesThenHowFarItIs) {
+  const std::string text = in_lines(milliseconds(300), [](const Progress::Lines& lines) {
+    Progress progress("runs", 1000, true, lines);
+    std::this_thread::sleep_for(milliseconds(20));
+    progress.update(1);
+    std::this_thread::sleep_for(milliseconds(310));
+    progress.update(500);
+  });
+  EXPECT_TRUE(std::regex_match(text, std::regex("gatewalk: runs: some [0-9]+ s\n"
+                                                "gatewalk: runs: 50 %, some [0-9]+ s left\n")))
+      << text;
+}
+
+TEST(ProgressLines, SayNothingOfShortParts) {
+  EXPECT_EQ(in_lines(milliseconds(60'000),
+                     [](const Progress::Lines& lines) {
+                       Progress progress("runs", 10, true, lines);
+                       std::this_thread::sleep_for(milliseconds(50));
+                       progress.update(5);
+                     }),
+            "");
+}
+
+TEST(ProgressLines, SayNothingWhereUnwanted) {
+  EXPECT_EQ(in_lines(milliseconds(1),
+                     [](const Progress::Lines& lines) {
+                       Progress progress("runs", 1000, false, lines);
+                       std::this_thread::sleep_for(milliseconds(20));
+                       progress.update(1);
+                     }),
+            "");
+}
+
+// Many short parts are no reason to be silent; a part that comes again is timed anew.
+TEST(ProgressLines, ComeInTimeAcrossShortParts) {
+  const std::string text = in_lines(milliseconds(200), [](const Progress::Lines& lines) {
+    const dynamics::Work work = watched_work(true, lines);
+    for (int part = 0; part < 6; ++part) {
+      work.tell("part " + std::to_string(part), 0, 2);
+      std::this_thread::sleep_for(milliseconds(50));
+      work.tell("part " + std::to_string(part), 1, 2);
+      work.tell("part " + std::to_string(part), 2, 2);
+    }
+  });
+  EXPECT_GE(times(text, '\n'), 1u) << text;
+  EXPECT_TRUE(std::regex_search(text, std::regex("gatewalk: part [0-9]: (50 %, )?some [0-9]+ s")))
+      << text;
+}
+
+TEST(ProgressLines, FollowATotalThatGrows) {
+  const std::string text = in_lines(milliseconds(1), [](const Progress::Lines& lines) {
+    const dynamics::Work work = watched_work(true, lines);
+    work.tell("trials", 0, 10);
+    std::this_thread::sleep_for(milliseconds(5));
+    work.tell("trials", 9, 90);
+    std::this_thread::sleep_for(milliseconds(5));
+    work.tell("trials", 9, 90);
+  });
+  EXPECT_TRUE(text.find("trials: 10 %") != std::string::npos) << text;
 }
 
 }  // namespace

@@ -196,6 +196,53 @@ TEST(RareEvent, EndsWhereNobodyGetsThrough) {
   expect_agree(e.splitting.rows[0], direct(scene, 1, 100'000), 4.0);
 }
 
+// Of trials without anybody: that of a share, and behind a row that bodies entered no more than
+// what is known of that row.
+TEST(Splitting, SaysHowLikelyItIsAtMostWhereNobodyCame) {
+  Scene stuck = fast_scene();
+  stuck.gate.forces.propulsion = stuck.gate.forces.random = 0.0;
+  stuck.start.vy = 0.0;
+  const Splitting s = split(stuck, 1.0, equal_worth, {.row = 2, .most_in_vain = 3000});
+  EXPECT_EQ(s.trials, 3000);
+  EXPECT_FALSE(s.reached);
+  for (const RowChance& c : s.rows) {
+    EXPECT_EQ(c.probability, 0.0);
+    EXPECT_TRUE(std::isnan(c.relative_standard_error));
+    EXPECT_NEAR(c.at_most, 1.0 - std::pow(0.025, 1.0 / 3000.0), 1e-15);
+    EXPECT_EQ(c.interval_95(), (std::array{0.0, c.at_most}));
+  }
+}
+
+// In repeats of so few trials that most see nobody in the last row: above the truth but for 2.5 %
+// of them, and no larger than it need be.
+TEST(Splitting, ABoundWhereNobodyCameHoldsAsOftenAsItSays) {
+  const Scene scene = fast_scene();
+  const RowChance truth = direct(scene, 8, 400'000);
+  int without = 0, below = 0, large = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const auto by_row = [](int, int row, const Crossing&) { return std::pow(1.5, row); };
+    const RowChance last =
+        split(scene, 1.0, by_row, {.row = 8, .accuracy = 0.9, .most_runs = 1, .seed = seed})
+            .rows.back();
+    if (last.probability > 0.0) continue;
+    ++without;
+    below += last.at_most < truth.probability;
+    large += last.at_most > 100.0 * truth.probability;
+  }
+  EXPECT_GT(without, 10);
+  EXPECT_LE(below, 3);
+  EXPECT_EQ(large, 0);
+}
+
+// Few full trials for the chain do where many of them get to the row; all of them where few do.
+TEST(RareEvent, RunsFewTrialsForTheChainOfACommonEvent) {
+  const Scene scene = fast_scene();
+  const RareEvent common = rare_event(scene, {.row = 2}), rare = rare_event(scene, {.row = 7});
+  EXPECT_LT(common.pool_runs, 7500 * 6);
+  EXPECT_GT(rare.pool_runs, 60'000);
+  expect_agree(common.splitting.rows[1], direct(scene, 2, 40'000), 4.0);
+}
+
 // 95 % intervals hold in 93 to 97 % of 1000 repeats, of a chance of some 0.001; in the usual 40, of
 // a larger one, at least 34 times.
 TEST(Splitting, IntervalsHoldAsOftenAsTheySay) {

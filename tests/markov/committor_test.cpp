@@ -47,6 +47,37 @@ TEST(Committor, TakesCellsOfSeveralTypes) {
   EXPECT_DOUBLE_EQ(committor(rows, {2, 3})(0, 0, 0), 0.5 * 0.25 * 0.25);
 }
 
+// Rows of one type are solved by sums in registers, rows of several by sweeps: of cells that are
+// all alike the same, also where walks stay long in a row, and leave by a side.
+TEST(Committor, IsTheSameByEitherRoute) {
+  for (const int far : {1, 3})
+    for (const double stays : {0.3, 0.95}) {
+      std::vector<Exit> exits = never_down();
+      for (Exit& exit : exits) exit.di_x *= far;
+      Probabilities p = Chain::from_counts(lattice_counts(3), exits).matrix();
+      for (int row = 0; row < p.rows(); ++row) {  // so much within the row, the rest ahead and ends
+        double within = 0.0;
+        for (Probabilities::InnerIterator it(p, row); it; ++it)
+          within += exits[static_cast<std::size_t>(it.col())].di_x != 0 ? it.value() : 0.0;
+        for (Probabilities::InnerIterator it(p, row); it && within > 0.0 && within < 1.0; ++it)
+          it.valueRef() *= exits[static_cast<std::size_t>(it.col())].di_x != 0
+                               ? stays / within
+                               : (1.0 - stays) / (1.0 - within);
+      }
+      const Chain chain = Chain::from_probabilities(p, exits);
+      const Field field{11, 4};
+      std::vector<int> types(44);
+      for (std::size_t i = 0; i < types.size(); ++i) types[i] = i % 2 == 0;
+      for (const Ending ending : {Ending::far_edge, Ending::right_edge, Ending::trapped}) {
+        const Committor by_sums = committor(chain, field, ending),
+                        by_sweeps = committor(FieldChain::by_cell({chain, chain}, 11, types), field,
+                                              ending);
+        for (std::size_t i = 0; i < by_sums.values.size(); ++i)
+          EXPECT_NEAR(by_sums.values[i], by_sweeps.values[i], 2e-11);
+      }
+    }
+}
+
 TEST(Committor, RefusesMovesDown) {
   const Chain chain = Chain::from_counts(lattice_counts(3), lattice_exits());
   EXPECT_THROW((void)committor(chain, {5, 6}), std::invalid_argument);

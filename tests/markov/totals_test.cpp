@@ -70,6 +70,61 @@ TEST(WalkTotals, EndAsPropagationSays) {
   }
 }
 
+// Row by row and step by step: the same. A limit that nobody reaches goes by steps.
+TEST(WalkTotals, ByRowsAreThoseByStepsUpToALimitThatNobodyReaches) {
+  Counts gaps = lattice_counts(4);
+  empty_row(gaps, 30);
+  std::vector<Exit> leaps = never_down();  // of two columns, of two rows, and aslant
+  for (std::size_t j = 0; j + 1 < leaps.size(); j += 7)
+    leaps[j].di_x *= 2, leaps[j].di_y *= 2, leaps[j].di_x += leaps[j].di_y;
+  const std::vector<Chain> chains = {Chain::from_counts(lattice_counts(3), leaps),
+                                     Chain::from_counts(gaps, never_down())};
+  std::vector<int> types(81);
+  for (std::size_t i = 0; i < types.size(); ++i) types[i] = i % 3 == 0;
+  for (const FieldChain& field :
+       {FieldChain(chains[0]), FieldChain(chains[1]), FieldChain::by_cell(chains, 9, types)}) {
+    const Rewards rewards = some_rewards(field, 8);
+    std::vector<double> shares[2];
+    const auto totals = [&](int limit) {
+      auto& by_state = shares[limit == 0 ? 0 : 1];
+      by_state.resize(std::size_t{81} * 87);
+      return walk_totals(field, kNineByNine, kBottomCentre, limit, rewards,
+                         [&](int, std::int64_t cell, int input, double share) {
+                           by_state[static_cast<std::size_t>(cell * 87 + input)] += share;
+                         });
+    };
+    const WalkTotals rows = totals(0), steps = totals(5000);
+    EXPECT_LT(rows.remainder, 1e-12);
+    EXPECT_LT((rows.visits - steps.visits).abs().maxCoeff(), 1e-11);
+    for (std::size_t i = 0; i < shares[0].size(); ++i)
+      EXPECT_NEAR(shares[0][i], shares[1][i], 1e-11);
+    const auto expect_same = [](const Moments& a, const Moments& b) {
+      EXPECT_NEAR(a.share, b.share, 1e-11);
+      EXPECT_NEAR(a.sum, b.sum, 1e-10);
+      EXPECT_NEAR(a.square, b.square, 1e-8);
+    };
+    for (std::size_t e = 0; e < kEndings; ++e) {
+      expect_same(rows.draws[e], steps.draws[e]);
+      expect_same(rows.totals[0][e], steps.totals[0][e]);
+    }
+  }
+}
+
+// Walks that hardly any make are followed where the question is of these.
+TEST(WalkTotals, FollowTheFewThatEndAsAskedFor) {
+  const double up = 1e-4;
+  const Chain chain =
+      Chain::from_probabilities(matrix(1, 2, {{0, 0, up}, {0, 1, 1.0 - up}}), {{0, 0, 1}, {}});
+  const Field field{1, 20};
+  const EndingChance chance(chain, field, Ending::far_edge, 0);
+  const WalkTotals all = walk_totals(chain, field, {}, 0),
+                   few = walk_totals(chain, field, {}, 0, {}, {}, {.chance = &chance});
+  EXPECT_EQ(all.endings[at(Ending::far_edge)], 0.0);
+  EXPECT_LT(all.remainder, 1e-12);
+  EXPECT_NEAR(few.endings[at(Ending::far_edge)] / std::pow(up, 20), 1.0, 1e-12);
+  EXPECT_NEAR(few.draws[at(Ending::far_edge)].mean(), 20.0, 1e-12);
+}
+
 // Times of walks have the moments that were asked for, and walks the endings.
 TEST(WalkTotals, AreThoseOfTimedWalks) {
   std::vector<Chain> chains = {Chain::from_counts(lattice_counts(3), never_down()),
