@@ -5,7 +5,11 @@
 #include <numeric>
 
 #include "dynamics/quantile_bins.h"
+#include "dynamics/random.h"
+#include "dynamics/share.h"
+#include "lattice/draws.h"
 #include "lattice/group_spread.h"
+#include "lattice/share_95.h"
 #include "lattice/study/pool_answers.h"
 #include "lattice/study/pooled_prediction.h"
 #include "lattice/study/tree_chain.h"
@@ -111,6 +115,7 @@ markov::FinalDistribution of_shares(double left, double right) {
   d.final_cells << left, right;
   d.endings[0] = left;
   d.endings[1] = right;
+  d.mean_steps = 5.0;
   return d;
 }
 
@@ -122,13 +127,103 @@ TEST(GroupSpread, SamplingAndBiasByHand) {
   // have.
   const std::vector<markov::FinalDistribution> biased(8, of_shares(0.4, 0.6));
   EXPECT_NEAR(GroupSpread(whole, biased).error(1000, 1).total_variation, 0.075, 1e-12);
-  EXPECT_NEAR(GroupSpread(whole, biased).endings_95(100).interval[0][0], 0.425, 1e-12);
+  EXPECT_NEAR(GroupSpread(whole, biased).endings_95(100).interval[0][0], 0.425, 0.002);
   // +-0.1 in turn: a standard error of 0.1 / sqrt(7), whose |error| has its 95 % point at 1.96.
   std::vector<markov::FinalDistribution> spread;
   for (int k = 0; k < 8; ++k) spread.push_back(of_shares(k % 2 ? 0.4 : 0.6, k % 2 ? 0.6 : 0.4));
   EXPECT_NEAR(GroupSpread(whole, spread).error(1000, 1).total_variation,
               1.96 * 0.1 / std::sqrt(7.0), 0.01);
   EXPECT_THROW(GroupSpread(whole, {whole}), std::invalid_argument);
+}
+
+// 1.0 less rounding is all of them: 160 trials cannot tell 100 % from 99 %.
+TEST(GroupSpread, NoneAndAllSeenAreAsManyTrialsSay) {
+  const auto whole = of_shares(0.0, 1.0 - 1e-16);
+  std::vector<markov::FinalDistribution> groups(8, of_shares(0.0, 1.0));
+  groups[3] = whole;
+  const GroupSpread spread(whole, groups);
+  const EndingShares endings = spread.endings_95(160);
+  EXPECT_EQ(endings.interval[0], dynamics::share_interval(0, 160));
+  EXPECT_NEAR(endings.interval[1][0], dynamics::share_interval(160, 160)[0], 1e-12);
+  EXPECT_EQ(endings.interval[1][1], 1.0);
+  const auto gates = spread.gates_95(160);
+  EXPECT_LT(gates[0](0, 1), 0.99);
+  EXPECT_GT(gates[1](0, 0), 0.01);
+  // 1.9 % may be in another gate.
+  const double unseen = 1.0 - std::pow(0.05, 1.0 / 160);
+  const Error95 e = spread.error(160, 1);
+  EXPECT_NEAR(e.total_variation, unseen, 1e-12);
+  EXPECT_NEAR(e.rmse_per_100, 100.0 * unseen, 1e-12);
+  EXPECT_NEAR(e.corrcoef, std::sqrt(1.0 - std::pow(unseen / 0.5, 2)), 1e-12);
+  EXPECT_TRUE(std::isnan(spread.error(3, 1).corrcoef)) << "three trials say nothing of it";
+}
+
+TEST(GroupSpread, RmseAndCorrcoefHoldForAnyGateThatWasMissed) {
+  CellProbabilities p = CellProbabilities::Zero(3, 3);
+  p << 0.7, 0.1, 0, 0, 0.2, 0, 0, 0, 0;
+  CellCounts counts = (1000 * p).cast<std::int64_t>();
+  const Error95 e = error_of_shares(counts, 1);
+  for (const auto& [trials, least] : {std::pair{60, 0.0}, {1000, 0.9}}) {
+    const double unseen = 1.0 - std::pow(0.05, 1.0 / trials);
+    markov::FinalDistribution whole;
+    whole.final_cells = p;
+    const Error95 bound =
+        GroupSpread(whole, std::vector<markov::FinalDistribution>(8, whole)).error(trials, 1);
+    EXPECT_GT(bound.corrcoef, least);
+    for (Eigen::Index from : {0, 1, 4})
+      for (Eigen::Index to = 0; to < p.size(); ++to) {
+        CellProbabilities other = p;
+        other.data()[from] -= unseen;
+        other.data()[to] += unseen;
+        EXPECT_GE(corrcoef(p, other), bound.corrcoef - 1e-12);
+        EXPECT_LE(rmse_per_100(p, other), bound.rmse_per_100 + 1e-12);
+      }
+  }
+  EXPECT_LT(e.corrcoef, 1.0);
+}
+
+// One trial of 160 in one of the groups, which pooling makes twice as many of: it may be chance.
+TEST(GroupSpread, OneTrialSeenLeavesAWideInterval) {
+  std::vector<markov::FinalDistribution> groups(8, of_shares(0.0, 1.0));
+  groups[2] = of_shares(0.05, 0.95);
+  const auto [low, high] =
+      GroupSpread(of_shares(0.0125, 0.9875), groups).endings_95(160).interval[0];
+  EXPECT_LT(low, 0.0008);
+  EXPECT_GT(high, 0.04);
+  const auto all = GroupSpread(of_shares(0.0125, 0.9875), groups).endings_95(160).interval[1];
+  EXPECT_NEAR(all[0], 1.0 - high, 1e-9);
+  EXPECT_NEAR(all[1], 1.0 - low, 1e-9);
+}
+
+// However alike the groups are, so few gate runs tell a rare share no better.
+TEST(GroupSpread, NoNarrowerThanTheGateRuns) {
+  const auto whole = of_shares(1e-4, 1.0 - 1e-4);
+  std::vector<markov::FinalDistribution> groups;
+  for (int k = 0; k < 8; ++k) groups.push_back(of_shares(1e-4 * (1 + 0.01 * k), 0.9999));
+  const auto [low, high] = GroupSpread(whole, groups).endings_95(200).interval[0];
+  EXPECT_GT(high, dynamics::share_interval(0, 1000)[1]);
+  EXPECT_LT(low, 2e-6);
+}
+
+// Trials that are not pooled at all: 95 % of the intervals hold, at least 93 of 100 (and two
+// standard errors), also where most of the eight groups see none.
+TEST(GroupSpread, IntervalsOfSharesHold) {
+  constexpr int kRepeats = 500;
+  for (const double p : {0.0008, 0.006, 0.02, 0.1, 0.4, 0.985}) {
+    int held = 0;
+    for (std::uint64_t i = 0; i < kRepeats; ++i) {
+      dynamics::Random random(dynamics::Purpose::resampling, {5, 0, i});
+      std::vector<double> groups;
+      double whole = 0.0;
+      for (int g = 0; g < kTrialGroups; ++g) {
+        groups.push_back(static_cast<double>(binomial(20, p, random)) / 20);
+        whole += groups.back() / kTrialGroups;
+      }
+      const auto [low, high] = share_95(whole, groups, {160, 800});
+      held += low <= p && p <= high;
+    }
+    EXPECT_GE(held, 0.93 * kRepeats - 2 * std::sqrt(0.93 * 0.07 * kRepeats)) << p;
+  }
 }
 
 TEST(GroupSpread, OfSharesIsBinomialNoise) {
@@ -168,6 +263,9 @@ TEST(PooledPrediction, WhatWasNeverSeenIsInTheBar) {
               1e-4);
   EXPECT_LE(p.starts[0].error.total_variation, 0.01);
   EXPECT_LT(p.starts[0].gates_95[0].maxCoeff(), 1.0);
+  EXPECT_GT(p.starts[0].error.rmse_per_100, 0.0);
+  EXPECT_LT(p.starts[0].error.corrcoef, 1.0);
+  for (const auto& [low, high] : p.starts[0].endings.interval) EXPECT_GT(high - low, 1e-3);
 }
 
 // The pool knows slow bodies only: of a fast one it cannot say how it goes on.
