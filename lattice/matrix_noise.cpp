@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "dynamics/random.h"
 #include "lattice/draws.h"
+#include "lattice/exits.h"
 #include "lattice/gate_chain.h"
 #include "markov/predict.h"
 
@@ -148,11 +150,7 @@ std::array<double, 2> MatrixNoise::interval_95(markov::Ending e) const {
   const auto at = static_cast<std::size_t>(e);
   std::vector<double> shares;
   for (const auto& endings : endings_) shares.push_back(endings[at]);
-  std::sort(shares.begin(), shares.end());
-  const std::size_t beyond = (shares.size() + 1) / 40;  // 2.5 % on either side
-  const std::size_t low = beyond > 0 ? beyond - 1 : 0;
-  return {std::min(shares[low], prediction_.endings[at]),
-          std::max(shares[shares.size() - 1 - low], prediction_.endings[at])};
+  return middle_95(std::move(shares), prediction_.endings[at]);
 }
 
 double MatrixNoise::mean_total_variation() const {

@@ -12,5 +12,7 @@ panel(left, right, top, bottom) = sprintf("set lmargin at screen %g; set rmargin
 key_at(left, top) = sprintf("set key at screen %s left top Left reverse vertical maxcols 1 samplen 1.5 spacing 1.1 font ',12'", at(left, top))
 set border 3
 set tics out nomirror scale 0.5
-set xlabel offset 0,0.4
+set xtics offset 0,0.5
+set ytics offset 0.4,0
+set xlabel offset 0,0.9
 set ylabel offset 0.8,0

@@ -17,6 +17,7 @@ grep -q '100.00 \[' ../gate_trapped.svg || { echo "gate_trapped.svg: no number b
 run sweep "$scenes/single_gate.toml" --trials 50 --vary forces.propulsion_N=7 --figure ../sweep_single.svg
 run sweep "$scenes/single_gate.toml" --trials 200 --vary forces.propulsion_N=4:1:9 --figure ../sweep_one.svg
 run sweep "$scenes/single_gate.toml" --trials 100 --vary run.method=stable,moreau,paper --figure ../sweep_words.svg
+run sweep "$scenes/single_gate.toml" --trials 50 --vary beams.stiffness_right_Nm_per_rad=400,500 --vary forces.propulsion_N=7,8 --figure ../sweep_low.svg
 run sweep "$scenes/single_gate.toml" --trials 100 --vary forces.propulsion_N=4:1:9 --vary forces.random_N=0:10:60 --figure ../sweep_two.svg
 run predict "$field" --accuracy 0.1 --figure ../predict.svg
 run predict tree.nc --accuracy 0.1 --start 4,5,10 --start=-17,13,12 --figure ../predict_starts.svg
@@ -34,6 +35,19 @@ run lattice "$scenes/robot.toml" --trials 1000 --figure ../lattice_robot.svg
 run validate "$field" --bins paper --matrix-trials 20 --trials 500 --figure ../validate.svg
 run analyze "$field" --set run.method=moreau --accuracy 0.05 --runs 300 --trials 2000 --target left_side --figure ../analyze.svg
 run analyze "$field" --set run.method=moreau --set field.columns=61 --set field.rows=40 --set field.max_gates=30 --accuracy 0.1 --runs 0 --figure ../analyze_large.svg
+# Which gate is of which type.
+mixed=("$scenes/mixed.toml" --set run.method=moreau)
+run predict "${mixed[@]}" --accuracy 0.1 --figure ../mixed_predict.svg
+run predict "${mixed[@]}" --accuracy 0.1 --set field.columns=41 --set field.rows=40 --set field.max_gates=45 --figure ../mixed_small.svg
+run lattice "${mixed[@]}" --trials 500 --figure ../mixed_lattice.svg
+run validate "${mixed[@]}" --bins paper --matrix-trials 20 --trials 300 --start 0,0,15 --figure ../mixed_validate.svg
+run analyze "${mixed[@]}" --accuracy 0.1 --runs 0 --figure ../mixed_analyze.svg
+"$gatewalk" build "${mixed[@]}" --bins paper --trials 5 -o mixed.nc --quiet >/dev/null
+run walk mixed.nc --walks 1000 --figure ../mixed_walk.svg
+for name in predict lattice validate analyze walk; do
+  grep -q 'unmarked: \.<' ../mixed_$name.svg || { echo "mixed_$name.svg does not name the types of gates"; exit 1; }
+done
+grep -q 'too small to be marked' ../mixed_small.svg || { echo "mixed_small.svg does not say why it marks no types"; exit 1; }
 run rare "$field" --set run.method=moreau --row 8 --accuracy 0.2 --gate-runs 40000 --trials 2000 --figure ../rare.svg
 run trace "$scenes/soft_left.toml" --trials 5 --figure ../trace.svg
 run trace "$field" --field --trials 4 --figure ../trace_field.svg

@@ -1,5 +1,6 @@
 #include "cli/arguments.h"
 #include "cli/render/analysis.h"
+#include "cli/render/exits.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/json.h"
@@ -25,17 +26,23 @@ int run_lattice(const Arguments& arguments) {
 
   const dynamics::Stopwatch watch;
   lattice::FieldCosts costs(scene.gate);
-  const auto tally = lattice::field_trials(scene, trials, options.seed(), options.work(), &costs);
+  lattice::ExitCounts counts(scene.field);
+  const auto tally =
+      lattice::field_trials(scene, trials, options.seed(), options.work(), &costs, &counts);
+  const lattice::FieldExits exits = lattice::exits_of(counts);
 
   Json json = to_json(tally, scene, settled);
+  json["exits"] = to_json(exits, scene);
   json["costs"] = to_json(costs, scene.gate);
   json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, table_of(tally, scene, settled) + table_of(costs, scene.gate));
+  options.give_out(
+      json, table_of(tally, scene, settled) + table_of(exits, scene) + table_of(costs, scene.gate));
   options.remark(fixed(watch.seconds(), 2) + " s");
   options.warn(too_few_gates(scene));
   const int exit = status_of(options, tally.health);
   options.draw([&] {
-    return figure_of({{"full dynamics, " + std::to_string(trials) + " trials", tally}});
+    return figure_of({{"full dynamics, " + std::to_string(trials) + " trials", tally, exits}},
+                     scene);
   });
   return exit;
 }

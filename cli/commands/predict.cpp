@@ -66,14 +66,14 @@ std::vector<dynamics::BodyState> bodies_of(const std::vector<lattice::PaperStart
 /// A map for each start.
 template <class Answer>
 Figure figure_of(const std::vector<lattice::PaperStart>& given, const std::vector<Answer>& answers,
-                 lattice::EndingShares Answer::*shares) {
+                 lattice::EndingShares Answer::*shares, const lattice::Scene& scene) {
   std::vector<FieldPicture> pictures;
   for (std::size_t i = 0; i < answers.size(); ++i)
     pictures.emplace_back("prediction, " + std::to_string(answers[i].final.final_cells.cols()) +
                               " x " + std::to_string(answers[i].final.final_cells.rows()) +
                               " gates" + (given.empty() ? "" : ", " + title_of(given[i])),
-                          answers[i].final, answers[i].*shares);
-  return cli::figure_of(pictures);
+                          answers[i].final, answers[i].*shares, answers[i].exits);
+  return cli::figure_of(pictures, scene);
 }
 
 /// Until the error bar says enough, with the runs that a pool has already.
@@ -83,14 +83,15 @@ int predict_accurately(const Options& options, const lattice::Scene& scene,
   const std::vector<lattice::PaperStart> given = given_starts(options);
   const auto bodies = bodies_of(given, scene);
   const auto prediction = lattice::predict_pooled(scene, pool, bodies, how, options.work());
-  Json json = to_json(prediction, how.accuracy, !given.empty());
+  Json json = to_json(prediction, scene, how.accuracy, !given.empty());
   if (settled) json["method"] = to_json(*settled);
   json["made_by"] = to_json(options.provenance(scene));
   options.give_out(json, table_of(prediction, scene, !given.empty()) + method_line(settled));
   options.warn(too_few_gates(scene));
   warn_of(options, prediction, how.accuracy);
   const int exit = status_of(options, prediction.health);
-  options.draw([&] { return figure_of(given, prediction.starts, &lattice::StartAnswer::endings); });
+  options.draw(
+      [&] { return figure_of(given, prediction.starts, &lattice::StartAnswer::endings, scene); });
   return exit;
 }
 
@@ -208,8 +209,9 @@ int run_predict(const Arguments& arguments) {
   options.warn(too_few_gates(m.scene));
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
   const int exit = exit_status(options, faults_recorded(status).empty());
-  options.draw(
-      [&] { return figure_of(given, prediction.starts, &lattice::StartPrediction::shares); });
+  options.draw([&] {
+    return figure_of(given, prediction.starts, &lattice::StartPrediction::shares, m.scene);
+  });
   return exit;
 }
 

@@ -192,7 +192,7 @@ int run_validate(const Arguments& arguments) {
 
   const auto result = lattice::validate_chain(scene, matrices, subject.starts, how, options.work());
 
-  Json json = to_json(result, matrix);
+  Json json = to_json(result, scene, matrix);
   std::string table = table_of(result, scene, matrix);
   if (const auto& experiment = result.starts.front().observed) {
     json["observed"] = to_json(*experiment, result.starts.front(), options.texts("observed"));
@@ -202,7 +202,7 @@ int run_validate(const Arguments& arguments) {
   options.give_out(json, table);
   if (subject.observed) warn_of_experiment(options, *subject.observed, result.starts.front());
   const int exit = status_of(options, result.health);
-  options.draw([&] { return figure_of(result); });
+  options.draw([&] { return figure_of(result, scene); });
   return exit;
 }
 

@@ -44,7 +44,9 @@ int run_walk(const Arguments& arguments) {
   options.remark(fixed(seconds, 3) + " s, " + fixed(static_cast<double>(walks) / seconds / 1e6, 2) +
                  " million walks a second");
   const int exit = exit_status(options, faults_recorded(status).empty() && t.health.clean());
-  options.draw([&] { return figure_of({{"chain, " + std::to_string(walks) + " walks", tally}}); });
+  options.draw([&] {
+    return figure_of({{"chain, " + std::to_string(walks) + " walks", tally}}, m.scene);
+  });
   return exit;
 }
 

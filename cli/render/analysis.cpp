@@ -9,6 +9,7 @@
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/render/type_marks.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -130,21 +131,6 @@ const char* key_of(markov::Ending ending) {
   return std::find_if(kEndingNames.begin(), kEndingNames.end(),
                       [&](const EndingName& e) { return e.ending == ending; })
       ->key;
-}
-
-/// By type of gates_of(scene).types(): its names in the terrain, "s/t" where two are alike; empty
-/// where there is one.
-std::vector<std::string> type_names(const lattice::Scene& scene) {
-  if (!scene.terrain) return {};
-  std::vector<std::string> names(lattice::gates_of(scene).types().size());
-  if (names.size() == 1) return {};
-  names.front() = lattice::kOwnGate;
-  const std::vector<int> gate_type = lattice::gate_types(scene);
-  for (std::size_t i = 0; i < gate_type.size(); ++i) {
-    std::string& name = names[static_cast<std::size_t>(gate_type[i])];
-    name += (name.empty() ? "" : "/") + scene.terrain->types[i].name;
-  }
-  return names;
 }
 
 /// ". 1.20, s 0.44"

@@ -5,6 +5,7 @@
 #include "cli/render/field_figure.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/text.h"
+#include "cli/render/type_marks.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -49,9 +50,12 @@ void add_visits(Script& out, const AnalysedField& f) {
     }
     paths += "\n";
   }
-  out.text += data_block("$visits", rows) + data_block("$paths", paths) + out.sheet.margins(box) +
-              kSequential + "set cbrange " + scale.range() +
-              "\nset border 3\nset tics out nomirror scale 0.5\nset xrange " +
+  const TypeMarks types(f.scene);
+  const TypeMarks::Drawn marks =
+      types.on(map, (box.right - box.left) / columns, (box.bottom - box.top) / lines, "visits");
+  out.text += types.legend(out.sheet, box.bottom + 52, !marks.data.empty()) + marks.data +
+              data_block("$visits", rows) + data_block("$paths", paths) + out.sheet.margins(box) +
+              kSequential + "set cbrange " + scale.range() + "\n" + kFrame + "set xrange " +
               range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
               tics_of(map.columns, map.middle_column, box.right - box.left, 30) + "\nset ytics " +
               tics_of(map.rows, 0, box.bottom - box.top, 22) + "\n" +
@@ -62,12 +66,12 @@ void add_visits(Script& out, const AnalysedField& f) {
   if (!paths.empty())
     out.text +=
         ", $paths with lines lw 2 lc rgb '#ffffff', $paths with lines lw 1 lc rgb '#d55e00'";
-  out.text += "\nunset label\nunset colorbox\n";
+  out.text += marks.plot + "\nunset label\nunset colorbox\n";
   if (!paths.empty())
     out.text +=
         out.sheet.text("lines: most frequent ways to \"" + std::string(target_name(f)) + "\"", 8,
                        out.top + 36, kSmallFont);
-  out.top = box.bottom + 62;
+  out.top = box.bottom + 62 + types.legend_height();
 }
 
 /// Distribution functions of the durations, by ending.
@@ -175,7 +179,7 @@ void add_parameters(Script& out, const AnalysedField& f) {
               digits(tic_step(high - low, 3)) + "\nset ytics (" + tics +
               ") noenhanced font ',12' scale 0\nset arrow 1 from 0," +
               digits(0.5 - static_cast<double>(effects.size())) + " to 0,0.5 nohead" + kThin +
-              "\nset xlabel '% more' offset 0,0.4\nunset ylabel\n" +
+              "\n" + Sheet::x_axis("'% more'") + "unset ylabel\n" +
               out.sheet.text("\"" + std::string(target_name(f)) +
                                  "\": % more often for 1 % more of each number, 95 %",
                              8, out.top + 18) +

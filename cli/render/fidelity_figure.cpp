@@ -76,14 +76,14 @@ Figure figure_of(const FidelityStudy& study) {
               digits(tic_step(most, 4)) + "\n" +
               sheet.text(std::to_string(study.trials) + " trials; starts: d (m), v_x, v_y (m/s)", 8,
                          16) +
-              sheet.margins(changes) +
-              "set xlabel 'total variation to active' offset 0,0.4\nset arrow from " + bound +
-              ", graph 0 to " + bound + ", graph 1 nohead lt -1 dt 2\nplot NaN" + left +
-              "\nunset label\nunset arrow\n" + sheet.margins(times) +
-              "unset ytics\nset xrange [0:*]\nset xtics " + digits(tic_step(slowest, 2)) +
-              "\nset xlabel 'ms, " + std::to_string(study.threads) +
-              (study.threads == 1 ? " thread" : " threads") + "' offset 0,0.4\n" + right +
-              "\nunset multiplot\n",
+              sheet.margins(changes) + Sheet::x_axis("'total variation to active'") +
+              "set arrow from " + bound + ", graph 0 to " + bound +
+              ", graph 1 nohead lt -1 dt 2\nplot NaN" + left + "\nunset label\nunset arrow\n" +
+              sheet.margins(times) + "unset ytics\nset xrange [0:*]\nset xtics " +
+              digits(tic_step(slowest, 2)) + "\n" +
+              Sheet::x_axis("'ms, " + std::to_string(study.threads) +
+                            (study.threads == 1 ? " thread'" : " threads'")) +
+              right + "\nunset multiplot\n",
           kFont};
 }
 

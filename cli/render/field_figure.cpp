@@ -4,27 +4,32 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cli/render/exits.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/text.h"
+#include "cli/render/type_marks.h"
 
 namespace gatewalk::cli {
 
 using markov::CellProbabilities;
 
 FieldPicture::FieldPicture(std::string name, const markov::FinalDistribution& final,
-                           const lattice::EndingShares& shares)
+                           const lattice::EndingShares& shares, const lattice::FieldExits& by_place)
     : title(std::move(name)),
       final_gates(final.final_cells),
       trapped(markov::trapped_cells(final)),
       departed(markov::departed_cells(final)),
-      endings(shares) {}
+      endings(shares),
+      exits(by_place) {}
 
-FieldPicture::FieldPicture(std::string name, const lattice::FieldTally& tally)
+FieldPicture::FieldPicture(std::string name, const lattice::FieldTally& tally,
+                           const lattice::FieldExits& by_place)
     : title(std::move(name)),
       final_gates(lattice::shares(tally.final_gates)),
       trapped(tally.trapped_gates.cast<double>() / static_cast<double>(tally.trials)),
       departed(tally.departed_gates.cast<double>() / static_cast<double>(tally.trials)),
-      endings(tally.endings, tally.trials) {}
+      endings(tally.endings, tally.trials),
+      exits(by_place) {}
 
 FieldPicture::FieldPicture(std::string name, const markov::WalkTally& tally)
     : title(std::move(name)),
@@ -55,9 +60,11 @@ constexpr Eigen::Index kMostDrawn = 101;  // gates or blocks of gates, each way
 /// Places within one picture, px.
 struct Plan {
   static constexpr double kLeft = 58, kMap = 270, kSmall = 108, kSmallLeft = 384;
-  double top, map_width, map_height, cell_width, cell_height;
+  double top, map_width, map_height, cell_width, cell_height, legend_height;
+  bool with_exits;
 
-  Plan(const FieldMap& map, double from_top) : top(from_top + 42) {
+  Plan(const FieldMap& map, double from_top, double legend, bool exits)
+      : top(from_top + 42), legend_height(legend), with_exits(exits) {
     const auto columns = static_cast<double>(map.columns.blocks()),
                rows = static_cast<double>(map.rows.blocks());
     // Gates are drawn square where neither side would become too long or too short.
@@ -79,11 +86,13 @@ struct Plan {
     return {kSmallLeft, kSmallLeft + std::min(kSmall, each * map_width / map_height), begin,
             begin + each};
   }
+  [[nodiscard]] double legend() const { return map().bottom + 52; }
   [[nodiscard]] Box bars() const {
-    const double begin = map().bottom + 74;
+    const double begin = legend() + legend_height + 14;
     return {102, 300, begin, begin + height_of_bars(kEndingNames.size())};
   }
-  [[nodiscard]] double end() const { return bars().bottom + 8; }
+  [[nodiscard]] double exits() const { return bars().bottom + 8; }
+  [[nodiscard]] double end() const { return exits() + (with_exits ? height_of_exits() : 0.0); }
 };
 
 /// "column row root_of_share label"
@@ -101,25 +110,25 @@ std::string image(const std::string& data) { return "plot " + data + cells(); }
 
 /// The large map with its numbers.
 std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
-                      const std::string& data, const RootScale& scale) {
+                      const std::string& data, const RootScale& scale, const TypeMarks& types) {
   const Box box = plan.map();
   std::string blocks;
   if (map.rows.block > 1 || map.columns.block > 1)
     blocks = ", blocks of " + std::to_string(map.columns.block) + " x " +
              std::to_string(map.rows.block) + " gates";
-  std::string out = sheet.margins(box) +
-                    "set border 3\nset tics out nomirror scale 0.5\nset xrange " +
-                    range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
+  std::string out = sheet.margins(box) + kFrame + "set xrange " + range_of(map.columns) +
+                    "\nset yrange " + range_of(map.rows) + "\nset xtics " +
                     tics_of(map.columns, map.middle_column, plan.map_width, 30) + "\nset ytics " +
                     tics_of(map.rows, 0, plan.map_height, 22) + "\n" +
                     Sheet::map_axes(map.rows.first + map.rows.count) +
                     sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
                     scale.colours(sheet, plan.colours());
-  out += image(data);
+  const TypeMarks::Drawn marks = types.on(map, plan.cell_width, plan.cell_height, data.substr(1));
+  out += types.legend(sheet, plan.legend(), !marks.data.empty()) + marks.data + image(data);
   if (plan.cell_width >= 26 && plan.cell_height >= 15)
     out += ", '' using 1:2:4:" + ink(std::sqrt(scale.most())) +
            " with labels tc rgb variable font ',12'";
-  return out + "\nunset label\n";
+  return out + marks.plot + "\nunset label\n";
 }
 
 /// Maps without numbers: of whom, with the same colours.
@@ -145,7 +154,8 @@ std::vector<ShareBar> bars_of(const lattice::EndingShares& endings) {
 
 }  // namespace
 
-Figure figure_of(const std::vector<FieldPicture>& pictures) {
+Figure figure_of(const std::vector<FieldPicture>& pictures, const lattice::Scene& scene) {
+  const TypeMarks types(scene);
   if (pictures.empty() || pictures.size() > kMostPictures)
     throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostPictures) +
                                 " starts, these are " + std::to_string(pictures.size()));
@@ -154,15 +164,14 @@ Figure figure_of(const std::vector<FieldPicture>& pictures) {
   double height = 0.0, most = 0.0;
   for (const FieldPicture& p : pictures) {
     maps.emplace_back(p.final_gates, kMostDrawn, kMostDrawn);
-    plans.emplace_back(maps.back(), height);
+    plans.emplace_back(maps.back(), height, types.legend_height(), p.exits.has_value());
     height = plans.back().end();
     most = std::max(most, maps.back().blocks_of(p.final_gates).maxCoeff());
   }
   const RootScale scale(100.0 * most);
   const Sheet sheet{static_cast<int>(std::ceil(height))};
-  std::string out = std::string(kSequential) +
-                    "set multiplot\nunset key\nset tics out nomirror scale 0.5\nset cbrange " +
-                    scale.range() + "\n";
+  std::string out =
+      std::string(kSequential) + "set multiplot\n" + kFrame + "set cbrange " + scale.range() + "\n";
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const FieldPicture& p = pictures[i];
     const Plan& plan = plans[i];
@@ -175,10 +184,11 @@ Figure figure_of(const std::vector<FieldPicture>& pictures) {
                         plan.top - 30, kSmallFont);
     out += block("$all", p.final_gates) + block("$trapped", p.trapped) +
            block("$left", p.departed) + sheet.text(p.title, 8, plan.top - 30) +
-           large_map(maps[i], plan, sheet, "$all" + tag, scale) +
+           large_map(maps[i], plan, sheet, "$all" + tag, scale, types) +
            small_map("trapped, % of all", maps[i], plan.small(0), sheet, "$trapped" + tag) +
            small_map("departed, % of all", maps[i], plan.small(1), sheet, "$left" + tag) +
            share_bars(sheet, plan.bars(), "$endings" + tag, bars_of(p.endings));
+    if (p.exits) out += panels_of(*p.exits, scene, sheet, plan.exits(), tag);
   }
   return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
 }

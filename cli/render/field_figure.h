@@ -1,14 +1,17 @@
 #pragma once
 /// Pictures of where bodies end in a field.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
 #include "lattice/ending_shares.h"
+#include "lattice/exits.h"
 #include "lattice/lattice.h"
 #include "lattice/reference.h"
+#include "lattice/scene/scene.h"
 #include "markov/predict.h"
 
 namespace gatewalk::cli {
@@ -18,17 +21,21 @@ struct FieldPicture {
   std::string title;
   markov::CellProbabilities final_gates, trapped, departed;  // (rows x columns)
   lattice::EndingShares endings;
+  std::optional<lattice::FieldExits> exits;
 
   FieldPicture(std::string title, const markov::FinalDistribution& final,
-               const lattice::EndingShares& endings);
-  FieldPicture(std::string title, const lattice::FieldTally& tally);
+               const lattice::EndingShares& endings, const lattice::FieldExits& exits);
+  FieldPicture(std::string title, const lattice::FieldTally& tally,
+               const lattice::FieldExits& exits);
   FieldPicture(std::string title, const markov::WalkTally& tally);
 };
 
-/// The map of the final gates, those of the trapped and of those who left, and the endings; of
-/// several starts one below the other. Throws std::invalid_argument for more than kMostPictures.
+/// The map of the final gates, those of the trapped and of those who left, the endings, and where
+/// along its sides they left; of several starts one below the other. Of a field with several types
+/// of gates, which is which. Throws std::invalid_argument for more than kMostPictures.
 inline constexpr std::size_t kMostPictures = 8;
-[[nodiscard]] Figure figure_of(const std::vector<FieldPicture>& pictures);
+[[nodiscard]] Figure figure_of(const std::vector<FieldPicture>& pictures,
+                               const lattice::Scene& scene);
 
 /// Tics of an axis over blocks of gates that is so many points long, named by the gates in the
 /// blocks' middle, counted from `zero`; and its range.

@@ -31,9 +31,11 @@ struct Box {
   double left, right, top, bottom;
 };
 
-/// A panel's axes, ticks outwards; and of lines that only help to read: thin, in the text's ink.
+/// A panel's axes, ticks outwards with their numbers close by; and of lines that only help to
+/// read: thin, in the text's ink.
 inline constexpr char kFrame[] =
-    "unset key\nset border 3\nset tics out scale 0.5\nset xtics nomirror\nset ytics nomirror\n";
+    "unset key\nset border 3\nset tics out scale 0.5\nset xtics nomirror offset 0,0.5\nset "
+    "ytics nomirror offset 0.4,0\n";
 inline constexpr char kThin[] = " lt -1 lw 0.2";
 
 /// The paper of a figure.
@@ -47,13 +49,16 @@ struct Sheet {
   [[nodiscard]] std::string at(double left, double top) const;
   /// Names of the axes, in gnuplot's quotes, near enough for a margin of 60 points.
   [[nodiscard]] static std::string axes(const std::string& x, const std::string& y) {
-    return "set xlabel " + x + " offset 0,0.4\nset ylabel " + y + " offset 0.8,0\n";
+    return x_axis(x) + "set ylabel " + y + " offset 0.8,0\n";
+  }
+  [[nodiscard]] static std::string x_axis(const std::string& x) {
+    return "set xlabel " + x + " offset 0,0.9\n";
   }
   /// Those of a map of so many rows of gates: the fewer digits its ticks have the further from
   /// them.
   [[nodiscard]] static std::string map_axes(std::int64_t rows, bool with_columns = true) {
-    return std::string("set xlabel ") + (with_columns ? "'column i_x'" : "''") +
-           " offset 0,0.4\nset ylabel 'row i_y' offset " + (rows > 10 ? "0.8" : "0.2") + ",0\n";
+    return x_axis(with_columns ? "'column i_x'" : "''") + "set ylabel 'row i_y' offset " +
+           (rows > 10 ? "0.8" : "0.2") + ",0\n";
   }
   /// A text that begins at this place, its middle at this height; until "unset label".
   [[nodiscard]] std::string text(const std::string& text, double left, double middle,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/render/exits.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
@@ -14,11 +15,12 @@
 namespace gatewalk::cli {
 namespace {
 
-void add_to(Json& json, const lattice::StartAnswer& a) {
+void add_to(Json& json, const lattice::StartAnswer& a, const lattice::Scene& scene) {
   const markov::FinalDistribution& f = a.final;
   json["endings"] = endings(f.endings);
   json["endings_95"] = endings_95(a.endings);
   add_final_gates(json, f);
+  json["exits"] = to_json(a.exits, scene);
   json["final_gates_95"] = {{"low", grid(a.gates_95[0])}, {"high", grid(a.gates_95[1])}};
   json["answer_from"] = a.from_trials ? "trials" : "chain";
   json["error_95"] = a.error.total_variation;
@@ -36,8 +38,8 @@ std::string table_of(const lattice::StartAnswer& a, const lattice::Scene& scene)
   std::string table =
       endings_text(a.endings, "of all bodies, 95 % intervals that count everything") +
       limits_text(scene) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
-      "left the field " + percent(f.left_field, 1.0, 2) + "\n" + "error: at most " +
-      fixed(a.error.total_variation, 4) +
+      "left the field " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(a.exits, scene) +
+      "error: at most " + fixed(a.error.total_variation, 4) +
       " in total variation of the final gates, corrcoef at least " + fixed(a.error.corrcoef, 4) +
       ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
       " per 100, each 95 times in 100 (sampling, states and memory)\n";
@@ -68,13 +70,14 @@ lattice::PaperStart start_of(const lattice::StartAnswer& a) {
 
 }  // namespace
 
-Json to_json(const lattice::PooledPrediction& p, double accuracy, bool given) {
+Json to_json(const lattice::PooledPrediction& p, const lattice::Scene& scene, double accuracy,
+             bool given) {
   Json json;
-  if (!given) add_to(json, p.starts.front());
+  if (!given) add_to(json, p.starts.front(), scene);
   for (std::size_t k = 0; given && k < p.starts.size(); ++k) {
     Json one;
     one["start"] = to_json(start_of(p.starts[k]));
-    add_to(one, p.starts[k]);
+    add_to(one, p.starts[k], scene);
     json["starts"].push_back(std::move(one));
   }
   json["accuracy"] = accuracy;

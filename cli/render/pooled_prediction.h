@@ -11,8 +11,8 @@ namespace gatewalk::cli {
 
 /// Of the scene's start (`given` false: its keys stand alone), or of given ones (in "starts").
 /// Without "made_by".
-[[nodiscard]] Json to_json(const lattice::PooledPrediction& prediction, double accuracy,
-                           bool given);
+[[nodiscard]] Json to_json(const lattice::PooledPrediction& prediction, const lattice::Scene& scene,
+                           double accuracy, bool given);
 [[nodiscard]] std::string table_of(const lattice::PooledPrediction& prediction,
                                    const lattice::Scene& scene, bool given);
 

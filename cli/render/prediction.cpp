@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "cli/render/exits.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
@@ -14,7 +15,7 @@ namespace gatewalk::cli {
 namespace {
 
 /// What is predicted for one start.
-void add_to(Json& json, const lattice::StartPrediction& s) {
+void add_to(Json& json, const lattice::StartPrediction& s, const lattice::Scene& scene) {
   const markov::FinalDistribution& f = s.final;
   json["endings"] = endings(f.endings);
   json["endings_95"] = endings_95(s.shares);
@@ -22,6 +23,7 @@ void add_to(Json& json, const lattice::StartPrediction& s) {
                              {"total_variation_mean", s.mean_total_variation},
                              {"total_variation_95", s.total_variation_95}};
   add_final_gates(json, f);
+  json["exits"] = to_json(s.exits, scene);
   json["still_walking"] = f.remainder;
   json["rounding_at_most"] = f.rounding;
   json["error_at_most"] = f.remainder + f.rounding;
@@ -41,7 +43,8 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
                          "or a resampled matrix failed") +
       limits_text(of.matrix.scene) + map_of(f.final_cells) +
       map_of_trapped(markov::trapped_cells(f)) + "left the field " + percent(f.left_field, 1.0, 2) +
-      "\nstart: " + text_of(of.matrix.file.transitions.space.cell(s.start.start.input)) + "\n";
+      "\n" + cli::table_of(s.exits, of.matrix.scene) +
+      "start: " + text_of(of.matrix.file.transitions.space.cell(s.start.start.input)) + "\n";
   if (f.unsampled > 0.0)
     table += "reaches a row that was never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)
@@ -68,12 +71,12 @@ Json to_json(const lattice::Prediction& prediction, const PredictedField& of,
              const std::string& solver) {
   const dynamics::StateSpace& space = of.matrix.file.transitions.space;
   Json json;
-  if (of.starts.empty()) add_to(json, prediction.starts.front());
+  if (of.starts.empty()) add_to(json, prediction.starts.front(), of.matrix.scene);
   for (std::size_t k = 0; k < of.starts.size(); ++k) {
     const lattice::PaperStart& s = of.starts[k];
     Json one;
     one["start"] = {{"d_m", s.d}, {"vx_m_per_s", s.vx}, {"vy_m_per_s", s.vy}};
-    add_to(one, prediction.starts[k]);
+    add_to(one, prediction.starts[k], of.matrix.scene);
     one["start_state"] = to_json(prediction.starts[k].start, space);
     json["starts"].push_back(std::move(one));
   }

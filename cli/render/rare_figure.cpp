@@ -39,16 +39,15 @@ Figure figure_of(const lattice::RareEvent& event, const DirectRows& direct) {
   if (!split.empty())
     plot += std::string("$split using 1:2:3:4 with yerrorbars pt 7 ps 0.5 lc rgb '") +
             kFirstColour + "' title 'splitting, 95 %', ";
-  return {Sheet::kWidth, sheet.height,
-          data_block("$chain", chain) + data_block("$split", split) +
-              data_block("$direct", trials) + sheet.margins(box) +
-              sheet.text("How likely a body gets so far", 8, 18) +
-              "set logscale y\nset format y '10^{%T}'\nset tics out nomirror scale 0.5\n" +
-              Sheet::axes("'row entered'", "'chance'") +
-              "set xrange [0:" + digits(static_cast<double>(s.rows.size()) + 1.0) +
-              "]\nset yrange [" + digits(std::pow(10.0, std::floor(std::log10(least)) - 0.2)) +
-              ":2]\nset key bottom left Left reverse samplen 1.5 width -4\n" + plot + "\n",
-          kFont};
+  return {
+      Sheet::kWidth, sheet.height,
+      data_block("$chain", chain) + data_block("$split", split) + data_block("$direct", trials) +
+          sheet.margins(box) + sheet.text("How likely a body gets so far", 8, 18) + kFrame +
+          "set logscale y\nset format y '10^{%T}'\n" + Sheet::axes("'row entered'", "'chance'") +
+          "set xrange [0:" + digits(static_cast<double>(s.rows.size()) + 1.0) + "]\nset yrange [" +
+          digits(std::pow(10.0, std::floor(std::log10(least)) - 0.2)) +
+          ":2]\nset key on bottom left Left reverse samplen 1.5 width -4\n" + plot + "\n",
+      kFont};
 }
 
 }  // namespace gatewalk::cli

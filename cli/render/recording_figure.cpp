@@ -122,7 +122,7 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
       data + data_block("$ends", ends) +
           data_block("$beams", beams_of(scene, {scene, recordings.across_field}, w, metre.size)) +
           out + sheet.margins(box) + sheet.text(title + "; disc: where it ended", 8, 18) + notes +
-          "unset key\nset border 15\nset tics out nomirror scale 0.5\n" +
+          kFrame + "set border 15\n" +
           Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
           length(w.left) + ":" + length(w.right) + "]\nset yrange [" + length(w.bottom) + ":" +
           length(w.top) + "]\nset xtics " +

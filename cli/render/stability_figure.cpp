@@ -187,8 +187,8 @@ class PanelGroup {
     return blocks + kFrame + "set style fill solid noborder\n" +
            sheet.margins({left, left + kPanelWidth, top, top + kPanelHeight}) +
            sheet.text(map.method, left, top - 12) + axis("x", x) + axis("y", y) +
-           (i % 3 == 0 ? "" : "unset ytics\n") + "set xlabel " +
-           (named ? literal(map.x.label) : std::string("''")) + " offset 0,0.4\nplot " + name +
+           (i % 3 == 0 ? "" : "unset ytics\n") +
+           Sheet::x_axis(named ? literal(map.x.label) : std::string("''")) + "plot " + name +
            " using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable" + lines + "\nunset label\n";
   }
 

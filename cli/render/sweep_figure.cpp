@@ -111,9 +111,11 @@ Figure map_of(const SweepAxis& up, const SweepAxis& right, const std::vector<Swe
   }
   std::size_t longest = 1;
   for (const std::string& v : up.values) longest = std::max(longest, v.size());
+  // The upright name of the axis takes 8 points a letter.
+  const double name = 8.0 * static_cast<double>(up.key.size());
   const double left = 70.0 + 8.0 * static_cast<double>(std::min<std::size_t>(longest, 12));
   const double wide = 420.0 - left,
-               tall = std::clamp(26.0 * static_cast<double>(rows), 120.0, 420.0);
+               tall = std::max(name, std::clamp(26.0 * static_cast<double>(rows), 120.0, 420.0));
   const double width = wide / static_cast<double>(columns),
                height = tall / static_cast<double>(rows);
   const Box box{left, left + wide, 44, 44 + tall};

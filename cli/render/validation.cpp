@@ -4,6 +4,7 @@
 #include <array>
 #include <sstream>
 
+#include "cli/render/exits.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
@@ -50,7 +51,7 @@ namespace {
 
 Json to_json(const lattice::MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; }
 
-Json to_json(const lattice::StartValidation& r) {
+Json to_json(const lattice::StartValidation& r, const lattice::Scene& scene) {
   Json j;
   j["verdict"] = verdict(r);
   j["trials_and_matrix"] = cli::to_json(r.judgement);
@@ -105,6 +106,7 @@ Json to_json(const lattice::StartValidation& r) {
   j["departed_gates"] = {{"dynamics", grid(r.dynamics.departed_gates)},
                          {"walks", grid(r.walks.departed_cells)},
                          {"exact", grid(markov::departed_cells(r.exact))}};
+  j["exits"] = cli::to_json(r.dynamics_exits, r.exact_exits, scene);
   j["never_sampled"] = r.exact.unsampled;
   if (r.force) j["force_memory"] = cli::to_json(*r.force);
   return j;
@@ -206,6 +208,16 @@ std::string final_gates_table(const lattice::Validation& v, const StartTexts& la
   return out.str();
 }
 
+std::string exits_table(const lattice::Validation& v, const StartTexts& labels) {
+  std::string text =
+      "\nPlaces along the sides at which the chain lets more or fewer leave than the 95 % "
+      "intervals of\nthe dynamics have (chance alone: one in 20):\n\n";
+  for (std::size_t k = 0; k < v.starts.size(); ++k)
+    text += labels.texts[k] + "  | " +
+            places_outside(v.starts[k].dynamics_exits, v.starts[k].exact_exits) + "\n";
+  return text;
+}
+
 std::string seconds_table(const lattice::Validation& v, const StartTexts& labels) {
   std::ostringstream out;
   out << "\nSeconds: " << v.trials << " trials and " << v.walks << " walks on " << v.threads
@@ -240,12 +252,13 @@ dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix) {
 
 }  // namespace
 
-Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix) {
+Json to_json(const lattice::Validation& v, const lattice::Scene& scene,
+             const ValidatedMatrix& matrix) {
   Json json;
   json["trials"] = v.trials;
   json["walks"] = v.walks;
   json["starts"] = Json::array();
-  for (const lattice::StartValidation& r : v.starts) json["starts"].push_back(to_json(r));
+  for (const lattice::StartValidation& r : v.starts) json["starts"].push_back(to_json(r, scene));
   json["crossings"] = {{"between_gates", v.entries},
                        {"RT_and_LT_share", share(v.traverse_sides, v.entries)},
                        {"clamped_share", share(v.clamped, v.entries)}};
@@ -271,7 +284,8 @@ std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
   const StartTexts labels(starts);
   const auto crossings = static_cast<double>(v.entries);
   std::string table = endings_table(v, labels) + table4_table(v, labels, papers) +
-                      final_gates_table(v, labels) + seconds_table(v, labels);
+                      final_gates_table(v, labels) + exits_table(v, labels) +
+                      seconds_table(v, labels);
   table += "\nMatrix: " + std::to_string(totals_of(matrix).runs) + " gate runs, " +
            (matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path) +
            ". Crossings between gates in the dynamics: " +

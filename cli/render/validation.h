@@ -23,13 +23,14 @@ struct ValidatedMatrix {
 [[nodiscard]] std::string verdict(const lattice::StartValidation& r);
 
 /// Without "made_by".
-[[nodiscard]] Json to_json(const lattice::Validation& v, const ValidatedMatrix& matrix);
+[[nodiscard]] Json to_json(const lattice::Validation& v, const lattice::Scene& scene,
+                           const ValidatedMatrix& matrix);
 [[nodiscard]] std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
                                    const ValidatedMatrix& matrix);
 
 /// Maps of the final gates: dynamics, chain, and their difference, a row per start. Throws
 /// std::invalid_argument for more than kMostValidated.
 inline constexpr std::size_t kMostValidated = 8;
-[[nodiscard]] Figure figure_of(const lattice::Validation& v);
+[[nodiscard]] Figure figure_of(const lattice::Validation& v, const lattice::Scene& scene);
 
 }  // namespace gatewalk::cli

@@ -7,6 +7,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/prediction.h"
 #include "cli/render/text.h"
+#include "cli/render/type_marks.h"
 #include "cli/render/validation.h"
 
 namespace gatewalk::cli {
@@ -35,7 +36,7 @@ std::string summary(const StartValidation& v) {
 
 }  // namespace
 
-Figure figure_of(const lattice::Validation& v) {
+Figure figure_of(const lattice::Validation& v, const lattice::Scene& scene) {
   if (v.starts.empty() || v.starts.size() > kMostValidated)
     throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostValidated) +
                                 " starts, these are " + std::to_string(v.starts.size()));
@@ -60,7 +61,9 @@ Figure figure_of(const lattice::Validation& v) {
   }
   if (largest == 0.0) largest = 1e-4;
   end += 26;  // the name of the last row's axis
-  const Sheet sheet{static_cast<int>(end + 62)};
+  const TypeMarks types(scene);
+  const Sheet sheet{static_cast<int>(end + 62 + types.legend_height())};
+  bool marked = false;
   const RootScale scale(100.0 * most);
   const auto left_of = [](int i) { return kLeft + i * (kMapWidth + kGap); };
   std::string out = std::string("set multiplot\n") + kFrame + "set border 15\n" +
@@ -79,10 +82,15 @@ Figure figure_of(const lattice::Validation& v) {
            Sheet::map_axes(row.map.rows.first + row.map.rows.count, last);
     const auto panel = [&](int i, const char* name, const std::string& data) {
       const std::string block = name + tag;
-      out += data_block(block, data) +
+      const TypeMarks::Drawn marks =
+          types.on(row.map, kMapWidth / static_cast<double>(row.chain.cols()),
+                   row.height / static_cast<double>(row.chain.rows()), block.substr(1));
+      marked = marked || !marks.data.empty();
+      if (last && i == 2) out += types.legend(sheet, end + 60, marked);
+      out += data_block(block, data) + marks.data +
              sheet.margins({left_of(i), left_of(i) + kMapWidth, row.top, row.top + row.height}) +
              (i == 1 ? "unset ytics\nunset ylabel\n" : "") + "plot " + block + cells() +
-             "\nunset label\n";
+             marks.plot + "\nunset label\n";
     };
     out += kSequential;
     out += "set cbrange " + scale.range() + "\nunset colorbox\n";

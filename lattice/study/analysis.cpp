@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "dynamics/quantile_bins.h"
 #include "lattice/group_spread.h"
 #include "lattice/study/passages.h"
 
@@ -38,6 +41,93 @@ void require_memory(const CostedChain& c, const FieldParams& field, bool with_gr
         "analysis: the states of " + std::to_string(field.columns) + " x " +
         std::to_string(field.rows) +
         " gates take more than 8 GiB; ask for fewer states (--accuracy, build --states) or gates");
+}
+
+/// Whether a mirror image of the field is the field itself.
+bool same_in_mirror(const FieldGates& gates, const FieldParams& field) {
+  for (int row = 0; row < field.rows; ++row)
+    for (int column = 0; column < field.columns; ++column)
+      if (gates.type_of(column, row) != gates.type_of(field.columns - 1 - column, row))
+        return false;
+  return field.columns % 2 == 1 &&
+         std::all_of(gates.types().begin(), gates.types().end(), symmetric);
+}
+
+markov::Ending mirrored(markov::Ending ending) {
+  if (ending == markov::Ending::left_edge) return markov::Ending::right_edge;
+  return ending == markov::Ending::right_edge ? markov::Ending::left_edge : ending;
+}
+
+Cell mirrored(const Cell& c) {
+  return {c.boundary, {-c.d[1], -c.d[0]}, {-c.vx[1], -c.vx[0]}, c.vy};
+}
+
+/// What both hold; none if that is nothing.
+std::optional<Cell> common_part(const Cell& a, const Cell& b) {
+  Cell both = a;
+  for (const auto axis : {&Cell::d, &Cell::vx, &Cell::vy}) {
+    (both.*axis) = {std::max((a.*axis)[0], (b.*axis)[0]), std::min((a.*axis)[1], (b.*axis)[1])};
+    if (!((both.*axis)[0] < (both.*axis)[1])) return {};
+  }
+  return both;
+}
+
+/// The chance of the target by start. In a field that is its own mirror image, a start is as likely
+/// to end so as its image to end so in the mirror: the mean of both, where their states overlap.
+std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const FieldGates& gates,
+                                           const FieldParams& field, const Passages& passages,
+                                           const std::vector<Passages>& groups) {
+  const CostedChain& c = chain.chain;
+  const StateSpace& space = chain.space;
+  const markov::Ending target = passages.chance().ending(), image = mirrored(target);
+  const bool in_mirror = same_in_mirror(gates, field);
+  const markov::Field cells{field.columns, field.rows};
+  const std::int64_t first_cell = std::int64_t{c.start.row} * field.columns + c.start.column;
+  const markov::Chain& first = c.chain.at(c.start.column, c.start.row);
+
+  struct Chances {
+    const StateSpace& space;
+    const markov::EndingChance& of_target;
+    std::optional<markov::EndingChance> of_image{};  // where it is another
+  };
+  std::vector<Chances> all{{space, passages.chance()}};
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    all.push_back({chain.groups[g].space, groups[g].chance()});
+  if (in_mirror && image != target)
+    for (std::size_t k = 0; k < all.size(); ++k)
+      all[k].of_image.emplace(k == 0 ? c.chain : chain.groups[k - 1].chain.chain, cells, image,
+                              field.max_gates);
+  const auto mean_of = [&](const Chances& s, const Crossing& start) {
+    const double own = s.of_target(1, first_cell, s.space.index_of(start).state);
+    if (!in_mirror) return own;
+    const int there = s.space.index_of(dynamics::mirrored(start)).state;
+    return std::midpoint(own, (s.of_image ? *s.of_image : s.of_target)(1, first_cell, there));
+  };
+  std::vector<StartChance> starts;
+  const auto add = [&](const Cell& cell, bool sampled) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    StartChance start{cell, {kUnknown, {kUnknown, kUnknown}}};
+    if (sampled) {
+      std::vector<double> parts;
+      for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(mean_of(all[k], cell.middle()));
+      start.chance = mean_95(mean_of(all.front(), cell.middle()), parts);
+      for (double& bound : start.chance.interval) bound = std::clamp(bound, 0.0, 1.0);
+    }
+    starts.push_back(start);
+  };
+  std::vector<int> entries;
+  for (int state = 0; state < space.size(); ++state)
+    if (space.boundary(state) == Boundary::enter) entries.push_back(state);
+  for (const int state : entries) {
+    if (!in_mirror) {
+      add(space.cell(state), first.is_sampled(state));
+      continue;
+    }
+    for (const int other : entries)
+      if (const auto both = common_part(space.cell(state), mirrored(space.cell(other))))
+        add(*both, first.is_sampled(state) && first.is_sampled(other));
+  }
+  return starts;
 }
 
 }  // namespace
@@ -125,24 +215,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     out.why_not_endless = e.what();
   }
 
-  const std::int64_t first_cell = std::int64_t{c.start.row} * field.columns + c.start.column;
-  const markov::Chain& first = c.chain.at(c.start.column, c.start.row);
-  for (int state = 0; state < space.size(); ++state) {
-    if (space.boundary(state) != Boundary::enter) continue;
-    const Cell cell = space.cell(state);
-    const double unknown = std::nan("");
-    StartChance start{cell, {unknown, {unknown, unknown}}};
-    if (first.is_sampled(state)) {
-      std::vector<double> parts;
-      for (std::size_t g = 0; g < groups.size(); ++g) {
-        const int there = chain.groups[g].space.index_of(cell.middle()).state;
-        parts.push_back(groups[g].chance()(1, first_cell, there));
-      }
-      start.chance = mean_95(passages.chance()(1, first_cell, state), parts);
-      for (double& bound : start.chance.interval) bound = std::clamp(bound, 0.0, 1.0);
-    }
-    out.starts.push_back(start);
-  }
+  out.starts = chances_of_starts(chain, gates, field, passages, groups);
 
   out.types.resize(gates.types().size());
   passages.each([&](const Passages::Place& place, double visits) {

@@ -28,7 +28,8 @@ struct AnalysisOptions {
 };
 
 /// The chance of the target from one of the ways to enter the first gate from below; NaN where no
-/// run did. The interval: sampling, and what smaller states would change.
+/// run did. In a field that is its own mirror image the mean with that of the image, by ranges that
+/// two states have in common. The interval: sampling, and what smaller states would change.
 struct StartChance {
   dynamics::Cell cell;
   Mean95 chance;

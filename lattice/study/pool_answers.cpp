@@ -26,6 +26,12 @@ double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
                                               : std::min(cells, 2.0 * steps * steps) * steps / 2.0);
 }
 
+/// Whether answers come by walks, where they would take so long. What walks leave a single column
+/// by is not known.
+bool by_walks(std::int64_t nonzeros, const FieldParams& field) {
+  return field.columns > 1 && exact_cost(nonzeros, field) > kMostExact;
+}
+
 /// Whether adjoints of all chains pay: measured, they take as long as predictions from as many
 /// starts as a quarter of the cells; and all steps, also those that nobody walks any more. They are
 /// of gates of one type.
@@ -42,8 +48,8 @@ std::int64_t kernel_runs(const RunPool& pool) {
   return runs;
 }
 
-/// What walks say, as a prediction. Over which edge bodies left from a corner cell is not known:
-/// they count as having crossed there.
+/// What walks say, as a prediction. Over which edge walks left a corner cell follows from how many
+/// left over each edge in all; of a field of one column that cannot be told (see by_walks).
 FinalDistribution shares_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
   FinalDistribution d;
@@ -56,17 +62,26 @@ FinalDistribution shares_of(const markov::WalkTally& tally) {
   d.unsampled = static_cast<double>(tally.unsampled) / n;
   d.mean_steps = static_cast<double>(tally.steps) / n;
   const Eigen::Index columns = tally.final_cells.cols(), rows = tally.final_cells.rows();
+  std::array<std::int64_t, markov::kEndings> over_sides = tally.endings;
   for (Eigen::Index i = 0; i < tally.final_cells.size(); ++i) {
     const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
     const std::int64_t trapped = tally.trapped_cells.data()[i],
                        departed = tally.departed_cells.data()[i], all = tally.final_cells.data()[i];
     if (trapped == all) continue;
-    const markov::Ending edge = i / columns == rows - 1 ? markov::Ending::far_edge
-                                : i % columns == 0      ? markov::Ending::left_edge
-                                                        : markov::Ending::right_edge;
+    const std::size_t side = static_cast<std::size_t>(
+        i % columns == 0 ? markov::Ending::left_edge : markov::Ending::right_edge);
+    const bool last_row = i / columns == rows - 1,
+               outer = i % columns == 0 || i % columns == columns - 1;
+    // Cells are in order of their rows: in a corner, what is left of its side leaves over it.
+    const std::int64_t over_side = !outer     ? 0
+                                   : last_row ? std::min(departed, over_sides[side])
+                                              : departed;
+    over_sides[side] -= over_side;
     markov::CellEndings cell{i};
     cell.by_ending[static_cast<std::size_t>(markov::Ending::trapped)] = share(trapped);
-    cell.by_ending[static_cast<std::size_t>(edge)] = share(departed);
+    cell.by_ending[side] = share(over_side);
+    cell.by_ending[static_cast<std::size_t>(markov::Ending::far_edge)] =
+        share(departed - over_side);
     cell.by_ending[static_cast<std::size_t>(markov::Ending::cut_off)] =
         share(all - trapped - departed);
     d.mixed_cells.push_back(cell);
@@ -96,8 +111,8 @@ KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Ro
 KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Rows& first_rows,
                          const FieldParams& field, std::uint64_t seed) {
   const std::int64_t of_a_type = kernel.nonzeros() / std::ssize(kernel.counts);
-  const bool exact = exact_cost(of_a_type, field) <= kMostExact;
-  return answers_of(kernel, gates, first_rows, field, {0, exact ? 0 : kWalks}, seed);
+  return answers_of(kernel, gates, first_rows, field, {0, by_walks(of_a_type, field) ? kWalks : 0},
+                    seed);
 }
 
 PoolChains::PoolChains(const FieldGates& gates, const FieldParams& field, int per_leaf,
@@ -117,7 +132,7 @@ bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
 void PoolChains::renew(const RunPool& pool) {
   const std::int64_t runs = kernel_runs(pool);
   if (std::exchange(runs_, runs) == runs) return;
-  by_walks_ = exact_cost(2 * runs, field_) > kMostExact;  // some nonzeros a run
+  by_walks_ = by_walks(2 * runs, field_);  // some nonzeros a run
   std::vector<std::optional<Kernel>> kernels(kTrialGroups + 1);
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};

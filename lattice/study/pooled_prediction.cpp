@@ -69,12 +69,17 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
   if (!a.from_trials) {
     a.endings = spread.endings_95(behind);
     a.gates_95 = spread.gates_95(behind);
+    std::vector<ExitShares> group_exits;
+    for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
+    a.exits = exits_of_groups(exit_shares(whole), group_exits, behind);
     if (unseen > 0.0) {  // moved from one gate to another they make the largest RMSE
       const auto gates = static_cast<double>(a.gates_95[0].size());
       a.error.rmse_per_100 += 100.0 * unseen * std::sqrt(2.0 / gates);
       a.error.corrcoef = std::nan("");
     }
     for (auto& interval : a.endings.interval) widen(interval, unseen);
+    for (SideExits& side : a.exits)
+      for (auto& interval : side.interval) widen(interval, unseen);
     a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
     a.gates_95[1] = (a.gates_95[1] + unseen).min(1.0);
     a.final = std::move(whole);
@@ -86,6 +91,9 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
   for (const auto& e : s.full.endings)
     if (e) ++endings[static_cast<std::size_t>(*e)];
   a.endings = EndingShares(endings, a.trials);
+  ExitCounts exits(scene.field);
+  exits.add(s.full);
+  a.exits = exits_of(exits);
   a.gates_95 = {a.final.final_cells, a.final.final_cells};
   const auto never = interval_of_share(0.0, static_cast<double>(a.trials));
   for (Eigen::Index i = 0; i < a.final.final_cells.size(); ++i) {

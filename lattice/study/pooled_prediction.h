@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dynamics/work.h"
+#include "lattice/exits.h"
 #include "lattice/group_spread.h"
 #include "lattice/study/pool_runner.h"
 
@@ -36,6 +37,7 @@ struct StartAnswer {
             // did (unseen_share): the chain's error bars have it on top, corrcoef then has none
   double trials_error_95 = 1.0;  // total variation, of the trials' own shares
   EndingShares endings{std::array<double, markov::kEndings>{}};
+  FieldExits exits{};
   std::array<CellProbabilities, 2> gates_95;  // low, high
   std::int64_t trials = 0, first_runs = 0;    // full ones; those through the first gate
   double direct_seconds = 0.0;  // of direct simulation for the same error bar; NaN where nothing

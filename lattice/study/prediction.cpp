@@ -36,21 +36,31 @@ void require_same_kind(const RowMatrix& other, const SceneMatrix& base,
                                 " (other bins): what leaves one row could not enter the next");
 }
 
-/// Replicates' spread around the predictions, a noise per start; none, and prediction.failed, where
-/// a resampled matrix cannot be predicted from.
-std::vector<MatrixNoise> noise_of(const CountedField& gates, const markov::Field& field,
-                                  const std::vector<markov::Start>& starts, Prediction& prediction,
-                                  int max_cells, std::uint64_t seed, const dynamics::Work& work) {
+/// What resampled matrices predict for one start.
+struct Resampled {
+  MatrixNoise noise;
+  std::vector<ExitShares> exits{};
+};
+
+/// Replicates' spread around the predictions, one per start; none, and prediction.failed, where a
+/// resampled matrix cannot be predicted from.
+std::vector<Resampled> resampled_predictions(const CountedField& gates, const markov::Field& field,
+                                             const std::vector<markov::Start>& starts,
+                                             Prediction& prediction, int max_cells,
+                                             std::uint64_t seed, const dynamics::Work& work) {
   constexpr std::int64_t kMost = 200, kTogether = 8;
-  std::vector<MatrixNoise> noise;
+  std::vector<Resampled> all;
   for (std::size_t k = 0; k < starts.size(); ++k)
-    noise.emplace_back(prediction.starts[k].final, gates.runs_at(starts[k]));
+    all.push_back({MatrixNoise(prediction.starts[k].final, gates.runs_at(starts[k]))});
   const std::int64_t replicates = affordable_replicates(gates, field, max_cells, kMost);
   const auto add = [&](std::int64_t begin) {
     const auto found = replicate_predictions(gates, field, starts, max_cells, seed, begin,
                                              std::min(kTogether, replicates - begin));
     for (std::size_t k = 0; k < starts.size(); ++k)
-      for (const markov::FinalDistribution& f : found[k]) noise[k].add(f);
+      for (const markov::FinalDistribution& f : found[k]) {
+        all[k].noise.add(f);
+        all[k].exits.push_back(exit_shares(f));
+      }
   };
   work.in_pieces("resampled matrices", (replicates + kTogether - 1) / kTogether,
                  [&](dynamics::TrialRange batches) {
@@ -61,8 +71,8 @@ std::vector<MatrixNoise> noise_of(const CountedField& gates, const markov::Field
                      prediction.failed = e.what();
                    }
                  });
-  if (prediction.failed) noise.clear();
-  return noise;
+  if (prediction.failed) all.clear();
+  return all;
 }
 
 }  // namespace
@@ -115,15 +125,17 @@ Prediction predict(const CountedField& gates, const FieldParams& field_params,
   result.seconds = watch.seconds();
   for (std::size_t k = 0; k < starts.size(); ++k) {
     EndingShares shares(found[k].endings);
-    result.starts.push_back({starts[k], std::move(found[k]), shares});
+    result.starts.push_back({starts[k], std::move(found[k]), shares, {}});
   }
-  const std::vector<MatrixNoise> noise =
-      noise_of(gates, field, places, result, how.max_cells, seed, work);
+  const std::vector<Resampled> resampled =
+      resampled_predictions(gates, field, places, result, how.max_cells, seed, work);
   for (std::size_t k = 0; k < starts.size(); ++k) {
     StartPrediction& s = result.starts[k];
-    const MatrixNoise none(s.final, 0);
-    const MatrixNoise& spread = noise.empty() ? none : noise[k];
+    const Resampled none{MatrixNoise(s.final, 0)};
+    const Resampled& of_start = resampled.empty() ? none : resampled[k];
+    const MatrixNoise& spread = of_start.noise;
     s.shares = EndingShares(s.final, spread, how.max_cells);
+    s.exits = exits_of(exit_shares(s.final), of_start.exits, spread.runs());
     s.replicates = spread.replicates();
     s.mean_total_variation = spread.mean_total_variation();
     s.total_variation_95 = spread.total_variation_95();

@@ -8,6 +8,7 @@
 
 #include "dynamics/work.h"
 #include "lattice/ending_shares.h"
+#include "lattice/exits.h"
 #include "lattice/matrix_noise.h"
 #include "lattice/scene/matrix.h"
 #include "lattice/scene/table4.h"
@@ -33,6 +34,7 @@ struct StartPrediction {
   ChainStart start;
   markov::FinalDistribution final;
   EndingShares shares;  // with 95 % intervals where there are replicates
+  FieldExits exits;     // the same
   /// Predictions from resampled matrices, and their total variation from this one (NaN without).
   std::int64_t replicates = 0;
   double mean_total_variation = 0.0, total_variation_95 = 0.0;

@@ -6,7 +6,7 @@
 namespace gatewalk::lattice {
 
 FieldTally field_trials(const Scene& scene, std::int64_t trials, std::uint64_t seed,
-                        const dynamics::Work& work, FieldCosts* costs) {
+                        const dynamics::Work& work, FieldCosts* costs, ExitCounts* exits) {
   const dynamics::StateSpace space = fixed_space(scene);
   const FieldGates gates = gates_of(scene);
   FieldTally tally(scene.field);
@@ -14,6 +14,7 @@ FieldTally field_trials(const Scene& scene, std::int64_t trials, std::uint64_t s
     FieldTrials each;
     tally += run_field(gates, scene.field, scene.start, space, seed, range, &each);
     if (costs != nullptr) costs->add(each);
+    if (exits != nullptr) exits->add(each);
   });
   check_outcomes(scene, RunsFrom::everywhere, seed, trials, tally.health, work);
   return tally;

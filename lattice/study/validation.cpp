@@ -122,14 +122,15 @@ TimedWalks walk(const Setup& setup, const markov::Start& start) {
 
 struct TimedTrials {
   RunTrials trials;  // `each` only for a study of the force
-  PaperSized paper_sized;
+  ExitCounts exits;
+  PaperSized paper_sized{};
   double seconds = 0.0;
 };
 
 /// Their walks through the states are added to `remembered`.
 TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov::Start& place,
                        const markov::FinalDistribution& exact, StateWalks& remembered) {
-  TimedTrials seen{{FieldTally(setup.scene.field), {}}, {}};
+  TimedTrials seen{{FieldTally(setup.scene.field), {}}, ExitCounts(setup.scene.field)};
   BlocksOf100 blocks(exact.final_cells, setup.walks, [&](std::int64_t first, std::int64_t n) {
     std::vector<std::int32_t> cells;
     (void)setup.walker.walk(setup.field(), place, setup.scene.field.max_gates, setup.options.seed,
@@ -144,6 +145,7 @@ TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov
                                    setup.options.seed, range, &each);
     seen.seconds += watch.seconds();
     blocks.add(each.final_gates);
+    seen.exits.add(each);
     each.passed.resize(
         std::clamp<std::int64_t>(kMostRemembered - range.first, 0, std::ssize(each.passed)));
     add_walks(remembered, setup.space, place.input, each, setup.same);
@@ -185,7 +187,11 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
   const TimedTrials seen = run_trials(setup, start, chain_start.start, exact, remembered);
 
   MatrixNoise noise(exact, setup.gates.runs_at(chain_start.start));
-  for (const markov::FinalDistribution& other : resampled) noise.add(other);
+  std::vector<ExitShares> resampled_exits;
+  for (const markov::FinalDistribution& other : resampled) {
+    noise.add(other);
+    resampled_exits.push_back(exit_shares(other));
+  }
   const FieldTally& tally = seen.trials.tally;
   const markov::CellCounts& final_gates = tally.final_gates;
   const std::int64_t draws = null_draws_for(setup);
@@ -208,6 +214,8 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
           .dynamics_endings = EndingShares(tally.endings, tally.trials),
           .walks_endings = EndingShares(walked.tally.endings, walked.tally.walks),
           .exact_endings = EndingShares(exact, noise, max_gates),
+          .dynamics_exits = exits_of(seen.exits),
+          .exact_exits = exits_of(exit_shares(exact), resampled_exits, noise.runs()),
           .dynamics_seconds = seen.seconds,
           .walks_seconds = walked.seconds,
           .exact_seconds = exact_seconds,

@@ -10,6 +10,7 @@
 #include "dynamics/work.h"
 #include "lattice/compare.h"
 #include "lattice/ending_shares.h"
+#include "lattice/exits.h"
 #include "lattice/gate_chain.h"
 #include "lattice/reference.h"
 #include "lattice/scene/scene.h"
@@ -88,6 +89,7 @@ struct StartValidation {
   std::int64_t resampled = 0;                             // matrices behind the two:
   double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;  // total variation of their predictions
   EndingShares dynamics_endings, walks_endings, exact_endings;
+  FieldExits dynamics_exits, exact_exits;
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
   std::optional<ForceMemory> force{};            // if asked for
   std::optional<ObservedComparison> observed{};  // if there is an experiment

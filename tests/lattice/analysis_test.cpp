@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -274,6 +275,41 @@ TEST(Analysis, AgreesWithTheFullDynamics) {
   for (Eigen::Index row = 0; row < 3; ++row) EXPECT_GE(a.passed.row(row).sum(), 1.0 - 1e-9);
   ASSERT_TRUE(a.endless);
   EXPECT_GT(a.endless->survival, a.endless->second);
+}
+
+// In a field that is its own mirror image, starts and their images have the same chance, of the
+// target and of its image; in no other.
+TEST(Analysis, ChancesOfStartsAreThoseOfTheMirror) {
+  Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 2000);
+  const auto starts_of = [&](Ending target) {
+    return analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {.target = target})
+        .starts;
+  };
+  const auto crossed = starts_of(Ending::far_edge), left = starts_of(Ending::left_edge),
+             right = starts_of(Ending::right_edge);
+  const auto image_of = [](const StartChance& s, const std::vector<StartChance>& among) {
+    return std::find_if(among.begin(), among.end(), [&](const StartChance& other) {
+      return other.cell.d == std::array{-s.cell.d[1], -s.cell.d[0]} &&
+             other.cell.vx == std::array{-s.cell.vx[1], -s.cell.vx[0]} &&
+             other.cell.vy == s.cell.vy;
+    });
+  };
+  ASSERT_GT(crossed.size(), 20U);
+  ASSERT_EQ(left.size(), crossed.size());
+  bool sides_differ = false;
+  for (std::size_t i = 0; i < crossed.size(); ++i) {
+    const auto same = image_of(crossed[i], crossed), other = image_of(left[i], right);
+    ASSERT_TRUE(same != crossed.end() && other != right.end()) << i;
+    EXPECT_EQ(same->chance.mean, crossed[i].chance.mean) << i;
+    EXPECT_EQ(other->chance.mean, left[i].chance.mean) << i;
+    EXPECT_EQ(other->chance.interval, left[i].chance.interval) << i;
+    sides_differ = sides_differ || left[i].chance.mean != right[i].chance.mean;
+  }
+  EXPECT_TRUE(sides_differ);
+  scene.field.columns = 4;
+  const auto uneven = starts_of(Ending::far_edge);
+  EXPECT_LT(uneven.size(), crossed.size());  // the leaves themselves
 }
 
 // d ln(crossed) / d ln(value) against trials with a twentieth more and less of it.

@@ -16,6 +16,16 @@ for file in walk predict lattice; do
   # Who left was last in the last row or an outer column.
   holds '[.departed_gates[:8][][1:8][]] | add == 0' ends-$file.json
 done
+# Where along each side: the same bodies, by place in metres; the same of the dynamics beside the chain.
+"$gatewalk" predict "$scenes/field.toml" --accuracy 0.1 --json ends-trees.json --quiet >trees.txt
+for file in predict lattice trees; do
+  holds '(.exits | keys_unsorted) == ["crossed", "left_side", "right_side"] and [.exits[] | length] == [9, 9, 9]' ends-$file.json
+  holds '(.endings | add) as $all | .endings as $e | .exits | to_entries | all(((.value | map(.share) | add) - $e[.key] / $all | fabs) < 1e-12)' ends-$file.json
+  holds '[.exits[][] | .interval_95[0] <= .share and .share <= .interval_95[1] and .interval_95[0] < .interval_95[1]] | all' ends-$file.json
+done
+holds '.exits | .left_side[1].from_m == 60 and .left_side[8].to_m == 540 and .crossed[0].from_m == -225 and .crossed[4].to_m == 25' ends-predict.json
+grep -q '^left side  y 60 to 120 m  *[0-9.]* \[' trees.txt || fail "predict: no place on the left side"
+"$gatewalk" lattice "$scenes/field.toml" --trials 150 --quiet | grep -q '^left side  y 60 to 120 m' || fail "lattice: no place on the left side"
 holds '.matrix_sampling | .replicates == 200 and 0 < .total_variation_mean and .total_variation_mean < .total_variation_95 and .total_variation_95 < 1' ends-predict.json
 "$gatewalk" predict m.nc --threads 1 --json ends-again.json --quiet
 jq -s '.[0].endings_95 == .[1].endings_95' ends-predict.json ends-again.json | grep -q true || fail "predict: intervals depend on the threads"

@@ -9,6 +9,8 @@ head -1 ends-validate.txt | grep -q '^Endings, % of 300 trials' || fail "validat
 grep -q '^   d   vx    vy  |  *crossed  *left side  *right side  *trapped  *cut off  *p$' ends-validate.txt || fail "validate: no header of the starts"
 [ "$(grep -c '^ 4\.3  5\.1  10\.2  | ' ends-validate.txt)" -ge 5 ] || fail "validate: labels of starts are rounded"
 holds '[.starts[] | (.endings.dynamics | add) == 300 and (.endings.walks | add) + .never_sampled == 500 and ((.endings.exact | add) + .never_sampled - 1 | fabs) < 1e-12] | all' ends-validate.json
+holds '[.starts[] | .endings.dynamics as $seen | .endings.exact as $exact | .exits | to_entries | all(((.value | map(.dynamics) | add) - $seen[.key] / 300 | fabs) < 1e-12 and ((.value | map(.exact) | add) - $exact[.key] | fabs) < 1e-12)] | all' ends-validate.json
+grep -q '^ 4\.3  5\.1  10\.2  | [0-9]* of 27$' ends-validate.txt || fail "validate: no places along the sides"
 holds '[.starts[].trials_and_matrix | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .differs == (.p <= .level) and .null_draws >= 999 and .resampled_matrices == 999] | all' ends-validate.json
 holds '[.starts[] | (.verdict | test("differs")) == .trials_and_matrix.differs] | all' ends-validate.json
 # Is it Markov? Every question has its p and its sentence; the held force only when asked for.

@@ -1,6 +1,7 @@
 // node figures_test.mjs FOLDER|FILE.svg...: can the figures be read where they are printed 3.5 inches wide? No text
 // overlaps another, a frame or a legend's lines, none is cut off or below 6 points, and series can be told apart by
-// who sees no red and green, and in grey.
+// who sees no red and green, and in grey. Of figures in a FOLDER, just drawn, also: numbers of an axis stand close to
+// it, and the axis has a name.
 import assert from 'node:assert/strict';
 import {existsSync, readdirSync, statSync, readFileSync, writeFileSync, mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -8,10 +9,12 @@ import {join} from 'node:path';
 import {constants, inflateSync} from 'node:zlib';
 import {browse} from './browser.mjs';
 
-const files = process.argv.slice(2).flatMap(p => statSync(p).isDirectory()
-  ? readdirSync(p).filter(f => f.endsWith('.svg')).map(f => join(p, f)) : [p]);
+const drawn = process.argv.slice(2).filter(p => statSync(p).isDirectory())
+  .flatMap(p => readdirSync(p).filter(f => f.endsWith('.svg')).map(f => join(p, f)));
+const files = [...drawn, ...process.argv.slice(2).filter(p => !statSync(p).isDirectory())];
 assert.ok(files.length > 0, 'node figures_test.mjs FOLDER|FILE.svg...');
 
+const kFarthestNumber = 11;  // from its tick, of kWidth: 5.5 points in print
 const kWidth = 504, kPrintedPoints = 252, kLeastPoints = 5.99, kLeastDistance = 0.075;
 
 /// In the page: what is wrong with the texts of the SVG in it.
@@ -61,6 +64,42 @@ function texts_of({width, points, least}) {
   return {faults: [...new Set(faults)], series};
 }
 
+/// In the page: what is wrong with the axes of the SVG in it. A tick is a short line with its number behind it.
+function axes_of({farthest}) {
+  const svg = document.querySelector('svg'), faults = [], axes = new Map(), numbers = new Set();
+  for (const path of svg.querySelectorAll('path')) {
+    const text = path.nextElementSibling?.querySelector?.('text'), box = path.getBoundingClientRect();
+    if (!text?.textContent.trim() || Math.max(box.width, box.height) > 8 || path.closest('[id^=gnuplot_plot]')) continue;
+    const t = text.getBoundingClientRect(), upright = box.height > box.width, below = t.top > box.top - 2;
+    const right = t.left > box.left;
+    const gap = upright ? (below ? t.top + 0.16 * t.height - box.bottom : box.top - t.bottom)
+      : (right ? t.left - box.right : box.left - t.right);
+    const words = text.textContent.trim();
+    numbers.add(text);
+    if (gap > farthest) faults.push(`the number "${words}" is ${gap.toFixed(1)} from its tick`);
+    if (!/^[-+]?[\d.]+(e[-+]?\d+)?$/.test(words) || (!upright && right)) continue;  // words, or those of a bar of colours
+    const key = upright ? `x ${Math.round(box.top)}` : `y ${Math.round(box.right)}`;
+    const axis = axes.get(key) ?? {upright, left: Infinity, right: -Infinity, top: Infinity, bottom: -Infinity, numbers: []};
+    axis.left = Math.min(axis.left, t.left);
+    axis.right = Math.max(axis.right, t.right);
+    axis.top = Math.min(axis.top, t.top);
+    axis.bottom = Math.max(axis.bottom, t.bottom);
+    axis.numbers.push(words);
+    axes.set(key, axis);
+  }
+  const names = [...svg.querySelectorAll('text')].filter(t => t.textContent.trim() && !numbers.has(t))
+    .map(t => ({turned: /rotate/.test(t.closest('g[transform]')?.getAttribute('transform') ?? ''), ...t.getBoundingClientRect().toJSON()}));
+  for (const a of axes.values()) {
+    if (a.numbers.length < 2) continue;
+    const tall = a.bottom - a.top;
+    const named = a.upright
+      ? names.some(n => !n.turned && n.top >= a.top + 4 && n.right > a.left && n.left < a.right)
+      : names.some(n => n.turned && n.left < a.left && n.bottom > a.top - tall && n.top < a.bottom + tall);
+    if (!named) faults.push(`the axis ${a.numbers.join(' ')} has no name`);
+  }
+  return faults;
+}
+
 const linear = rgb => rgb.map(v => v / 255).map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
 /// Viénot, Brettel and Mollon (1999): what is seen without the receptors for middle wavelengths.
 const deutan = ([r, g, b]) => {
@@ -91,6 +130,7 @@ try {
       await page.setViewportSize({width: width + 20, height: 1000});
       await page.reload();
       const seen = await page.evaluate(texts_of, {width, points: kPrintedPoints, least: kLeastPoints});
+      if (drawn.includes(file)) seen.faults.push(...await page.evaluate(axes_of, {farthest: kFarthestNumber}));
       const colours = seen.series.flatMap(s => s.colours.slice(0, 1).map(c => ({name: s.name, rgb: linear(c.match(/\d+/g).slice(0, 3).map(Number))})));
       colours.forEach((a, i) => colours.slice(i + 1).forEach(b => {
         if (a.name === b.name || `${a.rgb}` === `${b.rgb}`) return;

@@ -1,0 +1,111 @@
+#include "lattice/exits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dynamics/share.h"
+#include "lattice/group_spread.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+std::size_t place_on(std::size_t side, std::int64_t cell, std::int64_t columns) {
+  return static_cast<std::size_t>(side == kFarSide ? cell % columns : cell / columns);
+}
+
+/// `interval_of(own share, shares of the others)` for every place.
+template <class IntervalOf>
+FieldExits with_intervals(const ExitShares& own, const std::vector<ExitShares>& others,
+                          IntervalOf interval_of) {
+  FieldExits exits;
+  for (std::size_t side = 0; side < kSides.size(); ++side)
+    for (std::size_t i = 0; i < own[side].size(); ++i) {
+      std::vector<double> shares;
+      for (const ExitShares& o : others) shares.push_back(o[side][i]);
+      exits[side].share.push_back(own[side][i]);
+      exits[side].interval.push_back(interval_of(own[side][i], std::move(shares)));
+    }
+  return exits;
+}
+
+/// Of a share in which nothing that was drawn shows a spread.
+std::array<double, 2> without_spread(double share, std::int64_t trials) {
+  return dynamics::interval_of_share(std::clamp(share, 0.0, 1.0), static_cast<double>(trials));
+}
+
+}  // namespace
+
+std::vector<double> exit_bounds(const dynamics::GateParams& p, const FieldParams& field,
+                                std::size_t side) {
+  std::vector<double> bounds;
+  for (int i = 0; i <= (side == kFarSide ? field.columns : field.rows); ++i)
+    bounds.push_back(side == kFarSide ? (i - field.start_column() - 0.5) * p.gate_width()
+                                      : i * p.gate_length());
+  return bounds;
+}
+
+ExitCounts::ExitCounts(const FieldParams& field) {
+  for (std::size_t side = 0; side < kSides.size(); ++side)
+    counts[side].assign(static_cast<std::size_t>(side == kFarSide ? field.columns : field.rows), 0);
+}
+
+void ExitCounts::add(const FieldTrials& each) {
+  const auto columns = std::ssize(counts[kFarSide]);
+  for (std::size_t i = 0; i < each.endings.size(); ++i)
+    for (std::size_t side = 0; side < kSides.size(); ++side)
+      if (each.endings[i] == kSides[side])
+        ++counts[side][place_on(side, each.final_gates[i], columns)];
+  trials += std::ssize(each.endings);
+}
+
+FieldExits exits_of(const ExitCounts& c) {
+  FieldExits exits;
+  for (std::size_t side = 0; side < kSides.size(); ++side)
+    for (const std::int64_t count : c.counts[side]) {
+      exits[side].share.push_back(static_cast<double>(count) / static_cast<double>(c.trials));
+      exits[side].interval.push_back(dynamics::share_interval(count, c.trials));
+    }
+  return exits;
+}
+
+ExitShares exit_shares(const markov::FinalDistribution& d) {
+  const Eigen::Index columns = d.final_cells.cols();
+  ExitShares shares;
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    shares[side].assign(static_cast<std::size_t>(side == kFarSide ? columns : d.final_cells.rows()),
+                        0.0);
+    for (const markov::CellEndings& c : d.mixed_cells)
+      shares[side][place_on(side, c.cell, columns)] +=
+          c.by_ending[static_cast<std::size_t>(kSides[side])];
+  }
+  return shares;
+}
+
+FieldExits exits_of(const ExitShares& prediction, const std::vector<ExitShares>& resampled,
+                    std::int64_t runs) {
+  return with_intervals(prediction, resampled, [&](double share, std::vector<double> drawn) {
+    if (drawn.empty()) return std::array{std::nan(""), std::nan("")};
+    const auto interval = middle_95(std::move(drawn), share);
+    return interval[0] < interval[1] ? interval : without_spread(share, runs);
+  });
+}
+
+FieldExits exits_of_groups(const ExitShares& prediction, const std::vector<ExitShares>& groups,
+                           std::int64_t trials) {
+  return with_intervals(
+      prediction, groups, [&](double share, const std::vector<double>& of_groups) {
+        const double half = half_width_95(share, of_groups);
+        if (half == 0.0) return without_spread(share, trials);
+        return std::array{std::max(0.0, share - half), std::min(1.0, share + half)};
+      });
+}
+
+std::array<double, 2> middle_95(std::vector<double> drawn, double own) {
+  std::sort(drawn.begin(), drawn.end());
+  const std::size_t beyond = (drawn.size() + 1) / 40;  // 2.5 % on either side
+  const std::size_t low = beyond > 0 ? beyond - 1 : 0;
+  return {std::min(drawn[low], own), std::max(drawn[drawn.size() - 1 - low], own)};
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,57 @@
+#pragma once
+/// Where along its sides bodies leave the field.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lattice/reference.h"
+#include "markov/predict.h"
+
+namespace gatewalk::lattice {
+
+/// The sides that bodies leave over. A place along the far one is a column of gates, along the
+/// others a row.
+inline constexpr std::array<markov::Ending, 3> kSides{
+    markov::Ending::far_edge, markov::Ending::left_edge, markov::Ending::right_edge};
+inline constexpr std::size_t kFarSide = 0;
+
+/// Bounds of the places along side number `side` of kSides, m (places + 1): along the far one from
+/// the middle of the start's column, along the others from the near end of the field.
+[[nodiscard]] std::vector<double> exit_bounds(const dynamics::GateParams& p,
+                                              const FieldParams& field, std::size_t side);
+
+/// Trials by the place at which they left the field.
+struct ExitCounts {
+  std::array<std::vector<std::int64_t>, kSides.size()> counts;  // by kSides (places)
+  std::int64_t trials = 0;
+
+  explicit ExitCounts(const FieldParams& field);
+  void add(const FieldTrials& trials);
+};
+
+/// Shares of all bodies that leave at each place of a side, with 95 % intervals (NaN: none).
+struct SideExits {
+  std::vector<double> share;
+  std::vector<std::array<double, 2>> interval;
+};
+using FieldExits = std::array<SideExits, kSides.size()>;  // by kSides
+
+/// With Jeffreys' intervals.
+[[nodiscard]] FieldExits exits_of(const ExitCounts& counts);
+
+using ExitShares = std::array<std::vector<double>, kSides.size()>;  // by kSides (places)
+[[nodiscard]] ExitShares exit_shares(const markov::FinalDistribution& prediction);
+/// What is predicted, with intervals from predictions of resampled matrices (MatrixNoise), of whose
+/// first row there are so many runs. Without any resampled: none.
+[[nodiscard]] FieldExits exits_of(const ExitShares& prediction,
+                                  const std::vector<ExitShares>& resampled, std::int64_t runs);
+/// The same from predictions of groups of the trials (GroupSpread), of which there are so many.
+[[nodiscard]] FieldExits exits_of_groups(const ExitShares& prediction,
+                                         const std::vector<ExitShares>& groups,
+                                         std::int64_t trials);
+
+/// Between what lie the middle 95 % of what was drawn (one at least), and `own`.
+[[nodiscard]] std::array<double, 2> middle_95(std::vector<double> drawn, double own);
+
+}  // namespace gatewalk::lattice

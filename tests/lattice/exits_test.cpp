@@ -1,0 +1,130 @@
+#include "lattice/exits.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "lattice/run_pool.h"
+#include "lattice/study/pool_answers.h"
+#include "lattice/study/prediction.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using markov::Ending;
+
+template <class Numbers>
+auto sum_of(const Numbers& numbers) {
+  return std::accumulate(numbers.begin(), numbers.end(), typename Numbers::value_type{});
+}
+
+/// A small field that many leave over every side.
+Scene leaving_scene() {
+  Scene scene;
+  scene.gate.forces.propulsion = 9.0;
+  scene.gate.forces.random = 50.0;
+  scene.gate.run.method = "moreau";
+  scene.gate.run.step = 0.02;
+  scene.field = {3, 2, 6};
+  return scene;
+}
+
+RunPool pool_of_runs(const Scene& scene, std::int64_t n) {
+  RunPool pool;
+  StartTrials& s = pool.starts.emplace_back();
+  s.start = {dynamics::Boundary::enter, scene.start.x, scene.start.vx, scene.start.vy};
+  (void)run_field(scene.gate, scene.field, scene.start, dynamics::StateSpace::paper(scene.gate), 9,
+                  {0, n}, &s.full);
+  return pool;
+}
+
+// Gates are 50 m wide and 60 m long; the start's column is the middle one.
+TEST(Exits, PlacesAreTheGatesInMetres) {
+  dynamics::GateParams p;
+  p.beams.joint_x = 25.0;
+  p.run.traverse_y = 60.0;
+  const FieldParams field{4, 3, 0};
+  EXPECT_EQ(exit_bounds(p, field, kFarSide), (std::vector<double>{-125, -75, -25, 25, 75}));
+  EXPECT_EQ(exit_bounds(p, field, 1), (std::vector<double>{0, 60, 120, 180}));
+  EXPECT_EQ(exit_bounds(p, field, 2), exit_bounds(p, field, 1));
+}
+
+TEST(Exits, OfTrialsAreThoseOfTheirLastGates) {
+  const Scene scene = leaving_scene();
+  FieldTrials each;
+  const FieldTally tally = run_field(scene.gate, scene.field, scene.start,
+                                     dynamics::StateSpace::paper(scene.gate), 3, {0, 2000}, &each);
+  ExitCounts counts(scene.field);
+  counts.add(each);
+  EXPECT_EQ(counts.trials, 2000);
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    EXPECT_GT(sum_of(counts.counts[side]), 20) << side;
+    EXPECT_EQ(sum_of(counts.counts[side]), tally.endings[static_cast<std::size_t>(kSides[side])]);
+  }
+  // Of the first row nobody crosses, and of a column in the middle nobody leaves over a side.
+  EXPECT_EQ(counts.counts[1][0], tally.departed_gates(0, 0));
+  EXPECT_EQ(counts.counts[2][0], tally.departed_gates(0, 2));
+  EXPECT_EQ(counts.counts[kFarSide][1], tally.departed_gates(1, 1));
+  EXPECT_EQ(counts.counts[kFarSide][0] + counts.counts[1][1], tally.departed_gates(1, 0));
+  const FieldExits exits = exits_of(counts);
+  for (std::size_t side = 0; side < kSides.size(); ++side)
+    for (std::size_t i = 0; i < exits[side].share.size(); ++i) {
+      EXPECT_EQ(exits[side].share[i], static_cast<double>(counts.counts[side][i]) / 2000.0);
+      EXPECT_LE(exits[side].interval[i][0], exits[side].share[i]);
+      EXPECT_GT(exits[side].interval[i][1], exits[side].share[i]);
+    }
+}
+
+// Walks know of a gate only how many left the field from it: what is made of that must be what the
+// exact chain says, also of the corners, from where some cross and some leave over a side.
+TEST(Exits, OfPredictionsAddUpToTheEndingsByEitherWay) {
+  Scene scene = leaving_scene();
+  const RunPool pool = pool_of_runs(scene, 2000);
+  const Kernel kernel = kernel_of(scene.gate, pool, 8);
+  const std::vector<std::int64_t> row = first_row(scene.gate, kernel.space, pool.starts[0]);
+  scene.field.max_gates = 400'000;  // so that exact answers would take long
+  const KernelAnswers by_walks = answers_of(kernel, scene.gate, {row}, scene.field, 1);
+  ASSERT_GT(by_walks.walks, 1'000'000);
+  const auto exact = markov::predict(chain_of(kernel, scene.gate, scene.field, {row}), {3, 2},
+                                     {{1, 0, kernel.space.size()}}, {.max_cells = 1000})
+                         .front();
+  const ExitShares walked = exit_shares(by_walks.final.front()), of_exact = exit_shares(exact);
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    const auto ending = static_cast<std::size_t>(kSides[side]);
+    EXPECT_NEAR(sum_of(of_exact[side]), exact.endings[ending], 1e-12) << side;
+    EXPECT_NEAR(sum_of(walked[side]), by_walks.final.front().endings[ending], 1e-12) << side;
+    for (std::size_t i = 0; i < of_exact[side].size(); ++i) {
+      EXPECT_GT(of_exact[side][i], 0.001);
+      const double sd = std::sqrt(of_exact[side][i] / static_cast<double>(by_walks.walks));
+      EXPECT_NEAR(walked[side][i], of_exact[side][i], 5.0 * sd) << side << " " << i;
+    }
+  }
+}
+
+TEST(Exits, IntervalsOfGroupsAndOfResampledMatrices) {
+  const ExitShares own{{{0.1, 0.0}, {0.2}, {0.3}}};
+  std::vector<ExitShares> others(8, own);
+  for (std::size_t g = 0; g < others.size(); ++g)
+    others[g][0][0] += 0.01 * (static_cast<double>(g) - 3.5);
+  const FieldExits groups = exits_of_groups(own, others, 1000);
+  // 2.36 standard errors of a mean of eight; nothing varies: what 1000 trials can rule out.
+  EXPECT_NEAR(groups[0].interval[0][1] - 0.1, 2.3646 * 0.01 * std::sqrt(42.0 / 7.0 / 8.0), 1e-9);
+  EXPECT_EQ(groups[0].interval[1][0], 0.0);
+  EXPECT_GT(groups[0].interval[1][1], 0.001);
+  const FieldExits resampled = exits_of(own, others, 1000);
+  EXPECT_DOUBLE_EQ(resampled[0].interval[0][0], 0.065);
+  EXPECT_DOUBLE_EQ(resampled[0].interval[0][1], 0.135);
+  EXPECT_LT(resampled[1].interval[0][0], 0.2);
+  EXPECT_TRUE(std::isnan(exits_of(own, {}, 1000)[0].interval[0][0]));
+}
+
+TEST(Exits, Middle95LeavesOutTheOutermost) {
+  std::vector<double> drawn(199);
+  std::iota(drawn.rbegin(), drawn.rend(), 1.0);
+  EXPECT_EQ(middle_95(drawn, 100.0), (std::array{5.0, 195.0}));
+  EXPECT_EQ(middle_95(drawn, 250.0), (std::array{5.0, 250.0}));
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
