@@ -10,7 +10,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . ./.ci/prepare
 
-alone=(-DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
+alone=(-DGATEWALK_BATCHES=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
 web='^(web_|figures$|library$|headers$)'  # tests that do not depend on the compiler, or build themselves
 
 odr() {
