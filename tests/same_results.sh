@@ -185,9 +185,12 @@ mixed mixed.toml --set run.method=moreau --bins paper --trials 3
 END
 
 # What a file says but for what may differ: who made it, and what was timed. Where a table consists of times, its words
-# stay; its other numbers are in the JSON beside it. What chart-chain charts depends on the times.
+# stay; its other numbers are in the JSON beside it. What chart-chain charts depends on the times, and so do verdicts of
+# reproduce: of it the results of the studies and the tables of the figures but for speed are compared.
 plain() {  # COMMAND FILE
   case $1:$2 in
+    reproduce:*/out/report.json | reproduce:*/out/claims.csv | reproduce:*/out/speed.*) ;;
+    reproduce:*.html | reproduce:*.pdf | reproduce:*/stdout.txt) ;;
     *.json) jq -S --arg timed "$timed" "$nameless" "$2" ;;
     *.nc) ncdump "$2" | grep -v -E '^[[:space:]]+:(program|version|commit|checksum) = |^netcdf ' ;;
     chart*.svg | chart-chain:*.txt | chart-chain:*.csv) ;;
