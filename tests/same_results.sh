@@ -54,6 +54,9 @@ lines() {
 0 trace field.toml --field --trials 2 --seed 3 --json out.json --netcdf out.nc
 0 trace map.toml --field --trials 3 --csv out.csv --replay out.html
 0 trace overdamped.toml --trials 2 --csv out.csv
+0 trace soft_left.toml --set run.method=moreau --trials 2 --csv out.csv
+0 trace soft_left.toml --set run.method=penalty --trials 2 --csv out.csv
+0 trace soft_left.toml --set run.method=paper --trials 2 --csv out.csv
 0 trace soft_left.toml --set run.time_limit_s=0.3 --video out.gif
 0 trace own.toml --set run.method=event --trials 20 --only exited --csv out.csv
 0 build field.toml --trials 30 -o m.nc
