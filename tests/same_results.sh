@@ -54,6 +54,9 @@ lines() {
 0 trace field.toml --field --trials 2 --seed 3 --json out.json --netcdf out.nc
 0 trace map.toml --field --trials 3 --csv out.csv --replay out.html
 0 trace overdamped.toml --trials 2 --csv out.csv
+0 trace soft_left.toml --set run.method=moreau --trials 2 --csv out.csv
+0 trace soft_left.toml --set run.method=penalty --trials 2 --csv out.csv
+0 trace soft_left.toml --set run.method=paper --trials 2 --csv out.csv
 0 trace soft_left.toml --set run.time_limit_s=0.3 --video out.gif
 0 trace own.toml --set run.method=event --trials 20 --only exited --csv out.csv
 0 build field.toml --trials 30 -o m.nc
@@ -185,9 +188,12 @@ mixed mixed.toml --set run.method=moreau --bins paper --trials 3
 END
 
 # What a file says but for what may differ: who made it, and what was timed. Where a table consists of times, its words
-# stay; its other numbers are in the JSON beside it. What chart-chain charts depends on the times.
+# stay; its other numbers are in the JSON beside it. What chart-chain charts depends on the times, and so do verdicts of
+# reproduce: of it the results of the studies and the tables of the figures but for speed are compared.
 plain() {  # COMMAND FILE
   case $1:$2 in
+    reproduce:*/out/report.json | reproduce:*/out/claims.csv | reproduce:*/out/speed.*) ;;
+    reproduce:*.html | reproduce:*.pdf | reproduce:*/stdout.txt) ;;
     *.json) jq -S --arg timed "$timed" "$nameless" "$2" ;;
     *.nc) ncdump "$2" | grep -v -E '^[[:space:]]+:(program|version|commit|checksum) = |^netcdf ' ;;
     chart*.svg | chart-chain:*.txt | chart-chain:*.csv) ;;
