@@ -1,10 +1,12 @@
 #include "cli/arguments.h"
 #include "cli/render/analysis.h"
 #include "cli/render/field_figure.h"
+#include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/terminal/output.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
@@ -17,6 +19,7 @@ int run_lattice(const Arguments& arguments) {
   options.scene();
   options.add_trials_and_seed("trials through the field");
   options.add_strict();
+  options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where bodies end, and how");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
@@ -30,6 +33,10 @@ int run_lattice(const Arguments& arguments) {
   Json json = to_json(tally, scene, settled);
   json["costs"] = to_json(costs, scene.gate);
   json["made_by"] = to_json(options.provenance(scene));
+  if (options.has("netcdf"))
+    write_text_atomically(
+        options.text("netcdf"),
+        netcdf_of({{FieldPicture("", tally), lattice::own_start(scene)}}, json["made_by"]));
   options.give_out(json, table_of(tally, scene, settled) + table_of(costs, scene.gate));
   options.remark(fixed(watch.seconds(), 2) + " s");
   options.warn(too_few_gates(scene));

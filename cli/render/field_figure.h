@@ -25,7 +25,7 @@ struct FieldPicture {
   FieldPicture(std::string title, const markov::WalkTally& tally);
 };
 
-/// The map of the final gates, those of the trapped and of those who left, and the endings; of
+/// The map of the final gates, those of the trapped and of the departed, and the endings; of
 /// several starts one below the other. Throws std::invalid_argument for more than kMostPictures.
 inline constexpr std::size_t kMostPictures = 8;
 [[nodiscard]] Figure figure_of(const std::vector<FieldPicture>& pictures);
