@@ -203,6 +203,27 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
   m.file.transitions.health = health;
 }
 
+void require_active(const Options& options, const lattice::Scene& scene) {
+  if (scene.field.fidelity == lattice::Fidelity::active) return;
+  const std::string key = "field.fidelity",
+                    value = " = \"" + std::string(lattice::name_of(scene.field.fidelity)) + "\"";
+  const auto overrides = options.overrides();
+  const bool is_set = std::any_of(overrides.begin(), overrides.end(), [&](const std::string& o) {
+    const auto keys = lattice::keys_set_by(o);
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  });
+  if (options.has("matrix") && is_matrix(options.text("matrix")) && options.text("scene").empty() &&
+      !is_set) {
+    options.warn(options.text("matrix") + " (its scene): " + key + value +
+                 " is of the full dynamics: a chain always has \"active\"");
+    return;
+  }
+  const auto given = scene.named.find(key);
+  throw UsageError((given == scene.named.end() ? scene.source : given->second) + ": " + key +
+                   value +
+                   " is not permitted for a chain: it has \"active\", gatewalk lattice the others");
+}
+
 bool is_matrix(const std::string& path) {
   std::array<char, 8> begin{};
   std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
@@ -237,6 +258,10 @@ lattice::SceneMatrix read_matrix(const Options& options, const std::string& matr
                                  const std::string& scene_path,
                                  const std::vector<std::string>& overrides) {
   lattice::SceneMatrix m = lattice::read_scene_matrix(matrix_path, scene_path, overrides);
+  if (!scene_path.empty())  // a matrix's own scene names every key
+    for (const std::string& text :
+         lattice::keys_without_effect(m.scene, lattice::RunsFrom::everywhere))
+      options.warn(text);
   if (const std::string faults = faults_recorded(recorded_status(m.file)); !faults.empty())
     options.warn("the runs that made " + matrix_path + ": " + faults);
   return m;

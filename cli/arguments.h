@@ -56,6 +56,10 @@ void warn_of_range(const Options& options, const lattice::MatrixFile& file, cons
 void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
                    const std::vector<dynamics::BodyState>& bodies);
 
+/// A chain has field.fidelity "active" alone: refuses another one that a scene or --set asks for,
+/// and warns of that of a matrix's own scene. Throws UsageError.
+void require_active(const Options& options, const lattice::Scene& scene);
+
 /// Whether the file begins as a matrix does (HDF5).
 [[nodiscard]] bool is_matrix(const std::string& path);
 

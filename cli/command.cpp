@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/program_options.hpp>
 #include <charconv>
 #include <cmath>
@@ -18,6 +19,7 @@
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
+#include "lattice/scene/edit_distance.h"
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
 
@@ -29,16 +31,22 @@ namespace po = boost::program_options;
 struct Count {
   std::int64_t value = 0;
 };
+/// A finite number on the command line.
+struct Number {
+  double value = 0.0;
+};
 /// A seed on the command line.
 struct Seed {
   std::uint64_t value = 1;
 };
 namespace {
 
+std::string memory_advice;
+
 /// Options that cannot change a result, left out of the recorded command.
 bool shapes_nothing(const std::string& name) {
   return name == "threads" || name == "quiet" || name == "json" || name == "output" ||
-         name == "strict" || name == "figure" || name == "force";
+         name == "strict" || name == "figure" || name == "netcdf" || name == "force";
 }
 
 /// An option as users write it.
@@ -81,6 +89,71 @@ std::string map_named_in(const std::string& path) {
   }
 }
 
+/// Of an option that is meant to be given once, the last one counts; says so.
+Strings keep_last(std::vector<po::option>& given, const po::options_description& all) {
+  Strings remarks;
+  std::map<std::string, std::size_t> times;
+  const auto once = [&](const po::option& o) {
+    return o.position_key < 0 && !all.find(o.string_key, false).semantic()->is_composing();
+  };
+  for (const po::option& o : given)
+    if (once(o)) ++times[o.string_key];
+  const auto all_but_last = [&](const po::option& o) {
+    return once(o) && times[o.string_key]-- > 1;
+  };
+  for (const auto& [name, count] : times) {
+    const auto last = std::find_if(given.rbegin(), given.rend(), [&, &name = name](const auto& o) {
+      return o.string_key == name;
+    });
+    if (count > 1 && !last->value.empty())
+      remarks.push_back(shown(name) + " is given " + std::to_string(count) +
+                        " times: the last one counts, " + last->value.front());
+  }
+  given.erase(std::remove_if(given.begin(), given.end(), all_but_last), given.end());
+  return remarks;
+}
+
+/// Of the options that there are, those with which a command needs less memory.
+std::string advice(const po::options_description& offered) {
+  constexpr std::array<std::pair<const char*, const char*>, 7> kSmaller{
+      {{"gate-runs", "--gate-runs N with a smaller N"},
+       {"accuracy", "a larger --accuracy"},
+       {"states", "fewer --states"},
+       {"trials", "fewer --trials"},
+       {"null-draws", "fewer --null-draws"},
+       {"threads", "fewer --threads"},
+       {"set", "--set field.rows and field.columns of a smaller field"}}};
+  std::string all;
+  for (const auto& [name, text] : kSmaller)
+    if (offered.find_nothrow(name, false)) all += (all.empty() ? "" : ", ") + std::string(text);
+  return all;
+}
+
+/// What the words of a command cannot be read as, and what is allowed instead.
+std::string mistake_in(const po::error& error, const po::options_description& offered) {
+  if (dynamic_cast<const po::too_many_positional_options_error*>(&error))
+    return "there are more arguments than the command takes";
+  const auto* named = dynamic_cast<const po::error_with_option_name*>(&error);
+  if (!named) return error.what();
+  const std::string given = named->get_option_name();
+  if (dynamic_cast<const po::unknown_option*>(&error)) {
+    Strings names;
+    for (const auto& option : offered.options()) names.push_back(option->long_name());
+    const std::string meant =
+        lattice::meant_name(given.substr(given.find_first_not_of('-')), names);
+    return "there is no option " + given +
+           (meant.empty() ? "" : " (did you mean --" + meant + "?)");
+  }
+  using Syntax = po::invalid_syntax;
+  if (const auto* syntax = dynamic_cast<const Syntax*>(&error)) {
+    if (syntax->kind() == Syntax::extra_parameter) return given + " takes no value";
+    if (syntax->kind() == Syntax::missing_parameter ||
+        syntax->kind() == Syntax::empty_adjacent_parameter)
+      return given + " needs a value";
+  }
+  return error.what();  // our own validators'
+}
+
 }  // namespace
 
 void validate(boost::any& v, const std::vector<std::string>& values, Count*, int) {
@@ -101,6 +174,18 @@ void validate(boost::any& v, const std::vector<std::string>& values, Count*, int
     throw po::error_with_option_name("%canonical_option%: '" + text +
                                      "' is out of range: at most 1e15 is allowed");
   v = Count{static_cast<std::int64_t>(number)};
+}
+
+void validate(boost::any& v, const std::vector<std::string>& values, Number*, int) {
+  po::validators::check_first_occurrence(v);
+  const std::string& text = po::validators::get_single_string(values);
+  Number number;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number.value);
+  if (read.ec != std::errc() || read.ptr != text.data() + text.size() ||
+      !std::isfinite(number.value))
+    throw po::error_with_option_name("%canonical_option%: '" + text +
+                                     "' is not a number, such as 0.01 or 1e-2");
+  v = number;
 }
 
 void validate(boost::any& v, const std::vector<std::string>& values, Seed*, int) {
@@ -151,7 +236,7 @@ Options::Options(std::string synopsis, std::string about, std::string example)
   state_->example = std::move(example);
   state_->shared.add_options()("json", po::value<std::string>()->value_name("FILE"),
                                "write the result as JSON; - is standard output")(
-      "threads", po::value<int>()->default_value(0)->value_name("N"),
+      "threads", po::value<Count>()->default_value(Count{0}, "0")->value_name("N"),
       "threads to use, 0: all; never changes a result")(
       "force", "replace files that are there; without it they are kept, as FILE.~1~ and so on")(
       "quiet", "no progress, no remarks, no table when there is JSON")("help,h", "this page");
@@ -197,7 +282,7 @@ void Options::add_count(const std::string& name, const std::string& shown, const
 
 void Options::add_number(const std::string& name, const std::string& shown,
                          const std::string& help) {
-  state_->add(name, po::value<double>(), shown, help);
+  state_->add(name, po::value<Number>(), shown, help);
 }
 
 void Options::add_text(const std::string& name, const std::string& shown, const std::string& help,
@@ -209,7 +294,7 @@ void Options::add_text(const std::string& name, const std::string& shown, const 
 
 void Options::add_numbers(const std::string& name, const std::string& shown,
                           const std::string& help) {
-  state_->add(name, po::value<std::vector<double>>()->composing(), shown, help);
+  state_->add(name, po::value<std::vector<Number>>()->composing(), shown, help);
 }
 
 void Options::add_texts(const std::string& name, const std::string& shown,
@@ -421,21 +506,24 @@ bool Options::parse(const Arguments& arguments) {
                      "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what "
                      "the file leaves out stays as it follows from the file");
   reads("set", [](const std::string& given) { return lattice::map_file_in(given, ""); });
-  po::options_description all;
-  all.add(state_->own).add(state_->shared).add(state_->hidden);
+  po::options_description offered, all;
+  offered.add(state_->own).add(state_->shared);
+  all.add(offered).add(state_->hidden);
   using namespace po::command_line_style;
   const int style = unix_style & ~allow_guessing;  // an abbreviation is a typing error
   po::parsed_options parsed(&all);
+  Strings remarks;
   try {
     parsed = po::command_line_parser(arguments.words)
                  .options(all)
                  .positional(state_->positions)
                  .style(style)
                  .run();
+    remarks = keep_last(parsed.options, all);
     po::store(parsed, state_->values);
     po::notify(state_->values);
   } catch (const po::error& e) {
-    throw UsageError(std::string(e.what()) + "; see gatewalk " +
+    throw UsageError(mistake_in(e, offered) + "; see gatewalk " +
                      state_->synopsis.substr(0, state_->synopsis.find(' ')) + " --help");
   }
   if (has("help")) {
@@ -458,15 +546,18 @@ bool Options::parse(const Arguments& arguments) {
     if (!has(name))
       throw UsageError("missing " + upper_case(name) + ": gatewalk " + state_->synopsis);
   }
+  if (talk())
+    for (const std::string& text : remarks) warn(text);
   state_->given = parsed.options;
   check_values_given();
   check_files();
-  const int threads = state_->values["threads"].as<int>();
-  if (threads < 0 || threads > 1024) throw UsageError("--threads must lie in [0, 1024]");
-  if (threads > 0) {
+  if (const std::int64_t threads = count("threads", 0, 1024); threads > 0) {
     // Lives until the program ends.
-    static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                           static_cast<std::size_t>(threads));
   }
+
+  memory_advice = advice(offered);
 
   state_->canonical = "gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' '));
   for (const auto& option : parsed.options) {
@@ -490,14 +581,20 @@ std::int64_t Options::count(const std::string& name, std::int64_t low, std::int6
   return value;
 }
 
-double Options::number(const std::string& name) const { return state_->values[name].as<double>(); }
+double Options::number(const std::string& name) const {
+  return state_->values[name].as<Number>().value;
+}
 
 std::string Options::text(const std::string& name) const {
   return has(name) ? state_->values[name].as<std::string>() : std::string();
 }
 
 std::vector<double> Options::numbers(const std::string& name) const {
-  return has(name) ? state_->values[name].as<std::vector<double>>() : std::vector<double>();
+  std::vector<double> values;
+  if (has(name))
+    for (const Number& n : state_->values[name].as<std::vector<Number>>())
+      values.push_back(n.value);
+  return values;
 }
 
 std::vector<std::string> Options::texts(const std::string& name) const {
@@ -571,6 +668,11 @@ void Options::draw(const std::function<Figure()>& picture) const {
 
 AboutFigure Options::about() const {
   return {"gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' ')), canonical()};
+}
+
+std::string out_of_memory() {
+  return "out of memory; files that are written already are whole and stay" +
+         (memory_advice.empty() ? "" : ". Less is needed with: " + memory_advice);
 }
 
 ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)

@@ -62,7 +62,7 @@ class Options {
   /// texts().
   void positional_list(const std::string& name, const std::string& help);
   /// Declares the positional argument SCENE, which must be given.
-  void scene() { positional("scene", "scene file (TOML)", true); }
+  void scene() { positional("scene", "scene file (TOML; -: standard input)", true); }
 
   /// Declare --name, whose value is `shown` on the help page. `by_default` is a value as it would
   /// be given; without one has(name) says whether there is a value. A whole number up to 1e15
@@ -163,6 +163,9 @@ class Options {
   void check_values_given() const;
   void check_files();
 };
+
+/// What to say of std::bad_alloc: which options of the command that runs would help.
+[[nodiscard]] std::string out_of_memory();
 
 /// The folder of -o: the numbers of a study and the figures drawn of them.
 class ResultFolder {

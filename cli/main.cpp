@@ -2,6 +2,8 @@
 #include <exception>
 #include <iostream>
 #include <iterator>
+#include <new>
+#include <stdexcept>
 
 #include "cli/commands.h"
 #include "cli/render/version.h"
@@ -40,17 +42,11 @@ const Command* find_command(const std::string& name) {
   const auto named = std::find_if(std::begin(kCommands), std::end(kCommands),
                                   [&](const Command& c) { return name == c.name; });
   if (named != std::end(kCommands)) return &*named;
-  const auto distance = [&](const Command& c) {
-    return lattice::edit_distance(name.substr(0, 100), c.name);
-  };
-  const auto nearest = std::min_element(
-      std::begin(kCommands), std::end(kCommands),
-      [&](const Command& a, const Command& b) { return distance(a) < distance(b); });
   std::cerr << "gatewalk: no command '" << name << "'";
-  // At most every third letter is wrong.
-  if (const std::size_t wrong = distance(*nearest);
-      3 * wrong <= std::max(name.size(), std::size_t{3}) + 1)
-    std::cerr << "; did you mean " << nearest->name << "?";
+  std::vector<std::string> names;
+  for (const Command& c : kCommands) names.emplace_back(c.name);
+  if (const std::string meant = lattice::meant_name(name, names); !meant.empty())
+    std::cerr << "; did you mean " << meant << "?";
   std::cerr << "\n\n";
   print_help(std::cerr);
   return nullptr;
@@ -69,7 +65,7 @@ int run(const std::vector<std::string>& words) {
     print_help(std::cout);
     return std::cout.flush() ? kFine : kFailure;
   }
-  if (words[0] == "--version") {
+  if (words[0] == "--version" || words[0] == "-V") {
     std::cout << "gatewalk " << kVersion << " (" << kCommit << ")\n";
     return std::cout.flush() ? kFine : kFailure;
   }
@@ -100,6 +96,8 @@ int main(int argc, char** argv) {
     return fail(cli::kWrongUse, e);
   } catch (const std::invalid_argument& e) {
     return fail(cli::kWrongUse, e);
+  } catch (const std::bad_alloc&) {
+    return fail(cli::kFailure, std::runtime_error(cli::out_of_memory()));
   } catch (const std::exception& e) {
     return fail(cli::kFailure, e);
   }

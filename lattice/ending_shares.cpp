@@ -7,6 +7,12 @@
 
 namespace gatewalk::lattice {
 
+std::optional<markov::Ending> ending_named(std::string_view name) {
+  for (const EndingName& e : kEndingNames)
+    if (name == e.key || name == e.name) return e.ending;
+  return {};
+}
+
 EndingShares::EndingShares(const std::array<double, markov::kEndings>& shares) : share(shares) {
   interval.fill({std::nan(""), std::nan("")});
 }

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 #include "lattice/matrix_noise.h"
 #include "markov/predict.h"
@@ -21,6 +23,9 @@ inline constexpr std::array<EndingName, 5> kEndingNames{
      {markov::Ending::right_edge, "right_side", "right side"},
      {markov::Ending::trapped, "trapped", "trapped"},
      {markov::Ending::cut_off, "cut_off", "cut off"}}};
+
+/// By either of its names; none for any other.
+[[nodiscard]] std::optional<markov::Ending> ending_named(std::string_view name);
 
 /// Shares of all, with 95 % intervals (NaN: none), by markov::Ending.
 struct EndingShares {

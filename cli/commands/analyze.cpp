@@ -20,11 +20,10 @@ namespace {
 /// By the names of JSON. Throws UsageError for any other.
 markov::Ending target_of(const Options& options) {
   const std::string name = options.text("target");
+  if (const auto ending = lattice::ending_named(name)) return *ending;
   std::string names;
-  for (const EndingName& e : kEndingNames) {
-    if (name == e.key) return e.ending;
+  for (const EndingName& e : kEndingNames)
     names += (names.empty() ? "" : ", ") + std::string(e.key);
-  }
   throw UsageError("--target " + name + ": must be one of " + names);
 }
 
@@ -120,14 +119,12 @@ Subject subject_of(const Options& options, const std::vector<lattice::PaperStart
                        options.text("scene") + "\", has no meaning beside it");
     lattice::Scene scene = lattice::read_scene(path, options.overrides());
     with_start(scene);
-    if (scene.field.fidelity != lattice::Fidelity::active)
-      throw UsageError(path + ": field.fidelity = \"" +
-                       std::string(lattice::name_of(scene.field.fidelity)) +
-                       "\" is not permitted for a chain: it has \"active\"");
+    require_active(options, scene);
     const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
     return from_runs(options, std::move(scene), {}, how, settled);
   }
   lattice::SceneMatrix m = read_matrix(options);
+  require_active(options, m.scene);
   with_start(m.scene);
   if (!lattice::has_runs(m.file)) return from_bins(options, m, given);
   if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
@@ -151,7 +148,8 @@ int run_analyze(const Arguments& arguments) {
       "--accuracy. From a matrix\n"
       "of bins as it is, without error bars on times and works.",
       "gatewalk analyze scenes/field.toml --target left_side --json analysis.json");
-  options.positional("matrix", "a scene, or a matrix file written by gatewalk build", true);
+  options.positional(
+      "matrix", "a scene (-: standard input), or a matrix file written by gatewalk build", true);
   options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
   add_accuracy(options, "0.02; that of a matrix");
   options.add_texts("start", "D,VX,VY", "where a body starts (default: the scene's start)");

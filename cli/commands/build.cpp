@@ -92,7 +92,9 @@ int run_build(const Arguments& arguments) {
   options.main_output_file("MATRIX.nc", "matrix file to write (NetCDF-4)",
                            Options::Content::binary);
   add_bins(options);
-  add_starts(options, "the scene's start; tree only: each is a state of its own");
+  add_starts(options,
+             "the scene's start; gatewalk validate takes those of Table IV in the paper's field; "
+             "tree only: each is a state of its own");
   options.add_text("starts", "all|D,VX,VY",
                    "tree: good for any start of a range, each axis LOW:HIGH; all: what Table III's "
                    "entries from below span, in the scene's own units");

@@ -2,10 +2,12 @@
 #include "cli/render/analysis.h"
 #include "cli/render/exits.h"
 #include "cli/render/field_figure.h"
+#include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/terminal/output.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
@@ -18,6 +20,7 @@ int run_lattice(const Arguments& arguments) {
   options.scene();
   options.add_trials_and_seed("trials through the field");
   options.add_strict();
+  options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where bodies end, and how");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
@@ -35,6 +38,10 @@ int run_lattice(const Arguments& arguments) {
   json["exits"] = to_json(exits, scene);
   json["costs"] = to_json(costs, scene.gate);
   json["made_by"] = to_json(options.provenance(scene));
+  if (options.has("netcdf"))
+    options.write(
+        options.text("netcdf"),
+        netcdf_of({{FieldPicture("", tally), lattice::own_start(scene)}}, json["made_by"]));
   options.give_out(
       json, table_of(tally, scene, settled) + table_of(exits, scene) + table_of(costs, scene.gate));
   options.remark(fixed(watch.seconds(), 2) + " s");

@@ -10,12 +10,9 @@
 namespace gatewalk::cli {
 namespace {
 
-void require_chain(const lattice::Scene& scene) {
+void require_chain(const Options& options, const lattice::Scene& scene) {
   (void)lattice::entries_at({lattice::own_start(scene)});
-  if (scene.field.fidelity != lattice::Fidelity::active)
-    throw UsageError(scene.source + ": field.fidelity = \"" +
-                     std::string(lattice::name_of(scene.field.fidelity)) +
-                     "\" is not permitted for a chain: it has \"active\"");
+  require_active(options, scene);
 }
 
 double number_within(const Options& options, const char* name, double usual, double low,
@@ -48,7 +45,7 @@ lattice::Scene read_other(const Options& options) {
 std::optional<lattice::Scene> other_scene(const Options& options, const lattice::Scene& scene) {
   if (!options.has("versus")) return {};
   lattice::Scene other = read_other(options);
-  require_chain(other);
+  require_chain(options, other);
   if (other.field.columns != scene.field.columns || other.field.rows != scene.field.rows)
     throw UsageError(
         "--versus: field.columns and field.rows must stay: final gates of fields of different "
@@ -106,7 +103,7 @@ int run_power(const Arguments& arguments) {
       .seed = options.seed()};
   if (options.has("trials")) how.trials = options.count("trials", 1, lattice::kMostPlanned);
   lattice::Scene scene = options.read_scene();
-  require_chain(scene);
+  require_chain(options, scene);
   auto other = other_scene(options, scene);
   (void)accuracy_of(options);
 

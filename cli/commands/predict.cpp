@@ -3,12 +3,15 @@
 #include "cli/arguments.h"
 #include "cli/render/choice.h"
 #include "cli/render/field_figure.h"
+#include "cli/render/field_netcdf.h"
+#include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/pooled_prediction.h"
 #include "cli/render/prediction.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/terminal/output.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
@@ -76,6 +79,16 @@ Figure figure_of(const std::vector<lattice::PaperStart>& given, const std::vecto
   return cli::figure_of(pictures, scene);
 }
 
+/// The file of --netcdf, if it is asked for; `field_of` says what is known of an answer.
+template <class Answer, class FieldOf>
+void write_netcdf(const Options& options, const lattice::Scene& scene,
+                  const std::vector<Answer>& answers, const FieldOf& field_of) {
+  if (!options.has("netcdf")) return;
+  std::vector<FieldArrays> fields;
+  for (const Answer& answer : answers) fields.push_back(field_of(answer));
+  options.write(options.text("netcdf"), netcdf_of(fields, to_json(options.provenance(scene))));
+}
+
 /// Until the error bar says enough, with the runs that a pool has already.
 int predict_accurately(const Options& options, const lattice::Scene& scene,
                        const std::optional<lattice::Settled>& settled, lattice::RunPool pool,
@@ -85,7 +98,13 @@ int predict_accurately(const Options& options, const lattice::Scene& scene,
   const auto prediction = lattice::predict_pooled(scene, pool, bodies, how, options.work());
   Json json = to_json(prediction, scene, how.accuracy, !given.empty());
   if (settled) json["method"] = to_json(*settled);
+  say_left_out(json, scene.field.columns, scene.field.rows);
   json["made_by"] = to_json(options.provenance(scene));
+  write_netcdf(options, scene, prediction.starts, [](const lattice::StartAnswer& a) {
+    return FieldArrays{FieldPicture("", a.final, shown_endings(a.endings, a.final)),
+                       {a.start.d, a.start.vx, a.start.vy, {}, {}},
+                       a.gates_95};
+  });
   options.give_out(json, table_of(prediction, scene, !given.empty()) + method_line(settled));
   options.warn(too_few_gates(scene));
   warn_of(options, prediction, how.accuracy);
@@ -109,11 +128,7 @@ int predict_scene(const Options& options) {
   lattice::Scene scene = lattice::read_scene(path, options.overrides());
   const lattice::AccuracyOptions how = accuracy_of(options);
   (void)bodies_of(given_starts(options), scene);
-  if (scene.field.fidelity != lattice::Fidelity::active)
-    throw UsageError(path + ": field.fidelity = \"" +
-                     std::string(lattice::name_of(scene.field.fidelity)) +
-                     "\" is not permitted for a chain: it has \"active\", gatewalk lattice the "
-                     "others");
+  require_active(options, scene);
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   return predict_accurately(options, scene, settled, {}, how);
 }
@@ -142,7 +157,8 @@ int run_predict(const Arguments& arguments) {
       "bins: what infinitely many walks with it would give; its intervals count that the\n"
       "matrix is a sample of gate runs, the chain's own error gatewalk validate measures.",
       "gatewalk predict scenes/field.toml --accuracy 0.01 --json prediction.json");
-  options.positional("matrix", "a scene, or a matrix file written by gatewalk build", true);
+  options.positional(
+      "matrix", "a scene (-: standard input), or a matrix file written by gatewalk build", true);
   options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
   add_accuracy(options, "0.02; that of a matrix, or half of it if it is for any start");
   options.add_count(
@@ -159,6 +175,7 @@ int run_predict(const Arguments& arguments) {
                    "klu: one sparse solve; auto: march without limit, else propagate",
                    "auto");
   options.add_strict();
+  options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where bodies end, and how; of up to " + std::to_string(kMostPictures) +
                      " starts");
   options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
@@ -176,6 +193,7 @@ int run_predict(const Arguments& arguments) {
   const std::vector<lattice::PaperStart> given = given_starts(options);
   const std::vector<lattice::RowMatrix> others = other_rows(options);
   const lattice::SceneMatrix m = read_matrix(options);
+  require_active(options, m.scene);
   lattice::require_inside(given, m.scene);
   warn_of_range(options, m.file, path, bodies_of(given, m.scene));
   const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0;
@@ -204,7 +222,14 @@ int run_predict(const Arguments& arguments) {
   const Json status = recorded_status(m.file);
   const PredictedField shown{m, given, others};
   Json json = to_json(prediction, shown, solver);
+  say_left_out(json, m.scene.field.columns, m.scene.field.rows);
   json["made_by"] = to_json(options.provenance(m.scene));
+  std::vector<lattice::PaperStart> begun = given;
+  if (begun.empty()) begun.push_back(lattice::own_start(m.scene));
+  write_netcdf(options, m.scene, prediction.starts, [&](const lattice::StartPrediction& s) {
+    const auto k = static_cast<std::size_t>(&s - prediction.starts.data());
+    return FieldArrays{FieldPicture("", s.final, shown_endings(s.shares, s.final)), begun[k]};
+  });
   options.give_out(json, table_of(prediction, shown));
   options.warn(too_few_gates(m.scene));
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");

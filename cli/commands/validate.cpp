@@ -41,21 +41,23 @@ std::vector<lattice::PaperStart> starts_for(const Options& options, const lattic
   return starts;
 }
 
+/// Before any run: what so many trials cannot show, and who is left out.
+void warn_of_trials(const Options& options, const lattice::Observed& observed) {
+  const std::int64_t n = observed.seen.trials();
+  options.warn(who_went_back(observed));
+  options.warn(too_few_observed(observed));
+  if (options.has("trials") && options.trials() < kTrialsPerObserved * n)
+    options.warn("--trials " + std::to_string(options.trials()) + " for " + std::to_string(n) +
+                 " observed: chance in the dynamics' own trials hides differences too; take " +
+                 std::to_string(kTrialsPerObserved * n) + " or more");
+}
+
 std::optional<lattice::Observed> experiment_of(const Options& options,
                                                const lattice::Scene& scene) {
   if (!options.has("observed")) return {};
-  return lattice::read_observed(options.texts("observed"), scene.field);
-}
-
-/// What the trials cannot show, or have not been asked.
-void warn_of_experiment(const Options& options, const lattice::Observed& observed,
-                        const lattice::StartValidation& v) {
-  const std::int64_t n = observed.seen.trials();
-  if (options.has("trials") && v.dynamics.trials < kTrialsPerObserved * n)
-    options.warn("--trials " + std::to_string(v.dynamics.trials) + " for " + std::to_string(n) +
-                 " observed: chance in the dynamics' own trials hides differences too; take " +
-                 std::to_string(kTrialsPerObserved * n) + " or more");
-  options.warn(endings_not_listed(observed, v));
+  auto observed = lattice::read_observed(options.texts("observed"), scene.field);
+  warn_of_trials(options, observed);
+  return observed;
 }
 
 Validated read_subject(const Options& options) {
@@ -142,9 +144,11 @@ int run_validate(const Arguments& arguments) {
   options.add_seed();
   options.add_strict();
   options.add_texts("observed", "FILE.csv",
-                    "counts of an experiment from this start, to hold against both: columns "
-                    "gate_x,gate_y,count (final gates, i_x and i_y) or ending,count (crossed, "
-                    "left_side, right_side, trapped, cut_off); a file of each may be given");
+                    "an experiment from this start, to hold against both: a line per trial, "
+                    "trial,ending (crossed, left side, right side, trapped, cut off, or went back, "
+                    "which the model does not have: left out) with or without gate_x,gate_y (the "
+                    "final gate's i_x and i_y); or counts, gate_x,gate_y,count or ending,count, a "
+                    "file of each may be given");
   options.reads("observed", [](const std::string& file) { return file; });
   options.input_file("matrix", "matrix to validate; without it one is built from the scene");
   options.add_count("matrix-trials", "N",
@@ -196,11 +200,12 @@ int run_validate(const Arguments& arguments) {
   std::string table = table_of(result, scene, matrix);
   if (const auto& experiment = result.starts.front().observed) {
     json["observed"] = to_json(*experiment, result.starts.front(), options.texts("observed"));
+    json["observed"]["went_back"] = subject.observed->went_back;
     table = table_of(*experiment, result.starts.front());
   }
   json["made_by"] = to_json(options.provenance(scene));
   options.give_out(json, table);
-  if (subject.observed) warn_of_experiment(options, *subject.observed, result.starts.front());
+  if (subject.observed) options.warn(endings_not_listed(*subject.observed, result.starts.front()));
   const int exit = status_of(options, result.health);
   options.draw([&] { return figure_of(result, scene); });
   return exit;

@@ -1,10 +1,12 @@
 #include "cli/arguments.h"
 #include "cli/render/field_figure.h"
+#include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/terminal/output.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
@@ -16,13 +18,16 @@ int run_walk(const Arguments& arguments) {
       "Markov chain Monte Carlo) and counts the final gates.",
       "gatewalk walk matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json walks.json");
   options.positional("matrix", "matrix file written by gatewalk build", true);
-  options.positional("scene", "scene file; without it the matrix's own scene", false);
+  options.positional("scene", "scene file (-: standard input); without it the matrix's own scene",
+                     false);
   options.add_count("walks", "N", "number of walks", "100");
   options.add_seed();
   options.add_strict();
+  options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where walks end, and how");
   if (!options.parse(arguments)) return kFine;
   lattice::SceneMatrix m = read_matrix(options);
+  require_active(options, m.scene);
   add_starts_to(m, options.text("matrix"), options, {m.scene.start});
   const dynamics::Transitions& t = m.file.transitions;
   const lattice::ChainStart start = ready_start(options, m, m.scene.start, "the start");
@@ -39,6 +44,10 @@ int run_walk(const Arguments& arguments) {
   Json json = to_json(tally, start, t.space);
   json["matrix_status"] = status;
   json["made_by"] = to_json(options.provenance(m.scene));
+  if (options.has("netcdf"))
+    options.write(
+        options.text("netcdf"),
+        netcdf_of({{FieldPicture("", tally), lattice::own_start(m.scene)}}, json["made_by"]));
   options.give_out(json, table_of(tally, start, t.space, m.scene));
   options.warn(too_few_gates(m.scene));
   options.remark(fixed(seconds, 3) + " s, " + fixed(static_cast<double>(walks) / seconds / 1e6, 2) +

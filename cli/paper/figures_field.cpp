@@ -89,8 +89,8 @@ Figure drawn_fig11(const std::string& start, std::vector<Cell> cells, std::int64
           kSequential + "set cbrange " + scale.range() + "\nunset colorbox\n" +
           map(0, "$dynamics", "A  dynamics, %") +
           bar_below(sheet, left_of(0), left_of(1) + kWide, bar, "(" + scale.tics() + ")") +
-          words(sheet, "root scale; circle: most of those left the field from this gate",
-                left_of(0), bar + 46, kSmallFont) +
+          words(sheet, "root scale; circle: most of those departed from this gate", left_of(0),
+                bar + 46, kSmallFont) +
           map(1, "$chain", "chain, %") + kDiverging + "set cbrange [" + digits(-largest) + ":" +
           digits(largest) + "]\n" +
           bar_below(sheet, left_of(2), left_of(2) + kWide, bar,
@@ -117,24 +117,23 @@ Section fig11(const Findings& f) {
     for (const Cell& c : cells_of(start, f.field.trials))
       csv.row(start.label(), c.i_x, c.i_y, c.dynamics, c.chain);
   const ValidatedStart& first = f.field.starts.front();
-  return {
-      "fig11",
-      "Fig. 11: where bodies end in the field",
-      {"9 x 9 gates, " + std::to_string(f.field.trials) +
-           " trials of the full dynamics for each start of Table IV, beside what infinitely "
-           "many walks of the 87 x 88 chain would give; shown is the paper's start, fig11.csv "
-           "has all. The paper prints neither force; 7 N and 50 N fit its Table IV best "
-           "(results/field_scan).",
-       "The final gate is the last one that a body was in, however it ended: most are trapped "
-       "there, but in the columns and the row at the edge many left the field from it (circles: "
-       "more than half did). B has all gates with the intervals of the trials."},
-      "Three maps of nine by nine gates side by side: dynamics and chain, much alike, with "
-      "circles in most gates of the outer columns, and their difference. Below, gate by gate, "
-      "the shares of the dynamics with 95 % bars, falling, and those of the chain, some beside "
-      "the bars.",
-      {"field"},
-      csv.text(),
-      drawn_fig11(first.label(), cells_of(first, f.field.trials), f.field.trials)};
+  return {"fig11",
+          "Fig. 11: where bodies end in the field",
+          {"9 x 9 gates, " + std::to_string(f.field.trials) +
+               " trials of the full dynamics for each start of Table IV, beside what infinitely "
+               "many walks of the 87 x 88 chain would give; shown is the paper's start, fig11.csv "
+               "has all. The paper prints neither force; 7 N and 50 N fit its Table IV best "
+               "(results/field_scan).",
+           "The final gate is the last one that a body was in, however it ended: most are trapped "
+           "there, but in the columns and the row at the edge many departed from it (circles: "
+           "more than half did). B has all gates with the intervals of the trials."},
+          "Three maps of nine by nine gates side by side: dynamics and chain, much alike, with "
+          "circles in most gates of the outer columns, and their difference. Below, gate by gate, "
+          "the shares of the dynamics with 95 % bars, falling, and those of the chain, some beside "
+          "the bars.",
+          {"field"},
+          csv.text(),
+          drawn_fig11(first.label(), cells_of(first, f.field.trials), f.field.trials)};
 }
 
 namespace {

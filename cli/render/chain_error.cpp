@@ -107,7 +107,7 @@ Json start_json(const ChainErrorChart& chart, std::size_t s) {
                 {"one_thread_s_per_trial", t.seconds_per_trial},
                 {"floor", json_of(t.floor)},
                 {"trapped", static_cast<double>(t.tally.trapped) / n},
-                {"left_field", static_cast<double>(t.tally.left_field) / n},
+                {"departed", static_cast<double>(t.tally.left_field) / n},
                 {"cut_off", static_cast<double>(t.tally.cut_off) / n},
                 {"final_gates", grid(t.tally.final_gates)}};
   j["direct_simulation"] = Json::array();

@@ -54,7 +54,7 @@ Json to_json(const FidelityVariant& v, const FidelityRun& run) {
   j["step_s"] = v.scene.gate.run.step;
   j["seconds_per_trial"] = run.seconds_per_trial;
   j["fates"] = {{"trapped", share(t.trapped, t)},
-                {"left_field", share(t.left_field, t)},
+                {"departed", share(t.left_field, t)},
                 {"cut_off", share(t.cut_off, t)},
                 {"not_finite", share(t.broken, t)}};
   if (run.change) {
@@ -75,8 +75,8 @@ std::string line_of(const FidelityOfStart& s, const FidelityVariant& v, const Fi
   };
   std::string line = start_text(s.start) + "  | " + padded(v.name(), -18) +
                      padded(fixed(1e3 * run.seconds_per_trial, 2), 7) +
-                     shown(run.tally.trapped, 9) + shown(run.tally.left_field, 8) +
-                     shown(run.tally.cut_off, 8) + " |";
+                     shown(run.tally.trapped, 9) + shown(run.tally.left_field, 10) +
+                     shown(run.tally.cut_off, 9) + " |";
   if (!run.change) return line;
   const lattice::Comparison &a = run.change->apart, &p = run.change->in_pairs;
   return line + padded(percent(run.change->changed, 1.0), 8) +
@@ -113,7 +113,7 @@ Json to_json(const FidelityStudy& study) {
 std::string csv_of(const FidelityStudy& study) {
   Csv csv(
       "d_m,vx_m_per_s,vy_m_per_s,fidelity,method,step_s,trials,seconds_per_trial,trapped_share,"
-      "left_field_share,cut_off_share,broken_share,changed_share,total_variation,"
+      "departed_share,cut_off_share,broken_share,changed_share,total_variation,"
       "total_variation_uncertainty,total_variation_floor,total_variation_floor_pairs,"
       "p_total_variation,p_total_variation_pairs,p_energy,p_energy_pairs,corrcoef,corrcoef_floor,"
       "rmse_per_100,rmse_per_100_floor,clean");
@@ -155,7 +155,8 @@ std::string table_of(const FidelityStudy& study) {
          "trial, "
       << study.threads << (study.threads == 1 ? " thread" : " threads") << ",\nleast of "
       << lattice::kFidelityRepeats << " interleaved repeats.\n\n"
-      << "   d   vx   vy  | fidelity (method)      ms  trapped    left     cut | changed      TV   "
+      << "   d   vx   vy  | fidelity (method)      ms  trapped  departed  cut off | changed      "
+         "TV   "
          "floor   pairs"
          "       p p pairs  corrcoef    RMSE\n";
   for (const FidelityOfStart& s : study.starts)

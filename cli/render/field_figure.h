@@ -30,7 +30,7 @@ struct FieldPicture {
   FieldPicture(std::string title, const markov::WalkTally& tally);
 };
 
-/// The map of the final gates, those of the trapped and of those who left, the endings, and where
+/// The map of the final gates, those of the trapped and of the departed, the endings, and where
 /// along its sides they left; of several starts one below the other. Of a field with several types
 /// of gates, which is which. Throws std::invalid_argument for more than kMostPictures.
 inline constexpr std::size_t kMostPictures = 8;

@@ -18,16 +18,17 @@ Json to_json(const lattice::FieldTally& tally, const lattice::Scene& scene,
   Json json;
   json["endings"] = endings(tally.endings);
   json["endings_95"] = endings_95(lattice::EndingShares(tally.endings, tally.trials));
-  json["final_gates"] = grid(tally.final_gates);
-  json["trapped_gates"] = grid(tally.trapped_gates);
-  json["departed_gates"] = grid(tally.departed_gates);
+  json["final_gates"] = small_grid(tally.final_gates);
+  json["trapped_gates"] = small_grid(tally.trapped_gates);
+  json["departed_gates"] = small_grid(tally.departed_gates);
+  say_left_out(json, scene.field.columns, scene.field.rows);
   json["trials"] = tally.trials;
   json["trapped"] = tally.trapped;
-  json["left_field"] = tally.left_field;
+  json["departed"] = tally.left_field;
   json["cut_off"] = tally.cut_off;
   json["not_finite"] = tally.broken;
   json["intervals_95"] = {{"trapped", share_interval(tally.trapped, tally.trials)},
-                          {"left_field", share_interval(tally.left_field, tally.trials)},
+                          {"departed", share_interval(tally.left_field, tally.trials)},
                           {"cut_off", share_interval(tally.cut_off, tally.trials)}};
   Json entries;
   for (int b = 0; b < dynamics::kBoundaries; ++b)
@@ -47,7 +48,7 @@ std::string table_of(const lattice::FieldTally& tally, const lattice::Scene& sce
       endings_text(lattice::EndingShares(tally.endings, tally.trials),
                    "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
       limits_text(scene) + scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) +
-      map_of_trapped(tally.trapped_gates.cast<double>() / n) + "left the field " +
+      map_of_trapped(tally.trapped_gates.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) + "\n";
   if (tally.broken > 0)
     table +=
@@ -60,12 +61,14 @@ Json to_json(const markov::WalkTally& tally, const lattice::ChainStart& start,
   Json json;
   json["endings"] = endings(tally.endings);
   json["endings_95"] = endings_95(lattice::EndingShares(tally.endings, tally.walks));
-  json["final_gates"] = grid(tally.final_cells);
-  json["trapped_gates"] = grid(tally.trapped_cells);
-  json["departed_gates"] = grid(tally.departed_cells);
+  json["final_gates"] = small_grid(tally.final_cells);
+  json["trapped_gates"] = small_grid(tally.trapped_cells);
+  json["departed_gates"] = small_grid(tally.departed_cells);
+  say_left_out(json, static_cast<int>(tally.final_cells.cols()),
+               static_cast<int>(tally.final_cells.rows()));
   json["walks"] = tally.walks;
   json["trapped"] = tally.trapped;
-  json["left_field"] = tally.left_field;
+  json["departed"] = tally.left_field;
   json["cut_off"] = tally.cut_off;
   json["never_sampled"] = tally.unsampled;
   json["gates_visited"] = tally.steps;
@@ -80,14 +83,14 @@ std::string table_of(const markov::WalkTally& tally, const lattice::ChainStart& 
       endings_text(lattice::EndingShares(tally.endings, tally.walks),
                    "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
       limits_text(scene) + map_of(tally.final_cells.cast<double>() / n) +
-      map_of_trapped(tally.trapped_cells.cast<double>() / n) + "left the field " +
+      map_of_trapped(tally.trapped_cells.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) +
       "\nstart: " + text_of(space.cell(start.start.input)) +
       "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has, "
       "the chain's own error (bins, memory) gatewalk validate measures.\n";
   if (tally.unsampled > 0)
-    table += "reached a row that was never sampled: " +
-             percent(static_cast<double>(tally.unsampled), n, 4) + "\n";
+    table += "reach a state never sampled: " + percent(static_cast<double>(tally.unsampled), n, 4) +
+             "\n";
   return table;
 }
 

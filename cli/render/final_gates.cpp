@@ -79,13 +79,28 @@ FieldMap::Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
 
 }  // namespace
 
+Json small_grid(const markov::CellCounts& cells) {
+  return cells.size() > kMostGatesInJson ? Json() : grid(cells);
+}
+Json small_grid(const markov::CellProbabilities& cells) {
+  return cells.size() > kMostGatesInJson ? Json() : grid(cells);
+}
+
+void say_left_out(Json& json, int columns, int rows) {
+  if (Eigen::Index{columns} * rows <= kMostGatesInJson) return;
+  json["left_out"] = "maps of " + std::to_string(columns) + " x " + std::to_string(rows) +
+                     " gates (null here; JSON has up to " + std::to_string(kMostGatesInJson) +
+                     " gates): --netcdf FILE.nc writes them";
+}
+
 void add_final_gates(Json& json, const markov::FinalDistribution& f) {
-  json["final_gates"] = grid(f.final_cells);
-  json["trapped_gates"] = grid(markov::trapped_cells(f));
-  json["departed_gates"] = grid(markov::departed_cells(f));
+  json["final_gates"] = small_grid(f.final_cells);
+  json["trapped_gates"] = small_grid(markov::trapped_cells(f));
+  json["departed_gates"] = small_grid(markov::departed_cells(f));
   json["trapped"] = f.trapped;
-  json["left_field"] = f.left_field;
-  json["cut_off"] = f.cut_off;
+  json["departed"] = f.left_field;
+  json["cut_off"] = shown_endings(lattice::EndingShares(f.endings), f)
+                        .share[static_cast<std::size_t>(markov::Ending::cut_off)];
   json["never_sampled"] = f.unsampled;
 }
 
@@ -177,6 +192,16 @@ std::string percents(double share) {
 Json endings(const std::array<std::int64_t, markov::kEndings>& counts) { return by_name(counts); }
 Json endings(const std::array<double, markov::kEndings>& shares) { return by_name(shares); }
 Json endings_95(const lattice::EndingShares& shares) { return by_name(shares.interval); }
+
+lattice::EndingShares shown_endings(lattice::EndingShares shares,
+                                    const markov::FinalDistribution& f) {
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    if (shares.share[e] > f.rounding + f.remainder) continue;
+    shares.share[e] = 0.0;
+    if (!std::isnan(shares.interval[e][0])) shares.interval[e][0] = 0.0;
+  }
+  return shares;
+}
 
 std::string with_interval(double share, const std::array<double, 2>& interval) {
   if (std::isnan(interval[0])) return percents(share);

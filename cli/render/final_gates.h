@@ -23,7 +23,14 @@ namespace gatewalk::cli {
 [[nodiscard]] Json grid(const markov::CellCounts& cells);
 [[nodiscard]] Json grid(const markov::CellProbabilities& cells);
 
-/// Where what was predicted ends: in all, trapped, leaving the field; and the sums.
+/// What commands with --netcdf have in JSON: nothing (null) of fields of more gates than this.
+inline constexpr Eigen::Index kMostGatesInJson = 100'000;
+[[nodiscard]] Json small_grid(const markov::CellCounts& cells);
+[[nodiscard]] Json small_grid(const markov::CellProbabilities& cells);
+/// Says in the result that such maps are left out, if they are.
+void say_left_out(Json& json, int columns, int rows);
+
+/// Where what was predicted ends: in all, trapped, departed; and the sums.
 void add_final_gates(Json& json, const markov::FinalDistribution& f);
 
 /// What of a field is shown: all of it, or, of fields too large, the part that holds all but next
@@ -70,6 +77,10 @@ using lattice::kEndingNames;
 [[nodiscard]] Json endings(const std::array<std::int64_t, markov::kEndings>& counts);
 [[nodiscard]] Json endings(const std::array<double, markov::kEndings>& shares);
 [[nodiscard]] Json endings_95(const lattice::EndingShares& shares);
+/// A prediction's endings as they are shown: 0 where the share is no more than rounding and walks
+/// not finished may make.
+[[nodiscard]] lattice::EndingShares shown_endings(lattice::EndingShares shares,
+                                                  const markov::FinalDistribution& f);
 /// A share in % with two decimals, or two digits if that would be 0.
 [[nodiscard]] std::string percents(double share);
 /// A line each: "crossed      0.02 %  [0.00, 0.05]"; `of` ends the first one.

@@ -194,6 +194,7 @@ Json to_json(const lattice::MatrixFile& file, const std::string& path) {
   json["clamped_share"] = total.clamped_share();
   json["rows_never_sampled"] = total.empty_rows;
   if (!file.types.empty()) json["types"] = types_json(file);
+  json["counted_from"] = 1;  // inputs and outputs below
   json["rows"] = Json::array();
   for (int row = 0; row < n; ++row) {
     const Cell cell = t.space.cell(row);

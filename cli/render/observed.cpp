@@ -15,6 +15,9 @@ namespace {
 
 using lattice::Judgement;
 
+/// A difference that experiments should see, as a share.
+constexpr double kFewAreEnough = 0.25;
+
 std::size_t index_of(const EndingName& e) { return static_cast<std::size_t>(e.ending); }
 
 /// What bodies do that end so, in the order of kEndingNames: "fewer cross".
@@ -167,6 +170,27 @@ std::string table_of(const lattice::ObservedComparison& c, const lattice::StartV
          ".\n(More of that without --observed, and in --json.)\n";
 }
 
+std::string who_went_back(const lattice::Observed& observed) {
+  if (observed.went_back == 0) return "";
+  return std::to_string(observed.went_back) + " of " +
+         std::to_string(observed.went_back + observed.seen.trials()) +
+         " trials went back, which no body of the model does: they are left out, and the other " +
+         std::to_string(observed.seen.trials()) +
+         " compared. Who gave up in front of a gate is trapped there";
+}
+
+std::string too_few_observed(const lattice::Observed& observed) {
+  const std::int64_t n = observed.seen.trials();
+  const lattice::PowerGoal goal;
+  const auto least = lattice::smallest_difference(n, 0.5, goal);
+  if (least.more && *least.more <= kFewAreEnough) return "";
+  return std::to_string(n) + (n == 1 ? " trial shows" : " trials show") +
+         " little: an ending of 50 % must be " +
+         (least.more ? fixed(100.0 * *least.more, 0) + " points off" : "more than 50 points off") +
+         " to be seen in " + fixed(100.0 * goal.power, 0) +
+         " of 100 such experiments; gatewalk power says how many trials it takes";
+}
+
 std::string endings_not_listed(const lattice::Observed& observed,
                                const lattice::StartValidation& v) {
   constexpr double kWorthASentence = 0.01;
@@ -175,7 +199,7 @@ std::string endings_not_listed(const lattice::Observed& observed,
   for (const EndingName& e : kEndingNames) {
     const double share = v.dynamics_endings.share[index_of(e)];
     if (observed.listed[index_of(e)] || share < kWorthASentence) continue;
-    text += (text.empty() ? "the table of endings has no row for " : ", ") + std::string(e.key) +
+    text += (text.empty() ? "the table of endings has no row for " : ", ") + std::string(e.name) +
             ", which counts as 0 (dynamics: " + percent(share, 1.0) + ")";
     if (e.ending == markov::Ending::cut_off)
       text += "; field.max_gates = 0 cuts off nobody, if nothing stopped your trials";

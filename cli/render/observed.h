@@ -17,6 +17,11 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string table_of(const lattice::ObservedComparison& c,
                                    const lattice::StartValidation& v);
 
+/// Before any run: trials that `observed` leaves out; and that so few show little. Empty if it is
+/// not so.
+[[nodiscard]] std::string who_went_back(const lattice::Observed& observed);
+[[nodiscard]] std::string too_few_observed(const lattice::Observed& observed);
+
 /// Endings that the table of counts has no row of, and the model has: they count as 0. Empty if
 /// there are none.
 [[nodiscard]] std::string endings_not_listed(const lattice::Observed& observed,

@@ -17,11 +17,13 @@ namespace {
 
 void add_to(Json& json, const lattice::StartAnswer& a, const lattice::Scene& scene) {
   const markov::FinalDistribution& f = a.final;
-  json["endings"] = endings(f.endings);
-  json["endings_95"] = endings_95(a.endings);
+  const lattice::EndingShares shown = shown_endings(a.endings, f);
+  json["endings"] = endings(shown.share);
+  json["endings_95"] = endings_95(shown);
   add_final_gates(json, f);
   json["exits"] = to_json(a.exits, scene);
-  json["final_gates_95"] = {{"low", grid(a.gates_95[0])}, {"high", grid(a.gates_95[1])}};
+  json["final_gates_95"] = {{"low", small_grid(a.gates_95[0])},
+                            {"high", small_grid(a.gates_95[1])}};
   json["answer_from"] = a.from_trials ? "trials" : "chain";
   json["error_95"] = a.error.total_variation;
   json["corrcoef_95"] = a.error.corrcoef;
@@ -36,9 +38,10 @@ void add_to(Json& json, const lattice::StartAnswer& a, const lattice::Scene& sce
 std::string table_of(const lattice::StartAnswer& a, const lattice::Scene& scene) {
   const markov::FinalDistribution& f = a.final;
   std::string table =
-      endings_text(a.endings, "of all bodies, 95 % intervals that count everything") +
+      endings_text(shown_endings(a.endings, f),
+                   "of all bodies, 95 % intervals that count everything") +
       limits_text(scene) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
-      "left the field " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(a.exits, scene) +
+      "departed " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(a.exits, scene) +
       "error: at most " + fixed(a.error.total_variation, 4) +
       " in total variation of the final gates, corrcoef at least " + fixed(a.error.corrcoef, 4) +
       ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
@@ -48,7 +51,7 @@ std::string table_of(const lattice::StartAnswer& a, const lattice::Scene& scene)
     table += "the error counts " + percent(a.unseen, 1.0, 2) +
              " that enter the second gate where no gate run did: what becomes of them is a guess\n";
   if (f.unsampled > 0.0)
-    table += "reaches a state that no run left: " + percent(f.unsampled, 1.0, 4) + "\n";
+    table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   return table;
 }
 

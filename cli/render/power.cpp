@@ -1,5 +1,7 @@
 #include "cli/render/power.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cli/render/final_gates.h"
@@ -16,8 +18,9 @@ std::size_t place(const EndingName& e) { return static_cast<std::size_t>(e.endin
 
 Json to_json(const lattice::StartAnswer& a) {
   Json json;
-  json["endings"] = endings(a.final.endings);
-  json["endings_95"] = endings_95(a.endings);
+  const lattice::EndingShares shown = shown_endings(a.endings, a.final);
+  json["endings"] = endings(shown.share);
+  json["endings_95"] = endings_95(shown);
   json["final_gates"] = grid(a.final.final_cells);
   json["answer_from"] = a.from_trials ? "trials" : "chain";
   json["error_95"] = a.error.total_variation;
@@ -53,8 +56,8 @@ std::string power_text(const Effect& effect) {
 constexpr int kName = -12, kShare = 10, kCell = 20;
 
 std::string share_text(const lattice::StartAnswer& a, std::size_t e) {
-  return padded(with_interval(a.final.endings[place(kEndingNames[e])], {std::nan(""), 0.0}),
-                kShare);
+  const lattice::EndingShares shown = shown_endings(a.endings, a.final);
+  return padded(percents(shown.share[place(kEndingNames[e])]), kShare);
 }
 
 std::string sureness(const ExperimentOptions& options) {
@@ -140,6 +143,83 @@ std::string versus_table(const PlannedExperiment& p) {
          power(gates) + "\n";
 }
 
+/// "12 to 15"
+std::string from_to(std::optional<double> least, std::optional<double> most) {
+  const std::string low = fixed(100.0 * least.value_or(0.0), 0),
+                    high = fixed(100.0 * most.value_or(0.0), 0);
+  return low == high ? low : low + " to " + high;
+}
+
+/// What so many trials show.
+std::string shown_by(const PlannedExperiment& p) {
+  const std::string n = std::to_string(*p.options.trials);
+  const std::string begin =
+      "In " + digits(100.0 * p.options.goal.power) + " of 100 experiments " + n + " trials show ";
+  std::optional<double> least, most;
+  for (const lattice::EndingPlan& e : p.plan.endings)
+    for (const auto& d : {e.least_of_all.more, e.least_of_all.fewer})
+      if (d) {
+        least = std::min(*d, least.value_or(*d));
+        most = std::max(*d, most.value_or(*d));
+      }
+  const std::string gates = p.plan.least_total_variation
+                                ? "final gates that differ by a total variation of " +
+                                      fixed(*p.plan.least_total_variation, 2)
+                                : "";
+  if (!least && gates.empty()) return begin + "no difference from this prediction.";
+  return begin +
+         (least ? "an ending that is " + from_to(least, most) + " points off, by ending" : "") +
+         (least && !gates.empty() ? ", or " : "") + gates + ".";
+}
+
+/// The most trials that any ending takes to be seen `at` kShareDifferences off.
+std::string trials_of_endings(const PlannedExperiment& p, std::size_t at) {
+  std::int64_t most = 0;
+  for (const lattice::EndingPlan& e : p.plan.endings)
+    most = std::max(most, e.effects[at].trials_of_all.value_or(lattice::kMostPlanned + 1));
+  return trials_text(most > lattice::kMostPlanned ? std::optional<std::int64_t>() : most);
+}
+
+/// What it takes to tell the scene from the other one.
+std::string told_apart(const PlannedExperiment& p) {
+  std::optional<std::int64_t> by_ending;
+  std::string name;
+  for (std::size_t e = 0; e < kEndingNames.size(); ++e)
+    if (const auto& n = p.apart->endings[e].trials_of_all; n && (!by_ending || *n < *by_ending)) {
+      by_ending = n;
+      name = kEndingNames[e].name;
+    }
+  std::string keys;
+  for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
+  const Effect& gates = p.apart->final_gates;
+  std::string text = "To tell this scene from " + keys + " so often takes " +
+                     trials_text(gates.trials) + " trials of each by their final gates, " +
+                     trials_text(by_ending) + " by their endings" +
+                     (by_ending ? " (" + name + ")" : "");
+  if (p.options.trials && gates.power)
+    text += "; " + std::to_string(*p.options.trials) + " of each do in " +
+            fixed(100.0 * *gates.power, 0) + " of 100 experiments by their final gates";
+  return text + ".";
+}
+
+/// What these trials show, and what it takes.
+std::array<std::string, 2> summary_of(const PlannedExperiment& p) {
+  constexpr std::size_t kPoints = 2, kGates = 2;  // 10 points, a total variation of 0.2
+  const std::string often = " in " + digits(100.0 * p.options.goal.power) + " of 100 experiments";
+  const std::string of_endings = "To see any one ending " +
+                                 digits(100.0 * lattice::kShareDifferences[kPoints]) +
+                                 " points more or less often" + often + " takes up to " +
+                                 trials_of_endings(p, kPoints) + " trials",
+                    of_gates = "final gates a total variation of " +
+                               digits(lattice::kTotalVariations[kGates]) + " off " +
+                               trials_text(p.plan.final_gates[kGates].trials);
+  if (p.options.trials)
+    return {shown_by(p), p.apart ? told_apart(p) : of_endings + ", " + of_gates + "."};
+  if (p.apart) return {of_endings + ", " + of_gates + ".", told_apart(p)};
+  return {of_endings + ".", "To see " + of_gates.substr(0, of_gates.rfind(' ')) + often + " takes" +
+                                of_gates.substr(of_gates.rfind(' ')) + "."};
+}
+
 bool any_within_error(const PlannedExperiment& p) {
   bool any = false;
   for (const lattice::EndingPlan& e : p.plan.endings)
@@ -169,6 +249,7 @@ std::string text_of(const lattice::SmallestDifference& d) {
 
 Json to_json(const PlannedExperiment& p) {
   Json json = to_json(p.prediction);
+  json["summary"] = summary_of(p);
   json["power"] = p.options.goal.power;
   json["level"] = p.options.goal.level;
   if (p.options.trials) json["trials"] = *p.options.trials;
@@ -200,10 +281,12 @@ Json to_json(const PlannedExperiment& p) {
 }
 
 std::string table_of(const PlannedExperiment& p) {
-  std::string text =
-      endings_text(p.prediction.endings, "of all bodies as predicted, 95 % intervals") +
-      "error: at most " + fixed(p.prediction.error.total_variation, 4) +
-      " in total variation of the final gates, 95 times in 100\n" + needed_table(p);
+  const auto sentences = summary_of(p);
+  std::string text = sentences[0] + "\n" + sentences[1] + "\n\n" +
+                     endings_text(shown_endings(p.prediction.endings, p.prediction.final),
+                                  "of all bodies as predicted, 95 % intervals") +
+                     "error: at most " + fixed(p.prediction.error.total_variation, 4) +
+                     " in total variation of the final gates, 95 times in 100\n" + needed_table(p);
   if (p.options.trials) text += power_table(p);
   if (p.apart) text += versus_table(p);
   if (any_within_error(p))

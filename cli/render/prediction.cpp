@@ -17,8 +17,9 @@ namespace {
 /// What is predicted for one start.
 void add_to(Json& json, const lattice::StartPrediction& s, const lattice::Scene& scene) {
   const markov::FinalDistribution& f = s.final;
-  json["endings"] = endings(f.endings);
-  json["endings_95"] = endings_95(s.shares);
+  const lattice::EndingShares shown = shown_endings(s.shares, f);
+  json["endings"] = endings(shown.share);
+  json["endings_95"] = endings_95(shown);
   json["matrix_sampling"] = {{"replicates", s.replicates},
                              {"total_variation_mean", s.mean_total_variation},
                              {"total_variation_95", s.total_variation_95}};
@@ -32,7 +33,7 @@ void add_to(Json& json, const lattice::StartPrediction& s, const lattice::Scene&
 
 std::string table_of(const lattice::StartPrediction& s, const PredictedField& of) {
   const markov::FinalDistribution& f = s.final;
-  const lattice::EndingShares& shares = s.shares;
+  const lattice::EndingShares shares = shown_endings(s.shares, f);
   const bool intervals = !std::isnan(shares.interval.front().front());
   std::string table =
       endings_text(shares,
@@ -42,11 +43,11 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
                          "rows have few runs each, "
                          "or a resampled matrix failed") +
       limits_text(of.matrix.scene) + map_of(f.final_cells) +
-      map_of_trapped(markov::trapped_cells(f)) + "left the field " + percent(f.left_field, 1.0, 2) +
+      map_of_trapped(markov::trapped_cells(f)) + "departed " + percent(f.left_field, 1.0, 2) +
       "\n" + cli::table_of(s.exits, of.matrix.scene) +
       "start: " + text_of(of.matrix.file.transitions.space.cell(s.start.start.input)) + "\n";
   if (f.unsampled > 0.0)
-    table += "reaches a row that was never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
+    table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)
     table += "still walking when the sum was stopped: " + percent(f.remainder, 1.0, 6) + "\n";
   std::ostringstream bound;

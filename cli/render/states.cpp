@@ -51,11 +51,24 @@ std::string text_of_range(const Json& r) {
   return dynamics::text_of(std::array<double, 2>{r.at(0).get<double>(), r.at(1).get<double>()});
 }
 
+/// ", for the starts 0,0,15; 4,5,10", as --start gives them.
+std::string starts_in(const Json& starts) {
+  if (starts.empty()) return "";
+  std::string text = starts.size() == 1 ? ", for the start" : ", for the starts";
+  constexpr std::size_t kMost = 4;
+  for (std::size_t i = 0; i < std::min(kMost, starts.size()); ++i)
+    text += std::string(i > 0 ? ";" : "") + " " + digits(starts[i].at("d_m").get<double>()) + "," +
+            digits(starts[i].at("vx_m_per_s").get<double>()) + "," +
+            digits(starts[i].at("vy_m_per_s").get<double>());
+  if (starts.size() > kMost) text += "; ... " + std::to_string(starts.size()) + " in all";
+  return text;
+}
+
 std::string tree_line(const Json& j) {
   std::string text = "states: " + j.at("states").dump() + " (leaves of trees with " +
-                     j.at("entries_per_leaf").dump() + " entries or more, " +
-                     std::to_string(j.at("starts_of_their_own").size()) +
-                     " starts of their own) from " + j.at("gate_runs").dump() + " gate runs\n";
+                     j.at("entries_per_leaf").dump() + " entries or more" +
+                     starts_in(j.at("starts_of_their_own")) + ") from " + j.at("gate_runs").dump() +
+                     " gate runs\n";
   if (const auto& range = j.at("range"); !range.is_null())
     text += "for starts d " + text_of_range(range.at("d_m")) + " m, vx " +
             text_of_range(range.at("vx_m_per_s")) + " m/s, vy " +

@@ -90,7 +90,7 @@ Json to_json(const lattice::StartValidation& r, const lattice::Scene& scene) {
                      {"walks", endings_95(r.walks_endings)},
                      {"exact", endings_95(r.exact_endings)}};
   const auto fates = [](double trapped, double left, double cut) {
-    return Json{{"trapped", trapped}, {"left_field", left}, {"cut_off", cut}};
+    return Json{{"trapped", trapped}, {"departed", left}, {"cut_off", cut}};
   };
   const auto n = static_cast<double>(r.dynamics.trials);
   j["fates"] = {{"dynamics", fates(static_cast<double>(r.dynamics.trapped) / n,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -23,6 +24,24 @@ namespace gatewalk::lattice {
     }
   }
   return row.back();
+}
+
+/// The name that `word` is meant to be: it begins so, or at most every third letter is wrong. Empty
+/// where there is none.
+[[nodiscard]] inline std::string meant_name(std::string_view word,
+                                            const std::vector<std::string>& names) {
+  word = word.substr(0, 100);
+  std::string nearest;
+  std::size_t least = (std::max(word.size(), std::size_t{3}) + 1) / 3 + 1;
+  for (const std::string& name : names) {
+    if (word.size() > 1 && name.starts_with(word)) return name;
+    const std::size_t wrong = edit_distance(word, name);
+    if (wrong < least) {
+      least = wrong;
+      nearest = name;
+    }
+  }
+  return nearest;
 }
 
 }  // namespace gatewalk::lattice

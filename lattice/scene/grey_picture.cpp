@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
@@ -47,7 +49,9 @@ GreyPicture read_grey_png(const std::string& path, int columns, int rows) {
     ~Freed() { png_image_free(&image); }
   } const freed{image};
   if (png_image_begin_read_from_file(&image, path.c_str()) == 0)
-    throw std::runtime_error(std::string("cannot be read as a PNG: ") + image.message);
+    throw std::runtime_error(std::ifstream(path)
+                                 ? "cannot be read as a PNG: it is none, or damaged"
+                                 : std::string("cannot be read: ") + std::strerror(errno));
   if (has_gamma(path))
     throw std::runtime_error(
         "has a gamma of its own (chunk gAMA), which changes its grey values: "

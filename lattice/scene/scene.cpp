@@ -23,12 +23,14 @@
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene_bins.h"
 #include "lattice/scene/scene_terrain.h"
+#include "lattice/scene/toml_mistake.h"
 #include "lattice/scene/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {
 
 constexpr std::size_t kMaxBytes = 1 << 20;
+constexpr std::string_view kStandardInput = "standard input";
 // Every level of a dotted key costs a dot and, in the parser's destructors, stack. Brackets are
 // limited by the parser itself (256 deep).
 constexpr int kMaxDots = 2000;
@@ -169,13 +171,6 @@ std::string unit_of(std::string_view key) {
 
 // ---- Texts
 
-std::string_view trimmed(std::string_view s) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = s.find_first_not_of(kBlank);
-  return first == s.npos ? std::string_view{}
-                         : s.substr(first, s.find_last_not_of(kBlank) - first + 1);
-}
-
 /// The table whose name is nearest to `name`.
 std::string_view closest_table(std::string_view name) {
   name = name.substr(0, kLongestCompared);
@@ -232,20 +227,13 @@ void refuse_deep_nesting(std::string_view text, const Origin& origin) {
   }
 }
 
-/// Row `line` (from 1) of `text`, for a message.
-std::string row_of(std::string_view text, std::size_t line) {
-  for (; line > 1; --line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
-  return printable(trimmed(text.substr(0, text.find('\n'))));
-}
-
 toml::table parse_toml(std::string_view text, const Origin& origin) {
   refuse_deep_nesting(text, origin);
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     const std::size_t line = error.source().begin.line;
-    throw SceneError(origin(line) + ": " + row_of(text, line) + ": " +
-                     std::string(error.description()));
+    throw SceneError(origin(line) + ": " + text_row(text, line) + ": " + toml_mistake(text, line));
   }
 }
 
@@ -510,15 +498,28 @@ void check_start(const Scene& scene, const Settings& settings) {
   });
 }
 
-std::string read_file(const std::string& path) {
-  const auto fail = [&] { throw SceneError(path + ": cannot be read: " + std::strerror(errno)); };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  if (!file) fail();
+SceneError unreadable(const std::string& name) {
+  return SceneError(name + ": cannot be read: " + std::strerror(errno));
+}
+
+std::string read_all(std::FILE* file, const std::string& name) {
   std::string text(kMaxBytes + 1, '\0');  // one more than allowed, so that parse_scene notices
   errno = 0;
-  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (std::ferror(file.get())) fail();
+  text.resize(std::fread(text.data(), 1, text.size(), file));
+  if (std::ferror(file)) throw unreadable(name);
+  return text;
+}
+
+std::string read_file(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             std::fclose);
+  if (!file) throw unreadable(path);
+  return read_all(file.get(), path);
+}
+
+/// It can be read but once, and some commands ask for their scene again.
+const std::string& text_of_standard_input() {
+  static const std::string text = read_all(stdin, std::string(kStandardInput));
   return text;
 }
 
@@ -544,7 +545,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
 }
 
 std::string scene_text(const std::string& path) {
-  std::string text = read_file(path);
+  std::string text = path == "-" ? text_of_standard_input() : read_file(path);
   if (text.starts_with("\x89HDF"))
     throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
   return text;
@@ -562,6 +563,7 @@ std::string map_file_in(std::string_view text, const std::string& folder) {
 
 Scene parse_scene(std::string_view text, std::string name,
                   const std::vector<std::string>& overrides) {
+  if (name == "-") name = kStandardInput;
   if (text.size() > kMaxBytes) {
     throw SceneError(name + ": is too large for a scene: more than " + std::to_string(kMaxBytes) +
                      " bytes");

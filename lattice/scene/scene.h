@@ -47,11 +47,12 @@ class SceneError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads `path` and applies `overrides`, each "forces.random_N=20" with a TOML value behind the
-/// first '=' (text may stand without quotes); the last one of a key wins. Throws SceneError.
+/// Reads `path` (-: standard input) and applies `overrides`, each "forces.random_N=20" with a TOML
+/// value behind the first '=' (text may stand without quotes); the last one of a key wins. Throws
+/// SceneError.
 [[nodiscard]] Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
 
-/// The text of a scene file, for parse_scene. Throws SceneError.
+/// The text of a scene file (-: of standard input), for parse_scene. Throws SceneError.
 [[nodiscard]] std::string scene_text(const std::string& path);
 
 /// The same for text already in memory; `name` stands for the file in messages.

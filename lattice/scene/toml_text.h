@@ -10,6 +10,14 @@
 
 namespace gatewalk::lattice {
 
+/// Without the blanks around it.
+[[nodiscard]] inline std::string_view trimmed(std::string_view s) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = s.find_first_not_of(kBlank);
+  return first == s.npos ? std::string_view{}
+                         : s.substr(first, s.find_last_not_of(kBlank) - first + 1);
+}
+
 /// Fit for one line of a message, whatever a file contains.
 [[nodiscard]] inline std::string printable(std::string_view raw) {
   constexpr std::size_t kLongest = 60;

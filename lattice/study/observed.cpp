@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 
@@ -14,14 +15,15 @@ namespace {
 
 using Fields = std::vector<std::string>;
 
-constexpr const char* kTables = "gate_x,gate_y,count or ending,count";
+constexpr const char* kTables =
+    "trial,ending (also trial,ending,gate_x,gate_y), gate_x,gate_y,count, or ending,count";
 
 std::string quoted(const std::string& text) {
   std::string shown = "\"";
   return shown.append(printable(text)).append("\"");
 }
 
-/// A table of counts as its file has it.
+/// A table as its file has it.
 struct CountTable {
   struct Row {
     std::size_t line;
@@ -31,7 +33,9 @@ struct CountTable {
   Fields columns;
   std::vector<Row> rows;
 
-  [[nodiscard]] bool is_of_endings() const { return columns.size() == 2; }
+  [[nodiscard]] bool has(std::string_view column) const {
+    return std::find(columns.begin(), columns.end(), column) != columns.end();
+  }
   [[noreturn]] void refuse(std::size_t line, const std::string& what) const {
     throw std::invalid_argument(path + ":" + std::to_string(line) + ": " + what);
   }
@@ -55,22 +59,21 @@ struct CountTable {
   }
 };
 
-Fields sorted(Fields fields) {
-  std::sort(fields.begin(), fields.end());
-  return fields;
-}
-
 void require_columns(const CountTable& table, std::size_t line) {
-  static const Fields kOfGates{"count", "gate_x", "gate_y"}, kOfEndings{"count", "ending"};
-  const auto known = [](const Fields& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
+  static const std::array<Fields, 5> kPermitted{{{"count", "gate_x", "gate_y"},
+                                                 {"count", "ending"},
+                                                 {"ending", "trial"},
+                                                 {"gate_x", "gate_y", "trial"},
+                                                 {"ending", "gate_x", "gate_y", "trial"}}};
+  Fields sorted = table.columns;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::find(kPermitted.begin(), kPermitted.end(), sorted) != kPermitted.end()) return;
   for (const std::string& column : table.columns)
-    if (!known(kOfGates, column) && !known(kOfEndings, column))
+    if (column != "count" && column != "trial" && column != "ending" && column != "gate_x" &&
+        column != "gate_y")
       table.refuse(line, "unknown column " + quoted(column) + ": the first line must be " +
                              kTables + ", with commas between");
-  if (const Fields columns = sorted(table.columns); columns != kOfGates && columns != kOfEndings)
-    table.refuse(line, std::string("the columns must be ") + kTables + ", each once");
+  table.refuse(line, std::string("the columns must be ") + kTables + ", each once");
 }
 
 CountTable read_table(const std::string& path) {
@@ -107,45 +110,91 @@ std::int64_t count_of(const CountTable& table, const CountTable::Row& row) {
   return table.whole(row, "count", 0, 1'000'000'000, "");
 }
 
+void require_trials(const CountTable& table, std::int64_t trials, std::int64_t went_back) {
+  if (trials == 0)
+    throw std::invalid_argument(table.path + ": has no trial" +
+                                (went_back > 0 ? " that did not go back" : "") +
+                                (table.has("count") ? ": its counts add up to 0" : ""));
+}
+
+/// The gate of a row: line and column of the field.
+std::array<std::int64_t, 2> counted_gate(const CountTable& table, const CountTable::Row& row,
+                                         const FieldParams& field) {
+  const auto x =
+      table.whole(row, "gate_x", -field.start_column(), field.columns - 1 - field.start_column(),
+                  " (field.columns = " + std::to_string(field.columns) + ")");
+  const auto y = table.whole(row, "gate_y", 0, field.rows - 1,
+                             " (field.rows = " + std::to_string(field.rows) + ")");
+  return {y, x + field.start_column()};
+}
+
 void add_gates(Observed& observed, const CountTable& table, const FieldParams& field) {
   CellCounts& gates = observed.seen.final_gates;
   gates = CellCounts::Zero(field.rows, field.columns);
   markov::CellCounts given = gates;  // by which line
   for (const CountTable::Row& row : table.rows) {
-    const auto x =
-        table.whole(row, "gate_x", -field.start_column(), field.columns - 1 - field.start_column(),
-                    " (field.columns = " + std::to_string(field.columns) + ")");
-    const auto y = table.whole(row, "gate_y", 0, field.rows - 1,
-                               " (field.rows = " + std::to_string(field.rows) + ")");
-    const std::int64_t column = x + field.start_column();
+    const auto [y, column] = counted_gate(table, row, field);
     if (given(y, column) > 0)
-      table.refuse(row.line, "gate_x = " + std::to_string(x) + ", gate_y = " + std::to_string(y) +
-                                 " was given in line " + std::to_string(given(y, column)) +
-                                 " already");
+      table.refuse(row.line, "gate_x = " + table.at(row, "gate_x") +
+                                 ", gate_y = " + table.at(row, "gate_y") + " was given in line " +
+                                 std::to_string(given(y, column)) + " already");
     given(y, column) = static_cast<std::int64_t>(row.line);
     gates(y, column) = count_of(table, row);
   }
-  if (gates.sum() == 0)
-    throw std::invalid_argument(table.path + ": has no trial: its counts add up to 0");
+  require_trials(table, gates.sum(), 0);
+}
+
+/// Of a row; none: it went back.
+std::optional<std::size_t> ending_of(const CountTable& table, const CountTable::Row& row) {
+  const std::string& name = table.at(row, "ending");
+  if (name == "went back" || name == "went_back") return {};
+  if (const auto ending = ending_named(name)) return static_cast<std::size_t>(*ending);
+  std::string all;
+  for (const EndingName& e : kEndingNames) all += std::string(e.name) + ", ";
+  table.refuse(row.line, "column ending: " + quoted(name) + " is not permitted: must be one of " +
+                             all + "or went back");
 }
 
 void add_endings(Observed& observed, const CountTable& table) {
-  std::string all;
-  for (const EndingName& e : kEndingNames) all += (all.empty() ? "" : ", ") + std::string(e.key);
+  bool back_listed = false;
   for (const CountTable::Row& row : table.rows) {
-    const std::string& name = table.at(row, "ending");
-    const auto known = std::find_if(kEndingNames.begin(), kEndingNames.end(),
-                                    [&](const EndingName& e) { return e.key == name; });
-    if (known == kEndingNames.end())
-      table.refuse(row.line,
-                   "column ending: " + quoted(name) + " is not permitted: must be one of " + all);
-    const auto e = static_cast<std::size_t>(known->ending);
-    if (observed.listed[e]) table.refuse(row.line, "ending " + name + " was given already");
-    observed.listed[e] = true;
-    observed.seen.endings[e] = count_of(table, row);
+    const auto e = ending_of(table, row);
+    bool& listed = e ? observed.listed[*e] : back_listed;
+    if (listed) table.refuse(row.line, "ending " + table.at(row, "ending") + " was given already");
+    listed = true;
+    (e ? observed.seen.endings[*e] : observed.went_back) = count_of(table, row);
   }
-  if (!observed.seen.has_endings())
-    throw std::invalid_argument(table.path + ": has no trial: its counts add up to 0");
+  require_trials(table, SeenEndings{{}, observed.seen.endings}.trials(), observed.went_back);
+}
+
+void add_lines(Observed& observed, const CountTable& table, const FieldParams& field) {
+  const bool has_gates = table.has("gate_x"), has_endings = table.has("ending");
+  CellCounts& gates = observed.seen.final_gates;
+  if (has_gates) gates = CellCounts::Zero(field.rows, field.columns);
+  if (has_endings)  // those that nobody had were not had, but cutting off must be looked for
+    for (const EndingName& e : kEndingNames)
+      observed.listed[static_cast<std::size_t>(e.ending)] = e.ending != markov::Ending::cut_off;
+  std::map<std::string, std::size_t, std::less<>> lines;
+  for (const CountTable::Row& row : table.rows) {
+    const std::string& trial = table.at(row, "trial");
+    if (trial.empty()) table.refuse(row.line, "column trial: has no name or number");
+    if (const auto [first, is_new] = lines.emplace(trial, row.line); !is_new)
+      table.refuse(row.line, "trial " + quoted(trial) + " was given in line " +
+                                 std::to_string(first->second) + " already");
+    if (has_endings) {
+      const auto e = ending_of(table, row);
+      if (!e) {
+        ++observed.went_back;
+        continue;
+      }
+      ++observed.seen.endings[*e];
+    }
+    if (!has_gates) continue;
+    const auto [y, column] = counted_gate(table, row, field);
+    ++gates(y, column);
+  }
+  require_trials(table, static_cast<std::int64_t>(lines.size()) - observed.went_back,
+                 observed.went_back);
 }
 
 }  // namespace
@@ -155,13 +204,17 @@ Observed read_observed(const std::vector<std::string>& paths, const FieldParams&
   std::string of_gates, of_endings;
   for (const std::string& path : paths) {
     const CountTable table = read_table(path);
-    std::string& other = table.is_of_endings() ? of_endings : of_gates;
-    if (!other.empty())
-      throw std::invalid_argument("--observed " + path + ": " + other + " has " +
-                                  (table.is_of_endings() ? "endings" : "final gates") +
-                                  " too; at most one file of each is permitted");
-    other = path;
-    if (table.is_of_endings())
+    const auto take = [&](std::string& other, const char* what) {
+      if (!other.empty())
+        throw std::invalid_argument("--observed " + path + ": " + other + " has " + what +
+                                    " too; at most one file of each is permitted");
+      other = path;
+    };
+    if (table.has("ending")) take(of_endings, "endings");
+    if (table.has("gate_x")) take(of_gates, "final gates");
+    if (table.has("trial"))
+      add_lines(observed, table, field);
+    else if (table.has("ending"))
       add_endings(observed, table);
     else
       add_gates(observed, table, field);

@@ -18,13 +18,17 @@ namespace gatewalk::lattice {
 /// What an experiment has counted of one start.
 struct Observed {
   SeenEndings seen;
-  std::array<bool, markov::kEndings> listed{};  // endings that its table has a row of
+  std::array<bool, markov::kEndings> listed{};  // endings that its table has
+  std::int64_t went_back =
+      0;  // of these trials, which `seen` leaves out: the model has no such end
 };
 
-/// Reads tables of counts: final gates (columns gate_x, gate_y and count, i_x and i_y as
-/// everywhere; gates without a row have none), endings (ending and count, by the keys of
-/// kEndingNames), or a file of each. Throws std::invalid_argument naming file, line and column for
-/// anything else, for counts that add up to nothing, and for two tables of different totals.
+/// Reads what an experiment saw, in CSV whose first line names the columns: a line per trial (trial
+/// and ending, gate_x and gate_y, or all four; i_x and i_y of the final gate as everywhere), or
+/// counts of final gates (gate_x, gate_y, count; gates without a row have none), or of endings
+/// (ending, count), or a file of each of the counts. Endings are named as in kEndingNames, in
+/// either way, or "went back". Throws std::invalid_argument naming file, line and column for
+/// anything else, for no trial at all, and for two tables of different totals.
 [[nodiscard]] Observed read_observed(const std::vector<std::string>& paths,
                                      const FieldParams& field);
 

@@ -7,15 +7,22 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace gatewalk::markov::netcdf {
 
-/// Throws std::runtime_error with NetCDF's words unless `rc` is fine.
+/// Throws std::runtime_error that names `what` unless `rc` is fine; std::bad_alloc for want of
+/// memory.
 inline void check(int rc, const std::string& what) {
-  if (rc != NC_NOERR) throw std::runtime_error(what + ": " + nc_strerror(rc));
+  if (rc == NC_NOERR) return;
+  if (rc == NC_ENOMEM) throw std::bad_alloc();
+  const bool is_missing =
+      rc == NC_ENOTVAR || rc == NC_EBADDIM || rc == NC_ENOTATT || rc == NC_ENOGRP;
+  throw std::runtime_error(what +
+                           (is_missing ? " is missing" : std::string(": ") + nc_strerror(rc)));
 }
 
 class Image {
@@ -33,7 +40,11 @@ class Image {
     is_open_ = true;
   }
   void open(std::vector<char>& image) {
-    check(nc_open_mem("image", NC_NOWRITE, image.size(), image.data(), &id_), "cannot open");
+    if (const int rc = nc_open_mem("image", NC_NOWRITE, image.size(), image.data(), &id_);
+        rc != NC_NOERR && rc != NC_ENOMEM)
+      throw std::runtime_error("cannot open: cut short or damaged, or not NetCDF-4");
+    else
+      check(rc, "memory");
     is_open_ = true;
   }
   [[nodiscard]] std::vector<char> close_image() {

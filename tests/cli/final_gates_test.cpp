@@ -126,5 +126,37 @@ TEST(MapOf, WideSharesAreShownInBlocksAroundTheStart) {
   }
 }
 
+// What rounding may have made is shown as 0; a share beyond the bound is shown, however small.
+TEST(FinalGates, SharesWithinRoundingAreNone) {
+  markov::FinalDistribution f;
+  constexpr auto kCut = static_cast<std::size_t>(markov::Ending::cut_off),
+                 kFar = static_cast<std::size_t>(markov::Ending::far_edge);
+  f.endings[kCut] = 4.2e-16;
+  f.endings[kFar] = 3e-13;
+  f.rounding = 2e-13;
+  f.remainder = 5e-14;
+  lattice::EndingShares shares(f.endings);
+  shares.interval[kCut] = {1e-17, 0.01};
+  const lattice::EndingShares shown = shown_endings(shares, f);
+  EXPECT_EQ(shown.share[kCut], 0.0);
+  EXPECT_EQ(shown.interval[kCut], (std::array<double, 2>{0.0, 0.01}));
+  EXPECT_EQ(shown.share[kFar], 3e-13);
+  EXPECT_TRUE(std::isnan(shown.interval[kFar][0]));
+  f.rounding = 3e-13;
+  EXPECT_EQ(shown_endings(shares, f).share[kFar], 0.0);
+}
+
+TEST(FinalGates, LargeFieldsAreLeftOutOfJson) {
+  const CellProbabilities small = CellProbabilities::Zero(100, 1000),
+                          large = CellProbabilities::Zero(101, 1000);
+  EXPECT_EQ(small_grid(small), grid(small));
+  EXPECT_TRUE(small_grid(large).is_null());
+  Json json = Json::object();
+  say_left_out(json, 1000, 100);
+  EXPECT_TRUE(json.empty());
+  say_left_out(json, 1000, 101);
+  EXPECT_NE(json.at("left_out").get<std::string>().find("--netcdf"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace gatewalk::cli

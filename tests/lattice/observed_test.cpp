@@ -105,17 +105,62 @@ TEST_F(CountsFile, OfBothInTwoFiles) {
             "--observed g.csv: g.csv has final gates too; at most one file of each is permitted");
 }
 
+TEST_F(CountsFile, OfTrialsOneLineEach) {
+  const Observed o = read(
+      "trial,ending\n1,crossed\n2,left side\nroach 3,left_side\n4,trapped\n5,went "
+      "back\n6,trapped\n");
+  EXPECT_FALSE(o.seen.has_gates());
+  EXPECT_EQ(o.seen.trials(), 5);
+  EXPECT_EQ(o.went_back, 1);
+  EXPECT_EQ(o.seen.endings[static_cast<std::size_t>(markov::Ending::left_edge)], 2);
+  EXPECT_EQ(o.seen.endings[static_cast<std::size_t>(markov::Ending::trapped)], 2);
+  EXPECT_TRUE(o.listed[static_cast<std::size_t>(markov::Ending::right_edge)]);
+  EXPECT_FALSE(o.listed[static_cast<std::size_t>(markov::Ending::cut_off)]);
+}
+
+TEST_F(CountsFile, OfTrialsWithTheirGatesCountAsTheTwoTablesDo) {
+  const Observed lines = read(
+      "trial,ending,gate_x,gate_y\n1,crossed,0,2\n2,trapped,-2,1\n3,trapped,-2,1\n4,went back,,\n");
+  const Observed tables = read_observed({file("e.csv", "ending,count\ncrossed,1\ntrapped,2\n"),
+                                         file("g.csv", "gate_x,gate_y,count\n0,2,1\n-2,1,2\n")},
+                                        kField);
+  EXPECT_TRUE((lines.seen.final_gates == tables.seen.final_gates).all());
+  EXPECT_EQ(lines.seen.endings, tables.seen.endings);
+  EXPECT_EQ(lines.went_back, 1);
+  const Observed gates = read("gate_x,trial,gate_y\n0,a,2\n-2,b,1\n-2,c,1\n");
+  EXPECT_TRUE((gates.seen.final_gates == tables.seen.final_gates).all());
+  EXPECT_FALSE(gates.seen.has_endings());
+}
+
+TEST_F(CountsFile, RefusalsOfLinesOfTrials) {
+  const std::string header = "trial,ending\n";
+  EXPECT_EQ(refusal(header + "7,crossed\n8,trapped\n7,trapped\n"),
+            "x.csv:4: trial \"7\" was given in line 2 already");
+  EXPECT_EQ(refusal(header + ",crossed\n"), "x.csv:2: column trial: has no name or number");
+  EXPECT_EQ(refusal(header + "1,Crossed\n"),
+            "x.csv:2: column ending: \"Crossed\" is not permitted: must be one of crossed, left "
+            "side, right side, trapped, cut off, or went back");
+  EXPECT_EQ(refusal(header), "x.csv: has no trial");
+  EXPECT_EQ(refusal(header + "1,went back\n"), "x.csv: has no trial that did not go back");
+  EXPECT_EQ(refusal("ending,count\nwent back,3\ncrossed,0\n"),
+            "x.csv: has no trial that did not go back: its counts add up to 0");
+  EXPECT_EQ(read("ending,count\nwent back,3\ncrossed,2\n").went_back, 3);
+  EXPECT_EQ(refusal("trial,ending,gate_x,gate_y\n1,crossed,,2\n").substr(0, 23),
+            "x.csv:2: column gate_x:");
+}
+
 TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
   const std::string header = "gate_x,gate_y,count\n";
+  const std::string kTables =
+      "trial,ending (also trial,ending,gate_x,gate_y), gate_x,gate_y,count, or ending,count";
   EXPECT_EQ(refusal("gatex,gate_y,count\n"),
-            "x.csv:1: unknown column \"gatex\": the first line must be gate_x,gate_y,count or "
-            "ending,count, with commas between");
+            "x.csv:1: unknown column \"gatex\": the first line must be " + kTables +
+                ", with commas between");
   EXPECT_EQ(refusal("# x\nending;count\ncrossed;3\n").substr(0, 40),
             "x.csv:2: unknown column \"ending;count\": ");
   for (const char* columns :
-       {"gate_x,count\n", "ending,gate_x,count", "ending,count,count", "count"})
-    EXPECT_EQ(refusal(columns),
-              "x.csv:1: the columns must be gate_x,gate_y,count or ending,count, each once");
+       {"gate_x,count\n", "ending,gate_x,count", "ending,count,count", "count", "trial,gate_x"})
+    EXPECT_EQ(refusal(columns), "x.csv:1: the columns must be " + kTables + ", each once");
   EXPECT_EQ(refusal(header + "0,0,3\n2,0,1\n"),
             "x.csv:3: column gate_x: \"2\" is not permitted: must be a whole number from -2 to 1 "
             "(field.columns = 4)");
@@ -136,14 +181,13 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
             "x.csv:4: gate_x = 0, gate_y = 0 was given in line 2 already");
   EXPECT_EQ(refusal("ending,count\nturned back,3\n"),
             "x.csv:2: column ending: \"turned back\" is not permitted: must be one of crossed, "
-            "left_side, right_side, trapped, cut_off");
+            "left side, right side, trapped, cut off, or went back");
   EXPECT_EQ(refusal("ending,count\ncrossed,3\ncrossed,0\n"),
             "x.csv:3: ending crossed was given already");
   for (const std::string& none : {header, header + "0,0,0\n", std::string("ending,count\n")})
     EXPECT_EQ(refusal(none), "x.csv: has no trial: its counts add up to 0");
   for (const char* empty : {"", "\n\n", "# nothing\n"})
-    EXPECT_EQ(refusal(empty),
-              "x.csv: is empty: the first line must be gate_x,gate_y,count or ending,count");
+    EXPECT_EQ(refusal(empty), "x.csv: is empty: the first line must be " + kTables);
   EXPECT_EQ(message({"none.csv"}), "--observed none.csv: cannot be read");
   EXPECT_EQ(message({folder_.string() + "/"}).substr(0, 11), "--observed ");
 }

@@ -276,26 +276,27 @@ std::string dotted(int depth) {
 
 const Malformed kMalformed[] = {
     // Not TOML
-    {"NoEquals", "[forces]\nrandom_N 20\n", 2, "random_N", "expected '='"},
-    {"NoValue", "[forces]\nrandom_N =\n", 2, "random_N", "expected value"},
-    {"OpenHeader", "\n[forces\nrandom_N = 20\n", 2, "forces", "expected ']'"},
-    {"OpenString", "[run]\nmethod = \"stable\n", 2, "method", "rror"},
-    {"OpenArray", "[forces]\nrandom_N = [1, 2\n", 2, "random_N", "end-of-file"},
-    {"BareWord", "[run]\nmethod = stable\n", 2, "method = stable", "rror"},
-    {"TwoOnALine", "[forces]\nrandom_N = 1 drag_Ns_per_m = 2\n", 2, "random_N", "rror"},
+    {"NoEquals", "[forces]\nrandom_N 20\n", 2, "random_N", "must be KEY = VALUE"},
+    {"NoValue", "[forces]\nrandom_N =\n", 2, "random_N", "has no value"},
+    {"OpenHeader", "\n[forces\nrandom_N = 20\n", 2, "forces", "its name in brackets"},
+    {"OpenString", "[run]\nmethod = \"stable\n", 2, "method", "two quotation marks"},
+    {"OpenArray", "[forces]\nrandom_N = [1, 2\n", 2, "random_N", "an array must stand in brackets"},
+    {"BareWord", "[run]\nmethod = stable\n", 2, "method = stable", "between quotation marks"},
+    {"TwoOnALine", "[forces]\nrandom_N = 1 drag_Ns_per_m = 2\n", 2, "random_N", "must stand alone"},
     {"TwoPoints", "[run]\nstep_s = 0.0.4\n", 2, "step_s", "0.0.4"},
-    {"Comma", "[run]\nstep_s = 0,004\n", 2, "step_s", "rror"},
-    {"NoDigitBehindPoint", "[run]\nstep_s = 1.\n", 2, "step_s", "expected decimal digit"},
-    {"LeadingZero", "[forces]\nrandom_N = 040\n", 2, "random_N", "leading zeroes"},
+    {"Comma", "[run]\nstep_s = 0,004\n", 2, "step_s", "decimal point"},
+    {"NoDigitBehindPoint", "[run]\nstep_s = 1.\n", 2, "step_s", "a digit behind its point"},
+    {"LeadingZero", "[forces]\nrandom_N = 040\n", 2, "random_N", "must not begin with a 0"},
     {"FloatOverflow", "[forces]\nrandom_N = 1e999\n", 2, "random_N", "1e999"},
     {"IntegerOverflow", "[field]\nrows = 99999999999999999999\n", 2, "rows",
      "99999999999999999999"},
-    {"DuplicateKey", "[forces]\nrandom_N = 1\nrandom_N = 2\n", 3, "random_N", "redefine"},
+    {"DuplicateKey", "[forces]\nrandom_N = 1\nrandom_N = 2\n", 3, "random_N",
+     "is given in line 2 already"},
     {"DuplicateTable", "[forces]\nrandom_N = 1\n[forces]\ndrag_Ns_per_m = 0\n", 3, "forces",
-     "redefine"},
-    {"ControlCharacter", "[run]\nmethod = \"a\x01\"\n", 2, "method", "rror"},
-    {"BadUtf8", "[run]\nmethod = \"\xff\"\n", 2, "method", "utf-8"},
-    {"Binary", std::string("\0\0\0\0", 4), 1, "bad", "rror"},
+     "is given in line 1 already"},
+    {"ControlCharacter", "[run]\nmethod = \"a\x01\"\n", 2, "method", "control characters"},
+    {"BadUtf8", "[run]\nmethod = \"\xff\"\n", 2, "method", "UTF-8"},
+    {"Binary", std::string("\0\0\0\0", 4), 1, "bad", "control characters"},
     {"NestedArrays", "[forces]\nrandom_N = " + nested("[", "]", 100000) + "\n", 2, "random_N",
      "nest"},
     {"NestedTables", "[forces]\nrandom_N = " + nested("{a=", "}", 100000) + "\n", 2, "random_N",
@@ -667,6 +668,44 @@ TEST(PhysicsDifferences, LeavesOutWhatShapesNoMatrix) {
   other.start = {1.0, 2.0, 3.0, 4.0};
   other.source = "elsewhere.toml";
   EXPECT_TRUE(physics_differences(Scene{}, other).empty());
+}
+
+// What is no TOML is said without the parser's own words, with what is allowed instead.
+TEST(Scene, TextThatIsNoToml) {
+  struct Mistake {
+    const char *text, *said;
+  };
+  for (const auto& [text, said] : {
+           Mistake{"body.mass_kg = 0,25",
+                   "1: body.mass_kg = 0,25: a number has a decimal point, as "
+                   "in 0.25"},
+           {"body.mass_kg =", "1: body.mass_kg =: has no value"},
+           {"\n[body\nmass_kg = 1", "2: [body: a table must be its name in brackets, as in [body]"},
+           {"body.mass_kg = 1\nbody.radius_m = 2\nbody.mass_kg = 2",
+            "3: body.mass_kg = 2: is given in line 1 already"},
+           {"[body]\nmass_kg = 1\nmass_kg = 2", "3: mass_kg = 2: is given in line 2 already"},
+           {"[body]\nmass_kg = 1\n[forces]\nrandom_N = 2\n[body]\nradius_m = 2",
+            "5: [body]: is given in line 1 already"},
+           {"run.method = stable",
+            "1: run.method = stable: text must stand between quotation marks, as in \"auto\""},
+           {"run.method = \"stable",
+            "1: run.method = \"stable: text must stand between two quotation "
+            "marks, as in \"auto\""},
+           {"body.mass_kg = 10 g",
+            "1: body.mass_kg = 10 g: a number must stand alone: its unit is in "
+            "the key's name"},
+           {"body.mass_kg: 10",
+            "1: body.mass_kg: 10: must be KEY = VALUE, as in body.mass_kg = 0.25"},
+           {"bins.EN_d_m = [1 2]",
+            "1: bins.EN_d_m = [1 2]: an array must stand in brackets, with "
+            "commas between, as in [1, 2]"},
+           {"body.mass_kg = 1e999",
+            "1: body.mass_kg = 1e999: is no number, or too large for one: must "
+            "be as in 0.25 or 2.5e-1"},
+       })
+    EXPECT_EQ(refusal(text), std::string("bad.toml:") + said);
+  EXPECT_TRUE(refusal("body.mass_kg = 1.0\nx = \xff")
+                  .ends_with("has letters that are not UTF-8, or control characters"));
 }
 
 }  // namespace

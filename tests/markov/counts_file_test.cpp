@@ -388,7 +388,7 @@ TEST_F(ChainIo, RefusesWhatIsNoFileOfOurs) {
   put_bytes(path("short"), std::string("\x89HDF\r\n\x1a\n") + "crc64-xz:123");
   expect_complaint(path("short"), "holds no checksum");
   put_bytes(path("stub"), sealed(std::string("\x89HDF\r\n\x1a\n") + "crc64-xz:0123456789abcdef"));
-  expect_complaint(path("stub"), "cannot open: NetCDF");
+  expect_complaint(path("stub"), "cannot open: cut short or damaged, or not NetCDF-4");
 }
 
 // ---- Files with a good checksum and bad content, written here through NetCDF itself ----

@@ -10,7 +10,7 @@ expect 2 'missing -o' "$gatewalk" chart-field "$scenes/field.toml"
 expect 2 'three numbers' "$gatewalk" chart-field "$scenes/field.toml" -o chart --start 1,2
 expect 2 'cannot be made' "$gatewalk" chart-field "$scenes/field.toml" -o m.nc/chart
 "$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=all --trials 50 --json all.json --quiet 2>/dev/null
-holds '([.final_gates[][]] | add) == 50 and .trapped + .left_field + .cut_off + .not_finite == 50' all.json
+holds '([.final_gates[][]] | add) == 50 and .trapped + .departed + .cut_off + .not_finite == 50' all.json
 expect 2 'run.method = "auto" is not permitted.*run.step_s' "$gatewalk" chart-field "$scenes/field.toml" --set run.method=auto -o no-chart
 [ -e no-chart ] && fail "chart-field: wrong use made a folder"
 expect 0 '^Start 4, 5, 10: 20 trials cannot tell' "$gatewalk" chart-field "$scenes/field.toml" -o new/chart --trials 20 --start 4,5,10

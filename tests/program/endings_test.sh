@@ -7,12 +7,12 @@ paper_matrix m.nc
 "$gatewalk" walk m.nc --walks 3000 --json ends-walk.json --quiet
 "$gatewalk" predict m.nc --json ends-predict.json --quiet
 "$gatewalk" lattice "$scenes/field.toml" --trials 150 --json ends-lattice.json --quiet
-holds '(.endings | keys_unsorted) == ["crossed", "left_side", "right_side", "trapped", "cut_off"] and (.endings | add) + .never_sampled == 3000 and .endings.trapped == .trapped and .endings.cut_off == .cut_off and .endings.crossed + .endings.left_side + .endings.right_side == .left_field' ends-walk.json
-holds '(.endings | add) + .not_finite == 150 and .endings.crossed + .endings.left_side + .endings.right_side == .left_field' ends-lattice.json
+holds '(.endings | keys_unsorted) == ["crossed", "left_side", "right_side", "trapped", "cut_off"] and (.endings | add) + .never_sampled == 3000 and .endings.trapped == .trapped and .endings.cut_off == .cut_off and .endings.crossed + .endings.left_side + .endings.right_side == .departed' ends-walk.json
+holds '(.endings | add) + .not_finite == 150 and .endings.crossed + .endings.left_side + .endings.right_side == .departed' ends-lattice.json
 holds '((.endings | add) + .never_sampled - 1 | fabs) < 1e-12 and .endings.trapped == .trapped' ends-predict.json
 for file in walk predict lattice; do
   holds '(.endings | add) as $all | .endings as $e | .endings_95 | to_entries | all(.value[0] <= $e[.key] / $all and $e[.key] / $all <= .value[1] and .value[0] >= 0 and .value[1] <= 1)' ends-$file.json
-  holds '((.trapped_gates | flatten | add) - .trapped | fabs) < 1e-12 and ((.departed_gates | flatten | add) - .left_field | fabs) < 1e-12' ends-$file.json
+  holds '((.trapped_gates | flatten | add) - .trapped | fabs) < 1e-12 and ((.departed_gates | flatten | add) - .departed | fabs) < 1e-12' ends-$file.json
   # Who left was last in the last row or an outer column.
   holds '[.departed_gates[:8][][1:8][]] | add == 0' ends-$file.json
 done
@@ -45,7 +45,7 @@ holds '.endings_95.trapped | .[1] - .[0] > 0.2' ends-one.json
 expect 0 'the field is too large' "$gatewalk" predict m.nc --set field.max_gates=1446 --set field.columns=301 --set field.rows=301 --quiet
 
 "$gatewalk" lattice "$scenes/field.toml" --trials 100 --seed 1 --json lattice.json --quiet
-holds '([.final_gates[][]] | add) == 100 and .trapped + .left_field + .cut_off + .not_finite == 100' lattice.json
+holds '([.final_gates[][]] | add) == 100 and .trapped + .departed + .cut_off + .not_finite == 100' lattice.json
 "$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=1 --trials 50 --json one.json --quiet
 holds '.final_gates[0][4] == 50' one.json
 expect 2 'run.traverse_y_m' "$gatewalk" lattice "$scenes/field.toml" --set run.traverse_y_m=35

@@ -32,15 +32,35 @@ printf '\357\273\277# roaches\r\n\r\n "gate_y" ,gate_x,"count"\r\n8, -4 ,"60"\r\
 expect 0 '^these 60 trials differ from the dynamics by more than chance (p = 0.002): they end in other gates, total variation 1.000' "$gatewalk" "${beside[@]}" --trials 2000 --observed corner.csv --start 4,5,10 --json corner.json
 holds '.starts[0].start.d_m == 4 and .observed.final_gates[8][0] == 60 and (.observed | has("endings") | not)' corner.json
 expect 0 'trials 100 for 60 observed: .* take 1200 or more' "$gatewalk" "${beside[@]}" --trials 100 --observed gates.csv
-# Refused before any work, naming file, line, column and what is allowed.
+expect 0 'no row for .*left side, which counts as 0' "$gatewalk" "${beside[@]}" --trials 2000 --observed far.csv
+
 refused() { printf "$2" >bad.csv; expect 2 "$1" timeout 20 "$gatewalk" validate "$scenes/field.toml" --matrix-trials 1e12 --observed bad.csv; }
-refused 'bad.csv:1: unknown column "gatex": the first line must be gate_x,gate_y,count or ending,count' 'gatex,gate_y,count\n'
+# A line per trial says the same as tables of counts; who went back is left out, and said before the run.
+"$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=0 --trials 60 --seed 77 --json departed.json --quiet
+jq -r '"trial,ending,gate_x,gate_y", ([.trapped_gates | to_entries[] | .key as $y | .value | to_entries[] | .key as $x | range(.value) | ["trapped", $x - 4, $y]] + [.departed_gates | to_entries[] | .key as $y | .value | to_entries[] | .key as $x | range(.value) | [(if $y == 8 then "crossed" elif $x == 0 then "left side" else "right_side" end), $x - 4, $y]] | to_entries[] | "\(.key),\(.value[0]),\(.value[1]),\(.value[2])")' departed.json >lines.csv
+{ cat lines.csv; echo 'roach 61,went back,,'; } >back.csv
+jq -r '["ending", "count"], (.endings | to_entries[] | [.key, .value]) | @csv' departed.json >ends0.csv
+jq -r '["gate_x", "gate_y", "count"], (.final_gates | to_entries[] | .key as $y | .value | to_entries[] | [.key - 4, $y, .value]) | @csv' departed.json >gates0.csv
+free=(validate "$scenes/field.toml" --matrix m.nc --set field.max_gates=60 --null-draws 199 --trials 1200)
+"$gatewalk" "${free[@]}" --observed back.csv --json lines.json >/dev/null 2>err.txt
+grep -q '^gatewalk: 1 of 61 trials went back, .* left out, and the other 60 compared' err.txt || fail "validate --observed: who went back is not said: $(cat err.txt)"
+"$gatewalk" "${free[@]}" --observed ends0.csv --observed gates0.csv --json tables.json --quiet
+jq -s 'map(.observed | del(.files, .went_back)) | .[0] == .[1]' lines.json tables.json | grep -q true || fail "validate --observed: lines of trials are not their counts"
+holds '.observed | .trials == 60 and .went_back == 1' lines.json
+refused 'bad.csv:3: trial "1" was given in line 2 already' 'trial,ending\n1,crossed\n1,trapped\n'
+# Too few trials: said before any run (that would take for ever).
+printf 'trial,ending\n1,crossed\n2,trapped\n' >two.csv
+timeout 10 "$gatewalk" validate "$scenes/field.toml" --matrix-trials 1e12 --observed two.csv --trials 30 >out.txt 2>err.txt
+grep -q '^gatewalk: 2 trials show little: ' err.txt || fail "validate --observed: two trials: $(cat err.txt)"
+grep -q 'trials 30 for 2 observed: .* take 40 or more' err.txt || fail "validate --observed: --trials 30 for 2: $(cat err.txt)"
+# Refused before any work, naming file, line, column and what is allowed.
+refused 'bad.csv:1: unknown column "gatex": the first line must be trial,ending' 'gatex,gate_y,count\n'
 refused 'bad.csv:1: the columns must be' 'gate_x,count\n0,1\n'
 refused 'bad.csv:2: column gate_x: "5" is not permitted: must be a whole number from -4 to 4 (field.columns = 9)' 'gate_x,gate_y,count\n5,0,1\n'
 refused 'bad.csv:2: column gate_y: "9" is not permitted: must be a whole number from 0 to 8 (field.rows = 9)' 'gate_x,gate_y,count\n4,9,1\n'
 refused 'bad.csv:2: column count: "-1" is not permitted: must be a whole number from 0' 'gate_x,gate_y,count\n4,8,-1\n'
 refused 'bad.csv:2: column count: "1.5" is not permitted' 'ending,count\ncrossed,1.5\n'
-refused 'bad.csv:2: column ending: "turned back" is not permitted: must be one of crossed, left_side, right_side, trapped, cut_off' 'ending,count\nturned back,1\n'
+refused 'bad.csv:2: column ending: "turned back" is not permitted: must be one of crossed, left side, right side, trapped, cut off, or went back' 'ending,count\nturned back,1\n'
 refused 'bad.csv:3: gate_x = 0, gate_y = 0 was given in line 2 already' 'gate_x,gate_y,count\n0,0,1\n0,0,2\n'
 refused 'bad.csv:3: ending trapped was given already' 'ending,count\ntrapped,1\ntrapped,1\n'
 refused 'bad.csv: has no trial' 'ending,count\ntrapped,0\n'

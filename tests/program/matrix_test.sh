@@ -8,11 +8,11 @@ expect 0 'rows never sampled  0' "$gatewalk" show m.nc --rows
 "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o m1.nc --threads 1 --quiet
 cmp -s m.nc m1.nc || fail "build: one thread gave another file"
 "$gatewalk" walk m.nc "$scenes/field.toml" --walks 20000 --seed 1 --json walk.json --quiet
-holds '([.final_gates[][]] | add) == 20000 and .trapped + .left_field + .cut_off == 20000' walk.json
+holds '([.final_gates[][]] | add) == 20000 and .trapped + .departed + .cut_off == 20000' walk.json
 holds '(.final_gates | length) == 9 and (.final_gates[0] | length) == 9' walk.json
 "$gatewalk" predict m.nc "$scenes/field.toml" --json predict.json --quiet
 holds '(([.final_gates[][]] | add) - 1 | fabs) < 1e-12' predict.json
-holds '(.trapped + .left_field + .cut_off - 1 | fabs) < 1e-12' predict.json
+holds '(.trapped + .departed + .cut_off - 1 | fabs) < 1e-12' predict.json
 "$gatewalk" predict m.nc --set field.max_gates=0 --json free.json --quiet
 "$gatewalk" predict m.nc --set field.max_gates=0 --solver klu --json klu.json --quiet
 holds '.cut_off == 0' free.json
@@ -37,7 +37,7 @@ expect 0 '^start d 4 m, vx 5 m/s, vy 10.5 m/s$' "$gatewalk" predict m.nc --start
 expect 2 'start d 0 m, vx 0 m/s, vy -3 m/s lies outside the chain.s bins, EN d \[-25, 25\] m, .*--bins auto .*\[bins\]' "$gatewalk" predict m.nc --start 0,0,15 --start 0,0,-3
 "$gatewalk" predict m.nc --set start.x_m=4 --set start.vx_m_per_s=5 --set start.vy_m_per_s=10.5 --json start.json --quiet
 for k in 0 1; do
-  jq -s ".[0].starts[$k] as \$one | .[1] | to_entries | map(select(.key | IN(\"final_gates\", \"trapped\", \"left_field\", \"cut_off\", \"steps\", \"start_state\")) | .value == \$one[.key]) | length == 6 and all" \
+  jq -s ".[0].starts[$k] as \$one | .[1] | to_entries | map(select(.key | IN(\"final_gates\", \"trapped\", \"departed\", \"cut_off\", \"steps\", \"start_state\")) | .value == \$one[.key]) | length == 6 and all" \
     starts.json "$([ $k = 0 ] && echo predict.json || echo start.json)" | grep -q true || fail "predict: start $k is not as alone"
 done
 holds '[.starts[].start_state.clamped] == [false, false] and (has("final_gates") | not)' starts.json

@@ -11,6 +11,9 @@ holds '.from_prediction.endings | [.trapped[].percentage_points] == [2, 5, 10, 2
 holds '.from_prediction.final_gates | [.[].total_variation] == [0.05, 0.1, 0.2] and .[0].trials > 3 * .[1].trials and .[1].trials > 3 * .[2].trials and .[2].power < 0.8' power.json
 holds '.smallest_difference | .final_gates_total_variation > 0.2 and .endings_percentage_points.trapped.more > 10 and .endings_percentage_points_if_all_are_looked_at.trapped.more > .endings_percentage_points.trapped.more' power.json
 holds '.versus | .set == ["beams.stiffness_left_Nm_per_rad=200", "beams.stiffness_right_Nm_per_rad=200"] and (.scene | test("stiffness_left_Nm_per_rad = 200")) and .apart.final_gates.trials > 2 and (.apart.endings | length) == 5' power.json
+# It begins with two sentences: what these trials show, what it takes.
+holds '.summary as [$shows, $takes] | .smallest_difference.final_gates_total_variation as $least | .versus.apart.final_gates as $apart | ($shows | test("^In 80 of 100 experiments 60 trials show an ending that is [0-9]+ to [0-9]+ points off, by ending, or final gates that differ by a total variation of 0.[0-9]+.$")) and ($takes | startswith("To tell this scene from beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right_Nm_per_rad=200 so often takes \($apart.trials) trials of each by their final gates, ")) and ($takes | test("; 60 of each do in [0-9]+ of 100 experiments by their final gates.$"))' power.json
+[ "$(head -2 power.txt)" = "$(value '.summary[]' power.json)" ] || fail "power: the sentences do not come first"
 grep -q '^Trials needed, for 80 % power at a level of 5 %' power.txt || fail "power: no table"
 grep -q '^Versus beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right' power.txt || fail "power: does not name the other scene"
 "$gatewalk" "${power[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --versus beams.stiffness_right_Nm_per_rad=200 --json again.json --threads 1 --quiet

@@ -5,15 +5,25 @@
 # Help and wrong use.
 expect 0 'usage: gatewalk' "$gatewalk" --help
 expect 0 '^gatewalk [0-9]' "$gatewalk" --version
+expect 0 '^gatewalk [0-9]' "$gatewalk" -V
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
 for command in $("$gatewalk" --help | awk '/^usage/ { list = 1; next } list && /^  [a-z]/ { print $1 }'); do
   expect 0 'Example:' "$gatewalk" $command --help
-  expect 2 'unrecognised option' "$gatewalk" $command --no-such-option
+  expect 2 'there is no option' "$gatewalk" $command --no-such-option
 done
 expect 2 'missing SCENE' "$gatewalk" gate
 expect 2 'missing -o' "$gatewalk" build "$scenes/field.toml"
-expect 2 'unrecognised option' "$gatewalk" gate "$scenes/field.toml" --tri 5       # nothing is guessed
+expect 2 'there is no option' "$gatewalk" gate "$scenes/field.toml" --tri 5       # nothing is guessed
+expect 2 '^gatewalk: there is no option --trails (did you mean --trials?); see gatewalk gate --help$' "$gatewalk" gate "$scenes/field.toml" --trails 5
+expect 2 '^gatewalk: --trials needs a value; see' "$gatewalk" gate "$scenes/field.toml" --trials
+expect 2 '^gatewalk: --quiet takes no value; see' "$gatewalk" gate "$scenes/field.toml" --quiet=3
+expect 2 '^gatewalk: there are more arguments than the command takes; see' "$gatewalk" gate "$scenes/field.toml" a b
+expect 2 "^gatewalk: --threads: 'x' is not a whole number" "$gatewalk" gate "$scenes/field.toml" --threads x
+expect 2 '^gatewalk: --threads 1025: must be at least 0 and at most 1024' "$gatewalk" gate "$scenes/field.toml" --threads 1025
+for number in abc nan inf 0,1; do
+  expect 2 "^gatewalk: --accuracy: '$number' is not a number" "$gatewalk" predict "$scenes/field.toml" --accuracy $number
+done
 expect 2 'at least 1' "$gatewalk" gate "$scenes/field.toml" --trials 0
 expect 2 "'1.5' is not a whole number" "$gatewalk" gate "$scenes/field.toml" --trials 1.5
 expect 2 "'-1' is not a seed" "$gatewalk" gate "$scenes/field.toml" --seed -1
@@ -31,5 +41,31 @@ expect 2 'did you mean build?' "$gatewalk" biuld
 expect 2 'did you mean predict?' "$gatewalk" help predictt
 expect 2 'did you mean chart-field?' "$gatewalk" chart_field
 "$gatewalk" fly 2>&1 | grep -q 'did you mean' && fail "fly is no misspelled command"
+
+# Of an option given twice the last one counts, and that is said; options that may be repeated are lists.
+"$gatewalk" gate "$scenes/field.toml" --trials 1 --seed 3 --trials 20 --seed 4 --set forces.random_N=3 --set forces.propulsion_N=4 --json twice.json >table.txt 2>err.txt
+"$gatewalk" gate "$scenes/field.toml" --trials 20 --seed 4 --set forces.random_N=3 --set forces.propulsion_N=4 --json once.json >/dev/null 2>&1
+jq -s '(.[0] | del(.made_by.command)) == (.[1] | del(.made_by.command))' twice.json once.json | grep -q true || fail "an option given twice: not the last one"
+holds '.made_by.command | test("--seed 4") and (test("--seed 3") | not) and test("random_N=3") and test("propulsion_N=4")' twice.json
+grep -q '^gatewalk: --trials is given 2 times: the last one counts, 20$' err.txt || fail "an option given twice is not said: $(cat err.txt)"
+"$gatewalk" gate "$scenes/field.toml" --trials 1 --trials 20 --quiet >/dev/null 2>err.txt
+[ -s err.txt ] && fail "--quiet: $(cat err.txt)"
+
+# A scene from standard input is that of a file, for every command that reads one.
+"$gatewalk" gate - --trials 20 --seed 4 --json dash.json --quiet <"$scenes/field.toml"
+"$gatewalk" gate "$scenes/field.toml" --trials 20 --seed 4 --json file.json --quiet
+jq -s '(.[0] | del(.made_by)) == (.[1] | del(.made_by)) and .[0].made_by.scene == .[1].made_by.scene' dash.json file.json | grep -q true || fail "a scene from standard input is another one"
+for command in scene sweep landscape trace build predict analyze lattice rare validate power chart chart-field chart-chain; do
+  more=
+  case $command in landscape | chart | chart-field | chart-chain) more='-o folder' ;; build) more='-o m.nc' ;; sweep) more='--vary forces.random_N=1,2' ;; esac
+  # shellcheck disable=SC2086
+  expect 2 '^gatewalk: .*standard input:2: body.mass_kg = -1.* is not permitted' "$gatewalk" $command - $more < <(printf '\nbody.mass_kg = -1\n')
+done
+# power reads its scene twice.
+expect 2 'versus: field.columns and field.rows must stay' "$gatewalk" power - --versus field.rows=5 <"$scenes/field.toml"
+
+# Out of memory: which option would help, and status 1.
+expect 1 '^gatewalk: out of memory; .*larger --accuracy.*fewer --threads.*--set field.rows' \
+  bash -c 'ulimit -v 400000; exec "$@"' _ "$gatewalk" predict "$scenes/field.toml" --threads 1 --accuracy 0.3 --set field.columns=2001 --set field.rows=2001 --set field.max_gates=0
 
 finish

@@ -1,0 +1,97 @@
+#include "cli/render/field_netcdf.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "cli/render/json.h"
+#include "markov/formats/netcdf.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using markov::CellProbabilities;
+
+/// A map of each start.
+template <class MapOf>
+void put_maps(int nc, const std::array<int, 3>& dimensions, const char* name, const char* meaning,
+              const std::vector<FieldArrays>& fields, const MapOf& map_of) {
+  using namespace markov::netcdf;
+  constexpr int kShuffle = 1, kDeflate = 1, kLevel = 4;
+  int variable = -1;
+  check(nc_def_var(nc, name, NC_DOUBLE, 3, dimensions.data(), &variable), name);
+  check(nc_def_var_deflate(nc, variable, kShuffle, kDeflate, kLevel), name);
+  check(nc_def_var_fletcher32(nc, variable, NC_FLETCHER32), name);
+  put_text(nc, variable, "units", "1");
+  put_text(nc, variable, "long_name", meaning);
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const CellProbabilities& map = map_of(fields[k]);
+    const std::array<std::size_t, 3> first{k, 0, 0};
+    const std::array<std::size_t, 3> count{1, static_cast<std::size_t>(map.rows()),
+                                           static_cast<std::size_t>(map.cols())};
+    check(nc_put_vara_double(nc, variable, first.data(), count.data(), map.data()), name);
+  }
+}
+
+std::vector<std::int32_t> numbers_from(int first, Eigen::Index count) {
+  std::vector<std::int32_t> numbers(static_cast<std::size_t>(count));
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
+}
+
+}  // namespace
+
+std::string netcdf_of(const std::vector<FieldArrays>& fields, const Json& made_by) {
+  const Eigen::Index rows = fields.front().shares.final_gates.rows(),
+                     columns = fields.front().shares.final_gates.cols();
+  using namespace markov::netcdf;
+  Image nc;
+  nc.create();
+  put_text(nc, NC_GLOBAL, "format", "gatewalk final gates");
+  for (const auto& [key, value] : made_by.items())
+    put_text(nc, NC_GLOBAL, key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
+  const int start = define_dimension(nc, "start", fields.size()),
+            i_y = define_dimension(nc, "i_y", static_cast<std::size_t>(rows)),
+            i_x = define_dimension(nc, "i_x", static_cast<std::size_t>(columns));
+  put_variable(nc, "i_y", i_y, numbers_from(0, rows), "1", "row of gates, the near one is 0");
+  put_variable(nc, "i_x", i_x, numbers_from(-static_cast<int>(columns / 2), columns), "1",
+               "column of gates, that of the start is 0");
+  const auto of_starts = [&](const std::string& name, const char* unit, const std::string& meaning,
+                             const auto& value) {
+    std::vector<double> values;
+    for (const FieldArrays& f : fields) values.push_back(value(f));
+    put_variable(nc, name, start, values, unit, meaning);
+  };
+  of_starts("start_d", "m", "where it began: x", [](const auto& f) { return f.start.d; });
+  of_starts("start_vx", "m s-1", "with this velocity", [](const auto& f) { return f.start.vx; });
+  of_starts("start_vy", "m s-1", "with this velocity", [](const auto& f) { return f.start.vy; });
+  for (const EndingName& e : kEndingNames)
+    of_starts(e.key, "1", std::string("share of all: ") + e.name, [&](const FieldArrays& f) {
+      return f.shares.endings.share[static_cast<std::size_t>(e.ending)];
+    });
+  const std::array<int, 3> dimensions{start, i_y, i_x};
+  const auto maps = [&](const char* name, const char* meaning, const auto& map_of) {
+    put_maps(nc, dimensions, name, meaning, fields, map_of);
+  };
+  using Arrays = FieldArrays;
+  maps(
+      "final_gates", "share of all that ended in this gate, however",
+      [](const Arrays& f) -> const auto& { return f.shares.final_gates; });
+  maps(
+      "trapped_gates", "share of all that was trapped in this gate",
+      [](const Arrays& f) -> const auto& { return f.shares.trapped; });
+  maps(
+      "departed_gates", "share of all that left the field from this gate",
+      [](const Arrays& f) -> const auto& { return f.shares.departed; });
+  if (std::all_of(fields.begin(), fields.end(), [](const Arrays& f) { return !!f.gates_95; })) {
+    maps(
+        "final_gates_low", "95 % interval of final_gates, lower end",
+        [](const Arrays& f) -> const auto& { return (*f.gates_95)[0]; });
+    maps(
+        "final_gates_high", "95 % interval of final_gates, upper end",
+        [](const Arrays& f) -> const auto& { return (*f.gates_95)[1]; });
+  }
+  const std::vector<char> bytes = nc.close_image();
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace gatewalk::cli

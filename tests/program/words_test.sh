@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# One word for one thing; large fields; which states.   words_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+paper_matrix m.nc
+field=$scenes/field.toml
+# departed = crossed, left side and right side, in text and JSON of all that has endings.
+"$gatewalk" predict m.nc --json predict.json >predict.txt
+"$gatewalk" walk m.nc --walks 500 --json walk.json >walk.txt
+"$gatewalk" lattice "$field" --trials 50 --json lattice.json >lattice.txt
+"$gatewalk" predict "$field" --accuracy 0.3 --json tree.json >tree.txt
+for of in predict walk lattice tree; do
+  holds '(.endings | .crossed + .left_side + .right_side) as $d | ($d - .departed | fabs) < 1e-12 and has("trapped") and has("cut_off") and (has("left_field") | not)' $of.json
+  grep -q '^departed [0-9.]* %$' $of.txt || fail "$of: does not say what departed"
+  grep -i 'left the field\|left_field' $of.txt $of.json && fail "$of: a second word for departed"
+done
+for name in 'left side' left_side; do
+  expect 0 'left side' "$gatewalk" analyze m.nc --target "$name" --runs 0
+done
+# Without a limit of gates nobody is cut off: 0, not what rounding leaves.
+"$gatewalk" predict m.nc --set field.max_gates=0 --json free.json >free.txt
+holds '.endings.cut_off == 0 and .cut_off == 0 and .rounding_at_most > 0' free.json
+
+# NetCDF has the maps of any field, JSON those of up to 100000 gates, and says so.
+"$gatewalk" predict m.nc --start 0,0,15 --start 4,5,10 --netcdf two.nc --json two.json --quiet
+ncdump -v final_gates,i_x,crossed two.nc >dump.txt
+grep -q 'final_gates(start, i_y, i_x)' dump.txt && grep -q 'start = 2 ;' dump.txt && grep -q 'final_gates:units = "1"' dump.txt || fail "netcdf: no final gates"
+grep -q '^ i_x = -4, -3, -2, -1, 0, 1, 2, 3, 4 ;' dump.txt || fail "netcdf: i_x"
+for name in trapped_gates departed_gates start_d start_vx start_vy; do grep -q "double $name(start" dump.txt || fail "netcdf: no $name"; done
+ncdump -p 9,17 -v final_gates two.nc | awk '/^ final_gates =/ { on = 1; next } on { gsub(/[,;}]/, " "); print }' | tr -s ' ' '\n' | grep . >nc.txt
+jq -r '.starts[].final_gates[][]' two.json >json.txt
+[ "$(wc -l <nc.txt)" = 162 ] && paste nc.txt json.txt | awk '{ d = $1 - $2; if (d < 0) d = -d; if (d > 1e-15) exit 1 }' || fail "netcdf: other shares than JSON"
+"$gatewalk" lattice "$field" --trials 5 --netcdf lattice.nc --quiet >/dev/null
+"$gatewalk" walk m.nc --walks 100 --netcdf walk.nc --quiet >/dev/null
+"$gatewalk" predict "$field" --accuracy 0.3 --netcdf tree.nc --quiet >/dev/null
+for of in lattice walk tree; do ncdump -h $of.nc | grep -q ':command = "gatewalk ' || fail "$of: netcdf does not say what made it"; done
+ncdump -h tree.nc | grep -q 'double final_gates_low(start, i_y, i_x)' || fail "predict: netcdf without intervals"
+"$gatewalk" walk m.nc --walks 100 --set field.columns=501 --set field.rows=501 --json large.json --netcdf large.nc --quiet
+holds '.final_gates == null and .trapped_gates == null and (.left_out | test("501 x 501 gates.*--netcdf")) and (.endings | add) + .never_sampled == 100' large.json
+ncdump -h large.nc | grep -q 'i_y = 501 ;' || fail "walk: netcdf of a large field"
+holds 'has("left_out") | not' walk.json
+expect 2 'are the same file' "$gatewalk" walk m.nc --netcdf m.nc
+
+# States count from 1 here, which JSON says (in the file from 0).
+holds '.counted_from == 1 and .rows[0].input == 1' <("$gatewalk" show m.nc --json - --quiet)
+holds '.start_state.counted_from == 1' predict.json
+
+# A chain has field.fidelity "active": another one is refused, never ignored.
+"$gatewalk" build "$field" --trials 2 --set run.method=moreau --set run.step_s=0.005 -o moreau.nc --quiet >/dev/null
+for command in predict walk analyze; do
+  expect 2 'set field.fidelity=all: field.fidelity = "all" is not permitted for a chain: it has "active"' "$gatewalk" $command moreau.nc --set field.fidelity=all
+done
+"$gatewalk" build "$field" --trials 2 --set run.method=moreau --set run.step_s=0.005 --set field.fidelity=all -o all.nc --quiet >/dev/null 2>&1
+expect 0 'all.nc (its scene): field.fidelity = "all" is of the full dynamics: a chain always has "active"' "$gatewalk" predict all.nc
+expect 0 '^crossed' "$gatewalk" predict all.nc --set field.fidelity=active
+printf '[sweep]\nforces.random_N = "1,2"\n' | cat "$field" - >swept.toml
+expect 0 'the table \[sweep\] of swept.toml has no effect' "$gatewalk" predict m.nc swept.toml
+
+# build and validate say for which starts their trees are.
+expect 0 '^states: [0-9]* (leaves of trees with 7 entries or more, for the start 0,0,15) from' "$gatewalk" build "$field" --accuracy 0.3 -o t.nc
+expect 0 '^states: [0-9]* (leaves of trees with 7 entries or more, for the starts 0,0,15; 23,-11,16; 4,5,10; -17,13,12) from' "$gatewalk" validate "$field" --accuracy 0.3 --trials 20 --null-draws 99
+
+finish
