@@ -11,6 +11,7 @@
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
+#include "cli/render/meaning.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
 #include "dynamics/work.h"
@@ -233,7 +234,10 @@ bool is_matrix(const std::string& path) {
 std::optional<lattice::Settled> settle_method(const Options& options, lattice::Scene& scene,
                                               lattice::RunsFrom from) {
   for (const std::string& text : lattice::keys_without_effect(scene, from)) options.warn(text);
-  if (options.talk()) options.warn(lattice::derived_keys(scene));
+  if (options.talk()) {
+    options.warn(lattice::derived_keys(scene));
+    options.warn(far_from_walkers_line(scene));
+  }
   auto settled = lattice::settle_method(scene, from, options.seed(), options.work());
   if (settled) options.warn(complaint(*settled));
   return settled;

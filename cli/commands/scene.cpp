@@ -1,6 +1,8 @@
 #include "cli/render/scene.h"
 #include "cli/command.h"
 #include "cli/render/json.h"
+#include "cli/render/meaning.h"
+#include "cli/render/scene_figure.h"
 #include "cli/terminal/output.h"
 
 namespace gatewalk::cli {
@@ -24,14 +26,17 @@ int run_scene(const Arguments& arguments) {
   Options options(
       "scene [SCENE] [options]",
       "Shows every key of a scene: its value, unit, range and meaning, and where the value comes\n"
-      "from: a line of the file, an override, the paper, or derived from the other keys. Without "
-      "a\n"
-      "file the scene is what --set gives.",
+      "from: a line of the file, an override, the paper, or derived from the other keys. Then what "
+      "these\n"
+      "numbers mean, and where they are far from what walks. Without a file the scene is what "
+      "--set "
+      "gives.",
       "gatewalk scene --new --set body.mass_kg=0.25 --set body.radius_m=0.08 "
       "--set forces.propulsion_N=0.8 -o robot.toml");
   options.positional("scene", "scene file (TOML; -: standard input)", false);
   options.add_flag("new", "write the scene as a commented TOML file, to edit");
   options.output_file("output", "FILE", "with --new: the file to write (default: standard output)");
+  options.add_figure("one gate to scale, each length and force at its place");
   if (!options.parse(arguments)) return kFine;
   if (options.has("output") && !options.has("new"))
     throw UsageError("--output has no meaning without --new");
@@ -39,13 +44,17 @@ int run_scene(const Arguments& arguments) {
                                    ? options.read_scene()
                                    : lattice::parse_scene(as_text(options.overrides()), "--set");
   if (options.has("new")) {
-    if (options.has("json")) throw UsageError("--json has no meaning beside --new");
+    for (const char* other : {"json", "figure"})
+      if (options.has(other))
+        throw UsageError("--" + std::string(other) + " has no meaning beside --new");
     options.write(options.has("output") ? options.text("output") : "-", commented(scene));
     return kFine;
   }
   const std::vector<lattice::KeyInfo> keys = lattice::describe(scene);
+  const dynamics::Meaning meaning = dynamics::meaning_of(scene.gate, scene.start);
   Json json;
   json["keys"] = to_json(keys);
+  json["meaning"] = to_json(meaning, scene);
   json["scene"] = lattice::to_toml(scene);
   std::string map;
   if (scene.terrain) {
@@ -54,7 +63,8 @@ int run_scene(const Arguments& arguments) {
     map = "\nmap, the far side first:\n";
     for (const std::string& row : rows) map += row + "\n";
   }
-  options.give_out(json, table_of(keys) + map);
+  options.give_out(json, table_of(keys) + meaning_text(meaning, scene) + map);
+  options.draw([&] { return figure_of(scene); });
   return kFine;
 }
 

@@ -8,6 +8,7 @@
 #include "cli/render/sweep.h"
 #include "cli/terminal/output.h"
 #include "dynamics/work.h"
+#include "lattice/scene/units.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -18,7 +19,7 @@ void refuse_overridden(const std::vector<lattice::SweepAxis>& axes,
   for (const std::string& set : overrides)
     for (const std::string& key : lattice::keys_set_by(set))
       for (const lattice::SweepAxis& axis : axes)
-        if (key == axis.key)
+        if (key == lattice::known_key(axis.key, "--vary"))
           throw UsageError("--set " + set + " has no effect: " + key + " is varied; --vary " + key +
                            "=VALUE fixes it");
 }

@@ -25,6 +25,7 @@
 #include "lattice/scene/scene_terrain.h"
 #include "lattice/scene/toml_mistake.h"
 #include "lattice/scene/toml_text.h"
+#include "lattice/scene/units.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -150,25 +151,6 @@ bool is_table(std::string_view name) {
                      [&](const SceneKey& k) { return table_of(k.key) == name; });
 }
 
-/// " N s/m" for "forces.drag_Ns_per_m", nothing for a pure number.
-std::string unit_of(std::string_view key) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kUnits{
-      {{"_Nms_per_rad", " N m s/rad"},
-       {"_Nm_per_rad", " N m/rad"},
-       {"_Ns_per_m", " N s/m"},
-       {"_m_per_s", " m/s"},
-       {"_kg", " kg"},
-       {"_Hz", " Hz"},
-       {"_Ns", " N s"},
-       {"_N", " N"},
-       {"_m", " m"},
-       {"_s", " s"}}};
-  for (const auto& [suffix, unit] : kUnits) {
-    if (key.ends_with(suffix)) return std::string(unit);
-  }
-  return {};
-}
-
 // ---- Texts
 
 /// The table whose name is nearest to `name`.
@@ -207,6 +189,14 @@ std::string_view closest_key(std::string_view name) {
 struct Setting {
   const toml::node* value;
   std::string origin;
+  std::string spelled;  // the key as it is written, perhaps in another unit
+
+  /// The origin, with what stands there where that is another unit and not said by itself.
+  [[nodiscard]] std::string where(std::string_view key) const {
+    return spelled == key || origin.starts_with("--set ")
+               ? origin
+               : origin + " (" + std::string(leaf_of(spelled)) + shown_value(*value) + ")";
+  }
 };
 using Settings = std::map<std::string, Setting, std::less<>>;
 
@@ -260,8 +250,11 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
     for (const auto& [key, node] : *table) {
       const std::string name = table_name + "." + std::string(key.str());
       const std::string key_origin = origin(node.source().begin.line);
-      require_key(name, key_origin);
-      settings[name] = {&node, key_origin};
+      const std::string known = known_key(name, key_origin);
+      if (const auto other = settings.find(known); other != settings.end())
+        throw SceneError(
+            given_twice(*other->second.value, other->second.spelled, node, name, origin));
+      settings[known] = {&node, key_origin, name};
     }
   }
   return settings;
@@ -313,7 +306,9 @@ std::vector<Variation> variations_of(const toml::table& document, const Origin& 
   std::vector<Variation> variations;
   for (Found& f : found) {
     for (const Variation& v : variations)
-      if (v.key == f.variation.key) throw SceneError(f.variation.origin + " is there twice");
+      if (known_key(v.key, v.origin) == known_key(f.variation.key, f.variation.origin))
+        throw SceneError(f.variation.origin + " is there twice" +
+                         (v.key == f.variation.key ? "" : ", as " + v.key + " before"));
     variations.push_back(std::move(f.variation));
   }
   return variations;
@@ -345,7 +340,7 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
 
 // ---- From settings to a scene
 
-/// `shown`: what a message calls the key.
+/// `shown`: what a message calls the key; a number may be in the unit of the setting's spelling.
 void assign(const SceneKey& key, const Setting& setting, Scene& scene, std::string_view shown) {
   const auto refusal = [&](const std::string& allowed) {
     return SceneError(setting.origin + ": " + std::string(shown) + shown_value(*setting.value) +
@@ -375,7 +370,12 @@ void assign(const SceneKey& key, const Setting& setting, Scene& scene, std::stri
   }
 
   const Interval interval = key.permitted(scene);
-  const std::string allowed = interval.text() + unit_of(key.key);
+  const KeyUnit unit = unit_of(setting.spelled, key.key).value();
+  const std::string allowed =
+      Interval{in_given_unit(interval.low, unit), in_given_unit(interval.high, unit),
+               interval.low_open, interval.high_open}
+          .text() +
+      (unit.shown.empty() ? "" : " " + unit.shown);
   if (auto* const* integer = std::get_if<int*>(&slot)) {
     if (!whole) throw refusal("be a whole number in " + allowed);
     if (!interval.permits(static_cast<double>(whole->get()))) throw refusal("lie in " + allowed);
@@ -385,13 +385,14 @@ void assign(const SceneKey& key, const Setting& setting, Scene& scene, std::stri
 
   const auto* floating = setting.value->as_floating_point();
   if (!whole && !floating) throw refusal("be a number in " + allowed);
-  const double number = floating ? floating->get() : static_cast<double>(whole->get());
+  const double number =
+      in_own_unit(floating ? floating->get() : static_cast<double>(whole->get()), unit);
   if (!interval.permits(number)) throw refusal("lie in " + allowed);
   *std::get<double*>(slot) = number;
 }
 
 void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
-  assign(key, setting, scene, key.key);
+  assign(key, setting, scene, setting.spelled);
 }
 
 /// Distance from the start to the nearest point of the two beams at rest (both on y = joint_y).
@@ -415,10 +416,10 @@ void check(const Scene& scene, const Settings& settings, Check checked) {
   } catch (const dynamics::InvalidParameter& error) {
     std::string origin = scene.source;
     if (const auto own = settings.find(error.key()); own != settings.end()) {
-      origin = own->second.origin;
+      origin = own->second.where(own->first);
     } else {
       for (const auto& [key, setting] : settings) {
-        if (std::strstr(error.what(), key.c_str())) origin = setting.origin;
+        if (std::strstr(error.what(), key.c_str())) origin = setting.where(key);
       }
     }
     throw SceneError(origin + ": " + error.what());
@@ -472,7 +473,7 @@ void read_terrain(Scene& scene, const toml::table& document, const Origin& origi
                  [&](std::string_view name, const TerrainSetting& given, const std::string& shown) {
                    Scene other = scene;
                    const SceneKey& key = *find_key(name);
-                   assign(key, {given.value, given.where()}, other, shown);
+                   assign(key, {given.value, given.where(), given.spelled}, other, shown);
                    return *std::get<double*>(key.slot(other));
                  });
   if (scene.terrain) check_types(scene);
@@ -535,9 +536,21 @@ std::vector<std::string> keys_set_by(const std::string& given) {
 }
 
 void require_key(const std::string& key, const std::string& origin) {
-  if (find_key(key)) return;
-  throw SceneError(origin + ": unknown key " + printable(key) + "; the closest known key is " +
-                   std::string(closest_key(key)));
+  (void)known_key(key, origin);
+}
+
+std::string known_key(const std::string& given, const std::string& origin) {
+  for (const SceneKey& key : scene_keys())
+    if (unit_of(given, key.key)) return std::string(key.key);
+  const std::string_view closest = closest_key(given);
+  for (const SceneKey& key : scene_keys())
+    if (const std::string units = units_instead(given, key.key);
+        !units.empty() && !closest.starts_with(given) &&
+        edit_distance(given.substr(0, kLongestCompared), closest) > 1)
+      throw SceneError(origin + ": unknown key " + printable(given) + ": " + std::string(key.key) +
+                       " may end in " + units + " instead");
+  throw SceneError(origin + ": unknown key " + printable(given) + "; the closest known key is " +
+                   std::string(closest));
 }
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
@@ -578,7 +591,7 @@ Scene parse_scene(std::string_view text, std::string name,
   Scene scene;
   scene.source = name;
   scene.sweep = variations_of(document, origin);
-  for (const auto& [key, setting] : settings) scene.named.emplace(key, setting.origin);
+  for (const auto& [key, setting] : settings) scene.named.emplace(key, setting.where(key));
   const auto of_gate = [](const SceneKey& key) {
     return table_of(key.key) != "field" && table_of(key.key) != "start";
   };
@@ -660,10 +673,12 @@ std::vector<KeyInfo> describe(const Scene& scene) {
   Scene copy = scene;
   std::vector<KeyInfo> all;
   for (const SceneKey& key : scene_keys()) {
-    KeyInfo info{std::string(key.key),     value_text(key, copy),
-                 unit_of(key.key),         {},
-                 std::string(key.meaning), "paper"};
-    if (!info.unit.empty()) info.unit.erase(0, 1);  // the blank before it
+    KeyInfo info{std::string(key.key),
+                 value_text(key, copy),
+                 unit_of(key.key, key.key)->shown,
+                 {},
+                 std::string(key.meaning),
+                 "paper"};
     if (key.permitted) info.range = key.permitted(scene).text();
     if (const auto given = scene.named.find(key.key); given != scene.named.end())
       info.source = given->second;

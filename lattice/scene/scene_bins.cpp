@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "lattice/scene/digits.h"
+#include "lattice/scene/toml_text.h"
+#include "lattice/scene/units.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -37,7 +41,8 @@ std::string text(const std::vector<double>& edges) {
   return list + "]";
 }
 
-std::vector<double> numbers_in(const toml::node& node, const std::string& begin) {
+std::vector<double> numbers_in(const toml::node& node, const std::string& begin,
+                               const KeyUnit& unit) {
   const auto refuse = [&] {
     throw SceneError(begin +
                      " is not permitted: must be two or more numbers, finite and ascending, such "
@@ -48,9 +53,9 @@ std::vector<double> numbers_in(const toml::node& node, const std::string& begin)
   std::vector<double> edges;
   for (const toml::node& item : *array) {
     if (const auto* whole = item.as_integer())
-      edges.push_back(static_cast<double>(whole->get()));
+      edges.push_back(in_own_unit(static_cast<double>(whole->get()), unit));
     else if (const auto* number = item.as_floating_point())
-      edges.push_back(number->get());
+      edges.push_back(in_own_unit(number->get(), unit));
     else
       refuse();
     if (!std::isfinite(edges.back()) ||
@@ -71,15 +76,23 @@ std::vector<GivenEdges> edges_in(const toml::table& document,
     throw SceneError(origin(node->source().begin.line) +
                      ": bins is not permitted: must be a table, written [bins]");
   std::vector<GivenEdges> all;
+  std::map<std::string, std::pair<const toml::node*, std::string>> seen;
   for (const auto& [key, value] : *node->as_table()) {
     const std::string at = origin(value.source().begin.line), name(key.str());
+    bool known = false;
     for (int b = 0; b < kBoundaries; ++b)
-      for (const BinKey& axis : kBinKeys)
-        if (name == key_of(b, axis))
-          all.push_back(
-              {b, axis.edges, "bins." + name, at, numbers_in(value, at + ": bins." + name)});
-    if (all.empty() || all.back().name != "bins." + name)
-      throw SceneError(at + ": unknown key in [bins]; its keys are " + all_keys());
+      for (const BinKey& axis : kBinKeys) {
+        const std::string own = key_of(b, axis);
+        const auto unit = unit_of(name, own);
+        if (!unit) continue;
+        known = true;
+        if (const auto [other, is_new] = seen.try_emplace(own, &value, name); !is_new)
+          throw SceneError(given_twice(*other->second.first, "bins." + other->second.second, value,
+                                       "bins." + name, origin));
+        all.push_back({b, axis.edges, "bins." + own, at + (name == own ? "" : " (" + name + ")"),
+                       numbers_in(value, at + ": bins." + name, *unit)});
+      }
+    if (!known) throw SceneError(at + ": unknown key in [bins]; its keys are " + all_keys());
   }
   return all;
 }

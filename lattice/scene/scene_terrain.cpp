@@ -10,6 +10,7 @@
 #include "lattice/scene/grey_picture.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/toml_text.h"
+#include "lattice/scene/units.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -199,8 +200,9 @@ void add_terrain(TerrainSettings& settings, const toml::table& document, const O
                  const std::string& folder) {
   const toml::node* const terrain = document.get(kTerrainTable);
   if (!terrain) return;
-  const auto add = [&](const std::string& key, const toml::node& node) {
-    settings.insert_or_assign(key, TerrainSetting{&node, origin, folder});
+  const auto add = [&](const std::string& key, const toml::node& node,
+                       const std::string& spelled = "") {
+    settings.insert_or_assign(key, TerrainSetting{&node, origin, folder, spelled});
   };
   const auto add_type = [&](const std::string& name, const toml::node& node) {
     const std::string at = origin(node.source().begin.line);
@@ -209,16 +211,21 @@ void add_terrain(TerrainSettings& settings, const toml::table& document, const O
                        ": a type's name must be letters, digits and _, and begin with a letter");
     const std::string type = "types." + name;
     add(type, node);
+    std::map<std::string, std::pair<const toml::node*, std::string>> seen;  // in this document
     for (const auto& [table, keys] : table_at(node, "terrain." + type, origin)) {
       const std::string of_table(table.str());
       const auto add_key = [&](const std::string& key, const toml::node& value) {
         const std::string where = origin(value.source().begin.line) + ": terrain." + type;
-        require_key(key, where);
-        if (!may_differ(key))
+        const std::string known = known_key(key, where);
+        if (!may_differ(known))
           throw SceneError(where + "." + key +
                            " is not permitted: all gates of a field have it in common; a type has "
                            "beams (but their joints), forces and contact of its own");
-        add(type + "." + key, value);
+        if (const auto [other, is_new] = seen.try_emplace(known, &value, key); !is_new)
+          throw SceneError(given_twice(*other->second.first,
+                                       "terrain." + type + "." + other->second.second, value,
+                                       "terrain." + type + "." + key, origin));
+        add(type + "." + known, value, key);
       };
       if (!keys.is_table())
         add_key(of_table, keys);  // a whole key in quotation marks, or none
@@ -259,8 +266,11 @@ std::optional<Terrain> terrain_of(const TerrainSettings& settings, const FieldPa
       continue;
     }
     const std::string name = key.substr(dot + 1);
-    terrain.types.back().keys.push_back(
-        {name, value(name, given, "terrain." + key), given.where()});
+    const double x = value(name, given, "terrain." + key.substr(0, dot + 1) + given.spelled);
+    std::string where = given.where();
+    if (given.spelled != name && !where.starts_with("--set "))
+      where += " (" + given.spelled + shown_value(*given.value) + ")";
+    terrain.types.back().keys.push_back({name, x, where});
   }
   const std::string where = settings.begin()->second.where();
   if (terrain.types.size() > kMostTypes)

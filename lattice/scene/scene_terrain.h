@@ -21,7 +21,8 @@ using Origin = std::function<std::string(std::size_t line)>;
 struct TerrainSetting {
   const toml::node* value;
   Origin origin;
-  std::string folder;  // that a path in it starts from
+  std::string folder;   // that a path in it starts from
+  std::string spelled;  // a key of a type as it is written, perhaps in another unit
 
   [[nodiscard]] std::string where() const { return origin(value->source().begin.line); }
 };

@@ -43,4 +43,16 @@ namespace gatewalk::lattice {
   return " (a date or time)";
 }
 
+/// That two keys of a document give the same quantity, by the line of the later one.
+template <class Place>
+[[nodiscard]] std::string given_twice(const toml::node& a, const std::string& a_key,
+                                      const toml::node& b, const std::string& b_key,
+                                      const Place& line_shown) {
+  const bool in_order = a.source().begin < b.source().begin;
+  const toml::node &first = in_order ? a : b, &second = in_order ? b : a;
+  return line_shown(second.source().begin.line) + ": " + (in_order ? b_key : a_key) +
+         shown_value(second) + " is the same quantity as " + (in_order ? a_key : b_key) +
+         shown_value(first) + " (" + line_shown(first.source().begin.line) + "): give one of them";
+}
+
 }  // namespace gatewalk::lattice

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "dynamics/study/accuracy.h"
+#include "lattice/scene/units.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -73,9 +74,10 @@ std::vector<SweepAxis> sweep_axes(const std::vector<Variation>& own,
     if (equals == text.npos)
       throw SceneError(origin + ": must be key=from:step:to or key=value,value");
     const Variation v{text.substr(0, equals), text.substr(equals + 1), origin};
-    require_key(v.key, origin);
-    const auto same =
-        std::find_if(all.begin(), all.end(), [&](const Variation& a) { return a.key == v.key; });
+    const std::string key = known_key(v.key, origin);
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Variation& a) {
+      return known_key(a.key, a.origin) == key;
+    });
     if (same == all.end()) {
       all.push_back(v);
     } else if (same->origin.starts_with("--vary")) {

@@ -20,5 +20,20 @@ expect 0 'three.toml leaves out keys, .*beams.length_m = 0.2,' "$gatewalk" gate 
 holds '[.keys[] | select(.key == "beams.stiffness_left_Nm_per_rad") | .value][0] == "0.31999999999999995"' set.json
 # A field longer than the gates that may be visited is not crossed, and why is said.
 expect 0 'field.max_gates = 13 is less than field.rows = 20' "$gatewalk" lattice "$scenes/field.toml" --set field.rows=20 --trials 10
+# Other units: the scene is the same, both values are shown; two of one quantity are refused.
+printf 'body.mass_g = 250\nbody.radius_cm = 8\nforces.propulsion_mN = 800\n' >units.toml
+expect 0 '^body.radius_m  *0.08  *m  *units.toml:2 .radius_cm = 8. ' "$gatewalk" scene units.toml
+"$gatewalk" scene units.toml --json units.json --quiet
+jq -s '.[0].scene == .[1].scene' keys.json units.json | grep -q true || fail "scene: other units make another scene"
+printf 'body.radius_m = 0.08\n' >>units.toml
+expect 2 '^gatewalk: units.toml:4: body.radius_m = 0.08 is the same quantity as body.radius_cm = 8 .units.toml:2.' "$gatewalk" scene units.toml
+# What the numbers mean, and that they are nobody's robot: a worked example and three keys of a small body.
+expect 0 'they hold the push of 0.24 N at 25.3 degrees' "$gatewalk" scene "$scenes/walker.toml"
+"$gatewalk" scene "$scenes/walker.toml" --json walker.json --quiet
+holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top_speed_m_per_s < 0.31' walker.json
+"$gatewalk" scene --set body.mass_g=90 --set body.radius_cm=6 --set forces.propulsion_N=1 --json small.json --quiet
+holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_length", "passages_waited"]' small.json
+expect 0 'far from any animal or robot that walks: .*a random force of 1.63 times the body.s weight' "$gatewalk" gate three.toml --trials 10
+expect 2 'figure has no meaning beside --new' "$gatewalk" scene three.toml --new --figure three.svg
 
 finish
