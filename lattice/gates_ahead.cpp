@@ -14,7 +14,7 @@ namespace {
 
 using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 /// Row of the streams of Purpose::memory; tests of independence have the small numbers.
-constexpr std::uint64_t kDeals = 1u << 20;
+constexpr std::uint64_t kDealStream = 1u << 20;
 
 /// What each run of a state led to, state by state: the state entered, kTrapped, or, of the last
 /// run of a walk that was stopped, -2 less the state entered.
@@ -241,7 +241,7 @@ GatesAhead gates_ahead(const StateWalks& walks, int most, std::int64_t null_draw
   std::vector<Counts> null(static_cast<std::size_t>(null_draws));
   tbb::parallel_for(std::size_t{0}, null.size(), [&](std::size_t k) {
     null[k] = dealt_excess(walks, ahead, outcomes,
-                           dynamics::Random(dynamics::Purpose::memory, {seed, kDeals, k}));
+                           dynamics::Random(dynamics::Purpose::memory, {seed, kDealStream, k}));
   });
 
   GatesAhead result;

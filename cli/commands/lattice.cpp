@@ -41,7 +41,7 @@ int run_lattice(const Arguments& arguments) {
   if (options.has("netcdf"))
     options.write(
         options.text("netcdf"),
-        netcdf_of({{FieldPicture("", tally), lattice::own_start(scene)}}, json["made_by"]));
+        netcdf_of({{FieldPicture("", tally, exits), lattice::own_start(scene)}}, json["made_by"]));
   options.give_out(
       json, table_of(tally, scene, settled) + table_of(exits, scene) + table_of(costs, scene.gate));
   options.remark(fixed(watch.seconds(), 2) + " s");

@@ -21,7 +21,7 @@ void add_to(Json& json, const lattice::StartAnswer& a, const lattice::Scene& sce
   json["endings"] = endings(shown.share);
   json["endings_95"] = endings_95(shown);
   add_final_gates(json, f);
-  json["exits"] = to_json(a.exits, scene);
+  json["exits"] = cli::to_json(a.exits, scene);
   json["final_gates_95"] = {{"low", small_grid(a.gates_95[0])},
                             {"high", small_grid(a.gates_95[1])}};
   json["answer_from"] = a.from_trials ? "trials" : "chain";

@@ -24,7 +24,7 @@ void add_to(Json& json, const lattice::StartPrediction& s, const lattice::Scene&
                              {"total_variation_mean", s.mean_total_variation},
                              {"total_variation_95", s.total_variation_95}};
   add_final_gates(json, f);
-  json["exits"] = to_json(s.exits, scene);
+  json["exits"] = cli::to_json(s.exits, scene);
   json["still_walking"] = f.remainder;
   json["rounding_at_most"] = f.rounding;
   json["error_at_most"] = f.remainder + f.rounding;

@@ -64,10 +64,10 @@ enum class Finding {
 [[nodiscard]] Finding finding_of(bool differs, double total_variation, double floor_95);
 
 struct ValidationOptions {
-  std::int64_t trials = 100;          // of the full dynamics, per start
-  std::optional<std::int64_t> walks;  // per start; as many as trials
-  std::optional<std::int64_t>
-      null_draws;  // behind each p-value; 999 to 9999, by the size of the work
+  std::int64_t trials = 100;            // of the full dynamics, per start
+  std::optional<std::int64_t> walks{};  // per start; as many as trials
+  /// Behind each p-value; 999 to 9999, by the size of the work.
+  std::optional<std::int64_t> null_draws{};
   std::uint64_t seed = 1;
   /// Runs the trials again with the random force drawn anew at crossings (ForceMemory).
   bool force_memory = false;
