@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "dynamics/share.h"
-#include "lattice/group_spread.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -27,11 +26,6 @@ FieldExits with_intervals(const ExitShares& own, const std::vector<ExitShares>& 
       exits[side].interval.push_back(interval_of(own[side][i], std::move(shares)));
     }
   return exits;
-}
-
-/// Of a share in which nothing that was drawn shows a spread.
-std::array<double, 2> without_spread(double share, std::int64_t trials) {
-  return dynamics::interval_of_share(std::clamp(share, 0.0, 1.0), static_cast<double>(trials));
 }
 
 }  // namespace
@@ -87,18 +81,16 @@ FieldExits exits_of(const ExitShares& prediction, const std::vector<ExitShares>&
   return with_intervals(prediction, resampled, [&](double share, std::vector<double> drawn) {
     if (drawn.empty()) return std::array{std::nan(""), std::nan("")};
     const auto interval = middle_95(std::move(drawn), share);
-    return interval[0] < interval[1] ? interval : without_spread(share, runs);
+    if (interval[0] < interval[1]) return interval;  // else nothing that was drawn shows a spread
+    return dynamics::interval_of_share(std::clamp(share, 0.0, 1.0), static_cast<double>(runs));
   });
 }
 
 FieldExits exits_of_groups(const ExitShares& prediction, const std::vector<ExitShares>& groups,
-                           std::int64_t trials) {
-  return with_intervals(
-      prediction, groups, [&](double share, const std::vector<double>& of_groups) {
-        const double half = half_width_95(share, of_groups);
-        if (half == 0.0) return without_spread(share, trials);
-        return std::array{std::max(0.0, share - half), std::min(1.0, share + half)};
-      });
+                           const Evidence& from) {
+  return with_intervals(prediction, groups, [&](double share, const std::vector<double>& others) {
+    return share_95(share, others, from);
+  });
 }
 
 std::array<double, 2> middle_95(std::vector<double> drawn, double own) {

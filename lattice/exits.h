@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lattice/reference.h"
+#include "lattice/share_95.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {
@@ -46,10 +47,10 @@ using ExitShares = std::array<std::vector<double>, kSides.size()>;  // by kSides
 /// first row there are so many runs. Without any resampled: none.
 [[nodiscard]] FieldExits exits_of(const ExitShares& prediction,
                                   const std::vector<ExitShares>& resampled, std::int64_t runs);
-/// The same from predictions of groups of the trials (GroupSpread), of which there are so many.
+/// The same from predictions of groups of the trials, by share_95.
 [[nodiscard]] FieldExits exits_of_groups(const ExitShares& prediction,
                                          const std::vector<ExitShares>& groups,
-                                         std::int64_t trials);
+                                         const Evidence& from);
 
 /// Between what lie the middle 95 % of what was drawn (one at least), and `own`.
 [[nodiscard]] std::array<double, 2> middle_95(std::vector<double> drawn, double own);

@@ -8,7 +8,6 @@
 
 #include "dynamics/random.h"
 #include "dynamics/share.h"
-#include "lattice/share_95.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -124,6 +123,11 @@ std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
   return dynamics::interval_of_share(whole, std::min(like, from.gate_runs));
 }
 
+Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials) {
+  const auto n = static_cast<double>(trials);
+  return {n, n * std::max(1.0, whole.mean_steps)};
+}
+
 GroupSpread::GroupSpread(const markov::FinalDistribution& whole,
                          const std::vector<markov::FinalDistribution>& groups)
     : whole_(whole), groups_(groups) {
@@ -163,8 +167,7 @@ std::array<double, 2> interval_of(const markov::FinalDistribution& whole,
                                   std::int64_t trials, Value value) {
   std::vector<double> values;
   for (const auto& g : groups) values.push_back(value(g));
-  const auto n = static_cast<double>(trials);
-  return share_95(value(whole), values, {n, n * std::max(1.0, whole.mean_steps)});
+  return share_95(value(whole), values, evidence_of(whole, trials));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "lattice/compare.h"
 #include "lattice/ending_shares.h"
+#include "lattice/share_95.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {
@@ -34,6 +35,9 @@ struct Mean95 {
 };
 [[nodiscard]] Mean95 mean_95(double whole, const std::vector<double>& groups);
 
+/// Of a prediction from so many trials.
+[[nodiscard]] Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials);
+
 class GroupSpread {
  public:
   /// `groups`: two or more, from disjoint parts of the trials of equal size. Throws
@@ -49,9 +53,6 @@ class GroupSpread {
   [[nodiscard]] EndingShares endings_95(std::int64_t trials) const;
 
  private:
-  template <class Value>
-  [[nodiscard]] double half_width(Value value) const;
-
   const markov::FinalDistribution& whole_;
   const std::vector<markov::FinalDistribution>& groups_;
 };

@@ -321,7 +321,7 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
   const Origin origin = [&begin](std::size_t) { return begin; };
   const std::size_t equals = given.find('=');
   if (equals == given.npos || given.find_first_of("\r\n") != given.npos) {
-    throw SceneError(begin + ": must be key=value, for example forces.random_N=20");
+    throw SceneError(begin + ": must be KEY=VALUE, for example forces.random_N=20");
   }
   const std::string name(trimmed(std::string_view(given).substr(0, equals)));
   std::string value(trimmed(std::string_view(given).substr(equals + 1)));

@@ -71,7 +71,7 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
     a.gates_95 = spread.gates_95(behind);
     std::vector<ExitShares> group_exits;
     for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
-    a.exits = exits_of_groups(exit_shares(whole), group_exits, behind);
+    a.exits = exits_of_groups(exit_shares(whole), group_exits, evidence_of(whole, behind));
     if (unseen > 0.0) {  // moved from one gate to another they make the largest RMSE
       const auto gates = static_cast<double>(a.gates_95[0].size());
       a.error.rmse_per_100 += 100.0 * unseen * std::sqrt(2.0 / gates);

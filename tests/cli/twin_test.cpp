@@ -53,7 +53,7 @@ class TwinCommands : public testing::Test {
 
   Json result(int (*run)(const Arguments&), std::vector<std::string> words) const {
     const std::string file = path("result.json");
-    words.insert(words.end(), {"--json", file, "--quiet"});
+    words.insert(words.end(), {"--json", file, "--force", "--quiet"});
     EXPECT_EQ(run(words), 0);
     std::ifstream in(file);
     return Json::parse(in);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "dynamics/share.h"
 #include "lattice/run_pool.h"
 #include "lattice/study/pool_answers.h"
 #include "lattice/study/prediction.h"
@@ -107,11 +108,15 @@ TEST(Exits, IntervalsOfGroupsAndOfResampledMatrices) {
   std::vector<ExitShares> others(8, own);
   for (std::size_t g = 0; g < others.size(); ++g)
     others[g][0][0] += 0.01 * (static_cast<double>(g) - 3.5);
-  const FieldExits groups = exits_of_groups(own, others, 1000);
-  // 2.36 standard errors of a mean of eight; nothing varies: what 1000 trials can rule out.
-  EXPECT_NEAR(groups[0].interval[0][1] - 0.1, 2.3646 * 0.01 * std::sqrt(42.0 / 7.0 / 8.0), 1e-9);
-  EXPECT_EQ(groups[0].interval[1][0], 0.0);
-  EXPECT_GT(groups[0].interval[1][1], 0.001);
+  const Evidence from{1000.0, 3000.0};
+  const FieldExits groups = exits_of_groups(own, others, from);
+  const auto expected =
+      share_95(0.1, {0.065, 0.075, 0.085, 0.095, 0.105, 0.115, 0.125, 0.135}, from);
+  for (std::size_t end : {0, 1}) EXPECT_NEAR(groups[0].interval[0][end], expected[end], 1e-12);
+  EXPECT_LT(groups[0].interval[0][1] - groups[0].interval[0][0], 0.09);
+  // Nobody was seen there, and nothing varies: what 1000 trials can rule out.
+  EXPECT_EQ(groups[0].interval[1], dynamics::interval_of_share(0.0, 1000.0));
+  EXPECT_GT(groups[1].interval[0][1] - groups[1].interval[0][0], 0.02);
   const FieldExits resampled = exits_of(own, others, 1000);
   EXPECT_DOUBLE_EQ(resampled[0].interval[0][0], 0.065);
   EXPECT_DOUBLE_EQ(resampled[0].interval[0][1], 0.135);

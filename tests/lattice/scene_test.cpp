@@ -465,9 +465,9 @@ TEST(Overrides, AreRefusedByName) {
     const char* reason;
   };
   for (const Bad& bad :
-       {Bad{"forces.random_N", "must be key=value"},
-        Bad{"", "must be key=value"},
-        Bad{"=3", "expected keys"},
+       {Bad{"forces.random_N", "must be KEY=VALUE"},
+        Bad{"", "must be KEY=VALUE"},
+        Bad{"=3", "must be KEY = VALUE"},
         Bad{"forces.random_N=", "forces.random_N ="},
         Bad{"forces.random_N=abc", "forces.random_N = abc"},
         Bad{"forces.random_N=20 30", "forces.random_N = 20 30"},
@@ -493,7 +493,7 @@ TEST(Overrides, AreRefusedByName) {
 }
 
 TEST(Overrides, CannotSmuggleASecondLine) {
-  EXPECT_TRUE(contains(refusal("", {"forces.random_N=2\nrun.step_s=0.02"}), "must be key=value"));
+  EXPECT_TRUE(contains(refusal("", {"forces.random_N=2\nrun.step_s=0.02"}), "must be KEY=VALUE"));
 }
 
 // ---- Out and in again

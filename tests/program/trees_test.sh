@@ -13,7 +13,7 @@ jq -s '.[0].final_gates == .[1].final_gates and .[0].error_95 == .[1].error_95' 
 expect 0 'was not reached' "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 1e-6 --gate-runs 2000
 expect 2 'must lie between 0 and 1' "$gatewalk" predict "$scenes/field.toml" --accuracy 5
 expect 2 'row has no meaning' "$gatewalk" predict "$scenes/field.toml" --row 1=m.nc
-expect 0 'leaves of trees.*1 starts' "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 -o tree.nc
+expect 0 'leaves of trees.*for the start 0,0,15' "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 -o tree.nc
 "$gatewalk" predict tree.nc --json tree.json --quiet >/dev/null 2>&1
 holds '.gate_runs == 0 and .error_95 <= 0.05 and .answer_from == "chain"' tree.json
 "$gatewalk" predict tree.nc --start 4,5,10 --json other.json --quiet >/dev/null 2>&1

@@ -76,8 +76,9 @@ function axes_of({farthest}) {
       : (right ? t.left - box.right : box.left - t.right);
     const words = text.textContent.trim();
     numbers.add(text);
+    if (!/^[-+]?[\d.]+(e[-+]?\d+)?$/.test(words)) continue;
     if (gap > farthest) faults.push(`the number "${words}" is ${gap.toFixed(1)} from its tick`);
-    if (!/^[-+]?[\d.]+(e[-+]?\d+)?$/.test(words) || (!upright && right)) continue;  // words, or those of a bar of colours
+    if (!upright && right) continue;  // those of a bar of colours
     const key = upright ? `x ${Math.round(box.top)}` : `y ${Math.round(box.right)}`;
     const axis = axes.get(key) ?? {upright, left: Infinity, right: -Infinity, top: Infinity, bottom: -Infinity, numbers: []};
     axis.left = Math.min(axis.left, t.left);
