@@ -101,7 +101,7 @@ int predict_accurately(const Options& options, const lattice::Scene& scene,
   say_left_out(json, scene.field.columns, scene.field.rows);
   json["made_by"] = to_json(options.provenance(scene));
   write_netcdf(options, scene, prediction.starts, [](const lattice::StartAnswer& a) {
-    return FieldArrays{FieldPicture("", a.final, shown_endings(a.endings, a.final), a.exits),
+    return FieldArrays{FieldPicture("", a.final, a.endings, a.exits),
                        {a.start.d, a.start.vx, a.start.vy, {}, {}},
                        a.gates_95};
   });
@@ -228,8 +228,7 @@ int run_predict(const Arguments& arguments) {
   if (begun.empty()) begun.push_back(lattice::own_start(m.scene));
   write_netcdf(options, m.scene, prediction.starts, [&](const lattice::StartPrediction& s) {
     const auto k = static_cast<std::size_t>(&s - prediction.starts.data());
-    return FieldArrays{FieldPicture("", s.final, shown_endings(s.shares, s.final), s.exits),
-                       begun[k]};
+    return FieldArrays{FieldPicture("", s.final, s.shares, s.exits), begun[k]};
   });
   options.give_out(json, table_of(prediction, shown));
   options.warn(too_few_gates(m.scene));

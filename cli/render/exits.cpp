@@ -99,9 +99,9 @@ double height_of_exits() { return 214.0; }
 std::string panels_of(const FieldExits& exits, const lattice::Scene& scene, const Sheet& sheet,
                       double top, const std::string& tag) {
   constexpr double kHead = 40, kTall = 116;
-  const std::array<Box, kSides.size()> boxes{{{372, 490, top + kHead, top + kHead + kTall},
-                                              {70, 168, top + kHead, top + kHead + kTall},
-                                              {206, 304, top + kHead, top + kHead + kTall}}};
+  const std::array<Box, kSides.size()> boxes{{{374, 480, top + kHead, top + kHead + kTall},
+                                              {80, 174, top + kHead, top + kHead + kTall},
+                                              {212, 306, top + kHead, top + kHead + kTall}}};
   const double sides = std::max(largest_share(exits[1]), largest_share(exits[2]));
   std::string out =
       sheet.text("where bodies leave along each side, % of all, 95 %", 8, top + 12) + kFrame;
@@ -114,9 +114,10 @@ std::string panels_of(const FieldExits& exits, const lattice::Scene& scene, cons
     double most = far ? largest_share(e) : sides;
     std::string rows;
     for (std::size_t i = 0; i < e.share.size(); ++i) {
-      const bool known = std::isfinite(e.interval[i][0]);
+      // No bars where nobody is expected: in large fields they would be all that is seen.
+      const bool known = std::isfinite(e.interval[i][0]) && e.share[i] > lattice::kShareRounding;
       const double high = known ? e.interval[i][1] : e.share[i];
-      if (e.share[i] > 0.0) most = std::max(most, high);
+      most = std::max(most, high);
       rows += digits(std::midpoint(bounds[i], bounds[i + 1])) + " " + digits(100.0 * e.share[i]) +
               " " + digits(100.0 * (known ? e.interval[i][0] : e.share[i])) + " " +
               digits(100.0 * high) + " " + digits(0.4 * (bounds[i + 1] - bounds[i])) + "\n";

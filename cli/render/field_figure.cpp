@@ -19,7 +19,7 @@ FieldPicture::FieldPicture(std::string name, const markov::FinalDistribution& fi
       final_gates(final.final_cells),
       trapped(markov::trapped_cells(final)),
       departed(markov::departed_cells(final)),
-      endings(shares),
+      endings(shown_endings(shares, final)),
       exits(by_place) {}
 
 FieldPicture::FieldPicture(std::string name, const lattice::FieldTally& tally,
