@@ -313,19 +313,50 @@ struct Outcome {
 
 /// What a trial of the predicted chain may come to. Where a gate is not mixed, all were trapped.
 std::vector<Outcome> outcomes_of(const markov::FinalDistribution& prediction,
-                                 const Support& support, const Eigen::VectorXd& expected) {
+                                 const Support& support) {
   std::vector<Outcome> outcomes;
+  const Eigen::VectorXd expected = on_support(prediction.final_cells, support);
   auto mixed = prediction.mixed_cells.begin();
   for (Eigen::Index i = 0; i < expected.size(); ++i) {
     while (mixed != prediction.mixed_cells.end() && mixed->cell < support.gates[i]) ++mixed;
     if (mixed == prediction.mixed_cells.end() || mixed->cell != support.gates[i]) {
-      outcomes.push_back({i, static_cast<std::size_t>(markov::Ending::trapped), expected[i]});
+      outcomes.push_back(
+          {i, static_cast<std::size_t>(markov::Ending::trapped), std::max(0.0, expected[i])});
       continue;
     }
     for (std::size_t e = 0; e < markov::kEndings; ++e)
       if (mixed->by_ending[e] > 0.0) outcomes.push_back({i, e, mixed->by_ending[e]});
   }
   return outcomes;
+}
+
+/// Where trials could end in ways that so many runs would show less than once: (ending) places on
+/// the support; all of them for an ending that is as rare but has no place of its own there.
+std::array<std::vector<Eigen::Index>, markov::kEndings> rare_places(
+    const markov::FinalDistribution& prediction, const Support& support, std::int64_t runs) {
+  using markov::Ending;
+  const Eigen::Index rows = prediction.final_cells.rows(), columns = prediction.final_cells.cols();
+  const auto can_end = [&](Ending ending, Eigen::Index gate) {
+    if (ending == Ending::far_edge) return gate / columns == rows - 1;
+    if (ending == Ending::left_edge) return gate % columns == 0;
+    return ending != Ending::right_edge || gate % columns == columns - 1;
+  };
+  const auto gates = static_cast<Eigen::Index>(support.gates.size());
+  std::array<Eigen::VectorXd, markov::kEndings> shows;
+  shows.fill(Eigen::VectorXd::Zero(gates));
+  for (const Outcome& o : outcomes_of(prediction, support))
+    shows[o.ending][o.place] += o.probability * static_cast<double>(runs);
+  std::array<std::vector<Eigen::Index>, markov::kEndings> places;
+  for (const Ending ending : {Ending::trapped, Ending::far_edge, Ending::left_edge,
+                              Ending::right_edge, Ending::cut_off}) {
+    const auto e = static_cast<std::size_t>(ending);
+    for (Eigen::Index i = 0; i < gates; ++i)
+      if (can_end(ending, support.gates[i]) && shows[e][i] < 1.0) places[e].push_back(i);
+    if (!places[e].empty() || shows[e].sum() >= 1.0) continue;
+    places[e].resize(support.gates.size());
+    std::iota(places[e].begin(), places[e].end(), 0);
+  }
+  return places;
 }
 
 constexpr std::size_t kGateTests = 3;
@@ -388,8 +419,8 @@ bool SeenEndings::has_endings() const {
 }
 
 Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
-                const std::vector<markov::FinalDistribution>& replicates, std::int64_t null_draws,
-                std::uint64_t seed) {
+                const std::vector<markov::FinalDistribution>& replicates, std::int64_t runs,
+                std::int64_t null_draws, std::uint64_t seed) {
   const CellProbabilities& base = prediction.final_cells;
   if (seen.has_gates())
     require_same_shape(seen.final_gates.rows(), seen.final_gates.cols(), base.rows(), base.cols());
@@ -409,35 +440,40 @@ Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& predic
   const Support support = affordable_support_of(reached);
   const Eigen::VectorXd expected = on_support(base, support);
   const double rare = rare_share(expected, n);
-  const std::vector<Outcome> outcomes = outcomes_of(prediction, support, expected);
-  std::vector<double> weights;
-  for (const Outcome& o : outcomes) weights.push_back(o.probability);
+  std::array<std::vector<Eigen::Index>, markov::kEndings> left_open;
+  if (runs > 0) left_open = rare_places(prediction, support, runs);
 
-  const auto tests = [&](const Eigen::VectorXd& gates, const Endings& endings,
-                         const markov::FinalDistribution& against) {
+  const auto tests = [&](const Eigen::VectorXd& gates, const Endings& endings) {
     Tests t = nothing_asked();
-    if (seen.has_gates())
-      add_gates(
-          t, statistics(gates, on_support(against.final_cells, support), expected, rare, support));
-    if (seen.has_endings()) add_endings(t, endings, against.endings);
+    if (seen.has_gates()) add_gates(t, statistics(gates, expected, expected, rare, support));
+    if (seen.has_endings()) add_endings(t, endings, prediction.endings);
     return t;
   };
   std::vector<Tests> all(static_cast<std::size_t>(null_draws) +
                          1);  // the null's, then what was seen
-  all.back() = tests(on_support(sample, support), shares_of(seen), prediction);
+  all.back() = tests(on_support(sample, support), shares_of(seen));
   tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kJudgements, static_cast<std::uint64_t>(k)});
+    std::vector<Outcome> drawn =
+        outcomes_of(replicates[static_cast<std::size_t>(k) % replicates.size()], support);
+    for (std::size_t e = 0; e < markov::kEndings; ++e) {
+      if (left_open[e].empty()) continue;
+      const double share = -std::expm1(std::log(random.uniform()) / static_cast<double>(runs));
+      for (const Eigen::Index place : left_open[e])
+        drawn.push_back({place, e, share / static_cast<double>(left_open[e].size())});
+    }
+    std::vector<double> weights;
+    for (const Outcome& o : drawn) weights.push_back(o.probability);
     std::vector<std::int64_t> counts(weights.size());
     multinomial(n, weights, counts, random);
     Eigen::VectorXd gates = Eigen::VectorXd::Zero(expected.size());
     Endings endings{};
-    for (std::size_t o = 0; o < outcomes.size(); ++o) {
+    for (std::size_t o = 0; o < drawn.size(); ++o) {
       const double share = static_cast<double>(counts[o]) / trials;
-      gates[outcomes[o].place] += share;
-      endings[outcomes[o].ending] += share;
+      gates[drawn[o].place] += share;
+      endings[drawn[o].ending] += share;
     }
-    all[static_cast<std::size_t>(k)] =
-        tests(gates, endings, replicates[static_cast<std::size_t>(k) % replicates.size()]);
+    all[static_cast<std::size_t>(k)] = tests(gates, endings);
   });
 
   return judgement_of(all);

@@ -98,7 +98,7 @@ struct SeenEndings {
 
 /// One test of "the chain is right": do trials of the dynamics differ from the chain's prediction
 /// by more than chance in the trials and in the matrix together makes? Draw k of the null takes as
-/// many trials from the prediction, and sets them against what a resampled matrix predicts.
+/// many trials from what a resampled matrix predicts, and sets them against the prediction.
 struct Judgement {
   using Test = LookedAt::Test;
   static constexpr double kLevel = 0.05;
@@ -120,10 +120,15 @@ struct Judgement {
 };
 
 /// `replicates`: predictions from resampled matrices (matrix_noise.h), used in turn; at least one.
-/// Throws std::invalid_argument for fields of different sizes, no trials or no draws.
+/// `runs`: from the start, behind the matrix; 0: the replicates count all, or there are endlessly
+/// many. What none of them showed may yet happen: each ending has, in gates where they would show
+/// less than one, a share that they leave open, drawn from Beta(1, runs) for each draw of the null.
+/// (Then n trials are unlike the runs in a kind of outcome as often as if all were dealt out anew:
+/// once or more in n / (runs + n).) Throws std::invalid_argument for fields of different sizes, no
+/// trials or no draws.
 [[nodiscard]] Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
                               const std::vector<markov::FinalDistribution>& replicates,
-                              std::int64_t null_draws, std::uint64_t seed);
+                              std::int64_t runs, std::int64_t null_draws, std::uint64_t seed);
 
 /// One test of "both samples come from one distribution", in what both have counted: permutation
 /// test, the pooled trials dealt out anew (of more than kMostDealt together drawn anew). Gates and

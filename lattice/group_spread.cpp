@@ -98,15 +98,14 @@ double relative_half_width(double whole, const std::vector<double>& groups) {
 
 }  // namespace
 
-double half_width_95(double whole, const std::vector<double>& groups) {
-  const auto [mean, error] = spread_of(groups);
-  return kQuantile * error + kBiasLeft * std::abs(mean - whole);
-}
-
 Mean95 mean_95(double whole, const std::vector<double>& groups) {
-  const double half =
-      groups.empty() ? std::numeric_limits<double>::quiet_NaN() : half_width_95(whole, groups);
-  return {whole, {whole - half, whole + half}};
+  if (!groups.empty()) {
+    const auto [mean, error] = spread_of(groups);
+    const double half = kQuantile * error + kBiasLeft * std::abs(mean - whole);
+    if (half > kShareRounding * std::abs(whole)) return {whole, {whole - half, whole + half}};
+  }
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  return {whole, {kUnknown, kUnknown}};
 }
 
 std::array<double, 2> share_95(double whole, const std::vector<double>& groups,

@@ -24,11 +24,9 @@ struct Error95 {
   double rmse_per_100 = 0.0;     // at most
 };
 
-/// Half the width of a 95 % interval of any number: of all trials, and of kTrialGroups groups of
-/// them. Their spread is sampling; their mean less the whole's, what larger states would change.
-[[nodiscard]] double half_width_95(double whole, const std::vector<double>& groups);
-
-/// A number with that interval; without groups, or where it is not known, one of NaN.
+/// Any number of all trials with its 95 % interval by kTrialGroups groups of them: their spread is
+/// sampling; their mean less the whole's, what larger states would change. NaN: not known, as
+/// without groups, or where all of them are alike, which no number of trials makes certain.
 struct Mean95 {
   double mean = 0.0;
   std::array<double, 2> interval{};

@@ -370,9 +370,9 @@ std::string table_of(const AnalysedField& f) {
   const dynamics::GateParams& p = f.scene.gate;
   std::string table =
       endings_text(f.endings,
-                   std::isnan(f.analysis.gates.interval[0])
-                       ? "of all bodies; 95 % intervals that count the sampling of the matrix"
-                       : "of all bodies, 95 % intervals that count everything") +
+                   f.analysis.by_groups
+                       ? "of all bodies, 95 % intervals that count everything"
+                       : "of all bodies; 95 % intervals that count the sampling of the matrix") +
       limits_text(f.scene) + "\ngates visited  " + with_interval(a.gates, 3) +
       "\n\nby the chain\n" + kHeader;
   const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
@@ -430,7 +430,7 @@ std::string table_of(const AnalysedField& f) {
   if (!f.parameters.effects.empty()) {
     table += "\nper cent that the chance of " + target + " (" + percents(f.parameters.chance) +
              " %) grows for 1 % more of each number, 95 %\n";
-    const bool of_bins = std::isnan(a.gates.interval[0]);
+    const bool of_bins = !a.by_groups;
     for (const lattice::ParameterEffect& e : sorted_effects(f))
       table +=
           padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) +

@@ -42,7 +42,8 @@ Json json_by_place(const lattice::Scene& scene, Add add) {
 }
 
 double largest_share(const SideExits& side) {
-  return *std::max_element(side.share.begin(), side.share.end());
+  const double largest = *std::max_element(side.share.begin(), side.share.end());
+  return largest > lattice::kShareRounding ? largest : 0.0;
 }
 
 }  // namespace
@@ -114,8 +115,9 @@ std::string panels_of(const FieldExits& exits, const lattice::Scene& scene, cons
     double most = far ? largest_share(e) : sides;
     std::string rows;
     for (std::size_t i = 0; i < e.share.size(); ++i) {
-      // No bars where nobody is expected: in large fields they would be all that is seen.
-      const bool known = std::isfinite(e.interval[i][0]) && e.share[i] > lattice::kShareRounding;
+      // Nothing where nobody is expected: in large fields its bars would be all that is seen.
+      if (e.share[i] <= lattice::kShareRounding) continue;
+      const bool known = std::isfinite(e.interval[i][0]);
       const double high = known ? e.interval[i][1] : e.share[i];
       most = std::max(most, high);
       rows += digits(std::midpoint(bounds[i], bounds[i + 1])) + " " + digits(100.0 * e.share[i]) +
@@ -123,6 +125,7 @@ std::string panels_of(const FieldExits& exits, const lattice::Scene& scene, cons
               digits(100.0 * high) + " " + digits(0.4 * (bounds[i + 1] - bounds[i])) + "\n";
     }
     if (!(most > 0.0)) most = 0.01;
+    if (rows.empty()) rows = "0 0 0 0 0\n";
     const std::string name = "$exits" + tag + "_" + std::to_string(side);
     const std::string along = "[" + digits(bounds.front()) + ":" + digits(bounds.back()) + "]",
                       percents = "[0:" + digits(105.0 * most) + "]",
@@ -141,7 +144,7 @@ std::string panels_of(const FieldExits& exits, const lattice::Scene& scene, cons
            (far ? " using 1:($2/2):5:($2/2)" : " using ($2/2):1:($2/2):5") +
            " with boxxyerror lc rgb '" + kFirstColour + "', " + name +
            (far ? " using 1:2:3:4 with yerrorbars" : " using 2:1:3:4 with xerrorbars") +
-           " pt 0 lw 1.2 lt -1\nunset label\n";
+           " pt 0 ps 0 lw 1.2 lt -1\nunset label\n";
   }
   return out + "set format y '%g'\n";
 }

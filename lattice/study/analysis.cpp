@@ -13,6 +13,7 @@
 
 #include "dynamics/quantile_bins.h"
 #include "lattice/group_spread.h"
+#include "lattice/share_95.h"
 #include "lattice/study/passages.h"
 
 namespace gatewalk::lattice {
@@ -103,6 +104,11 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Fie
     const int there = s.space.index_of(dynamics::mirrored(start)).state;
     return std::midpoint(own, (s.of_image ? *s.of_image : s.of_target)(1, first_cell, there));
   };
+  const auto runs_of = [&](int state) {
+    return static_cast<double>(chain.runs[static_cast<std::size_t>(state)]);
+  };
+  const auto gate_runs =
+      static_cast<double>(std::accumulate(chain.runs.begin(), chain.runs.end(), std::int64_t{0}));
   std::vector<StartChance> starts;
   const auto add = [&](const Cell& cell, bool sampled) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -110,8 +116,10 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Fie
     if (sampled) {
       std::vector<double> parts;
       for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(mean_of(all[k], cell.middle()));
-      start.chance = mean_95(mean_of(all.front(), cell.middle()), parts);
-      for (double& bound : start.chance.interval) bound = std::clamp(bound, 0.0, 1.0);
+      start.chance.mean = mean_of(all.front(), cell.middle());
+      if (!parts.empty())
+        start.chance.interval = share_95(start.chance.mean, parts,
+                                         {runs_of(space.index_of(cell.middle()).state), gate_runs});
     }
     starts.push_back(start);
   };
@@ -164,6 +172,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
 
   Analysis out{.target = options.target,
                .target_chance = passages.at_start(),
+               .by_groups = !groups.empty(),
                .totals = passages.totals(),
                .gates = {},
                .costs = {},

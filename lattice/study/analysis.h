@@ -38,6 +38,7 @@ struct StartChance {
 struct Analysis {
   markov::Ending target{};
   double target_chance = 0.0;
+  bool by_groups = false;     // of trials, which make the intervals; none of bins
   markov::WalkTotals totals;  // quantities by dynamics::Cost
   /// Gates visited, and what bodies took, of all of them. Intervals: sampling, and what smaller
   /// states would change; none without groups.

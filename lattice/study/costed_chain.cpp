@@ -83,11 +83,18 @@ AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool, const Cros
     CostedChain chain = costed_chain(kernel, gates, scene.field, pool, pool.starts[own], group);
     auto entries = entries_of_leaves(kernel, gates, pool, group);
     entries.push_back({start});
-    return {std::move(chain), std::move(kernel.space),
-            [entries = std::move(entries)](int state, Random& random) {
-              const auto& there = entries[static_cast<std::size_t>(state)];
-              return there[static_cast<std::size_t>(random.below(std::ssize(there)))];
-            }};
+    const auto type = static_cast<std::size_t>(gates.type_of(scene.field.start_column(), 0));
+    std::vector<std::int64_t> runs;
+    for (int state = 0; state < kernel.space.size(); ++state)
+      runs.push_back(kernel.counts[type].row(state).sum());
+    return {.chain = std::move(chain),
+            .space = std::move(kernel.space),
+            .entry =
+                [entries = std::move(entries)](int state, Random& random) {
+                  const auto& there = entries[static_cast<std::size_t>(state)];
+                  return there[static_cast<std::size_t>(random.below(std::ssize(there)))];
+                },
+            .runs = std::move(runs)};
   };
   std::array<std::optional<AnalysedChain>, kTrialGroups> parts;
   tbb::parallel_for(0, kTrialGroups, [&](int g) {
@@ -116,9 +123,9 @@ AnalysedChain analysed_chain(const Scene& scene, const std::vector<Transitions>&
     rewards.push_back(rewards_of(counts, sums));
   }
   const StateSpace& space = matrices.front().space;
-  return {{make_chain(gates_of(scene), matrices), std::move(rewards), start},
-          space,
-          [space](int state, Random& random) { return space.sample(state, random); }};
+  return {.chain = {make_chain(gates_of(scene), matrices), std::move(rewards), start},
+          .space = space,
+          .entry = [space](int state, Random& random) { return space.sample(state, random); }};
 }
 
 }  // namespace gatewalk::lattice

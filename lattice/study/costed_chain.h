@@ -2,6 +2,7 @@
 /// A field's chain from one start, with what its draws take and where its states were entered: what
 /// analyses are made of.
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct AnalysedChain {
   /// bins anywhere in the bin.
   std::function<dynamics::Crossing(int state, dynamics::Random& random)> entry;
   std::vector<AnalysedChain> groups{};  // kTrialGroups, of groups of the trials; or none
+  std::vector<std::int64_t> runs{};     // of trees: by state, in gates of the start's type
 };
 /// Of trees, from the pool's runs; with error bars. Throws std::invalid_argument when the pool has
 /// no runs of `start`.

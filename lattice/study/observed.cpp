@@ -253,7 +253,8 @@ LeastDifferences least_differences(const SeenEndings& seen, const markov::FinalD
 ObservedComparison compare_observed(const SeenEndings& seen, const FieldTally& dynamics,
                                     const markov::FinalDistribution& chain,
                                     const std::vector<markov::FinalDistribution>& replicates,
-                                    std::int64_t null_draws, std::uint64_t seed) {
+                                    std::int64_t runs, std::int64_t null_draws,
+                                    std::uint64_t seed) {
   ObservedComparison c;
   c.seen = seen;
   if (seen.has_endings()) c.endings = EndingShares(seen.endings, seen.trials());
@@ -262,7 +263,7 @@ ObservedComparison compare_observed(const SeenEndings& seen, const FieldTally& d
     c.chain_gates = compare(seen.final_gates, chain.final_cells, null_draws, seed);
   }
   c.against_dynamics = judge(seen, {dynamics.final_gates, dynamics.endings}, null_draws, seed);
-  c.against_chain = judge(seen, chain, replicates, null_draws, seed);
+  c.against_chain = judge(seen, chain, replicates, runs, null_draws, seed);
   // Where chance changes nothing, everything else is a finding: at any level.
   const double single_level = std::min(c.against_dynamics.single_level, Judgement::kLevel);
   c.least = least_differences(seen, chain, single_level, seed);

@@ -51,10 +51,10 @@ struct ObservedComparison {
   LeastDifferences least;  // from the chain's prediction, taken as exact
 };
 
-/// `replicates` as judge() takes them. Throws std::invalid_argument as judge().
+/// `replicates` and `runs` as judge() takes them. Throws std::invalid_argument as judge().
 [[nodiscard]] ObservedComparison compare_observed(
     const SeenEndings& seen, const FieldTally& dynamics, const markov::FinalDistribution& chain,
-    const std::vector<markov::FinalDistribution>& replicates, std::int64_t null_draws,
-    std::uint64_t seed);
+    const std::vector<markov::FinalDistribution>& replicates, std::int64_t runs,
+    std::int64_t null_draws, std::uint64_t seed);
 
 }  // namespace gatewalk::lattice

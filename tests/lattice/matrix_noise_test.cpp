@@ -216,7 +216,7 @@ TEST(Judge, PValuesAreUniformUnderTheNull) {
       const auto number = static_cast<std::uint64_t>(i);
       const Transitions t = simulated(runs, 5000 + number);
       const Judgement j = judge(trials_of(right, trials, number), predicted(t),
-                                replicates(t, number, kMatrices), kDraws, number);
+                                replicates(t, number, kMatrices), 0, kDraws, number);
       all.push_back(j.p);
       tv.push_back(j.total_variation.p);
       energy.push_back(j.energy.p);
@@ -249,7 +249,7 @@ TEST(Judge, NamesTheEndingThatDiffers) {
   }
   const SeenEndings seen = trials_of(predicted(other), 20'000, 1);
   const Transitions fine = simulated(100'000, 1), coarse = simulated(20, 1);
-  const Judgement j = judge(seen, predicted(fine), replicates(fine, 1, 199), 199, 1);
+  const Judgement j = judge(seen, predicted(fine), replicates(fine, 1, 199), 0, 199, 1);
   EXPECT_TRUE(j.differs());
   EXPECT_TRUE(j.differs(Ending::far_edge));
   EXPECT_TRUE(j.differs(Ending::trapped));
@@ -257,7 +257,8 @@ TEST(Judge, NamesTheEndingThatDiffers) {
   EXPECT_EQ(j.total_variation.p, 1.0 / 200);
   EXPECT_GT(j.total_variation.seen, j.chance_total_variation_95);
   EXPECT_GT(j.chance_total_variation_95, j.chance_total_variation);
-  const Judgement with_coarse = judge(seen, predicted(coarse), replicates(coarse, 1, 199), 199, 1);
+  const Judgement with_coarse =
+      judge(seen, predicted(coarse), replicates(coarse, 1, 199), 0, 199, 1);
   EXPECT_GT(with_coarse.chance_total_variation, 5 * j.chance_total_variation);
   EXPECT_GT(with_coarse.p, j.p);
 }
@@ -268,7 +269,7 @@ TEST(Judge, IsTheSmallestAdjustedPValue) {
   for (std::uint64_t i = 0; i < 40; ++i) {
     const Transitions t = simulated(200, 9000 + i);
     const Judgement j =
-        judge(trials_of(right, 400, 100 + i), predicted(t), replicates(t, i, 60), 99, i);
+        judge(trials_of(right, 400, 100 + i), predicted(t), replicates(t, i, 60), 0, 99, i);
     double least =
         std::min({j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted});
     for (const auto& e : j.endings) {
@@ -280,22 +281,63 @@ TEST(Judge, IsTheSmallestAdjustedPValue) {
   }
 }
 
+/// So many trials of the shares of three gates; in the last one bodies have left by the right side.
+FinalDistribution shares_of_trials(const CellProbabilities& p, std::int64_t trials,
+                                   std::uint64_t seed, std::uint64_t number) {
+  FinalDistribution d;
+  d.final_cells = shares(sampled(p, trials, seed, number));
+  const double right = d.final_cells(0, 2);
+  d.endings[static_cast<std::size_t>(Ending::trapped)] = 1.0 - right;
+  d.endings[static_cast<std::size_t>(Ending::right_edge)] = right;
+  d.mixed_cells.push_back({2});
+  d.mixed_cells.back().by_ending[static_cast<std::size_t>(Ending::right_edge)] = right;
+  return d;
+}
+
+// The chain is 160 trials, the experiment 60 more of the same. An ending of half a per cent is
+// missed by the first 45 times in 100: then it is news in 26 of 100 experiments, but no difference.
+TEST(Judge, WhatNoRunShowedIsNoDifferenceByItself) {
+  constexpr std::int64_t kRuns = 160, kTrials = 60;
+  constexpr std::uint64_t kRepeats = 300, kMatrices = 50;
+  CellProbabilities truth(1, 3);
+  truth << 0.6, 0.395, 0.005;
+  std::vector<double> p;
+  for (std::uint64_t i = 0; i < kRepeats; ++i) {
+    const FinalDistribution chain = shares_of_trials(truth, kRuns, 1, i);
+    std::vector<FinalDistribution> others;
+    for (std::uint64_t k = 0; k < kMatrices; ++k)
+      others.push_back(shares_of_trials(chain.final_cells, kRuns, 2 + i, k));
+    SeenEndings seen{sampled(truth, kTrials, 1000, i), {}};
+    seen.endings[static_cast<std::size_t>(Ending::right_edge)] = seen.final_gates(0, 2);
+    seen.endings[static_cast<std::size_t>(Ending::trapped)] = kTrials - seen.final_gates(0, 2);
+    p.push_back(judge(seen, chain, others, kRuns, 199, i).p);
+  }
+  const auto at_most = [&](double level) {
+    return std::count_if(p.begin(), p.end(), [&](double x) { return x <= level; });
+  };
+  EXPECT_LE(at_most(0.05), 0.09 * kRepeats);  // 5 % and three standard errors
+  EXPECT_LE(at_most(0.01), 0.027 * kRepeats);
+  EXPECT_GE(at_most(0.2), 0.05 * kRepeats);  // and it does tell
+}
+
 TEST(Judge, SameBitsForAnyThreadsAndRefusals) {
   const Transitions t = simulated(50, 3);
   const FinalDistribution p = predicted(t);
   const auto others = replicates(t, 2, 20);
   const SeenEndings seen = trials_of(p, 300, 3);
   const auto on = [&](int threads) {
-    return test::on_threads(threads, [&] { return judge(seen, p, others, 99, 4); });
+    return test::on_threads(threads, [&] { return judge(seen, p, others, 0, 99, 4); });
   };
   const Judgement a = on(1), b = on(3);
   EXPECT_EQ(a.p, b.p);
   EXPECT_EQ(a.energy.p, b.energy.p);
   EXPECT_EQ(a.chance_total_variation, b.chance_total_variation);
-  EXPECT_THROW((void)judge(seen, p, others, 0, 4), std::invalid_argument);
-  EXPECT_THROW((void)judge(seen, p, {}, 9, 4), std::invalid_argument);
-  EXPECT_THROW((void)judge({CellCounts::Zero(4, 5), {}}, p, others, 9, 4), std::invalid_argument);
-  EXPECT_THROW((void)judge({CellCounts::Ones(5, 4), {}}, p, others, 9, 4), std::invalid_argument);
+  EXPECT_THROW((void)judge(seen, p, others, 0, 0, 4), std::invalid_argument);
+  EXPECT_THROW((void)judge(seen, p, {}, 0, 9, 4), std::invalid_argument);
+  EXPECT_THROW((void)judge({CellCounts::Zero(4, 5), {}}, p, others, 0, 9, 4),
+               std::invalid_argument);
+  EXPECT_THROW((void)judge({CellCounts::Ones(5, 4), {}}, p, others, 0, 9, 4),
+               std::invalid_argument);
 }
 
 }  // namespace

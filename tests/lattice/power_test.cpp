@@ -218,7 +218,7 @@ TEST(TrialsForTotalVariation, KeepWhatTheyPromise) {
   const auto found = [&](const CellProbabilities& p, std::uint64_t seed) {
     double count = 0.0;
     for (std::uint64_t k = 0; k < kRepeats; ++k)
-      count += judge({sampled(p, n, seed, k), {}}, known(base), {known(base)}, 399, k).differs();
+      count += judge({sampled(p, n, seed, k), {}}, known(base), {known(base)}, 0, 399, k).differs();
     return count / kRepeats;
   };
   const double error = std::sqrt(0.8 * 0.2 / kRepeats);

@@ -226,6 +226,13 @@ TEST(GroupSpread, IntervalsOfSharesHold) {
   }
 }
 
+TEST(GroupSpread, AMeanOfWhatIsAlwaysAlikeHasNoInterval) {
+  EXPECT_TRUE(std::isnan(mean_95(5.0, std::vector<double>(8, 5.0)).interval[0]));
+  EXPECT_TRUE(std::isnan(mean_95(5.0, {}).interval[0]));
+  const Mean95 m = mean_95(5.0, {4, 6, 4, 6, 4, 6, 4, 6});
+  EXPECT_NEAR(m.interval[1] - 5.0, 2.3646 / std::sqrt(7.0), 1e-9);
+}
+
 TEST(GroupSpread, OfSharesIsBinomialNoise) {
   CellCounts counts(1, 2);
   counts << 5000, 5000;

@@ -91,7 +91,7 @@ function axes_of({farthest}) {
   const names = [...svg.querySelectorAll('text')].filter(t => t.textContent.trim() && !numbers.has(t))
     .map(t => ({turned: /rotate/.test(t.closest('g[transform]')?.getAttribute('transform') ?? ''), ...t.getBoundingClientRect().toJSON()}));
   for (const a of axes.values()) {
-    if (a.numbers.length < 2) continue;
+    if (a.numbers.length < 3) continue;  // or names that happen to be numbers
     const tall = a.bottom - a.top;
     const named = a.upright
       ? names.some(n => !n.turned && n.top >= a.top + 4 && n.right > a.left && n.left < a.right)
