@@ -3,14 +3,14 @@
 #   tests/nightly.sh [odr] [debug] [clang]      all three without an argument; half an hour each on two cores
 # odr    links the whole program with -flto -Wodr: no name may have two definitions. Without optimisation,
 #        which inlines functions before their types are compared.
-# debug  g++ without optimisation, batches and precompiled headers: every file compiles alone; unit tests.
+# debug  g++ without optimisation and batches: every file compiles alone; unit tests.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
 # What a step prints is in nightly-STEP.log; of one that fails the end is shown.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . ./.ci/prepare
 
-alone=(-DGATEWALK_BATCHES=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
+alone=(-DGATEWALK_BATCHES=OFF)
 web='^(web_|figures$|library$|headers$)'  # tests that do not depend on the compiler, or build themselves
 
 odr() {

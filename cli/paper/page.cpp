@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -38,10 +38,28 @@ const Mark& mark_of(const Json& claim) {
                               ": unknown verdict \"" + name + "\"");
 }
 
+/// Whether a word is a quantity with an index as the paper prints it: k_L, F_prop.
+bool has_index(std::string_view word) {
+  constexpr std::array<std::string_view, 6> kIndices = {"L", "R", "x", "y", "prop", "rand"};
+  return word.size() > 2 && std::string_view("kFivE").find(word[0]) != std::string_view::npos &&
+         word[1] == '_' &&
+         std::find(kIndices.begin(), kIndices.end(), word.substr(2)) != kIndices.end();
+}
+
 /// Words as they stand in HTML; an index as the paper prints it: k_L as k<sub>L</sub>.
 std::string words(const std::string& plain) {
-  static const std::regex index("\\b(k|F|i|v|E)_(L|R|x|y|prop|rand)\\b");
-  return std::regex_replace(escaped(plain), index, "$1<sub>$2</sub>");
+  const auto in_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  const std::string html = escaped(plain);
+  std::string out;
+  for (auto at = html.begin(); at != html.end();) {
+    const auto end = std::find_if_not(at, html.end(), in_word);
+    const std::string word(at, end);
+    out += has_index(word) ? word.substr(0, 1) + "<sub>" + word.substr(2) + "</sub>" : word;
+    if (end == html.end()) break;
+    out += *end;
+    at = end + 1;
+  }
+  return out;
 }
 
 /// A text field as words.
@@ -52,8 +70,18 @@ std::string text(const Json& object, const char* field) {
 /// The same, with nothing broken apart at a line's end that belongs together: "46.0 % [45.3, 46.7]"
 /// between % and [ only.
 std::string values(const Json& object, const char* field) {
-  static const std::regex within(" (?=%|[^\\[]*\\])");
-  return std::regex_replace(text(object, field), within, "&nbsp;");
+  std::string out;
+  const std::string all = text(object, field);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t bracket = all.find_first_of("[]", i);
+    const bool inside = bracket != std::string::npos && all[bracket] == ']';
+    const bool before_percent = i + 1 < all.size() && all[i + 1] == '%';
+    if (all[i] == ' ' && (inside || before_percent))
+      out += "&nbsp;";
+    else
+      out += all[i];
+  }
+  return out;
 }
 
 /// An element that closes itself: <p class="why">...</p> from element("p class=\"why\"", ...).

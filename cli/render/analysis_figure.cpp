@@ -10,7 +10,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr double kLeft = 78;
+constexpr double kPanelLeft = 78;
 constexpr const char* kCurveColours[] = {kFirstColour, kSecondColour, kThirdColour, kFourthColour,
                                          kFifthColour};
 
@@ -33,7 +33,7 @@ void add_visits(Script& out, const AnalysedField& f) {
   const double side = 318.0, columns = static_cast<double>(shown.cols()),
                lines = static_cast<double>(shown.rows());
   const double cell = std::min(side / columns, 300.0 / lines);
-  const Box box{kLeft, kLeft + std::max(120.0, cell * columns), out.top + 50,
+  const Box box{kPanelLeft, kPanelLeft + std::max(120.0, cell * columns), out.top + 50,
                 out.top + 50 + std::max(100.0, cell * lines)};
   const RootScale scale(100.0 * shown.maxCoeff());
   const bool blocks = map.rows.block > 1 || map.columns.block > 1;
@@ -106,7 +106,7 @@ void add_durations(Script& out, const AnalysedField& f) {
   out.text += out.sheet.text(f.direct ? "time, % of those that end so; points: full dynamics"
                                       : "time, % of those that end so",
                              8, out.top + 18);
-  const Box box{kLeft, 372, out.top + 36, out.top + 196};
+  const Box box{kPanelLeft, 372, out.top + 36, out.top + 196};
   out.text += data + kFrame + out.sheet.margins(box) + "set xrange [0:" + digits(1.02 * longest) +
               "]\nset yrange [0:100]\nset xtics " + digits(tic_step(longest, 5)) +
               "\nset ytics 25\nset grid ytics" + kThin + "\n" +
@@ -135,7 +135,7 @@ void add_starts(Script& out, const AnalysedField& f) {
   }
   if (rows.empty()) return;
   const RootScale scale(most);
-  const Box box{kLeft, 372, out.top + 36, out.top + 216};
+  const Box box{kPanelLeft, 372, out.top + 36, out.top + 216};
   const auto range = [](const std::array<double, 2>& r) {
     return "[" + digits(r[0]) + ":" + digits(r[1]) + "]";
   };

@@ -64,13 +64,13 @@ class ExactFractions : public testing::TestWithParam<Route> {
                                            .row_method = GetParam().row_method,
                                            .tolerance = 1e-17})
                                       .front();
-      constexpr double kBound = 1e-14;
+      constexpr double kWidest = 1e-14;
       for (std::size_t e = 0; e < kEndings; ++e)
-        EXPECT_NEAR(d.endings[e], exact.endings[e].convert_to<double>(), kBound) << "ending " << e;
+        EXPECT_NEAR(d.endings[e], exact.endings[e].convert_to<double>(), kWidest) << "ending " << e;
       for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
           EXPECT_NEAR(d.final_cells(row, column),
-                      exact.final_cells(row, column).convert_to<double>(), kBound)
+                      exact.final_cells(row, column).convert_to<double>(), kWidest)
               << "cell " << column << " " << row;
     }
   }

@@ -22,7 +22,7 @@ using RowMethod = PredictOptions::RowMethod;
 using Solver = PredictOptions::Solver;
 
 const int kSide = gatewalk::test::usual_or_full(301, 1001);
-const std::int64_t kWalks = gatewalk::test::usual_or_full(20'000, 1'000'000);
+const std::int64_t kManyWalks = gatewalk::test::usual_or_full(20'000, 1'000'000);
 
 /// The paper's shape: from below (0 to 24), to the right (25 to 54), to the left (55 to 84). Walks
 /// keep their direction for some 20 cells and end in `trapped` of the draws.
@@ -61,7 +61,7 @@ using Shares = Eigen::ArrayXd;
 // moves the total variation by 1/n, so it exceeds its mean by more than sqrt(10 / n) once in e^20 =
 // 5e8 (McDiarmid).
 void expect_as_walked(const Shares& walked, const Shares& p, const char* what) {
-  const auto n = static_cast<double>(kWalks);
+  const auto n = static_cast<double>(kManyWalks);
   const double apart = 0.5 * (walked / n - p).abs().sum();
   const double by_chance = 0.5 * (p * (1 - p).max(0.0) / n).sqrt().sum();
   EXPECT_LE(apart, by_chance + std::sqrt(10 / n)) << what;
@@ -78,12 +78,12 @@ TEST(LargeField, IsAsWalked) {
   EXPECT_GT(d.final_cells.row(kSide - 1).sum(), 0.05);
   EXPECT_GT(d.final_cells.col(kSide - 1).sum() / d.final_cells.sum(), 1e-9);
 
-  const WalkTally tally = Walker(chain).walk(field, start, 0, 5, {0, kWalks});
+  const WalkTally tally = Walker(chain).walk(field, start, 0, 5, {0, kManyWalks});
   const Eigen::ArrayXXd walked = tally.final_cells.cast<double>();
   expect_as_walked(walked.rowwise().sum(), d.final_cells.rowwise().sum(), "final rows");
   expect_as_walked(walked.colwise().sum().transpose(), d.final_cells.colwise().sum().transpose(),
                    "final columns");
-  const auto n = static_cast<double>(kWalks);
+  const auto n = static_cast<double>(kManyWalks);
   const Shares fates{{static_cast<double>(tally.trapped), static_cast<double>(tally.left_field)}};
   expect_as_walked(fates, Shares{{d.trapped, d.left_field}}, "fates");
   EXPECT_NEAR(static_cast<double>(tally.steps) / n / d.mean_steps, 1.0, 10 / std::sqrt(n));
