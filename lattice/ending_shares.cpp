@@ -38,7 +38,14 @@ EndingShares::EndingShares(const markov::FinalDistribution& prediction, const Ma
       interval[e] = dynamics::interval_of_share(std::clamp(share[e], 0.0, 1.0),
                                                 static_cast<double>(noise.runs()));
   }
-  if (max_gates == 0) interval[static_cast<std::size_t>(markov::Ending::cut_off)] = {0.0, 0.0};
+  *this = with_limit(max_gates);
+}
+
+EndingShares EndingShares::with_limit(int max_gates) const {
+  EndingShares shares = *this;
+  if (max_gates == 0)
+    shares.interval[static_cast<std::size_t>(markov::Ending::cut_off)] = {0.0, 0.0};
+  return shares;
 }
 
 }  // namespace gatewalk::lattice

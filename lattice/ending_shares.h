@@ -36,10 +36,12 @@ struct EndingShares {
   explicit EndingShares(const std::array<double, markov::kEndings>& shares);
   /// Jeffreys' intervals of these counts.
   EndingShares(const std::array<std::int64_t, markov::kEndings>& counts, std::int64_t trials);
-  /// A prediction's, with what the sampling of its matrix makes. Without a limit of gates nothing
-  /// is cut off.
+  /// A prediction's, with what the sampling of its matrix makes.
   EndingShares(const markov::FinalDistribution& prediction, const MatrixNoise& noise,
                int max_gates);
+
+  /// Without a limit of gates (max_gates 0) nothing is cut off, and that is certain.
+  [[nodiscard]] EndingShares with_limit(int max_gates) const;
 };
 
 }  // namespace gatewalk::lattice

@@ -20,14 +20,14 @@ struct Beginning {
 
 FrequentPaths most_frequent_paths(const FieldChain& chain, const Field& field, const Start& start,
                                   int max_cells, const EndingChance& chance, std::size_t count,
-                                  std::size_t most_steps) {
+                                  std::int64_t most_draws) {
   validate(chain, field, start, max_cells);
   const std::int64_t first = std::int64_t{start.row} * field.columns + start.column;
   std::priority_queue<Beginning> open;
   open.push({chance(1, first, start.input), {first}, {{start.input, 1.0}}});
   FrequentPaths found;
-  for (std::size_t step = 0; !open.empty() && found.paths.size() < count; ++step) {
-    if (step == most_steps) {
+  for (std::int64_t draws = 0; !open.empty() && found.paths.size() < count;) {
+    if (draws > most_draws) {
       found.gave_up = true;
       break;
     }
@@ -46,7 +46,7 @@ FrequentPaths most_frequent_paths(const FieldChain& chain, const Field& field, c
     std::map<std::int64_t, std::map<int, double>> onward;  // by cell and input
     for (const auto& [input, share] : b.states) {
       if (!here.is_sampled(input) && chance.ending() == Ending::unsampled) ends += share;
-      for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
+      for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it, ++draws) {
         const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
         std::int64_t to_column = column, to_row = row;
         const double p = share * it.value();

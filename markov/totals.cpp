@@ -7,9 +7,11 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "markov/predict/row_sum.h"
 #include "markov/walk.h"
 
 namespace gatewalk::markov {
@@ -65,6 +67,8 @@ class Wave {
 };
 
 constexpr int kMostSteps = 100'000;
+
+double uniform(std::uint64_t word) { return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52; }
 
 WalkTotals totals_by_steps(const FieldChain& chain, const Field& field, const Start& start,
                            int max_cells, const Rewards& rewards, const EachState& each,
@@ -326,6 +330,219 @@ class TotalsByRows {
   WalkTotals out_;
 };
 
+/// Visits and endings of large fields without limit of cells, rows of one type each: what enters a
+/// row is summed over all moves within it at once.
+class VisitsByRows {
+ public:
+  VisitsByRows(const FieldChain& chain, const Field& field) : chain_(chain), field_(field) {
+    for (const Chain& c : chain.chains()) {
+      std::vector<RowSum::Term> terms;
+      for (int input = 0; input < c.inputs(); ++input)
+        for (Probabilities::InnerIterator it(c.matrix(), input); it; ++it) {
+          const Exit& exit = c.exits()[static_cast<std::size_t>(it.col())];
+          highest_ = std::max(highest_, exit.di_y);
+          if (exit.next_input != Exit::kTrapped && exit.di_y == 0)
+            terms.push_back({exit.next_input, input, -exit.di_x, it.value()});
+        }
+      sums_.emplace_back(terms, field.columns, c.inputs());
+    }
+  }
+
+  [[nodiscard]] bool suits() const {
+    return chain_.has_uniform_rows() &&
+           std::all_of(sums_.begin(), sums_.end(), [](const RowSum& s) { return s.suits(); });
+  }
+
+  /// `out`: visits and endings are added. `each` is told of states that are passed by more than
+  /// `is_little(share, cell, input)`.
+  template <class Little>
+  void run(const Start& start, const EachState& each, const Little& is_little, WalkTotals& out) {
+    const std::int64_t inputs = chain_.inputs(), states = inputs * field_.columns;
+    std::vector<std::vector<double>> entering(static_cast<std::size_t>(highest_) + 1);
+    for (auto& row : entering) row.assign(static_cast<std::size_t>(states), 0.0);
+    entering.front()[static_cast<std::size_t>(start.column * inputs + start.input)] = 1.0;
+    for (int row = start.row; row < field_.rows; ++row) {
+      const auto type = static_cast<std::size_t>(chain_.type_of(0, row));
+      const Chain& here = chain_.chains()[type];
+      std::vector<double>& visits = entering.front();
+      sums_[type].solve(visits.data());
+      for (std::int64_t column = 0; column < field_.columns; ++column)
+        for (int input = 0; input < inputs; ++input) {
+          const double share = visits[static_cast<std::size_t>(column * inputs + input)];
+          if (share == 0.0) continue;
+          const std::int64_t cell = std::int64_t{row} * field_.columns + column;
+          if (!here.is_sampled(input)) {
+            out.endings[static_cast<std::size_t>(Ending::unsampled)] += share;
+            continue;
+          }
+          out.visits.data()[cell] += share;
+          if (each && !is_little(share, cell, input)) each(1, cell, input, share);
+          for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
+            const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
+            std::int64_t to_column = column, to_row = row;
+            const double p = share * it.value();
+            if (const auto ending = follow(field_, exit, false, to_column, to_row))
+              out.endings[static_cast<std::size_t>(*ending)] += p;
+            else if (exit.di_y > 0)
+              entering[static_cast<std::size_t>(exit.di_y)]
+                      [static_cast<std::size_t>(to_column * inputs + exit.next_input)] += p;
+          }
+        }
+      std::fill(visits.begin(), visits.end(), 0.0);
+      std::rotate(entering.begin(), entering.begin() + 1, entering.end());
+    }
+  }
+
+ private:
+  const FieldChain& chain_;
+  const Field field_;
+  int highest_ = 0;           // di_y
+  std::vector<RowSum> sums_;  // by type
+};
+
+/// "mom", version 1: the second key word of these walks' streams.
+constexpr std::uint64_t kMomentsStream = 0x006d6f6d'00000001;
+
+/// Numbers that walks add up: by ending, draws first.
+struct DrawnMoments {
+  std::vector<std::array<Moments, kEndings>> all;
+
+  explicit DrawnMoments(std::size_t quantities) : all(1 + quantities) {}
+  /// A walk whose totals have these means and variances, draws first.
+  void add(Ending ending, const std::vector<double>& mean, const std::vector<double>& variance) {
+    for (std::size_t q = 0; q < all.size(); ++q) {
+      Moments& m = all[q][static_cast<std::size_t>(ending)];
+      m.share += 1.0;
+      m.sum += mean[q];
+      m.square += mean[q] * mean[q] + variance[q];
+    }
+  }
+  DrawnMoments& operator+=(const DrawnMoments& other) {
+    for (std::size_t q = 0; q < all.size(); ++q)
+      for (std::size_t e = 0; e < kEndings; ++e) {
+        all[q][e].share += other.all[q][e].share;
+        all[q][e].sum += other.all[q][e].sum;
+        all[q][e].square += other.all[q][e].square;
+      }
+    return *this;
+  }
+};
+
+/// Walks without limit of cells, and what they add up: the mean of each draw's quantities, and
+/// their variance. Given `chance`, only walks that end so: a draw is as likely as it is times the
+/// chance from where it leads (Doob's transform).
+DrawnMoments drawn_moments(const FieldChain& chain, const Field& field, const Start& start,
+                           const Rewards& rewards, const EndingChance* chance, std::int64_t count,
+                           std::uint64_t seed) {
+  constexpr std::int64_t kTogether = 1024;
+  const std::size_t quantities = quantities_of(chain, rewards);
+  const std::int64_t parts = (count + kTogether - 1) / kTogether;
+  std::vector<DrawnMoments> moments(static_cast<std::size_t>(parts), DrawnMoments(quantities));
+  tbb::parallel_for(std::int64_t{0}, parts, [&](std::int64_t part) {
+    std::vector<double> mean(1 + quantities), variance(1 + quantities, 0.0);
+    for (std::int64_t number = part * kTogether; number < std::min(count, (part + 1) * kTogether);
+         ++number) {
+      std::fill(mean.begin(), mean.end(), 0.0);
+      std::fill(variance.begin(), variance.end(), 0.0);
+      std::int64_t column = start.column, row = start.row;
+      int input = start.input;
+      std::optional<Ending> ending;
+      for (int draw = 1; !ending && draw <= kMostSteps; ++draw) {
+        const auto type = static_cast<std::size_t>(chain.type_of(column, row));
+        const Chain& here = chain.chains()[type];
+        if (!here.is_sampled(input)) {
+          ending = Ending::unsampled;
+          break;
+        }
+        const std::int64_t cell = row * field.columns + column;
+        const auto weight = [&](const Exit& exit) {
+          if (!chance) return 1.0;
+          std::int64_t to_column = column, to_row = row;
+          if (const auto e = follow(field, exit, false, to_column, to_row))
+            return *e == chance->ending() ? 1.0 : 0.0;
+          return (*chance)(1, to_row * field.columns + to_column, exit.next_input);
+        };
+        const auto words =
+            r123::Philox4x64()({{static_cast<std::uint64_t>(draw),
+                                 static_cast<std::uint64_t>(number), chance != nullptr, 0}},
+                               {{seed, kMomentsStream}});
+        double rest = uniform(words[0]) * (chance ? (*chance)(1, cell, input) : 1.0);
+        auto nonzero = static_cast<std::size_t>(here.matrix().outerIndexPtr()[input]),
+             taken = nonzero;
+        const Exit* exit = nullptr;
+        for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it, ++nonzero) {
+          const Exit& possible = here.exits()[static_cast<std::size_t>(it.col())];
+          const double p = it.value() * weight(possible);
+          if (p == 0.0) continue;
+          exit = &possible;
+          taken = nonzero;
+          if ((rest -= p) < 0.0) break;
+        }
+        if (!exit) break;  // nobody ends so from there
+        mean[0] += 1.0;
+        for (std::size_t q = 0; q < quantities; ++q) {
+          const Reward& r = rewards[type][q];
+          mean[1 + q] += r.mean[taken];
+          variance[1 + q] += r.square[taken] - r.mean[taken] * r.mean[taken];
+        }
+        ending = follow(field, *exit, false, column, row);
+        input = exit->next_input;
+      }
+      if (ending) moments[static_cast<std::size_t>(part)].add(*ending, mean, variance);
+    }
+  });
+  DrawnMoments all(quantities);
+  for (const DrawnMoments& m : moments) all += m;
+  return all;
+}
+
+/// Fields whose totals would take more than a second or two.
+bool is_large(const FieldChain& chain, const Field& field) {
+  constexpr double kCellsTimesNonzeros = 1e7;
+  double nonzeros = 0.0;
+  for (const Chain& c : chain.chains())
+    nonzeros = std::max(nonzeros, static_cast<double>(c.matrix().nonZeros()));
+  return static_cast<double>(field.columns) * field.rows * nonzeros > kCellsTimesNonzeros;
+}
+
+WalkTotals totals_of_large(VisitsByRows& rows, const FieldChain& chain, const Field& field,
+                           const Start& start, const Rewards& rewards, const EachState& each,
+                           const WalkTolerance& tolerance, std::uint64_t seed) {
+  constexpr std::int64_t kWalks = 1 << 16, kThatEndSo = 1 << 12;
+  const std::size_t quantities = quantities_of(chain, rewards);
+  const double states = static_cast<double>(field.rows) * field.columns * chain.inputs();
+  const EndingChance* const chance = tolerance.chance;
+  const double at_start =
+      chance ? (*chance)(1, std::int64_t{start.row} * field.columns + start.column, start.input)
+             : 0.0;
+  WalkTotals out;
+  out.visits = CellProbabilities::Zero(field.rows, field.columns);
+  rows.run(
+      start, each,
+      [&](double share, std::int64_t cell, int input) {
+        return share * states <= tolerance.all &&
+               (!chance ||
+                share * (*chance)(1, cell, input) * states <= tolerance.of_target * at_start);
+      },
+      out);
+  out.drawn_walks = kWalks;
+  out.totals.resize(quantities);
+  DrawnMoments drawn = drawn_moments(chain, field, start, rewards, nullptr, kWalks, seed);
+  if (at_start > 0.0) {
+    const auto target = static_cast<std::size_t>(chance->ending());
+    const DrawnMoments so = drawn_moments(chain, field, start, rewards, chance, kThatEndSo, seed);
+    for (std::size_t q = 0; q <= quantities; ++q) drawn.all[q][target] = so.all[q][target];
+  }
+  for (std::size_t e = 0; e < kEndings; ++e)
+    for (std::size_t q = 0; q <= quantities; ++q) {
+      Moments m = drawn.all[q][e];
+      if (m.share > 0.0)
+        m = {out.endings[e], m.sum / m.share * out.endings[e], m.square / m.share * out.endings[e]};
+      (q == 0 ? out.draws : out.totals[q - 1])[e] = m;
+    }
+  return out;
+}
+
 bool goes_down(const FieldChain& chain) {
   for (const Chain& c : chain.chains())
     for (const Exit& exit : c.exits())
@@ -349,8 +566,13 @@ Moments WalkTotals::all(const std::array<Moments, kEndings>& by_ending) {
 
 WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start& start,
                        int max_cells, const Rewards& rewards, const EachState& each,
-                       const WalkTolerance& tolerance) {
+                       const WalkTolerance& tolerance, std::uint64_t seed) {
   validate(chain, field, start, max_cells);
+  if (max_cells == 0 && !goes_down(chain) && is_large(chain, field)) {
+    VisitsByRows rows(chain, field);
+    if (rows.suits())
+      return totals_of_large(rows, chain, field, start, rewards, each, tolerance, seed);
+  }
   if (max_cells == 0 && !goes_down(chain))
     return TotalsByRows(chain, field, start, rewards, each, tolerance).run();
   return totals_by_steps(chain, field, start, max_cells, rewards, each, tolerance.all);
@@ -360,8 +582,6 @@ namespace {
 
 /// "time", version 1: the second key word of these walks' streams.
 constexpr std::uint64_t kTimedStream = 0x74696d65'00000001;
-
-double uniform(std::uint64_t word) { return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52; }
 
 double gamma_quantile(double mean, double square, double u) {
   const double variance = square - mean * mean;

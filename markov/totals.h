@@ -38,6 +38,8 @@ struct WalkTotals {
   CellProbabilities visits;               // (rows x columns) expected draws in each cell
   std::array<Moments, kEndings> draws{};  // how many, by ending
   std::vector<std::array<Moments, kEndings>> totals{};  // by quantity and ending
+  /// Walks drawn for `draws` and `totals`, which are exact where this is 0.
+  std::int64_t drawn_walks = 0;
 
   /// Of all walks together.
   [[nodiscard]] static Moments all(const std::array<Moments, kEndings>& by_ending);
@@ -58,12 +60,14 @@ struct WalkTolerance {
 /// step by step, as markov::propagate does; without, row by row, the draws of a walk are not told
 /// apart (`each` is told of draw 1), and a row is left after 10^5 sweeps at the latest. Where moves
 /// lead to a row below, step by step until no more than `tolerance.all` of the walks are on their
-/// way, or 10^5 steps are done. Throws std::invalid_argument when rewards do not belong to the
-/// chain, and as validate().
+/// way, or 10^5 steps are done. In large fields without limit, whose rows are of one type each,
+/// visits and endings are exact to 1e-12 of each row, the moments those of walks drawn with `seed`:
+/// 2^16 of all, and, given `tolerance.chance`, 2^12 of those that end so. Throws
+/// std::invalid_argument when rewards do not belong to the chain, and as validate().
 [[nodiscard]] WalkTotals walk_totals(const FieldChain& chain, const Field& field,
                                      const Start& start, int max_cells, const Rewards& rewards = {},
                                      const EachState& each = {},
-                                     const WalkTolerance& tolerance = {});
+                                     const WalkTolerance& tolerance = {}, std::uint64_t seed = 0);
 
 /// How a walk ended, and its total of the first quantity.
 struct TimedWalk {

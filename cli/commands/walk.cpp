@@ -41,7 +41,7 @@ int run_walk(const Arguments& arguments) {
   const double seconds = watch.seconds();
 
   const Json status = recorded_status(m.file);
-  Json json = to_json(tally, start, t.space);
+  Json json = to_json(tally, start, t.space, m.scene);
   json["matrix_status"] = status;
   json["made_by"] = to_json(options.provenance(m.scene));
   if (options.has("netcdf"))

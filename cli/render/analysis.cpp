@@ -256,6 +256,7 @@ Json to_json(const AnalysedField& f) {
   json["cost_of_transport_J_per_kg_m"] = or_null(spent(a, {}).cost_of_transport(p));
   json["expected_visits"] = grid(a.totals.visits);
   json["still_walking"] = a.totals.remainder;
+  json["drawn_walks"] = a.totals.drawn_walks;
   const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
     if (!(s.share > 0.0)) return;
@@ -385,6 +386,9 @@ std::string table_of(const AnalysedField& f) {
   for (const EndingName& e : kEndingNames) add(e.name, e.ending);
   if (!std::isfinite(a.costs.front().mean))
     table += "(the file is of an older version, which kept no durations: build it again)\n";
+  if (a.totals.drawn_walks > 0)
+    table += "(a large field: times and work are those of " + std::to_string(a.totals.drawn_walks) +
+             " walks with the chain; none of them: no line)\n";
   if (f.direct) {
     const KolmogorovDistance d = duration_distance(a, f.direct->costs, {});
     table += "by " + std::to_string(f.direct->tally.trials) + " trials of the full dynamics\n" +

@@ -17,7 +17,8 @@ Json to_json(const lattice::FieldTally& tally, const lattice::Scene& scene,
              const std::optional<lattice::Settled>& settled) {
   Json json;
   json["endings"] = endings(tally.endings);
-  json["endings_95"] = endings_95(lattice::EndingShares(tally.endings, tally.trials));
+  json["endings_95"] = endings_95(
+      lattice::EndingShares(tally.endings, tally.trials).with_limit(scene.field.max_gates));
   json["final_gates"] = small_grid(tally.final_gates);
   json["trapped_gates"] = small_grid(tally.trapped_gates);
   json["departed_gates"] = small_grid(tally.departed_gates);
@@ -45,8 +46,9 @@ std::string table_of(const lattice::FieldTally& tally, const lattice::Scene& sce
                      const std::optional<lattice::Settled>& settled) {
   const auto n = static_cast<double>(tally.trials);
   std::string table =
-      endings_text(lattice::EndingShares(tally.endings, tally.trials),
-                   "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
+      endings_text(
+          lattice::EndingShares(tally.endings, tally.trials).with_limit(scene.field.max_gates),
+          "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
       limits_text(scene) + scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) +
       map_of_trapped(tally.trapped_gates.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) + "\n";
@@ -57,10 +59,11 @@ std::string table_of(const lattice::FieldTally& tally, const lattice::Scene& sce
 }
 
 Json to_json(const markov::WalkTally& tally, const lattice::ChainStart& start,
-             const dynamics::StateSpace& space) {
+             const dynamics::StateSpace& space, const lattice::Scene& scene) {
   Json json;
   json["endings"] = endings(tally.endings);
-  json["endings_95"] = endings_95(lattice::EndingShares(tally.endings, tally.walks));
+  json["endings_95"] = endings_95(
+      lattice::EndingShares(tally.endings, tally.walks).with_limit(scene.field.max_gates));
   json["final_gates"] = small_grid(tally.final_cells);
   json["trapped_gates"] = small_grid(tally.trapped_cells);
   json["departed_gates"] = small_grid(tally.departed_cells);
@@ -80,8 +83,9 @@ std::string table_of(const markov::WalkTally& tally, const lattice::ChainStart& 
                      const dynamics::StateSpace& space, const lattice::Scene& scene) {
   const auto n = static_cast<double>(tally.walks);
   std::string table =
-      endings_text(lattice::EndingShares(tally.endings, tally.walks),
-                   "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
+      endings_text(
+          lattice::EndingShares(tally.endings, tally.walks).with_limit(scene.field.max_gates),
+          "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
       limits_text(scene) + map_of(tally.final_cells.cast<double>() / n) +
       map_of_trapped(tally.trapped_cells.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) +

@@ -20,7 +20,7 @@ namespace gatewalk::cli {
 
 /// How walks through the field went that started in `start`. Without "matrix_status", "made_by".
 [[nodiscard]] Json to_json(const markov::WalkTally& tally, const lattice::ChainStart& start,
-                           const dynamics::StateSpace& space);
+                           const dynamics::StateSpace& space, const lattice::Scene& scene);
 [[nodiscard]] std::string table_of(const markov::WalkTally& tally, const lattice::ChainStart& start,
                                    const dynamics::StateSpace& space, const lattice::Scene& scene);
 

@@ -78,6 +78,7 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
       a.error.corrcoef = std::nan("");
     }
     for (auto& interval : a.endings.interval) widen(interval, unseen);
+    a.endings = a.endings.with_limit(scene.field.max_gates);
     for (SideExits& side : a.exits)
       for (auto& interval : side.interval) widen(interval, unseen);
     a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
@@ -90,7 +91,7 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
   std::array<std::int64_t, markov::kEndings> endings{};
   for (const auto& e : s.full.endings)
     if (e) ++endings[static_cast<std::size_t>(*e)];
-  a.endings = EndingShares(endings, a.trials);
+  a.endings = EndingShares(endings, a.trials).with_limit(scene.field.max_gates);
   ExitCounts exits(scene.field);
   exits.add(s.full);
   a.exits = exits_of(exits);

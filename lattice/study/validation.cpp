@@ -210,34 +210,35 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
   const std::int64_t draws = null_draws_for(setup);
   const std::uint64_t seed = setup.options.seed;
   const double s = concentration(final_gates);
-  return {.start = start,
-          .chain_start = chain_start,
-          .dynamics = tally,
-          .walks = walked.tally,
-          .exact = exact,
-          .walks_against = compare(final_gates, walked.tally.final_cells, draws, seed),
-          .exact_against = compare(final_gates, exact.final_cells, draws, seed),
-          .paper_sized = seen.paper_sized,
-          .floor_100_exact = noise_floor(s, exact.final_cells.size(), 100, 0),
-          .floor_100_walks = noise_floor(s, exact.final_cells.size(), 100, 100),
-          .judgement = judge({final_gates, tally.endings}, exact, resampled, may_miss, draws, seed),
-          .resampled = noise.replicates(),
-          .matrix_noise_mean = noise.mean_total_variation(),
-          .matrix_noise_sd = noise.sd_total_variation(),
-          .dynamics_endings = EndingShares(tally.endings, tally.trials),
-          .walks_endings = EndingShares(walked.tally.endings, walked.tally.walks),
-          .exact_endings = EndingShares(exact, noise, max_gates),
-          .dynamics_exits = exits_of(seen.exits),
-          .exact_exits = exits_of(exit_shares(exact), resampled_exits, noise.runs()),
-          .dynamics_seconds = seen.seconds,
-          .walks_seconds = walked.seconds,
-          .exact_seconds = exact_seconds,
-          .force = setup.options.force_memory ? std::optional(run_anew(setup, start, seen.trials))
-                                              : std::nullopt,
-          .observed = setup.options.observed
-                          ? std::optional(compare_observed(*setup.options.observed, tally, exact,
-                                                           resampled, may_miss, draws, seed))
-                          : std::nullopt};
+  return {
+      .start = start,
+      .chain_start = chain_start,
+      .dynamics = tally,
+      .walks = walked.tally,
+      .exact = exact,
+      .walks_against = compare(final_gates, walked.tally.final_cells, draws, seed),
+      .exact_against = compare(final_gates, exact.final_cells, draws, seed),
+      .paper_sized = seen.paper_sized,
+      .floor_100_exact = noise_floor(s, exact.final_cells.size(), 100, 0),
+      .floor_100_walks = noise_floor(s, exact.final_cells.size(), 100, 100),
+      .judgement = judge({final_gates, tally.endings}, exact, resampled, may_miss, draws, seed),
+      .resampled = noise.replicates(),
+      .matrix_noise_mean = noise.mean_total_variation(),
+      .matrix_noise_sd = noise.sd_total_variation(),
+      .dynamics_endings = EndingShares(tally.endings, tally.trials).with_limit(max_gates),
+      .walks_endings = EndingShares(walked.tally.endings, walked.tally.walks).with_limit(max_gates),
+      .exact_endings = EndingShares(exact, noise, max_gates),
+      .dynamics_exits = exits_of(seen.exits),
+      .exact_exits = exits_of(exit_shares(exact), resampled_exits, noise.runs()),
+      .dynamics_seconds = seen.seconds,
+      .walks_seconds = walked.seconds,
+      .exact_seconds = exact_seconds,
+      .force = setup.options.force_memory ? std::optional(run_anew(setup, start, seen.trials))
+                                          : std::nullopt,
+      .observed = setup.options.observed
+                      ? std::optional(compare_observed(*setup.options.observed, tally, exact,
+                                                       resampled, may_miss, draws, seed))
+                      : std::nullopt};
 }
 
 /// By state, those of all types one behind the other: the first of those with the same runs.

@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "markov/predict/layout.h"
-#include "markov/staying.h"
+#include "markov/predict/row_sum.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -68,84 +67,14 @@ std::vector<Moves> moves_by_type(const FieldChain& chain, Ending ending) {
                            " sweeps: walks circle in it");
 }
 
-/// x = b + Q x of a row of equal cells, Q the moves within it, as the sum of b, Q b, Q Q b, ...:
-/// all columns of an input side by side in registers. Several times as fast as sweeps where walks
-/// soon leave the row, slower where they do not.
-class RowSum {
- public:
-  RowSum(const Moves& moves, int columns, int inputs)
-      : columns_(columns), inputs_(inputs), ends_{0} {
-    for (int input = 0; input < inputs; ++input) {
-      for (std::size_t i = moves.side[input]; i < moves.up[input + 1]; ++i) {
-        const auto& [p, di_x, di_y, next] = moves.entries[i];
-        const auto known = std::find_if(shifts_.begin(), shifts_.end(),
-                                        [&](const Shift& s) { return s.offset == di_x; });
-        terms_.push_back({p, next, static_cast<int>(known - shifts_.begin())});
-        if (known == shifts_.end()) shifts_.push_back({di_x, nullptr});
-        widest_ = std::max(widest_, std::abs(di_x));
-      }
-      ends_.push_back(static_cast<int>(terms_.size()));
-    }
-    stays_ = staying_per_move(inputs, [&](auto use) {
-      for (int input = 0; input < inputs; ++input)
-        for (int k = ends_[input]; k < ends_[input + 1]; ++k)
-          use(input, terms_[static_cast<std::size_t>(k)].source,
-              terms_[static_cast<std::size_t>(k)].p);
-    });
-    origin_ = lanes_up(widest_);
-    range_ = {{origin_, lanes_up(origin_ + columns)}};
-    stride_ = lanes_up(range_.front().last + widest_);
-    if (suits()) {
-      buffer_.reset(3 * std::ptrdiff_t{inputs} + 1, stride_);
-      mask_ = buffer_.take(1);
-      std::fill_n(mask_.data() + origin_, columns, 1.0);
-      sum_ = buffer_.take(inputs), now_ = buffer_.take(inputs), next_ = buffer_.take(inputs);
-    }
-  }
-  [[nodiscard]] bool suits() const {
-    constexpr double kLeaveSoon = 0.7;
-    return stays_ <= kLeaveSoon && widest_ < columns_;
-  }
-
-  /// `values` (columns x inputs): b, and then x.
-  void solve(double* values) {
-    each([&](std::ptrdiff_t plane, std::ptrdiff_t cell) {
-      sum_.data()[plane] = now_.data()[plane] = values[cell];
-    });
-    double largest = 0.0;
-    do {
-      gather(
-          {terms_.data(), ends_.data(), inputs_, shifts_.data(), stride_, mask_.data(), nullptr, 0},
-          range_, {}, now_.data(), next_.data());
-      accumulate(next_.data(), sum_.data(), inputs_, stride_, range_.front().first,
-                 range_.front().last);
-      std::swap(now_, next_);
-      largest = *std::max_element(now_.data(), now_.data() + now_.size());
-    } while (largest > kSweepTolerance * (1.0 - stays_) *
-                           *std::max_element(sum_.data(), sum_.data() + sum_.size()));
-    each([&](std::ptrdiff_t plane, std::ptrdiff_t cell) { values[cell] = sum_.data()[plane]; });
-  }
-
- private:
-  static std::ptrdiff_t lanes_up(std::ptrdiff_t x) { return (x + kLanes - 1) / kLanes * kLanes; }
-  /// For every number its places in the planes and in the cells.
-  template <class Use>
-  void each(Use use) const {
-    for (std::ptrdiff_t column = 0; column < columns_; ++column)
-      for (std::ptrdiff_t input = 0; input < inputs_; ++input)
-        use(input * stride_ + origin_ + column, column * inputs_ + input);
-  }
-
-  int columns_, inputs_, widest_ = 0;
-  std::vector<GatherTerm> terms_;
-  std::vector<int> ends_;
-  std::vector<Shift> shifts_;
-  double stays_ = 1.0;
-  std::ptrdiff_t origin_ = 0, stride_ = 0;
-  std::vector<Range> range_;
-  PlaneBuffer buffer_;
-  Planes mask_, sum_, now_, next_;
-};
+/// x of a state, of those in its row that it moves to.
+RowSum row_sum_of(const Moves& moves, int columns, int inputs) {
+  std::vector<RowSum::Term> terms;
+  for (int input = 0; input < inputs; ++input)
+    for (std::size_t i = moves.side[input]; i < moves.up[input + 1]; ++i)
+      terms.push_back({input, moves.entries[i].next, moves.entries[i].di_x, moves.entries[i].p});
+  return {terms, columns, inputs};
+}
 
 class CommittorRows {
  public:
@@ -159,7 +88,7 @@ class CommittorRows {
                     static_cast<std::size_t>(chain.inputs())) {
     all_.values.resize(from_above_.size() * static_cast<std::size_t>(field.rows));
     if (chain.has_uniform_rows())
-      for (const Moves& m : moves_) sums_.emplace_back(m, field.columns, chain.inputs());
+      for (const Moves& m : moves_) sums_.push_back(row_sum_of(m, field.columns, chain.inputs()));
   }
 
   Committor solve() && {

@@ -1,12 +1,6 @@
 #include "markov/predict/layout.h"
 
 namespace gatewalk::markov {
-namespace {
-
-constexpr std::ptrdiff_t lanes_down(std::ptrdiff_t x) { return x / kLanes * kLanes; }
-constexpr std::ptrdiff_t lanes_up(std::ptrdiff_t x) { return lanes_down(x + kLanes - 1); }
-
-}  // namespace
 
 Stencil::Stencil(const std::vector<Entry>& entries) {
   // Counting sort by target and move; entries of the same target and move keep their order.

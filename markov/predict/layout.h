@@ -14,6 +14,10 @@
 
 namespace gatewalk::markov {
 
+/// The nearest multiple of kLanes that is not above, not below.
+constexpr std::ptrdiff_t lanes_down(std::ptrdiff_t x) { return x / kLanes * kLanes; }
+constexpr std::ptrdiff_t lanes_up(std::ptrdiff_t x) { return lanes_down(x + kLanes - 1); }
+
 struct Move {
   int di_x, di_y;
 };
