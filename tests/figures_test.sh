@@ -54,6 +54,11 @@ run trace "$field" --field --trials 4 --figure ../trace_field.svg
 # Studies draw into their folders; --figure draws the same again, stability's with all maps.
 run landscape "$scenes/soft_left.toml" -o landscape --figure ../landscape.svg
 run landscape "$scenes/robot.toml" -o landscape --figure ../landscape_robot.svg
+# Numbers at the very ends of both maps; numbers as long as 0.35 beside them.
+for radius in 0.08 0.05; do
+  printf 'body.radius_m = %s\nbody.mass_kg = 0.25\nforces.propulsion_N = 0.8\n' $radius >three_keys.toml
+  run landscape three_keys.toml -o landscape --figure ../landscape_radius_$radius.svg
+done
 run chart "$scenes/field.toml" "$scenes/overdamped.toml" --trials 100 --repeats 1 -o chart --figure ../chart.svg
 run chart-chain "$field" --truth-trials 200 --runs-limit 4000 --visited 50 -o chain --figure ../chart_chain.svg
 run chart-chain "$field" --truth-trials 200 --runs-limit 4000 --start 4,5,10 -o chain --figure ../chart_chain_one.svg
