@@ -77,6 +77,6 @@ grep -q 'must end in .svg, .pdf or .png' jpg.txt
 for end in svg pdf png; do
   grep -qa 'gatewalk gate .*scenes/.*\.toml --trials' ../gate.$end || { echo "gate.$end does not say what made it"; exit 1; }
 done
-# And the figures that stand in the repository, but how.svg, a drawing of the width of a page.
-results=$(find "$2/results" -name '*.svg' ! -name how.svg ! -path '*/paper/*')
+# And the figures that stand in the repository, but how.svg and gate.svg, drawings of the width of a page.
+results=$(find "$2/results" -name '*.svg' ! -name how.svg ! -name gate.svg ! -path '*/paper/*')
 node "$2/tests/web/figures_test.mjs" "$out" $results
