@@ -113,6 +113,25 @@ Strings keep_last(std::vector<po::option>& given, const po::options_description&
   return remarks;
 }
 
+/// Of a key that settings KEY=VALUE of one option give more than once, in whatever unit, the last
+/// one counts; says so. (What is no key of a scene is refused by who reads it.)
+Strings repeated_keys(const std::string& option, const Strings& settings) {
+  std::map<std::string, Strings> given;  // by key
+  for (const std::string& setting : settings) {
+    try {
+      for (const std::string& key : lattice::keys_set_by(setting)) given[key].push_back(setting);
+    } catch (const lattice::SceneError&) {
+      return {};
+    }
+  }
+  Strings remarks;
+  for (const auto& [key, all] : given)
+    if (all.size() > 1)
+      remarks.push_back(shown(option) + " gives " + key + " " + std::to_string(all.size()) +
+                        " times: the last one counts, " + all.back());
+  return remarks;
+}
+
 /// Of the options that there are, those with which a command needs less memory.
 std::string advice(const po::options_description& offered) {
   constexpr std::array<std::pair<const char*, const char*>, 7> kSmaller{
@@ -522,6 +541,9 @@ bool Options::parse(const Arguments& arguments) {
     remarks = keep_last(parsed.options, all);
     po::store(parsed, state_->values);
     po::notify(state_->values);
+    for (const char* option : {"set", "versus"})
+      for (std::string& remark : repeated_keys(option, texts(option)))
+        remarks.push_back(std::move(remark));
   } catch (const po::error& e) {
     throw UsageError(mistake_in(e, offered) + "; see gatewalk " +
                      state_->synopsis.substr(0, state_->synopsis.find(' ')) + " --help");

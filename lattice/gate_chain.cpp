@@ -291,7 +291,8 @@ MatrixFile read_matrix(const std::string& path) {
     try {
       return markov::read_counts(path);
     } catch (const markov::BadChecksum& e) {
-      throw markov::BadFile(std::string(e.what()) + "; " + markov::diagnose_counts(path));
+      const std::string found = markov::diagnose_counts(path);
+      throw markov::BadFile(e.what() + (found.empty() ? "" : "; " + found));
     } catch (const markov::BadFile& e) {
       if (!path.ends_with(".toml")) throw;
       throw markov::BadFile(std::string(e.what()) +

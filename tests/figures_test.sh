@@ -54,6 +54,11 @@ run trace "$field" --field --trials 4 --figure ../trace_field.svg
 # Studies draw into their folders; --figure draws the same again, stability's with all maps.
 run landscape "$scenes/soft_left.toml" -o landscape --figure ../landscape.svg
 run landscape "$scenes/robot.toml" -o landscape --figure ../landscape_robot.svg
+# Numbers at the very ends of both maps; numbers as long as 0.35 beside them.
+for radius in 0.08 0.05; do
+  printf 'body.radius_m = %s\nbody.mass_kg = 0.25\nforces.propulsion_N = 0.8\n' $radius >three_keys.toml
+  run landscape three_keys.toml -o landscape --figure ../landscape_radius_$radius.svg
+done
 run chart "$scenes/field.toml" "$scenes/overdamped.toml" --trials 100 --repeats 1 -o chart --figure ../chart.svg
 run chart-chain "$field" --truth-trials 200 --runs-limit 4000 --visited 50 -o chain --figure ../chart_chain.svg
 run chart-chain "$field" --truth-trials 200 --runs-limit 4000 --start 4,5,10 -o chain --figure ../chart_chain_one.svg
@@ -72,6 +77,6 @@ grep -q 'must end in .svg, .pdf or .png' jpg.txt
 for end in svg pdf png; do
   grep -qa 'gatewalk gate .*scenes/.*\.toml --trials' ../gate.$end || { echo "gate.$end does not say what made it"; exit 1; }
 done
-# And the figures that stand in the repository, but how.svg, a drawing of the width of a page.
-results=$(find "$2/results" -name '*.svg' ! -name how.svg ! -path '*/paper/*')
+# And the figures that stand in the repository, but how.svg and gate.svg, drawings of the width of a page.
+results=$(find "$2/results" -name '*.svg' ! -name how.svg ! -name gate.svg ! -path '*/paper/*')
 node "$2/tests/web/figures_test.mjs" "$out" $results

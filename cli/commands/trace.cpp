@@ -18,9 +18,10 @@ void declare(Options& options) {
   options.add_strict();
   options.add_count("trial", "I", "number of the first trial", "0");
   options.add_count("trials", "N", "record trials I to I + N - 1", "1");
-  options.add_text("only", "ENDING",
-                   "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with "
-                   "--field crossed, 'left field' (over any side), trapped, 'cut off'");
+  options.add_text(
+      "only", "ENDING",
+      "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with "
+      "--field crossed, 'left side', 'right side', departed (any of these), trapped, 'cut off'");
   options.add_flag("field", "cross the field, gate after gate, instead of one gate");
   options.output_file("csv", "FILE", "write all samples as CSV; - is standard output");
   options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);

@@ -375,6 +375,9 @@ std::string table_of(const AnalysedField& f) {
                        ? "of all bodies, 95 % intervals that count everything"
                        : "of all bodies; 95 % intervals that count the sampling of the matrix") +
       limits_text(f.scene) + "\ngates visited  " + with_interval(a.gates, 3) +
+      (a.by_groups && std::isnan(a.gates.interval[0])
+           ? " (no interval: it is the same in all eight groups of trials)"
+           : "") +
       "\n\nby the chain\n" + kHeader;
   const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);

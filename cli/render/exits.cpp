@@ -143,8 +143,8 @@ std::string panels_of(const FieldExits& exits, const lattice::Scene& scene, cons
            (side == 2 ? "set format y ''\n" : "set format y '%g'\n") + "plot " + name +
            (far ? " using 1:($2/2):5:($2/2)" : " using ($2/2):1:($2/2):5") +
            " with boxxyerror lc rgb '" + kFirstColour + "', " + name +
-           (far ? " using 1:2:3:4 with yerrorbars" : " using 2:1:3:4 with xerrorbars") +
-           " pt 0 ps 0 lw 1.2 lt -1\nunset label\n";
+           (far ? " using 1:3:(0):($4-$3)" : " using 3:1:($4-$3):(0)") + kInterval +
+           "\nunset label\n";
   }
   return out + "set format y '%g'\n";
 }

@@ -80,7 +80,7 @@ std::string netcdf_of(const std::vector<FieldArrays>& fields, const Json& made_b
       "trapped_gates", "share of all that was trapped in this gate",
       [](const Arrays& f) -> const auto& { return f.shares.trapped; });
   maps(
-      "departed_gates", "share of all that left the field from this gate",
+      "departed_gates", "share of all that departed from this gate",
       [](const Arrays& f) -> const auto& { return f.shares.departed; });
   if (std::all_of(fields.begin(), fields.end(), [](const Arrays& f) { return !!f.gates_95; })) {
     maps(

@@ -91,8 +91,8 @@ std::string share_bars(const Sheet& sheet, const Box& box, const std::string& da
          std::to_string(bars.size()) + "-0.4:-0.6]\nset ytics (" + tics +
          ") scale 0\nset style fill solid noborder\nplot " + data +
          " using ($2/2):1:($2/2):(0.36) with boxxyerror lc rgb '" + kFirstColour +
-         "', '' using 2:1:3:4 with xerrorbars pt 0 lw 1.2 lt -1, "
-         "'' using ($4 > 98 ? 100 : $4 + 2):1:5 with labels left font '," +
+         "', '' using 3:1:($4-$3):(0)" + kInterval +
+         ", '' using ($4 > 98 ? 100 : $4 + 2):1:5 with labels left font '," +
          std::to_string(kSmallFont) + "'\nset ytics scale 0.5\n";
 }
 

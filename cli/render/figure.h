@@ -93,6 +93,10 @@ class RootScale {
 /// The colours as a horizontal bar below maps.
 [[nodiscard]] std::string bar_below(const Sheet& sheet, double left, double right, double top);
 
+/// Of such lines between the ends of an interval, with bars across: gnuplot's own error bars have a
+/// white disc in the middle in a PNG.
+inline constexpr char kInterval[] = " with vectors heads size screen 0.006,90 lw 1.2 lt -1";
+
 /// Horizontal bars of shares of all, each with its 95 % interval (NaN: none) and its number.
 struct ShareBar {
   std::string name;

@@ -65,6 +65,14 @@ std::string rows_of(const dynamics::Pass& pass, const Landscape& l, const Sized&
   return rows;
 }
 
+/// The y axis has its name nearer, by letters, where its numbers are long, as with a step of 0.05.
+std::string named_axes(const std::string& x, const std::string& y, const std::string& step_y) {
+  constexpr std::size_t kShort = 3;
+  const std::size_t more = std::max(step_y.size(), kShort) - kShort;
+  return Sheet::x_axis(x) + "set ylabel " + y + " offset " +
+         digits(0.8 + static_cast<double>(more)) + ",0\n";
+}
+
 /// Black below white: seen on every colour of a map.
 std::string outlined(const std::string& data, const std::string& wide, const std::string& narrow) {
   return ", " + data + " with " + wide + " lc rgb '#000000', " + data + " with " + narrow +
@@ -84,9 +92,11 @@ Figure figure_of(const dynamics::Passes& passes) {
   const auto energy = [&](double e) { return digits(e / joule.size); };
   const std::string m = " (" + metre.name + ")'";
 
-  const double scale = std::min(158.0 / wide, 320.0 / deep);
+  const double scale = std::min(145.0 / wide, 320.0 / deep);
+  constexpr double kBetween = 40;  // for half a number of either map
   const Box first{82, 82 + scale * wide, 36, 36 + scale * deep};
-  const Box second{first.right + 20, first.right + 20 + scale * wide, first.top, first.bottom};
+  const Box second{first.right + kBetween, first.right + kBetween + scale * wide, first.top,
+                   first.bottom};
   const Box profile{82, 488, first.bottom + 100, first.bottom + 240};
   const Sheet sheet{static_cast<int>(profile.bottom + 84)};
   // Both what the way rises to and the start's energy, off the axis.
@@ -100,6 +110,8 @@ Figure figure_of(const dynamics::Passes& passes) {
   }
   const double margin = highest > lowest ? 0.06 * (highest - lowest) : 0.5 * joule.size;
   const auto [x, y] = fine.from_start.way.front();
+  const std::string step_y = digits(tic_step(deep / metre.size, 5)),
+                    step_energy = digits(tic_step(ceiling / joule.size, 5));
   const std::string at_pass = data_block("$pass", length(pass.x) + " " + length(pass.y) + "\n"),
                     at_start = data_block("$start", length(x) + " " + length(y) + "\n");
   return {
@@ -109,12 +121,12 @@ Figure figure_of(const dynamics::Passes& passes) {
           "set multiplot\n" + kFrame + "set xrange [" + length(l.x.front()) + ":" +
           length(l.x.back()) + "]\nset yrange [" + length(l.y.front()) + ":" + length(l.y.back()) +
           "]\nset cbrange [0:" + energy(ceiling) + "]\nunset colorbox\nset xtics " +
-          digits(tic_step(wide / metre.size, 3)) + "\nset ytics " +
-          digits(tic_step(deep / metre.size, 5)) + "\n" + Sheet::axes("'x" + m, "'y" + m) +
-          sheet.margins(first) + sheet.text("beams, Eq. (14)", first.left, 18) +
+          digits(tic_step(wide / metre.size, 3)) + "\nset ytics " + step_y + "\n" +
+          named_axes("'x" + m, "'y" + m, step_y) + sheet.margins(first) +
+          sheet.text("beams, Eq. (14)", first.left, 18) +
           "plot $grid using 1:2:3 with image\nunset label\n" + sheet.margins(second) +
           "unset ylabel\nset format y ''\nset cblabel '" + joule.name +
-          "' offset -1.5,0\nset cbtics " + digits(tic_step(ceiling / joule.size, 5)) +
+          "' offset -1.5,0\nset cbtics " + step_energy +
           " offset -0.8,0\nset colorbox user origin screen " +
           sheet.at(second.right + 12, second.bottom) + " size screen " +
           digits(12.0 / Sheet::kWidth) + "," + digits((second.bottom - second.top) / sheet.height) +
@@ -127,11 +139,11 @@ Figure figure_of(const dynamics::Passes& passes) {
           outlined("$pass using 1:2", "points pt 7 ps 1.1", "points pt 7 ps 0.7") +
           "\nunset label\n" + sheet.margins(profile) +
           "set format y '%g'\nset xrange [0:*]\nset xtics autofreq\nset yrange [" +
-          energy(lowest - margin) + ":" + energy(highest + margin) + "]\nset ytics " +
-          digits(tic_step(ceiling / joule.size, 5)) + "\n" +
-          Sheet::axes(std::string("'along the lowest way from the ") +
-                          (fine.downhill() ? "start" : "basin") + m,
-                      "'energy (" + joule.name + ")'") +
+          energy(lowest - margin) + ":" + energy(highest + margin) + "]\nset ytics " + step_energy +
+          "\n" +
+          named_axes(std::string("'along the lowest way from the ") +
+                         (fine.downhill() ? "start" : "basin") + m,
+                     "'energy (" + joule.name + ")'", step_energy) +
           "set key off\nplot $way using 3:4 with lines lw 2 lc rgb '" + kFirstColour + "', " +
           energy(at_start_energy) + " with lines lt -1 dt 2\n" +
           sheet.key(82, first.bottom + 58, {"with points pt 5 ps 0.8 lt -1 title 'start'"}) +

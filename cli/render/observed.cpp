@@ -147,14 +147,15 @@ Json to_json(const lattice::ObservedComparison& c, const lattice::StartValidatio
 
 std::string table_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   const std::int64_t n = c.seen.trials();
-  std::string text =
-      "Observed: " + std::to_string(n) + " trials, beside " + std::to_string(v.dynamics.trials) +
-      " of the full dynamics and the exact chain. p: how often chance makes as "
-      "large a\ndifference in anything that is looked at. Seen from: a smaller "
-      "difference from the model is missed by\nmore than " +
-      fixed(100.0 - 100.0 * c.least.goal.power, 0) + " of 100 experiments of " + std::to_string(n) +
-      " trials (+: more than the model, -: fewer; none: not even none at all would "
-      "be seen).\n\n";
+  std::string text = "Observed: " + std::to_string(n) + (n == 1 ? " trial" : " trials") +
+                     ", beside " + std::to_string(v.dynamics.trials) +
+                     " of the full dynamics and the exact chain. p: how often chance makes as "
+                     "large a\ndifference in anything that is looked at. Seen from: a smaller "
+                     "difference from the model is missed by\nmore than " +
+                     fixed(100.0 - 100.0 * c.least.goal.power, 0) + " of 100 experiments of " +
+                     std::to_string(n) + (n == 1 ? " trial" : " trials") +
+                     " (+: more than the model, -: fewer; none: not even none at all would "
+                     "be seen).\n\n";
   if (c.seen.has_endings()) text += "Endings, % with 95 % intervals\n" + endings_part(c, v);
   if (c.seen.has_endings() && c.seen.has_gates()) text += "\n";
   if (c.seen.has_gates()) {

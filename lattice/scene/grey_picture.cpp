@@ -70,7 +70,7 @@ GreyPicture read_grey_png(const std::string& path, int columns, int rows) {
   std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));
   std::array<png_byte, std::size_t{256} * 4> palette{};
   if (png_image_finish_read(&image, nullptr, pixels.data(), 0, palette.data()) == 0)
-    throw std::runtime_error(std::string("cannot be read as a PNG: ") + image.message);
+    throw std::runtime_error("cannot be read as a PNG: it is cut short or damaged");
   GreyPicture picture{columns, rows, {}};
   const std::size_t count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   for (std::size_t i = 0; i < count; ++i) {

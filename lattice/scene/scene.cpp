@@ -183,6 +183,22 @@ std::string_view closest_key(std::string_view name) {
       ->key;
 }
 
+/// "the closest known key is body.mass_kg"; both of two beams where `name` does not say which.
+std::string closest_keys(std::string_view name) {
+  const std::string key(closest_key(name));
+  const auto other_side = [&](const std::string& side, const std::string& other) {
+    const std::size_t at = key.find(side);
+    return at == key.npos ? "" : key.substr(0, at) + other + key.substr(at + side.size());
+  };
+  if (name.find("left") == name.npos && name.find("right") == name.npos) {
+    if (const std::string right = other_side("_left", "_right"); !right.empty())
+      return "the closest known keys are " + key + " and " + right;
+    if (const std::string left = other_side("_right", "_left"); !left.empty())
+      return "the closest known keys are " + left + " and " + key;
+  }
+  return "the closest known key is " + key;
+}
+
 // ---- From TOML to settings
 
 /// One key that a file or an override gives.
@@ -240,8 +256,7 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
       throw SceneError(table_origin + ": unknown " +
                        (table ? "table " + printable(table_name) + "; the closest known table is " +
                                     std::string(closest_table(table_name))
-                              : "key " + printable(table_name) + "; the closest known key is " +
-                                    std::string(closest_key(table_name))));
+                              : "key " + printable(table_name) + "; " + closest_keys(table_name)));
     }
     if (!table) {
       throw SceneError(table_origin + ": " + table_name + shown_value(table_node) +
@@ -549,8 +564,7 @@ std::string known_key(const std::string& given, const std::string& origin) {
         edit_distance(given.substr(0, kLongestCompared), closest) > 1)
       throw SceneError(origin + ": unknown key " + printable(given) + ": " + std::string(key.key) +
                        " may end in " + units + " instead");
-  throw SceneError(origin + ": unknown key " + printable(given) + "; the closest known key is " +
-                   std::string(closest));
+  throw SceneError(origin + ": unknown key " + printable(given) + "; " + closest_keys(given));
 }
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {

@@ -97,7 +97,8 @@ CountTable read_table(const std::string& path) {
       continue;
     }
     if (fields->size() != table.columns.size())
-      table.refuse(line, "has " + std::to_string(fields->size()) + " fields, the first line " +
+      table.refuse(line, "has " + std::to_string(fields->size()) +
+                             (fields->size() == 1 ? " field" : " fields") + ", the first line " +
                              std::to_string(table.columns.size()));
     table.rows.push_back({line, std::move(*fields)});
   }
@@ -167,6 +168,33 @@ void add_endings(Observed& observed, const CountTable& table) {
   require_trials(table, SeenEndings{{}, observed.seen.endings}.trials(), observed.went_back);
 }
 
+/// A body leaves the field from a gate at the side that it leaves by; it may be trapped or cut off
+/// in any.
+void require_at_side(const CountTable& table, const CountTable::Row& row, std::size_t ending,
+                     const std::array<std::int64_t, 2>& gate, const FieldParams& field) {
+  const std::int64_t gate_y = gate[0], gate_x = gate[1] - field.start_column();
+  const auto require = [&](const std::string& name, std::int64_t given, std::int64_t value,
+                           const std::string& why) {
+    if (given == value) return;
+    table.refuse(row.line, "a body that ended as " + quoted(table.at(row, "ending")) +
+                               " cannot have " + name + " = " + std::to_string(given) +
+                               ": must be " + std::to_string(value) + ", " + why);
+  };
+  const std::string columns = "(field.columns = " + std::to_string(field.columns) + ")";
+  switch (static_cast<markov::Ending>(ending)) {
+    case markov::Ending::far_edge:
+      return require("gate_y", gate_y, field.rows - 1,
+                     "the last row (field.rows = " + std::to_string(field.rows) + ")");
+    case markov::Ending::left_edge:
+      return require("gate_x", gate_x, -field.start_column(), "the first column " + columns);
+    case markov::Ending::right_edge:
+      return require("gate_x", gate_x, field.columns - 1 - field.start_column(),
+                     "the last column " + columns);
+    default:
+      return;
+  }
+}
+
 void add_lines(Observed& observed, const CountTable& table, const FieldParams& field) {
   const bool has_gates = table.has("gate_x"), has_endings = table.has("ending");
   CellCounts& gates = observed.seen.final_gates;
@@ -181,17 +209,18 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
     if (const auto [first, is_new] = lines.emplace(trial, row.line); !is_new)
       table.refuse(row.line, "trial " + quoted(trial) + " was given in line " +
                                  std::to_string(first->second) + " already");
+    const auto ending = has_endings ? ending_of(table, row) : std::nullopt;
     if (has_endings) {
-      const auto e = ending_of(table, row);
-      if (!e) {
+      if (!ending) {
         ++observed.went_back;
         continue;
       }
-      ++observed.seen.endings[*e];
+      ++observed.seen.endings[*ending];
     }
     if (!has_gates) continue;
-    const auto [y, column] = counted_gate(table, row, field);
-    ++gates(y, column);
+    const auto gate = counted_gate(table, row, field);
+    if (ending) require_at_side(table, row, *ending, gate, field);
+    ++gates(gate[0], gate[1]);
   }
   require_trials(table, static_cast<std::int64_t>(lines.size()) - observed.went_back,
                  observed.went_back);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "lattice/ending_shares.h"
 #include "lattice/reference.h"
 #include "lattice/scene/settle.h"
 
@@ -14,25 +15,19 @@ namespace {
 /// nothing of one.
 constexpr std::int64_t kCheckedAs = 500;
 
+/// The word for who is out of the field, whichever way.
+constexpr std::string_view kDeparted = "departed";
+
+/// The end of a trial that was not finite has no name in the tables.
 std::string field_ending(std::optional<markov::Ending> ending) {
   if (!ending) return "not finite";
-  switch (*ending) {
-    case markov::Ending::trapped:
-      return "trapped";
-    case markov::Ending::far_edge:
-      return "crossed";
-    case markov::Ending::left_edge:
-      return "left field left side";
-    case markov::Ending::right_edge:
-      return "left field right side";
-    case markov::Ending::near_edge:
-      return "left field near side";
-    case markov::Ending::cut_off:
-      return "cut off";
-    case markov::Ending::unsampled:
-      break;  // of walks only
-  }
-  throw std::logic_error("the dynamics samples no matrix");
+  for (const EndingName& e : kEndingNames)
+    if (e.ending == *ending) return e.name;
+  throw std::logic_error("no trial of the dynamics ends so");
+}
+
+bool has_departed(std::string_view ending) {
+  return ending == "crossed" || ending == "left side" || ending == "right side";
 }
 
 /// Energies of the trial when those of this gate are `now`, and what was done before it is
@@ -83,15 +78,14 @@ std::vector<std::string> endings(bool across_field) {
       names.emplace_back(name_of(static_cast<dynamics::Outcome>(k)));
     return names;
   }
-  for (std::size_t e = 0; e < markov::kEndings; ++e)
-    if (const auto ending = static_cast<markov::Ending>(e); ending != markov::Ending::unsampled)
-      names.push_back(field_ending(ending));
+  for (const EndingName& e : kEndingNames) names.emplace_back(e.name);
   names.push_back(field_ending({}));
   return names;
 }
 
 bool ends_so(std::string_view ending, std::string_view only) {
-  if (ending == "crossed" && ends_so("left field", only)) return true;
+  if (only == kDeparted) return has_departed(ending);
+  if (const auto named = ending_named(only)) return ending == field_ending(named);
   return ending.starts_with(only) && (ending.size() == only.size() || ending[only.size()] == ' ');
 }
 
@@ -101,7 +95,8 @@ void require_ending(const std::string& only, bool across_field) {
     if (ends_so(ending, only)) return;
     known += (known.empty() ? "" : ", ") + ending;
   }
-  throw std::invalid_argument("'" + only + "': a run ends as one of: " + known);
+  throw std::invalid_argument("'" + only + "': a run ends as one of: " + known +
+                              (across_field ? "; departed is each of the first three" : ""));
 }
 
 Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, bool across_field,

@@ -62,8 +62,8 @@ class RunGates {
 /// Every ending that a recording may have, in the order of their codes.
 [[nodiscard]] std::vector<std::string> endings(bool across_field);
 
-/// Whether `ending` is what `only` says, or begins with its words. Who has crossed has left the
-/// field too.
+/// Whether `ending` is what `only` says, or begins with its words: "traversed" is left and right,
+/// "departed" crossed and both sides, "left_side" is "left side".
 [[nodiscard]] bool ends_so(std::string_view ending, std::string_view only);
 
 /// Throws std::invalid_argument, with all of them, unless an ending is what `only` says.

@@ -543,6 +543,7 @@ std::string diagnose_counts(const std::string& path) {
       [[maybe_unused]] const CountsFile file = Reader(image).read();
     } catch (const std::exception& error) {
       verdict = error.what();
+      if (verdict == netcdf::kCannotOpen) verdict = "";
     }
     const ssize_t put = ::write(ends[1], verdict.data(), verdict.size());
     ::_exit(put == static_cast<ssize_t>(verdict.size()) ? 0 : 1);
@@ -555,7 +556,7 @@ std::string diagnose_counts(const std::string& path) {
       verdict.append(bytes, static_cast<std::size_t>(got));
     int status = 0;
     ::waitpid(child, &status, 0);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) verdict = "its content cannot be read";
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) verdict = "";
   }
   ::close(ends[0]);
   return verdict;
@@ -569,8 +570,8 @@ CountsFile read_counts(const std::string& path) {
     const InputFile opened(path);
     check_kind(opened);
     if (!has_its_checksum(opened)) {
-      throw BadChecksum(path +
-                        ": checksum does not match: damaged or altered since it was written");
+      throw BadChecksum(
+          path + ": checksum does not match: cut short, damaged or altered since it was written");
     }
     std::vector<char> image = image_of(opened);
     return Reader(image).read();

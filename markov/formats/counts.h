@@ -71,8 +71,8 @@ void write_counts(const std::string& path, const CountsFile& file);
 [[nodiscard]] CountsFile read_counts(const std::string& path);
 
 /// What is wrong with a file of a bad checksum, for people: "row 12 (counted from 1): counts add up
-/// to ...", or that its content adds up all the same. Looks in a
-/// child process, because HDF5 may crash or hang on damaged bytes.
+/// to ...", or that its content adds up all the same. Empty where nothing in it can be read. Looks
+/// in a child process, because HDF5 may crash or hang on damaged bytes.
 [[nodiscard]] std::string diagnose_counts(const std::string& path);
 
 }  // namespace gatewalk::markov

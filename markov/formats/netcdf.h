@@ -25,6 +25,8 @@ inline void check(int rc, const std::string& what) {
                            (is_missing ? " is missing" : std::string(": ") + nc_strerror(rc)));
 }
 
+inline constexpr const char* kCannotOpen = "cannot open: cut short or damaged, or not NetCDF-4";
+
 class Image {
  public:
   Image() = default;
@@ -42,7 +44,7 @@ class Image {
   void open(std::vector<char>& image) {
     if (const int rc = nc_open_mem("image", NC_NOWRITE, image.size(), image.data(), &id_);
         rc != NC_NOERR && rc != NC_ENOMEM)
-      throw std::runtime_error("cannot open: cut short or damaged, or not NetCDF-4");
+      throw std::runtime_error(kCannotOpen);
     else
       check(rc, "memory");
     is_open_ = true;

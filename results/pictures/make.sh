@@ -16,7 +16,8 @@ draw() {  # FILE COMMAND...: made beside the old one, which it then replaces
   mv "$new" "$here/$file"
 }
 draw prediction.svg predict scenes/field.toml --accuracy 0.01 --figure
+draw gate.svg scene scenes/walker.toml --figure
 draw mixed.svg predict scenes/mixed.toml --accuracy 0.01 --figure
 draw analysis.svg analyze scenes/robot.toml --accuracy 0.01 --figure
-draw crossing.gif trace scenes/field.toml --field --trial 11795 --video-speed 4 --video
+draw crossing.gif trace scenes/field.toml --field --trial 322237 --video-speed 4 --video
 manifest "results/pictures/make.sh" >"$here/manifest.txt"

@@ -149,6 +149,23 @@ TEST_F(CountsFile, RefusalsOfLinesOfTrials) {
             "x.csv:2: column gate_x:");
 }
 
+TEST_F(CountsFile, ABodyLeavesByASideFromAGateAtThatSide) {
+  const std::string header = "trial,ending,gate_x,gate_y\n";
+  EXPECT_EQ(refusal(header + "1,trapped,0,1\n2,crossed,0,1\n"),
+            "x.csv:3: a body that ended as \"crossed\" cannot have gate_y = 1: must be 2, the last "
+            "row (field.rows = 3)");
+  EXPECT_EQ(refusal(header + "1,left side,0,1\n"),
+            "x.csv:2: a body that ended as \"left side\" cannot have gate_x = 0: must be -2, the "
+            "first column (field.columns = 4)");
+  EXPECT_EQ(refusal(header + "1,right_side,-2,1\n"),
+            "x.csv:2: a body that ended as \"right_side\" cannot have gate_x = -2: must be 1, the "
+            "last column (field.columns = 4)");
+  EXPECT_EQ(read(header + "1,crossed,-1,2\n2,left side,-2,0\n3,right side,01,0\n4,trapped,0,2\n"
+                          "5,cut off,0,1\n")
+                .seen.trials(),
+            5);
+}
+
 TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
   const std::string header = "gate_x,gate_y,count\n";
   const std::string kTables =
@@ -175,6 +192,7 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
             "x.csv:2: column count: nothing is not permitted: must be a whole number from 0 to "
             "1000000000");
   EXPECT_EQ(refusal(header + "0,0\n"), "x.csv:2: has 2 fields, the first line 3");
+  EXPECT_EQ(refusal(header + "0\n"), "x.csv:2: has 1 field, the first line 3");
   EXPECT_EQ(refusal(header + "0,0,\"3\n"),
             "x.csv:2: a quotation mark is not closed, or not at a field's end");
   EXPECT_EQ(refusal(header + "0,0,3\n1,0,2\n0,0,3\n"),

@@ -60,8 +60,14 @@ TEST(Recording, WhatItsEndIsCalled) {
   EXPECT_FALSE(ends_so("traversed left", "traversed right"));
   EXPECT_FALSE(ends_so("traversed left", "trav")) << "whole words";
   EXPECT_FALSE(ends_so("traversed left", ""));
-  EXPECT_TRUE(ends_so("crossed", "left field")) << "over the far side";
-  EXPECT_FALSE(ends_so("trapped", "left field"));
+  for (const char* ending : {"crossed", "left side", "right side"})
+    EXPECT_TRUE(ends_so(ending, "departed")) << ending;
+  for (const char* ending : {"trapped", "cut off", "not finite", "traversed left"})
+    EXPECT_FALSE(ends_so(ending, "departed")) << ending;
+  EXPECT_TRUE(ends_so("left side", "left_side"));
+  EXPECT_TRUE(ends_so("cut off", "cut_off"));
+  EXPECT_FALSE(ends_so("right side", "left side"));
+  EXPECT_FALSE(ends_so("left side", "left field"));
 }
 
 // Kept are the trials that end so, in their order, each as it is alone.

@@ -480,6 +480,11 @@ TEST(Overrides, AreRefusedByName) {
         Bad{"random_N=20", "unknown key random_N; the closest known key is forces.random_N"},
         Bad{"forces.randm_N=20",
             "unknown key forces.randm_N; the closest known key is forces.random_N"},
+        Bad{"beams.stiffness_mNm_per_rad=20",
+            "unknown key beams.stiffness_mNm_per_rad; the closest known keys are "
+            "beams.stiffness_left_Nm_per_rad and beams.stiffness_right_Nm_per_rad"},
+        Bad{"beams.stifness_right_Nm_per_rad=20",
+            "the closest known key is beams.stiffness_right_Nm_per_rad"},
         Bad{"forcs.random_N=20", "unknown table forcs; the closest known table is forces"},
         Bad{"field.rows=2.5", "field.rows = 2.5 is not permitted: must be a whole number"},
         Bad{"run.method=euler", "run.method = \"euler\" is not permitted"},

@@ -212,6 +212,12 @@ TEST(Terrain, AMapMayBeAPicture) {
   bytes.insert(33, std::string("\0\0\0\4gAMA\0\1\x86\xa0\x31\xe8\x96\x5f", 16));  // 1.0
   std::ofstream(folder / "map.png", std::ios::binary) << bytes;
   EXPECT_TRUE(contains(message(grey), "has a gamma of its own")) << message(grey);
+  write(PNG_FORMAT_GRAY, map, 3);
+  std::filesystem::resize_file(folder / "map.png",
+                               std::filesystem::file_size(folder / "map.png") - 20);
+  EXPECT_TRUE(
+      contains(message(grey), "map.png: cannot be read as a PNG: it is cut short or damaged"))
+      << message(grey);
   std::ofstream(folder / "map.png") << "none";
   EXPECT_TRUE(contains(message(grey), "map.png: cannot be read as a PNG: it is none, or damaged"));
   std::filesystem::remove(folder / "map.png");

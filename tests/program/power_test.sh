@@ -21,6 +21,8 @@ cmp -s power.json again.json || fail "power: another number of threads gave anot
 # The same prediction as predict's.
 "$gatewalk" predict "$scenes/field.toml" --accuracy 0.05 --json predicted.json --quiet
 jq -s '.[0].endings == .[1].endings and .[0].final_gates == .[1].final_gates and .[0].error_95 == .[1].error_95' power.json predicted.json | grep -q true || fail "power: not the prediction of predict"
+expect 2 '^gatewalk: --versus gives forces.random_N 2 times: the last one counts, forces.random_kN=0.06$' \
+  "$gatewalk" "${power[@]}" --set forces.random_N=40 --versus forces.random_N=50 --versus forces.random_kN=0.06 --power 1.2
 expect 2 'power 1.2: must lie in \[0.5, 0.99\]' "$gatewalk" "${power[@]}" --power 1.2
 expect 2 'level 0: must lie in \[0.01, 0.25\]' "$gatewalk" "${power[@]}" --level 0
 expect 2 'trials 0: must be at least 1 and at most 100000' "$gatewalk" "${power[@]}" --trials 0

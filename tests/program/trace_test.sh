@@ -19,12 +19,21 @@ jq -s '.[0].runs[7] == .[1].runs[0]' runs.json one.json | grep -q true || fail "
 "$gatewalk" trace "$scenes/field.toml" --field --trials 8 --seed 3 --json crossings.json --quiet
 "$gatewalk" lattice "$scenes/field.toml" --trials 8 --seed 3 --json counted.json --quiet
 jq -s '(.[0].runs | map(.ending)) as $e | .[1].endings | [.crossed, .left_side, .right_side, .trapped, .cut_off] ==
-  ([("crossed", "left field left side", "left field right side", "trapped", "cut off") as $x | $e | map(select(. == $x)) | length])' \
+  ([("crossed", "left side", "right side", "trapped", "cut off") as $x | $e | map(select(. == $x)) | length])' \
   crossings.json counted.json | grep -q true || fail "trace --field: other endings than lattice"
-"$gatewalk" trace "$scenes/field.toml" --set field.rows=2 --field --trials 40 --seed 3 --only 'left field' --json some.json --quiet
+"$gatewalk" trace "$scenes/field.toml" --set field.rows=2 --field --trials 40 --seed 3 --only departed --json some.json --quiet
 "$gatewalk" trace "$scenes/field.toml" --set field.rows=2 --field --trials 40 --seed 3 --only crossed --json crossed.json --quiet
 jq -s '(.[0].runs | map(select(.ending == "crossed"))) == .[1].runs and .[0].recorded > .[1].recorded' some.json crossed.json | grep -q true ||
-  fail "trace --only: who crossed left the field"
+  fail "trace --only: who crossed has departed"
+for side in left right; do
+  "$gatewalk" trace "$scenes/field.toml" --field --trials 40 --seed 3 --only "$side side" --json a.json --quiet
+  "$gatewalk" trace "$scenes/field.toml" --field --trials 40 --seed 3 --only ${side}_side --json b.json --quiet
+  jq -s ".[0].runs == .[1].runs and (.[0].runs | map(.ending) | unique) == [\"$side side\"]" a.json b.json | grep -q true ||
+    fail "trace --only: other runs by the $side side"
+done
+expect 2 "'left field': a run ends as one of: crossed, left side, right side, trapped, cut off, not finite; departed is" \
+  "$gatewalk" trace "$scenes/field.toml" --field --only 'left field'
+expect 2 "'departed': a run ends as one of" "$gatewalk" trace "$scenes/soft_left.toml" --only departed
 "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.5 --video short.gif --quiet >/dev/null && [ "$(head -c 6 short.gif)" = GIF89a ] ||
   fail "trace: no GIF"
 expect 2 '^gatewalk: --video short.avi: a video is FILE.mp4 or FILE.gif$' "$gatewalk" trace "$scenes/soft_left.toml" --video short.avi

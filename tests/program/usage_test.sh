@@ -50,6 +50,15 @@ holds '.made_by.command | test("--seed 4") and (test("--seed 3") | not) and test
 grep -q '^gatewalk: --trials is given 2 times: the last one counts, 20$' err.txt || fail "an option given twice is not said: $(cat err.txt)"
 "$gatewalk" gate "$scenes/field.toml" --trials 1 --trials 20 --quiet >/dev/null 2>err.txt
 [ -s err.txt ] && fail "--quiet: $(cat err.txt)"
+# So it is with the keys of --set, in any unit; different keys are no remark.
+sets=(--set forces.propulsion_N=8 --set forces.random_N=3)
+expect 0 '^gatewalk: --set gives forces.propulsion_N 2 times: the last one counts, forces.propulsion_mN=9000$' \
+  "$gatewalk" gate "$scenes/field.toml" --trials 20 "${sets[@]}" --set forces.propulsion_mN=9000 --json twice.json
+holds '.made_by.scene | test("propulsion_N = 9.0\n")' twice.json
+"$gatewalk" gate "$scenes/field.toml" --trials 20 "${sets[@]}" >/dev/null 2>err.txt
+[ -s err.txt ] && fail "two keys of --set: $(cat err.txt)"
+expect 2 'unknown key beams.stiffness_mNm_per_rad; the closest known keys are beams.stiffness_left_Nm_per_rad and beams.stiffness_right_Nm_per_rad$' \
+  "$gatewalk" gate "$scenes/field.toml" --set beams.stiffness_mNm_per_rad=9
 
 # A scene from standard input is that of a file, for every command that reads one.
 "$gatewalk" gate - --trials 20 --seed 4 --json dash.json --quiet <"$scenes/field.toml"
