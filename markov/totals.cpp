@@ -496,13 +496,11 @@ DrawnMoments drawn_moments(const FieldChain& chain, const Field& field, const St
   return all;
 }
 
-/// Fields whose totals would take more than a second or two.
-bool is_large(const FieldChain& chain, const Field& field) {
-  constexpr double kCellsTimesNonzeros = 1e7;
+bool is_large(const FieldChain& chain, const Field& field, double large) {
   double nonzeros = 0.0;
   for (const Chain& c : chain.chains())
     nonzeros = std::max(nonzeros, static_cast<double>(c.matrix().nonZeros()));
-  return static_cast<double>(field.columns) * field.rows * nonzeros > kCellsTimesNonzeros;
+  return static_cast<double>(field.columns) * field.rows * nonzeros > large;
 }
 
 WalkTotals totals_of_large(VisitsByRows& rows, const FieldChain& chain, const Field& field,
@@ -568,7 +566,7 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
                        int max_cells, const Rewards& rewards, const EachState& each,
                        const WalkTolerance& tolerance, std::uint64_t seed) {
   validate(chain, field, start, max_cells);
-  if (max_cells == 0 && !goes_down(chain) && is_large(chain, field)) {
+  if (max_cells == 0 && !goes_down(chain) && is_large(chain, field, tolerance.large)) {
     VisitsByRows rows(chain, field);
     if (rows.suits())
       return totals_of_large(rows, chain, field, start, rewards, each, tolerance, seed);

@@ -54,6 +54,8 @@ struct WalkTolerance {
   double all = 1e-12;                    // that share of all walks ...
   const EndingChance* chance = nullptr;  // ... but of those that end so ...
   double of_target = 1e-9;               // ... only that share of them
+  /// Fields with so many cells, times nonzeros of a cell's chain, are large: a second or two.
+  double large = 1e7;
 };
 
 /// First and second moments, exact: propagated with the shares of the walks. With a limit of cells

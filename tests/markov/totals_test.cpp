@@ -125,6 +125,62 @@ TEST(WalkTotals, FollowTheFewThatEndAsAskedFor) {
   EXPECT_NEAR(few.draws[at(Ending::far_edge)].mean(), 20.0, 1e-12);
 }
 
+// In large fields visits and endings are as exact, and times those of walks that were drawn.
+TEST(WalkTotals, OfLargeFieldsAreTheSameButForChanceInTheMoments) {
+  Counts gaps = lattice_counts(4);
+  empty_row(gaps, 30);
+  const std::vector<Chain> chains = {Chain::from_counts(lattice_counts(3), never_down()),
+                                     Chain::from_counts(gaps, never_down())};
+  std::vector<int> rows_of_types(81);
+  for (std::size_t i = 0; i < rows_of_types.size(); ++i) rows_of_types[i] = i / 9 % 2;
+  for (const FieldChain& field :
+       {FieldChain(chains[0]), FieldChain::by_cell(chains, 9, rows_of_types)}) {
+    const Rewards rewards = some_rewards(field, 8);
+    const EndingChance chance(field, kNineByNine, Ending::far_edge, 0);
+    const auto totals = [&](double large, std::vector<double>& by_state) {
+      by_state.assign(std::size_t{81} * 87, 0.0);
+      return walk_totals(
+          field, kNineByNine, kBottomCentre, 0, rewards,
+          [&](int, std::int64_t cell, int input, double share) {
+            by_state[static_cast<std::size_t>(cell * 87 + input)] += share;
+          },
+          {.chance = &chance, .large = large}, 7);
+    };
+    std::vector<double> shares, exact_shares;
+    const WalkTotals exact = totals(1e9, exact_shares), large = totals(0.0, shares);
+    EXPECT_EQ(exact.drawn_walks, 0);
+    ASSERT_EQ(large.drawn_walks, 1 << 16);
+    EXPECT_LT((large.visits - exact.visits).abs().maxCoeff(), 1e-11);
+    for (std::size_t i = 0; i < shares.size(); ++i) EXPECT_NEAR(shares[i], exact_shares[i], 1e-11);
+    for (const Ending e : {Ending::trapped, Ending::left_edge, Ending::far_edge}) {
+      EXPECT_NEAR(large.endings[at(e)], exact.endings[at(e)], 1e-11);
+      // Of those that end as was asked for 2^12 walks were drawn.
+      const double n = e == Ending::far_edge ? 4096.0 : 65536.0 * exact.endings[at(e)];
+      const auto expect_close = [&](const Moments& drawn, const Moments& wanted) {
+        EXPECT_NEAR(drawn.share, wanted.share, 1e-11);
+        EXPECT_NEAR(drawn.mean(), wanted.mean(), 4.5 * wanted.sd() / std::sqrt(n));
+        EXPECT_NEAR(drawn.sd() / wanted.sd(), 1.0, 8.0 / std::sqrt(n));
+      };
+      expect_close(large.draws[at(e)], exact.draws[at(e)]);
+      expect_close(large.totals[0][at(e)], exact.totals[0][at(e)]);
+    }
+    const auto one = gatewalk::test::on_threads(1, [&] { return totals(0.0, shares); });
+    EXPECT_EQ(one.totals[0][at(Ending::trapped)].sum, large.totals[0][at(Ending::trapped)].sum);
+  }
+}
+
+// A row that nobody gets to but one in 10^80: those that do are drawn as well.
+TEST(WalkTotals, OfLargeFieldsKnowTheFewThatEndAsAskedFor) {
+  const Chain chain =
+      Chain::from_probabilities(matrix(1, 2, {{0, 0, 1e-4}, {0, 1, 1.0 - 1e-4}}), {{0, 0, 1}, {}});
+  const Field field{1, 20};
+  const EndingChance chance(chain, field, Ending::far_edge, 0);
+  const WalkTotals few =
+      walk_totals(chain, field, {}, 0, {}, {}, {.chance = &chance, .large = 0.0}, 3);
+  EXPECT_NEAR(few.endings[at(Ending::far_edge)] / 1e-80, 1.0, 1e-12);
+  EXPECT_NEAR(few.draws[at(Ending::far_edge)].mean(), 20.0, 1e-12);
+}
+
 // Times of walks have the moments that were asked for, and walks the endings.
 TEST(WalkTotals, AreThoseOfTimedWalks) {
   std::vector<Chain> chains = {Chain::from_counts(lattice_counts(3), never_down()),
