@@ -108,6 +108,8 @@ lines() {
 0 lattice map.toml --trials 100 --json out.json
 0 analyze field.toml --set run.method=moreau --accuracy 0.1 --runs 200 --trials 100 --json out.json --figure out.svg
 0 analyze tree.nc --runs 0 --lump 3,1,2 --target trapped --json out.json
+0 analyze tree.nc --set field.max_gates=0 --runs 0 --json out.json
+0 analyze tree.nc --set field.max_gates=0 --set field.columns=41 --set field.rows=20 --runs 0 --json out.json
 0 analyze matrix.nc --runs 100 --json out.json
 0 analyze map.toml --set run.method=moreau --accuracy 0.2 --runs 100 --json out.json
 0 rare field.toml --set run.method=moreau --row 5 --gate-runs 20000 --trials 100 --json out.json --figure out.svg
@@ -194,6 +196,7 @@ plain() {  # COMMAND FILE
   case $1:$2 in
     reproduce:*/out/report.json | reproduce:*/out/claims.csv | reproduce:*/out/speed.*) ;;
     reproduce:*.html | reproduce:*.pdf | reproduce:*/stdout.txt) ;;
+    *stderr.txt) grep -v -E '^gatewalk: .*: (some [0-9.]+ (s|min|h)|[0-9.]+ %(, .* left)?)$' "$2" || true ;;
     *.json) jq -S --arg timed "$timed" "$nameless" "$2" ;;
     *.nc) ncdump "$2" | grep -v -E '^[[:space:]]+:(program|version|commit|checksum) = |^netcdf ' ;;
     chart*.svg | chart-chain:*.txt | chart-chain:*.csv) ;;
