@@ -23,7 +23,8 @@ struct FrequentPaths {
 /// The most frequent paths with the ending of `chance`, which is that of the same chain, field and
 /// limit. Best first search: what is known of a path is its beginning with
 /// the share of the walks that pass it, and no way on from there has more than the share that ends
-/// so at all. It gives up when `most_draws` nonzeros of the matrix have been looked at, about a second.
+/// so at all. It gives up when `most_draws` nonzeros of the matrix have been looked at, about a
+/// second.
 [[nodiscard]] FrequentPaths most_frequent_paths(const FieldChain& chain, const Field& field,
                                                 const Start& start, int max_cells,
                                                 const EndingChance& chance, std::size_t count,
