@@ -2,7 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/non_central_chi_squared.hpp>
@@ -12,6 +11,7 @@
 #include <stdexcept>
 
 #include "dynamics/random.h"
+#include "markov/dense.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -114,17 +114,16 @@ Eigen::VectorXd halves_of(const Eigen::VectorXd& label_runs) {
 Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& v) {
   const Eigen::VectorXd scale =
       v.diagonal().unaryExpr([](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * v *
-                                                              scale.asDiagonal());
+  const auto [values, vectors] =
+      markov::symmetric_eigen(scale.asDiagonal() * v * scale.asDiagonal());
   constexpr double kNone = 1e-9;  // rounding leaves some 1e-14 of a correlation
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < v.rows(); ++i)
-    if (solver.eigenvalues()[i] > kNone) kept.push_back(i);
+    if (values[i] > kNone) kept.push_back(i);
   Eigen::MatrixXd w(static_cast<Eigen::Index>(kept.size()), v.rows());
   for (std::size_t i = 0; i < kept.size(); ++i)
     w.row(static_cast<Eigen::Index>(i)) =
-        solver.eigenvectors().col(kept[i]).cwiseProduct(scale).transpose() /
-        std::sqrt(solver.eigenvalues()[kept[i]]);
+        vectors.col(kept[i]).cwiseProduct(scale).transpose() / std::sqrt(values[kept[i]]);
   return w;
 }
 

@@ -1,10 +1,11 @@
 #include "markov/quasi_stationary.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+
+#include "markov/dense.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -53,14 +54,9 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
   for (int iteration = 0;; ++iteration) {
     if (iteration == kMostIterations)
       throw std::runtime_error("quasi-stationary: does not settle, the spectral gap is too small");
-    const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(v).householderQ() *
-                              Eigen::MatrixXd::Identity(n, block);
+    const Eigen::MatrixXd q = orthonormal(v);
     v = kernel * q;
-    const Eigen::MatrixXd small = q.transpose() * v;
-    std::vector<double> moduli;
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver(small, false);
-    for (const auto& value : solver.eigenvalues()) moduli.push_back(std::abs(value));
-    std::sort(moduli.begin(), moduli.end(), std::greater<>());
+    const Eigen::VectorXd moduli = eigenvalue_moduli(product(q.transpose(), v));
     const double was_first = first, was_second = second;
     first = moduli[0];
     second = moduli.size() > 1 ? moduli[1] : 0.0;

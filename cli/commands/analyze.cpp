@@ -194,7 +194,9 @@ int run_analyze(const Arguments& arguments) {
   const auto analysis = lattice::analyze(s.scene, *s.chain, how, work);
   if (s.pool) s.chain.reset();  // that for parameters is larger
   lattice::ParameterEffects effects;
-  if (parameters.runs > 0 && s.pool)
+  if (parameters.runs > 0 && analysis.is_certain())
+    effects.chance = analysis.target_chance;
+  else if (parameters.runs > 0 && s.pool)
     effects = lattice::parameter_effects(s.scene, *s.pool, how.target, parameters, s.per_leaf,
                                          s.most_runs, work);
   else if (parameters.runs > 0)

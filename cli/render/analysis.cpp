@@ -432,8 +432,10 @@ std::string table_of(const AnalysedField& f) {
     table += "  (the search for more was given up: there are very many ways)\n";
   else if (a.paths.paths.empty())
     table += "  (none)\n";
-  if (!(a.target_chance > 0.0) && f.parameters.effects.empty())
-    table += "nobody ends so: nothing can be said of what would change it\n";
+  if (a.is_certain() && f.parameters.effects.empty())
+    table += std::string(a.target_chance > 0.5 ? "everybody" : "nobody") +
+             " ends so: a little more or less of a number does not change that; --set KEY=VALUE "
+             "tries more\n";
   if (!f.parameters.effects.empty()) {
     table += "\nper cent that the chance of " + target + " (" + percents(f.parameters.chance) +
              " %) grows for 1 % more of each number, 95 %\n";

@@ -148,16 +148,10 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
   const CostedChain& c = chain.chain;
   const StateSpace& space = chain.space;
   const markov::Field cells{field.columns, field.rows};
-  const auto tell = [&](std::int64_t done) { work.tell("analysis", done, 2); };
 
   require_memory(c, field, !chain.groups.empty());
-  tell(0);
-  std::optional<Passages> whole;
-  std::vector<Passages> groups;
-  tbb::parallel_invoke([&] { whole.emplace(c, field, options.target); },
-                       [&] { groups = passages_of_groups(chain, field, options.target); });
-  const Passages& passages = *whole;
-  tell(1);
+  const auto [passages, groups] =
+      all_passages(chain, field, options.target, true, "analysis", work);
   markov::FrequentPaths paths;
   std::optional<LumpedChain> lumped;
   tbb::parallel_invoke(
@@ -168,7 +162,6 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
       [&] {
         lumped = lumped_chain(chain, gates, field, passages.state_visits(), options.lumping);
       });
-  tell(2);
 
   Analysis out{.target = options.target,
                .target_chance = passages.at_start(),

@@ -38,6 +38,11 @@ struct StartChance {
 struct Analysis {
   markov::Ending target{};
   double target_chance = 0.0;
+  /// Nobody ends so, or everybody but for rounding: no number changes that by a little.
+  [[nodiscard]] bool is_certain() const {
+    constexpr double kRounding = 1e-12;
+    return !(target_chance > 0.0 && target_chance < 1.0 - kRounding);
+  }
   bool by_groups = false;     // of trials, which make the intervals; none of bins
   markov::WalkTotals totals;  // quantities by dynamics::Cost
   /// Gates visited, and what bodies took, of all of them. Intervals: sampling, and what smaller

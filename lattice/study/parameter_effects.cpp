@@ -1,7 +1,6 @@
 #include "lattice/study/parameter_effects.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -289,12 +288,8 @@ ParameterEffects parameter_effects(const Scene& scene, const AnalysedChain& chai
   std::vector<const ParamInfo*> infos;
   for (const ParamInfo& info : gate_param_table())
     if (is_physical(info.key)) infos.push_back(&info);
-  work.tell(kRuns, 0, std::ssize(infos));
-  std::optional<Passages> whole;
-  std::vector<Passages> groups;
-  tbb::parallel_invoke([&] { whole.emplace(chain.chain, scene.field, target, false); },
-                       [&] { groups = passages_of_groups(chain, scene.field, target, false); });
-  const Passages& passages = *whole;
+  const auto [passages, groups] =
+      all_passages(chain, scene.field, target, false, "chain for parameters", work);
   ParameterEffects out{.chance = passages.at_start(), .effects = {}, .health = {}};
   if (passages.at_start() > 0.0) {
     Parameters parameters(scene, chain, passages, groups, options);

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -53,15 +54,23 @@ Passages::Place Passages::place(std::size_t i) const {
           static_cast<int>(at % inputs_)};
 }
 
-std::vector<Passages> passages_of_groups(const AnalysedChain& chain, const FieldParams& field,
-                                         markov::Ending target, bool with_costs) {
-  std::vector<std::optional<Passages>> parts(chain.groups.size());
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t g) {
-    parts[g].emplace(chain.groups[g].chain, field, target, with_costs);
+AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
+                         markov::Ending target, bool with_costs, std::string_view what,
+                         const dynamics::Work& work) {
+  std::vector<const CostedChain*> chains{&chain.chain};
+  for (const AnalysedChain& group : chain.groups) chains.push_back(&group.chain);
+  std::vector<std::optional<Passages>> parts(chains.size());
+  std::mutex telling;
+  std::int64_t done = 0;
+  work.tell(what, 0, std::ssize(chains));
+  tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t k) {
+    parts[k].emplace(*chains[k], field, target, with_costs);
+    const std::lock_guard lock(telling);
+    work.tell(what, ++done, std::ssize(chains));
   });
-  std::vector<Passages> groups;
-  for (auto& part : parts) groups.push_back(std::move(*part));
-  return groups;
+  AllPassages all{std::move(*parts.front()), {}};
+  for (std::size_t k = 1; k < parts.size(); ++k) all.groups.push_back(std::move(*parts[k]));
+  return all;
 }
 
 }  // namespace gatewalk::lattice

@@ -2,9 +2,11 @@
 /// Where walks pass that end in one way, and how likely that is from everywhere.
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "dynamics/params.h"
+#include "dynamics/work.h"
 #include "lattice/field.h"
 #include "lattice/study/costed_chain.h"
 #include "markov/committor.h"
@@ -78,10 +80,15 @@ class Passages {
   markov::WalkTotals totals_;
 };
 
-/// Of the chain's groups, on all threads.
-[[nodiscard]] std::vector<Passages> passages_of_groups(const AnalysedChain& chain,
-                                                       const FieldParams& field,
-                                                       markov::Ending target,
-                                                       bool with_costs = true);
+struct AllPassages {
+  Passages whole;
+  std::vector<Passages> groups;
+};
+
+/// Of the chain and of its groups, on all threads. `work` is told of each that is done, as `what`,
+/// by any thread, but one at a time.
+[[nodiscard]] AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
+                                       markov::Ending target, bool with_costs,
+                                       std::string_view what, const dynamics::Work& work);
 
 }  // namespace gatewalk::lattice
