@@ -3,7 +3,7 @@
 #   tests/nightly.sh [odr] [debug] [clang]      all three without an argument; half an hour each on two cores
 # odr    links the whole program with -flto -Wodr: no name may have two definitions. Without optimisation,
 #        which inlines functions before their types are compared.
-# debug  g++ without optimisation and batches: every file compiles alone; unit tests.
+# debug  g++ without optimisation and batches: every file and every public header compiles alone; unit tests.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
 # What a step prints is in nightly-STEP.log; of one that fails the end is shown.
 set -euo pipefail
@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 . ./.ci/prepare
 
 alone=(-DGATEWALK_BATCHES=OFF)
-web='^(web_|figures$|library$|headers$)'  # tests that do not depend on the compiler, or build themselves
+web='^(web_|figures$|library$)'  # tests that do not depend on the compiler, or build themselves
 
 odr() {
   local flags='-flto=auto -Wodr -Werror=odr -Wlto-type-mismatch -Werror=lto-type-mismatch' small
@@ -35,6 +35,7 @@ odr() {
 debug() {
   cmake -S . -B build-debug -G Ninja -DCMAKE_CXX_COMPILER=g++ -DCMAKE_BUILD_TYPE=Debug -DGATEWALK_WERROR=ON -DBUILD_TESTING=ON "${alone[@]}"
   cmake --build build-debug
+  cmake --build build-debug --target all_verify_interface_header_sets
   ctest --test-dir build-debug --output-on-failure -j "$(nproc)" -E "$web|^program_" --timeout 7200
 }
 
