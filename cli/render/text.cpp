@@ -12,7 +12,9 @@ std::string fixed(double x, int digits) {
   if (!std::isfinite(x)) return "-";
   char buffer[64];
   std::snprintf(buffer, sizeof buffer, "%.*f", digits, x);
-  return buffer;
+  const std::string text = buffer;
+  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+  return is_zero && text.front() == '-' ? text.substr(1) : text;
 }
 
 std::string percent(double part, double whole, int digits) {

@@ -6,6 +6,7 @@
 namespace gatewalk::cli {
 
 /// Fixed-point text of x with `digits` decimals; "-" for a value that is not a number.
+/// Never "-0.00".
 [[nodiscard]] std::string fixed(double x, int digits);
 /// "12.3 %"
 [[nodiscard]] std::string percent(double part, double whole, int digits = 1);

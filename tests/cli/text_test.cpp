@@ -1,0 +1,19 @@
+#include "cli/render/text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gatewalk::cli {
+namespace {
+
+TEST(Text, AZeroHasNoSign) {
+  EXPECT_EQ(fixed(-0.004, 2), "0.00");
+  EXPECT_EQ(fixed(-0.0, 0), "0");
+  EXPECT_EQ(fixed(-0.006, 2), "-0.01");
+  EXPECT_EQ(fixed(-10.0, 1), "-10.0");
+  EXPECT_EQ(fixed(std::nan(""), 1), "-");
+}
+
+}  // namespace
+}  // namespace gatewalk::cli
