@@ -48,4 +48,8 @@ EndingShares EndingShares::with_limit(int max_gates) const {
   return shares;
 }
 
+bool EndingShares::rules_out(markov::Ending ending) const {
+  return interval[static_cast<std::size_t>(ending)] == std::array{0.0, 0.0};
+}
+
 }  // namespace gatewalk::lattice

@@ -42,6 +42,8 @@ struct EndingShares {
 
   /// Without a limit of gates (max_gates 0) nothing is cut off, and that is certain.
   [[nodiscard]] EndingShares with_limit(int max_gates) const;
+  /// Whether nobody can end so, as its interval says.
+  [[nodiscard]] bool rules_out(markov::Ending ending) const;
 };
 
 }  // namespace gatewalk::lattice

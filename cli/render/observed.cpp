@@ -61,13 +61,15 @@ Json against(const std::optional<lattice::Comparison>& gates, const Judgement& j
   return json;
 }
 
-Json to_json(const lattice::LeastDifferences& least, const lattice::SeenEndings& seen) {
+Json least_differences(const lattice::ObservedComparison& c) {
+  const lattice::LeastDifferences& least = c.least;
   Json json = {{"power", least.goal.power}, {"level", least.goal.level}};
-  if (seen.has_gates()) json["final_gates_total_variation"] = or_null(least.final_gates);
-  if (!seen.has_endings()) return json;
+  if (c.seen.has_gates()) json["final_gates_total_variation"] = or_null(least.final_gates);
+  if (!c.seen.has_endings()) return json;
   json["endings_total_variation"] = or_null(least.endings);
   for (const EndingName& e : kEndingNames)
-    json["endings_percentage_points"][e.key] = cli::to_json(least.by_ending[index_of(e)]);
+    if (!c.endings.rules_out(e.ending))
+      json["endings_percentage_points"][e.key] = cli::to_json(c.least.by_ending[index_of(e)]);
   return json;
 }
 
@@ -96,6 +98,7 @@ std::string endings_part(const lattice::ObservedComparison& c, const lattice::St
                      "  p: dynamics   chain    seen from, points\n";
   for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
     const std::size_t at = index_of(kEndingNames[e]);
+    if (c.endings.rules_out(kEndingNames[e].ending)) continue;
     text += padded(kEndingNames[e].name, -10) + observed[e + 1] + dynamics[e + 1] + chain[e + 1] +
             padded(p_text(c.against_dynamics.endings[at].p_adjusted), 13) +
             padded(p_text(c.against_chain.endings[at].p_adjusted), 8) + "      " +
@@ -141,7 +144,7 @@ Json to_json(const lattice::ObservedComparison& c, const lattice::StartValidatio
   if (c.seen.has_gates()) json["final_gates"] = grid(c.seen.final_gates);
   json["against_dynamics"] = against(c.dynamics_gates, c.against_dynamics);
   json["against_chain"] = against(c.chain_gates, c.against_chain);
-  json["smallest_difference"] = to_json(c.least, c.seen);
+  json["smallest_difference"] = least_differences(c);
   return json;
 }
 

@@ -65,6 +65,14 @@ std::string sureness(const ExperimentOptions& options) {
          digits(100.0 * options.goal.level) + " %";
 }
 
+/// In this prediction alone; and in both.
+std::vector<std::size_t> looked_at(const PlannedExperiment& p) {
+  return lattice::endings_to_look_at(p.prediction, p.prediction);
+}
+std::vector<std::size_t> looked_at_apart(const PlannedExperiment& p) {
+  return lattice::endings_to_look_at(p.prediction, *p.other);
+}
+
 std::string needed_table(const PlannedExperiment& p) {
   std::string text = "\nTrials needed, for " + sureness(p.options) +
                      ", to see that an ending is so many percentage points more or less often\n"
@@ -74,7 +82,7 @@ std::string needed_table(const PlannedExperiment& p) {
   for (const double d : lattice::kShareDifferences)
     text += padded(digits(100.0 * d) + " points ", kCell);
   text += "\n";
-  for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
+  for (const std::size_t e : looked_at(p)) {
     text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
     for (const Effect& effect : p.plan.endings[e].effects)
       text += padded(effect_text(effect), kCell);
@@ -104,7 +112,7 @@ std::string power_table(const PlannedExperiment& p) {
   for (const double d : lattice::kShareDifferences)
     text += padded(digits(100.0 * d) + " points", 11);
   text += padded("smallest", 16) + "\n";
-  for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
+  for (const std::size_t e : looked_at(p)) {
     const lattice::EndingPlan& plan = p.plan.endings[e];
     text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
     for (const Effect& effect : plan.effects) text += padded(power_text(effect), 11);
@@ -131,7 +139,7 @@ std::string versus_table(const PlannedExperiment& p) {
   const auto power = [&](const Effect& effect) {
     return p.options.trials ? padded(power_text(effect), 20) : "";
   };
-  for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
+  for (const std::size_t e : looked_at_apart(p)) {
     const Effect& effect = p.apart->endings[e];
     text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e) +
             share_text(*p.other, e) + padded(effect_text(effect), kCell) + power(effect) + "\n";
@@ -156,12 +164,14 @@ std::string shown_by(const PlannedExperiment& p) {
   const std::string begin =
       "In " + digits(100.0 * p.options.goal.power) + " of 100 experiments " + n + " trials show ";
   std::optional<double> least, most;
-  for (const lattice::EndingPlan& e : p.plan.endings)
-    for (const auto& d : {e.least_of_all.more, e.least_of_all.fewer})
+  for (const std::size_t e : looked_at(p)) {
+    const lattice::SmallestDifference& all = p.plan.endings[e].least_of_all;
+    for (const auto& d : {all.more, all.fewer})
       if (d) {
         least = std::min(*d, least.value_or(*d));
         most = std::max(*d, most.value_or(*d));
       }
+  }
   const std::string gates = p.plan.least_total_variation
                                 ? "final gates that differ by a total variation of " +
                                       fixed(*p.plan.least_total_variation, 2)
@@ -175,8 +185,9 @@ std::string shown_by(const PlannedExperiment& p) {
 /// The most trials that any ending takes to be seen `at` kShareDifferences off.
 std::string trials_of_endings(const PlannedExperiment& p, std::size_t at) {
   std::int64_t most = 0;
-  for (const lattice::EndingPlan& e : p.plan.endings)
-    most = std::max(most, e.effects[at].trials_of_all.value_or(lattice::kMostPlanned + 1));
+  for (const std::size_t e : looked_at(p))
+    most = std::max(
+        most, p.plan.endings[e].effects[at].trials_of_all.value_or(lattice::kMostPlanned + 1));
   return trials_text(most > lattice::kMostPlanned ? std::optional<std::int64_t>() : most);
 }
 
@@ -184,7 +195,7 @@ std::string trials_of_endings(const PlannedExperiment& p, std::size_t at) {
 std::string told_apart(const PlannedExperiment& p) {
   std::optional<std::int64_t> by_ending;
   std::string name;
-  for (std::size_t e = 0; e < kEndingNames.size(); ++e)
+  for (const std::size_t e : looked_at_apart(p))
     if (const auto& n = p.apart->endings[e].trials_of_all; n && (!by_ending || *n < *by_ending)) {
       by_ending = n;
       name = kEndingNames[e].name;
@@ -222,11 +233,11 @@ std::array<std::string, 2> summary_of(const PlannedExperiment& p) {
 
 bool any_within_error(const PlannedExperiment& p) {
   bool any = false;
-  for (const lattice::EndingPlan& e : p.plan.endings)
-    for (const Effect& effect : e.effects) any = any || effect.within_error;
+  for (const std::size_t e : looked_at(p))
+    for (const Effect& effect : p.plan.endings[e].effects) any = any || effect.within_error;
   for (const Effect& effect : p.plan.final_gates) any = any || effect.within_error;
   if (!p.apart) return any;
-  for (const Effect& effect : p.apart->endings) any = any || effect.within_error;
+  for (const std::size_t e : looked_at_apart(p)) any = any || p.apart->endings[e].within_error;
   return any || p.apart->final_gates.within_error;
 }
 
@@ -254,14 +265,14 @@ Json to_json(const PlannedExperiment& p) {
   json["level"] = p.options.goal.level;
   if (p.options.trials) json["trials"] = *p.options.trials;
   Json& off = json["from_prediction"];
-  for (std::size_t e = 0; e < kEndingNames.size(); ++e)
+  for (const std::size_t e : looked_at(p))
     for (const Effect& effect : p.plan.endings[e].effects)
       off["endings"][kEndingNames[e].key].push_back(to_json(effect, p.options, true));
   for (const Effect& effect : p.plan.final_gates)
     off["final_gates"].push_back(to_json(effect, p.options, false));
   if (p.options.trials) {
     Json& least = json["smallest_difference"];
-    for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
+    for (const std::size_t e : looked_at(p)) {
       const lattice::EndingPlan& plan = p.plan.endings[e];
       least["endings_percentage_points"][kEndingNames[e].key] = to_json(plan.least);
       least["endings_percentage_points_if_all_are_looked_at"][kEndingNames[e].key] =
@@ -273,7 +284,7 @@ Json to_json(const PlannedExperiment& p) {
   Json& versus = json["versus"];
   versus["set"] = p.versus;
   versus.update(to_json(*p.other));
-  for (std::size_t e = 0; e < kEndingNames.size(); ++e)
+  for (const std::size_t e : looked_at_apart(p))
     versus["apart"]["endings"][kEndingNames[e].key] = to_json(p.apart->endings[e], p.options, true);
   versus["apart"]["final_gates"] = to_json(p.apart->final_gates, p.options, false);
   versus["scene"] = lattice::to_toml(*p.other_scene);

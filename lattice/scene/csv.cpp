@@ -1,14 +1,20 @@
 #include "lattice/scene/csv.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 
 namespace gatewalk::lattice {
 
 std::optional<std::vector<std::string>> lines_of(const std::string& path) {
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) return {};
+  if (!file) return {};
+  if (std::filesystem::is_directory(path)) {
+    errno = EISDIR;
+    return {};
+  }
   std::vector<std::string> lines;
   for (std::string text; std::getline(file, text);) {
     if (lines.empty() && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);

@@ -8,8 +8,8 @@
 
 namespace gatewalk::lattice {
 
-/// The lines of a file without their ends (LF or CRLF) and without a byte-order mark; none when it
-/// cannot be read.
+/// The lines of a file without their ends (LF or CRLF) and without a byte-order mark; none, with
+/// errno, when it cannot be read.
 [[nodiscard]] std::optional<std::vector<std::string>> lines_of(const std::string& path);
 
 /// The fields of a line, without the spaces around them; those in quotation marks without these.

@@ -1,7 +1,9 @@
 #include "lattice/scene/scene_terrain.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <vector>
@@ -61,7 +63,9 @@ std::string path_of(const TerrainSetting& given) {
 
 std::vector<MapRow> rows_of_file(const TerrainSetting& given, const std::string& path) {
   const auto lines = lines_of(path);
-  if (!lines) throw SceneError(given.where() + ": terrain.map_file: " + path + " cannot be read");
+  if (!lines)
+    throw SceneError(given.where() + ": terrain.map_file: " + path +
+                     " cannot be read: " + std::strerror(errno));
   std::vector<MapRow> rows;
   for (const std::string& text : *lines)
     rows.push_back({text, path + ":" + std::to_string(rows.size() + 1)});

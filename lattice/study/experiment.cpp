@@ -12,9 +12,9 @@ namespace {
 
 using Trials = std::optional<std::int64_t>;
 
-/// The level of one ending where all are looked at (Bonferroni).
-PowerGoal of_all(const PowerGoal& goal) {
-  return {goal.power, goal.level / static_cast<double>(kEndingNames.size())};
+/// The level of one ending where so many are looked at (Bonferroni).
+PowerGoal of_all(const PowerGoal& goal, std::size_t endings) {
+  return {goal.power, goal.level / static_cast<double>(endings)};
 }
 
 /// The larger; none where one of them is none: that is more than any.
@@ -40,14 +40,14 @@ std::vector<double> shares_off_by(double difference, double share) {
   return shares;
 }
 
-Effect effect_on(double share, double difference, double error, const ExperimentOptions& options) {
+Effect effect_on(double share, double difference, double error, const PowerGoal& all,
+                 const ExperimentOptions& options) {
   Effect effect{.difference = difference, .within_error = error >= difference};
   const std::vector<double> truths = shares_off_by(difference, share);
   effect.trials = effect.trials_of_all = truths.empty() ? Trials() : Trials(1);
   for (const double truth : truths) {
     effect.trials = larger(effect.trials, trials_for_share(share, truth, options.goal));
-    effect.trials_of_all =
-        larger(effect.trials_of_all, trials_for_share(share, truth, of_all(options.goal)));
+    effect.trials_of_all = larger(effect.trials_of_all, trials_for_share(share, truth, all));
     if (options.trials)
       effect.power = std::min(effect.power.value_or(1.0),
                               power_of_share(*options.trials, share, truth, options.goal.level));
@@ -57,17 +57,27 @@ Effect effect_on(double share, double difference, double error, const Experiment
 
 }  // namespace
 
+std::vector<std::size_t> endings_to_look_at(const StartAnswer& a, const StartAnswer& b) {
+  std::vector<std::size_t> places;
+  for (std::size_t e = 0; e < kEndingNames.size(); ++e)
+    if (!a.endings.rules_out(kEndingNames[e].ending) ||
+        !b.endings.rules_out(kEndingNames[e].ending))
+      places.push_back(e);
+  return places;
+}
+
 ExperimentPlan plan_experiment(const StartAnswer& prediction, const ExperimentOptions& options) {
   ExperimentPlan plan;
+  const PowerGoal all = of_all(options.goal, endings_to_look_at(prediction, prediction).size());
   tbb::parallel_for(std::size_t{0}, plan.endings.size(), [&](std::size_t e) {
     const double share = share_of(prediction, kEndingNames[e]);
     EndingPlan& of_ending = plan.endings[e];
     for (std::size_t k = 0; k < kShareDifferences.size(); ++k)
-      of_ending.effects[k] =
-          effect_on(share, kShareDifferences[k], error_of(prediction, kEndingNames[e]), options);
+      of_ending.effects[k] = effect_on(share, kShareDifferences[k],
+                                       error_of(prediction, kEndingNames[e]), all, options);
     if (!options.trials) return;
     of_ending.least = smallest_difference(*options.trials, share, options.goal);
-    of_ending.least_of_all = smallest_difference(*options.trials, share, of_all(options.goal));
+    of_ending.least_of_all = smallest_difference(*options.trials, share, all);
   });
   const Outcomes gates = gate_outcomes(prediction.final.final_cells);
   for (std::size_t k = 0; k < kTotalVariations.size(); ++k) {
@@ -94,6 +104,7 @@ TwoScenesPlan tell_apart(const StartAnswer& first, const StartAnswer& second,
   plan.final_gates.within_error =
       std::hypot(first.error.total_variation, second.error.total_variation) >=
       plan.final_gates.difference;
+  const PowerGoal all = of_all(options.goal, endings_to_look_at(first, second).size());
   tbb::parallel_for(std::size_t{0}, plan.endings.size(), [&](std::size_t e) {
     const EndingName& name = kEndingNames[e];
     const double p = share_of(first, name), q = share_of(second, name);
@@ -102,7 +113,7 @@ TwoScenesPlan tell_apart(const StartAnswer& first, const StartAnswer& second,
     effect.within_error =
         std::hypot(error_of(first, name), error_of(second, name)) >= std::abs(q - p);
     effect.trials = trials_for_two_shares(p, q, options.goal);
-    effect.trials_of_all = trials_for_two_shares(p, q, of_all(options.goal));
+    effect.trials_of_all = trials_for_two_shares(p, q, all);
     if (options.trials)
       effect.power = power_of_two_shares(*options.trials, p, q, options.goal.level);
   });

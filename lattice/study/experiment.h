@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "lattice/ending_shares.h"
 #include "lattice/power.h"
@@ -35,6 +36,10 @@ struct EndingPlan {
   std::array<Effect, kShareDifferences.size()> effects;
   SmallestDifference least{}, least_of_all{};  // that the options' trials show
 };
+
+/// Places in kEndingNames of the endings that one of the two predictions does not rule out.
+[[nodiscard]] std::vector<std::size_t> endings_to_look_at(const StartAnswer& a,
+                                                          const StartAnswer& b);
 
 /// One experiment against a prediction.
 struct ExperimentPlan {

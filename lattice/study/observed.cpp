@@ -1,7 +1,9 @@
 #include "lattice/study/observed.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
@@ -23,7 +25,13 @@ std::string quoted(const std::string& text) {
   return shown.append(printable(text)).append("\"");
 }
 
-/// A table as its file has it.
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+/// A table as its file has it, with the names of its columns in small letters.
 struct CountTable {
   struct Row {
     std::size_t line;
@@ -59,7 +67,8 @@ struct CountTable {
   }
 };
 
-void require_columns(const CountTable& table, std::size_t line) {
+/// `given`: the columns as they are written.
+void require_columns(const CountTable& table, const Fields& given, std::size_t line) {
   static const std::array<Fields, 5> kPermitted{{{"count", "gate_x", "gate_y"},
                                                  {"count", "ending"},
                                                  {"ending", "trial"},
@@ -68,10 +77,11 @@ void require_columns(const CountTable& table, std::size_t line) {
   Fields sorted = table.columns;
   std::sort(sorted.begin(), sorted.end());
   if (std::find(kPermitted.begin(), kPermitted.end(), sorted) != kPermitted.end()) return;
-  for (const std::string& column : table.columns)
-    if (column != "count" && column != "trial" && column != "ending" && column != "gate_x" &&
-        column != "gate_y")
-      table.refuse(line, "unknown column " + quoted(column) + ": the first line must be " +
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (const std::string& column = table.columns[i]; column != "count" && column != "trial" &&
+                                                      column != "ending" && column != "gate_x" &&
+                                                      column != "gate_y")
+      table.refuse(line, "unknown column " + quoted(given[i]) + ": the first line must be " +
                              kTables + ", with commas between");
   table.refuse(line, std::string("the columns must be ") + kTables + ", each once");
 }
@@ -83,7 +93,8 @@ CountTable read_table(const std::string& path) {
     throw std::invalid_argument(path + ": has " + std::to_string(size) +
                                 " bytes, more than a table of counts");
   const auto lines = lines_of(path);
-  if (!lines) throw std::invalid_argument("--observed " + path + ": cannot be read");
+  if (!lines)
+    throw std::invalid_argument("--observed " + path + ": cannot be read: " + std::strerror(errno));
   CountTable table{path, {}, {}};
   for (std::size_t i = 0; i < lines->size(); ++i) {
     const std::string& text = (*lines)[i];
@@ -92,8 +103,8 @@ CountTable read_table(const std::string& path) {
     auto fields = csv_fields(text);
     if (!fields) table.refuse(line, "a quotation mark is not closed, or not at a field's end");
     if (table.columns.empty()) {
-      table.columns = std::move(*fields);
-      require_columns(table, line);
+      for (const std::string& name : *fields) table.columns.push_back(lower_case(name));
+      require_columns(table, *fields, line);
       continue;
     }
     if (fields->size() != table.columns.size())
@@ -279,14 +290,19 @@ LeastDifferences least_differences(const SeenEndings& seen, const markov::FinalD
 
 }  // namespace
 
-ObservedComparison compare_observed(const SeenEndings& seen, const FieldTally& dynamics,
+ObservedComparison compare_observed(const SeenEndings& seen, int max_gates,
+                                    const FieldTally& dynamics,
                                     const markov::FinalDistribution& chain,
                                     const std::vector<markov::FinalDistribution>& replicates,
                                     std::int64_t runs, std::int64_t null_draws,
                                     std::uint64_t seed) {
   ObservedComparison c;
   c.seen = seen;
-  if (seen.has_endings()) c.endings = EndingShares(seen.endings, seen.trials());
+  if (seen.has_endings()) {
+    c.endings = EndingShares(seen.endings, seen.trials());
+    const bool cut_off = seen.endings[static_cast<std::size_t>(markov::Ending::cut_off)] > 0;
+    if (!cut_off) c.endings = c.endings.with_limit(max_gates);  // else the experiment had a limit
+  }
   if (seen.has_gates()) {
     c.dynamics_gates = compare(seen.final_gates, dynamics.final_gates, null_draws, seed);
     c.chain_gates = compare(seen.final_gates, chain.final_cells, null_draws, seed);

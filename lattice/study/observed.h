@@ -51,9 +51,11 @@ struct ObservedComparison {
   LeastDifferences least;  // from the chain's prediction, taken as exact
 };
 
-/// `replicates` and `runs` as judge() takes them. Throws std::invalid_argument as judge().
+/// `max_gates` is the model's; `replicates` and `runs` as judge() takes them. Throws
+/// std::invalid_argument as judge().
 [[nodiscard]] ObservedComparison compare_observed(
-    const SeenEndings& seen, const FieldTally& dynamics, const markov::FinalDistribution& chain,
+    const SeenEndings& seen, int max_gates, const FieldTally& dynamics,
+    const markov::FinalDistribution& chain,
     const std::vector<markov::FinalDistribution>& replicates, std::int64_t runs,
     std::int64_t null_draws, std::uint64_t seed);
 

@@ -236,8 +236,8 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
       .force = setup.options.force_memory ? std::optional(run_anew(setup, start, seen.trials))
                                           : std::nullopt,
       .observed = setup.options.observed
-                      ? std::optional(compare_observed(*setup.options.observed, tally, exact,
-                                                       resampled, may_miss, draws, seed))
+                      ? std::optional(compare_observed(*setup.options.observed, max_gates, tally,
+                                                       exact, resampled, may_miss, draws, seed))
                       : std::nullopt};
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 namespace gatewalk::lattice {
 namespace {
@@ -57,6 +58,23 @@ TEST(ExperimentPlan, SaysWhereThePredictionIsTooUncertain) {
   EXPECT_FALSE(plan.final_gates[1].within_error);
   EXPECT_FALSE(plan.least_total_variation);
   EXPECT_FALSE(plan.endings[kCrossed].effects[0].power);
+}
+
+// Then four are looked at, not five, unless the other scene has a limit.
+TEST(ExperimentPlan, WithoutALimitOfGatesCuttingOffIsNotLookedAt) {
+  const ExperimentOptions options{.goal = {}, .trials = 60};
+  const StartAnswer limited = crossing(0.3, 0.01);
+  StartAnswer free = limited;
+  free.endings = free.endings.with_limit(0);
+  EXPECT_EQ(endings_to_look_at(limited, limited), (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(endings_to_look_at(free, free), (std::vector<std::size_t>{0, 1, 2, 3}));
+  EXPECT_EQ(endings_to_look_at(free, limited).size(), 5u);
+  EXPECT_EQ(plan_experiment(free, options).endings[kCrossed].effects[2].trials_of_all,
+            std::max(trials_for_share(0.3, 0.4, {0.8, 0.0125}),
+                     trials_for_share(0.3, 0.2, {0.8, 0.0125})));
+  const StartAnswer other = crossing(0.5, 0.01);
+  EXPECT_EQ(tell_apart(free, other, options).endings[kCrossed].trials_of_all,
+            trials_for_two_shares(0.3, 0.5, {0.8, 0.01}));
 }
 
 TEST(TellApart, TwoScenes) {

@@ -88,6 +88,8 @@ TEST_F(CountsFile, AsSpreadsheetsAndPeopleWriteIt) {
       "\xEF\xBB\xBF# my roaches, June\r\n\r\n \"gate_y\" , \"count\",gate_x\r\n"
       "0,\"3\", 0 \r\n  # the second day\r\n\"2\",4,\"1\"\r\n\r\n");
   EXPECT_TRUE((plain.seen.final_gates == other.seen.final_gates).all());
+  const Observed capitals = read("Trial,ENDING\nA,crossed\na,trapped\n");
+  EXPECT_EQ(capitals.seen.trials(), 2);
 }
 
 TEST_F(CountsFile, OfBothInTwoFiles) {
@@ -173,6 +175,7 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
   EXPECT_EQ(refusal("gatex,gate_y,count\n"),
             "x.csv:1: unknown column \"gatex\": the first line must be " + kTables +
                 ", with commas between");
+  EXPECT_EQ(refusal("Gate_X,Gate-Y,Count\n").substr(0, 32), "x.csv:1: unknown column \"Gate-Y\"");
   EXPECT_EQ(refusal("# x\nending;count\ncrossed;3\n").substr(0, 40),
             "x.csv:2: unknown column \"ending;count\": ");
   for (const char* columns :
@@ -206,17 +209,20 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
     EXPECT_EQ(refusal(none), "x.csv: has no trial: its counts add up to 0");
   for (const char* empty : {"", "\n\n", "# nothing\n"})
     EXPECT_EQ(refusal(empty), "x.csv: is empty: the first line must be " + kTables);
-  EXPECT_EQ(message({"none.csv"}), "--observed none.csv: cannot be read");
-  EXPECT_EQ(message({folder_.string() + "/"}).substr(0, 11), "--observed ");
+  EXPECT_EQ(message({"none.csv"}),
+            "--observed none.csv: cannot be read: No such file or directory");
+  EXPECT_EQ(message({folder_.string()}),
+            "--observed " + folder_.string() + ": cannot be read: Is a directory");
 }
 
 // ---- Against the model ----
 
 /// No noise and a strong push: a body goes straight up through all three rows.
-Scene straight_up() {
+Scene straight_up(int max_gates = 9) {
   return parse_scene(
       "forces = { random_N = 0.0, propulsion_N = 100.0 }\n"
-      "field = { columns = 3, rows = 3, max_gates = 9 }",
+      "field = { columns = 3, rows = 3, max_gates = " +
+          std::to_string(max_gates) + " }",
       "straight");
 }
 dynamics::Transitions all_up(const Scene& scene) {
@@ -228,8 +234,8 @@ dynamics::Transitions all_up(const Scene& scene) {
   }
   return t;
 }
-ObservedComparison validated(const SeenEndings& seen) {
-  const Scene scene = straight_up();
+ObservedComparison validated(const SeenEndings& seen, int max_gates = 9) {
+  const Scene scene = straight_up(max_gates);
   return *validate_chain(
               scene, {all_up(scene)}, {{0.0, 0.0, 15.0}},
               {.trials = 1000, .walks = {}, .null_draws = 499, .seed = 3, .observed = seen})
@@ -275,6 +281,18 @@ TEST(CompareObserved, AFewThatDoNotCrossAreSeenInEitherTable) {
       EXPECT_NEAR(c.chain_gates->total_variation, 0.1, 1e-12);
     }
   }
+}
+
+TEST(CompareObserved, WithoutALimitOfGatesCuttingOffIsRuledOutUnlessItWasSeen) {
+  constexpr auto kCutOff = markov::Ending::cut_off;
+  EXPECT_FALSE(validated(sixty(60)).endings.rules_out(kCutOff));
+  EXPECT_TRUE(validated(sixty(60), 0).endings.rules_out(kCutOff));
+  SeenEndings seen = sixty(54);
+  seen.endings[static_cast<std::size_t>(markov::Ending::trapped)] = 0;
+  seen.endings[static_cast<std::size_t>(kCutOff)] = 6;
+  const ObservedComparison c = validated(seen, 0);
+  EXPECT_FALSE(c.endings.rules_out(kCutOff));
+  EXPECT_TRUE(c.against_dynamics.differs(kCutOff));
 }
 
 TEST(CompareObserved, BelongsToOneStart) {

@@ -107,8 +107,10 @@ TEST(Terrain, AMapMayBeAFileBesideTheScene) {
                        "bad.csv:2: row 2 of the map, column 2: \"q\" is no type of gate: there are "
                        "., s, t"))
       << message("bad.csv");
-  EXPECT_TRUE(contains(message("none.csv"), "scene.toml:4: terrain.map_file: "))
-      << message("none.csv");
+  const std::string none = message("none.csv");
+  EXPECT_TRUE(contains(none, "scene.toml:4: terrain.map_file: ") &&
+              contains(none, "none.csv cannot be read: No such file or directory"))
+      << none;
 }
 
 TEST(Terrain, TheFileThatASceneNamesIsKnownWithoutReadingIt) {

@@ -47,6 +47,10 @@ grep -q '^gatewalk: 1 of 61 trials went back, .* left out, and the other 60 comp
 "$gatewalk" "${free[@]}" --observed ends0.csv --observed gates0.csv --json tables.json --quiet
 jq -s 'map(.observed | del(.files, .went_back)) | .[0] == .[1]' lines.json tables.json | grep -q true || fail "validate --observed: lines of trials are not their counts"
 holds '.observed | .trials == 60 and .went_back == 1' lines.json
+# Without a limit of gates nothing is cut off, which no interval and no row leaves open.
+"$gatewalk" "${free[@]}" --set field.max_gates=0 --observed ends0.csv --json free.json >free.txt 2>err.txt
+holds '.observed | .endings_95.cut_off == [0, 0] and (.smallest_difference.endings_percentage_points | has("cut_off") | not)' free.json
+grep -q '^trapped .* / ' free.txt && ! grep -q '^cut off' free.txt || fail "validate --observed: a row of who cannot be cut off"
 refused 'bad.csv:3: trial "1" was given in line 2 already' 'trial,ending\n1,crossed\n1,trapped\n'
 # Too few trials: said before any run (that would take for ever).
 printf 'trial,ending\n1,crossed\n2,trapped\n' >two.csv
@@ -68,7 +72,7 @@ refused 'bad.csv: is empty' ''
 expect 2 'ends.csv has 60\|far.csv: ends.csv has endings too' "$gatewalk" "${beside[@]}" --observed ends.csv --observed far.csv
 printf 'ending,count\ncrossed,59\n' >fewer.csv
 expect 2 'gates.csv has 60 trials, fewer.csv 59: both must be of the same trials' "$gatewalk" "${beside[@]}" --observed gates.csv --observed fewer.csv
-expect 2 'observed nosuch.csv: cannot be read' "$gatewalk" "${beside[@]}" --observed nosuch.csv
+expect 2 'observed nosuch.csv: cannot be read: No such file or directory' "$gatewalk" "${beside[@]}" --observed nosuch.csv
 expect 2 'belong to one start, --start gives 2' "$gatewalk" "${beside[@]}" --observed ends.csv --start 0,0,15 --start 4,5,10
 expect 2 'are the same file' "$gatewalk" "${beside[@]}" --observed gates.csv --observed ends.csv --json ends.csv
 
