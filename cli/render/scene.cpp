@@ -11,6 +11,32 @@
 
 namespace gatewalk::cli {
 
+namespace {
+
+/// A number of a scene with seven digits at most, unless it is a whole one.
+std::string shortened(const std::string& number) {
+  if (number.find_first_of(".en") == number.npos) return number;
+  const double x = std::stod(number);
+  const std::string text = digits(x);
+  return std::stod(text) == x ? number : text;
+}
+
+/// A key's value: a number, or text in quotation marks.
+std::string shown_value(const lattice::KeyInfo& k) {
+  return k.value.starts_with('"') ? k.value : shortened(k.value);
+}
+
+/// "[low, high]", each end shortened.
+std::string shown_range(const lattice::KeyInfo& k) {
+  const std::size_t comma = k.range.find(", ");
+  if (comma == k.range.npos) return k.range;
+  const std::size_t high = comma + 2, end = k.range.size() - 1;
+  return k.range.front() + shortened(k.range.substr(1, comma - 1)) + ", " +
+         shortened(k.range.substr(high, end - high)) + k.range.back();
+}
+
+}  // namespace
+
 std::string limits_text(const lattice::Scene& scene) {
   std::string text = "(trapped: still in the same gate " +
                      quantity(scene.gate.run.time_limit, "s") + " after entering it";
@@ -66,7 +92,7 @@ std::string table_of(const std::vector<lattice::KeyInfo>& keys) {
   std::size_t key_width = 0, value_width = 0, unit_width = 0, source_width = 0;
   for (const lattice::KeyInfo& k : keys) {
     key_width = std::max(key_width, k.key.size());
-    value_width = std::max(value_width, k.value.size());
+    value_width = std::max(value_width, shown_value(k).size());
     unit_width = std::max(unit_width, k.unit.size());
     source_width = std::max(source_width, k.source.size());
   }
@@ -77,9 +103,9 @@ std::string table_of(const std::vector<lattice::KeyInfo>& keys) {
                       column("unit", unit_width) + column("from", source_width) +
                       "meaning; range\n";
   for (const lattice::KeyInfo& k : keys)
-    table += column(k.key, key_width) + column(k.value, value_width) + column(k.unit, unit_width) +
-             column(k.source, source_width) + k.meaning + (k.range.empty() ? "" : "; " + k.range) +
-             "\n";
+    table += column(k.key, key_width) + column(shown_value(k), value_width) +
+             column(k.unit, unit_width) + column(k.source, source_width) + k.meaning +
+             (k.range.empty() ? "" : "; " + shown_range(k)) + "\n";
   return table;
 }
 
@@ -107,7 +133,7 @@ std::string commented(const lattice::Scene& scene) {
     const bool follows = k.source == "derived";
     text += padded((follows ? "# " : "") + leaf(k) + " = " + k.value, -static_cast<int>(width)) +
             "  # " + k.meaning;
-    if (!k.range.empty()) text += ", in " + k.range + (k.unit.empty() ? "" : " " + k.unit);
+    if (!k.range.empty()) text += ", in " + shown_range(k) + (k.unit.empty() ? "" : " " + k.unit);
     if (follows || k.source == "paper") text += "; " + k.source;
     text += "\n";
   }

@@ -69,7 +69,7 @@ std::string derived_keys(const Scene& scene) {
     const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" ||
                              k.key == "contact.impulse_threshold_Ns";
     if (k.source != "derived" || methods_own) continue;
-    std::ostringstream value;  // six digits will do; gatewalk scene shows all
+    std::ostringstream value;  // six digits will do; gatewalk scene shows more
     value << std::stod(k.value);
     all += (all.empty() ? "" : ", ") + k.key + " = " + value.str();
   }

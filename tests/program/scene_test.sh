@@ -18,6 +18,15 @@ expect 0 'three.toml leaves out keys, .*beams.length_m = 0.2,' "$gatewalk" gate 
 # What the file leaves out follows from the file, whatever is overridden.
 "$gatewalk" scene three.toml --set forces.propulsion_N=1.6 --json set.json --quiet
 holds '[.keys[] | select(.key == "beams.stiffness_left_Nm_per_rad") | .value][0] == "0.31999999999999995"' set.json
+# People read seven digits, programs all of them; a value of the file is written as it was given.
+"$gatewalk" scene three.toml --set forces.propulsion_N=1.6 >set.txt
+grep -q '^beams.stiffness_left_Nm_per_rad  *0.32  *N m/rad  *derived ' set.txt || fail "scene: a number in full length: $(grep stiffness_left set.txt)"
+printf 'body.radius_m = 0.0812345678901\n' >long.toml
+"$gatewalk" scene long.toml >long.txt
+"$gatewalk" scene long.toml --new -o long-new.toml
+grep -h '[0-9]\.[0-9]*[1-9][0-9]\{7,\}' set.txt long.txt && fail "scene: more than seven digits"
+grep -q '^radius_m = 0.0812345678901 ' long-new.toml || fail "scene --new: a value of the file was rounded"
+grep -o ', in [[(][^])]*' long-new.toml | grep '[0-9]\.[0-9]*[1-9][0-9]\{7,\}' && fail "scene --new: a range in full length"
 # A field longer than the gates that may be visited is not crossed, and why is said.
 expect 0 'field.max_gates = 13 is less than field.rows = 20' "$gatewalk" lattice "$scenes/field.toml" --set field.rows=20 --trials 10
 # Other units: the scene is the same, both values are shown; two of one quantity are refused.
