@@ -32,7 +32,7 @@ int run_scene(const Arguments& arguments) {
       "--set "
       "gives.",
       "gatewalk scene --new --set body.mass_kg=0.25 --set body.radius_m=0.08 "
-      "--set forces.propulsion_N=0.8 -o robot.toml");
+      "--set forces.propulsion_N=0.8 -o mine.toml");
   options.positional("scene", "scene file (TOML; -: standard input)", false);
   options.add_flag("new", "write the scene as a commented TOML file, to edit");
   options.output_file("output", "FILE", "with --new: the file to write (default: standard output)");

@@ -153,13 +153,12 @@ std::string table_of(const lattice::ObservedComparison& c, const lattice::StartV
   std::string text = "Observed: " + std::to_string(n) + (n == 1 ? " trial" : " trials") +
                      ", beside " + std::to_string(v.dynamics.trials) +
                      " of the full dynamics and the exact chain. p: how often chance makes as "
-                     "large a\ndifference in anything that is looked at. Seen from: a smaller "
-                     "difference from the model is missed by\nmore than " +
-                     fixed(100.0 - 100.0 * c.least.goal.power, 0) + " of 100 experiments of " +
-                     std::to_string(n) + (n == 1 ? " trial" : " trials") +
-                     " (+: more than the model, -: fewer; none: not even none at all would "
-                     "be seen).\n\n";
-  if (c.seen.has_endings()) text += "Endings, % with 95 % intervals\n" + endings_part(c, v);
+                     "large a\ndifference in anything that is looked at.\n\n";
+  if (c.seen.has_endings())
+    text += "Endings, % with 95 % intervals\n" + endings_part(c, v) +
+            "Seen from: so many points more (+) or fewer (-) than the model are seen in " +
+            fixed(100.0 * c.least.goal.power, 0) + " of 100 experiments of " + std::to_string(n) +
+            (n == 1 ? " trial" : " trials") + "; none: no difference is.\n";
   if (c.seen.has_endings() && c.seen.has_gates()) text += "\n";
   if (c.seen.has_gates()) {
     text += "Final gates     corrcoef (floor)   RMSE (floor)      TV (chance, at 95 %)        p\n" +
@@ -170,8 +169,11 @@ std::string table_of(const lattice::ObservedComparison& c, const lattice::StartV
   }
   std::string said = verdict_of(c, v);
   for (std::size_t at = 0; (at = said.find("; ", at)) != said.npos;) said.replace(at, 2, ";\n  ");
-  return text + "\n" + said + "\n\nWhether the chain is to be trusted: " + verdict(v) +
-         ".\n(More of that without --observed, and in --json.)\n";
+  return text + "\n" + said +
+         "\n\nThe p to quote is that against the dynamics in this sentence, the smallest of "
+         "those above: it counts that all is\nlooked at. The dynamics is the model, the chain its "
+         "approximation.\n\nWhether the chain is to be trusted: " +
+         verdict(v) + ".\n(More of that without --observed, and in --json.)\n";
 }
 
 std::string who_went_back(const lattice::Observed& observed) {

@@ -73,82 +73,103 @@ std::vector<std::size_t> looked_at_apart(const PlannedExperiment& p) {
   return lattice::endings_to_look_at(p.prediction, *p.other);
 }
 
+/// A line under a table: its brackets and columns, and the marks that its rows have.
+std::string legend(const std::string& rows, const std::string& always) {
+  std::string text = always;
+  const auto explain = [&](const char* mark, const std::string& what) {
+    if (rows.find(mark) != rows.npos) text += (text.empty() ? "" : ";\n") + what;
+  };
+  explain("?", "?: the prediction may itself be as far off, a smaller --accuracy makes it better");
+  explain(">",
+          ">" + std::to_string(lattice::kMostPlanned) + ": more, or there is no such difference");
+  explain("none", "none: no difference is found so often");
+  explain(" - ", "-: there is no such difference");
+  return text.empty() ? text : text + ".\n";
+}
+
+constexpr const char* kBrackets = "29 (41): 29 if this ending alone is looked at, 41 if all are";
+
 std::string needed_table(const PlannedExperiment& p) {
-  std::string text = "\nTrials needed, for " + sureness(p.options) +
-                     ", to see that an ending is so many percentage points more or less often\n"
-                     "(the worse of both) than predicted; in brackets, if all endings are looked "
-                     "at:\n\n" +
+  std::string text = "\nOne experiment against the model: trials needed, for " +
+                     sureness(p.options) +
+                     ",\nto see that an ending is so many percentage points more or less often "
+                     "than predicted (the worse of both):\n\n" +
                      padded("", kName) + padded("predicted", kShare);
   for (const double d : lattice::kShareDifferences)
     text += padded(digits(100.0 * d) + " points ", kCell);
-  text += "\n";
+  std::string rows = "\n";
   for (const std::size_t e : looked_at(p)) {
-    text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
+    rows += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
     for (const Effect& effect : p.plan.endings[e].effects)
-      text += padded(effect_text(effect), kCell);
-    text += "\n";
+      rows += padded(effect_text(effect), kCell);
+    rows += "\n";
   }
-  text +=
-      "\nthat the final gates differ by a total variation of so much, spread over all of them "
-      "(the hardest to see):\n\n" +
-      padded("", kName) + padded("", kShare);
+  text += rows + legend(rows, kBrackets) +
+          "\nThe same, to see that the final gates differ by a total variation of so much, spread "
+          "over all of them\n(the hardest to see):\n\n" +
+          padded("", kName) + padded("", kShare);
   for (const double d : lattice::kTotalVariations) text += padded(digits(d) + " ", kCell);
-  text += "\n" + padded("final gates", kName) + padded("", kShare);
+  rows = "\n" + padded("final gates", kName) + padded("", kShare);
   for (const Effect& effect : p.plan.final_gates)
-    text += padded(trials_text(effect.trials) + (effect.within_error ? "?" : " "), kCell);
-  return text + "\n";
+    rows += padded(trials_text(effect.trials) + (effect.within_error ? "?" : " "), kCell);
+  return text + rows + "\n" + legend(rows, "");
 }
 
 std::string power_table(const PlannedExperiment& p) {
-  const std::string n = std::to_string(*p.options.trials);
-  std::string text = "\nWhat " + n +
-                     " trials show: how likely a difference of so many points is found, and "
-                     "the smallest that is found in\n" +
-                     digits(100.0 * p.options.goal.power) +
-                     " % of such experiments\n(+: more, -: fewer than predicted; none: not even "
-                     "none at all is found so often); in "
-                     "brackets, if all endings are looked at:\n\n" +
-                     padded("", kName) + padded("predicted", kShare);
+  const std::string n = std::to_string(*p.options.trials),
+                    often = digits(100.0 * p.options.goal.power) + " %";
+  std::string text = "\nOne experiment of " + n + (n == "1" ? " trial" : " trials") +
+                     " against the model: how likely a difference of so many points is found, "
+                     "and\nthe smallest that is found in " +
+                     often + " of such experiments:\n\n" + padded("", kName) +
+                     padded("predicted", kShare);
   for (const double d : lattice::kShareDifferences)
     text += padded(digits(100.0 * d) + " points", 11);
-  text += padded("smallest", 16) + "\n";
+  text += padded("smallest", 16);
+  std::string rows = "\n";
   for (const std::size_t e : looked_at(p)) {
     const lattice::EndingPlan& plan = p.plan.endings[e];
-    text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
-    for (const Effect& effect : plan.effects) text += padded(power_text(effect), 11);
-    text += padded(text_of(plan.least), 16) + "  (" + text_of(plan.least_of_all) + ")\n";
+    rows += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
+    for (const Effect& effect : plan.effects) rows += padded(power_text(effect), 11);
+    rows += padded(text_of(plan.least), 16) + "  (" + text_of(plan.least_of_all) + ")\n";
   }
-  text += padded("final gates", kName) + padded("", kShare);
+  rows += padded("final gates", kName) + padded("", kShare);
   for (std::size_t k = 0; k < p.plan.final_gates.size(); ++k)
-    text +=
+    rows +=
         "  TV " + digits(lattice::kTotalVariations[k]) + ": " + power_text(p.plan.final_gates[k]);
-  return text + "  smallest TV " +
-         (p.plan.least_total_variation ? fixed(*p.plan.least_total_variation, 3) : "none") + "\n";
+  rows += "  smallest TV " +
+          (p.plan.least_total_variation ? fixed(*p.plan.least_total_variation, 3) : "none") + "\n";
+  return text + rows +
+         legend(rows,
+                "+5.0 / -4.0: 5 points more, or 4 fewer, than predicted; in brackets: if all "
+                "endings are looked at;\nTV: total variation");
 }
 
 std::string versus_table(const PlannedExperiment& p) {
   std::string keys;
   for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
-  std::string text =
-      "\nVersus " + keys + ": trials of each of the two, for\n" + sureness(p.options) +
-      ", to tell them apart; in brackets, if all endings are looked at:\n\n" + padded("", kName) +
-      padded("predicted", kShare) + padded("versus", kShare) + padded("trials of each ", kCell);
-  if (p.options.trials)
-    text += padded("power of " + std::to_string(*p.options.trials) + " each", 20);
-  text += "\n";
+  const std::string n = p.options.trials ? std::to_string(*p.options.trials) : "";
+  std::string text = "\nEach of two experiments" + (n.empty() ? "" : " of " + n + " trials") +
+                     ", one of this scene, the other with\n" + keys +
+                     ":\ntrials of each that tell them apart, for " + sureness(p.options) +
+                     ":\n\n" + padded("", kName) + padded("predicted", kShare) +
+                     padded("versus", kShare) + padded("trials of each ", kCell);
+  if (p.options.trials) text += padded("power of " + n + " each", 20);
   const auto power = [&](const Effect& effect) {
     return p.options.trials ? padded(power_text(effect), 20) : "";
   };
+  std::string rows = "\n";
   for (const std::size_t e : looked_at_apart(p)) {
     const Effect& effect = p.apart->endings[e];
-    text += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e) +
+    rows += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e) +
             share_text(*p.other, e) + padded(effect_text(effect), kCell) + power(effect) + "\n";
   }
   const Effect& gates = p.apart->final_gates;
-  return text + padded("final gates", kName) +
-         padded("total variation " + fixed(gates.difference, 3), 2 * kShare) +
-         padded(trials_text(gates.trials) + (gates.within_error ? "?" : " "), kCell) +
-         power(gates) + "\n";
+  rows += padded("final gates", kName) +
+          padded("total variation " + fixed(gates.difference, 3), 2 * kShare) +
+          padded(trials_text(gates.trials) + (gates.within_error ? "?" : " "), kCell) +
+          power(gates) + "\n";
+  return text + rows + legend(rows, kBrackets);
 }
 
 /// "12 to 15"
@@ -231,16 +252,6 @@ std::array<std::string, 2> summary_of(const PlannedExperiment& p) {
                                 of_gates.substr(of_gates.rfind(' ')) + "."};
 }
 
-bool any_within_error(const PlannedExperiment& p) {
-  bool any = false;
-  for (const std::size_t e : looked_at(p))
-    for (const Effect& effect : p.plan.endings[e].effects) any = any || effect.within_error;
-  for (const Effect& effect : p.plan.final_gates) any = any || effect.within_error;
-  if (!p.apart) return any;
-  for (const std::size_t e : looked_at_apart(p)) any = any || p.apart->endings[e].within_error;
-  return any || p.apart->final_gates.within_error;
-}
-
 }  // namespace
 
 Json or_null(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
@@ -300,10 +311,6 @@ std::string table_of(const PlannedExperiment& p) {
                      " in total variation of the final gates, 95 times in 100\n" + needed_table(p);
   if (p.options.trials) text += power_table(p);
   if (p.apart) text += versus_table(p);
-  if (any_within_error(p))
-    text +=
-        "\n?: the prediction may itself be as far off as this difference; a smaller --accuracy "
-        "makes it better.\n";
   return text;
 }
 

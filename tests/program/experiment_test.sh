@@ -18,6 +18,8 @@ holds '.observed | .trials == 60 and .files == ["ends.csv", "gates.csv"] and (.a
 holds '.observed.against_dynamics | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .null_draws == 499 and (.final_gates | .corrcoef_floor > 0 and .total_variation > 0) and .p_endings.trapped > 0' observed.json
 holds '.observed.smallest_difference | .power == 0.8 and .level == 0.05 and .final_gates_total_variation > 0.1 and .endings_total_variation > 0.05 and (.endings_percentage_points | length == 5 and .trapped.more > 5 and .trapped.fewer > 5 and .crossed.fewer == null)' observed.json
 grep -q '^these 60 trials do not differ' observed.txt || fail "validate --observed: no verdict in the table"
+grep -q '^Seen from: so many points more (+) or fewer (-) than the model are seen in 80 of 100 experiments of 60 trials' observed.txt || fail "validate --observed: a column is not explained"
+grep -q '^The p to quote is that against the dynamics' observed.txt || fail "validate --observed: which p to quote"
 head -1 observed.txt | grep -q '^Observed: 60 trials, beside 2000 of the full dynamics' || fail "validate --observed: the experiment does not come first"
 # All else is as without it.
 "$gatewalk" "${beside[@]}" --trials 2000 --start 0,0,15 --json without.json --quiet

@@ -14,8 +14,15 @@ holds '.versus | .set == ["beams.stiffness_left_Nm_per_rad=200", "beams.stiffnes
 # It begins with two sentences: what these trials show, what it takes.
 holds '.summary as [$shows, $takes] | .smallest_difference.final_gates_total_variation as $least | .versus.apart.final_gates as $apart | ($shows | test("^In 80 of 100 experiments 60 trials show an ending that is [0-9]+ to [0-9]+ points off, by ending, or final gates that differ by a total variation of 0.[0-9]+.$")) and ($takes | startswith("To tell this scene from beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right_Nm_per_rad=200 so often takes \($apart.trials) trials of each by their final gates, ")) and ($takes | test("; 60 of each do in [0-9]+ of 100 experiments by their final gates.$"))' power.json
 [ "$(head -2 power.txt)" = "$(value '.summary[]' power.json)" ] || fail "power: the sentences do not come first"
-grep -q '^Trials needed, for 80 % power at a level of 5 %' power.txt || fail "power: no table"
-grep -q '^Versus beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right' power.txt || fail "power: does not name the other scene"
+# Each table says what it is of; its marks stand below it, and none that it does not have.
+for line in 'One experiment against the model: trials needed, for 80 % power at a level of 5 %,' 'One experiment of 60 trials against the model: how likely ' \
+  'Each of two experiments of 60 trials, one of this scene, the other with' 'beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right_Nm_per_rad=200:'; do
+  grep -q "^$line" power.txt || fail "power: no line '$line'"
+done
+[ "$(grep -c '^29 (41): 29 if this ending alone is looked at, 41 if all are' power.txt)" = 2 ] || fail "power: brackets are not explained"
+grep -q '^crossed .*+[0-9.]* / none' power.txt && grep -q '^none: no difference is found so often' power.txt || fail "power: none is not explained"
+grep -q '[0-9])?' power.txt && grep -q '^?: the prediction may itself be as far off' power.txt || fail "power: ? is not explained"
+grep -q '^>100000' power.txt && fail "power: a mark is explained that does not stand there"
 "$gatewalk" "${power[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --versus beams.stiffness_right_Nm_per_rad=200 --json again.json --threads 1 --quiet
 cmp -s power.json again.json || fail "power: another number of threads gave another file"
 # Without a limit of gates nothing can be cut off: no trials are needed to see that.
