@@ -3,23 +3,23 @@
 . "$(dirname "$0")/preamble.sh"
 
 # gatewalk scene: every key with its source; a scene of one's own; nothing of the user's is lost.
-printf 'body.mass_kg = 0.25\nbody.radius_m = 0.08\nforces.propulsion_N = 0.8\n' >three.toml
-expect 0 '^body.radius_m  *0.08  *m  *three.toml:2 ' "$gatewalk" scene three.toml
-"$gatewalk" scene three.toml --json keys.json --quiet
+printf 'body.mass_kg = 0.25\nbody.radius_m = 0.08\nforces.propulsion_N = 0.8\n' >mine.toml
+expect 0 '^body.radius_m  *0.08  *m  *mine.toml:2 ' "$gatewalk" scene mine.toml
+"$gatewalk" scene mine.toml --json keys.json --quiet
 holds '[.keys[] | select(.key == "beams.length_m" or .key == "run.traverse_y_m") | .source == "derived" and (.value == "0.2" or .value == "0.48")] == [true, true]' keys.json
-"$gatewalk" scene three.toml --new -o mine.toml
-for file in three.toml mine.toml; do "$gatewalk" gate $file --trials 50 --quiet --json out-$file.json; done
-jq -s 'map(del(.made_by)) | .[0] == .[1]' out-three.toml.json out-mine.toml.json | grep -q true || fail "scene --new: another scene"
-holds '.made_by.derived | index("run.time_limit_s") != null' out-three.toml.json
-echo '# edited' >>mine.toml
-expect 0 'kept as mine.toml.~1~$' "$gatewalk" scene three.toml --new -o mine.toml
-[ "$(tail -n 1 mine.toml.~1~)" = '# edited' ] || fail "scene --new: an edited scene is lost"
-expect 0 'three.toml leaves out keys, .*beams.length_m = 0.2,' "$gatewalk" gate three.toml --trials 10
+"$gatewalk" scene mine.toml --new -o full.toml
+for file in mine.toml full.toml; do "$gatewalk" gate $file --trials 50 --quiet --json out-$file.json; done
+jq -s 'map(del(.made_by)) | .[0] == .[1]' out-mine.toml.json out-full.toml.json | grep -q true || fail "scene --new: another scene"
+holds '.made_by.derived | index("run.time_limit_s") != null' out-mine.toml.json
+echo '# edited' >>full.toml
+expect 0 'kept as full.toml.~1~$' "$gatewalk" scene mine.toml --new -o full.toml
+[ "$(tail -n 1 full.toml.~1~)" = '# edited' ] || fail "scene --new: an edited scene is lost"
+expect 0 'mine.toml leaves out keys, .*beams.length_m = 0.2,' "$gatewalk" gate mine.toml --trials 10
 # What the file leaves out follows from the file, whatever is overridden.
-"$gatewalk" scene three.toml --set forces.propulsion_N=1.6 --json set.json --quiet
+"$gatewalk" scene mine.toml --set forces.propulsion_N=1.6 --json set.json --quiet
 holds '[.keys[] | select(.key == "beams.stiffness_left_Nm_per_rad") | .value][0] == "0.31999999999999995"' set.json
 # People read seven digits, programs all of them; a value of the file is written as it was given.
-"$gatewalk" scene three.toml --set forces.propulsion_N=1.6 >set.txt
+"$gatewalk" scene mine.toml --set forces.propulsion_N=1.6 >set.txt
 grep -q '^beams.stiffness_left_Nm_per_rad  *0.32  *N m/rad  *derived ' set.txt || fail "scene: a number in full length: $(grep stiffness_left set.txt)"
 printf 'body.radius_m = 0.0812345678901\n' >long.toml
 "$gatewalk" scene long.toml >long.txt
@@ -42,7 +42,7 @@ expect 0 'they hold the push of 0.24 N at 25.3 degrees' "$gatewalk" scene "$scen
 holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top_speed_m_per_s < 0.31' walker.json
 "$gatewalk" scene --set body.mass_g=90 --set body.radius_cm=6 --set forces.propulsion_N=1 --json small.json --quiet
 holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_length", "passages_waited"]' small.json
-expect 0 'far from any animal or robot that walks: .*a random force of 1.63 times the body.s weight' "$gatewalk" gate three.toml --trials 10
-expect 2 'figure has no meaning beside --new' "$gatewalk" scene three.toml --new --figure three.svg
+expect 0 'far from any animal or robot that walks: .*a random force of 1.63 times the body.s weight' "$gatewalk" gate mine.toml --trials 10
+expect 2 'figure has no meaning beside --new' "$gatewalk" scene mine.toml --new --figure three.svg
 
 finish
