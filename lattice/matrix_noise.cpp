@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "dynamics/quantile_bins.h"
 #include "dynamics/random.h"
 #include "lattice/draws.h"
 #include "lattice/exits.h"
@@ -20,13 +21,28 @@ using markov::FinalDistribution;
 
 std::int64_t CountedField::runs_at(const markov::Start& start) const {
   const auto type = static_cast<std::size_t>(chains.type_of(start.column, start.row));
-  return counts[type].row(start.input).sum();
+  const std::int64_t runs = counts[type].row(start.input).sum();
+  return images.empty() ? runs : runs / images[type][static_cast<std::size_t>(start.input)];
 }
 
 CountedField counted_field(const FieldGates& gates,
                            const std::vector<dynamics::Transitions>& matrices) {
   CountedField field{make_chain(gates, matrices), {}, matrices.front().space.has_trees()};
   for (const dynamics::Transitions& t : matrices) field.counts.push_back(t.counts());
+  if (!field.small_rows) return field;  // bins count no images
+  for (std::size_t m = 0; m < matrices.size(); ++m) {
+    const dynamics::StateSpace& space = matrices[m].space;
+    auto& images = field.images.emplace_back(static_cast<std::size_t>(space.size()), 1);
+    if (!dynamics::symmetric(gates.types()[m])) continue;
+    for (int row = 0; row < space.size(); ++row) {
+      const int point = row - (space.size() - static_cast<int>(space.points().size()));
+      if (point >= 0) {
+        const dynamics::Crossing& entry = space.points()[static_cast<std::size_t>(point)];
+        if (dynamics::mirrored(entry) != entry) continue;
+      }
+      images[static_cast<std::size_t>(row)] = 2;
+    }
+  }
   return field;
 }
 
@@ -47,7 +63,7 @@ bool equals_row_before(const markov::Counts& counts, int row) {
 }  // namespace
 
 markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::uint64_t replicate,
-                         bool small_rows) {
+                         bool small_rows, const std::vector<std::int64_t>& images) {
   using Entry = markov::Counts::InnerIterator;
   // What a row never saw may yet happen in it. Its probabilities are its counts and one run more,
   // which ends as those of all rows together: upto[i] runs ended in outputs 0 .. i.
@@ -68,7 +84,8 @@ markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::
       weights.push_back(static_cast<double>(entry.value()));
     if (weights.empty()) continue;
     of_entries.resize(weights.size());
-    const std::int64_t trials = counts.row(row).sum();
+    const std::int64_t each = images.empty() ? 1 : images[static_cast<std::size_t>(row)];
+    const std::int64_t trials = std::max<std::int64_t>(1, counts.row(row).sum() / each);
     dynamics::Random random(dynamics::Purpose::resampling,
                             {seed, static_cast<std::uint64_t>(first), replicate});
     const std::int64_t others =
@@ -98,9 +115,10 @@ std::vector<std::vector<FinalDistribution>> replicate_predictions(
       // Another matrix of the same replicate takes another stream.
       const std::uint64_t replicate =
           static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
-      chains.push_back(
-          markov::Chain::from_counts(resampled(gates.counts[m], seed, replicate, gates.small_rows),
-                                     gates.chains.chains()[m].exits()));
+      chains.push_back(markov::Chain::from_counts(
+          resampled(gates.counts[m], seed, replicate, gates.small_rows,
+                    gates.images.empty() ? std::vector<std::int64_t>{} : gates.images[m]),
+          gates.chains.chains()[m].exits()));
     }
     const markov::Predictor predictor(gates.chains.with(std::move(chains)));
     std::vector<FinalDistribution> of_starts =

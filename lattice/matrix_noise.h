@@ -17,8 +17,10 @@ struct CountedField {
   markov::FieldChain chains;
   std::vector<markov::Counts> counts;  // one per type, as chains.chains()
   bool small_rows = false;             // trees': rows of a few runs
+  /// By matrix and row: how many counts a run makes in it, 2 with its mirror image; empty: 1.
+  std::vector<std::vector<std::int64_t>> images{};
 
-  /// Runs of the row that a walk begins in.
+  /// Runs of the row that a walk begins in, mirror images not counted twice.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
 };
 /// Every cell draws from the matrix of its type; matrices as gates.types().
@@ -31,10 +33,12 @@ struct CountedField {
 /// counts, as one binomial per entry, and of one run more that may end as any of all rows: what a
 /// row never saw may yet happen in it. (Not in small rows, of which one run is a large part; there,
 /// predictions average over many rows. Neighbouring small rows that are equal are the same runs,
-/// and stay equal.) Chains of such counts show what the sampling of the matrix
-/// alone does to a prediction.
+/// and stay equal.) `images`, as CountedField's of this matrix: of a row in which a run makes two
+/// counts half as many are drawn. Chains of such counts, which matter by their ratios alone, show
+/// what the sampling of the matrix alone does to a prediction.
 [[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
-                                       std::uint64_t replicate, bool small_rows = false);
+                                       std::uint64_t replicate, bool small_rows = false,
+                                       const std::vector<std::int64_t>& images = {});
 
 /// Predictions from replicates first, ... first + count - 1: each matrix resampled() on its own.
 /// (starts x count) by Predictor::predict, on all threads of the current TBB arena; the same bits

@@ -21,8 +21,8 @@ struct Committor {
 };
 
 /// Row by row from the far edge; within a row by sweeps to both sides until no value changes by
-/// more than 1e-12 of the row's largest, or, in a row of cells of one type that walks soon leave,
-/// by the sum over more and more moves, to 1e-12 of it. Relative accuracy is that of sums of
+/// more than 1e-12 of it, or, in a row of cells of one type that walks soon leave, by the sum over
+/// more and more moves, to 1e-12 of each value. Relative accuracy is that of sums of
 /// positive numbers, however small the values: nothing is subtracted. A row never sampled ends as
 /// `unsampled`. Throws std::invalid_argument for moves to a row below and fields of another size
 /// than the chain's, std::runtime_error when 10^5 sweeps do not do.

@@ -38,7 +38,8 @@ struct WalkTotals {
   CellProbabilities visits;               // (rows x columns) expected draws in each cell
   std::array<Moments, kEndings> draws{};  // how many, by ending
   std::vector<std::array<Moments, kEndings>> totals{};  // by quantity and ending
-  /// Walks drawn for `draws` and `totals`, which are exact where this is 0.
+  /// Walks drawn for the moments of `draws` and `totals`, which are exact where this is 0; the
+  /// means of all walks together are exact in any case.
   std::int64_t drawn_walks = 0;
 
   /// Of all walks together.
@@ -63,8 +64,10 @@ struct WalkTolerance {
 /// apart (`each` is told of draw 1), and a row is left after 10^5 sweeps at the latest. Where moves
 /// lead to a row below, step by step until no more than `tolerance.all` of the walks are on their
 /// way, or 10^5 steps are done. In large fields without limit, whose rows are of one type each,
-/// visits and endings are exact to 1e-12 of each row, the moments those of walks drawn with `seed`:
-/// 2^16 of all, and, given `tolerance.chance`, 2^12 of those that end so. Throws
+/// visits, endings and the means of all walks are exact to 1e-12 of each row, the other moments
+/// those of walks drawn with `seed`: 2^16 of all, and, where `tolerance.chance` is of fewer than
+/// 2^12 of these, so many of those that end so. Without rewards no walks are drawn, and the moments
+/// of `draws` are not a number. Throws
 /// std::invalid_argument when rewards do not belong to the chain, and as validate().
 [[nodiscard]] WalkTotals walk_totals(const FieldChain& chain, const Field& field,
                                      const Start& start, int max_cells, const Rewards& rewards = {},

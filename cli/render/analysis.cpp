@@ -390,7 +390,8 @@ std::string table_of(const AnalysedField& f) {
   if (!std::isfinite(a.costs.front().mean))
     table += "(the file is of an older version, which kept no durations: build it again)\n";
   if (a.totals.drawn_walks > 0)
-    table += "(a large field: times and work are those of " + std::to_string(a.totals.drawn_walks) +
+    table += "(a large field: times and work by ending are those of " +
+             std::to_string(a.totals.drawn_walks) +
              " walks with the chain; none of them: no line)\n";
   if (f.direct) {
     const KolmogorovDistance d = duration_distance(a, f.direct->costs, {});
@@ -434,8 +435,8 @@ std::string table_of(const AnalysedField& f) {
     table += "  (none)\n";
   if (a.is_certain() && f.parameters.effects.empty())
     table += std::string(a.target_chance > 0.5 ? "everybody" : "nobody") +
-             " ends so: a little more or less of a number does not change that; --set KEY=VALUE "
-             "tries more\n";
+             " ends so in these runs: they cannot tell what a little more or less of a number "
+             "changes; --set KEY=VALUE tries more\n";
   if (!f.parameters.effects.empty()) {
     table += "\nper cent that the chance of " + target + " (" + percents(f.parameters.chance) +
              " %) grows for 1 % more of each number, 95 %\n";

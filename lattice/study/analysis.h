@@ -38,9 +38,10 @@ struct StartChance {
 struct Analysis {
   markov::Ending target{};
   double target_chance = 0.0;
-  /// Nobody ends so, or everybody but for rounding: no number changes that by a little.
+  /// By this chain nobody ends so, or everybody but for rounding: its runs cannot tell what a
+  /// little more or less of a number would change.
   [[nodiscard]] bool is_certain() const {
-    constexpr double kRounding = 1e-12;
+    constexpr double kRounding = 1e-9;
     return !(target_chance > 0.0 && target_chance < 1.0 - kRounding);
   }
   bool by_groups = false;     // of trials, which make the intervals; none of bins

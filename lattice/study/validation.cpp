@@ -175,15 +175,6 @@ std::int64_t null_draws_for(const Setup& setup) {
       100'000'000 / (setup.options.trials + setup.walks + gates * gates / 8), 999, 9999));
 }
 
-/// Runs of the row that walks begin in, mirror images not counted twice.
-std::int64_t first_runs(const Setup& setup, const PaperStart& start, const markov::Start& place) {
-  const dynamics::BodyState b = start.body();
-  const dynamics::Crossing entry{dynamics::Boundary::enter, b.x, b.vx, b.vy};
-  const bool has_images = setup.space.has_trees() && dynamics::mirrored(entry) == entry &&
-                          dynamics::symmetric(setup.types.at(place.column, place.row));
-  return setup.gates.runs_at(place) / (has_images ? 2 : 1);
-}
-
 StartValidation validate_start(const Setup& setup, const PaperStart& start,
                                const std::vector<markov::FinalDistribution>& resampled,
                                StateWalks& remembered) {
@@ -196,7 +187,7 @@ StartValidation validate_start(const Setup& setup, const PaperStart& start,
   const TimedWalks walked = walk(setup, chain_start.start);
   const TimedTrials seen = run_trials(setup, start, chain_start.start, exact, remembered);
 
-  const std::int64_t runs = first_runs(setup, start, chain_start.start);
+  const std::int64_t runs = setup.gates.runs_at(chain_start.start);
   // Resampled bins have one run more in each row; trees' rows, of which a run is a large part, not.
   const std::int64_t may_miss = setup.space.has_trees() ? runs : 0;
   MatrixNoise noise(exact, runs);

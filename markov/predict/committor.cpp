@@ -140,7 +140,8 @@ class CommittorRows {
     }
   }
 
-  /// All states of a cell, from those of its neighbours in the row. The largest change.
+  /// All states of a cell, from those of its neighbours in the row. The largest change, as a part
+  /// of the number.
   double renew(int column, int row) {
     const Moves& m = moves_of(column, row);
     const double* const sums = from_above_.data() + std::int64_t{column} * all_.inputs;
@@ -153,7 +154,7 @@ class CommittorRows {
                                           : ends_beyond(column + di_x, row));
       }
       double& value = cell(column, row)[input];
-      change = std::max(change, std::abs(sum - value));
+      if (sum > 0.0) change = std::max(change, std::abs(sum - value) / sum);
       value = sum;
     }
     return change;
@@ -167,7 +168,7 @@ class CommittorRows {
         for (std::size_t i = m.side[input]; i < m.up[input + 1]; ++i)
           if (const auto& [p, di_x, di_y, next] = m.entries[i]; !within(column + di_x))
             cell(column, row)[input] += p * ends_beyond(column + di_x, row);
-    sums_[type_of(0, row)].solve(cell(0, row));
+    sums_[type_of(0, row)].solve(cell(0, row), RowSum::Of::each);
   }
   [[nodiscard]] bool ends_at_a_side(const Moves& m, int column) const {
     return !within(column - m.widest) || !within(column + m.widest);
@@ -178,9 +179,7 @@ class CommittorRows {
       double change = 0.0;
       for (int i = 0; i < field_.columns; ++i)
         change = std::max(change, renew(sweep % 2 == 0 ? i : field_.columns - 1 - i, row));
-      const double* const begin = cell(0, row);
-      const double most = *std::max_element(begin, begin + from_above_.size());
-      if (change <= kSweepTolerance * most) return;
+      if (change <= kSweepTolerance) return;
     }
     refuse_circles(row);
   }

@@ -80,7 +80,7 @@ void RowSum::each(Use use) const {
       use(k * stride_ + origin_ + column, column * inputs_ + circle_[static_cast<std::size_t>(k)]);
 }
 
-void RowSum::solve(double* values) {
+void RowSum::solve(double* values, Of of) {
   constexpr double kTolerance = 1e-12;
   constexpr int kAtOnce = 8;  // to look at all numbers takes as long as to sum some
   add(first_, values);
@@ -88,7 +88,16 @@ void RowSum::solve(double* values) {
     sum_.data()[plane] = now_.data()[plane] = values[cell];
   });
   const auto planes = static_cast<int>(circle_.size());
+  const double tolerance = kTolerance * (1.0 - stays_);
   const auto largest_of = [](Planes p) { return *std::max_element(p.data(), p.data() + p.size()); };
+  // Of each: with the last two terms, as moves of one column lead to every other column only; a
+  // number that was reached just now is all of its sum.
+  const auto is_settled = [&] {
+    if (of == Of::largest) return largest_of(now_) <= tolerance * largest_of(sum_);
+    for (std::ptrdiff_t i = 0; i < sum_.size(); ++i)
+      if (now_.data()[i] + next_.data()[i] > tolerance * sum_.data()[i]) return false;
+    return true;
+  };
   do {
     for (int k = 0; k < kAtOnce && planes > 0; ++k) {
       gather(
@@ -98,7 +107,7 @@ void RowSum::solve(double* values) {
                  range_.front().last);
       std::swap(now_, next_);
     }
-  } while (planes > 0 && largest_of(now_) > kTolerance * (1.0 - stays_) * largest_of(sum_));
+  } while (planes > 0 && !is_settled());
   each([&](std::ptrdiff_t plane, std::ptrdiff_t cell) { values[cell] = sum_.data()[plane]; });
   add(last_, values);
 }

@@ -9,7 +9,7 @@
 namespace gatewalk::markov {
 
 /// x = b + Q x in a row of cells of one type, Q the moves within it (or their transpose), as the
-/// sum of b, Q b, Q Q b, ...: to 1e-12 of the largest. Numbers that are not negative stay so, and
+/// sum of b, Q b, Q Q b, ...: to 1e-12. Numbers that are not negative stay so, and
 /// nothing is subtracted. Many times as fast as sweeps over the cells, unless walks stay in the row
 /// for long.
 class RowSum {
@@ -23,8 +23,10 @@ class RowSum {
 
   /// Whether it is worth while: walks leave the row soon enough.
   [[nodiscard]] bool suits() const;
-  /// `values` (columns x inputs): b, and then x.
-  void solve(double* values);
+  /// `values` (columns x inputs): b, and then x, to 1e-12 of the largest or of each number, however
+  /// small.
+  enum class Of { largest, each };
+  void solve(double* values, Of of);
 
  private:
   void add(const std::vector<Term>& terms, double* values) const;

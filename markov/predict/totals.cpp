@@ -7,6 +7,8 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -354,9 +356,12 @@ class VisitsByRows {
   }
 
   /// `out`: visits and endings are added. `each` is told of states that are passed by more than
-  /// `is_little(share, cell, input)`.
+  /// `is_little(share, cell, input)`. Returns the means of all walks, draws first, then by
+  /// quantity.
   template <class Little>
-  void run(const Start& start, const EachState& each, const Little& is_little, WalkTotals& out) {
+  std::vector<double> run(const Start& start, const Rewards& rewards, const EachState& each,
+                          const Little& is_little, WalkTotals& out) {
+    std::vector<double> means(1 + quantities_of(chain_, rewards), 0.0);
     const std::int64_t inputs = chain_.inputs(), states = inputs * field_.columns;
     std::vector<std::vector<double>> entering(static_cast<std::size_t>(highest_) + 1);
     for (auto& row : entering) row.assign(static_cast<std::size_t>(states), 0.0);
@@ -365,7 +370,7 @@ class VisitsByRows {
       const auto type = static_cast<std::size_t>(chain_.type_of(0, row));
       const Chain& here = chain_.chains()[type];
       std::vector<double>& visits = entering.front();
-      sums_[type].solve(visits.data());
+      sums_[type].solve(visits.data(), RowSum::Of::largest);
       for (std::int64_t column = 0; column < field_.columns; ++column)
         for (int input = 0; input < inputs; ++input) {
           const double share = visits[static_cast<std::size_t>(column * inputs + input)];
@@ -376,11 +381,15 @@ class VisitsByRows {
             continue;
           }
           out.visits.data()[cell] += share;
+          means[0] += share;
           if (each && !is_little(share, cell, input)) each(1, cell, input, share);
-          for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
+          auto nonzero = static_cast<std::size_t>(here.matrix().outerIndexPtr()[input]);
+          for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it, ++nonzero) {
             const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
             std::int64_t to_column = column, to_row = row;
             const double p = share * it.value();
+            for (std::size_t q = 1; q < means.size(); ++q)
+              means[q] += p * rewards[type][q - 1].mean[nonzero];
             if (const auto ending = follow(field_, exit, false, to_column, to_row))
               out.endings[static_cast<std::size_t>(*ending)] += p;
             else if (exit.di_y > 0)
@@ -391,6 +400,7 @@ class VisitsByRows {
       std::fill(visits.begin(), visits.end(), 0.0);
       std::rotate(entering.begin(), entering.begin() + 1, entering.end());
     }
+    return means;
   }
 
  private:
@@ -515,29 +525,48 @@ WalkTotals totals_of_large(VisitsByRows& rows, const FieldChain& chain, const Fi
              : 0.0;
   WalkTotals out;
   out.visits = CellProbabilities::Zero(field.rows, field.columns);
-  rows.run(
-      start, each,
+  const std::vector<double> means = rows.run(
+      start, rewards, each,
       [&](double share, std::int64_t cell, int input) {
         return share * states <= tolerance.all &&
                (!chance ||
                 share * (*chance)(1, cell, input) * states <= tolerance.of_target * at_start);
       },
       out);
+  const double ended = std::accumulate(out.endings.begin(), out.endings.end(), 0.0);
+  out.remainder = std::max(0.0, 1.0 - ended);
+  if (quantities == 0) {  // nobody asks for more
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t e = 0; e < kEndings; ++e) out.draws[e] = {out.endings[e], kUnknown, kUnknown};
+    return out;
+  }
   out.drawn_walks = kWalks;
   out.totals.resize(quantities);
   DrawnMoments drawn = drawn_moments(chain, field, start, rewards, nullptr, kWalks, seed);
-  if (at_start > 0.0) {
-    const auto target = static_cast<std::size_t>(chance->ending());
+  std::size_t target = kEndings;  // none: of that many walks are drawn anyway
+  if (at_start > 0.0 && at_start * kWalks < kThatEndSo) {
+    target = static_cast<std::size_t>(chance->ending());
     const DrawnMoments so = drawn_moments(chain, field, start, rewards, chance, kThatEndSo, seed);
     for (std::size_t q = 0; q <= quantities; ++q) drawn.all[q][target] = so.all[q][target];
   }
-  for (std::size_t e = 0; e < kEndings; ++e)
-    for (std::size_t q = 0; q <= quantities; ++q) {
+  for (std::size_t q = 0; q <= quantities; ++q) {
+    auto& moments = q == 0 ? out.draws : out.totals[q - 1];
+    double others = 0.0;
+    for (std::size_t e = 0; e < kEndings; ++e) {
       Moments m = drawn.all[q][e];
       if (m.share > 0.0)
         m = {out.endings[e], m.sum / m.share * out.endings[e], m.square / m.share * out.endings[e]};
-      (q == 0 ? out.draws : out.totals[q - 1])[e] = m;
+      moments[e] = m;
+      if (e != target) others += m.sum;
     }
+    // The mean of all walks is known: those that were drawn together are scaled to it.
+    const double known = means[q] - (target < kEndings ? moments[target].sum : 0.0);
+    if (!(others > 0.0 && known > 0.0)) continue;
+    const double scale = known / others;
+    for (std::size_t e = 0; e < kEndings; ++e)
+      if (Moments& m = moments[e]; e != target)
+        m = {m.share, m.sum * scale, m.square * scale * scale};
+  }
   return out;
 }
 

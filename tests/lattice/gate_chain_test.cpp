@@ -132,6 +132,27 @@ TEST(Resampled, KnowsThatNotSeenIsNotImpossible) {
   EXPECT_GT(seen, 200);
 }
 
+// A run that makes two counts, its own and its mirror image's, is one run.
+TEST(Resampled, CountsMirrorImagesOnce) {
+  markov::Counts counts(1, 2);
+  counts.insert(0, 0) = 60;
+  counts.insert(0, 1) = 20;
+  const auto variance = [&](const std::vector<std::int64_t>& images) {
+    double sum = 0.0, squares = 0.0;
+    constexpr int kReplicates = 4000;
+    for (std::uint64_t k = 0; k < kReplicates; ++k) {
+      const markov::Counts drawn = resampled(counts, 1, k, true, images);
+      const double share = static_cast<double>(drawn.coeff(0, 0)) /
+                           static_cast<double>(drawn.coeff(0, 0) + drawn.coeff(0, 1));
+      sum += share;
+      squares += share * share;
+    }
+    return squares / kReplicates - sum * sum / kReplicates / kReplicates;
+  };
+  EXPECT_NEAR(variance({}) / (0.75 * 0.25 / 80.0), 1.0, 0.12);
+  EXPECT_NEAR(variance({2}) / (0.75 * 0.25 / 40.0), 1.0, 0.12);
+}
+
 TEST(Resampled, IsNamedBySeedAndReplicate) {
   const markov::Counts counts = made_up().counts();
   const auto drawn = [&](std::uint64_t seed, std::uint64_t replicate) {

@@ -73,9 +73,34 @@ TEST(Committor, IsTheSameByEitherRoute) {
                         by_sweeps = committor(FieldChain::by_cell({chain, chain}, 11, types), field,
                                               ending);
         for (std::size_t i = 0; i < by_sums.values.size(); ++i)
-          EXPECT_NEAR(by_sums.values[i], by_sweeps.values[i], 2e-11);
+          EXPECT_NEAR(by_sums.values[i], by_sweeps.values[i], 2e-11 * by_sweeps.values[i]);
       }
     }
+}
+
+// One state that moves to either side with 0.05, or on with 0.4: over the left side of a single
+// row.
+TEST(Committor, KnowsSmallChancesAsWellAsLargeOnes) {
+  const Chain chain = Chain::from_probabilities(
+      matrix(1, 4, {{0, 0, 0.05}, {0, 1, 0.05}, {0, 2, 0.4}, {0, 3, 0.5}}),
+      {{0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {}});
+  for (const int columns : {9, 41, 101}) {
+    // h(i) = 0.05 (h(i - 1) + h(i + 1)), h(-1) = 1, h(columns) = 0.
+    const double r = (1.0 - std::sqrt(1.0 - 4.0 * 0.05 * 0.05)) / (2.0 * 0.05);
+    const auto exact = [&](int i) {
+      const double n = columns + 1.0, k = i + 1.0;
+      return (std::pow(r, k) - std::pow(r, 2.0 * n - k)) / (1.0 - std::pow(r, 2.0 * n));
+    };
+    std::vector<int> types(static_cast<std::size_t>(columns));
+    for (std::size_t i = 0; i < types.size(); ++i) types[i] = i % 2 == 0;
+    const Committor by_sums = committor(chain, {columns, 1}, Ending::left_edge),
+                    by_sweeps = committor(FieldChain::by_cell({chain, chain}, columns, types),
+                                          {columns, 1}, Ending::left_edge);
+    for (int i = 0; i < columns; ++i) {
+      EXPECT_NEAR(by_sums(i, 0, 0) / exact(i), 1.0, 1e-10) << i << " of " << columns;
+      EXPECT_NEAR(by_sweeps(i, 0, 0) / exact(i), 1.0, 1e-10) << i << " of " << columns;
+    }
+  }
 }
 
 TEST(Committor, RefusesMovesDown) {

@@ -154,8 +154,7 @@ TEST(WalkTotals, OfLargeFieldsAreTheSameButForChanceInTheMoments) {
     for (std::size_t i = 0; i < shares.size(); ++i) EXPECT_NEAR(shares[i], exact_shares[i], 1e-11);
     for (const Ending e : {Ending::trapped, Ending::left_edge, Ending::far_edge}) {
       EXPECT_NEAR(large.endings[at(e)], exact.endings[at(e)], 1e-11);
-      // Of those that end as was asked for 2^12 walks were drawn.
-      const double n = e == Ending::far_edge ? 4096.0 : 65536.0 * exact.endings[at(e)];
+      const double n = 65536.0 * exact.endings[at(e)];
       const auto expect_close = [&](const Moments& drawn, const Moments& wanted) {
         EXPECT_NEAR(drawn.share, wanted.share, 1e-11);
         EXPECT_NEAR(drawn.mean(), wanted.mean(), 4.5 * wanted.sd() / std::sqrt(n));
@@ -164,6 +163,11 @@ TEST(WalkTotals, OfLargeFieldsAreTheSameButForChanceInTheMoments) {
       expect_close(large.draws[at(e)], exact.draws[at(e)]);
       expect_close(large.totals[0][at(e)], exact.totals[0][at(e)]);
     }
+    // The means of all walks need no drawing.
+    EXPECT_NEAR(WalkTotals::all(large.draws).mean(), WalkTotals::all(exact.draws).mean(), 1e-9);
+    for (std::size_t q = 0; q < exact.totals.size(); ++q)
+      EXPECT_NEAR(WalkTotals::all(large.totals[q]).mean() / WalkTotals::all(exact.totals[q]).mean(),
+                  1.0, 1e-9);
     const auto one = gatewalk::test::on_threads(1, [&] { return totals(0.0, shares); });
     EXPECT_EQ(one.totals[0][at(Ending::trapped)].sum, large.totals[0][at(Ending::trapped)].sum);
   }
@@ -175,10 +179,16 @@ TEST(WalkTotals, OfLargeFieldsKnowTheFewThatEndAsAskedFor) {
       Chain::from_probabilities(matrix(1, 2, {{0, 0, 1e-4}, {0, 1, 1.0 - 1e-4}}), {{0, 0, 1}, {}});
   const Field field{1, 20};
   const EndingChance chance(chain, field, Ending::far_edge, 0);
+  const Rewards rewards{{Reward{{3.0, 1.0}, {9.0, 1.0}}}};  // of going on, of being trapped
   const WalkTotals few =
-      walk_totals(chain, field, {}, 0, {}, {}, {.chance = &chance, .large = 0.0}, 3);
+      walk_totals(chain, field, {}, 0, rewards, {}, {.chance = &chance, .large = 0.0}, 3);
   EXPECT_NEAR(few.endings[at(Ending::far_edge)] / 1e-80, 1.0, 1e-12);
   EXPECT_NEAR(few.draws[at(Ending::far_edge)].mean(), 20.0, 1e-12);
+  EXPECT_NEAR(few.totals[0][at(Ending::far_edge)].mean(), 60.0, 1e-12);
+  EXPECT_NEAR(WalkTotals::all(few.totals[0]).mean(), 3.0 * 1e-4 / (1.0 - 1e-4) + 1.0, 1e-12);
+  const WalkTotals without =
+      walk_totals(chain, field, {}, 0, {}, {}, {.chance = &chance, .large = 0.0}, 3);
+  EXPECT_EQ(without.drawn_walks, 0);  // nobody asks for what they take
 }
 
 // Times of walks have the moments that were asked for, and walks the endings.

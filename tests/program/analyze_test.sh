@@ -25,8 +25,8 @@ holds '.gate_runs == 0 and .sensitivities.parameters == []' from_file.json
 expect 2 'must be one of crossed' "$gatewalk" analyze fast.nc --target lost
 expect 2 'is of one start' "$gatewalk" analyze fast.nc --start 0,0,15 --start 1,0,15
 expect 2 'must be 0, or 100 or more' "$gatewalk" analyze fast.nc --runs 1
-expect 0 'nobody ends so' "$gatewalk" analyze fast.nc --set field.max_gates=0 --target cut_off --runs 100
-expect 0 'everybody ends so' "$gatewalk" analyze "$scenes/walker.toml" --accuracy 0.2 --json certain.json
+expect 0 'nobody ends so in these runs' "$gatewalk" analyze fast.nc --set field.max_gates=0 --target cut_off --runs 100
+expect 0 'everybody ends so in these runs' "$gatewalk" analyze "$scenes/walker.toml" --accuracy 0.2 --json certain.json
 holds '.sensitivities.parameters == [] and .sensitivities.gate_runs == 0' certain.json
 expect 2 'must lie between 0 and 0.5' "$gatewalk" analyze fast.nc --step 0.7
 for lump in 3,1 3,1,2,1 0,1,1 3,1,x; do expect 2 'must be three whole numbers from 1 to 1000' "$gatewalk" analyze fast.nc --lump $lump; done
