@@ -14,7 +14,7 @@
 #include "cli/render/meaning.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -15,7 +15,7 @@
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/provenance.h"
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 
 namespace gatewalk::lattice {
 struct Scene;

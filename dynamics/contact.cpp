@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "dynamics/wide-inl.h"
+#include "dynamics/base/wide-inl.h"
 
 namespace gatewalk::dynamics {
 

@@ -6,11 +6,12 @@
 ///   contact.h      where disc and beam touch, impact laws Eqs. (4)-(9), constraints Eqs. (10)-(13)
 ///   flow.h         free motion in closed form
 ///   methods/       time stepping, one file per method behind methods/method.h
-///   random.h       counter-based random streams, the held lateral force of Eq. (1)
+///   random_force.h the held lateral force of Eq. (1)
+///   base/          random streams, shares with intervals, sets of trials, long work that can be watched
 ///   gate.h         one run of one gate
 ///   runs.h         runs by the thousand on all threads; in vector registers those of stable
 ///                  (stable_lanes.h) and moreau (lanes.h)
-///   ensemble.h     many runs and their outcomes; trial_set.h: which trials they are
+///   ensemble.h     many runs and their outcomes
 ///   health.h       how far runs can be trusted
 ///   state_space.h  how a body enters a gate, as a number: Table III's bins, others, or trees
 ///   quantile_bins.h  bins from entries that were seen, and how well bins resolve them
@@ -25,13 +26,13 @@
 ///   study/choice.h       the cheapest method and setting that a scene can do with
 // clang-format on
 
+#include "dynamics/base/random.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/flow.h"
 #include "dynamics/gate.h"
 #include "dynamics/landscape.h"
 #include "dynamics/params.h"
 #include "dynamics/quantile_bins.h"
-#include "dynamics/random.h"
 #include "dynamics/state_space.h"
 #include "dynamics/study/accuracy.h"
 #include "dynamics/study/choice.h"

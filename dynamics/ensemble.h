@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <limits>
 
+#include "dynamics/base/trial_set.h"
 #include "dynamics/gate.h"
 #include "dynamics/health.h"
-#include "dynamics/trial_set.h"
 
 namespace gatewalk::dynamics {
 

@@ -7,8 +7,8 @@
 #define GATEWALK_DYNAMICS_FLOW_INL_H_
 #endif
 
+#include "dynamics/base/wide-inl.h"
 #include "dynamics/flow.h"
-#include "dynamics/wide-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {

@@ -8,7 +8,7 @@
 
 #include "dynamics/contact.h"
 #include "dynamics/methods/method.h"
-#include "dynamics/random.h"
+#include "dynamics/random_force.h"
 
 namespace gatewalk::dynamics {
 

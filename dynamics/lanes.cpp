@@ -12,7 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "dynamics/wide-inl.h"
+#include "dynamics/base/wide-inl.h"
 
 #ifndef GATEWALK_DYNAMICS_LANES_ONCE
 #define GATEWALK_DYNAMICS_LANES_ONCE

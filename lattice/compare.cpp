@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "lattice/draws.h"
 #include "lattice/gate_statistics.h"
 

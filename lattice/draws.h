@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 
 namespace gatewalk::lattice {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::lattice {
 

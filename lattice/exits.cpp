@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::lattice {
 namespace {

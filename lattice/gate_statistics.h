@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "lattice/compare.h"
 
 namespace gatewalk::lattice {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 
 namespace gatewalk::lattice {
 namespace {

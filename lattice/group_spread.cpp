@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "dynamics/random.h"
-#include "dynamics/share.h"
+#include "dynamics/base/random.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "markov/dense.h"
 
 namespace gatewalk::lattice {

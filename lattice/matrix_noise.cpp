@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "dynamics/base/random.h"
 #include "dynamics/quantile_bins.h"
-#include "dynamics/random.h"
 #include "lattice/draws.h"
 #include "lattice/exits.h"
 #include "lattice/gate_chain.h"

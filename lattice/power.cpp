@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "lattice/gate_statistics.h"
 #include "lattice/looked_at.h"
 

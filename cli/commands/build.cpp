@@ -5,7 +5,7 @@
 #include "cli/render/prediction.h"
 #include "cli/render/states.h"
 #include "cli/render/text.h"
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "cli/render/json.h"
 #include "cli/render/work_precision.h"
 #include "cli/terminal/interrupt.h"
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/settle.h"
 

@@ -4,8 +4,8 @@
 #include "cli/render/json.h"
 #include "cli/render/stability.h"
 #include "cli/render/text.h"
+#include "dynamics/base/work.h"
 #include "dynamics/study/accuracy.h"
-#include "dynamics/work.h"
 
 namespace gatewalk::cli {
 

@@ -7,7 +7,7 @@
 #include "cli/render/json.h"
 #include "cli/render/sweep.h"
 #include "cli/terminal/output.h"
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/scene/units.h"
 
 namespace gatewalk::cli {

@@ -6,7 +6,7 @@
 
 #include "cli/film/encoder.h"
 #include "cli/film/film.h"
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
 

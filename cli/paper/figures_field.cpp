@@ -6,7 +6,7 @@
 #include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
 

@@ -31,7 +31,7 @@
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
 #include "cli/web/embedded.h"
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cli/render/text.h"
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
 

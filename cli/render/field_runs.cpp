@@ -7,7 +7,7 @@
 #include "cli/render/scene.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
 

@@ -4,7 +4,7 @@
 #include "cli/render/json.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
 

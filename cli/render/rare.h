@@ -7,7 +7,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 #include "lattice/study/rare.h"
 
 namespace gatewalk::cli {

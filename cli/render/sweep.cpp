@@ -9,7 +9,7 @@
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
 namespace {

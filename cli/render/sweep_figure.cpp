@@ -7,7 +7,7 @@
 #include "cli/render/figure.h"
 #include "cli/render/sweep.h"
 #include "cli/render/text.h"
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
 namespace {

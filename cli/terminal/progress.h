@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
 

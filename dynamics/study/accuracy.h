@@ -16,9 +16,9 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/state_space.h"
 #include "dynamics/study/verdict.h"
-#include "dynamics/work.h"
 
 namespace gatewalk::dynamics {
 

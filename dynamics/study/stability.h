@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/study/verdict.h"
-#include "dynamics/work.h"
 
 namespace gatewalk::dynamics {
 

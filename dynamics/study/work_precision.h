@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/study/accuracy.h"
-#include "dynamics/work.h"
 
 namespace gatewalk::dynamics {
 

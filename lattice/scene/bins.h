@@ -4,10 +4,10 @@
 
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/quantile_bins.h"
 #include "dynamics/transitions.h"
-#include "dynamics/work.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/gate_chain.h"
 #include "lattice/scene/bins.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/study/choice.h"
-#include "dynamics/work.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {

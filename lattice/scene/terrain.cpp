@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "lattice/scene/digits.h"
 #include "lattice/scene/scene.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/group_spread.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/costed_chain.h"

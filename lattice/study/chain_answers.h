@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/transitions.h"
-#include "dynamics/work.h"
 #include "lattice/compare.h"
 #include "lattice/reference.h"
 #include "lattice/scene/table4.h"

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/transitions.h"
-#include "dynamics/work.h"
 #include "lattice/scene/bins.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/chain_answers.h"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "lattice/run_pool.h"
 #include "lattice/scene/scene.h"
 #include "markov/totals.h"

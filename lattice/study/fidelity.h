@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/compare.h"
 #include "lattice/reference.h"
 #include "lattice/scene/scene.h"

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/state_space.h"
-#include "dynamics/work.h"
 #include "lattice/gates_ahead.h"
 #include "lattice/independence.h"
 #include "lattice/reference.h"

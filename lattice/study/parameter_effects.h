@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/health.h"
-#include "dynamics/work.h"
 #include "lattice/group_spread.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/costed_chain.h"

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/params.h"
-#include "dynamics/work.h"
 #include "lattice/field.h"
 #include "lattice/study/costed_chain.h"
 #include "markov/committor.h"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/group_spread.h"
 #include "lattice/run_pool.h"
 #include "lattice/scene/scene.h"

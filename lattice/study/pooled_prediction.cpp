@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 #include "lattice/study/pool_answers.h"
 
 namespace gatewalk::lattice {

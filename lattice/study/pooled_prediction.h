@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/exits.h"
 #include "lattice/group_spread.h"
 #include "lattice/study/pool_runner.h"

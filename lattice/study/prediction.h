@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/ending_shares.h"
 #include "lattice/exits.h"
 #include "lattice/matrix_noise.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "dynamics/base/share.h"
 #include "dynamics/runs.h"
-#include "dynamics/share.h"
 #include "lattice/gate_chain.h"
 #include "lattice/scene/settle.h"
 #include "lattice/study/pool_runner.h"

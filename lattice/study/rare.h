@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/health.h"
-#include "dynamics/work.h"
 #include "lattice/run_pool.h"
 #include "lattice/scene/scene.h"
 

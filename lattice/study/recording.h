@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/trace.h"
-#include "dynamics/work.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {

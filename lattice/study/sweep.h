@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/base/work.h"
 #include "dynamics/ensemble.h"
-#include "dynamics/work.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::lattice {

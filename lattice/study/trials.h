@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/exits.h"
 #include "lattice/field_costs.h"
 #include "lattice/gate_chain.h"

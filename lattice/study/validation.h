@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 #include "lattice/compare.h"
 #include "lattice/ending_shares.h"
 #include "lattice/exits.h"

@@ -9,7 +9,7 @@
 #include "cli/render/json.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
 namespace {

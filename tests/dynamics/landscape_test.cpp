@@ -8,8 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dynamics/base/random.h"
 #include "dynamics/contact.h"
-#include "dynamics/random.h"
 #include "tests/support/scenes.h"
 
 namespace gatewalk::dynamics {

@@ -6,9 +6,10 @@
 #include <limits>
 #include <numbers>
 
+#include "dynamics/base/random.h"
 #include "dynamics/landscape.h"
 #include "dynamics/methods/method.h"
-#include "dynamics/random.h"
+#include "dynamics/random_force.h"
 #include "tests/support/free_beam.h"
 
 namespace gatewalk::dynamics {

@@ -1,4 +1,5 @@
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
+#include "dynamics/random_force.h"
 
 #include <gtest/gtest.h>
 

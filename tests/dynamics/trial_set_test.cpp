@@ -1,4 +1,4 @@
-#include "dynamics/trial_set.h"
+#include "dynamics/base/trial_set.h"
 
 #include <gtest/gtest.h>
 

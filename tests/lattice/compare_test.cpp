@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 #include "lattice/run_pool.h"
 #include "lattice/study/pool_answers.h"
 #include "lattice/study/prediction.h"

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "lattice/scene/scene.h"
 #include "tests/support/long.h"
 #include "tests/support/threads.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 #include "lattice/draws.h"
 #include "tests/support/threads.h"
 

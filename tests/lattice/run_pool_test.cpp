@@ -4,9 +4,9 @@
 
 #include <numeric>
 
+#include "dynamics/base/random.h"
+#include "dynamics/base/share.h"
 #include "dynamics/quantile_bins.h"
-#include "dynamics/random.h"
-#include "dynamics/share.h"
 #include "lattice/draws.h"
 #include "lattice/group_spread.h"
 #include "lattice/share_95.h"

@@ -1,4 +1,4 @@
-#include "dynamics/share.h"
+#include "dynamics/base/share.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>

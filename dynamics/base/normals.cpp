@@ -1,11 +1,11 @@
-#include "dynamics/random.h"
+#include "dynamics/base/random.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "dynamics/normals.cpp"
+#define HWY_TARGET_INCLUDE "dynamics/base/normals.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "dynamics/wide-inl.h"
+#include "dynamics/base/wide-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {

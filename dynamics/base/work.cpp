@@ -1,4 +1,4 @@
-#include "dynamics/work.h"
+#include "dynamics/base/work.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "dynamics/trial_set.h"
+#include "dynamics/base/trial_set.h"
 
 namespace gatewalk::dynamics {
 
