@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "lattice/pool/tree_chain.h"
 #include "lattice/scene/bins.h"
 #include "lattice/scene/matrix.h"
 #include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
-#include "lattice/study/tree_chain.h"
 
 namespace gatewalk::cli {
 

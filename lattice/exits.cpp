@@ -93,11 +93,4 @@ FieldExits exits_of_groups(const ExitShares& prediction, const std::vector<ExitS
   });
 }
 
-std::array<double, 2> middle_95(std::vector<double> drawn, double own) {
-  std::sort(drawn.begin(), drawn.end());
-  const std::size_t beyond = (drawn.size() + 1) / 40;  // 2.5 % on either side
-  const std::size_t low = beyond > 0 ? beyond - 1 : 0;
-  return {std::min(drawn[low], own), std::max(drawn[drawn.size() - 1 - low], own)};
-}
-
 }  // namespace gatewalk::lattice

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lattice/reference.h"
-#include "lattice/share_95.h"
+#include "lattice/statistics/share_95.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {
@@ -51,8 +51,5 @@ using ExitShares = std::array<std::vector<double>, kSides.size()>;  // by kSides
 [[nodiscard]] FieldExits exits_of_groups(const ExitShares& prediction,
                                          const std::vector<ExitShares>& groups,
                                          const Evidence& from);
-
-/// Between what lie the middle 95 % of what was drawn (one at least), and `own`.
-[[nodiscard]] std::array<double, 2> middle_95(std::vector<double> drawn, double own);
 
 }  // namespace gatewalk::lattice

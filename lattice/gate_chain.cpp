@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dynamics/quantile_bins.h"
+
 namespace gatewalk::lattice {
 
 using namespace dynamics;
@@ -32,6 +34,31 @@ markov::FieldChain make_chain(const FieldGates& gates, const std::vector<Transit
   std::vector<markov::Chain> chains;
   for (const Transitions& t : matrices) chains.push_back(make_chain(t));
   return field_chain(gates, std::move(chains));
+}
+
+CountedField counted_field(const FieldGates& gates,
+                           const std::vector<dynamics::Transitions>& matrices) {
+  CountedField field{make_chain(gates, matrices), {}, matrices.front().space.has_trees()};
+  for (const dynamics::Transitions& t : matrices) field.counts.push_back(t.counts());
+  if (!field.small_rows) return field;  // bins count no images
+  for (std::size_t m = 0; m < matrices.size(); ++m) {
+    const dynamics::StateSpace& space = matrices[m].space;
+    auto& images = field.images.emplace_back(static_cast<std::size_t>(space.size()), 1);
+    if (!dynamics::symmetric(gates.types()[m])) continue;
+    for (int row = 0; row < space.size(); ++row) {
+      const int point = row - (space.size() - static_cast<int>(space.points().size()));
+      if (point >= 0) {
+        const dynamics::Crossing& entry = space.points()[static_cast<std::size_t>(point)];
+        if (dynamics::mirrored(entry) != entry) continue;
+      }
+      images[static_cast<std::size_t>(row)] = 2;
+    }
+  }
+  return field;
+}
+
+CountedField counted_field(const dynamics::Transitions& matrix) {
+  return {make_chain(matrix), {matrix.counts()}, matrix.space.has_trees()};
 }
 
 ChainStart chain_start(const StateSpace& space, const FieldParams& field, const BodyState& body) {

@@ -8,6 +8,7 @@
 
 #include "dynamics/transitions.h"
 #include "lattice/field.h"
+#include "lattice/statistics/matrix_noise.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::lattice {
@@ -23,6 +24,12 @@ namespace gatewalk::lattice {
 /// The same of matrices with the same states.
 [[nodiscard]] markov::FieldChain make_chain(const FieldGates& gates,
                                             const std::vector<dynamics::Transitions>& matrices);
+
+/// Every cell draws from the matrix of its type; matrices as gates.types().
+[[nodiscard]] CountedField counted_field(const FieldGates& gates,
+                                         const std::vector<dynamics::Transitions>& matrices);
+/// Every cell draws from the same matrix.
+[[nodiscard]] CountedField counted_field(const dynamics::Transitions& matrix);
 
 /// The chain's start for a body that starts in gate (0, 0): its state, and whether it lies outside
 /// the bins as StateSpace::Index says. A body inside the gate (y > 0) has no state of its own:

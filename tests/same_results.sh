@@ -5,7 +5,7 @@
 # OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds.
 # Status 1: some differ; 2: nothing was compared.
 # To see that it finds what it should, change a constant in a copy of the sources, say kQuantile in
-# lattice/group_spread.cpp, and compare the programs.
+# lattice/statistics/group_spread.cpp, and compare the programs.
 set -euf
 pattern=.
 if [ "${1-}" = --lines ]; then

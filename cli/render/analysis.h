@@ -6,8 +6,8 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "lattice/ending_shares.h"
 #include "lattice/field_costs.h"
+#include "lattice/statistics/ending_shares.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/parameter_effects.h"
 

@@ -7,11 +7,11 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
-#include "lattice/ending_shares.h"
 #include "lattice/exits.h"
 #include "lattice/lattice.h"
 #include "lattice/reference.h"
 #include "lattice/scene/scene.h"
+#include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 
 namespace gatewalk::cli {

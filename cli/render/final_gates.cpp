@@ -6,7 +6,7 @@
 
 #include "cli/render/json.h"
 #include "cli/render/text.h"
-#include "lattice/compare.h"
+#include "lattice/statistics/compare.h"
 
 namespace gatewalk::cli {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/render/json_fwd.h"
-#include "lattice/ending_shares.h"
+#include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 

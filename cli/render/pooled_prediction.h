@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/render/json_fwd.h"
-#include "lattice/study/pooled_prediction.h"
+#include "lattice/pool/pooled_prediction.h"
 
 namespace gatewalk::cli {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/render/json_fwd.h"
+#include "lattice/pool/tree_chain.h"
 #include "lattice/scene/bins.h"
-#include "lattice/study/tree_chain.h"
 
 namespace gatewalk::cli {
 

@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "dynamics/quantile_bins.h"
-#include "lattice/group_spread.h"
-#include "lattice/share_95.h"
-#include "lattice/study/passages.h"
+#include "lattice/pool/passages.h"
+#include "lattice/statistics/group_spread.h"
+#include "lattice/statistics/share_95.h"
 
 namespace gatewalk::lattice {
 namespace {

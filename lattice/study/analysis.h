@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/group_spread.h"
+#include "lattice/pool/costed_chain.h"
+#include "lattice/pool/lumped_chain.h"
 #include "lattice/scene/scene.h"
-#include "lattice/study/costed_chain.h"
-#include "lattice/study/lumped_chain.h"
+#include "lattice/statistics/group_spread.h"
 #include "markov/paths.h"
 #include "markov/quasi_stationary.h"
 #include "markov/totals.h"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "lattice/gate_chain.h"
-#include "lattice/matrix_noise.h"
+#include "lattice/statistics/matrix_noise.h"
 #include "lattice/study/one_thread.h"
 #include "markov/predict.h"
 #include "markov/walk.h"

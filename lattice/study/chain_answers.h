@@ -8,9 +8,9 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/transitions.h"
-#include "lattice/compare.h"
 #include "lattice/reference.h"
 #include "lattice/scene/table4.h"
+#include "lattice/statistics/compare.h"
 
 namespace gatewalk::lattice {
 

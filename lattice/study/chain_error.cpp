@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "lattice/pool/pooled_prediction.h"
 #include "lattice/scene/matrix.h"
 #include "lattice/study/one_thread.h"
-#include "lattice/study/pooled_prediction.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/ending_shares.h"
-#include "lattice/power.h"
-#include "lattice/study/pooled_prediction.h"
+#include "lattice/pool/pooled_prediction.h"
+#include "lattice/statistics/ending_shares.h"
+#include "lattice/statistics/power.h"
 
 namespace gatewalk::lattice {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/compare.h"
 #include "lattice/reference.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/table4.h"
+#include "lattice/statistics/compare.h"
 
 namespace gatewalk::lattice {
 

@@ -11,9 +11,9 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/state_space.h"
-#include "lattice/gates_ahead.h"
-#include "lattice/independence.h"
 #include "lattice/reference.h"
+#include "lattice/statistics/gates_ahead.h"
+#include "lattice/statistics/independence.h"
 #include "lattice/study/fidelity.h"
 
 namespace gatewalk::lattice {

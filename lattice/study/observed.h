@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "lattice/compare.h"
-#include "lattice/ending_shares.h"
 #include "lattice/field.h"
-#include "lattice/power.h"
 #include "lattice/reference.h"
+#include "lattice/statistics/compare.h"
+#include "lattice/statistics/ending_shares.h"
+#include "lattice/statistics/power.h"
 
 namespace gatewalk::lattice {
 

@@ -10,8 +10,8 @@
 #include "dynamics/contact.h"
 #include "dynamics/methods/method.h"
 #include "dynamics/runs.h"
-#include "lattice/group_spread.h"
-#include "lattice/study/pool_runner.h"
+#include "lattice/pool/pool_runner.h"
+#include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/health.h"
-#include "lattice/group_spread.h"
+#include "lattice/pool/costed_chain.h"
+#include "lattice/pool/passages.h"
 #include "lattice/scene/scene.h"
-#include "lattice/study/costed_chain.h"
-#include "lattice/study/passages.h"
+#include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {
 

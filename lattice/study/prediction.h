@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/ending_shares.h"
 #include "lattice/exits.h"
-#include "lattice/matrix_noise.h"
 #include "lattice/scene/matrix.h"
 #include "lattice/scene/table4.h"
+#include "lattice/statistics/ending_shares.h"
+#include "lattice/statistics/matrix_noise.h"
 
 namespace gatewalk::lattice {
 

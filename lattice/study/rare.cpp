@@ -12,8 +12,8 @@
 #include "dynamics/base/share.h"
 #include "dynamics/runs.h"
 #include "lattice/gate_chain.h"
+#include "lattice/pool/pool_runner.h"
 #include "lattice/scene/settle.h"
-#include "lattice/study/pool_runner.h"
 #include "markov/committor.h"
 
 namespace gatewalk::lattice {

@@ -10,7 +10,7 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/health.h"
-#include "lattice/run_pool.h"
+#include "lattice/pool/run_pool.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "lattice/ending_shares.h"
 #include "lattice/reference.h"
 #include "lattice/scene/settle.h"
+#include "lattice/statistics/ending_shares.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -10,7 +10,7 @@
 #include "dynamics/quantile_bins.h"
 #include "dynamics/transitions.h"
 #include "lattice/gate_chain.h"
-#include "lattice/matrix_noise.h"
+#include "lattice/statistics/matrix_noise.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/compare.h"
-#include "lattice/ending_shares.h"
 #include "lattice/exits.h"
 #include "lattice/gate_chain.h"
 #include "lattice/reference.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/table4.h"
+#include "lattice/statistics/compare.h"
+#include "lattice/statistics/ending_shares.h"
 #include "lattice/study/memory.h"
 #include "lattice/study/observed.h"
 #include "markov/predict.h"

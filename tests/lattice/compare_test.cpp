@@ -1,4 +1,4 @@
-#include "lattice/compare.h"
+#include "lattice/statistics/compare.h"
 
 #include <gtest/gtest.h>
 

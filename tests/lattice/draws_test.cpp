@@ -1,4 +1,4 @@
-#include "lattice/draws.h"
+#include "lattice/statistics/draws.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "dynamics/base/share.h"
-#include "lattice/run_pool.h"
-#include "lattice/study/pool_answers.h"
+#include "lattice/pool/pool_answers.h"
+#include "lattice/pool/run_pool.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::lattice {

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/matrix_noise.h"
+#include "lattice/statistics/matrix_noise.h"
 #include "markov/chain.h"
 #include "markov/predict.h"
 #include "tests/support/numbers.h"

@@ -1,6 +1,6 @@
 // What the sampling of a matrix does: intervals that cover, and one test of trials and matrix
 // together.
-#include "lattice/matrix_noise.h"
+#include "lattice/statistics/matrix_noise.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "lattice/compare.h"
-#include "lattice/draws.h"
 #include "lattice/gate_chain.h"
+#include "lattice/statistics/compare.h"
+#include "lattice/statistics/draws.h"
 #include "markov/predict.h"
 #include "tests/support/threads.h"
 

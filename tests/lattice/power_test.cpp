@@ -1,5 +1,5 @@
 // Powers by hand, by enumeration, and by the very tests that they are of.
-#include "lattice/power.h"
+#include "lattice/statistics/power.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dynamics/base/random.h"
-#include "lattice/draws.h"
+#include "lattice/statistics/draws.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::lattice {

@@ -1,4 +1,4 @@
-#include "lattice/run_pool.h"
+#include "lattice/pool/run_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include "dynamics/base/random.h"
 #include "dynamics/base/share.h"
 #include "dynamics/quantile_bins.h"
-#include "lattice/draws.h"
-#include "lattice/group_spread.h"
-#include "lattice/share_95.h"
-#include "lattice/study/pool_answers.h"
-#include "lattice/study/pooled_prediction.h"
-#include "lattice/study/tree_chain.h"
+#include "lattice/pool/pool_answers.h"
+#include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/tree_chain.h"
+#include "lattice/statistics/draws.h"
+#include "lattice/statistics/group_spread.h"
+#include "lattice/statistics/share_95.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::lattice {

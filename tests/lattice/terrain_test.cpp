@@ -11,11 +11,11 @@
 #include <limits>
 #include <string>
 
-#include "lattice/compare.h"
+#include "lattice/pool/tree_chain.h"
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
+#include "lattice/statistics/compare.h"
 #include "lattice/study/prediction.h"
-#include "lattice/study/tree_chain.h"
 #include "lattice/study/trials.h"
 #include "lattice/study/validation.h"
 

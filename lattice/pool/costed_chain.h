@@ -1,0 +1,50 @@
+#pragma once
+/// A field's chain from one start, with what its draws take and where its states were entered: what
+/// analyses are made of.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "dynamics/base/random.h"
+#include "lattice/pool/run_pool.h"
+#include "lattice/scene/scene.h"
+#include "markov/totals.h"
+
+namespace gatewalk::lattice {
+
+/// A field's chain from one start, with what its draws take: the quantities are those of
+/// dynamics::kCostNames.
+struct CostedChain {
+  markov::FieldChain chain;
+  markov::Rewards rewards;
+  markov::Start start;
+};
+/// From the runs of one group of the trials, and that group's first runs from `start`, whose row is
+/// the last one.
+[[nodiscard]] CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates,
+                                       const FieldParams& field, const RunPool& pool,
+                                       const StartTrials& start, TrialGroup group = {});
+
+/// What is analysed.
+struct AnalysedChain {
+  CostedChain chain;
+  dynamics::StateSpace space;  // of its states; of trees without the start, whose row follows
+  /// An entry into a gate that belongs to the state, drawn: of those seen, in gates of any type; of
+  /// bins anywhere in the bin.
+  std::function<dynamics::Crossing(int state, dynamics::Random& random)> entry;
+  std::vector<AnalysedChain> groups{};  // kTrialGroups, of groups of the trials; or none
+  std::vector<std::int64_t> runs{};     // of trees: by state, in gates of the start's type
+};
+/// Of trees, from the pool's runs; with error bars. Throws std::invalid_argument when the pool has
+/// no runs of `start`.
+[[nodiscard]] AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool,
+                                           const dynamics::Crossing& start,
+                                           int per_leaf = dynamics::kEntriesPerLeaf);
+/// Of matrices, one for each of gates_of(scene).types(). What runs took is not a number where they
+/// do not know it.
+[[nodiscard]] AnalysedChain analysed_chain(const Scene& scene,
+                                           const std::vector<dynamics::Transitions>& matrices,
+                                           const markov::Start& start);
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,91 @@
+#include "lattice/pool/lumped_chain.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "markov/lumping.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Crossing;
+
+/// Cuts states along an axis into parts of about equal weight; adds each one's part to its key.
+/// States of the same place stay together.
+void cut(std::span<int> states, double Crossing::*axis, int parts,
+         const std::vector<Crossing>& places, const std::vector<double>& weights,
+         std::vector<std::vector<int>>& keys) {
+  const auto place = [&](int s) { return places[static_cast<std::size_t>(s)].*axis; };
+  std::sort(states.begin(), states.end(),
+            [&](int a, int b) { return std::pair(place(a), a) < std::pair(place(b), b); });
+  const auto weight = [&](int s) { return weights[static_cast<std::size_t>(s)]; };
+  const double all =
+      std::transform_reduce(states.begin(), states.end(), 0.0, std::plus<>(), weight);
+  double below = 0.0;
+  int part = 0;
+  for (auto at = states.begin(); at != states.end();) {
+    const auto next = std::find_if(at, states.end(), [&](int s) { return place(s) != place(*at); });
+    const double here = std::transform_reduce(at, next, 0.0, std::plus<>(), weight);
+    if (all > 0.0)  // by the middle of those here
+      part = std::min(parts - 1, static_cast<int>((below + 0.5 * here) / all * parts));
+    for (; at != next; ++at) keys[static_cast<std::size_t>(*at)].push_back(part);
+    below += here;
+  }
+}
+
+}  // namespace
+
+std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const FieldGates& gates,
+                                        const FieldParams& field, const std::vector<double>& visits,
+                                        const LumpingParts& parts) {
+  const CostedChain& c = chain.chain;
+  const markov::Field cells{field.columns, field.rows};
+  std::vector<Crossing> places;
+  std::vector<std::vector<int>> keys(static_cast<std::size_t>(c.chain.inputs()));
+  std::vector<int> states;
+  for (int state = 0; state < chain.space.size(); ++state) {
+    places.push_back(chain.space.cell(state).middle());
+    if (state != c.start.input) {
+      states.push_back(state);
+      keys[static_cast<std::size_t>(state)].push_back(
+          static_cast<int>(chain.space.boundary(state)));
+    }
+  }
+  const auto refine = [&](double Crossing::*axis, int into) {
+    std::map<std::vector<int>, std::vector<int>> groups;
+    for (const int s : states) groups[keys[static_cast<std::size_t>(s)]].push_back(s);
+    for (auto& [key, members] : groups) cut(members, axis, into, places, visits, keys);
+  };
+  refine(&Crossing::d, parts.d);
+  refine(&Crossing::vx, parts.vx);
+  refine(&Crossing::vy, parts.vy);
+  std::map<std::vector<int>, int> numbers;
+  for (const auto& key : keys) numbers.try_emplace(key, 0);
+  int groups = 0;
+  for (auto& [key, number] : numbers) number = groups++;
+  std::vector<int> group;
+  for (const auto& key : keys) group.push_back(numbers[key]);
+
+  LumpedChain lumped{.states = groups};
+  std::vector<markov::Chain> chains;
+  for (const markov::Chain& one : c.chain.chains()) {
+    markov::Lumping of_type = markov::lump(one, group, visits);
+    lumped.largest = std::max(lumped.largest, of_type.largest);
+    chains.push_back(std::move(of_type.chain));
+  }
+  try {
+    const auto error = markov::lumping_error(c.chain, field_chain(gates, std::move(chains)), group,
+                                             cells, c.start, {.max_cells = field.max_gates});
+    lumped.endings = error.endings;
+    lumped.final_gates = error.final_cells;
+    return lumped;
+  } catch (const std::runtime_error&) {  // walks without end
+    return {};
+  }
+}
+
+}  // namespace gatewalk::lattice

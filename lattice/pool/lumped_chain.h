@@ -1,0 +1,36 @@
+#pragma once
+/// What it costs to have fewer states: a chain with several of them as one, beside it.
+
+#include <optional>
+#include <vector>
+
+#include "lattice/field.h"
+#include "lattice/gate_chain.h"
+#include "lattice/pool/costed_chain.h"
+
+namespace gatewalk::lattice {
+
+/// Into how many parts the states of each boundary are cut by d, then each part by vx, then by vy;
+/// the parts of a cut are visited about as often.
+struct LumpingParts {
+  int d = 1, vx = 1, vy = 1;
+  [[nodiscard]] int parts() const { return d * vx * vy; }
+};
+
+struct LumpedChain {
+  int states = 0;  // the start's own is one of them
+  /// Total variation between the rows of two states of one part: the largest, a mean over parts by
+  /// visits, in the type of gate where it is most.
+  double largest = 0.0;
+  double endings = 0.0, final_gates = 0.0;  // total variation to the chain's
+};
+
+/// `visits`: of each of the chain's states, in gates of all types, by which rows of a part count.
+/// None where walks of either chain do not end.
+[[nodiscard]] std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain,
+                                                      const FieldGates& gates,
+                                                      const FieldParams& field,
+                                                      const std::vector<double>& visits,
+                                                      const LumpingParts& parts);
+
+}  // namespace gatewalk::lattice

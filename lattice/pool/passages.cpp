@@ -1,0 +1,76 @@
+#include "lattice/pool/passages.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace gatewalk::lattice {
+
+Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
+                   bool with_costs)
+    : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates),
+      at_start_(
+          chance_(1, std::int64_t{c.start.row} * field.columns + c.start.column, c.start.input)),
+      limited_(field.max_gates > 0),
+      inputs_(c.chain.inputs()),
+      cells_(std::int64_t{field.columns} * field.rows),
+      state_visits_(static_cast<std::size_t>(c.chain.inputs()), 0.0) {
+  totals_ = markov::walk_totals(
+      c.chain, {field.columns, field.rows}, c.start, field.max_gates,
+      with_costs ? c.rewards : markov::Rewards{},
+      [&](int draw, std::int64_t cell, int input, double share) {
+        to_target_ += share * chance_(draw, cell, input);
+        state_visits_[static_cast<std::size_t>(input)] += share;
+        const std::size_t at = index(draw, cell, input);
+        if (at >= shares_.size())
+          shares_.resize(index(draw, cells_ - 1, 0) + static_cast<std::size_t>(inputs_), 0.0);
+        shares_[at] += share;
+      },
+      {.chance = &chance_});
+}
+
+Passages::Draws::Draws(const Passages& passages) : passages_(passages) {
+  double all = 0.0, to_target = 0.0;
+  for (std::size_t i = 0; i < passages.shares_.size(); ++i) {
+    all_.push_back(all += passages.shares_[i]);
+    to_target_.push_back(to_target += passages.shares_[i] * passages.chance(passages.place(i)));
+  }
+}
+
+Passages::Place Passages::Draws::place(double uniform) const {
+  const auto& sums = uniform < 0.5 ? all_ : to_target_;
+  const double part = (uniform < 0.5 ? uniform : uniform - 0.5) * 2.0 * sums.back();
+  const auto at = std::upper_bound(sums.begin(), sums.end(), part) - sums.begin();
+  return passages_.place(
+      static_cast<std::size_t>(std::min<std::ptrdiff_t>(at, std::ssize(sums) - 1)));
+}
+
+Passages::Place Passages::place(std::size_t i) const {
+  const auto at = static_cast<std::int64_t>(i);
+  return {static_cast<int>(at / inputs_ / cells_) + 1, at / inputs_ % cells_,
+          static_cast<int>(at % inputs_)};
+}
+
+AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
+                         markov::Ending target, bool with_costs, std::string_view what,
+                         const dynamics::Work& work) {
+  std::vector<const CostedChain*> chains{&chain.chain};
+  for (const AnalysedChain& group : chain.groups) chains.push_back(&group.chain);
+  std::vector<std::optional<Passages>> parts(chains.size());
+  std::mutex telling;
+  std::int64_t done = 0;
+  work.tell(what, 0, std::ssize(chains));
+  tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t k) {
+    parts[k].emplace(*chains[k], field, target, with_costs);
+    const std::lock_guard lock(telling);
+    work.tell(what, ++done, std::ssize(chains));
+  });
+  AllPassages all{std::move(*parts.front()), {}};
+  for (std::size_t k = 1; k < parts.size(); ++k) all.groups.push_back(std::move(*parts[k]));
+  return all;
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,94 @@
+#pragma once
+/// Where walks pass that end in one way, and how likely that is from everywhere.
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/base/work.h"
+#include "dynamics/params.h"
+#include "lattice/field.h"
+#include "lattice/pool/costed_chain.h"
+#include "markov/committor.h"
+#include "markov/totals.h"
+
+namespace gatewalk::lattice {
+
+/// How often walks pass each state of each cell at each draw (without limit of gates: at any draw),
+/// and the chance of the target from there.
+class Passages {
+ public:
+  /// Without limit of gates walks are followed until those left are few beside the ones that end in
+  /// the target. Without costs totals() has no quantities, which are most of the time. Throws as
+  /// markov::EndingChance and walk_totals.
+  Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
+           bool with_costs = true);
+
+  struct Place {
+    int draw = 1;
+    std::int64_t cell = 0;
+    int input = 0;
+  };
+  [[nodiscard]] const markov::EndingChance& chance() const { return chance_; }
+  [[nodiscard]] double chance(const Place& at) const { return chance_(at.draw, at.cell, at.input); }
+  /// The chance of the target at the start.
+  [[nodiscard]] double at_start() const { return at_start_; }
+  /// What all walks add up, and how they end.
+  [[nodiscard]] const markov::WalkTotals& totals() const { return totals_; }
+  /// Draws of a walk that ends in the target, on average; not a number where none does.
+  [[nodiscard]] double draws_to_target() const { return to_target_ / at_start_; }
+  /// Expected draws of a walk in each state (inputs).
+  [[nodiscard]] const std::vector<double>& state_visits() const { return state_visits_; }
+
+  /// Calls use(place, share of the walks there) for all places that are passed.
+  template <class Use>
+  void each(Use use) const {
+    for (std::size_t i = 0; i < shares_.size(); ++i)
+      if (shares_[i] > 0.0) use(place(i), shares_[i]);
+  }
+
+  /// Places drawn in proportion to how often they are passed, by all walks and by those that end in
+  /// the target, half of each.
+  class Draws {
+   public:
+    explicit Draws(const Passages& passages);
+    /// The place of a number in (0, 1).
+    [[nodiscard]] Place place(double uniform) const;
+    /// The mean of weight * f over places drawn is the sum of share * f over all places.
+    [[nodiscard]] double weight(const Place& at) const {
+      return 2.0 / (passages_.chance(at) / to_target_.back() + 1.0 / all_.back());
+    }
+
+   private:
+    const Passages& passages_;
+    std::vector<double> all_, to_target_;  // sums of shares up to each place
+  };
+
+ private:
+  [[nodiscard]] std::size_t index(int draw, std::int64_t cell, int input) const {
+    const std::int64_t layer = limited_ ? draw - 1 : 0;
+    return static_cast<std::size_t>((layer * cells_ + cell) * inputs_ + input);
+  }
+  [[nodiscard]] Place place(std::size_t i) const;
+
+  markov::EndingChance chance_;
+  double at_start_, to_target_ = 0.0;
+  bool limited_;
+  std::int64_t inputs_, cells_;
+  std::vector<double> state_visits_;
+  std::vector<double> shares_;  // (draws x cells x inputs)
+  markov::WalkTotals totals_;
+};
+
+struct AllPassages {
+  Passages whole;
+  std::vector<Passages> groups;
+};
+
+/// Of the chain and of its groups, on all threads. `work` is told of each that is done, as `what`,
+/// by any thread, but one at a time.
+[[nodiscard]] AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
+                                       markov::Ending target, bool with_costs,
+                                       std::string_view what, const dynamics::Work& work);
+
+}  // namespace gatewalk::lattice

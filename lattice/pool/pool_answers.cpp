@@ -1,0 +1,198 @@
+#include "lattice/pool/pool_answers.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace gatewalk::lattice {
+namespace {
+
+using markov::FinalDistribution;
+using Rows = std::vector<std::vector<std::int64_t>>;
+
+// Where exact predictions take more multiplications, walks are made: so many, of a group a part of
+// them.
+constexpr double kMostExact = 1e9;
+constexpr std::int64_t kWalks = std::int64_t{1} << 22, kWalksOfGroup = std::int64_t{1} << 18;
+
+/// Multiplications that an exact prediction takes, about.
+double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
+  constexpr double kStepsWithoutLimit = 50.0;
+  const double cells = static_cast<double>(field.columns) * field.rows;
+  const double steps = field.max_gates;
+  return static_cast<double>(nonzeros) * (field.max_gates == 0
+                                              ? cells * kStepsWithoutLimit
+                                              : std::min(cells, 2.0 * steps * steps) * steps / 2.0);
+}
+
+/// Whether answers come by walks, where they would take so long. What walks leave a single column
+/// by is not known.
+bool by_walks(std::int64_t nonzeros, const FieldParams& field) {
+  return field.columns > 1 && exact_cost(nonzeros, field) > kMostExact;
+}
+
+/// Whether adjoints of all chains pay: measured, they take as long as predictions from as many
+/// starts as a quarter of the cells; and all steps, also those that nobody walks any more. They are
+/// of gates of one type.
+bool pays_adjoint(const FieldGates& gates, const FieldParams& field, std::size_t starts) {
+  return gates.types().size() == 1 && field.max_gates > 0 &&
+         field.max_gates <= 2 * (field.columns + field.rows) &&
+         4 * static_cast<std::int64_t>(starts) >= std::int64_t{field.columns} * field.rows;
+}
+
+/// Runs behind the rows of kernels.
+std::int64_t kernel_runs(const RunPool& pool) {
+  std::int64_t runs = std::ssize(pool.scattered.each.passages);
+  for (const StartTrials& s : pool.starts) runs += std::ssize(s.full.passages);
+  return runs;
+}
+
+/// What walks say, as a prediction. Over which edge walks left a corner cell follows from how many
+/// left over each edge in all; of a field of one column that cannot be told (see by_walks).
+FinalDistribution shares_of(const markov::WalkTally& tally) {
+  const auto n = static_cast<double>(tally.walks);
+  FinalDistribution d;
+  d.final_cells = tally.final_cells.cast<double>() / n;
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    d.endings[e] = static_cast<double>(tally.endings[e]) / n;
+  d.trapped = static_cast<double>(tally.trapped) / n;
+  d.left_field = static_cast<double>(tally.left_field) / n;
+  d.cut_off = static_cast<double>(tally.cut_off) / n;
+  d.unsampled = static_cast<double>(tally.unsampled) / n;
+  d.mean_steps = static_cast<double>(tally.steps) / n;
+  const Eigen::Index columns = tally.final_cells.cols(), rows = tally.final_cells.rows();
+  std::array<std::int64_t, markov::kEndings> over_sides = tally.endings;
+  for (Eigen::Index i = 0; i < tally.final_cells.size(); ++i) {
+    const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
+    const std::int64_t trapped = tally.trapped_cells.data()[i],
+                       departed = tally.departed_cells.data()[i], all = tally.final_cells.data()[i];
+    if (trapped == all) continue;
+    const std::size_t side = static_cast<std::size_t>(
+        i % columns == 0 ? markov::Ending::left_edge : markov::Ending::right_edge);
+    const bool last_row = i / columns == rows - 1,
+               outer = i % columns == 0 || i % columns == columns - 1;
+    // Cells are in order of their rows: in a corner, what is left of its side leaves over it.
+    const std::int64_t over_side = !outer     ? 0
+                                   : last_row ? std::min(departed, over_sides[side])
+                                              : departed;
+    over_sides[side] -= over_side;
+    markov::CellEndings cell{i};
+    cell.by_ending[static_cast<std::size_t>(markov::Ending::trapped)] = share(trapped);
+    cell.by_ending[side] = share(over_side);
+    cell.by_ending[static_cast<std::size_t>(markov::Ending::far_edge)] =
+        share(departed - over_side);
+    cell.by_ending[static_cast<std::size_t>(markov::Ending::cut_off)] =
+        share(all - trapped - departed);
+    d.mixed_cells.push_back(cell);
+  }
+  return d;
+}
+
+/// Exact, or by `walks` where there are any.
+KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Rows& first_rows,
+                         const FieldParams& field, markov::WalkRange walks, std::uint64_t seed) {
+  std::vector<markov::Start> places;
+  for (std::size_t i = 0; i < first_rows.size(); ++i)
+    places.push_back({field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
+  const markov::Field cells{field.columns, field.rows};
+  const markov::FieldChain chain = chain_of(kernel, gates, field, first_rows);
+  if (walks.count == 0)
+    return {markov::predict(chain, cells, places, {.max_cells = field.max_gates})};
+  const markov::Walker walker(chain);
+  KernelAnswers answers{{}, walks.count};
+  for (const markov::Start& start : places)
+    answers.final.push_back(shares_of(walker.walk(cells, start, field.max_gates, seed, walks)));
+  return answers;
+}
+
+}  // namespace
+
+KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Rows& first_rows,
+                         const FieldParams& field, std::uint64_t seed) {
+  const std::int64_t of_a_type = kernel.nonzeros() / std::ssize(kernel.counts);
+  return answers_of(kernel, gates, first_rows, field, {0, by_walks(of_a_type, field) ? kWalks : 0},
+                    seed);
+}
+
+PoolChains::PoolChains(const FieldGates& gates, const FieldParams& field, int per_leaf,
+                       std::size_t starts, std::uint64_t seed)
+    : gates_(gates),
+      field_(field),
+      per_leaf_(pays_adjoint(gates, field, starts) ? 2 * per_leaf : per_leaf),
+      seed_(seed) {}
+
+bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
+  constexpr std::int64_t kMostNumbers = 100'000'000;  // that adjoints keep
+  const std::int64_t cells = std::int64_t{field_.columns} * field_.rows,
+                     states = 2 * 2 * kernel_runs(pool) / per_leaf_;  // of all chains, at most
+  return pays_adjoint(gates_, field_, starts) && 2 * cells * states <= kMostNumbers;
+}
+
+void PoolChains::renew(const RunPool& pool) {
+  const std::int64_t runs = kernel_runs(pool);
+  if (std::exchange(runs_, runs) == runs) return;
+  by_walks_ = by_walks(2 * runs, field_);  // some nonzeros a run
+  std::vector<std::optional<Kernel>> kernels(kTrialGroups + 1);
+  tbb::parallel_for(-1, kTrialGroups, [&](int g) {
+    const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
+    kernels[static_cast<std::size_t>(g + 1)] = kernel_of(gates_, pool, per_leaf_, group);
+  });
+  chains_.clear();
+  for (auto& kernel : kernels) chains_.push_back({.kernel = std::move(*kernel)});
+}
+
+KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows& rows) const {
+  if (!chain.adjoint) {
+    const std::int64_t walks = group < 0 ? kWalks : kWalksOfGroup;
+    return answers_of(chain.kernel, gates_, rows, field_,
+                      {group < 0 ? 0 : kWalks + group * kWalksOfGroup, by_walks_ ? walks : 0},
+                      seed_);
+  }
+  KernelAnswers answers;
+  for (const auto& row : rows) answers.final.push_back(chain.adjoint->predict(row));
+  return answers;
+}
+
+PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>& starts) {
+  renew(pool);
+  if (!chains_.front().adjoint && by_adjoint(pool, starts.size()))
+    for (GroupChain& c : chains_)
+      c.adjoint.emplace(chain_of(c.kernel, gates_, field_, {}).chains().front(),
+                        markov::Field{field_.columns, field_.rows}, field_.start_column(), 0,
+                        field_.max_gates);
+  const std::size_t n = starts.size();
+  PoolAnswers said{.whole = {},
+                   .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},
+                   .kernels = {},
+                   .unseen = {},
+                   .states = chains_.front().kernel.space.size(),
+                   .nonzeros = chains_.front().kernel.nonzeros()};
+  for (const std::size_t s : starts)
+    said.unseen.push_back(unseen_share(chains_.front().kernel, gates_, field_, pool.starts[s]));
+  const bool with_kernels = !by_walks_ || chains_.front().adjoint;
+  if (with_kernels) said.kernels = said.groups;
+  tbb::parallel_for(-1, kTrialGroups, [&](int g) {
+    const GroupChain& chain = chains_[static_cast<std::size_t>(g + 1)];
+    Rows rows;
+    const auto add = [&](TrialGroup group) {
+      for (const std::size_t s : starts)
+        rows.push_back(first_row(gates_, chain.kernel.space, pool.starts[s], group));
+    };
+    if (g >= 0) add({g, kTrialGroups});
+    if (g < 0 || with_kernels) add({});
+    KernelAnswers found = answers(chain, g, rows);
+    if (g < 0) {
+      said.whole = std::move(found);
+      return;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      said.groups[i][static_cast<std::size_t>(g)] = std::move(found.final[i]);
+      if (with_kernels)
+        said.kernels[i][static_cast<std::size_t>(g)] = std::move(found.final[n + i]);
+    }
+  });
+  return said;
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,75 @@
+#pragma once
+/// Runs trials into a pool and keeps count.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "dynamics/base/work.h"
+#include "lattice/pool/run_pool.h"
+#include "lattice/scene/scene.h"
+#include "lattice/statistics/group_spread.h"
+
+namespace gatewalk::lattice {
+
+/// Starts on the lower edge of a gate, between these.
+struct StartRange {
+  std::array<double, 2> d{}, vx{}, vy{};  // m, m/s
+};
+
+[[nodiscard]] inline dynamics::Crossing entry_of(const dynamics::BodyState& b) {
+  return {dynamics::Boundary::enter, b.x, b.vx, b.vy};
+}
+[[nodiscard]] inline dynamics::BodyState body_of(const dynamics::Crossing& c) {
+  return {c.d, 0.0, c.vx, c.vy};
+}
+
+class PoolRunner {
+ public:
+  static constexpr std::int64_t kLeastTrials = 2 * kTrialGroups;  // of a call
+
+  /// Trials of the seed that no other command runs; no more are begun than `most_runs` gate runs
+  /// would take, about, but for the least of a call.
+  PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most_runs,
+             const dynamics::Work& work);
+
+  /// Full trials from the start; runs through its first gate only; trials from anywhere in a range.
+  /// At least kLeastTrials are run whatever `count`. Throws std::runtime_error when a run broke.
+  void run_full(StartTrials& s, std::int64_t count);
+  void run_first(StartTrials& s, std::int64_t count);
+  void run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count);
+  /// Start number `i` in the range.
+  [[nodiscard]] dynamics::BodyState drawn(const StartRange& starts, std::int64_t i) const;
+
+  [[nodiscard]] bool may_go_on() const { return gate_runs < most_runs_; }
+  /// Gate runs of a trial through the field, in the mean of those so far.
+  [[nodiscard]] double gates_per_trial() const {
+    return trials_ > 0 ? static_cast<double>(trial_runs_) / static_cast<double>(trials_) : 1.0;
+  }
+  [[nodiscard]] double seconds_per_gate_run() const {
+    return seconds / static_cast<double>(std::max<std::int64_t>(1, gate_runs));
+  }
+  /// Checks a sample by a better method.
+  void finish();
+
+  std::int64_t gate_runs = 0;
+  double seconds = 0.0;
+  dynamics::Health health;
+
+ private:
+  void run(const char* what, std::int64_t count, bool through_field,
+           const std::function<FieldTally(dynamics::TrialRange)>& carry_out);
+
+  const Scene& scene_;
+  FieldGates gates_;
+  FieldParams field_;
+  dynamics::StateSpace space_;
+  std::uint64_t seed_;
+  std::int64_t most_runs_;
+  const dynamics::Work& work_;
+  std::int64_t trials_ = 0, trial_runs_ = 0;  // through the field
+};
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,400 @@
+#include "lattice/pool/pooled_prediction.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "dynamics/base/share.h"
+#include "lattice/pool/pool_answers.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+using markov::FinalDistribution;
+
+constexpr std::int64_t kFirstRound = 20 * kTrialGroups;  // trials of all starts together
+constexpr std::int64_t kLeastFirstRuns = 500;            // of a start that meets a pool
+
+void require_fine(const AccuracyOptions& options) {
+  if (!(options.accuracy > 0.0 && options.accuracy < 1.0))
+    throw std::invalid_argument("accuracy " + std::to_string(options.accuracy) +
+                                " is not permitted: must lie in (0, 1)");
+}
+
+/// Total variation that so many walks keep from what endlessly many would give, 95 times in 100.
+double chance_of_walks(const FinalDistribution& d, std::int64_t walks) {
+  constexpr double kToQuantile = 1.3;
+  return walks == 0 ? 0.0 : kToQuantile * expected_total_variation(d.final_cells, walks);
+}
+
+/// What cannot be told of a share of the bodies may lie anywhere.
+void widen(std::array<double, 2>& interval, double share) {
+  interval = {std::max(0.0, interval[0] - share), std::min(1.0, interval[1] + share)};
+}
+
+/// Error bars of one start; `pooled`: trials in the pool, `chance`: of the walks behind `whole`.
+StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t pooled,
+                      FinalDistribution whole, double chance, double unseen,
+                      const std::vector<FinalDistribution>& groups,
+                      const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
+  StartAnswer a;
+  a.start = s.start;
+  a.trials = s.knows_endings ? std::ssize(s.full.final_gates) : 0;
+  a.first_runs = s.first_runs();
+  const GroupSpread spread(whole, groups);
+  const std::int64_t behind = std::min(a.first_runs, pooled);
+  a.error = spread.error(behind, seed);
+  a.unseen = unseen;
+  a.error.total_variation = std::min(1.0, std::hypot(a.error.total_variation, chance) + unseen);
+  a.kernel_error_95 =
+      kernels.empty()
+          ? a.error.total_variation
+          : std::min(1.0, GroupSpread(whole, kernels).error(pooled, seed).total_variation + unseen);
+  Error95 of_trials{1.0, 0.0, 100.0};
+  if (a.trials > 0) {
+    CellCounts counts = CellCounts::Zero(scene.field.rows, scene.field.columns);
+    for (const std::int32_t cell : s.full.final_gates) ++counts.data()[cell];
+    of_trials = error_of_shares(counts, seed);
+    a.trials_error_95 = of_trials.total_variation;
+    a.from_trials = a.trials_error_95 < 0.95 * a.error.total_variation;
+  }
+  if (!a.from_trials) {
+    a.endings = spread.endings_95(behind);
+    a.gates_95 = spread.gates_95(behind);
+    std::vector<ExitShares> group_exits;
+    for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
+    a.exits = exits_of_groups(exit_shares(whole), group_exits, evidence_of(whole, behind));
+    if (unseen > 0.0) {  // moved from one gate to another they make the largest RMSE
+      const auto gates = static_cast<double>(a.gates_95[0].size());
+      a.error.rmse_per_100 += 100.0 * unseen * std::sqrt(2.0 / gates);
+      a.error.corrcoef = std::nan("");
+    }
+    for (auto& interval : a.endings.interval) widen(interval, unseen);
+    a.endings = a.endings.with_limit(scene.field.max_gates);
+    for (SideExits& side : a.exits)
+      for (auto& interval : side.interval) widen(interval, unseen);
+    a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
+    a.gates_95[1] = (a.gates_95[1] + unseen).min(1.0);
+    a.final = std::move(whole);
+    return a;
+  }
+  a.error = of_trials;
+  a.final = shares_of(s.full, scene.field);
+  std::array<std::int64_t, markov::kEndings> endings{};
+  for (const auto& e : s.full.endings)
+    if (e) ++endings[static_cast<std::size_t>(*e)];
+  a.endings = EndingShares(endings, a.trials).with_limit(scene.field.max_gates);
+  ExitCounts exits(scene.field);
+  exits.add(s.full);
+  a.exits = exits_of(exits);
+  a.gates_95 = {a.final.final_cells, a.final.final_cells};
+  const auto never = interval_of_share(0.0, static_cast<double>(a.trials));
+  for (Eigen::Index i = 0; i < a.final.final_cells.size(); ++i) {
+    const auto interval =
+        a.final.final_cells.data()[i] == 0.0
+            ? never
+            : interval_of_share(a.final.final_cells.data()[i], static_cast<double>(a.trials));
+    for (std::size_t side = 0; side < 2; ++side) a.gates_95[side].data()[i] = interval[side];
+  }
+  return a;
+}
+
+/// So many times the trials make the square of the error as small as is wanted. A long way is gone
+/// in two steps: the error is known the better the nearer it is.
+double times_more(double error, double wanted) {
+  const double times = (error / wanted) * (error / wanted);
+  return times > 2.5 ? std::min(0.6 * times, 16.0) : std::max(1.1 * times, 1.2);
+}
+
+/// What direct simulation would take for the same error bar, by this run's speed.
+double direct_seconds(const StartAnswer& a, const PoolRunner& runner, std::uint64_t seed) {
+  if (runner.gate_runs == 0) return std::nan("");
+  constexpr std::int64_t kTrials = 10'000;
+  const CellCounts drawn = sampled(a.final.final_cells, kTrials, seed, 0);
+  const double times = error_of_shares(drawn, seed).total_variation / a.error.total_variation;
+  return times * times * static_cast<double>(kTrials) * a.final.mean_steps *
+         runner.seconds_per_gate_run();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Adds trials of the starts whose answers are not certain enough, until all are.
+class PredictionRun {
+ public:
+  PredictionRun(const Scene& scene, RunPool& pool, const std::vector<BodyState>& starts,
+                const AccuracyOptions& options, const Work& work)
+      : scene_(scene),
+        pool_(pool),
+        options_(options),
+        runner_(scene, options.seed, options.most_runs, work),
+        chains_(gates_of(scene), scene.field, options.per_leaf, starts.size(), options.seed) {
+    place(starts);
+    result_.starts.resize(starts.size());
+    open_ = all();
+  }
+
+  [[nodiscard]] PooledPrediction carry_out() {
+    while (ask() && runner_.may_go_on() && !options_.first_runs) add_trials();
+    result_.reached = open_.empty();
+    result_.gate_runs = runner_.gate_runs;
+    result_.run_seconds = runner_.seconds;
+    result_.seconds = watch_.seconds();
+    tbb::parallel_for(std::size_t{0}, result_.starts.size(), [&](std::size_t k) {
+      result_.starts[k].direct_seconds = direct_seconds(result_.starts[k], runner_, options_.seed);
+    });
+    runner_.finish();
+    result_.health = runner_.health;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::size_t> all() const {
+    std::vector<std::size_t> starts(result_.starts.size());
+    std::iota(starts.begin(), starts.end(), 0);
+    return starts;
+  }
+
+  /// Finds the starts in the pool, or puts them there with some trials each.
+  void place(const std::vector<BodyState>& starts) {
+    const bool has_kernel = pool_.gate_runs() > 0;
+    for (const BodyState& body : starts) {
+      if (body.y != 0.0)
+        throw std::invalid_argument("start.y_m = " + std::to_string(body.y) +
+                                    " is not permitted for a chain: its states are entries from "
+                                    "below, start.y_m must be 0");
+      const Crossing entry = entry_of(body);
+      places_.push_back(pool_.place_of(entry));
+      if (places_.back() < pool_.starts.size()) continue;
+      StartTrials& s = pool_.starts.emplace_back();
+      s.start = entry;
+      if (has_kernel)
+        runner_.run_first(s, options_.first_runs.value_or(kLeastFirstRuns));
+      else
+        runner_.run_full(s, kFirstRound / std::ssize(starts));
+    }
+  }
+
+  /// Answers for the open starts, and closes those that are certain enough. False where more trials
+  /// are not wanted, or would not help.
+  [[nodiscard]] bool ask() {
+    // All by the adjoint, closed ones too: that costs nothing, and an answer that was closed by
+    // luck is seen to be uncertain.
+    if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
+    std::vector<std::size_t> asked;
+    for (const std::size_t k : open_) asked.push_back(places_[k]);
+    PoolAnswers said = chains_.ask(pool_, asked);
+    result_.states = said.states;
+    result_.nonzeros = said.nonzeros;
+    by_walks_ = said.whole.walks > 0;
+    const std::int64_t pooled = pool_.trials();
+    std::vector<double> chances(open_.size());
+    tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t i) {
+      chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
+      result_.starts[open_[i]] = answer_of(
+          scene_, pool_.starts[asked[i]], pooled, std::move(said.whole.final[i]), chances[i],
+          said.unseen[i], said.groups[i],
+          said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i], options_.seed);
+    });
+    std::erase_if(open_, [&](std::size_t k) {
+      return result_.starts[k].error.total_variation <= options_.accuracy;
+    });
+    // The groups' walks have their chance too: where it makes half of the error, trials do not
+    // help.
+    return !open_.empty() && std::all_of(chances.begin(), chances.end(), [&](double chance) {
+      return chance < 0.5 * options_.accuracy;
+    });
+  }
+
+  /// The part of the error that first runs make.
+  [[nodiscard]] static double first_error(const StartAnswer& a) {
+    const double e = a.error.total_variation - a.unseen, k = a.kernel_error_95 - a.unseen;
+    return std::sqrt(std::max(1e-4 * e * e, e * e - k * k));
+  }
+
+  /// Error bars that kernels should make alone, so that the fewest gate runs are needed in all: the
+  /// kernel's serve all starts, first runs one each; each part of a square goes with 1 / runs.
+  [[nodiscard]] double kernel_goal() const {
+    std::vector<double> kernel, first;
+    for (const std::size_t k : open_) {
+      const StartAnswer& a = result_.starts[k];
+      kernel.push_back(a.kernel_error_95 * std::sqrt(static_cast<double>(pool_.gate_runs())));
+      first.push_back(first_error(a) * std::sqrt(static_cast<double>(a.first_runs)));
+    }
+    const double shared = median(kernel),
+                 own = median(first) * std::sqrt(static_cast<double>(result_.starts.size()));
+    return options_.accuracy *
+           std::sqrt(std::clamp(shared / std::max(1e-9, shared + own), 0.2, 0.72));
+  }
+
+  void add_trials() {
+    if (by_walks_) {  // rounds take long, and walks have their chance too: the shortest way
+      for (const std::size_t k : open_) {
+        const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
+        run_full(
+            k, static_cast<double>(std::max(trials, kFirstRound / 2)) *
+                   (times_more(result_.starts[k].error.total_variation, options_.accuracy) - 1.0));
+      }
+      return;
+    }
+    const double goal = kernel_goal();
+    std::vector<std::size_t> lacking;  // starts for which the kernel is too uncertain
+    for (const std::size_t k : open_)
+      if (result_.starts[k].kernel_error_95 > 1.05 * goal) lacking.push_back(k);
+    // Where they are few, first runs can make up for it, up to a point.
+    if (4 * lacking.size() < result_.starts.size())
+      std::erase_if(lacking, [&](std::size_t k) {
+        return result_.starts[k].kernel_error_95 < 0.85 * options_.accuracy;
+      });
+    for (const std::size_t k : lacking) improve_kernel(k, goal, std::ssize(lacking));
+    for (const std::size_t k : open_) {
+      const StartAnswer& a = result_.starts[k];
+      const bool lacks = std::find(lacking.begin(), lacking.end(), k) != lacking.end();
+      const double kernel = lacks ? goal : a.kernel_error_95;
+      const double wanted = std::sqrt(options_.accuracy * options_.accuracy - kernel * kernel);
+      const double times = times_more(first_error(a), wanted);
+      const StartTrials& s = pool_.starts[places_[k]];
+      const auto more =
+          static_cast<double>(a.first_runs) * times - static_cast<double>(s.first_runs());
+      if (runner_.may_go_on() && more > 0.0 && (!lacks || first_error(a) > wanted))
+        runner_.run_first(pool_.starts[places_[k]], static_cast<std::int64_t>(more));
+    }
+  }
+
+  /// By full trials of this start: as many as if only its own could help, or its part of as many as
+  /// if all helped alike, whichever is less.
+  void improve_kernel(std::size_t k, double goal, std::int64_t lacking) {
+    const StartAnswer& a = result_.starts[k];
+    const double more = times_more(a.kernel_error_95, goal) - 1.0;
+    const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
+    const auto own = static_cast<double>(std::max(trials, kFirstRound / 2));
+    const double all = static_cast<double>(pool_.gate_runs()) / std::max(1.0, a.final.mean_steps) /
+                       static_cast<double>(lacking);
+    run_full(k, std::min(own, all) * more);
+  }
+
+  void run_full(std::size_t k, double count) {
+    if (runner_.may_go_on())
+      runner_.run_full(pool_.starts[places_[k]], static_cast<std::int64_t>(count));
+  }
+
+  const Stopwatch watch_;
+  const Scene& scene_;
+  RunPool& pool_;
+  const AccuracyOptions& options_;
+  PoolRunner runner_;
+  PoolChains chains_;
+  bool by_walks_ = false;            // are the answers so far
+  std::vector<std::size_t> places_;  // of the starts in the pool
+  std::vector<std::size_t> open_;    // starts that are not certain enough yet
+  PooledPrediction result_;
+};
+
+}  // namespace
+
+FinalDistribution shares_of(const FieldTrials& trials, const FieldParams& field) {
+  const auto n = static_cast<double>(trials.final_gates.size());
+  FinalDistribution d;
+  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
+  std::map<std::int64_t, markov::CellEndings> mixed;
+  for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
+    const std::int32_t cell = trials.final_gates[i];
+    const auto ending = static_cast<std::size_t>(trials.endings[i].value());
+    d.final_cells.data()[cell] += 1.0 / n;
+    d.endings[ending] += 1.0 / n;
+    auto& of_cell = mixed.try_emplace(cell, markov::CellEndings{cell}).first->second;
+    of_cell.by_ending[ending] += 1.0 / n;
+  }
+  for (const auto& [cell, endings] : mixed)
+    if (endings.by_ending.front() < d.final_cells.data()[cell]) d.mixed_cells.push_back(endings);
+  d.trapped = d.endings[static_cast<std::size_t>(markov::Ending::trapped)];
+  d.cut_off = d.endings[static_cast<std::size_t>(markov::Ending::cut_off)];
+  for (const markov::Ending edge : markov::kEdges)
+    d.left_field += d.endings[static_cast<std::size_t>(edge)];
+  d.mean_steps = static_cast<double>(trials.passages.size()) / n;
+  return d;
+}
+
+PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
+                                const std::vector<BodyState>& starts,
+                                const AccuracyOptions& options, const Work& work) {
+  require_fine(options);
+  return PredictionRun(scene, pool, starts, options, work).carry_out();
+}
+
+StartRange usual_range(const Scene& scene) {
+  const Bins bins = StateSpace::paper(scene.gate).bins().front();
+  const auto holding = [](const std::vector<double>& edges, double own) {
+    return std::array<double, 2>{std::min(edges.front(), own), std::max(edges.back(), own)};
+  };
+  return {holding(bins.d, scene.start.x), holding(bins.vx, scene.start.vx),
+          holding(bins.vy, scene.start.vy)};
+}
+
+PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& range,
+                       const AccuracyOptions& options, const Work& work) {
+  require_fine(options);
+  for (const auto* r : {&range.d, &range.vx, &range.vy})
+    if (!((*r)[0] <= (*r)[1])) throw std::invalid_argument("range of starts: is empty");
+  constexpr int kTried = 7;
+  constexpr std::int64_t kFirstRuns = 400, kBegin = 2000, kLargestTried = 20'000;
+  const Stopwatch watch;
+  PoolRunner runner(scene, options.seed, options.most_runs, work);
+  PooledRange result;
+  result.range = range;
+  result.tried_on = kTried;
+  // The starts that it is tried on; their runs are not kept.
+  RunPool tried;
+  for (int k = 0; k < kTried; ++k) {
+    StartTrials& s = tried.starts.emplace_back();
+    s.start = entry_of(runner.drawn(range, -1 - k));
+    runner.run_first(s, kFirstRuns);
+  }
+  std::vector<std::size_t> all(kTried);
+  std::iota(all.begin(), all.end(), 0);
+  runner.run_scattered(pool.scattered, range, kBegin);
+  PoolChains chains(gates_of(scene), scene.field, options.per_leaf, kTried, options.seed);
+  for (;;) {
+    tried.scattered = std::move(pool.scattered);
+    const PoolAnswers said = chains.ask(tried, all);
+    pool.scattered = std::move(tried.scattered);
+    std::vector<double> errors;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      errors.push_back(GroupSpread(said.whole.final[k], said.kernels[k])
+                           .error(pool.trials(), options.seed)
+                           .total_variation);
+    std::sort(errors.begin(), errors.end());
+    result.kernel_error_95 = errors[errors.size() / 2];
+    result.worst_kernel_error_95 = errors.back();
+    result.reached = result.kernel_error_95 <= options.accuracy;
+    if (result.reached || !runner.may_go_on()) break;
+    // To try a large pool costs more than its runs: the last step is made on trust.
+    const auto n = static_cast<double>(pool.scattered.starts.size());
+    const bool last = pool.scattered.starts.size() >= kLargestTried;
+    const double times = std::min(times_more(result.kernel_error_95, options.accuracy), 4.0);
+    runner.run_scattered(pool.scattered, range, static_cast<std::int64_t>(n * (times - 1.0)));
+    if (!last) continue;
+    result.kernel_error_95 /= std::sqrt(times);
+    result.worst_kernel_error_95 /= std::sqrt(times);
+    result.reached = result.kernel_error_95 <= 1.05 * options.accuracy;
+    break;
+  }
+  result.gate_runs = runner.gate_runs;
+  result.seconds = watch.seconds();
+  runner.finish();
+  result.health = runner.health;
+  return result;
+}
+
+}  // namespace gatewalk::lattice

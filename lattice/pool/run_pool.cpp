@@ -1,0 +1,426 @@
+#include "lattice/pool/run_pool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "dynamics/quantile_bins.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+/// Calls use(entry, passage, next) for the runs of some trials of the group that did not break, but
+/// the first `skipped` ones of each trial. `start_of(i)`: where trial i started; `next`: the run
+/// that follows it, which the next call is for; null if there is none.
+template <class StartOf, class Use>
+void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, StartOf start_of,
+              Use use) {
+  for (std::int64_t i = group.group; i < std::ssize(trials.final_gates); i += group.of) {
+    const auto passages = trials.of_trial(static_cast<std::size_t>(i));
+    for (std::size_t k = skipped; k < passages.size(); ++k)
+      if (passages[k].ending != Ending::broken)
+        use(k == 0 ? start_of(i) : passages[k - 1].entry, passages[k],
+            k + 1 < passages.size() && passages[k + 1].ending != Ending::broken ? &passages[k + 1]
+                                                                                : nullptr);
+  }
+}
+
+template <class Use>
+void each_kernel_run(const RunPool& pool, TrialGroup group, Use use) {
+  for (const StartTrials& s : pool.starts)
+    each_run(
+        s.full, group, 1, [&](std::int64_t) { return s.start; }, use);
+  each_run(
+      pool.scattered.each, group, 0,
+      [&](std::int64_t i) { return pool.scattered.starts[static_cast<std::size_t>(i)]; }, use);
+}
+
+// Leaves next to each other in preorder lie near each other; some hundred entries.
+constexpr int kStatesOfBox = 16;
+
+int output_of(const StateSpace& space, const GatePassage& passage, const Crossing& entry) {
+  return passage.ending == Ending::trapped ? space.trapped() : space.index_of(entry).state;
+}
+
+/// Counts of runs from row[i] to column[i].
+markov::Counts counted(const std::vector<int>& row, const std::vector<int>& column, int states) {
+  std::vector<std::int64_t> end(static_cast<std::size_t>(states) + 1, 0);
+  for (const int r : row) ++end[static_cast<std::size_t>(r) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<int> sorted(column.size());  // by row
+  for (std::size_t i = 0; i < row.size(); ++i)
+    sorted[static_cast<std::size_t>(end[static_cast<std::size_t>(row[i])]++)] = column[i];
+  markov::Counts counts(states, std::int64_t{states} + 1);
+  counts.reserve(std::ssize(column));
+  auto at = sorted.begin();
+  for (int r = 0; r < states; ++r) {
+    const auto last = sorted.begin() + end[static_cast<std::size_t>(r)];
+    std::sort(at, last);
+    counts.startVec(r);
+    while (at != last) {
+      const auto next = std::find_if(at, last, [&](int c) { return c != *at; });
+      counts.insertBack(r, *at) = next - at;
+      at = next;
+    }
+  }
+  counts.finalize();
+  return counts;
+}
+
+/// By type: how many counts a run makes, 2 with its mirror image.
+std::vector<std::size_t> images_of(const FieldGates& gates) {
+  std::vector<std::size_t> images;
+  for (const GateParams& p : gates.types()) images.push_back(symmetric(p) ? 2 : 1);
+  return images;
+}
+
+/// Parts of a tree: as many leaves together as it takes for `least` runs in each. `runs`: of each
+/// leaf; the first leaf of its part takes each leaf's place in `first`.
+void join_leaves(const Tree& tree, const std::int64_t* runs, std::int64_t least, int first_state,
+                 int* first) {
+  const std::size_t nodes = tree.nodes.size();
+  std::vector<std::size_t> above(nodes), leaves(nodes, 1), end(nodes);  // of a node: its second
+                                                                        // half, size, next node
+  for (std::size_t i = nodes; i-- > 0;) {
+    end[i] = i + 1;
+    if (tree.nodes[i].axis == Tree::kLeaf) continue;
+    above[i] = end[i + 1];
+    end[i] = end[above[i]];
+    leaves[i] = leaves[i + 1] + leaves[above[i]];
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, 0}};  // node, its first leaf
+  while (!open.empty()) {
+    const auto [node, begin] = open.back();
+    open.pop_back();
+    const auto runs_in = [&](std::size_t from, std::size_t count) {
+      return std::accumulate(runs + from, runs + from + count, std::int64_t{0});
+    };
+    const std::size_t below = node + 1, cut = begin + (leaves[node] > 1 ? leaves[below] : 0);
+    if (leaves[node] > 1 && runs_in(begin, cut - begin) >= least &&
+        runs_in(cut, leaves[above[node]]) >= least) {
+      open.emplace_back(below, begin);
+      open.emplace_back(above[node], cut);
+    } else {
+      std::fill(first + begin, first + begin + leaves[node], first_state + static_cast<int>(begin));
+    }
+  }
+}
+
+/// The counts of one type, row[i] to column[i]; where leaves have few runs, of several together,
+/// the first of which takes each one's place in `first`.
+markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
+                              const std::vector<int>& column, std::int64_t least,
+                              std::vector<int>& first) {
+  std::vector<std::int64_t> runs(static_cast<std::size_t>(space.size()), 0);
+  for (const int r : row) ++runs[static_cast<std::size_t>(r)];
+  first.resize(runs.size());
+  for (int b = 0; b < kBoundaries; ++b) {
+    const int begin = space.first(static_cast<Boundary>(b));
+    join_leaves(space.trees()[static_cast<std::size_t>(b)], runs.data() + begin, least, begin,
+                first.data() + begin);
+  }
+  for (int& r : row) r = first[static_cast<std::size_t>(r)];
+  const markov::Counts parts = counted(row, column, space.size());
+  markov::Counts counts(parts.rows(), parts.cols());
+  for (int leaf = 0; leaf < space.size(); ++leaf) {
+    counts.startVec(leaf);
+    for (markov::Counts::InnerIterator it(parts, first[static_cast<std::size_t>(leaf)]); it; ++it)
+      counts.insertBack(leaf, it.col()) = it.value();
+  }
+  counts.finalize();
+  return counts;
+}
+
+}  // namespace
+
+void each_entry(const RunPool& pool, TrialGroup group,
+                const std::function<void(const Crossing& entry, int type)>& use) {
+  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+    use(entry, run.type);
+  });
+}
+
+std::int64_t Kernel::nonzeros() const {
+  std::int64_t all = 0;
+  for (const markov::Counts& c : counts) all += c.nonZeros();
+  return all;
+}
+
+std::size_t RunPool::place_of(const Crossing& start) const {
+  const auto own = std::find_if(starts.begin(), starts.end(),
+                                [&](const StartTrials& s) { return s.start == start; });
+  return static_cast<std::size_t>(own - starts.begin());
+}
+
+std::int64_t RunPool::gate_runs() const {
+  std::int64_t runs = std::ssize(scattered.each.passages);
+  for (const StartTrials& s : starts) runs += s.gate_runs();
+  return runs;
+}
+
+std::int64_t RunPool::trials() const {
+  std::int64_t trials = std::ssize(scattered.starts);
+  for (const StartTrials& s : starts) trials += std::ssize(s.full.final_gates);
+  return trials;
+}
+
+Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, TrialGroup group) {
+  const std::vector<std::size_t> images = images_of(gates);
+  std::vector<Crossing> entries;
+  std::vector<std::uint8_t> types;
+  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+    entries.push_back(entry);
+    if (images[run.type] == 2) entries.push_back(mirrored(entry));
+    types.resize(entries.size(), run.type);
+  });
+  std::vector<int> row, column;
+  const std::int64_t fits = 2 * std::ssize(entries) / kMostStates;
+  per_leaf = static_cast<int>(std::max<std::int64_t>(per_leaf, fits));
+  StateSpace space = tree_space(gates.types().front(), entries, per_leaf, {}, &row);
+  column.reserve(row.size());
+  each_kernel_run(
+      pool, group, [&](const Crossing&, const GatePassage& run, const GatePassage* next) {
+        const std::size_t at = column.size() + images[run.type];
+        for (std::size_t image = 0; image < images[run.type]; ++image)
+          column.push_back(
+              next && image < images[next->type]
+                  ? row[at + image]
+                  : output_of(space, run, image == 0 ? run.entry : mirrored(run.entry)));
+      });
+  Kernel kernel{std::move(space), {}};
+  const auto seen_in = [&](const std::vector<Crossing>& there, const std::vector<int>& states) {
+    if (group.of == 1) kernel.seen.emplace_back(kernel.space, there, states);
+  };
+  if (gates.types().size() == 1) {
+    kernel.counts.push_back(counted(row, column, kernel.space.size()));
+    seen_in(entries, row);
+    return kernel;
+  }
+  for (std::size_t type = 0; type < gates.types().size(); ++type) {
+    std::vector<Crossing> there;
+    std::vector<int> from, to;
+    for (std::size_t i = 0; i < types.size(); ++i) {
+      if (types[i] != type) continue;
+      there.push_back(entries[i]);
+      from.push_back(row[i]);
+      to.push_back(column[i]);
+    }
+    seen_in(there, from);
+    kernel.counts.push_back(counts_of_type(kernel.space, std::move(from), to, per_leaf,
+                                           kernel.shared_by.emplace_back()));
+  }
+  return kernel;
+}
+
+SeenEntries::SeenEntries(const StateSpace& space, const std::vector<Crossing>& entries,
+                         const std::vector<int>& state) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  boxes.assign(static_cast<std::size_t>(space.size() / kStatesOfBox + kBoundaries + 1),
+               {{kNone, kNone, kNone}, {-kNone, -kNone, -kNone}});
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    Box& b = boxes[place_of(space, state[i])];
+    ++b.entries;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double x = entries[i].*kCrossingAxes[axis];
+      b.low[axis] = std::min(b.low[axis], x);
+      b.high[axis] = std::max(b.high[axis], x);
+    }
+  }
+}
+
+std::size_t SeenEntries::place_of(const StateSpace& space, int state) {
+  const Boundary b = space.boundary(state);
+  const int first = space.first(b);
+  return static_cast<std::size_t>(first / kStatesOfBox + static_cast<int>(b) +
+                                  (state - first) / kStatesOfBox);
+}
+
+bool SeenEntries::Box::holds(const Crossing& entry) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = entry.*kCrossingAxes[axis];
+    if (x < low[axis] || x > high[axis]) return false;
+  }
+  return true;
+}
+
+double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+                    const StartTrials& start) {
+  if (field.max_gates == 1 || start.first_runs() == 0) return 0.0;
+  // First runs that enter each box, by type of the gate entered.
+  std::vector<std::vector<std::int64_t>> here;
+  for (const SeenEntries& seen : kernel.seen) here.emplace_back(seen.boxes.size());
+  std::int64_t outside = 0;
+  for (const FieldTrials* trials : {&start.full, &start.first})
+    for (std::size_t i = 0; i < trials->final_gates.size(); ++i) {
+      const auto passages = trials->of_trial(i);
+      const GatePassage& passage = passages.front();
+      if (passages.size() > 1 || passage.ending == Ending::trapped ||
+          passage.ending == Ending::broken)
+        continue;  // the kernel has the entry, or there is none
+      const Move move = move_into(passage.entry.boundary);
+      const int column = field.start_column() + move.di_x;
+      if (!field.contains(column, move.di_y)) continue;
+      const auto type = static_cast<std::size_t>(gates.type_of(column, move.di_y));
+      const std::size_t at =
+          SeenEntries::place_of(kernel.space, kernel.space.index_of(passage.entry).state);
+      ++here[type][at];
+      if (!kernel.seen[type].boxes[at].holds(passage.entry)) ++outside;
+    }
+  // Of n entries the next one of the same kind lies beyond one of the six sides of their box with
+  // 6 / (n + 1), about; how many of several do is the less certain the more there are of one box.
+  constexpr std::int64_t kFew = 12;  // of fewer nothing is known
+  double expected = 0.0, variance = 0.0;
+  for (std::size_t type = 0; type < here.size(); ++type)
+    for (std::size_t i = 0; i < here[type].size(); ++i) {
+      const std::int64_t n = kernel.seen[type].boxes[i].entries;
+      if (n < kFew) continue;
+      const double mean = 6.0 * static_cast<double>(here[type][i]) / static_cast<double>(n + 1);
+      expected += mean;
+      variance += mean + mean * mean / 6.0;
+    }
+  return std::max(0.0, static_cast<double>(outside) - expected - 2.0 * std::sqrt(variance)) /
+         static_cast<double>(start.first_runs());
+}
+
+std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const FieldGates& gates,
+                                             const RunPool& pool, TrialGroup group) {
+  const std::vector<std::size_t> images = images_of(gates);
+  const auto row_of = [&](std::size_t type, int leaf) {
+    return kernel.shared_by.empty() ? leaf : kernel.shared_by[type][static_cast<std::size_t>(leaf)];
+  };
+  std::vector<std::vector<CostSums>> sums;
+  for (const markov::Counts& counts : kernel.counts)
+    sums.emplace_back(static_cast<std::size_t>(counts.nonZeros()));
+  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+    const markov::Counts& counts = kernel.counts[run.type];
+    for (std::size_t image = 0; image < images[run.type]; ++image) {
+      const bool mirror = image == 1;
+      const int leaf = kernel.space.index_of(mirror ? mirrored(entry) : entry).state;
+      const int row = row_of(run.type, leaf);
+      const int column = output_of(kernel.space, run, mirror ? mirrored(run.entry) : run.entry);
+      const auto *begin = counts.innerIndexPtr() + counts.outerIndexPtr()[row],
+                 *end = counts.innerIndexPtr() + counts.outerIndexPtr()[row + 1];
+      const auto* const at = std::lower_bound(begin, end, column);
+      if (at == end || *at != column)
+        throw std::invalid_argument("cost sums: a run is none of the kernel's");
+      sums[run.type][static_cast<std::size_t>(at - counts.innerIndexPtr())].add(run.costs);
+    }
+  });
+  for (std::size_t type = 0; type < kernel.shared_by.size(); ++type) {
+    const auto* const begin = kernel.counts[type].outerIndexPtr();
+    for (int leaf = 0; leaf < kernel.space.size(); ++leaf)
+      if (const int row = row_of(type, leaf); row != leaf)
+        std::copy(sums[type].begin() + begin[row], sums[type].begin() + begin[row + 1],
+                  sums[type].begin() + begin[leaf]);
+  }
+  return sums;
+}
+
+namespace {
+
+/// Calls use(output, passage) for the first runs of a start's trials of one group.
+template <class Use>
+void each_first_run(const FieldGates& gates, const StateSpace& space, const StartTrials& start,
+                    TrialGroup group, Use use) {
+  const std::vector<std::size_t> images = images_of(gates);
+  const bool in_the_middle = mirrored(start.start) == start.start;
+  for (const FieldTrials* trials : {&start.full, &start.first})
+    for (std::int64_t i = group.group; i < std::ssize(trials->final_gates); i += group.of) {
+      const GatePassage& passage = trials->of_trial(static_cast<std::size_t>(i)).front();
+      if (passage.ending == Ending::broken) continue;
+      use(output_of(space, passage, passage.entry), passage);
+      if (in_the_middle && images[passage.type] == 2)
+        use(output_of(space, passage, mirrored(passage.entry)), passage);
+    }
+}
+
+}  // namespace
+
+std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& space,
+                                    const StartTrials& start, TrialGroup group) {
+  std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
+  each_first_run(gates, space, start, group,
+                 [&](int output, const GatePassage&) { ++row[static_cast<std::size_t>(output)]; });
+  return row;
+}
+
+std::vector<CostSums> first_cost_sums(const FieldGates& gates, const StateSpace& space,
+                                      const StartTrials& start, TrialGroup group) {
+  std::vector<CostSums> row(static_cast<std::size_t>(space.size()) + 1);
+  each_first_run(gates, space, start, group, [&](int output, const GatePassage& run) {
+    row[static_cast<std::size_t>(output)].add(run.costs);
+  });
+  return row;
+}
+
+std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& space,
+                                    const ScatteredTrials& trials) {
+  const std::vector<std::size_t> images = images_of(gates);
+  std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
+  for (std::size_t i = 0; i < trials.starts.size(); ++i) {
+    const GatePassage& passage = trials.each.of_trial(i).front();
+    if (passage.ending == Ending::broken) continue;
+    ++row[static_cast<std::size_t>(output_of(space, passage, passage.entry))];
+    if (images[passage.type] == 2)
+      ++row[static_cast<std::size_t>(output_of(space, passage, mirrored(passage.entry)))];
+  }
+  return row;
+}
+
+markov::FieldChain chain_of(const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+                            const std::vector<std::vector<std::int64_t>>& first_rows) {
+  const int start_type = gates.type_of(field.start_column(), 0);
+  std::vector<markov::Chain> chains;
+  for (const markov::Counts& k : kernel.counts) {
+    const bool has_first = std::ssize(chains) == start_type;
+    markov::Counts counts(k.rows() + std::ssize(first_rows), k.cols());
+    counts.reserve(k.nonZeros());
+    for (Eigen::Index row = 0; row < counts.rows(); ++row) {
+      counts.startVec(row);
+      if (row < k.rows()) {
+        for (markov::Counts::InnerIterator it(k, row); it; ++it)
+          counts.insertBack(row, it.col()) = it.value();
+        continue;
+      }
+      const auto& first = first_rows[static_cast<std::size_t>(row - k.rows())];
+      for (Eigen::Index column = 0; column < k.cols() && has_first; ++column)
+        if (const std::int64_t n = first[static_cast<std::size_t>(column)]; n > 0)
+          counts.insertBack(row, column) = n;
+    }
+    counts.finalize();
+    chains.push_back(markov::Chain::from_counts(counts, exits_of(kernel.space)));
+  }
+  return field_chain(gates, std::move(chains));
+}
+
+std::vector<Transitions> transitions_of(const Kernel& kernel, const FieldGates& gates,
+                                        const FieldParams& field,
+                                        const std::vector<Crossing>& starts,
+                                        const std::vector<std::vector<std::int64_t>>& first_rows) {
+  std::vector<Transitions> all;
+  const int start_type = gates.type_of(field.start_column(), 0);
+  for (const markov::Counts& counts : kernel.counts) {
+    const bool has_first = std::ssize(all) == start_type;
+    Transitions& t = all.emplace_back(StateSpace(kernel.space.trees(), starts));
+    const auto add = [&](int row, int column, std::int64_t n) {
+      t.rows[static_cast<std::size_t>(row)]
+            [column == kernel.space.trapped() ? t.space.trapped() : column] += n;
+      t.trials[static_cast<std::size_t>(row)] += n;
+    };
+    for (int row = 0; row < kernel.space.size(); ++row)
+      for (markov::Counts::InnerIterator it(counts, row); it; ++it)
+        add(row, static_cast<int>(it.col()), it.value());
+    for (std::size_t s = 0; s < first_rows.size() && has_first; ++s)
+      for (int column = 0; column <= kernel.space.size(); ++column)
+        if (const std::int64_t n = first_rows[s][static_cast<std::size_t>(column)]; n > 0)
+          add(kernel.space.size() + static_cast<int>(s), column, n);
+  }
+  return all;
+}
+
+}  // namespace gatewalk::lattice

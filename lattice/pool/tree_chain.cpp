@@ -1,0 +1,385 @@
+#include "lattice/pool/tree_chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+
+#include "lattice/pool/pool_answers.h"
+#include "lattice/statistics/compare.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+std::vector<std::vector<std::int64_t>> own_rows(const FieldGates& gates, const RunPool& pool,
+                                                const StateSpace& space) {
+  std::vector<std::vector<std::int64_t>> rows;
+  for (const StartTrials& s : pool.starts) rows.push_back(first_row(gates, space, s));
+  return rows;
+}
+
+/// What walks from the starts end with, or from anywhere in the range where there are none.
+std::vector<markov::FinalDistribution> answers(const Scene& scene, const RunPool& pool,
+                                               const Kernel& kernel, std::uint64_t seed) {
+  const FieldGates gates = gates_of(scene);
+  auto rows = own_rows(gates, pool, kernel.space);
+  if (rows.empty()) rows.push_back(first_row(gates, kernel.space, pool.scattered));
+  return answers_of(kernel, gates, rows, scene.field, seed).final;
+}
+
+/// Larger leaves, until there are no more states than that.
+void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t seed) {
+  if (most < kBoundaries)
+    throw std::invalid_argument("a chain has " + std::to_string(kBoundaries) +
+                                " states at least, one for each way to enter a gate; " +
+                                std::to_string(most) + " are too few");
+  const Kernel full = chain.kernel;
+  while (chain.kernel.space.size() > most) {
+    const double times = static_cast<double>(chain.kernel.space.size()) / most;
+    chain.per_leaf = std::max(chain.per_leaf + 1,
+                              static_cast<int>(std::ceil(chain.per_leaf * std::sqrt(times))));
+    chain.kernel = kernel_of(gates_of(scene), chain.pool, chain.per_leaf);
+  }
+  if (chain.kernel.space.size() == full.space.size()) return;
+  const auto before = answers(scene, chain.pool, full, seed),
+             after = answers(scene, chain.pool, chain.kernel, seed);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    chain.states_bias =
+        std::max(chain.states_bias, total_variation(before[i].final_cells, after[i].final_cells));
+}
+
+std::vector<Transitions> transitions_with(const Scene& scene, const RunPool& pool,
+                                          const Kernel& kernel) {
+  std::vector<Crossing> starts;
+  for (const StartTrials& s : pool.starts) starts.push_back(s.start);
+  const FieldGates gates = gates_of(scene);
+  return transitions_of(kernel, gates, scene.field, starts, own_rows(gates, pool, kernel.space));
+}
+
+}  // namespace
+
+TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options, const Work& work) {
+  if (options.starts.empty() && !options.range)
+    throw std::invalid_argument("a chain needs a start, or a range of starts");
+  RunPool pool;
+  std::optional<PooledRange> range;
+  std::optional<PooledPrediction> prediction;
+  if (options.range) {
+    AccuracyOptions part = options.accuracy;
+    part.accuracy *= 1.2 * kPartForOne;
+    range = pool_range(scene, pool, *options.range, part, work);
+  }
+  if (!options.starts.empty()) {
+    AccuracyOptions rest = options.accuracy;
+    if (range) rest.most_runs = std::max<std::int64_t>(1, rest.most_runs - range->gate_runs);
+    prediction = predict_pooled(scene, pool, options.starts, rest, work);
+  }
+  Kernel kernel = kernel_of(gates_of(scene), pool, options.accuracy.per_leaf);
+  TreeChain chain{.pool = std::move(pool),
+                  .kernel = kernel,
+                  .transitions = {},
+                  .per_leaf = options.accuracy.per_leaf,
+                  .prediction = std::move(prediction),
+                  .range = std::move(range)};
+  if (options.most_states) limit_states(chain, scene, *options.most_states, options.accuracy.seed);
+  chain.transitions = transitions_with(scene, chain.pool, chain.kernel);
+  if (chain.range) chain.transitions.front().health += chain.range->health;
+  if (chain.prediction) chain.transitions.front().health += chain.prediction->health;
+  return chain;
+}
+
+// ---- Runs in a file ----
+
+namespace {
+
+struct RunArray {
+  const char *name, *unit, *meaning;
+};
+constexpr RunArray kTrialRuns{"trial_runs", "1",
+                              "gate runs of each trial, one after the other in run_*"},
+    kTrialKind{"trial_kind", "1",
+               "0: from anywhere; from a start of its own: 1 through the field, 2 one gate only"},
+    kTrialD{"trial_d", "m", "where each trial started, on the lower edge of a gate"},
+    kTrialVx{"trial_vx", "m s-1", "lateral velocity there"},
+    kTrialVy{"trial_vy", "m s-1", "forward velocity there"},
+    kRunEnding{"run_ending", "1",
+               "how each gate run ended: 0 traversed, 1 exited left, 2 exited right, 3 trapped"},
+    kRunBoundary{"run_boundary", "1",
+                 "how it entered the next gate: 0 EN, 1 RD, 2 LD, 3 RT, 4 LT (trapped: 0)"},
+    kRunD{"run_d", "m", "where on that boundary (trapped: 0)"},
+    kRunVx{"run_vx", "m s-1", "lateral velocity there (trapped: 0)"},
+    kRunVy{"run_vy", "m s-1", "forward velocity there (trapped: 0)"},
+    // Only where there are several.
+    kRunType{"run_type", "1",
+             "type of the gate of each run: 0 the scene's own, then those of its terrain that are "
+             "not like one before, by name"};
+
+enum Kind : int { kScattered, kFullTrial, kFirstRun };
+
+/// What a run took: "run_seconds", ...; older files have none.
+std::string array_name(const CostName& cost) { return "run_" + std::string(cost.key); }
+
+/// Appends trials to the tables.
+struct RunTables {
+  std::vector<double> trial_runs, trial_kind, trial_d, trial_vx, trial_vy;
+  std::vector<double> ending, type, boundary, d, vx, vy;
+  std::array<std::vector<double>, kCosts> costs;
+
+  void add(int kind, const Crossing& start, std::span<const GatePassage> passages) {
+    trial_kind.push_back(kind);
+    trial_runs.push_back(static_cast<double>(passages.size()));
+    trial_d.push_back(start.d);
+    trial_vx.push_back(start.vx);
+    trial_vy.push_back(start.vy);
+    for (const GatePassage& p : passages) {
+      ending.push_back(static_cast<double>(p.ending));
+      type.push_back(p.type);
+      boundary.push_back(static_cast<double>(p.entry.boundary));
+      d.push_back(p.entry.d);
+      vx.push_back(p.entry.vx);
+      vy.push_back(p.entry.vy);
+      for (std::size_t c = 0; c < kCosts; ++c) costs[c].push_back(p.costs[c]);
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<markov::NamedArray> arrays_of(const RunPool& pool) {
+  RunTables t;
+  for (const StartTrials& s : pool.starts)
+    for (const int kind : {kFullTrial, kFirstRun}) {
+      const FieldTrials& trials = kind == kFullTrial ? s.full : s.first;
+      for (std::size_t i = 0; i < trials.final_gates.size(); ++i)
+        t.add(kind, s.start, trials.of_trial(i));
+    }
+  for (std::size_t i = 0; i < pool.scattered.starts.size(); ++i)
+    t.add(kScattered, pool.scattered.starts[i], pool.scattered.each.of_trial(i));
+  std::vector<markov::NamedArray> arrays;
+  const auto add = [&](const RunArray& array, std::vector<double>& values) {
+    arrays.push_back({array.name, array.unit, array.meaning, std::move(values)});
+  };
+  add(kTrialRuns, t.trial_runs);
+  add(kTrialKind, t.trial_kind);
+  add(kTrialD, t.trial_d);
+  add(kTrialVx, t.trial_vx);
+  add(kTrialVy, t.trial_vy);
+  add(kRunEnding, t.ending);
+  add(kRunBoundary, t.boundary);
+  add(kRunD, t.d);
+  add(kRunVx, t.vx);
+  add(kRunVy, t.vy);
+  for (std::size_t c = 0; c < kCosts; ++c)
+    arrays.push_back({array_name(kCostNames[c]), std::string(kCostNames[c].unit),
+                      std::string(kCostNames[c].words) + ", of each gate run",
+                      std::move(t.costs[c])});
+  if (std::any_of(t.type.begin(), t.type.end(), [](double type) { return type != 0.0; }))
+    add(kRunType, t.type);
+  return arrays;
+}
+
+bool has_runs(const MatrixFile& file) {
+  return std::any_of(file.arrays.begin(), file.arrays.end(),
+                     [](const markov::NamedArray& a) { return a.name == kTrialRuns.name; });
+}
+
+namespace {
+
+const std::vector<double>* find(const MatrixFile& file, const std::string& name) {
+  for (const markov::NamedArray& a : file.arrays)
+    if (a.name == name) return &a.values;
+  return nullptr;
+}
+
+/// The tables of a file, checked.
+class RunReader {
+ public:
+  RunReader(const MatrixFile& file, std::size_t types, const std::string& path)
+      : file_(file),
+        types_(types),
+        path_(path),
+        runs_(table(kTrialRuns)),
+        kind_(table(kTrialKind)),
+        start_{&table(kTrialD), &table(kTrialVx), &table(kTrialVy)},
+        ending_(table(kRunEnding)),
+        type_(find(file, kRunType.name)),
+        boundary_(table(kRunBoundary)),
+        entry_{&table(kRunD), &table(kRunVx), &table(kRunVy)} {
+    for (const auto* t : {&kind_, start_[0], start_[1], start_[2]})
+      if (t->size() != runs_.size()) refuse("trials");
+    for (const auto* t : {&boundary_, entry_[0], entry_[1], entry_[2]})
+      if (t->size() != ending_.size()) refuse("runs");
+    if (type_ != nullptr && type_->size() != ending_.size()) refuse("runs");
+    for (std::size_t c = 0; c < kCosts; ++c) {
+      costs_[c] = find(file, array_name(kCostNames[c]));
+      if (costs_[c] != nullptr && costs_[c]->size() != ending_.size()) refuse("runs");
+    }
+  }
+
+  [[nodiscard]] RunPool read() {
+    RunPool pool;
+    for (const Crossing& start : file_.transitions.space.points())
+      pool.starts.emplace_back().start = start;
+    for (std::size_t i = 0; i < runs_.size(); ++i) read_trial(i, pool);
+    if (at_ != ending_.size()) refuse("runs of no trial");
+    for (const StartTrials& s : pool.starts)
+      if (s.first_runs() == 0) refuse("a start of its own without runs");
+    return pool;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw markov::BadFile(path_ + ": its gate runs do not add up: " + what);
+  }
+  [[nodiscard]] const std::vector<double>& table(const RunArray& array) const {
+    if (const auto* values = find(file_, array.name)) return *values;
+    throw markov::BadFile(path_ + ": no table " + array.name);
+  }
+  /// A whole number in [0, end).
+  [[nodiscard]] int whole(double x, double end, const std::string& what) const {
+    if (!(x >= 0.0 && x < end && x == std::floor(x))) refuse(what);
+    return static_cast<int>(x);
+  }
+  [[nodiscard]] Crossing crossing(Boundary boundary,
+                                  const std::array<const std::vector<double>*, 3>& axes,
+                                  std::size_t i, const std::string& what) const {
+    Crossing c{boundary};
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      c.*kCrossingAxes[axis] = (*axes[axis])[i];
+      if (!std::isfinite((*axes[axis])[i])) refuse(what);
+    }
+    return c;
+  }
+
+  void read_trial(std::size_t i, RunPool& pool) {
+    const std::string what = "trial " + std::to_string(i + 1);
+    const Crossing start = crossing(Boundary::enter, start_, i, what);
+    const int kind = whole(kind_[i], 3, what);
+    const int count = whole(runs_[i], static_cast<double>(ending_.size() - at_) + 1.0, what);
+    if (count == 0) refuse(what);
+    const std::size_t own = pool.place_of(start);
+    if (kind != kScattered && own == pool.starts.size()) refuse(what);
+    if (kind == kScattered) pool.scattered.starts.push_back(start);
+    FieldTrials& trials = kind == kScattered   ? pool.scattered.each
+                          : kind == kFullTrial ? pool.starts[own].full
+                                               : pool.starts[own].first;
+    Costs sum{};
+    for (int k = 0; k < count; ++k, ++at_) {
+      const std::string run = "run " + std::to_string(at_ + 1);
+      const auto ending = static_cast<Ending>(whole(ending_[at_], 4, run));
+      if (ending == Ending::trapped && k + 1 < count) refuse(run);
+      const auto boundary = static_cast<Boundary>(whole(boundary_[at_], kBoundaries, run));
+      const int type =
+          type_ == nullptr ? 0 : whole((*type_)[at_], static_cast<double>(types_), run);
+      Costs costs;
+      for (std::size_t c = 0; c < kCosts; ++c)
+        sum[c] += costs[c] = costs_[c] == nullptr ? std::nan("") : (*costs_[c])[at_];
+      trials.passages.push_back(
+          {ending, static_cast<std::uint8_t>(type), crossing(boundary, entry_, at_, run), costs});
+    }
+    trials.passed.push_back(std::ssize(trials.passages));
+    trials.final_gates.push_back(0);
+    trials.endings.push_back({});
+    trials.costs.push_back(sum);
+  }
+
+  const MatrixFile& file_;
+  std::size_t types_;  // of gates
+  const std::string& path_;
+  const std::vector<double>&runs_, &kind_;
+  std::array<const std::vector<double>*, 3> start_;
+  const std::vector<double>& ending_;
+  const std::vector<double>* type_;  // null: all are the first
+  const std::vector<double>& boundary_;
+  std::array<const std::vector<double>*, 3> entry_;
+  std::array<const std::vector<double>*, kCosts> costs_{};  // null: an older file
+  std::size_t at_ = 0;                                      // run
+};
+
+/// Follows trials through a field by their passages, to where and how they end there. False when
+/// they were not run in such a field.
+bool follow(const FieldGates& gates, const FieldParams& field, FieldTrials& trials) {
+  for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
+    int column = field.start_column(), row = 0;
+    std::optional<markov::Ending> ending;
+    const auto passages = trials.of_trial(i);
+    for (const GatePassage& p : passages) {
+      if (ending || p.type != gates.type_of(column, row))
+        return false;  // it went on where this field has an end, or another gate
+      if (p.ending == Ending::trapped) {
+        ending = markov::Ending::trapped;
+        break;
+      }
+      const Move move = move_into(p.entry.boundary);
+      if (!field.contains(column + move.di_x, row + move.di_y)) {
+        ending =
+            markov::edge_before({field.columns, field.rows}, column + move.di_x, row + move.di_y);
+      } else if (&p == &passages.back()) {
+        ending = markov::Ending::cut_off;
+      } else {
+        column += move.di_x;
+        row += move.di_y;
+      }
+    }
+    const auto visited = std::ssize(passages);
+    const bool cut = ending == markov::Ending::cut_off;
+    if (field.max_gates > 0 ? visited > field.max_gates || (cut && visited < field.max_gates) : cut)
+      return false;
+    trials.final_gates[i] = row * field.columns + column;
+    trials.endings[i] = ending;
+  }
+  return true;
+}
+
+/// Trials that began in a gate of another type than trials do here are none of a start's own.
+void scatter_others(RunPool& pool, int type) {
+  const auto is_other = [&](const StartTrials& s) {
+    const FieldTrials& any = s.full.passages.empty() ? s.first : s.full;
+    return any.passages.front().type != type;
+  };
+  FieldTrials& each = pool.scattered.each;
+  for (const StartTrials& s : pool.starts)
+    for (const FieldTrials* trials : {&s.full, &s.first})
+      for (std::size_t i = 0; i < trials->final_gates.size() && is_other(s); ++i) {
+        const auto passages = trials->of_trial(i);
+        each.passages.insert(each.passages.end(), passages.begin(), passages.end());
+        each.passed.push_back(std::ssize(each.passages));
+        each.final_gates.push_back(0);
+        each.endings.push_back({});
+        each.costs.push_back(trials->costs[i]);
+        pool.scattered.starts.push_back(s.start);
+      }
+  std::erase_if(pool.starts, is_other);
+}
+
+}  // namespace
+
+RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& path) {
+  const FieldGates gates = gates_of(scene);
+  RunPool pool = RunReader(file, gates.types().size(), path).read();
+  scatter_others(pool, gates.type_of(scene.field.start_column(), 0));
+  for (StartTrials& s : pool.starts) s.knows_endings = follow(gates, scene.field, s.full);
+  return pool;
+}
+
+std::vector<Transitions> matrices_of(const Scene& scene, const RunPool& pool,
+                                     const std::vector<BodyState>& starts, int per_leaf) {
+  const FieldGates gates = gates_of(scene);
+  const Kernel kernel = kernel_of(gates, pool, per_leaf);
+  std::vector<Crossing> points;
+  std::vector<std::vector<std::int64_t>> rows;
+  for (const BodyState& b : starts) {
+    const Crossing entry{Boundary::enter, b.x, b.vx, b.vy};
+    if (std::find(points.begin(), points.end(), entry) != points.end()) continue;
+    const std::size_t own = pool.place_of(entry);
+    if (own == pool.starts.size())
+      throw std::invalid_argument("matrix: a start has no runs of its own");
+    points.push_back(entry);
+    rows.push_back(first_row(gates, kernel.space, pool.starts[own]));
+  }
+  return transitions_of(kernel, gates, scene.field, points, rows);
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,49 @@
+#pragma once
+/// How trials through the field ended, as shares with intervals.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "lattice/statistics/matrix_noise.h"
+#include "markov/predict.h"
+
+namespace gatewalk::lattice {
+
+/// The five that a gate chain has, with their names in files and in tables. (It has no way out
+/// backwards; states never sampled are told apart.)
+struct EndingName {
+  markov::Ending ending;
+  const char *key, *name;
+};
+inline constexpr std::array<EndingName, 5> kEndingNames{
+    {{markov::Ending::far_edge, "crossed", "crossed"},
+     {markov::Ending::left_edge, "left_side", "left side"},
+     {markov::Ending::right_edge, "right_side", "right side"},
+     {markov::Ending::trapped, "trapped", "trapped"},
+     {markov::Ending::cut_off, "cut_off", "cut off"}}};
+
+/// By either of its names; none for any other.
+[[nodiscard]] std::optional<markov::Ending> ending_named(std::string_view name);
+
+/// Shares of all, with 95 % intervals (NaN: none), by markov::Ending.
+struct EndingShares {
+  std::array<double, markov::kEndings> share{};
+  std::array<std::array<double, 2>, markov::kEndings> interval;
+
+  /// Without intervals.
+  explicit EndingShares(const std::array<double, markov::kEndings>& shares);
+  /// Jeffreys' intervals of these counts.
+  EndingShares(const std::array<std::int64_t, markov::kEndings>& counts, std::int64_t trials);
+  /// A prediction's, with what the sampling of its matrix makes.
+  EndingShares(const markov::FinalDistribution& prediction, const MatrixNoise& noise,
+               int max_gates);
+
+  /// Without a limit of gates (max_gates 0) nothing is cut off, and that is certain.
+  [[nodiscard]] EndingShares with_limit(int max_gates) const;
+  /// Whether nobody can end so, as its interval says.
+  [[nodiscard]] bool rules_out(markov::Ending ending) const;
+};
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,212 @@
+#include "lattice/statistics/group_spread.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+#include "dynamics/base/random.h"
+#include "dynamics/base/share.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+/// Of what states of a group (eight times as large) cost more than the whole one's, the part that
+/// the whole one's cost too, which is no chance and adds to it in full: as if that cost went with
+/// the power 0.4 of their size, 1 / (8^0.4 - 1). (2/3 where outcomes vary smoothly with the entry,
+/// less where they jump.) Error bars then hold as often as they should (results/tree).
+constexpr double kBiasLeft = 0.75;
+
+/// Draws behind a quantile, fewer for large fields.
+int draws_for(Eigen::Index numbers) {
+  return static_cast<int>(
+      std::clamp<Eigen::Index>(40'000'000 / std::max<Eigen::Index>(1, numbers), 60, 400));
+}
+
+double quantile(std::vector<double> values, double level) {
+  const auto at =
+      values.begin() +
+      static_cast<std::ptrdiff_t>(std::ceil(level * static_cast<double>(values.size()))) - 1;
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Of errors that are drawn.
+Error95 error_of_draws(int draws, const CellProbabilities& p,
+                       const std::function<CellProbabilities(int)>& draw) {
+  std::vector<double> distances, correlations, rmses;
+  for (int k = 0; k < draws; ++k) {
+    const CellProbabilities other = draw(k);
+    distances.push_back(total_variation(other, p));
+    const double correlation = corrcoef(other, p);
+    if (std::isfinite(correlation)) correlations.push_back(-correlation);
+    rmses.push_back(rmse_per_100(other, p));
+  }
+  const double least =
+      correlations.size() == distances.size() ? -quantile(correlations, 0.95) : std::nan("");
+  return {quantile(distances, 0.95), least, quantile(rmses, 0.95)};
+}
+
+/// The largest share that so many trials miss altogether 5 times in 100.
+double unseen_95(std::int64_t trials) {
+  return 1.0 - std::pow(0.05, 1.0 / static_cast<double>(std::max<std::int64_t>(1, trials)));
+}
+
+/// A share that is moved from one gate to another makes the largest RMSE, and turns the shares' own
+/// spread over the gates by the largest angle.
+void count_unseen(Error95& e, const CellProbabilities& p, std::int64_t trials) {
+  const double unseen = unseen_95(trials), gates = static_cast<double>(p.size());
+  const double rmse = 100.0 * unseen * std::sqrt(2.0 / gates);
+  e.total_variation = std::max(e.total_variation, unseen);
+  e.rmse_per_100 = std::max(e.rmse_per_100, rmse);
+  const double spread = rmse_per_100(p, CellProbabilities::Constant(p.rows(), p.cols(), p.mean()));
+  e.corrcoef = rmse < spread
+                   ? std::min(e.corrcoef, std::sqrt((1.0 - rmse / spread) * (1.0 + rmse / spread)))
+                   : std::nan("");
+}
+
+constexpr std::uint64_t kGroupDraws = 0x67726f7570;  // "group", row of their streams
+
+/// Student's t with 7 degrees of freedom, 97.5 %: kTrialGroups - 1 of them.
+constexpr double kQuantile = 2.3646;
+static_assert(kTrialGroups == 8);
+
+struct Spread {
+  double mean = 0.0, error = 0.0;  // the standard error of the mean
+};
+Spread spread_of(const std::vector<double>& groups) {
+  const auto n = static_cast<double>(groups.size());
+  double mean = 0.0, squares = 0.0;
+  for (const double g : groups) mean += g / n;
+  for (const double g : groups) squares += (g - mean) * (g - mean);
+  return {mean, std::sqrt(squares / (n * (n - 1.0)))};
+}
+
+/// Half the interval of a share up to a half, as a part of it; 0 where no group has any.
+double relative_half_width(double whole, const std::vector<double>& groups) {
+  const Spread plain = spread_of(groups);
+  if (!(plain.mean > 0.0)) return 0.0;
+  std::vector<double> roots;
+  for (const double g : groups) roots.push_back(std::sqrt(std::max(0.0, g)));
+  // Small shares are skewed: eight of them often look more alike than they are. Their roots tell.
+  const Spread root = spread_of(roots);
+  const double error = std::max(plain.error / plain.mean, 2.0 * root.error / root.mean);
+  const double bias = std::abs(plain.mean - whole) / std::max(plain.mean, whole);
+  return kQuantile * error + kBiasLeft * bias;
+}
+
+}  // namespace
+
+Mean95 mean_95(double whole, const std::vector<double>& groups) {
+  if (!groups.empty()) {
+    const auto [mean, error] = spread_of(groups);
+    const double half = kQuantile * error + kBiasLeft * std::abs(mean - whole);
+    if (half > kShareRounding * std::abs(whole)) return {whole, {whole - half, whole + half}};
+  }
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  return {whole, {kUnknown, kUnknown}};
+}
+
+std::array<double, 2> middle_95(std::vector<double> drawn, double own) {
+  std::sort(drawn.begin(), drawn.end());
+  const std::size_t beyond = (drawn.size() + 1) / 40;  // 2.5 % on either side
+  const std::size_t low = beyond > 0 ? beyond - 1 : 0;
+  return {std::min(drawn[low], own), std::max(drawn[drawn.size() - 1 - low], own)};
+}
+
+std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
+                               const Evidence& from) {
+  if (whole > 0.5) {
+    std::vector<double> others;
+    for (const double g : groups) others.push_back(1.0 - g);
+    const auto [low, high] = share_95(1.0 - whole, others, from);
+    return {1.0 - high, 1.0 - low};
+  }
+  if (whole <= kShareRounding) return dynamics::interval_of_share(0.0, from.trials);
+  const double error = relative_half_width(whole, groups) / dynamics::kNormal95;
+  const double like = error > 0.0 ? (1.0 - whole) / (whole * error * error) : from.trials;
+  return dynamics::interval_of_share(whole, std::min(like, from.gate_runs));
+}
+
+Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials) {
+  const auto n = static_cast<double>(trials);
+  return {n, n * std::max(1.0, whole.mean_steps)};
+}
+
+GroupSpread::GroupSpread(const markov::FinalDistribution& whole,
+                         const std::vector<markov::FinalDistribution>& groups)
+    : whole_(whole), groups_(groups) {
+  if (groups.size() < 2) throw std::invalid_argument("group spread: needs two groups at least");
+  for (const auto& g : groups)
+    if (g.final_cells.rows() != whole.final_cells.rows() ||
+        g.final_cells.cols() != whole.final_cells.cols())
+      throw std::invalid_argument("group spread: predictions of different fields");
+}
+
+Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
+  const auto n = static_cast<double>(groups_.size());
+  CellProbabilities mean =
+      CellProbabilities::Zero(whole_.final_cells.rows(), whole_.final_cells.cols());
+  for (const auto& g : groups_) mean += g.final_cells / n;
+  const CellProbabilities biased = whole_.final_cells + kBiasLeft * (mean - whole_.final_cells);
+  const double scale = 1.0 / std::sqrt(n * (n - 1.0));
+  Error95 e =
+      error_of_draws(draws_for(mean.size() * std::ssize(groups_)), whole_.final_cells, [&](int k) {
+        dynamics::Random random(dynamics::Purpose::resampling,
+                                {seed, kGroupDraws, static_cast<std::uint64_t>(k)});
+        CellProbabilities drawn = biased;
+        for (const auto& g : groups_) drawn += scale * random.normal() * (g.final_cells - mean);
+        return drawn;
+      });
+  count_unseen(e, whole_.final_cells, trials);
+  e.total_variation = std::min(1.0, e.total_variation + whole_.unsampled + whole_.remainder);
+  return e;
+}
+
+namespace {
+
+/// By share_95, of value(prediction).
+template <class Value>
+std::array<double, 2> interval_of(const markov::FinalDistribution& whole,
+                                  const std::vector<markov::FinalDistribution>& groups,
+                                  std::int64_t trials, Value value) {
+  std::vector<double> values;
+  for (const auto& g : groups) values.push_back(value(g));
+  return share_95(value(whole), values, evidence_of(whole, trials));
+}
+
+}  // namespace
+
+std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) const {
+  std::array<CellProbabilities, 2> range{whole_.final_cells, whole_.final_cells};
+  // At once: in a large field these are most.
+  const auto never = dynamics::interval_of_share(0.0, static_cast<double>(trials));
+  for (Eigen::Index i = 0; i < whole_.final_cells.size(); ++i) {
+    const auto share = [i](const markov::FinalDistribution& d) { return d.final_cells.data()[i]; };
+    const auto interval =
+        share(whole_) <= kShareRounding ? never : interval_of(whole_, groups_, trials, share);
+    for (std::size_t side = 0; side < 2; ++side) range[side].data()[i] = interval[side];
+  }
+  return range;
+}
+
+EndingShares GroupSpread::endings_95(std::int64_t trials) const {
+  EndingShares shares(whole_.endings);
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    shares.interval[e] = interval_of(
+        whole_, groups_, trials, [e](const markov::FinalDistribution& d) { return d.endings[e]; });
+  return shares;
+}
+
+Error95 error_of_shares(const CellCounts& counts, std::uint64_t seed) {
+  const CellProbabilities p = shares(counts);
+  const std::int64_t trials = counts.sum();
+  Error95 e = error_of_draws(draws_for(p.size()), p, [&](int k) {
+    return shares(sampled(p, trials, seed ^ kGroupDraws, static_cast<std::uint64_t>(k)));
+  });
+  count_unseen(e, p, trials);
+  return e;
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,61 @@
+#pragma once
+/// How far off a prediction may be that was made from trials: predictions from groups of the
+/// trials, each with states of its own, differ from each other by sampling, and their mean from the
+/// whole one's by what larger states cost (a group of an eighth of the trials has states eight
+/// times as large). Both are counted, at the cost of one prediction more.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lattice/statistics/compare.h"
+#include "lattice/statistics/ending_shares.h"
+#include "lattice/statistics/share_95.h"
+#include "markov/predict.h"
+
+namespace gatewalk::lattice {
+
+inline constexpr int kTrialGroups = 8;
+
+/// 95 % of predictions like this one are no further from the truth.
+struct Error95 {
+  double total_variation = 0.0;  // of the final gates, at most
+  double corrcoef = 1.0;         // with the true shares, at least; NaN where there is none
+  double rmse_per_100 = 0.0;     // at most
+};
+
+/// Any number of all trials with its 95 % interval by kTrialGroups groups of them: their spread is
+/// sampling; their mean less the whole's, what larger states would change. NaN: not known, as
+/// without groups, or where all of them are alike, which no number of trials makes certain.
+struct Mean95 {
+  double mean = 0.0;
+  std::array<double, 2> interval{};
+};
+[[nodiscard]] Mean95 mean_95(double whole, const std::vector<double>& groups);
+
+/// Of a prediction from so many trials.
+[[nodiscard]] Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials);
+
+class GroupSpread {
+ public:
+  /// `groups`: two or more, from disjoint parts of the trials of equal size. Throws
+  /// std::invalid_argument for fewer, and for other fields.
+  GroupSpread(const markov::FinalDistribution& whole,
+              const std::vector<markov::FinalDistribution>& groups);
+
+  /// From errors drawn as the groups differ. `trials`: behind the prediction. They say what shares
+  /// can be that no group sees, here and below.
+  [[nodiscard]] Error95 error(std::int64_t trials, std::uint64_t seed) const;
+  /// Final gates: low and high (rows x columns).
+  [[nodiscard]] std::array<CellProbabilities, 2> gates_95(std::int64_t trials) const;
+  [[nodiscard]] EndingShares endings_95(std::int64_t trials) const;
+
+ private:
+  const markov::FinalDistribution& whole_;
+  const std::vector<markov::FinalDistribution>& groups_;
+};
+
+/// The same of the shares of `trials` themselves, which `counts` (rows x columns) are.
+[[nodiscard]] Error95 error_of_shares(const CellCounts& counts, std::uint64_t seed);
+
+}  // namespace gatewalk::lattice

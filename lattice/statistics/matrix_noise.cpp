@@ -1,0 +1,169 @@
+#include "lattice/statistics/matrix_noise.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "dynamics/base/random.h"
+#include "lattice/statistics/draws.h"
+#include "lattice/statistics/share_95.h"
+#include "markov/predict.h"
+
+namespace gatewalk::lattice {
+
+using markov::FinalDistribution;
+
+std::int64_t CountedField::runs_at(const markov::Start& start) const {
+  const auto type = static_cast<std::size_t>(chains.type_of(start.column, start.row));
+  const std::int64_t runs = counts[type].row(start.input).sum();
+  return images.empty() ? runs : runs / images[type][static_cast<std::size_t>(start.input)];
+}
+
+namespace {
+
+bool equals_row_before(const markov::Counts& counts, int row) {
+  const int* const begin = counts.outerIndexPtr() + row;
+  const auto same = [&](const auto* values) {
+    return std::equal(values + begin[0], values + begin[1], values + begin[-1], values + begin[0]);
+  };
+  return row > 0 && same(counts.innerIndexPtr()) && same(counts.valuePtr());
+}
+
+}  // namespace
+
+markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::uint64_t replicate,
+                         bool small_rows, const std::vector<std::int64_t>& images) {
+  using Entry = markov::Counts::InnerIterator;
+  // What a row never saw may yet happen in it. Its probabilities are its counts and one run more,
+  // which ends as those of all rows together: upto[i] runs ended in outputs 0 .. i.
+  std::vector<std::int64_t> upto(static_cast<std::size_t>(counts.cols()), 0);
+  for (int row = 0; row < counts.rows(); ++row)
+    for (Entry entry(counts, row); entry; ++entry)
+      upto[static_cast<std::size_t>(entry.col())] += entry.value();
+  std::partial_sum(upto.begin(), upto.end(), upto.begin());
+
+  std::vector<Eigen::Triplet<std::int64_t>> drawn;
+  std::vector<double> weights;
+  std::vector<std::int64_t> of_entries;
+  int first = 0;  // of the rows that are the same runs
+  for (int row = 0; row < counts.rows(); ++row) {
+    if (!small_rows || !equals_row_before(counts, row)) first = row;
+    weights.clear();
+    for (Entry entry(counts, row); entry; ++entry)
+      weights.push_back(static_cast<double>(entry.value()));
+    if (weights.empty()) continue;
+    of_entries.resize(weights.size());
+    const std::int64_t each = images.empty() ? 1 : images[static_cast<std::size_t>(row)];
+    const std::int64_t trials = std::max<std::int64_t>(1, counts.row(row).sum() / each);
+    dynamics::Random random(dynamics::Purpose::resampling,
+                            {seed, static_cast<std::uint64_t>(first), replicate});
+    const std::int64_t others =
+        small_rows ? 0 : binomial(trials, 1.0 / static_cast<double>(trials + 1), random);
+    multinomial(trials - others, weights, of_entries, random);
+    auto n = of_entries.begin();
+    for (Entry entry(counts, row); entry; ++entry, ++n)
+      if (*n > 0) drawn.emplace_back(row, entry.col(), *n);
+    for (std::int64_t i = 0; i < others; ++i) {
+      const auto at = std::upper_bound(upto.begin(), upto.end(), random.below(upto.back()));
+      drawn.emplace_back(row, at - upto.begin(), 1);
+    }
+  }
+  markov::Counts result(counts.rows(), counts.cols());
+  result.setFromTriplets(drawn.begin(), drawn.end());
+  return result;
+}
+
+std::vector<std::vector<FinalDistribution>> replicate_predictions(
+    const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
+    int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count) {
+  std::vector<std::vector<FinalDistribution>> found(
+      starts.size(), std::vector<FinalDistribution>(static_cast<std::size_t>(count)));
+  tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t k) {
+    std::vector<markov::Chain> chains;
+    for (std::size_t m = 0; m < gates.counts.size(); ++m) {
+      // Another matrix of the same replicate takes another stream.
+      const std::uint64_t replicate =
+          static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
+      chains.push_back(markov::Chain::from_counts(
+          resampled(gates.counts[m], seed, replicate, gates.small_rows,
+                    gates.images.empty() ? std::vector<std::int64_t>{} : gates.images[m]),
+          gates.chains.chains()[m].exits()));
+    }
+    const markov::Predictor predictor(gates.chains.with(std::move(chains)));
+    std::vector<FinalDistribution> of_starts =
+        predictor.predict_all(field, starts, {.max_cells = max_cells});
+    for (std::size_t s = 0; s < starts.size(); ++s)
+      found[s][static_cast<std::size_t>(k)] = std::move(of_starts[s]);
+  });
+  return found;
+}
+
+std::int64_t affordable_replicates(const markov::Field& field, int max_cells, std::int64_t nonzeros,
+                                   std::int64_t most) {
+  // Measured: some 40 ns a cell without limit, and a cell and step with one, of a matrix of 300
+  // nonzeros.
+  constexpr double kCellSteps = 1e8, kNonzeros = 300.0;
+  constexpr std::int64_t kTooFew = 50;
+  const double steps = std::max(1, max_cells);
+  const double cells =
+      std::min(static_cast<double>(field.columns) * field.rows,
+               max_cells > 0 ? 2.0 * steps * steps : std::numeric_limits<double>::infinity());
+  const double replicates = std::min(
+      static_cast<double>(most),
+      kCellSteps / (cells * steps * std::max(1.0, static_cast<double>(nonzeros) / kNonzeros)));
+  return replicates < kTooFew ? 0 : static_cast<std::int64_t>(replicates);
+}
+
+std::int64_t affordable_replicates(const CountedField& gates, const markov::Field& field,
+                                   int max_cells, std::int64_t most) {
+  // Without limit, rows of several types are not gone through one by one, but in steps; and chains
+  // of many states not by elimination, but by sums: so many.
+  constexpr int kSteps = 100, kManyStates = 1000;
+  if (max_cells == 0 && (!gates.chains.has_uniform_rows() || gates.chains.inputs() > kManyStates))
+    max_cells = kSteps;
+  std::int64_t nonzeros = 0;
+  for (const markov::Counts& c : gates.counts)
+    nonzeros = std::max<std::int64_t>(nonzeros, c.nonZeros());
+  return affordable_replicates(field, max_cells, nonzeros, most);
+}
+
+MatrixNoise::MatrixNoise(const FinalDistribution& prediction, std::int64_t runs)
+    : prediction_(prediction), runs_(runs) {}
+
+void MatrixNoise::add(const FinalDistribution& replicate) {
+  endings_.push_back(replicate.endings);
+  distances_.push_back(0.5 * (replicate.final_cells - prediction_.final_cells).abs().sum());
+}
+
+std::array<double, 2> MatrixNoise::interval_95(markov::Ending e) const {
+  const auto at = static_cast<std::size_t>(e);
+  std::vector<double> shares;
+  for (const auto& endings : endings_) shares.push_back(endings[at]);
+  return middle_95(std::move(shares), prediction_.endings[at]);
+}
+
+double MatrixNoise::mean_total_variation() const {
+  return std::accumulate(distances_.begin(), distances_.end(), 0.0) /
+         static_cast<double>(replicates());
+}
+
+double MatrixNoise::sd_total_variation() const {
+  const double mean = mean_total_variation();
+  double squares = 0.0;
+  for (const double d : distances_) squares += (d - mean) * (d - mean);
+  return std::sqrt(squares / static_cast<double>(replicates() - 1));
+}
+
+double MatrixNoise::total_variation_95() const {
+  if (distances_.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> sorted = distances_;
+  const auto at = sorted.begin() + (95 * replicates() + 99) / 100 - 1;
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return *at;
+}
+
+}  // namespace gatewalk::lattice

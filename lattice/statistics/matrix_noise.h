@@ -1,0 +1,82 @@
+#pragma once
+/// How far a prediction is to be trusted because its matrix was sampled: what matrices of other
+/// runs would have predicted. The chain's own error (bins, memory) is not in it.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "markov/predict.h"
+
+namespace gatewalk::lattice {
+
+/// What the cells of a field draw from, with the counts behind it.
+struct CountedField {
+  markov::FieldChain chains;
+  std::vector<markov::Counts> counts;  // one per type, as chains.chains()
+  bool small_rows = false;             // trees': rows of a few runs
+  /// By matrix and row: how many counts a run makes in it, 2 with its mirror image; empty: 1.
+  std::vector<std::vector<std::int64_t>> images{};
+
+  /// Runs of the row that a walk begins in, mirror images not counted twice.
+  [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
+};
+
+/// The counts that another set of runs might have given: every row's trials drawn anew from its own
+/// counts, as one binomial per entry, and of one run more that may end as any of all rows: what a
+/// row never saw may yet happen in it. (Not in small rows, of which one run is a large part; there,
+/// predictions average over many rows. Neighbouring small rows that are equal are the same runs,
+/// and stay equal.) `images`, as CountedField's of this matrix: of a row in which a run makes two
+/// counts half as many are drawn. Chains of such counts, which matter by their ratios alone, show
+/// what the sampling of the matrix alone does to a prediction.
+[[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
+                                       std::uint64_t replicate, bool small_rows = false,
+                                       const std::vector<std::int64_t>& images = {});
+
+/// Predictions from replicates first, ... first + count - 1: each matrix resampled() on its own.
+/// (starts x count) by Predictor::predict, on all threads of the current TBB arena; the same bits
+/// for any number of them. Throws as Predictor::predict does.
+[[nodiscard]] std::vector<std::vector<markov::FinalDistribution>> replicate_predictions(
+    const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
+    int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count);
+
+/// How many replicates a field and a matrix of this size let one make in some seconds: 0 to `most`.
+/// Below 50 it is 0: so few say too little.
+/// `nonzeros` of the matrix.
+[[nodiscard]] std::int64_t affordable_replicates(const markov::Field& field, int max_cells,
+                                                 std::int64_t nonzeros, std::int64_t most);
+
+/// The same for these matrices.
+[[nodiscard]] std::int64_t affordable_replicates(const CountedField& gates,
+                                                 const markov::Field& field, int max_cells,
+                                                 std::int64_t most);
+
+/// The spread of predictions that the sampling of the matrix makes.
+class MatrixNoise {
+ public:
+  /// `runs`: of the matrix's row that the walks begin in.
+  MatrixNoise(const markov::FinalDistribution& prediction, std::int64_t runs);
+  void add(const markov::FinalDistribution& replicate);
+
+  [[nodiscard]] std::int64_t replicates() const {
+    return static_cast<std::int64_t>(distances_.size());
+  }
+  [[nodiscard]] std::int64_t runs() const { return runs_; }
+  /// Between what lie the shares of this ending in the middle 95 % of the replicates, and the
+  /// prediction's own. Needs a replicate at least. No spread at all says only that no run of the
+  /// matrix shows any.
+  [[nodiscard]] std::array<double, 2> interval_95(markov::Ending e) const;
+  /// Total variation of the final cells between replicates and the prediction (NaN without
+  /// replicates).
+  [[nodiscard]] double mean_total_variation() const;
+  [[nodiscard]] double sd_total_variation() const;
+  [[nodiscard]] double total_variation_95() const;  // 95 % of the replicates have no more
+
+ private:
+  const markov::FinalDistribution& prediction_;
+  std::int64_t runs_;
+  std::vector<std::array<double, markov::kEndings>> endings_;  // (replicates) by Ending
+  std::vector<double> distances_;
+};
+
+}  // namespace gatewalk::lattice

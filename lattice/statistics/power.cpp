@@ -1,0 +1,423 @@
+#include "lattice/statistics/power.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "dynamics/base/random.h"
+#include "lattice/statistics/gate_statistics.h"
+#include "lattice/statistics/looked_at.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Purpose;
+using dynamics::Random;
+
+void require_share(double share) {
+  if (!(share >= 0.0 && share <= 1.0))
+    throw std::invalid_argument("power: a share must lie in [0, 1]");
+}
+
+/// Chance of at most, and of at least, so many of n, each with chance p.
+class Binomial {
+ public:
+  Binomial(std::int64_t n, double p) : n_(n), binomial_(static_cast<double>(n), p) {}
+  [[nodiscard]] double at_most(std::int64_t k) const {
+    if (k < 0) return 0.0;
+    return k >= n_ ? 1.0 : boost::math::cdf(binomial_, static_cast<double>(k));
+  }
+  [[nodiscard]] double at_least(std::int64_t k) const {
+    if (k <= 0) return 1.0;
+    return k > n_
+               ? 0.0
+               : boost::math::cdf(boost::math::complement(binomial_, static_cast<double>(k - 1)));
+  }
+
+ private:
+  std::int64_t n_;
+  boost::math::binomial_distribution<> binomial_;
+};
+
+/// The least of low, ..., high for which `holds`, which goes on to hold from there; high + 1: none.
+template <class Holds>
+std::int64_t first_of(std::int64_t low, std::int64_t high, Holds holds) {
+  ++high;
+  while (low < high) {
+    const std::int64_t middle = low + (high - low) / 2;
+    if (holds(middle))
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
+
+/// Counts that are found to differ: `low` and fewer (-1: none), `high` and more (n + 1: none).
+struct Critical {
+  std::int64_t low, high;
+};
+Critical critical_counts(std::int64_t n, double expected, double level) {
+  const Binomial null(n, expected);
+  const double mean = static_cast<double>(n) * expected;
+  const double slack = 1e-9 * static_cast<double>(n);  // equal distances of different rounding
+  const auto above = static_cast<std::int64_t>(std::floor(mean)) + 1;
+  const auto mirror = [&](std::int64_t k) { return 2.0 * mean - static_cast<double>(k); };
+  const std::int64_t high = first_of(above, n, [&](std::int64_t k) {
+    return null.at_least(k) +
+               null.at_most(static_cast<std::int64_t>(std::floor(mirror(k) + slack))) <=
+           level;
+  });
+  // Counted down from the mean: `steps` below it.
+  const auto below = static_cast<std::int64_t>(std::ceil(mean)) - 1;
+  const std::int64_t steps = first_of(0, below, [&](std::int64_t s) {
+    const std::int64_t k = below - s;
+    return null.at_most(k) +
+               null.at_least(static_cast<std::int64_t>(std::ceil(mirror(k) - slack))) <=
+           level;
+  });
+  return {below - steps, high};
+}
+
+/// Where a binomial has all but next to nothing, and its chances there.
+struct Likely {
+  std::int64_t first = 0;
+  std::vector<double> chance;
+  [[nodiscard]] std::int64_t last() const { return first + std::ssize(chance) - 1; }
+};
+Likely likely(std::int64_t n, double p) {
+  constexpr double kSigmas = 9.0;
+  const double mean = static_cast<double>(n) * p;
+  const double width = kSigmas * std::sqrt(mean * (1.0 - p)) + 40.0;  // Poisson's tails are longer
+  Likely l;
+  l.first = std::max<std::int64_t>(0, static_cast<std::int64_t>(mean - width));
+  const auto last = std::min(n, static_cast<std::int64_t>(mean + width));
+  const boost::math::binomial_distribution<> binomial(static_cast<double>(n), p);
+  for (std::int64_t k = l.first; k <= last; ++k)
+    l.chance.push_back(boost::math::pdf(binomial, static_cast<double>(k)));
+  return l;
+}
+
+double log_choose(std::int64_t n, std::int64_t k) {
+  return std::lgamma(static_cast<double>(n) + 1.0) - std::lgamma(static_cast<double>(k) + 1.0) -
+         std::lgamma(static_cast<double>(n - k) + 1.0);
+}
+
+/// Of `total` among two samples of n each: the chance that one of them has at most k.
+double at_most_of(std::int64_t n, std::int64_t total, std::int64_t k) {
+  const std::int64_t least = std::max<std::int64_t>(0, total - n);
+  if (k < least) return 0.0;
+  double chance = std::exp(log_choose(n, k) + log_choose(n, total - k) - log_choose(2 * n, total));
+  double sum = 0.0;
+  for (; k >= least && chance > 1e-18 * sum; --k) {  // down to k - 1
+    sum += chance;
+    chance *= static_cast<double>(k) / static_cast<double>(n - k + 1) *
+              static_cast<double>(n - total + k) / static_cast<double>(total - k + 1);
+  }
+  return sum;
+}
+
+/// The least number for which, and for `ahead` numbers behind which, power(n) is at least `wanted`.
+template <class Power, class Ahead>
+std::optional<std::int64_t> least_trials(Power power, double wanted, Ahead ahead) {
+  std::int64_t high = 1;
+  while (power(high) < wanted) {
+    if (high == kMostPlanned) return {};
+    high = std::min(2 * high, kMostPlanned);
+  }
+  // Below `low` it may be reached by a tooth, but is not on the way up.
+  std::int64_t n = high;
+  for (std::int64_t low = high / 2; n - low > 1;) {
+    const std::int64_t middle = low + (n - low) / 2;
+    (power(middle) < wanted ? low : n) = middle;
+  }
+  for (std::int64_t k = 1; k <= ahead(n); ++k) {
+    if (power(n + k) >= wanted) continue;
+    n += k + 1;
+    k = 0;
+    while (power(n) < wanted) ++n;
+  }
+  return n <= kMostPlanned ? std::optional(n) : std::nullopt;
+}
+
+}  // namespace
+
+double power_of_share(std::int64_t trials, double expected, double truth, double level) {
+  require_share(expected);
+  require_share(truth);
+  const Critical found = critical_counts(trials, expected, level);
+  const Binomial seen(trials, truth);
+  return seen.at_most(found.low) + seen.at_least(found.high);
+}
+
+double power_of_two_shares(std::int64_t trials_each, double first, double second, double level) {
+  require_share(first);
+  require_share(second);
+  const Likely a = likely(trials_each, first), b = likely(trials_each, second);
+  // By the total: what the sample with fewer must not have more of. It grows by at most one where
+  // the total does.
+  std::vector<std::int64_t> most;
+  std::int64_t k = -1;
+  for (std::int64_t total = a.first + b.first; total <= a.last() + b.last(); ++total) {
+    while (2 * (k + 1) < total && 2.0 * at_most_of(trials_each, total, k + 1) <= level) ++k;
+    most.push_back(k);
+  }
+  double power = 0.0;
+  for (std::int64_t x = a.first; x <= a.last(); ++x) {
+    double found = 0.0;
+    for (std::int64_t y = b.first; y <= b.last(); ++y)
+      if (std::min(x, y) <= most[static_cast<std::size_t>(x + y - a.first - b.first)])
+        found += b.chance[static_cast<std::size_t>(y - b.first)];
+    power += a.chance[static_cast<std::size_t>(x - a.first)] * found;
+  }
+  return power;
+}
+
+std::optional<std::int64_t> trials_for_share(double expected, double truth, const PowerGoal& goal) {
+  if (expected == truth) return {};
+  const double spread = std::max({truth * (1.0 - truth), expected * (1.0 - expected), 1e-4});
+  return least_trials(
+      [&](std::int64_t n) { return power_of_share(n, expected, truth, goal.level); }, goal.power,
+      // Teeth are about as wide: the power's height of a tooth, 1/sqrt(n spread), over its slope.
+      [&](std::int64_t n) {
+        return 20 + static_cast<std::int64_t>(2.0 * std::sqrt(static_cast<double>(n) / spread));
+      });
+}
+
+std::optional<std::int64_t> trials_for_two_shares(double first, double second,
+                                                  const PowerGoal& goal) {
+  if (first == second) return {};
+  return least_trials(
+      [&](std::int64_t n) { return power_of_two_shares(n, first, second, goal.level); }, goal.power,
+      [](std::int64_t) { return 20; });  // totals vary: the teeth are small
+}
+
+SmallestDifference smallest_difference(std::int64_t trials, double expected,
+                                       const PowerGoal& goal) {
+  const auto towards = [&](double end) -> std::optional<double> {
+    if (power_of_share(trials, expected, end, goal.level) < goal.power) return {};
+    double unseen = expected, seen = end;
+    for (int k = 0; k < 40; ++k) {
+      const double middle = 0.5 * (unseen + seen);
+      (power_of_share(trials, expected, middle, goal.level) < goal.power ? unseen : seen) = middle;
+    }
+    return std::abs(seen - expected);
+  };
+  return {towards(1.0), towards(0.0)};
+}
+
+// ---- Distributions ----
+
+namespace {
+
+/// As many as fit a fixed amount of work: each multiplies with a matrix of gates x gates.
+std::int64_t draws_of_power(Eigen::Index outcomes) {
+  const std::int64_t gates = std::min<std::int64_t>(outcomes, kMostEnergyGates);
+  return std::clamp<std::int64_t>(20'000'000 / (outcomes + gates * gates / 8 + 1), 400, 4000);
+}
+
+Outcomes on(const Support& support, const CellProbabilities& prediction) {
+  Eigen::VectorXd shares = on_support(prediction, support);
+  shares /= shares.sum();
+  const Eigen::Index gates = shares.size();
+  return {std::move(shares),
+          [support](const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                    const Eigen::VectorXd& expected, std::int64_t trials) {
+            const Statistics s = statistics(a, b, expected, rare_share(expected, trials), support);
+            return std::vector<double>{s.total_variation, s.energy, s.chi_squared};
+          },
+          draws_of_power(gates)};
+}
+
+}  // namespace
+
+Outcomes gate_outcomes(const CellProbabilities& prediction) {
+  return on(affordable_support_of(prediction), prediction);
+}
+
+std::pair<Outcomes, Eigen::VectorXd> gate_outcomes(const CellProbabilities& first,
+                                                   const CellProbabilities& second) {
+  const Support support = affordable_support_of(first + second);
+  return {on(support, first), on(support, second).shares};
+}
+
+Outcomes ending_outcomes(const std::array<double, markov::kEndings>& prediction) {
+  Eigen::VectorXd shares(static_cast<Eigen::Index>(prediction.size()));
+  std::copy(prediction.begin(), prediction.end(), shares.begin());
+  shares /= shares.sum();
+  return {
+      std::move(shares),
+      [](const Eigen::VectorXd& a, const Eigen::VectorXd& b, const Eigen::VectorXd&, std::int64_t) {
+        const Eigen::VectorXd apart = (a - b).cwiseAbs();
+        return std::vector<double>(apart.begin(), apart.end());
+      },
+      draws_of_power(static_cast<Eigen::Index>(prediction.size()))};
+}
+
+SimulatedTest::SimulatedTest(const Outcomes& expected, std::int64_t trials, double level,
+                             std::uint64_t seed, std::optional<double> single_level)
+    : outcomes_(expected), trials_(trials), seed_(seed) {
+  calibrate(expected.shares, level, single_level);
+}
+
+SimulatedTest::SimulatedTest(const Outcomes& first, const Eigen::VectorXd& second,
+                             std::int64_t trials_each, double level, std::uint64_t seed)
+    : outcomes_(first), second_(second), trials_(trials_each), seed_(seed) {
+  calibrate(0.5 * (first.shares + second), level, {});
+}
+
+/// Of one sample from `first` where there is no `second`.
+std::vector<SimulatedTest::Row> SimulatedTest::rows(std::uint64_t use, const Eigen::VectorXd& first,
+                                                    const Eigen::VectorXd* second) const {
+  std::vector<Row> all(static_cast<std::size_t>(outcomes_.draws));
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
+    Random random(Purpose::comparison, {seed_, use, k});
+    const Eigen::VectorXd a = drawn_shares(first, trials_, random);
+    if (!second) {
+      all[k] = outcomes_.differences(a, outcomes_.shares, outcomes_.shares, trials_);
+      return;
+    }
+    const Eigen::VectorXd b = drawn_shares(*second, trials_, random);
+    const Eigen::VectorXd pooled = 0.5 * (a + b);
+    // What neither has seen makes no difference, and has no noise to hold it against.
+    const Eigen::VectorXd expected =
+        (pooled.array() > 0.0).select(pooled, std::numeric_limits<double>::min());
+    all[k] = outcomes_.differences(a, b, expected, trials_);
+  });
+  return all;
+}
+
+void SimulatedTest::calibrate(const Eigen::VectorXd& null, double level,
+                              std::optional<double> single_level) {
+  const std::vector<Row> drawn = rows(kPowerNull, null, second_ ? &null : nullptr);
+  const std::size_t statistics = drawn.front().size();
+  std::vector<double> all;
+  for (const Row& row : drawn) all.insert(all.end(), row.begin(), row.end());
+  single_level_ = single_level.value_or(LookedAt(all, statistics).single_level(level));
+  null_.resize(statistics);
+  for (std::size_t s = 0; s < statistics; ++s) {
+    for (const Row& row : drawn) null_[s].push_back(std::isnan(row[s]) ? -1.0 : row[s]);
+    std::sort(null_[s].begin(), null_[s].end());
+  }
+}
+
+bool SimulatedTest::finds(const Row& row) const {
+  for (std::size_t s = 0; s < row.size(); ++s) {
+    if (std::isnan(row[s])) continue;
+    // Equal results of different rounding count as equal.
+    const auto as_large = null_[s].end() - std::lower_bound(null_[s].begin(), null_[s].end(),
+                                                            row[s] - 1e-12 * std::abs(row[s]));
+    const double p = static_cast<double>(as_large + 1) / static_cast<double>(null_[s].size() + 1);
+    if (p <= single_level_) return true;
+  }
+  return false;
+}
+
+double SimulatedTest::found(const std::vector<Row>& rows) const {
+  const auto count =
+      std::count_if(rows.begin(), rows.end(), [&](const Row& r) { return finds(r); });
+  return static_cast<double>(count) / static_cast<double>(rows.size());
+}
+
+double SimulatedTest::power(const Eigen::VectorXd& truth) const {
+  return found(rows(kExperiments, truth, nullptr));
+}
+
+double SimulatedTest::power() const {
+  return found(rows(kExperiments, outcomes_.shares, &second_.value()));
+}
+
+namespace {
+
+/// Places of the outcomes in the half that loses, and what that half has.
+std::pair<std::vector<bool>, double> losing_half(const Eigen::VectorXd& shares) {
+  std::vector<Eigen::Index> by_size(static_cast<std::size_t>(shares.size()));
+  std::iota(by_size.begin(), by_size.end(), 0);
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return shares[a] > shares[b]; });
+  std::vector<bool> loses(by_size.size());
+  double losing = 0.0, gaining = 0.0;
+  for (const Eigen::Index i : by_size) {
+    const bool to_losing = losing <= gaining;
+    loses[static_cast<std::size_t>(i)] = to_losing;
+    (to_losing ? losing : gaining) += shares[i];
+  }
+  return {std::move(loses), losing};
+}
+
+}  // namespace
+
+std::optional<Eigen::VectorXd> hardest_to_see(const Eigen::VectorXd& shares,
+                                              double total_variation) {
+  const auto [loses, losing] = losing_half(shares);
+  const double gaining = shares.sum() - losing;
+  if (!(total_variation <= losing && gaining > 0.0)) return {};
+  Eigen::VectorXd other = shares;
+  for (Eigen::Index i = 0; i < other.size(); ++i)
+    other[i] *= loses[static_cast<std::size_t>(i)] ? 1.0 - total_variation / losing
+                                                   : 1.0 + total_variation / gaining;
+  return other;
+}
+
+namespace {
+
+/// By doubling and halving to 1 %: the power is known to no better.
+template <class Power>
+std::optional<std::int64_t> about_least_trials(Power power, double wanted) {
+  std::int64_t low = 1, high = 4;
+  while (power(high) < wanted) {
+    if (high == kMostPlanned) return {};
+    low = high;
+    high = std::min(2 * high, kMostPlanned);
+  }
+  while (high - low > 1 && 100 * (high - low) > high) {
+    const std::int64_t middle = low + (high - low) / 2;
+    (power(middle) < wanted ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+std::optional<std::int64_t> trials_for_total_variation(const Outcomes& expected,
+                                                       double total_variation,
+                                                       const PowerGoal& goal, std::uint64_t seed) {
+  const auto truth = hardest_to_see(expected.shares, total_variation);
+  if (!truth) return {};
+  return about_least_trials(
+      [&](std::int64_t n) { return SimulatedTest(expected, n, goal.level, seed).power(*truth); },
+      goal.power);
+}
+
+std::optional<std::int64_t> trials_for_two(const Outcomes& first, const Eigen::VectorXd& second,
+                                           const PowerGoal& goal, std::uint64_t seed) {
+  if (first.shares == second) return {};
+  return about_least_trials(
+      [&](std::int64_t n) { return SimulatedTest(first, second, n, goal.level, seed).power(); },
+      goal.power);
+}
+
+std::optional<double> smallest_total_variation(const Outcomes& expected, std::int64_t trials,
+                                               const PowerGoal& goal, std::uint64_t seed,
+                                               std::optional<double> single_level) {
+  const SimulatedTest test(expected, trials, goal.level, seed, single_level);
+  const auto shows = [&](double tv) {
+    const auto truth = hardest_to_see(expected.shares, tv);
+    return truth && test.power(*truth) >= goal.power;
+  };
+  double unseen = 0.0, seen = losing_half(expected.shares).second;
+  if (!shows(seen)) return {};
+  while (seen - unseen > 0.005 * seen) {
+    const double middle = 0.5 * (unseen + seen);
+    (shows(middle) ? seen : unseen) = middle;
+  }
+  return seen;
+}
+
+}  // namespace gatewalk::lattice
