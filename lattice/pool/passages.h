@@ -21,8 +21,7 @@ class Passages {
   /// Without limit of gates walks are followed until those left are few beside the ones that end in
   /// the target. Without costs totals() has no quantities, which are most of the time. Throws as
   /// markov::EndingChance and walk_totals.
-  Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
-           bool with_costs = true);
+  Passages(const CostedChain& c, const FieldParams& field, markov::Ending target, bool with_costs);
 
   struct Place {
     int draw = 1;

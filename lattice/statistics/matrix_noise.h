@@ -27,8 +27,10 @@ struct CountedField {
 /// row never saw may yet happen in it. (Not in small rows, of which one run is a large part; there,
 /// predictions average over many rows. Neighbouring small rows that are equal are the same runs,
 /// and stay equal.) `images`, as CountedField's of this matrix: of a row in which a run makes two
-/// counts half as many are drawn. Chains of such counts, which matter by their ratios alone, show
-/// what the sampling of the matrix alone does to a prediction.
+/// counts half as many are drawn: that is right for starts in the middle; for others, which see one
+/// row of a mirrored pair more than the other, the spread is up to sqrt(2) too large. Chains of
+/// such counts, which matter by their ratios alone, show what the sampling of the matrix alone does
+/// to a prediction.
 [[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
                                        std::uint64_t replicate, bool small_rows = false,
                                        const std::vector<std::int64_t>& images = {});

@@ -13,24 +13,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "markov/predict/row_sum.h"
+#include "markov/predict/large_totals.h"
 #include "markov/walk.h"
 
 namespace gatewalk::markov {
 namespace {
-
-std::size_t quantities_of(const FieldChain& chain, const Rewards& rewards) {
-  if (rewards.empty()) return 0;
-  bool fits = rewards.size() == chain.chains().size();
-  for (std::size_t c = 0; fits && c < rewards.size(); ++c) {
-    const auto nonzeros = static_cast<std::size_t>(chain.chains()[c].matrix().nonZeros());
-    fits = rewards[c].size() == rewards.front().size();
-    for (const Reward& r : rewards[c])
-      fits = fits && r.mean.size() == nonzeros && r.square.size() == nonzeros;
-  }
-  if (!fits) throw std::invalid_argument("walk totals: rewards are not those of the chain");
-  return rewards.front().size();
-}
 
 /// Shares of the walks that are about to draw in each state, with the sums of their totals so far
 /// and of the squares: numbers of one state side by side.
@@ -67,10 +54,6 @@ class Wave {
   std::vector<double> numbers_;
   std::vector<bool> reached_;
 };
-
-constexpr int kMostSteps = 100'000;
-
-double uniform(std::uint64_t word) { return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52; }
 
 WalkTotals totals_by_steps(const FieldChain& chain, const Field& field, const Start& start,
                            int max_cells, const Rewards& rewards, const EachState& each,
@@ -332,242 +315,11 @@ class TotalsByRows {
   WalkTotals out_;
 };
 
-/// Visits and endings of large fields without limit of cells, rows of one type each: what enters a
-/// row is summed over all moves within it at once.
-class VisitsByRows {
- public:
-  VisitsByRows(const FieldChain& chain, const Field& field) : chain_(chain), field_(field) {
-    for (const Chain& c : chain.chains()) {
-      std::vector<RowSum::Term> terms;
-      for (int input = 0; input < c.inputs(); ++input)
-        for (Probabilities::InnerIterator it(c.matrix(), input); it; ++it) {
-          const Exit& exit = c.exits()[static_cast<std::size_t>(it.col())];
-          highest_ = std::max(highest_, exit.di_y);
-          if (exit.next_input != Exit::kTrapped && exit.di_y == 0)
-            terms.push_back({exit.next_input, input, -exit.di_x, it.value()});
-        }
-      sums_.emplace_back(terms, field.columns, c.inputs());
-    }
-  }
-
-  [[nodiscard]] bool suits() const {
-    return chain_.has_uniform_rows() &&
-           std::all_of(sums_.begin(), sums_.end(), [](const RowSum& s) { return s.suits(); });
-  }
-
-  /// `out`: visits and endings are added. `each` is told of states that are passed by more than
-  /// `is_little(share, cell, input)`. Returns the means of all walks, draws first, then by
-  /// quantity.
-  template <class Little>
-  std::vector<double> run(const Start& start, const Rewards& rewards, const EachState& each,
-                          const Little& is_little, WalkTotals& out) {
-    std::vector<double> means(1 + quantities_of(chain_, rewards), 0.0);
-    const std::int64_t inputs = chain_.inputs(), states = inputs * field_.columns;
-    std::vector<std::vector<double>> entering(static_cast<std::size_t>(highest_) + 1);
-    for (auto& row : entering) row.assign(static_cast<std::size_t>(states), 0.0);
-    entering.front()[static_cast<std::size_t>(start.column * inputs + start.input)] = 1.0;
-    for (int row = start.row; row < field_.rows; ++row) {
-      const auto type = static_cast<std::size_t>(chain_.type_of(0, row));
-      const Chain& here = chain_.chains()[type];
-      std::vector<double>& visits = entering.front();
-      sums_[type].solve(visits.data(), RowSum::Of::largest);
-      for (std::int64_t column = 0; column < field_.columns; ++column)
-        for (int input = 0; input < inputs; ++input) {
-          const double share = visits[static_cast<std::size_t>(column * inputs + input)];
-          if (share == 0.0) continue;
-          const std::int64_t cell = std::int64_t{row} * field_.columns + column;
-          if (!here.is_sampled(input)) {
-            out.endings[static_cast<std::size_t>(Ending::unsampled)] += share;
-            continue;
-          }
-          out.visits.data()[cell] += share;
-          means[0] += share;
-          if (each && !is_little(share, cell, input)) each(1, cell, input, share);
-          auto nonzero = static_cast<std::size_t>(here.matrix().outerIndexPtr()[input]);
-          for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it, ++nonzero) {
-            const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
-            std::int64_t to_column = column, to_row = row;
-            const double p = share * it.value();
-            for (std::size_t q = 1; q < means.size(); ++q)
-              means[q] += p * rewards[type][q - 1].mean[nonzero];
-            if (const auto ending = follow(field_, exit, false, to_column, to_row))
-              out.endings[static_cast<std::size_t>(*ending)] += p;
-            else if (exit.di_y > 0)
-              entering[static_cast<std::size_t>(exit.di_y)]
-                      [static_cast<std::size_t>(to_column * inputs + exit.next_input)] += p;
-          }
-        }
-      std::fill(visits.begin(), visits.end(), 0.0);
-      std::rotate(entering.begin(), entering.begin() + 1, entering.end());
-    }
-    return means;
-  }
-
- private:
-  const FieldChain& chain_;
-  const Field field_;
-  int highest_ = 0;           // di_y
-  std::vector<RowSum> sums_;  // by type
-};
-
-/// "mom", version 1: the second key word of these walks' streams.
-constexpr std::uint64_t kMomentsStream = 0x006d6f6d'00000001;
-
-/// Numbers that walks add up: by ending, draws first.
-struct DrawnMoments {
-  std::vector<std::array<Moments, kEndings>> all;
-
-  explicit DrawnMoments(std::size_t quantities) : all(1 + quantities) {}
-  /// A walk whose totals have these means and variances, draws first.
-  void add(Ending ending, const std::vector<double>& mean, const std::vector<double>& variance) {
-    for (std::size_t q = 0; q < all.size(); ++q) {
-      Moments& m = all[q][static_cast<std::size_t>(ending)];
-      m.share += 1.0;
-      m.sum += mean[q];
-      m.square += mean[q] * mean[q] + variance[q];
-    }
-  }
-  DrawnMoments& operator+=(const DrawnMoments& other) {
-    for (std::size_t q = 0; q < all.size(); ++q)
-      for (std::size_t e = 0; e < kEndings; ++e) {
-        all[q][e].share += other.all[q][e].share;
-        all[q][e].sum += other.all[q][e].sum;
-        all[q][e].square += other.all[q][e].square;
-      }
-    return *this;
-  }
-};
-
-/// Walks without limit of cells, and what they add up: the mean of each draw's quantities, and
-/// their variance. Given `chance`, only walks that end so: a draw is as likely as it is times the
-/// chance from where it leads (Doob's transform).
-DrawnMoments drawn_moments(const FieldChain& chain, const Field& field, const Start& start,
-                           const Rewards& rewards, const EndingChance* chance, std::int64_t count,
-                           std::uint64_t seed) {
-  constexpr std::int64_t kTogether = 1024;
-  const std::size_t quantities = quantities_of(chain, rewards);
-  const std::int64_t parts = (count + kTogether - 1) / kTogether;
-  std::vector<DrawnMoments> moments(static_cast<std::size_t>(parts), DrawnMoments(quantities));
-  tbb::parallel_for(std::int64_t{0}, parts, [&](std::int64_t part) {
-    std::vector<double> mean(1 + quantities), variance(1 + quantities, 0.0);
-    for (std::int64_t number = part * kTogether; number < std::min(count, (part + 1) * kTogether);
-         ++number) {
-      std::fill(mean.begin(), mean.end(), 0.0);
-      std::fill(variance.begin(), variance.end(), 0.0);
-      std::int64_t column = start.column, row = start.row;
-      int input = start.input;
-      std::optional<Ending> ending;
-      for (int draw = 1; !ending && draw <= kMostSteps; ++draw) {
-        const auto type = static_cast<std::size_t>(chain.type_of(column, row));
-        const Chain& here = chain.chains()[type];
-        if (!here.is_sampled(input)) {
-          ending = Ending::unsampled;
-          break;
-        }
-        const std::int64_t cell = row * field.columns + column;
-        const auto weight = [&](const Exit& exit) {
-          if (!chance) return 1.0;
-          std::int64_t to_column = column, to_row = row;
-          if (const auto e = follow(field, exit, false, to_column, to_row))
-            return *e == chance->ending() ? 1.0 : 0.0;
-          return (*chance)(1, to_row * field.columns + to_column, exit.next_input);
-        };
-        const auto words =
-            r123::Philox4x64()({{static_cast<std::uint64_t>(draw),
-                                 static_cast<std::uint64_t>(number), chance != nullptr, 0}},
-                               {{seed, kMomentsStream}});
-        double rest = uniform(words[0]) * (chance ? (*chance)(1, cell, input) : 1.0);
-        auto nonzero = static_cast<std::size_t>(here.matrix().outerIndexPtr()[input]),
-             taken = nonzero;
-        const Exit* exit = nullptr;
-        for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it, ++nonzero) {
-          const Exit& possible = here.exits()[static_cast<std::size_t>(it.col())];
-          const double p = it.value() * weight(possible);
-          if (p == 0.0) continue;
-          exit = &possible;
-          taken = nonzero;
-          if ((rest -= p) < 0.0) break;
-        }
-        if (!exit) break;  // nobody ends so from there
-        mean[0] += 1.0;
-        for (std::size_t q = 0; q < quantities; ++q) {
-          const Reward& r = rewards[type][q];
-          mean[1 + q] += r.mean[taken];
-          variance[1 + q] += r.square[taken] - r.mean[taken] * r.mean[taken];
-        }
-        ending = follow(field, *exit, false, column, row);
-        input = exit->next_input;
-      }
-      if (ending) moments[static_cast<std::size_t>(part)].add(*ending, mean, variance);
-    }
-  });
-  DrawnMoments all(quantities);
-  for (const DrawnMoments& m : moments) all += m;
-  return all;
-}
-
 bool is_large(const FieldChain& chain, const Field& field, double large) {
   double nonzeros = 0.0;
   for (const Chain& c : chain.chains())
     nonzeros = std::max(nonzeros, static_cast<double>(c.matrix().nonZeros()));
   return static_cast<double>(field.columns) * field.rows * nonzeros > large;
-}
-
-WalkTotals totals_of_large(VisitsByRows& rows, const FieldChain& chain, const Field& field,
-                           const Start& start, const Rewards& rewards, const EachState& each,
-                           const WalkTolerance& tolerance, std::uint64_t seed) {
-  constexpr std::int64_t kWalks = 1 << 16, kThatEndSo = 1 << 12;
-  const std::size_t quantities = quantities_of(chain, rewards);
-  const double states = static_cast<double>(field.rows) * field.columns * chain.inputs();
-  const EndingChance* const chance = tolerance.chance;
-  const double at_start =
-      chance ? (*chance)(1, std::int64_t{start.row} * field.columns + start.column, start.input)
-             : 0.0;
-  WalkTotals out;
-  out.visits = CellProbabilities::Zero(field.rows, field.columns);
-  const std::vector<double> means = rows.run(
-      start, rewards, each,
-      [&](double share, std::int64_t cell, int input) {
-        return share * states <= tolerance.all &&
-               (!chance ||
-                share * (*chance)(1, cell, input) * states <= tolerance.of_target * at_start);
-      },
-      out);
-  const double ended = std::accumulate(out.endings.begin(), out.endings.end(), 0.0);
-  out.remainder = std::max(0.0, 1.0 - ended);
-  if (quantities == 0) {  // nobody asks for more
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t e = 0; e < kEndings; ++e) out.draws[e] = {out.endings[e], kUnknown, kUnknown};
-    return out;
-  }
-  out.drawn_walks = kWalks;
-  out.totals.resize(quantities);
-  DrawnMoments drawn = drawn_moments(chain, field, start, rewards, nullptr, kWalks, seed);
-  std::size_t target = kEndings;  // none: of that many walks are drawn anyway
-  if (at_start > 0.0 && at_start * kWalks < kThatEndSo) {
-    target = static_cast<std::size_t>(chance->ending());
-    const DrawnMoments so = drawn_moments(chain, field, start, rewards, chance, kThatEndSo, seed);
-    for (std::size_t q = 0; q <= quantities; ++q) drawn.all[q][target] = so.all[q][target];
-  }
-  for (std::size_t q = 0; q <= quantities; ++q) {
-    auto& moments = q == 0 ? out.draws : out.totals[q - 1];
-    double others = 0.0;
-    for (std::size_t e = 0; e < kEndings; ++e) {
-      Moments m = drawn.all[q][e];
-      if (m.share > 0.0)
-        m = {out.endings[e], m.sum / m.share * out.endings[e], m.square / m.share * out.endings[e]};
-      moments[e] = m;
-      if (e != target) others += m.sum;
-    }
-    // The mean of all walks is known: those that were drawn together are scaled to it.
-    const double known = means[q] - (target < kEndings ? moments[target].sum : 0.0);
-    if (!(others > 0.0 && known > 0.0)) continue;
-    const double scale = known / others;
-    for (std::size_t e = 0; e < kEndings; ++e)
-      if (Moments& m = moments[e]; e != target)
-        m = {m.share, m.sum * scale, m.square * scale * scale};
-  }
-  return out;
 }
 
 bool goes_down(const FieldChain& chain) {
@@ -595,13 +347,12 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
                        int max_cells, const Rewards& rewards, const EachState& each,
                        const WalkTolerance& tolerance, std::uint64_t seed) {
   validate(chain, field, start, max_cells);
-  if (max_cells == 0 && !goes_down(chain) && is_large(chain, field, tolerance.large)) {
-    VisitsByRows rows(chain, field);
-    if (rows.suits())
-      return totals_of_large(rows, chain, field, start, rewards, each, tolerance, seed);
-  }
-  if (max_cells == 0 && !goes_down(chain))
+  if (max_cells == 0 && !goes_down(chain)) {
+    if (is_large(chain, field, tolerance.large))
+      if (auto large = totals_of_large(chain, field, start, rewards, each, tolerance, seed))
+        return *std::move(large);
     return TotalsByRows(chain, field, start, rewards, each, tolerance).run();
+  }
   return totals_by_steps(chain, field, start, max_cells, rewards, each, tolerance.all);
 }
 

@@ -382,11 +382,29 @@ TEST(Analysis, ALargeChangeTakesNoMoreThanThereIs) {
   EXPECT_TRUE(takes_most);
 }
 
+TEST(Analysis, TellsOfEachChainThatItHasWalked) {
+  const Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 500);
+  const AnalysedChain chain = analysed_chain(scene, pool, entry_of(scene.start));
+  std::vector<std::int64_t> told;
+  const Work work{[&](std::string_view, std::int64_t done, std::int64_t total) {
+    EXPECT_EQ(total, kTrialGroups + 1);
+    told.push_back(done);
+  }};
+  const auto all = all_passages(chain, scene.field, Ending::far_edge, false, "chains", work);
+  ASSERT_EQ(std::ssize(told), kTrialGroups + 2);
+  for (std::int64_t i = 0; i < std::ssize(told); ++i)
+    EXPECT_EQ(told[static_cast<std::size_t>(i)], i);
+  EXPECT_EQ(std::ssize(all.groups), kTrialGroups);
+  EXPECT_EQ(all.whole.at_start(),
+            Passages(chain.chain, scene.field, Ending::far_edge, false).at_start());
+}
+
 TEST(Analysis, DrawnPlacesStandForAllThatArePassed) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
   const AnalysedChain chain = analysed_chain(scene, pool, entry_of(scene.start));
-  const Passages passages(chain.chain, scene.field, Ending::far_edge);
+  const Passages passages(chain.chain, scene.field, Ending::far_edge, true);
   double draws = 0.0, to_target = 0.0;
   passages.each([&](const Passages::Place& place, double share) {
     draws += share;
@@ -410,7 +428,7 @@ TEST(Analysis, MorePartsLoseLess) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
   const AnalysedChain chain = analysed_chain(scene, pool, entry_of(scene.start));
-  const Passages passages(chain.chain, scene.field, Ending::far_edge);
+  const Passages passages(chain.chain, scene.field, Ending::far_edge, true);
   const auto lumped = [&](const LumpingParts& parts) {
     return lumped_chain(chain, gates_of(scene), scene.field, passages.state_visits(), parts)
         .value();

@@ -153,6 +153,28 @@ TEST(Resampled, CountsMirrorImagesOnce) {
   EXPECT_NEAR(variance({2}) / (0.75 * 0.25 / 40.0), 1.0, 0.12);
 }
 
+// Trees of a symmetric gate count every run with its image: twice in each leaf, and in the row of a
+// start in the middle; not of a start beside it, nor where the gate is not symmetric.
+TEST(CountedField, KnowsWhichRowsHoldMirrorImages) {
+  GateParams even;
+  even.beams.stiffness_right = even.beams.stiffness_left;
+  GateParams uneven = even;
+  uneven.beams.stiffness_right *= 2.0;
+  Transitions t(StateSpace(std::array<Tree, kBoundaries>{},
+                           {{Boundary::enter, 0.0, 0.0, 1.0}, {Boundary::enter, 0.1, 0.0, 1.0}}));
+  ASSERT_EQ(t.space.size(), kBoundaries + 2);
+  for (int row = 0; row < t.space.size(); ++row) t.rows[row][0] = t.trials[row] = 40;
+  const auto runs = [&](const CountedField& field) {
+    std::vector<std::int64_t> all;
+    for (int row = 0; row < t.space.size(); ++row) all.push_back(field.runs_at({0, 0, row}));
+    return all;
+  };
+  using Runs = std::vector<std::int64_t>;
+  EXPECT_EQ(runs(counted_field(FieldGates(even), {t})), (Runs{20, 20, 20, 20, 20, 20, 40}));
+  EXPECT_EQ(runs(counted_field(FieldGates(uneven), {t})), (Runs{40, 40, 40, 40, 40, 40, 40}));
+  EXPECT_EQ(counted_field(FieldGates(even), {made_up()}).images.size(), 0U);  // bins count none
+}
+
 TEST(Resampled, IsNamedBySeedAndReplicate) {
   const markov::Counts counts = made_up().counts();
   const auto drawn = [&](std::uint64_t seed, std::uint64_t replicate) {
