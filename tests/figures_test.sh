@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # The pictures of --figure, of every command that has one: made in every format, and read by tests/web/figures_test.mjs.
-#   tests/figures_test.sh GATEWALK SOURCES FOLDER
+#   tests/figures_test.sh GATEWALK SOURCES FOLDER KEPT, where tests/program keeps what studies drew
 set -euo pipefail
-gatewalk=$1 scenes=$2/scenes out=$3
+gatewalk=$1 scenes=$2/scenes out=$3 kept=$4
 rm -rf "$out"
 mkdir -p "$out/work"
 cd "$out/work"
@@ -51,7 +51,7 @@ grep -q 'too small to be marked' ../mixed_small.svg || { echo "mixed_small.svg d
 run rare "$field" --set run.method=moreau --row 8 --accuracy 0.2 --gate-runs 40000 --trials 2000 --figure ../rare.svg
 run trace "$scenes/soft_left.toml" --trials 5 --figure ../trace.svg
 run trace "$field" --field --trials 4 --figure ../trace_field.svg
-# Studies draw into their folders; --figure draws the same again, stability's with all maps.
+# Studies draw into their folders; --figure draws the same again.
 run landscape "$scenes/soft_left.toml" -o landscape --figure ../landscape.svg
 run landscape "$scenes/robot.toml" -o landscape --figure ../landscape_robot.svg
 # Numbers at the very ends of both maps; numbers as long as 0.35 beside them.
@@ -59,13 +59,9 @@ for radius in 0.08 0.05; do
   printf 'body.radius_m = %s\nbody.mass_kg = 0.25\nforces.propulsion_N = 0.8\n' $radius >three_keys.toml
   run landscape three_keys.toml -o landscape --figure ../landscape_radius_$radius.svg
 done
-run chart "$scenes/field.toml" "$scenes/overdamped.toml" --trials 100 --repeats 1 -o chart --figure ../chart.svg
-run chart-chain "$field" --truth-trials 200 --runs-limit 4000 --visited 50 -o chain --figure ../chart_chain.svg
-run chart-chain "$field" --truth-trials 200 --runs-limit 4000 --start 4,5,10 -o chain --figure ../chart_chain_one.svg
 run chart-field "$field" --trials 50 -o fidelity --figure ../chart_field.svg
-run stability --quick -o stability --figure ../stability.svg
-for name in step_stiffness step_damping restitution_threshold lever_speed grazing_speed; do
-  cp stability/$name.svg ../stability_$name.svg
+for study in chart chart_chain stability; do
+  for figure in "$kept/$study"/*.svg; do cp "$figure" "../${study}_$(basename "$figure")"; done
 done
 # The other formats, with what they say of themselves.
 for end in pdf png; do run gate "$scenes/single_gate.toml" --trials 100 --figure ../gate.$end; done

@@ -6,7 +6,7 @@ echo text >m.nc  # a file where a folder was asked for
 expect 2 'bins 100.0: makes fewer than 1' "$gatewalk" chart-chain "$scenes/field.toml" --set beams.length_m=20 -o refused --bins 100 --truth-trials 100
 # chart-chain: three files in a folder that it makes; errors and their parts are distributions'.
 chart() { "$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 150 --runs-limit 1e3 --bins 0.5 --bins 1 \
-            --start 0,0,15 --seed 2 --visited 50 "$@"; }
+            --start 0,0,15 --start 4,5,10 --seed 2 --visited 50 "$@"; }
 expect 0 'direct simulation' chart -o charts/a --json charts.json --threads 2
 cmp -s charts.json charts/a/chain.json || fail "chart-chain: --json and chain.json differ"
 grep -q '</svg>' charts/a/chain.svg || fail "chart-chain: no figure"
@@ -26,7 +26,7 @@ holds '.points[0].build_s < .points[3].build_s' charts/a/chain.json  # the trial
 holds '.points[0].starts[0].exact != .points[3].starts[0].exact' charts/a/chain.json
 holds '.starts[0].summary | .cheapest_near_best.seconds <= .best.seconds' charts/a/chain.json
 [ "$(awk -F, '{ print NF }' charts/a/chain.csv | sort -u)" = 25 ] || fail "chart-chain: uneven lines in chain.csv"
-[ "$(grep -c ',exact,' charts/a/chain.csv)" = 6 ] || fail "chart-chain: not one line per matrix in chain.csv"
+[ "$(grep -c ',exact,' charts/a/chain.csv)" = 12 ] || fail "chart-chain: not one line per matrix and start in chain.csv"
 # Trees as far as 20000 runs go; they keep what they say but for the truth's noise.
 "$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 2000 --runs-limit 2e4 --bins 0.5 --start 0,0,15 \
   --set run.method=moreau -o charts/t --quiet >charts/t.txt 2>/dev/null
@@ -48,4 +48,6 @@ expect 2 'are the same file' chart -o charts/a --json charts/../charts/a/chain.c
 [ -e charts/x ] && fail "chart-chain: wrong use made a folder"
 expect 2 'm.nc' chart -o m.nc
 
+cp charts/a/chain.svg two_starts.svg
+kept two_starts.svg charts/t/chain.svg
 finish

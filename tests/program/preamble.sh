@@ -24,6 +24,8 @@ value() { jq -r "$1" "$2"; }
 holds() { [ "$(jq "$1" "$2")" = true ] || fail "$1 does not hold in $2: $(jq -c 'del(.made_by)' "$2" | head -c 400)"; }
 # paper_matrix FILE: 20 runs from each of the paper's 87 states.
 paper_matrix() { "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o "$1" --quiet >/dev/null || exit 1; }
+# kept FILE...: for tests that look at them.
+kept() { [ -z "$keep" ] || { rm -rf "$keep" && mkdir -p "$keep" && cp -r "$@" "$keep"; } || fail "nothing kept in $keep"; }
 finish() {
   [ $failures = 0 ] || exit 1
   echo "all fine"

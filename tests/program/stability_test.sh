@@ -3,7 +3,7 @@
 . "$(dirname "$0")/preamble.sh"
 
 # stability: five maps of five methods.
-"$gatewalk" stability -o maps --quick --quiet >/dev/null 2>maps.err || fail "stability: $(head -n 3 maps.err)"
+"$gatewalk" stability -o maps --quick --figure stability.svg --quiet >/dev/null 2>maps.err || fail "stability: $(head -n 3 maps.err)"
 holds '.maps | length == 25' maps/stability.json
 holds '[.maps[] | (.status | length) == (.y.values | length)] | all' maps/stability.json
 holds '[.maps[] | select(.method == "stable" and .map == "restitution_threshold") | .status[][]] | unique == ["ok"]' maps/stability.json
@@ -17,4 +17,5 @@ expect 2 'grazing_speed.svg' "$gatewalk" stability -o blocked --quick  # before 
 [ "$(ls blocked)" = grazing_speed.svg ] || fail "stability: wrote $(ls blocked) though a figure has no place"
 expect 2 'no meaning' "$gatewalk" stability -o maps --set forces.random_N=1
 
+kept stability.svg maps/*.svg
 finish

@@ -1,21 +1,24 @@
 // A page in Debian's Chromium without any network: what it asks for or complains about is a fault.
 import {createRequire} from 'node:module';
-import {mkdtempSync, rmSync} from 'node:fs';
-import {tmpdir} from 'node:os';
-import {join, resolve} from 'node:path';
+import {resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
 const {chromium} = createRequire(import.meta.url)('playwright-core');
 
-/// Opens the file `path`; `use(page, faults)` gets the page and a list that faults are added to.
+let browser;  // one for all pages of a process
+const launched = () => browser ??= chromium.launch({
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  args: ['--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic',
+    '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+});
+
+/// Ends the browser, without which the process does not end.
+export const close = async () => (await browser)?.close();
+
+/// Opens the file `path` as one who was never there before; `use(page, faults)` gets the page and a list that
+/// faults are added to.
 export async function browse(path, options, use) {
-  const folder = mkdtempSync(join(tmpdir(), 'gatewalk-web-'));
-  const context = await chromium.launchPersistentContext(folder, {
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-    args: ['--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-      '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-    ...options,
-  });
+  const context = await (await launched()).newContext(options);
   const faults = [];
   try {
     await context.route(url => !['file:', 'data:', 'blob:'].includes(url.protocol), route => {
@@ -23,7 +26,7 @@ export async function browse(path, options, use) {
       return route.abort();
     });
     await context.setOffline(true);
-    const page = context.pages()[0] ?? await context.newPage();
+    const page = await context.newPage();
     page.on('pageerror', error => faults.push(`exception: ${error.stack ?? error}`));
     page.on('console', message => {
       // Chromium's remarks on speed (drawing in software, reading canvases) are no faults.
@@ -39,6 +42,5 @@ export async function browse(path, options, use) {
     throw faults.length ? new Error(`${error.message}\nFaults so far:\n${faults.join('\n')}`) : error;
   } finally {
     await context.close();
-    rmSync(folder, {recursive: true, force: true});
   }
 }

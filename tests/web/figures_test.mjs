@@ -7,7 +7,7 @@ import {existsSync, readdirSync, statSync, readFileSync, writeFileSync, mkdtempS
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {constants, inflateSync} from 'node:zlib';
-import {browse} from './browser.mjs';
+import {browse, close} from './browser.mjs';
 
 const drawn = process.argv.slice(2).filter(p => statSync(p).isDirectory())
   .flatMap(p => readdirSync(p).filter(f => f.endsWith('.svg')).map(f => join(p, f)));
@@ -146,6 +146,7 @@ try {
     }
   });
 } finally {
+  await close();
   rmSync(scratch, {recursive: true, force: true});
 }
 

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {mkdirSync} from 'node:fs';
 import {join} from 'node:path';
-import {browse} from './browser.mjs';
+import {browse, close} from './browser.mjs';
 
 const [report, folder] = process.argv.slice(2);
 if (!report) throw new Error('node report_test.mjs REPORT.html [FOLDER]');
@@ -109,4 +109,5 @@ await browse(report, {...desktop, javaScriptEnabled: false}, async page => {
   assert.match(await page.locator('noscript').first().innerText(), /JavaScript/);
 });
 
+await close();
 console.log('The report is whole.');
