@@ -241,11 +241,12 @@ double share(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
 
-/// Of all types. Leaves of trees may share their runs: then the runs are those of the record.
+/// Of all types. Leaves of trees share runs and hold mirror images: then the runs are those of the
+/// record.
 dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix) {
   dynamics::Transitions::Totals total;
   for (const dynamics::Transitions& t : matrix.matrices) total += t.totals();
-  if (matrix.matrices.size() > 1 && matrix.states.contains("gate_runs"))
+  if (matrix.matrices.front().space.has_trees() && matrix.states.contains("gate_runs"))
     total.runs = matrix.states.at("gate_runs").get<std::int64_t>();
   return total;
 }

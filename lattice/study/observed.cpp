@@ -167,14 +167,25 @@ std::optional<std::size_t> ending_of(const CountTable& table, const CountTable::
                              all + "or went back");
 }
 
-void add_endings(Observed& observed, const CountTable& table) {
+/// Nobody is cut off where a body may go through any number of gates.
+void require_limit(const CountTable& table, const CountTable::Row& row, std::size_t ending,
+                   const FieldParams& field) {
+  if (static_cast<markov::Ending>(ending) != markov::Ending::cut_off || field.max_gates > 0) return;
+  table.refuse(row.line,
+               "a body cannot have been cut off: field.max_gates = 0 lets it go through any number "
+               "of gates; give field.max_gates what the experiment allowed");
+}
+
+void add_endings(Observed& observed, const CountTable& table, const FieldParams& field) {
   bool back_listed = false;
   for (const CountTable::Row& row : table.rows) {
     const auto e = ending_of(table, row);
     bool& listed = e ? observed.listed[*e] : back_listed;
     if (listed) table.refuse(row.line, "ending " + table.at(row, "ending") + " was given already");
     listed = true;
-    (e ? observed.seen.endings[*e] : observed.went_back) = count_of(table, row);
+    const std::int64_t count = count_of(table, row);
+    if (e && count > 0) require_limit(table, row, *e, field);
+    (e ? observed.seen.endings[*e] : observed.went_back) = count;
   }
   require_trials(table, SeenEndings{{}, observed.seen.endings}.trials(), observed.went_back);
 }
@@ -226,6 +237,7 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
         ++observed.went_back;
         continue;
       }
+      require_limit(table, row, *ending, field);
       ++observed.seen.endings[*ending];
     }
     if (!has_gates) continue;
@@ -255,7 +267,7 @@ Observed read_observed(const std::vector<std::string>& paths, const FieldParams&
     if (table.has("trial"))
       add_lines(observed, table, field);
     else if (table.has("ending"))
-      add_endings(observed, table);
+      add_endings(observed, table, field);
     else
       add_gates(observed, table, field);
   }
@@ -296,12 +308,12 @@ ObservedComparison compare_observed(const SeenEndings& seen, int max_gates,
                                     const std::vector<markov::FinalDistribution>& replicates,
                                     std::int64_t runs, std::int64_t null_draws,
                                     std::uint64_t seed) {
+  if (max_gates == 0 && seen.endings[static_cast<std::size_t>(markov::Ending::cut_off)] > 0)
+    throw std::invalid_argument("compare_observed: without a limit of gates nobody is cut off");
   ObservedComparison c;
   c.seen = seen;
   if (seen.has_endings()) {
-    c.endings = EndingShares(seen.endings, seen.trials());
-    const bool cut_off = seen.endings[static_cast<std::size_t>(markov::Ending::cut_off)] > 0;
-    if (!cut_off) c.endings = c.endings.with_limit(max_gates);  // else the experiment had a limit
+    c.endings = EndingShares(seen.endings, seen.trials()).with_limit(max_gates);
   }
   if (seen.has_gates()) {
     c.dynamics_gates = compare(seen.final_gates, dynamics.final_gates, null_draws, seed);

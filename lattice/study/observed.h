@@ -52,7 +52,7 @@ struct ObservedComparison {
 };
 
 /// `max_gates` is the model's; `replicates` and `runs` as judge() takes them. Throws
-/// std::invalid_argument as judge().
+/// std::invalid_argument as judge(), and where somebody was cut off without a limit of gates.
 [[nodiscard]] ObservedComparison compare_observed(
     const SeenEndings& seen, int max_gates, const FieldTally& dynamics,
     const markov::FinalDistribution& chain,

@@ -69,6 +69,9 @@ refused 'bad.csv:2: column count: "1.5" is not permitted' 'ending,count\ncrossed
 refused 'bad.csv:2: column ending: "turned back" is not permitted: must be one of crossed, left side, right side, trapped, cut off, or went back' 'ending,count\nturned back,1\n'
 refused 'bad.csv:3: gate_x = 0, gate_y = 0 was given in line 2 already' 'gate_x,gate_y,count\n0,0,1\n0,0,2\n'
 refused 'bad.csv:3: ending trapped was given already' 'ending,count\ntrapped,1\ntrapped,1\n'
+unlimited() { printf "$2" >bad.csv; expect 2 "$1" timeout 20 "$gatewalk" validate "$scenes/field.toml" --matrix-trials 1e12 --set field.max_gates=0 --observed bad.csv; }
+unlimited 'bad.csv:3: a body cannot have been cut off: field.max_gates = 0' 'ending,count\ncrossed,20\ncut off,1\n'
+unlimited 'bad.csv:2: a body cannot have been cut off: field.max_gates = 0' 'trial,ending\n1,cut off\n'
 refused 'bad.csv: has no trial' 'ending,count\ntrapped,0\n'
 refused 'bad.csv: is empty' ''
 expect 2 'ends.csv has 60\|far.csv: ends.csv has endings too' "$gatewalk" "${beside[@]}" --observed ends.csv --observed far.csv

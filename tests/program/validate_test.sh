@@ -18,6 +18,11 @@ holds '.markov | .walks == 600 and (.verdict | test("chain forgets")) and ([.gat
 holds '[.starts[] | has("force_memory")] | any | not' ends-validate.json
 grep -q '^Is it Markov?' ends-validate.txt || fail "validate: does not say whether it is Markov"
 expect 0 'drawn anew at every crossing' "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 30 --start 0,0,15 --memory --null-draws 99
+# A tree's gate runs are those that were run, not its rows' with their mirror images.
+"$gatewalk" build "$scenes/field.toml" --accuracy 0.1 -o tree.nc --quiet >/dev/null
+"$gatewalk" show tree.nc --json tree.json --quiet
+"$gatewalk" validate "$scenes/field.toml" --matrix tree.nc --trials 30 --start 0,0,15 --null-draws 99 --json runs.json --quiet
+jq -s '.[0].gate_runs == .[1].matrix.gate_runs' tree.json runs.json | grep -q true || fail "validate: other gate runs than show's"
 # Beyond what is sensible: refused by name, with the range, before any work.
 for value in 0 1e15; do expect 2 "null-draws.*at least 1 and at most 100000" "$gatewalk" validate "$scenes/field.toml" --null-draws $value --matrix-trials 1e12; done
 expect 2 'walks 0: must be at least 1' "$gatewalk" validate "$scenes/field.toml" --walks 0 --matrix-trials 1e12
