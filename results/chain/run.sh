@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The chain's error against its cost, beside direct simulation at the same cost.
-#   results/chain/run.sh [GATEWALK]      about 9 minutes on two cores
+#   results/chain/run.sh [GATEWALK]      about 3 minutes on two cores
 # Writes chain.csv, chain.json, chain.svg, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What beams that remember, and beams of neighbouring gates, change in the final gates, and their cost.
-#   results/fidelity/run.sh [GATEWALK]      about 6 minutes on two cores
+#   results/fidelity/run.sh [GATEWALK]      about 4 minutes on two cores
 # Writes fidelity.csv, fidelity.json, fidelity.svg, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
