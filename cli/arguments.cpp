@@ -156,7 +156,7 @@ void warn_of_range(const Options& options, const lattice::MatrixFile& file, cons
   };
   const auto& own = file.transitions.space.points();
   const auto count = std::count_if(bodies.begin(), bodies.end(), [&](const dynamics::BodyState& b) {
-    if (std::find(own.begin(), own.end(), lattice::entry_of(b)) != own.end()) return false;
+    if (std::find(own.begin(), own.end(), dynamics::entry_of(b)) != own.end()) return false;
     return outside("d_m", b.x) || outside("vx_m_per_s", b.vx) || outside("vy_m_per_s", b.vy);
   });
   const auto axis = [&](const char* key) {
@@ -182,8 +182,7 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
   lattice::RunPool pool = lattice::pool_of(m.file, m.scene, path);
   std::vector<dynamics::BodyState> unknown;
   for (const dynamics::BodyState& b : bodies)
-    if (pool.place_of({dynamics::Boundary::enter, b.x, b.vx, b.vy}) == pool.starts.size())
-      unknown.push_back(b);
+    if (pool.place_of(dynamics::entry_of(b)) == pool.starts.size()) unknown.push_back(b);
   if (unknown.empty()) return;
   lattice::AccuracyOptions how;
   how.accuracy = accuracy_of(m.file, path);
@@ -197,7 +196,7 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
   warn_of(options, prediction, how.accuracy);
   std::vector<dynamics::BodyState> all;
   for (const lattice::StartTrials& s : pool.starts)
-    all.push_back({s.start.d, 0.0, s.start.vx, s.start.vy});
+    all.push_back(dynamics::entry_state(m.scene.gate, s.start));
   dynamics::Health health = m.file.transitions.health;
   health += prediction.health;
   lattice::put_matrices(m.file, m.scene, lattice::matrices_of(m.scene, pool, all, how.per_leaf));
@@ -294,22 +293,26 @@ lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatr
                                 const dynamics::BodyState& body, const std::string& name) {
   const dynamics::StateSpace& space = m.file.transitions.space;
   const lattice::ChainStart start = checked_start(options, space, m.scene.field, body, name);
-  const dynamics::Cell cell = space.cell(start.start.input);
+  const dynamics::StateRange range = space.range(start.start.input);
   const bool own_state =
       start.start.input >= space.size() - static_cast<int>(space.points().size());
   if (space.has_trees() && !own_state) {
     const auto type = static_cast<std::size_t>(
         lattice::gates_of(m.scene).type_of(m.scene.field.start_column(), 0));
     const auto runs = lattice::matrices_of(m.file, m.scene)[type].trials;
-    options.warn(name + " is no state of its own: its row is that of its leaf, " + text_of(cell) +
+    options.warn(name + " is no state of its own: its row is that of its leaf, " + text_of(range) +
                  ", " + std::to_string(runs[static_cast<std::size_t>(start.start.input)]) +
                  " runs in all, and as noisy as so few are");
   }
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
     return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
   };
-  if (on_edge(cell.d, body.x) || on_edge(cell.vx, body.vx) || on_edge(cell.vy, body.vy))
-    options.remark(name + " lies on an edge of its bin, " + text_of(cell) +
+  const dynamics::Entry entry = dynamics::entry_of(body);
+  bool on_an_edge = false;
+  for (std::size_t axis = 0; axis < dynamics::kMostCoordinates; ++axis)
+    on_an_edge = on_an_edge || on_edge(range.at[axis], entry.at[axis]);
+  if (on_an_edge)
+    options.remark(name + " lies on an edge of its bin, " + text_of(range) +
                    "; its prediction is that of the whole bin");
   return start;
 }

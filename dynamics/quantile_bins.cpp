@@ -7,9 +7,6 @@
 namespace gatewalk::dynamics {
 namespace {
 
-using Axis = double Crossing::*;
-constexpr std::array<Axis, 3> kAxes{&Crossing::d, &Crossing::vx, &Crossing::vy};
-
 /// Bins per axis whose product is nearest to `states`.
 int bins_per_axis(double states) {
   int n = 1;
@@ -58,58 +55,58 @@ std::vector<double> quantile_edges(std::vector<double> values, int bins,
 
 bool symmetric(const GateParams& p) { return p.beams.stiffness_left == p.beams.stiffness_right; }
 
-Crossing mirrored(const Crossing& c) {
-  Crossing m{c.boundary, c.d, -c.vx, c.vy};
-  switch (c.boundary) {
+Entry mirrored(const Entry& entry) {
+  Entry m = entry;
+  m.at[kEntryVx] = -entry.at[kEntryVx];
+  switch (entry.face) {
     case Boundary::enter:
-      m.d = -c.d;
+      m.at[kEntryD] = -entry.at[kEntryD];
       break;
     case Boundary::right_deflect:
-      m.boundary = Boundary::left_deflect;
+      m.face = Boundary::left_deflect;
       break;
     case Boundary::left_deflect:
-      m.boundary = Boundary::right_deflect;
+      m.face = Boundary::right_deflect;
       break;
     case Boundary::right_traverse:
-      m.boundary = Boundary::left_traverse;
+      m.face = Boundary::left_traverse;
       break;
     case Boundary::left_traverse:
-      m.boundary = Boundary::right_traverse;
+      m.face = Boundary::right_traverse;
       break;
   }
   return m;
 }
 
-void add_mirror_images(std::vector<Crossing>& entries) {
+void add_mirror_images(std::vector<Entry>& entries) {
   const std::size_t n = entries.size();
   entries.reserve(2 * n);
   for (std::size_t i = 0; i < n; ++i) entries.push_back(mirrored(entries[i]));
 }
 
-StateSpace quantile_space(const GateParams& p, const std::vector<Crossing>& seen, int states,
-                          const std::vector<Crossing>& points) {
+StateSpace quantile_space(const GateParams& p, const std::vector<Entry>& seen, int states,
+                          const std::vector<Entry>& points) {
   if (states < 1 || states > kMostStates)
     throw std::invalid_argument("bins: " + std::to_string(states) +
                                 " states are not permitted: must lie in [1, " +
                                 std::to_string(kMostStates) + "]");
   const auto entries = static_cast<std::int64_t>(seen.size());
   const std::int64_t wanted = std::min<std::int64_t>(states, entries / kEntriesPerState);
-  std::array<std::vector<Crossing>, kBoundaries> at;
-  for (const Crossing& c : seen) at[static_cast<std::size_t>(c.boundary)].push_back(c);
+  std::array<std::vector<Entry>, kBoundaries> at;
+  for (const Entry& c : seen) at[static_cast<std::size_t>(c.face)].push_back(c);
   std::array<Bins, kBoundaries> bins = StateSpace::paper(p).bins();
   for (int b = 0; b < kBoundaries; ++b) {
     const auto here = static_cast<double>(at[b].size());
     const int n = bins_per_axis(static_cast<double>(wanted) * here /
                                 static_cast<double>(std::max<std::int64_t>(1, entries)));
-    const std::array<std::vector<double>*, 3> edges{&bins[b].d, &bins[b].vx, &bins[b].vy};
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-      std::vector<double>& e = *edges[axis];
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      std::vector<double>& e = bins[b].edges[axis];
       if (at[b].empty()) {
         e = {e.front(), e.back()};
         continue;
       }
       std::vector<double> values;
-      for (const Crossing& c : at[b]) values.push_back(c.*kAxes[axis]);
+      for (const Entry& c : at[b]) values.push_back(c.at[axis]);
       e = quantile_edges(std::move(values), n, e);
     }
   }
@@ -123,26 +120,27 @@ bool Resolution::poor() const {
          *std::max_element(unresolved.begin(), unresolved.end()) > kMostUnresolved;
 }
 
-Resolution resolution_of(const StateSpace& space, const std::vector<Crossing>& seen) {
+Resolution resolution_of(const StateSpace& space, const std::vector<Entry>& seen) {
   struct Group {  // sums over its entries
     std::int64_t n = 0;
-    std::array<double, 3> mean{}, squares{};  // squares: of the deviations from the mean (Welford)
-    void add(const Crossing& c) {
+    std::array<double, kMostCoordinates> mean{},
+        squares{};  // squares: of the deviations from the mean (Welford)
+    void add(const Entry& c) {
       ++n;
-      for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-        const double x = c.*kAxes[axis], before = x - mean[axis];
+      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+        const double x = c.at[axis], before = x - mean[axis];
         mean[axis] += before / static_cast<double>(n);
         squares[axis] += before * (x - mean[axis]);
       }
     }
   };
   Resolution r;
-  std::vector<Group> of_state(space.size()), of_boundary(kBoundaries);
-  for (const Crossing& c : seen) {
+  std::vector<Group> of_state(space.size()), of_face(kBoundaries);
+  for (const Entry& c : seen) {
     const StateSpace::Index index = space.index_of(c);
     r.clamped += index.clamped;
     of_state[index.state].add(c);
-    of_boundary[static_cast<std::size_t>(c.boundary)].add(c);
+    of_face[static_cast<std::size_t>(c.face)].add(c);
   }
   r.entries = static_cast<std::int64_t>(seen.size());
   std::sort(of_state.begin(), of_state.end(),
@@ -154,10 +152,10 @@ Resolution resolution_of(const StateSpace& space, const std::vector<Crossing>& s
     held += g.n;
     ++r.states_entered;
   }
-  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
     double within = 0.0, all = 0.0;
     for (const Group& g : of_state) within += g.squares[axis];
-    for (const Group& g : of_boundary) all += g.squares[axis];
+    for (const Group& g : of_face) all += g.squares[axis];
     r.unresolved[axis] = all > 0.0 ? within / all : 0.0;
   }
   return r;

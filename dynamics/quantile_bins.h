@@ -16,10 +16,10 @@ namespace gatewalk::dynamics {
 [[nodiscard]] bool symmetric(const GateParams& p);
 
 /// The mirror image about the gate's middle line: RD becomes LD, and so on.
-[[nodiscard]] Crossing mirrored(const Crossing& c);
+[[nodiscard]] Entry mirrored(const Entry& c);
 
 /// Appends the mirror image of every entry.
-void add_mirror_images(std::vector<Crossing>& entries);
+void add_mirror_images(std::vector<Entry>& entries);
 
 /// At least so many entries are seen for each state that quantile_space makes.
 inline constexpr std::int64_t kEntriesPerState = 10;
@@ -29,8 +29,8 @@ inline constexpr std::int64_t kEntriesPerState = 10;
 /// edges at the quantiles of these entries (fewer where entries coincide). Mirror-symmetric if
 /// `seen` is. A boundary where nothing was seen gets one bin, StateSpace::paper's range. Throws
 /// std::invalid_argument unless 1 <= states <= kMostStates.
-[[nodiscard]] StateSpace quantile_space(const GateParams& p, const std::vector<Crossing>& seen,
-                                        int states, const std::vector<Crossing>& points);
+[[nodiscard]] StateSpace quantile_space(const GateParams& p, const std::vector<Entry>& seen,
+                                        int states, const std::vector<Entry>& points);
 
 /// How well a state space tells entries apart.
 struct Resolution {
@@ -38,14 +38,15 @@ struct Resolution {
   std::int64_t clamped = 0;  // outside every bin
   int states_entered = 0;    // states that any entry fell into
   int states_of_90 = 0;      // the fewest states that hold 90 % of the entries
-  /// Variance of d, vx, vy within the states over that within the boundaries, both summed over the
+  /// Variance of each coordinate within the states over that within the faces, both summed over the
   /// entries: 0 where states tell all apart, 1 where they tell nothing, 0 without any variance.
-  std::array<double, 3> unresolved{};
+  std::array<double, kMostCoordinates> unresolved{};
 
   /// States tell too little of where and how fast bodies enter for a chain to be trusted: most
-  /// entries lie outside the bins, or less than a tenth of the variance of d, vx or vy is resolved.
+  /// entries lie outside the bins, or less than a tenth of the variance of a coordinate is
+  /// resolved.
   [[nodiscard]] bool poor() const;
 };
-[[nodiscard]] Resolution resolution_of(const StateSpace& space, const std::vector<Crossing>& seen);
+[[nodiscard]] Resolution resolution_of(const StateSpace& space, const std::vector<Entry>& seen);
 
 }  // namespace gatewalk::dynamics

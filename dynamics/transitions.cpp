@@ -60,9 +60,9 @@ Transitions& Transitions::operator+=(const Transitions& o) {
   return *this;
 }
 
-Entries entries_of(const StateSpace& space, const std::vector<Crossing>& seen) {
+Entries entries_of(const StateSpace& space, const std::vector<Entry>& seen) {
   Entries entries(space.size());
-  for (const Crossing& c : seen) entries[space.index_of(c).state].push_back(c);
+  for (const Entry& c : seen) entries[space.index_of(c).state].push_back(c);
   return entries;
 }
 

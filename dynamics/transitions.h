@@ -42,9 +42,9 @@ struct Transitions {
   Transitions& operator+=(const Transitions& other);
 };
 
-/// Where the trials of a row may start: crossings that fell into it.
-using Entries = std::vector<std::vector<Crossing>>;  // (n)
-[[nodiscard]] Entries entries_of(const StateSpace& space, const std::vector<Crossing>& seen);
+/// Where the trials of a row may start: entries that fell into it.
+using Entries = std::vector<std::vector<Entry>>;  // (n)
+[[nodiscard]] Entries entries_of(const StateSpace& space, const std::vector<Entry>& seen);
 
 /// Runs in a row of the space for one trial of it. Every walk that starts in a point passes its
 /// row, once, and the others a few times in all: so that its sampling weighs no more than theirs, a

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -11,7 +12,7 @@ namespace {
 
 /// An entry with its place among all.
 struct Seen {
-  std::array<double, 3> at;  // by axis of kCrossingAxes
+  std::array<double, kMostCoordinates> at;
   int place;
 };
 using Entries = std::span<Seen>;
@@ -30,7 +31,7 @@ class Grower {
 
   [[nodiscard]] Tree grow(Entries entries) {
     tree_ = {.nodes = {}, .seen = {}};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
       const auto [low, high] =
           std::minmax_element(entries.begin(), entries.end(), less_along(axis));
       tree_.seen[axis][0] = low->at[axis];
@@ -42,29 +43,30 @@ class Grower {
   /// A tree of one state, for which nothing was seen.
   [[nodiscard]] Tree unseen(const Bins& bins) {
     ++states_;
-    return {.nodes = {Tree::Node{}},
-            .seen = {{{bins.d.front(), bins.d.back()},
-                      {bins.vx.front(), bins.vx.back()},
-                      {bins.vy.front(), bins.vy.back()}}}};
+    Tree tree;
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+      tree.seen[axis] = {bins.edges[axis].front(), bins.edges[axis].back()};
+    return tree;
   }
 
  private:
   /// Axes by how far the entries spread along them, in the scene's own units, the most first.
-  [[nodiscard]] std::array<std::size_t, 3> axes_by_spread(Entries entries) const {
+  [[nodiscard]] std::array<std::size_t, kMostCoordinates> axes_by_spread(Entries entries) const {
     const auto n = static_cast<double>(entries.size());
-    const std::array<double, 3> origin = entries.front().at;
-    std::array<double, 3> sum{}, squares{};
+    const std::array<double, kMostCoordinates> origin = entries.front().at;
+    std::array<double, kMostCoordinates> sum{}, squares{};
     for (const Seen& e : entries)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
         const double x = e.at[axis] - origin[axis];
         sum[axis] += x;
         squares[axis] += x * x;
       }
-    std::array<double, 3> variance{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    std::array<double, kMostCoordinates> variance{};
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
       variance[axis] =
           (squares[axis] - sum[axis] * sum[axis] / n) * per_unit_[axis] * per_unit_[axis];
-    std::array<std::size_t, 3> axes{0, 1, 2};
+    std::array<std::size_t, kMostCoordinates> axes;
+    std::iota(axes.begin(), axes.end(), std::size_t{0});
     std::stable_sort(axes.begin(), axes.end(),
                      [&](std::size_t a, std::size_t b) { return variance[a] > variance[b]; });
     return axes;
@@ -113,7 +115,7 @@ class Grower {
     tree_.nodes.push_back({});
   }
 
-  std::array<double, 3> per_unit_;
+  std::array<double, kMostCoordinates> per_unit_;
   std::size_t per_leaf_;
   std::vector<int>& state_of_;
   int states_ = 0;  // leaves so far, of all trees
@@ -122,16 +124,15 @@ class Grower {
 
 }  // namespace
 
-StateSpace tree_space(const GateParams& p, const std::vector<Crossing>& seen, int per_leaf,
-                      std::vector<Crossing> points, std::vector<int>* state_of) {
+StateSpace tree_space(const GateParams& p, const std::vector<Entry>& seen, int per_leaf,
+                      std::vector<Entry> points, std::vector<int>* state_of) {
   if (per_leaf < 1)
     throw std::invalid_argument("tree: " + std::to_string(per_leaf) +
                                 " entries per leaf are not permitted: must be 1 or more");
   const StateSpace unseen = StateSpace::paper(p);
   std::array<std::vector<Seen>, kBoundaries> at;
   for (std::size_t i = 0; i < seen.size(); ++i)
-    at[static_cast<std::size_t>(seen[i].boundary)].push_back(
-        {{seen[i].d, seen[i].vx, seen[i].vy}, static_cast<int>(i)});
+    at[static_cast<std::size_t>(seen[i].face)].push_back({seen[i].at, static_cast<int>(i)});
   std::vector<int> states(seen.size());
   Grower grower(scale_of(p), static_cast<std::size_t>(per_leaf), states);
   std::array<Tree, kBoundaries> trees;

@@ -21,9 +21,8 @@ inline constexpr int kEntriesPerLeaf = 7;
 /// nothing was seen is one state, StateSpace::paper's range. Throws std::invalid_argument unless
 /// per_leaf >= 1, and for more than kMostStates leaves. `state_of`, if given: the state of each
 /// entry, as index_of says it.
-[[nodiscard]] StateSpace tree_space(const GateParams& p, const std::vector<Crossing>& seen,
-                                    int per_leaf = kEntriesPerLeaf,
-                                    std::vector<Crossing> points = {},
+[[nodiscard]] StateSpace tree_space(const GateParams& p, const std::vector<Entry>& seen,
+                                    int per_leaf = kEntriesPerLeaf, std::vector<Entry> points = {},
                                     std::vector<int>* state_of = nullptr);
 
 }  // namespace gatewalk::dynamics

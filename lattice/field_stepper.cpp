@@ -109,7 +109,7 @@ GateRun FieldStepper::run_gate(RandomForce& force) {
 }
 
 void FieldStepper::go_on(Ending ending) {
-  const Move move = move_into(crossing_of(p_, ending, body_).boundary);
+  const Move move = move_into(crossing_of(p_, ending, body_).face);
   const std::size_t next = find(column() + move.di_x, row() + move.di_y);
   body_ = shifted_into_next(p_, ending, body_);
   last_ = current_;

@@ -15,7 +15,7 @@ using namespace dynamics;
 std::vector<markov::Exit> exits_of(const StateSpace& space) {
   std::vector<markov::Exit> exits(space.size() + 1);
   for (int state = 0; state < space.size(); ++state) {
-    const Move move = move_into(space.boundary(state));
+    const Move move = move_into(space.face(state));
     exits[state] = {state, move.di_x, move.di_y};
   }
   return exits;  // the last one is a default Exit: trapped
@@ -48,7 +48,7 @@ CountedField counted_field(const FieldGates& gates,
     for (int row = 0; row < space.size(); ++row) {
       const int point = row - (space.size() - static_cast<int>(space.points().size()));
       if (point >= 0) {
-        const dynamics::Crossing& entry = space.points()[static_cast<std::size_t>(point)];
+        const dynamics::Entry& entry = space.points()[static_cast<std::size_t>(point)];
         if (dynamics::mirrored(entry) != entry) continue;
       }
       images[static_cast<std::size_t>(row)] = 2;
@@ -66,7 +66,7 @@ ChainStart chain_start(const StateSpace& space, const FieldParams& field, const 
     throw std::invalid_argument(
         "start.y_m = " + std::to_string(body.y) +
         " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
-  const auto index = space.index_of({Boundary::enter, body.x, body.vx, body.vy});
+  const auto index = space.index_of(entry_of(body));
   return {{field.start_column(), 0, index.state}, index.clamped, index.beyond};
 }
 
@@ -76,12 +76,11 @@ struct Axis {
   const char* name;
   const char* unit;
   const char* meaning;
-  std::vector<double> Bins::*edges;
 };
-constexpr std::array<Axis, 3> kAxes{
-    Axis{"d", "m", "bin edges of the distance along the boundary", &Bins::d},
-    Axis{"vx", "m s-1", "bin edges of the lateral velocity", &Bins::vx},
-    Axis{"vy", "m s-1", "bin edges of the forward velocity", &Bins::vy}};
+constexpr std::array<Axis, kMostCoordinates> kAxes{
+    Axis{"d", "m", "bin edges of the distance along the boundary"},
+    Axis{"vx", "m s-1", "bin edges of the lateral velocity"},
+    Axis{"vy", "m s-1", "bin edges of the forward velocity"}};
 
 std::string array_name(int boundary, const Axis& axis) {
   return std::string(kBoundaryNames[boundary]) + "_" + axis.name + "_edges";
@@ -105,7 +104,6 @@ std::string array_name(int boundary, const TreeArray& array) {
 // Only a space that is open, or has points, has these.
 constexpr const char* kOpenBins = "outermost_bins_are_open";
 constexpr const char* kPointBoundary = "point_boundary";
-constexpr std::array<double Crossing::*, 3> kPointAxes{&Crossing::d, &Crossing::vx, &Crossing::vy};
 
 std::string point_array(const Axis& axis) { return std::string("point_") + axis.name; }
 
@@ -115,22 +113,22 @@ const std::vector<double>* find_array(const markov::CountsFile& in, const std::s
   return nullptr;
 }
 
-std::vector<Crossing> points_in(const markov::CountsFile& in, const std::string& path) {
+std::vector<Entry> points_in(const markov::CountsFile& in, const std::string& path) {
   const std::vector<double>* const boundary = find_array(in, kPointBoundary);
   if (!boundary) return {};
-  std::vector<Crossing> points(boundary->size());
+  std::vector<Entry> points(boundary->size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double b = (*boundary)[i];
     if (!(b >= 0.0 && b < kBoundaries && b == std::floor(b)))
       throw markov::BadFile(path + ": " + kPointBoundary + " names no boundary");
-    points[i].boundary = static_cast<Boundary>(b);
+    points[i].face = static_cast<int>(b);
   }
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
     const std::vector<double>* const values = find_array(in, point_array(kAxes[axis]));
     if (!values || values->size() != points.size())
       throw markov::BadFile(path + ": " + point_array(kAxes[axis]) + " does not belong to " +
                             kPointBoundary);
-    for (std::size_t i = 0; i < points.size(); ++i) points[i].*kPointAxes[axis] = (*values)[i];
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].at[axis] = (*values)[i];
   }
   return points;
 }
@@ -176,10 +174,10 @@ Tree tree_in(const markov::CountsFile& in, int boundary, const std::string& path
 StateSpace bins_in(const markov::CountsFile& in, const std::string& path) {
   std::array<Bins, kBoundaries> bins;
   for (int b = 0; b < kBoundaries; ++b)
-    for (const Axis& axis : kAxes) {
-      const std::string name = array_name(b, axis);
-      if (const auto* values = find_array(in, name)) bins[b].*axis.edges = *values;
-      if ((bins[b].*axis.edges).empty()) throw markov::BadFile(path + ": no bin edges " + name);
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+      const std::string name = array_name(b, kAxes[axis]);
+      if (const auto* values = find_array(in, name)) bins[b].edges[axis] = *values;
+      if (bins[b].edges[axis].empty()) throw markov::BadFile(path + ": no bin edges " + name);
     }
   return StateSpace(std::move(bins), find_array(in, kOpenBins) != nullptr, points_in(in, path));
 }
@@ -287,24 +285,24 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
   out.arrays.insert(out.arrays.end(), file.arrays.begin(), file.arrays.end());
   for (int b = 0; b < kBoundaries && t.space.has_trees(); ++b) add_tree(out, b, t.space.trees()[b]);
   for (int b = 0; b < kBoundaries && !t.space.has_trees(); ++b)
-    for (const Axis& axis : kAxes)
-      out.arrays.push_back({array_name(b, axis), axis.unit,
-                            std::string(kBoundaryNames[b]) + ": " + axis.meaning +
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis)
+      out.arrays.push_back({array_name(b, kAxes[axis]), kAxes[axis].unit,
+                            std::string(kBoundaryNames[b]) + ": " + kAxes[axis].meaning +
                                 "; states are numbered EN, RD, LD, RT, LT, within each by d, then "
                                 "vx, then vy",
-                            t.space.bins()[b].*axis.edges});
+                            t.space.bins()[b].edges[axis]});
   if (t.space.open() && !t.space.has_trees())
     out.arrays.push_back(
         {kOpenBins, "1", "the outermost bins take what lies beyond their edges", {1.0}});
   if (!t.space.points().empty()) {
     std::vector<double> boundary;
-    for (const Crossing& c : t.space.points()) boundary.push_back(static_cast<double>(c.boundary));
+    for (const Entry& c : t.space.points()) boundary.push_back(c.face);
     const std::string meaning = "entries that are states of their own, numbered after all bins";
     out.arrays.push_back(
         {kPointBoundary, "1", meaning + ": 0 EN, 1 RD, 2 LD, 3 RT, 4 LT", boundary});
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       std::vector<double> values;
-      for (const Crossing& c : t.space.points()) values.push_back(c.*kPointAxes[axis]);
+      for (const Entry& c : t.space.points()) values.push_back(c.at[axis]);
       out.arrays.push_back(
           {point_array(kAxes[axis]), kAxes[axis].unit, meaning, std::move(values)});
     }

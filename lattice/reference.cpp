@@ -37,8 +37,8 @@ struct RunningTrial {
 
 /// Takes the result of a trial's run through one gate. The crossing into the next gate; none when
 /// the trial ends here.
-std::optional<Crossing> follow(RunningTrial& t, const FieldGates& gates, const FieldParams& field,
-                               const StateSpace& space, const GateRun& run, bool keep_passages) {
+std::optional<Entry> follow(RunningTrial& t, const FieldGates& gates, const FieldParams& field,
+                            const StateSpace& space, const GateRun& run, bool keep_passages) {
   const auto type = static_cast<std::uint8_t>(gates.type_of(t.column, t.row));
   const GateParams& p = gates.types()[type];
   t.health.add(p, run);
@@ -50,9 +50,9 @@ std::optional<Crossing> follow(RunningTrial& t, const FieldGates& gates, const F
     if (keep_passages) t.passages.push_back({run.ending, type, {}, costs});
     return {};
   }
-  const Crossing crossing = crossing_of(p, run.ending, run.exit);
+  const Entry crossing = crossing_of(p, run.ending, run.exit);
   if (keep_passages) t.passages.push_back({run.ending, type, crossing, costs});
-  const Move move = move_into(crossing.boundary);
+  const Move move = move_into(crossing.face);
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
     t.ending =
         markov::edge_before({field.columns, field.rows}, t.column + move.di_x, t.row + move.di_y);
@@ -62,8 +62,8 @@ std::optional<Crossing> follow(RunningTrial& t, const FieldGates& gates, const F
     t.ending = markov::Ending::cut_off;
     return {};
   }
-  ++t.entries[static_cast<int>(crossing.boundary)];
-  t.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
+  ++t.entries[crossing.face];
+  t.clamped[crossing.face] += space.index_of(crossing).clamped;
   t.column += move.di_x;
   t.row += move.di_y;
   return crossing;
@@ -106,8 +106,8 @@ std::uint64_t stream_row(const GateParams& p, const BodyState& b) {
   return r123::Philox4x64()(state, {{0, 0}})[0] >> 8;  // the top byte of a key is its purpose
 }
 
-std::vector<Crossing> FieldTrials::entries() const {
-  std::vector<Crossing> all;
+std::vector<Entry> FieldTrials::entries() const {
+  std::vector<Entry> all;
   for (std::size_t i = 0; i < passed.size(); ++i) {
     const auto of = of_trial(i);
     for (const GatePassage& p : of.first(of.size() - 1)) all.push_back(p.entry);

@@ -47,7 +47,7 @@ struct FieldTally {
 struct GatePassage {
   dynamics::Ending ending = dynamics::Ending::trapped;
   std::uint8_t type = 0;  // of FieldGates::types()
-  dynamics::Crossing entry{};
+  dynamics::Entry entry{};
   dynamics::Costs costs{};
 };
 
@@ -66,7 +66,7 @@ struct FieldTrials {
     return {passages.data() + begin, static_cast<std::size_t>(passed[at] - begin)};
   }
   /// Those into gates that trials then ran through, in their order.
-  [[nodiscard]] std::vector<dynamics::Crossing> entries() const;
+  [[nodiscard]] std::vector<dynamics::Entry> entries() const;
 };
 
 /// What becomes of the draw in force when a body enters the next gate: it is held for the rest of

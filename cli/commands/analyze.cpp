@@ -65,7 +65,7 @@ Subject from_runs(const Options& options, lattice::Scene scene, lattice::RunPool
                   const std::optional<lattice::Settled>& settled) {
   auto prediction = lattice::predict_pooled(scene, pool, {scene.start}, how, options.work());
   warn_of(options, prediction, how.accuracy);
-  auto chain = lattice::analysed_chain(scene, pool, lattice::entry_of(scene.start), how.per_leaf);
+  auto chain = lattice::analysed_chain(scene, pool, dynamics::entry_of(scene.start), how.per_leaf);
   return {.scene = std::move(scene),
           .chain = std::move(chain),
           .pool = std::move(pool),

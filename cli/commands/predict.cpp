@@ -101,8 +101,7 @@ int predict_accurately(const Options& options, const lattice::Scene& scene,
   say_left_out(json, scene.field.columns, scene.field.rows);
   json["made_by"] = to_json(options.provenance(scene));
   write_netcdf(options, scene, prediction.starts, [](const lattice::StartAnswer& a) {
-    return FieldArrays{FieldPicture("", a.final, a.endings, a.exits),
-                       {a.start.d, a.start.vx, a.start.vy, {}, {}},
+    return FieldArrays{FieldPicture("", a.final, a.endings, a.exits), lattice::start_at(a.start),
                        a.gates_95};
   });
   options.give_out(json, table_of(prediction, scene, !given.empty()) + method_line(settled));

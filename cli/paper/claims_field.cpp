@@ -30,11 +30,13 @@ struct Reading {
 
 /// A start on an edge of its bin is a start at random in one of two bins.
 bool on_an_edge(const ValidatedStart& start) {
-  const auto bins = dynamics::StateSpace::paper({}).bins()[0];
+  using namespace dynamics;
+  const Bins bins = StateSpace::paper({}).bins()[Boundary::enter];
   const auto among = [](double x, const std::vector<double>& edges) {
     return std::find(edges.begin(), edges.end(), x) != edges.end();
   };
-  return among(start.d, bins.d) || among(start.vx, bins.vx) || among(start.vy, bins.vy);
+  return among(start.d, bins.edges[kEntryD]) || among(start.vx, bins.edges[kEntryVx]) ||
+         among(start.vy, bins.edges[kEntryVy]);
 }
 
 }  // namespace

@@ -301,9 +301,9 @@ Json to_json(const AnalysedField& f) {
   json["target_probability"] = a.target_chance;
   json["starts"] = Json::array();
   for (const lattice::StartChance& s : a.starts)
-    json["starts"].push_back({{"d_m", s.cell.d},
-                              {"vx_m_per_s", s.cell.vx},
-                              {"vy_m_per_s", s.cell.vy},
+    json["starts"].push_back({{"d_m", s.range.at[dynamics::kEntryD]},
+                              {"vx_m_per_s", s.range.at[dynamics::kEntryVx]},
+                              {"vy_m_per_s", s.range.at[dynamics::kEntryVy]},
                               {"probability", or_null(s.chance.mean)},
                               {"interval_95", interval(s.chance.interval)}});
   json["paths"] = Json::array();

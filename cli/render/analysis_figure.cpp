@@ -126,8 +126,10 @@ void add_starts(Script& out, const AnalysedField& f) {
     return std::array<double, 2>{std::max(range[0], frame[0]), std::min(range[1], frame[1])};
   };
   for (const lattice::StartChance& s : f.analysis.starts) {
-    if (vx < s.cell.vx[0] || vx >= s.cell.vx[1] || std::isnan(s.chance.mean)) continue;
-    const auto d = within(s.cell.d, seen[0]), vy = within(s.cell.vy, seen[2]);
+    const auto& of_vx = s.range.at[dynamics::kEntryVx];
+    if (vx < of_vx[0] || vx >= of_vx[1] || std::isnan(s.chance.mean)) continue;
+    const auto d = within(s.range.at[dynamics::kEntryD], seen[dynamics::kEntryD]),
+               vy = within(s.range.at[dynamics::kEntryVy], seen[dynamics::kEntryVy]);
     if (!(d[1] > d[0] && vy[1] > vy[0])) continue;
     rows += digits(0.5 * (d[0] + d[1])) + " " + digits(0.5 * (vy[0] + vy[1])) + " " +
             digits(0.5 * (d[1] - d[0])) + " " + digits(0.5 * (vy[1] - vy[0])) + " " +

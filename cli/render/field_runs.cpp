@@ -89,7 +89,7 @@ std::string table_of(const markov::WalkTally& tally, const lattice::ChainStart& 
       limits_text(scene) + map_of(tally.final_cells.cast<double>() / n) +
       map_of_trapped(tally.trapped_cells.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) +
-      "\nstart: " + text_of(space.cell(start.start.input)) +
+      "\nstart: " + text_of(space.range(start.start.input)) +
       "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has, "
       "the chain's own error (bins, memory) gatewalk validate measures.\n";
   if (tally.unsampled > 0)

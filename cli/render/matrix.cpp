@@ -30,8 +30,7 @@ std::array<double, kBoundaries + 1> outcome_shares(const Transitions& t, int row
   std::array<double, kBoundaries + 1> share{};
   if (t.trials[row] == 0) return share;
   for (const auto& [column, n] : t.rows[row]) {
-    const int b =
-        column == t.space.trapped() ? kBoundaries : static_cast<int>(t.space.boundary(column));
+    const int b = column == t.space.trapped() ? kBoundaries : t.space.face(column);
     share[b] += static_cast<double>(n) / static_cast<double>(t.trials[row]);
   }
   return share;
@@ -42,14 +41,14 @@ std::string row_table(const Transitions& t) {
   out << "\n  in  from d (m)       vx (m/s)    vy (m/s)    trials clamped |   EN    RD    LD    "
          "RT    LT  trap (%)\n";
   for (int row = 0; row < t.space.size(); ++row) {
-    const Cell cell = t.space.cell(row);
+    const StateRange range = t.space.range(row);
     const auto share = outcome_shares(t, row);
-    out << padded(std::to_string(row + 1), 4) << "  "
-        << kBoundaryNames[static_cast<int>(cell.boundary)] << " "
-        << padded(dynamics::text_of(cell.d) + " ", -12)
-        << padded(dynamics::text_of(cell.vx) + " ", -12)
-        << padded(dynamics::text_of(cell.vy) + " ", -12) << padded(std::to_string(t.trials[row]), 7)
-        << padded(std::to_string(t.clamped[row]), 8) << " |";
+    out << padded(std::to_string(row + 1), 4) << "  " << kBoundaryNames[range.face] << " "
+        << padded(dynamics::text_of(range.at[kEntryD]) + " ", -12)
+        << padded(dynamics::text_of(range.at[kEntryVx]) + " ", -12)
+        << padded(dynamics::text_of(range.at[kEntryVy]) + " ", -12)
+        << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
+        << " |";
     for (const double s : share) out << padded(fixed(100.0 * s, 1), 6);
     out << "\n";
   }
@@ -65,7 +64,7 @@ std::string outputs_table(const Transitions& t, int row) {
       out << "trapped\n";
       continue;
     }
-    out << text_of(t.space.cell(column)) << "\n";
+    out << text_of(t.space.range(column)) << "\n";
   }
   return out.str();
 }
@@ -197,15 +196,15 @@ Json to_json(const lattice::MatrixFile& file, const std::string& path) {
   json["counted_from"] = 1;  // inputs and outputs below
   json["rows"] = Json::array();
   for (int row = 0; row < n; ++row) {
-    const Cell cell = t.space.cell(row);
+    const StateRange range = t.space.range(row);
     Json outputs = Json::array();
     for (const auto& [column, count] : t.rows[row])
       outputs.push_back({{"output", column + 1}, {"count", count}});
     json["rows"].push_back({{"input", row + 1},
-                            {"boundary", kBoundaryNames[static_cast<int>(cell.boundary)]},
-                            {"d_m", cell.d},
-                            {"vx_m_per_s", cell.vx},
-                            {"vy_m_per_s", cell.vy},
+                            {"boundary", kBoundaryNames[range.face]},
+                            {"d_m", range.at[kEntryD]},
+                            {"vx_m_per_s", range.at[kEntryVx]},
+                            {"vy_m_per_s", range.at[kEntryVy]},
                             {"trials", t.trials[row]},
                             {"clamped", t.clamped[row]},
                             {"outputs", std::move(outputs)}});

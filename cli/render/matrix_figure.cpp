@@ -53,10 +53,8 @@ std::vector<StateGroup> groups_of(const StateSpace& space, int per_block, bool w
   };
   const int starts = static_cast<int>(space.points().size()), all = space.size();
   for (int b = 0; b < dynamics::kBoundaries; ++b) {
-    const int first = space.first(static_cast<dynamics::Boundary>(b));
-    const int next = b + 1 < dynamics::kBoundaries
-                         ? space.first(static_cast<dynamics::Boundary>(b + 1))
-                         : all - starts;
+    const int first = space.first(b);
+    const int next = b + 1 < dynamics::kBoundaries ? space.first(b + 1) : all - starts;
     add(std::string(dynamics::kBoundaryNames[b]), first, next - first);
   }
   add(starts == 1 ? "start" : "starts", all - starts, starts);

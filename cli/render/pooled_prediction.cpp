@@ -67,10 +67,6 @@ Json direct_seconds(const lattice::PooledPrediction& p) {
   return std::isfinite(sum) ? Json(sum) : Json();
 }
 
-lattice::PaperStart start_of(const lattice::StartAnswer& a) {
-  return {a.start.d, a.start.vx, a.start.vy, {}, {}};
-}
-
 }  // namespace
 
 Json to_json(const lattice::PooledPrediction& p, const lattice::Scene& scene, double accuracy,
@@ -79,7 +75,7 @@ Json to_json(const lattice::PooledPrediction& p, const lattice::Scene& scene, do
   if (!given) add_to(json, p.starts.front(), scene);
   for (std::size_t k = 0; given && k < p.starts.size(); ++k) {
     Json one;
-    one["start"] = to_json(start_of(p.starts[k]));
+    one["start"] = to_json(lattice::start_at(p.starts[k].start));
     add_to(one, p.starts[k], scene);
     json["starts"].push_back(std::move(one));
   }
@@ -99,7 +95,8 @@ Json to_json(const lattice::PooledPrediction& p, const lattice::Scene& scene, do
 std::string table_of(const lattice::PooledPrediction& p, const lattice::Scene& scene, bool given) {
   std::string table;
   for (std::size_t k = 0; k < p.starts.size(); ++k)
-    table += (k > 0 ? "\n" : "") + (given ? title_of(start_of(p.starts[k])) + "\n" : "") +
+    table += (k > 0 ? "\n" : "") +
+             (given ? title_of(lattice::start_at(p.starts[k].start)) + "\n" : "") +
              table_of(p.starts[k], scene);
   const Json direct = direct_seconds(p);
   table += std::to_string(p.gate_runs) + " gate runs, " + std::to_string(p.states) + " states, " +

@@ -45,7 +45,7 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
       limits_text(of.matrix.scene) + map_of(f.final_cells) +
       map_of_trapped(markov::trapped_cells(f)) + "departed " + percent(f.left_field, 1.0, 2) +
       "\n" + cli::table_of(s.exits, of.matrix.scene) +
-      "start: " + text_of(of.matrix.file.transitions.space.cell(s.start.start.input)) + "\n";
+      "start: " + text_of(of.matrix.file.transitions.space.range(s.start.start.input)) + "\n";
   if (f.unsampled > 0.0)
     table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)

@@ -11,8 +11,10 @@ namespace {
 
 using namespace dynamics;
 
-Json to_json(const Crossing& c) {
-  return {{"d_m", c.d}, {"vx_m_per_s", c.vx}, {"vy_m_per_s", c.vy}};
+Json to_json(const Entry& entry) {
+  return {{"d_m", entry.at[kEntryD]},
+          {"vx_m_per_s", entry.at[kEntryVx]},
+          {"vy_m_per_s", entry.at[kEntryVy]}};
 }
 
 }  // namespace
@@ -33,14 +35,16 @@ Json to_json(const lattice::States& s) {
         std::count_if(s.entries.begin(), bins, [](const auto& e) { return e.empty(); });
   }
   j["starts_of_their_own"] = Json::array();
-  for (const Crossing& c : s.space.points()) j["starts_of_their_own"].push_back(to_json(c));
+  for (const Entry& c : s.space.points()) j["starts_of_their_own"].push_back(to_json(c));
   j["pilot"] = {
       {"trials", s.pilot.trials}, {"entries", r.entries}, {"status", to_json(s.pilot.health)}};
   j["resolution"] = {{"clamped_share", static_cast<double>(r.clamped) / n},
                      {"states_entered", r.states_entered},
                      {"states_of_90_percent", r.states_of_90},
                      {"unresolved_variance",
-                      {{"d", r.unresolved[0]}, {"vx", r.unresolved[1]}, {"vy", r.unresolved[2]}}},
+                      {{"d", r.unresolved[kEntryD]},
+                       {"vx", r.unresolved[kEntryVx]},
+                       {"vy", r.unresolved[kEntryVy]}}},
                      {"poor", r.poor()}};
   return j;
 }
@@ -91,7 +95,7 @@ Json to_json(const lattice::TreeChain& c, double accuracy) {
   j["gate_runs"] = c.pool.gate_runs();
   j["accuracy"] = accuracy;
   j["starts_of_their_own"] = Json::array();
-  for (const Crossing& s : c.transitions.front().space.points())
+  for (const Entry& s : c.transitions.front().space.points())
     j["starts_of_their_own"].push_back(to_json(s));
   if (c.prediction) {
     j["error_95"] = Json::array();

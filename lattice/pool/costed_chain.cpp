@@ -57,11 +57,11 @@ CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates, const Fi
 namespace {
 
 /// Entries of the pool's runs by leaf, mirror images too.
-std::vector<std::vector<Crossing>> entries_of_leaves(const Kernel& kernel, const FieldGates& gates,
-                                                     const RunPool& pool, TrialGroup group) {
-  std::vector<std::vector<Crossing>> entries(static_cast<std::size_t>(kernel.space.size()));
-  each_entry(pool, group, [&](const Crossing& entry, int type) {
-    const auto put = [&](const Crossing& c) {
+std::vector<std::vector<Entry>> entries_of_leaves(const Kernel& kernel, const FieldGates& gates,
+                                                  const RunPool& pool, TrialGroup group) {
+  std::vector<std::vector<Entry>> entries(static_cast<std::size_t>(kernel.space.size()));
+  each_entry(pool, group, [&](const Entry& entry, int type) {
+    const auto put = [&](const Entry& c) {
       entries[static_cast<std::size_t>(kernel.space.index_of(c).state)].push_back(c);
     };
     put(entry);
@@ -72,7 +72,7 @@ std::vector<std::vector<Crossing>> entries_of_leaves(const Kernel& kernel, const
 
 }  // namespace
 
-AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool, const Crossing& start,
+AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool, const Entry& start,
                              int per_leaf) {
   const std::size_t own = pool.place_of(start);
   if (own == pool.starts.size())

@@ -32,14 +32,14 @@ struct AnalysedChain {
   dynamics::StateSpace space;  // of its states; of trees without the start, whose row follows
   /// An entry into a gate that belongs to the state, drawn: of those seen, in gates of any type; of
   /// bins anywhere in the bin.
-  std::function<dynamics::Crossing(int state, dynamics::Random& random)> entry;
+  std::function<dynamics::Entry(int state, dynamics::Random& random)> entry;
   std::vector<AnalysedChain> groups{};  // kTrialGroups, of groups of the trials; or none
   std::vector<std::int64_t> runs{};     // of trees: by state, in gates of the start's type
 };
 /// Of trees, from the pool's runs; with error bars. Throws std::invalid_argument when the pool has
 /// no runs of `start`.
 [[nodiscard]] AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool,
-                                           const dynamics::Crossing& start,
+                                           const dynamics::Entry& start,
                                            int per_leaf = dynamics::kEntriesPerLeaf);
 /// Of matrices, one for each of gates_of(scene).types(). What runs took is not a number where they
 /// do not know it.

@@ -12,14 +12,13 @@
 namespace gatewalk::lattice {
 namespace {
 
-using dynamics::Crossing;
+using dynamics::Entry;
 
 /// Cuts states along an axis into parts of about equal weight; adds each one's part to its key.
 /// States of the same place stay together.
-void cut(std::span<int> states, double Crossing::*axis, int parts,
-         const std::vector<Crossing>& places, const std::vector<double>& weights,
-         std::vector<std::vector<int>>& keys) {
-  const auto place = [&](int s) { return places[static_cast<std::size_t>(s)].*axis; };
+void cut(std::span<int> states, std::size_t axis, int parts, const std::vector<Entry>& places,
+         const std::vector<double>& weights, std::vector<std::vector<int>>& keys) {
+  const auto place = [&](int s) { return places[static_cast<std::size_t>(s)].at[axis]; };
   std::sort(states.begin(), states.end(),
             [&](int a, int b) { return std::pair(place(a), a) < std::pair(place(b), b); });
   const auto weight = [&](int s) { return weights[static_cast<std::size_t>(s)]; };
@@ -44,25 +43,24 @@ std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const FieldG
                                         const LumpingParts& parts) {
   const CostedChain& c = chain.chain;
   const markov::Field cells{field.columns, field.rows};
-  std::vector<Crossing> places;
+  std::vector<Entry> places;
   std::vector<std::vector<int>> keys(static_cast<std::size_t>(c.chain.inputs()));
   std::vector<int> states;
   for (int state = 0; state < chain.space.size(); ++state) {
-    places.push_back(chain.space.cell(state).middle());
+    places.push_back(chain.space.range(state).middle());
     if (state != c.start.input) {
       states.push_back(state);
-      keys[static_cast<std::size_t>(state)].push_back(
-          static_cast<int>(chain.space.boundary(state)));
+      keys[static_cast<std::size_t>(state)].push_back(chain.space.face(state));
     }
   }
-  const auto refine = [&](double Crossing::*axis, int into) {
+  const auto refine = [&](std::size_t axis, int into) {
     std::map<std::vector<int>, std::vector<int>> groups;
     for (const int s : states) groups[keys[static_cast<std::size_t>(s)]].push_back(s);
     for (auto& [key, members] : groups) cut(members, axis, into, places, visits, keys);
   };
-  refine(&Crossing::d, parts.d);
-  refine(&Crossing::vx, parts.vx);
-  refine(&Crossing::vy, parts.vy);
+  refine(dynamics::kEntryD, parts.d);
+  refine(dynamics::kEntryVx, parts.vx);
+  refine(dynamics::kEntryVy, parts.vy);
   std::map<std::vector<int>, int> numbers;
   for (const auto& key : keys) numbers.try_emplace(key, 0);
   int groups = 0;

@@ -32,7 +32,7 @@ PoolRunner::PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most
 void PoolRunner::run_full(StartTrials& s, std::int64_t count) {
   const std::int64_t done = std::ssize(s.full.final_gates);
   run("full trials", count, true, [&](TrialRange range) {
-    return run_field(gates_, field_, body_of(s.start), space_, seed_,
+    return run_field(gates_, field_, entry_state(scene_.gate, s.start), space_, seed_,
                      {kFullOwn + done + range.first, range.count}, &s.full);
   });
 }
@@ -42,7 +42,7 @@ void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
   one_gate.max_gates = 1;
   const std::int64_t done = std::ssize(s.first.final_gates);
   run("first runs", count, false, [&](TrialRange range) {
-    return run_field(gates_, one_gate, body_of(s.start), space_, seed_,
+    return run_field(gates_, one_gate, entry_state(scene_.gate, s.start), space_, seed_,
                      {kFirstOwn + done + range.first, range.count}, &s.first);
   });
 }

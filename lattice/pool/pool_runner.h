@@ -19,13 +19,6 @@ struct StartRange {
   std::array<double, 2> d{}, vx{}, vy{};  // m, m/s
 };
 
-[[nodiscard]] inline dynamics::Crossing entry_of(const dynamics::BodyState& b) {
-  return {dynamics::Boundary::enter, b.x, b.vx, b.vy};
-}
-[[nodiscard]] inline dynamics::BodyState body_of(const dynamics::Crossing& c) {
-  return {c.d, 0.0, c.vx, c.vy};
-}
-
 class PoolRunner {
  public:
   static constexpr std::int64_t kLeastTrials = 2 * kTrialGroups;  // of a call

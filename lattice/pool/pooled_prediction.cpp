@@ -174,7 +174,7 @@ class PredictionRun {
         throw std::invalid_argument("start.y_m = " + std::to_string(body.y) +
                                     " is not permitted for a chain: its states are entries from "
                                     "below, start.y_m must be 0");
-      const Crossing entry = entry_of(body);
+      const Entry entry = entry_of(body);
       places_.push_back(pool_.place_of(entry));
       if (places_.back() < pool_.starts.size()) continue;
       StartTrials& s = pool_.starts.emplace_back();
@@ -338,8 +338,9 @@ StartRange usual_range(const Scene& scene) {
   const auto holding = [](const std::vector<double>& edges, double own) {
     return std::array<double, 2>{std::min(edges.front(), own), std::max(edges.back(), own)};
   };
-  return {holding(bins.d, scene.start.x), holding(bins.vx, scene.start.vx),
-          holding(bins.vy, scene.start.vy)};
+  return {holding(bins.edges[kEntryD], scene.start.x),
+          holding(bins.edges[kEntryVx], scene.start.vx),
+          holding(bins.edges[kEntryVy], scene.start.vy)};
 }
 
 PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& range,

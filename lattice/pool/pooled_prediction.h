@@ -26,7 +26,7 @@ struct AccuracyOptions {
 
 /// What is said of one start.
 struct StartAnswer {
-  dynamics::Crossing start;
+  dynamics::Entry start;
   markov::FinalDistribution final;  // the answer
   bool from_trials = false;         // it is the shares of the start's own full trials
   Error95 error;

@@ -43,7 +43,7 @@ void each_kernel_run(const RunPool& pool, TrialGroup group, Use use) {
 // Leaves next to each other in preorder lie near each other; some hundred entries.
 constexpr int kStatesOfBox = 16;
 
-int output_of(const StateSpace& space, const GatePassage& passage, const Crossing& entry) {
+int output_of(const StateSpace& space, const GatePassage& passage, const Entry& entry) {
   return passage.ending == Ending::trapped ? space.trapped() : space.index_of(entry).state;
 }
 
@@ -120,7 +120,7 @@ markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
   for (const int r : row) ++runs[static_cast<std::size_t>(r)];
   first.resize(runs.size());
   for (int b = 0; b < kBoundaries; ++b) {
-    const int begin = space.first(static_cast<Boundary>(b));
+    const int begin = space.first(b);
     join_leaves(space.trees()[static_cast<std::size_t>(b)], runs.data() + begin, least, begin,
                 first.data() + begin);
   }
@@ -139,8 +139,8 @@ markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
 }  // namespace
 
 void each_entry(const RunPool& pool, TrialGroup group,
-                const std::function<void(const Crossing& entry, int type)>& use) {
-  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+                const std::function<void(const Entry& entry, int type)>& use) {
+  each_kernel_run(pool, group, [&](const Entry& entry, const GatePassage& run, const auto*) {
     use(entry, run.type);
   });
 }
@@ -151,7 +151,7 @@ std::int64_t Kernel::nonzeros() const {
   return all;
 }
 
-std::size_t RunPool::place_of(const Crossing& start) const {
+std::size_t RunPool::place_of(const Entry& start) const {
   const auto own = std::find_if(starts.begin(), starts.end(),
                                 [&](const StartTrials& s) { return s.start == start; });
   return static_cast<std::size_t>(own - starts.begin());
@@ -171,9 +171,9 @@ std::int64_t RunPool::trials() const {
 
 Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, TrialGroup group) {
   const std::vector<std::size_t> images = images_of(gates);
-  std::vector<Crossing> entries;
+  std::vector<Entry> entries;
   std::vector<std::uint8_t> types;
-  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+  each_kernel_run(pool, group, [&](const Entry& entry, const GatePassage& run, const auto*) {
     entries.push_back(entry);
     if (images[run.type] == 2) entries.push_back(mirrored(entry));
     types.resize(entries.size(), run.type);
@@ -183,17 +183,15 @@ Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, Tri
   per_leaf = static_cast<int>(std::max<std::int64_t>(per_leaf, fits));
   StateSpace space = tree_space(gates.types().front(), entries, per_leaf, {}, &row);
   column.reserve(row.size());
-  each_kernel_run(
-      pool, group, [&](const Crossing&, const GatePassage& run, const GatePassage* next) {
-        const std::size_t at = column.size() + images[run.type];
-        for (std::size_t image = 0; image < images[run.type]; ++image)
-          column.push_back(
-              next && image < images[next->type]
-                  ? row[at + image]
-                  : output_of(space, run, image == 0 ? run.entry : mirrored(run.entry)));
-      });
+  each_kernel_run(pool, group, [&](const Entry&, const GatePassage& run, const GatePassage* next) {
+    const std::size_t at = column.size() + images[run.type];
+    for (std::size_t image = 0; image < images[run.type]; ++image)
+      column.push_back(next && image < images[next->type]
+                           ? row[at + image]
+                           : output_of(space, run, image == 0 ? run.entry : mirrored(run.entry)));
+  });
   Kernel kernel{std::move(space), {}};
-  const auto seen_in = [&](const std::vector<Crossing>& there, const std::vector<int>& states) {
+  const auto seen_in = [&](const std::vector<Entry>& there, const std::vector<int>& states) {
     if (group.of == 1) kernel.seen.emplace_back(kernel.space, there, states);
   };
   if (gates.types().size() == 1) {
@@ -202,7 +200,7 @@ Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, Tri
     return kernel;
   }
   for (std::size_t type = 0; type < gates.types().size(); ++type) {
-    std::vector<Crossing> there;
+    std::vector<Entry> there;
     std::vector<int> from, to;
     for (std::size_t i = 0; i < types.size(); ++i) {
       if (types[i] != type) continue;
@@ -217,16 +215,18 @@ Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, Tri
   return kernel;
 }
 
-SeenEntries::SeenEntries(const StateSpace& space, const std::vector<Crossing>& entries,
+SeenEntries::SeenEntries(const StateSpace& space, const std::vector<Entry>& entries,
                          const std::vector<int>& state) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  boxes.assign(static_cast<std::size_t>(space.size() / kStatesOfBox + kBoundaries + 1),
-               {{kNone, kNone, kNone}, {-kNone, -kNone, -kNone}});
+  Box none;
+  none.low.fill(kNone);
+  none.high.fill(-kNone);
+  boxes.assign(static_cast<std::size_t>(space.size() / kStatesOfBox + kBoundaries + 1), none);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     Box& b = boxes[place_of(space, state[i])];
     ++b.entries;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double x = entries[i].*kCrossingAxes[axis];
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      const double x = entries[i].at[axis];
       b.low[axis] = std::min(b.low[axis], x);
       b.high[axis] = std::max(b.high[axis], x);
     }
@@ -234,15 +234,13 @@ SeenEntries::SeenEntries(const StateSpace& space, const std::vector<Crossing>& e
 }
 
 std::size_t SeenEntries::place_of(const StateSpace& space, int state) {
-  const Boundary b = space.boundary(state);
-  const int first = space.first(b);
-  return static_cast<std::size_t>(first / kStatesOfBox + static_cast<int>(b) +
-                                  (state - first) / kStatesOfBox);
+  const int face = space.face(state), first = space.first(face);
+  return static_cast<std::size_t>(first / kStatesOfBox + face + (state - first) / kStatesOfBox);
 }
 
-bool SeenEntries::Box::holds(const Crossing& entry) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double x = entry.*kCrossingAxes[axis];
+bool SeenEntries::Box::holds(const Entry& entry) const {
+  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+    const double x = entry.at[axis];
     if (x < low[axis] || x > high[axis]) return false;
   }
   return true;
@@ -262,7 +260,7 @@ double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldPa
       if (passages.size() > 1 || passage.ending == Ending::trapped ||
           passage.ending == Ending::broken)
         continue;  // the kernel has the entry, or there is none
-      const Move move = move_into(passage.entry.boundary);
+      const Move move = move_into(passage.entry.face);
       const int column = field.start_column() + move.di_x;
       if (!field.contains(column, move.di_y)) continue;
       const auto type = static_cast<std::size_t>(gates.type_of(column, move.di_y));
@@ -296,7 +294,7 @@ std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const FieldGa
   std::vector<std::vector<CostSums>> sums;
   for (const markov::Counts& counts : kernel.counts)
     sums.emplace_back(static_cast<std::size_t>(counts.nonZeros()));
-  each_kernel_run(pool, group, [&](const Crossing& entry, const GatePassage& run, const auto*) {
+  each_kernel_run(pool, group, [&](const Entry& entry, const GatePassage& run, const auto*) {
     const markov::Counts& counts = kernel.counts[run.type];
     for (std::size_t image = 0; image < images[run.type]; ++image) {
       const bool mirror = image == 1;
@@ -399,8 +397,7 @@ markov::FieldChain chain_of(const Kernel& kernel, const FieldGates& gates, const
 }
 
 std::vector<Transitions> transitions_of(const Kernel& kernel, const FieldGates& gates,
-                                        const FieldParams& field,
-                                        const std::vector<Crossing>& starts,
+                                        const FieldParams& field, const std::vector<Entry>& starts,
                                         const std::vector<std::vector<std::int64_t>>& first_rows) {
   std::vector<Transitions> all;
   const int start_type = gates.type_of(field.start_column(), 0);

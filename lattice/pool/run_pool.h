@@ -19,7 +19,7 @@ namespace gatewalk::lattice {
 
 /// Trials from one start (y = 0) with their passages; field.fidelity "active".
 struct StartTrials {
-  dynamics::Crossing start{};
+  dynamics::Entry start{};
   FieldTrials full{.final_gates = {}, .keep_passages = true};
   FieldTrials first{.final_gates = {}, .keep_passages = true};  // that ran through one gate only
   bool knows_endings = true;  // the full trials were run in the field at hand
@@ -35,7 +35,7 @@ struct StartTrials {
 
 /// Trials that start anywhere: all their runs are pooled.
 struct ScatteredTrials {
-  std::vector<dynamics::Crossing> starts;  // (trials)
+  std::vector<dynamics::Entry> starts;  // (trials)
   FieldTrials each{.final_gates = {}, .keep_passages = true};
 };
 
@@ -44,7 +44,7 @@ struct RunPool {
   ScatteredTrials scattered;
 
   /// Place of a start among `starts`; their number if it is none.
-  [[nodiscard]] std::size_t place_of(const dynamics::Crossing& start) const;
+  [[nodiscard]] std::size_t place_of(const dynamics::Entry& start) const;
   [[nodiscard]] std::int64_t gate_runs() const;
   /// Those that ran through the field.
   [[nodiscard]] std::int64_t trials() const;
@@ -58,21 +58,21 @@ struct TrialGroup {
 /// Calls use(entry, type of the gate) for all runs of the group's trials but the starts' own first
 /// ones and those that broke.
 void each_entry(const RunPool& pool, TrialGroup group,
-                const std::function<void(const dynamics::Crossing& entry, int type)>& use);
+                const std::function<void(const dynamics::Entry& entry, int type)>& use);
 
 /// Where entries were seen: the least boxes around those of some neighbouring leaves of a boundary.
 /// A box may hold places between its leaves where none was.
 struct SeenEntries {
   struct Box {
-    std::array<double, 3> low, high;
+    std::array<double, dynamics::kMostCoordinates> low, high;
     std::int64_t entries = 0;
-    [[nodiscard]] bool holds(const dynamics::Crossing& entry) const;
+    [[nodiscard]] bool holds(const dynamics::Entry& entry) const;
   };
   std::vector<Box> boxes{};
 
   SeenEntries() = default;
   /// `state[i]` is that of entries[i].
-  SeenEntries(const dynamics::StateSpace& space, const std::vector<dynamics::Crossing>& entries,
+  SeenEntries(const dynamics::StateSpace& space, const std::vector<dynamics::Entry>& entries,
               const std::vector<int>& state);
   /// Place among `boxes`.
   [[nodiscard]] static std::size_t place_of(const dynamics::StateSpace& space, int state);
@@ -134,7 +134,7 @@ struct Kernel {
 /// The same as matrices, in which the starts are states of their own.
 [[nodiscard]] std::vector<dynamics::Transitions> transitions_of(
     const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
-    const std::vector<dynamics::Crossing>& starts,
+    const std::vector<dynamics::Entry>& starts,
     const std::vector<std::vector<std::int64_t>>& first_rows);
 
 }  // namespace gatewalk::lattice

@@ -52,7 +52,7 @@ void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t 
 
 std::vector<Transitions> transitions_with(const Scene& scene, const RunPool& pool,
                                           const Kernel& kernel) {
-  std::vector<Crossing> starts;
+  std::vector<Entry> starts;
   for (const StartTrials& s : pool.starts) starts.push_back(s.start);
   const FieldGates gates = gates_of(scene);
   return transitions_of(kernel, gates, scene.field, starts, own_rows(gates, pool, kernel.space));
@@ -101,20 +101,23 @@ constexpr RunArray kTrialRuns{"trial_runs", "1",
                               "gate runs of each trial, one after the other in run_*"},
     kTrialKind{"trial_kind", "1",
                "0: from anywhere; from a start of its own: 1 through the field, 2 one gate only"},
-    kTrialD{"trial_d", "m", "where each trial started, on the lower edge of a gate"},
-    kTrialVx{"trial_vx", "m s-1", "lateral velocity there"},
-    kTrialVy{"trial_vy", "m s-1", "forward velocity there"},
     kRunEnding{"run_ending", "1",
                "how each gate run ended: 0 traversed, 1 exited left, 2 exited right, 3 trapped"},
     kRunBoundary{"run_boundary", "1",
                  "how it entered the next gate: 0 EN, 1 RD, 2 LD, 3 RT, 4 LT (trapped: 0)"},
-    kRunD{"run_d", "m", "where on that boundary (trapped: 0)"},
-    kRunVx{"run_vx", "m s-1", "lateral velocity there (trapped: 0)"},
-    kRunVy{"run_vy", "m s-1", "forward velocity there (trapped: 0)"},
     // Only where there are several.
     kRunType{"run_type", "1",
              "type of the gate of each run: 0 the scene's own, then those of its terrain that are "
              "not like one before, by name"};
+
+/// By coordinate: where each trial started, and where each run entered the next gate.
+constexpr std::array<RunArray, kMostCoordinates> kTrialStart{
+    {{"trial_d", "m", "where each trial started, on the lower edge of a gate"},
+     {"trial_vx", "m s-1", "lateral velocity there"},
+     {"trial_vy", "m s-1", "forward velocity there"}}},
+    kRunEntry{{{"run_d", "m", "where on that boundary (trapped: 0)"},
+               {"run_vx", "m s-1", "lateral velocity there (trapped: 0)"},
+               {"run_vy", "m s-1", "forward velocity there (trapped: 0)"}}};
 
 enum Kind : int { kScattered, kFullTrial, kFirstRun };
 
@@ -123,23 +126,22 @@ std::string array_name(const CostName& cost) { return "run_" + std::string(cost.
 
 /// Appends trials to the tables.
 struct RunTables {
-  std::vector<double> trial_runs, trial_kind, trial_d, trial_vx, trial_vy;
-  std::vector<double> ending, type, boundary, d, vx, vy;
+  std::vector<double> trial_runs, trial_kind;
+  std::vector<double> ending, type, boundary;
+  std::array<std::vector<double>, kMostCoordinates> start, entry;
   std::array<std::vector<double>, kCosts> costs;
 
-  void add(int kind, const Crossing& start, std::span<const GatePassage> passages) {
+  void add(int kind, const Entry& from, std::span<const GatePassage> passages) {
     trial_kind.push_back(kind);
     trial_runs.push_back(static_cast<double>(passages.size()));
-    trial_d.push_back(start.d);
-    trial_vx.push_back(start.vx);
-    trial_vy.push_back(start.vy);
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+      start[axis].push_back(from.at[axis]);
     for (const GatePassage& p : passages) {
       ending.push_back(static_cast<double>(p.ending));
       type.push_back(p.type);
-      boundary.push_back(static_cast<double>(p.entry.boundary));
-      d.push_back(p.entry.d);
-      vx.push_back(p.entry.vx);
-      vy.push_back(p.entry.vy);
+      boundary.push_back(p.entry.face);
+      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+        entry[axis].push_back(p.entry.at[axis]);
       for (std::size_t c = 0; c < kCosts; ++c) costs[c].push_back(p.costs[c]);
     }
   }
@@ -163,14 +165,10 @@ std::vector<markov::NamedArray> arrays_of(const RunPool& pool) {
   };
   add(kTrialRuns, t.trial_runs);
   add(kTrialKind, t.trial_kind);
-  add(kTrialD, t.trial_d);
-  add(kTrialVx, t.trial_vx);
-  add(kTrialVy, t.trial_vy);
+  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) add(kTrialStart[axis], t.start[axis]);
   add(kRunEnding, t.ending);
   add(kRunBoundary, t.boundary);
-  add(kRunD, t.d);
-  add(kRunVx, t.vx);
-  add(kRunVy, t.vy);
+  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) add(kRunEntry[axis], t.entry[axis]);
   for (std::size_t c = 0; c < kCosts; ++c)
     arrays.push_back({array_name(kCostNames[c]), std::string(kCostNames[c].unit),
                       std::string(kCostNames[c].words) + ", of each gate run",
@@ -202,14 +200,16 @@ class RunReader {
         path_(path),
         runs_(table(kTrialRuns)),
         kind_(table(kTrialKind)),
-        start_{&table(kTrialD), &table(kTrialVx), &table(kTrialVy)},
+        start_(tables(kTrialStart)),
         ending_(table(kRunEnding)),
         type_(find(file, kRunType.name)),
         boundary_(table(kRunBoundary)),
-        entry_{&table(kRunD), &table(kRunVx), &table(kRunVy)} {
-    for (const auto* t : {&kind_, start_[0], start_[1], start_[2]})
+        entry_(tables(kRunEntry)) {
+    if (kind_.size() != runs_.size()) refuse("trials");
+    for (const auto* t : start_)
       if (t->size() != runs_.size()) refuse("trials");
-    for (const auto* t : {&boundary_, entry_[0], entry_[1], entry_[2]})
+    if (boundary_.size() != ending_.size()) refuse("runs");
+    for (const auto* t : entry_)
       if (t->size() != ending_.size()) refuse("runs");
     if (type_ != nullptr && type_->size() != ending_.size()) refuse("runs");
     for (std::size_t c = 0; c < kCosts; ++c) {
@@ -220,7 +220,7 @@ class RunReader {
 
   [[nodiscard]] RunPool read() {
     RunPool pool;
-    for (const Crossing& start : file_.transitions.space.points())
+    for (const Entry& start : file_.transitions.space.points())
       pool.starts.emplace_back().start = start;
     for (std::size_t i = 0; i < runs_.size(); ++i) read_trial(i, pool);
     if (at_ != ending_.size()) refuse("runs of no trial");
@@ -237,25 +237,30 @@ class RunReader {
     if (const auto* values = find(file_, array.name)) return *values;
     throw markov::BadFile(path_ + ": no table " + array.name);
   }
+  using Columns = std::array<const std::vector<double>*, kMostCoordinates>;  // by coordinate
+  [[nodiscard]] Columns tables(const std::array<RunArray, kMostCoordinates>& arrays) const {
+    Columns columns;
+    for (std::size_t axis = 0; axis < arrays.size(); ++axis) columns[axis] = &table(arrays[axis]);
+    return columns;
+  }
   /// A whole number in [0, end).
   [[nodiscard]] int whole(double x, double end, const std::string& what) const {
     if (!(x >= 0.0 && x < end && x == std::floor(x))) refuse(what);
     return static_cast<int>(x);
   }
-  [[nodiscard]] Crossing crossing(Boundary boundary,
-                                  const std::array<const std::vector<double>*, 3>& axes,
-                                  std::size_t i, const std::string& what) const {
-    Crossing c{boundary};
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      c.*kCrossingAxes[axis] = (*axes[axis])[i];
-      if (!std::isfinite((*axes[axis])[i])) refuse(what);
+  [[nodiscard]] Entry entry(int face, const Columns& columns, std::size_t i,
+                            const std::string& what) const {
+    Entry entry{face};
+    for (std::size_t axis = 0; axis < columns.size(); ++axis) {
+      entry.at[axis] = (*columns[axis])[i];
+      if (!std::isfinite(entry.at[axis])) refuse(what);
     }
-    return c;
+    return entry;
   }
 
   void read_trial(std::size_t i, RunPool& pool) {
     const std::string what = "trial " + std::to_string(i + 1);
-    const Crossing start = crossing(Boundary::enter, start_, i, what);
+    const Entry start = entry(Boundary::enter, start_, i, what);
     const int kind = whole(kind_[i], 3, what);
     const int count = whole(runs_[i], static_cast<double>(ending_.size() - at_) + 1.0, what);
     if (count == 0) refuse(what);
@@ -270,14 +275,14 @@ class RunReader {
       const std::string run = "run " + std::to_string(at_ + 1);
       const auto ending = static_cast<Ending>(whole(ending_[at_], 4, run));
       if (ending == Ending::trapped && k + 1 < count) refuse(run);
-      const auto boundary = static_cast<Boundary>(whole(boundary_[at_], kBoundaries, run));
+      const int face = whole(boundary_[at_], kBoundaries, run);
       const int type =
           type_ == nullptr ? 0 : whole((*type_)[at_], static_cast<double>(types_), run);
       Costs costs;
       for (std::size_t c = 0; c < kCosts; ++c)
         sum[c] += costs[c] = costs_[c] == nullptr ? std::nan("") : (*costs_[c])[at_];
       trials.passages.push_back(
-          {ending, static_cast<std::uint8_t>(type), crossing(boundary, entry_, at_, run), costs});
+          {ending, static_cast<std::uint8_t>(type), entry(face, entry_, at_, run), costs});
     }
     trials.passed.push_back(std::ssize(trials.passages));
     trials.final_gates.push_back(0);
@@ -289,11 +294,11 @@ class RunReader {
   std::size_t types_;  // of gates
   const std::string& path_;
   const std::vector<double>&runs_, &kind_;
-  std::array<const std::vector<double>*, 3> start_;
+  Columns start_;
   const std::vector<double>& ending_;
   const std::vector<double>* type_;  // null: all are the first
   const std::vector<double>& boundary_;
-  std::array<const std::vector<double>*, 3> entry_;
+  Columns entry_;
   std::array<const std::vector<double>*, kCosts> costs_{};  // null: an older file
   std::size_t at_ = 0;                                      // run
 };
@@ -312,7 +317,7 @@ bool follow(const FieldGates& gates, const FieldParams& field, FieldTrials& tria
         ending = markov::Ending::trapped;
         break;
       }
-      const Move move = move_into(p.entry.boundary);
+      const Move move = move_into(p.entry.face);
       if (!field.contains(column + move.di_x, row + move.di_y)) {
         ending =
             markov::edge_before({field.columns, field.rows}, column + move.di_x, row + move.di_y);
@@ -368,10 +373,10 @@ std::vector<Transitions> matrices_of(const Scene& scene, const RunPool& pool,
                                      const std::vector<BodyState>& starts, int per_leaf) {
   const FieldGates gates = gates_of(scene);
   const Kernel kernel = kernel_of(gates, pool, per_leaf);
-  std::vector<Crossing> points;
+  std::vector<Entry> points;
   std::vector<std::vector<std::int64_t>> rows;
   for (const BodyState& b : starts) {
-    const Crossing entry{Boundary::enter, b.x, b.vx, b.vy};
+    const Entry entry = entry_of(b);
     if (std::find(points.begin(), points.end(), entry) != points.end()) continue;
     const std::size_t own = pool.place_of(entry);
     if (own == pool.starts.size())

@@ -59,7 +59,7 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
   const StateSpace space =
       StateSpace::paper(scene.gate);  // run_field counts with it; nobody asks here
   for (const BodyState& start : starts) {
-    const Crossing entry{Boundary::enter, start.x, start.vx, start.vy};
+    const Entry entry = entry_of(start);
     if (start.y == 0.0 &&
         std::find(pilot.starts.begin(), pilot.starts.end(), entry) == pilot.starts.end())
       pilot.starts.push_back(entry);
@@ -68,7 +68,7 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
       pilot.health += run_field(gates, field, start, space, seed,
                                 {kPilotsOwn + range.first, range.count}, &each)
                           .health;
-      const std::vector<Crossing> entries = each.entries();
+      const std::vector<Entry> entries = each.entries();
       pilot.entries.insert(pilot.entries.end(), entries.begin(), entries.end());
     });
     pilot.trials += trials;
@@ -85,7 +85,7 @@ int states_for(double scale) {
 }
 
 SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
-  std::vector<Crossing> entries = pilot.entries;
+  std::vector<Entry> entries = pilot.entries;
   const std::vector<GateParams> types = gates_of(scene).types();
   if (std::all_of(types.begin(), types.end(), symmetric)) add_mirror_images(entries);
   StateSpace space = quantile_space(scene.gate, entries, states_for(scale), pilot.starts);
@@ -105,8 +105,8 @@ States states_of(const Scene& scene, const BinsChoice& choice, const std::vector
   if (choice.kind == Kind::automatic) {
     seen = seen_states(scene, pilot);
   } else if (choice.kind == Kind::scene) {
-    std::vector<Crossing> entries = pilot.entries;
-    for (const Crossing& start : pilot.starts) entries.insert(entries.end(), kPilotTrials, start);
+    std::vector<Entry> entries = pilot.entries;
+    for (const Entry& start : pilot.starts) entries.insert(entries.end(), kPilotTrials, start);
     seen.entries = entries_of(seen.space, entries);
   } else {
     seen.space = refined(StateSpace::paper(scene.gate), choice.factor);

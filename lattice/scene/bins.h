@@ -39,8 +39,8 @@ struct BinsChoice {
 /// What bodies do in the full dynamics (beams at rest on entry, as the chain has it).
 struct Pilot {
   std::int64_t trials = 0;
-  std::vector<dynamics::Crossing> starts;   // those on the lower edge of the gate; different
-  std::vector<dynamics::Crossing> entries;  // between gates, in the order of the trials
+  std::vector<dynamics::Entry> starts;   // those on the lower edge of the gate; different
+  std::vector<dynamics::Entry> entries;  // between gates, in the order of the trials
   dynamics::Health health;
 };
 /// `trials` from each start. Their noise is theirs alone: no other command runs these trials.

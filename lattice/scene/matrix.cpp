@@ -82,17 +82,14 @@ SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string&
 }
 
 std::string entry_bins(const dynamics::StateSpace& space) {
-  constexpr auto kEnter = static_cast<std::size_t>(dynamics::Boundary::enter);
-  if (space.has_trees()) {
-    const auto& seen = space.trees()[kEnter].seen;
-    return text_of(dynamics::Cell{dynamics::Boundary::enter, seen[0], seen[1], seen[2]});
+  constexpr dynamics::Boundary kEnter = dynamics::Boundary::enter;
+  if (space.has_trees()) return text_of(dynamics::StateRange{kEnter, space.trees()[kEnter].seen});
+  dynamics::StateRange range{kEnter};
+  for (std::size_t axis = 0; axis < dynamics::kMostCoordinates; ++axis) {
+    const std::vector<double>& edges = space.bins()[kEnter].edges[axis];
+    range.at[axis] = {edges.front(), edges.back()};
   }
-  const dynamics::Bins& enter = space.bins()[kEnter];
-  const auto range = [](const std::vector<double>& edges) {
-    return std::array<double, 2>{edges.front(), edges.back()};
-  };
-  return text_of(
-      dynamics::Cell{dynamics::Boundary::enter, range(enter.d), range(enter.vx), range(enter.vy)});
+  return text_of(range);
 }
 
 ChainStart start_in_bins(const dynamics::StateSpace& space, const FieldParams& field,

@@ -15,21 +15,18 @@ namespace {
 
 using namespace dynamics;
 
-struct BinKey {
-  std::string_view name;
-  std::vector<double> Bins::*edges;
-};
-constexpr std::array<BinKey, 3> kBinKeys{BinKey{"d_m", &Bins::d}, BinKey{"vx_m_per_s", &Bins::vx},
-                                         BinKey{"vy_m_per_s", &Bins::vy}};
+constexpr std::array<std::string_view, kMostCoordinates> kBinKeys{"d_m", "vx_m_per_s",
+                                                                  "vy_m_per_s"};
 
-std::string key_of(int boundary, const BinKey& axis) {
-  return std::string(kBoundaryNames[boundary]) + "_" + std::string(axis.name);
+std::string key_of(int boundary, std::size_t axis) {
+  return std::string(kBoundaryNames[boundary]) + "_" + std::string(kBinKeys[axis]);
 }
 
 std::string all_keys() {
   std::string names;
   for (int b = 0; b < kBoundaries; ++b)
-    for (const BinKey& axis : kBinKeys) names += (names.empty() ? "" : ", ") + key_of(b, axis);
+    for (std::size_t axis = 0; axis < kBinKeys.size(); ++axis)
+      names += (names.empty() ? "" : ", ") + key_of(b, axis);
   return names;
 }
 
@@ -81,7 +78,7 @@ std::vector<GivenEdges> edges_in(const toml::table& document,
     const std::string at = origin(value.source().begin.line), name(key.str());
     bool known = false;
     for (int b = 0; b < kBoundaries; ++b)
-      for (const BinKey& axis : kBinKeys) {
+      for (std::size_t axis = 0; axis < kBinKeys.size(); ++axis) {
         const std::string own = key_of(b, axis);
         const auto unit = unit_of(name, own);
         if (!unit) continue;
@@ -89,7 +86,7 @@ std::vector<GivenEdges> edges_in(const toml::table& document,
         if (const auto [other, is_new] = seen.try_emplace(own, &value, name); !is_new)
           throw SceneError(given_twice(*other->second.first, "bins." + other->second.second, value,
                                        "bins." + name, origin));
-        all.push_back({b, axis.edges, "bins." + own, at + (name == own ? "" : " (" + name + ")"),
+        all.push_back({b, axis, "bins." + own, at + (name == own ? "" : " (" + name + ")"),
                        numbers_in(value, at + ": bins." + name, *unit)});
       }
     if (!known) throw SceneError(at + ": unknown key in [bins]; its keys are " + all_keys());
@@ -103,21 +100,23 @@ std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<Given
   const double side = gate.beams.joint_x, joint = gate.beams.joint_y;
   const double above = gate.run.traverse_y - joint;
   for (const GivenEdges& g : given) {
-    const auto b = static_cast<Boundary>(g.boundary);
+    const int b = g.boundary;
     const double low = b == Boundary::enter ? -side : 0.0;
     const double high = b == Boundary::enter                                          ? side
                         : b == Boundary::right_deflect || b == Boundary::left_deflect ? joint
                                                                                       : above;
-    if (g.axis == &Bins::d && !(g.edges.front() >= low && g.edges.back() <= high))
+    if (g.axis == kEntryD && !(g.edges.front() >= low && g.edges.back() <= high))
       throw SceneError(g.origin + ": " + g.name + " = " + text(g.edges) +
                        " is not permitted: must lie in [" + toml_float(low) + ", " +
                        toml_float(high) + "] m");
-    bins[g.boundary].*g.axis = g.edges;
+    bins[b].edges[g.axis] = g.edges;
   }
   double states = 0.0;
-  for (const Bins& b : bins)
-    states += static_cast<double>(b.d.size() - 1) * static_cast<double>(b.vx.size() - 1) *
-              static_cast<double>(b.vy.size() - 1);
+  for (const Bins& b : bins) {
+    double here = 1.0;
+    for (const std::vector<double>& edges : b.edges) here *= static_cast<double>(edges.size() - 1);
+    states += here;
+  }
   if (states > kMostStates)
     throw SceneError(given.back().origin + ": the table [bins] makes more than " +
                      std::to_string(kMostStates) + " states");
@@ -127,8 +126,8 @@ std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<Given
 std::string bins_toml(const SceneBins& bins) {
   std::string lines = "[bins]\n";
   for (int b = 0; b < kBoundaries; ++b)
-    for (const BinKey& axis : kBinKeys)
-      lines += key_of(b, axis) + " = " + text(bins[b].*axis.edges) + "\n";
+    for (std::size_t axis = 0; axis < kBinKeys.size(); ++axis)
+      lines += key_of(b, axis) + " = " + text(bins[b].edges[axis]) + "\n";
   return lines;
 }
 

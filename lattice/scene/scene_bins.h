@@ -15,12 +15,12 @@ namespace gatewalk::lattice {
 
 inline constexpr std::string_view kBinsTable = "bins";
 
-/// The edges of one boundary and axis, as a file or an override gives them.
+/// The edges of one boundary and coordinate, as a file or an override gives them.
 struct GivenEdges {
   int boundary = 0;
-  std::vector<double> dynamics::Bins::*axis = nullptr;
-  std::string name;    // "bins.EN_d_m"
-  std::string origin;  // how a message about it begins
+  std::size_t axis = 0;  // number of the coordinate
+  std::string name;      // "bins.EN_d_m"
+  std::string origin;    // how a message about it begins
   std::vector<double> edges;
 };
 

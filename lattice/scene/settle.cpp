@@ -16,12 +16,11 @@ std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from)
   if (from == RunsFrom::start) return starts;
   const auto space = fixed_space(scene);
   for (int i = 0; i < 8; ++i) {
-    const dynamics::Cell c = space.cell(i * (space.size() - 1) / 7);
-    const auto middle = [](const std::array<double, 2>& edges) {
-      return 0.5 * (edges[0] + edges[1]);
-    };
-    starts.push_back(
-        dynamics::entry_state(scene.gate, {c.boundary, middle(c.d), middle(c.vx), middle(c.vy)}));
+    const dynamics::StateRange range = space.range(i * (space.size() - 1) / 7);
+    dynamics::Entry middle{range.face};
+    for (std::size_t axis = 0; axis < dynamics::kMostCoordinates; ++axis)
+      middle.at[axis] = 0.5 * (range.at[axis][0] + range.at[axis][1]);
+    starts.push_back(dynamics::entry_state(scene.gate, middle));
   }
   return starts;
 }

@@ -18,6 +18,10 @@ struct PaperStart {
   [[nodiscard]] dynamics::BodyState body() const { return {d, y, vx, vy}; }
 };
 
+/// That of a body that enters so from below.
+[[nodiscard]] inline PaperStart start_at(const dynamics::Entry& entry) {
+  return {entry.at[dynamics::kEntryD], entry.at[dynamics::kEntryVx], entry.at[dynamics::kEntryVy]};
+}
 /// The scene's start.
 [[nodiscard]] PaperStart own_start(const Scene& scene);
 /// The same, or those of Table IV, in the scene's own units, in the paper's field with the

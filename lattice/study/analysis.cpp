@@ -59,16 +59,21 @@ markov::Ending mirrored(markov::Ending ending) {
   return ending == markov::Ending::right_edge ? markov::Ending::left_edge : ending;
 }
 
-Cell mirrored(const Cell& c) {
-  return {c.boundary, {-c.d[1], -c.d[0]}, {-c.vx[1], -c.vx[0]}, c.vy};
+/// Of entries from below.
+StateRange mirrored(const StateRange& range) {
+  const auto turned = [](const std::array<double, 2>& side) {
+    return std::array{-side[1], -side[0]};
+  };
+  return {range.face, {turned(range.at[kEntryD]), turned(range.at[kEntryVx]), range.at[kEntryVy]}};
 }
 
 /// What both hold; none if that is nothing.
-std::optional<Cell> common_part(const Cell& a, const Cell& b) {
-  Cell both = a;
-  for (const auto axis : {&Cell::d, &Cell::vx, &Cell::vy}) {
-    (both.*axis) = {std::max((a.*axis)[0], (b.*axis)[0]), std::min((a.*axis)[1], (b.*axis)[1])};
-    if (!((both.*axis)[0] < (both.*axis)[1])) return {};
+std::optional<StateRange> common_part(const StateRange& a, const StateRange& b) {
+  StateRange both = a;
+  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+    both.at[axis] = {std::max(a.at[axis][0], b.at[axis][0]),
+                     std::min(a.at[axis][1], b.at[axis][1])};
+    if (!(both.at[axis][0] < both.at[axis][1])) return {};
   }
   return both;
 }
@@ -98,7 +103,7 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Fie
     for (std::size_t k = 0; k < all.size(); ++k)
       all[k].of_image.emplace(k == 0 ? c.chain : chain.groups[k - 1].chain.chain, cells, image,
                               field.max_gates);
-  const auto mean_of = [&](const Chances& s, const Crossing& start) {
+  const auto mean_of = [&](const Chances& s, const Entry& start) {
     const double own = s.of_target(1, first_cell, s.space.index_of(start).state);
     if (!in_mirror) return own;
     const int there = s.space.index_of(dynamics::mirrored(start)).state;
@@ -110,29 +115,29 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Fie
   const auto gate_runs =
       static_cast<double>(std::accumulate(chain.runs.begin(), chain.runs.end(), std::int64_t{0}));
   std::vector<StartChance> starts;
-  const auto add = [&](const Cell& cell, bool sampled) {
+  const auto add = [&](const StateRange& range, bool sampled) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    StartChance start{cell, {kUnknown, {kUnknown, kUnknown}}};
+    StartChance start{range, {kUnknown, {kUnknown, kUnknown}}};
     if (sampled) {
       std::vector<double> parts;
-      for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(mean_of(all[k], cell.middle()));
-      start.chance.mean = mean_of(all.front(), cell.middle());
+      for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(mean_of(all[k], range.middle()));
+      start.chance.mean = mean_of(all.front(), range.middle());
       if (!parts.empty())
-        start.chance.interval = share_95(start.chance.mean, parts,
-                                         {runs_of(space.index_of(cell.middle()).state), gate_runs});
+        start.chance.interval = share_95(
+            start.chance.mean, parts, {runs_of(space.index_of(range.middle()).state), gate_runs});
     }
     starts.push_back(start);
   };
   std::vector<int> entries;
   for (int state = 0; state < space.size(); ++state)
-    if (space.boundary(state) == Boundary::enter) entries.push_back(state);
+    if (space.face(state) == Boundary::enter) entries.push_back(state);
   for (const int state : entries) {
     if (!in_mirror) {
-      add(space.cell(state), first.is_sampled(state));
+      add(space.range(state), first.is_sampled(state));
       continue;
     }
     for (const int other : entries)
-      if (const auto both = common_part(space.cell(state), mirrored(space.cell(other))))
+      if (const auto both = common_part(space.range(state), mirrored(space.range(other))))
         add(*both, first.is_sampled(state) && first.is_sampled(other));
   }
   return starts;
@@ -211,7 +216,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     out.endless = markov::quasi_stationary(c.chain, type_share);
     out.endless_boundaries.assign(kBoundaries, 0.0);
     for (int state = 0; state < space.size(); ++state)
-      out.endless_boundaries[static_cast<std::size_t>(space.boundary(state))] +=
+      out.endless_boundaries[static_cast<std::size_t>(space.face(state))] +=
           out.endless->states[static_cast<std::size_t>(state)];
   } catch (const std::runtime_error& e) {
     out.why_not_endless = e.what();

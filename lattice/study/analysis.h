@@ -31,7 +31,7 @@ struct AnalysisOptions {
 /// run did. In a field that is its own mirror image the mean with that of the image, by ranges that
 /// two states have in common. The interval: sampling, and what smaller states would change.
 struct StartChance {
-  dynamics::Cell cell;
+  dynamics::StateRange range;
   Mean95 chance;
 };
 

@@ -116,7 +116,7 @@ void see_entries(ChainErrorChart& chart, const Scene& scene, const Work& work) {
                    [](const ChainCurve& c) { return c.visited; }))
     return;
   const StateSpace space = fixed_space(scene);
-  std::vector<dynamics::Crossing> seen;
+  std::vector<dynamics::Entry> seen;
   for (const PaperStart& start : chart.options.starts) {
     work.in_pieces("pilot", chart.pilot_trials, [&](TrialRange range) {
       FieldTrials each{.final_gates = {}, .keep_passages = true};
@@ -126,8 +126,7 @@ void see_entries(ChainErrorChart& chart, const Scene& scene, const Work& work) {
       const auto entries = each.entries();
       seen.insert(seen.end(), entries.begin(), entries.end());
     });
-    seen.insert(seen.end(), chart.pilot_trials,
-                {dynamics::Boundary::enter, start.d, start.vx, start.vy});
+    seen.insert(seen.end(), chart.pilot_trials, dynamics::entry_of(start.body()));
   }
   for (ChainCurve& c : chart.curves)
     if (c.visited) c.entries = dynamics::entries_of(c.space, seen);

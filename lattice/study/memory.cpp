@@ -14,10 +14,10 @@ using dynamics::StateSpace;
 
 /// Of a state, as kOrigins lists them.
 int origin_of(const StateSpace& space, int state) {
-  const dynamics::Cell cell = space.cell(state);
-  switch (cell.boundary) {
+  const dynamics::StateRange range = space.range(state);
+  switch (range.face) {
     case Boundary::enter:
-      return cell.d[0] + cell.d[1] < 0.0 ? 0 : 1;
+      return range.at[dynamics::kEntryD][0] + range.at[dynamics::kEntryD][1] < 0.0 ? 0 : 1;
     case Boundary::right_deflect:
     case Boundary::right_traverse:
       return 2;
@@ -45,7 +45,7 @@ Labelled labelled(const StateWalks& w, const StateSpace& space) {
           next == StateWalks::kTrapped ? dynamics::kBoundaries : w.way[next];
       const std::int64_t visit = i - w.begin(walk);
       if (visit > 0) {
-        row += dynamics::move_into(space.boundary(state % space.size())).di_y;
+        row += dynamics::move_into(space.face(state % space.size())).di_y;
         all.gate_before.push_back({state, origins[w.state[i - 1]], outcome});
       }
       all.visit.push_back(
@@ -62,8 +62,7 @@ StateWalks no_walks(const StateSpace& space, std::size_t types) {
   StateWalks walks;
   walks.ways = dynamics::kBoundaries;
   for (std::size_t type = 0; type < types; ++type)
-    for (int s = 0; s < space.size(); ++s)
-      walks.way.push_back(static_cast<std::int32_t>(space.boundary(s)));
+    for (int s = 0; s < space.size(); ++s) walks.way.push_back(space.face(s));
   return walks;
 }
 

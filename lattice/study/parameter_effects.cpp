@@ -57,7 +57,7 @@ double most_states(const FieldParams& field) {
 }
 
 /// From a body that enters so to the nearer of the beams at rest (m); negative: there is no room.
-double room(const GateParams& p, const Crossing& entry) {
+double room(const GateParams& p, const Entry& entry) {
   const BodyState body = entry_state(p, entry);
   return std::min(nearest(p, kLeft, body, 0.0).gap, nearest(p, kRight, body, 0.0).gap);
 }
@@ -140,7 +140,7 @@ class Parameters {
     std::size_t part;
     Passages::Place place;
     int type;
-    Crossing entry;
+    Entry entry;
     double weight;  // of walks there
     double room;    // in the gate as it is
   };
@@ -163,7 +163,7 @@ class Parameters {
       const auto column = static_cast<int>(place.cell % field_.columns),
                  row = static_cast<int>(place.cell / field_.columns);
       const int type = gates_.type_of(column, row);
-      const Crossing entry = chain.entry(place.input, random);
+      const Entry entry = chain.entry(place.input, random);
       samples_.push_back({parts_.size() - 1, place, type, entry, draws.weight(place),
                           room(gates_.types()[static_cast<std::size_t>(type)], entry)});
     }
@@ -259,8 +259,8 @@ class Parameters {
     const auto is = [&](markov::Ending e) { return chance.ending() == e ? 1.0 : 0.0; };
     if (run.ending == Ending::broken) return std::nan("");
     if (run.ending == Ending::trapped) return is(markov::Ending::trapped);
-    const Crossing crossing = crossing_of(p, run.ending, run.exit);
-    const Move move = move_into(crossing.boundary);
+    const Entry crossing = crossing_of(p, run.ending, run.exit);
+    const Move move = move_into(crossing.face);
     const auto column = static_cast<int>(s.place.cell % field_.columns) + move.di_x,
                row = static_cast<int>(s.place.cell / field_.columns) + move.di_y;
     if (!field_.contains(column, row))
@@ -308,7 +308,7 @@ ParameterEffects parameter_effects(const Scene& scene, RunPool& pool, markov::En
                                    std::int64_t most_runs, const Work& work) {
   const Stopwatch watch;
   constexpr std::int64_t kPoolOfRuns = 25;
-  const Crossing start = entry_of(scene.start);
+  const Entry start = entry_of(scene.start);
   const std::size_t own = pool.place_of(start);
   if (own == pool.starts.size())
     throw std::invalid_argument("parameters: the start has no runs of its own");

@@ -65,8 +65,8 @@ class SplitTrial {
   void take(Body body, const GateRun& run, std::vector<Body>& next) {
     if (run.ending == Ending::trapped || run.ending == Ending::broken) return;
     const GateParams& p = aim_.gates.at(body.column, body.row);
-    const Crossing entry = crossing_of(p, run.ending, run.exit);
-    const Move move = move_into(entry.boundary);
+    const Entry entry = crossing_of(p, run.ending, run.exit);
+    const Move move = move_into(entry.face);
     body.column += move.di_x;
     body.row += move.di_y;
     if (body.column < 0 || body.column >= aim_.columns) return;
@@ -379,7 +379,7 @@ RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const 
   };
   event.splitting = split(
       deep, worth(deep.field.start_column(), 0, values.inputs - 1),
-      [&](int column, int row, const Crossing& entry) {
+      [&](int column, int row, const Entry& entry) {
         return worth(column, row, kernel.space.index_of(entry).state);
       },
       options, work);

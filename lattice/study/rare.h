@@ -17,7 +17,7 @@ namespace gatewalk::lattice {
 
 /// How much an entry into a gate is worth: in proportion to the chance to reach the target from
 /// there, as well as one knows. Any function > 0 gives an unbiased estimate, a good one a sure one.
-using EntryValue = std::function<double(int column, int row, const dynamics::Crossing& entry)>;
+using EntryValue = std::function<double(int column, int row, const dynamics::Entry& entry)>;
 
 struct SplittingOptions {
   int row = 0;                          // the target: entering it, rows counted from 0

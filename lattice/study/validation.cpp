@@ -293,8 +293,8 @@ Validation validate_chain(const Scene& scene, const std::vector<dynamics::Transi
       v.entries += d.entries[b];
       v.clamped += d.clamped[b];
     }
-    v.traverse_sides += d.entries[static_cast<int>(dynamics::Boundary::right_traverse)] +
-                        d.entries[static_cast<int>(dynamics::Boundary::left_traverse)];
+    v.traverse_sides += d.entries[dynamics::Boundary::right_traverse] +
+                        d.entries[dynamics::Boundary::left_traverse];
   }
   v.memory = study_memory(remembered, space,
                           {.null_draws = options.null_draws, .seed = options.seed}, work);

@@ -14,34 +14,35 @@ namespace {
 using test::Draw;
 
 /// Entries at every boundary, those of EN as many as all others together; unequal left and right.
-std::vector<Crossing> made_up(int n, std::uint64_t seed) {
+std::vector<Entry> made_up(int n, std::uint64_t seed) {
   Draw draw(seed);
-  std::vector<Crossing> entries;
+  std::vector<Entry> entries;
   for (int i = 0; i < n; ++i) {
-    const auto b = i % 2 == 0 ? Boundary::enter : static_cast<Boundary>(1 + draw.below(4));
+    const int face = i % 2 == 0 ? 0 : 1 + static_cast<int>(draw.below(4));
     const double u = draw.uniform(0, 1);
-    entries.push_back({b, b == Boundary::enter ? draw.uniform(-25, 25) : draw.uniform(10, 30),
-                       20 * u * u * draw.sign(), draw.uniform(5, 25)});
+    const double d = face == Boundary::enter ? draw.uniform(-25, 25) : draw.uniform(10, 30);
+    const double vx = 20 * u * u * draw.sign();
+    entries.push_back({face, {d, vx, draw.uniform(5, 25)}});
   }
   return entries;
 }
 
-std::vector<Crossing> scaled(std::vector<Crossing> entries, double length, double speed) {
-  for (Crossing& c : entries) c = {c.boundary, c.d * length, c.vx * speed, c.vy * speed};
+std::vector<Entry> scaled(std::vector<Entry> entries, double length, double speed) {
+  for (Entry& c : entries) c = {c.face, {c.at[0] * length, c.at[1] * speed, c.at[2] * speed}};
   return entries;
 }
 
 // Four bins of eight values: edges midway between the second and third, and so on.
 TEST(QuantileSpace, HasItsEdgesMidwayBetweenTheEntries) {
-  std::vector<Crossing> seen;
+  std::vector<Entry> seen;
   for (int copy = 0; copy < 10; ++copy)
     for (const double v : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0})
-      seen.push_back({Boundary::enter, -v, v, 2 * v});
+      seen.push_back({Boundary::enter, {-v, v, 2 * v}});
   const StateSpace s = quantile_space({}, seen, 8, {});  // 2 x 2 x 2
   const Bins& enter = s.bins()[0];
-  EXPECT_EQ(enter.vx, (std::vector<double>{1, 12, 128}));
-  EXPECT_EQ(enter.d, (std::vector<double>{-128, -12, -1}));
-  EXPECT_EQ(enter.vy, (std::vector<double>{2, 24, 256}));
+  EXPECT_EQ(enter.edges[0], (std::vector<double>{-128, -12, -1}));
+  EXPECT_EQ(enter.edges[1], (std::vector<double>{1, 12, 128}));
+  EXPECT_EQ(enter.edges[2], (std::vector<double>{2, 24, 256}));
   EXPECT_TRUE(s.open());
   EXPECT_EQ(s.size(), 8 + 4);  // a bin for each boundary where nothing was seen
 }
@@ -63,14 +64,14 @@ TEST(QuantileSpace, HasAboutAsManyStatesAsAskedFor) {
 TEST(QuantileSpace, DealsTheEntriesOutEvenlyAlongEveryAxis) {
   const auto seen = made_up(20'000, 3);
   const StateSpace s = quantile_space({}, seen, 348, {});
-  const Bins& enter = s.bins()[0];
-  const auto bins = static_cast<int>(enter.vx.size()) - 1;
+  const std::vector<double>& vx = s.bins()[0].edges[kEntryVx];
+  const auto bins = static_cast<int>(vx.size()) - 1;
   ASSERT_GE(bins, 4);
   for (int i = 0; i < bins; ++i) {
     int n = 0;
-    for (const Crossing& c : seen)
-      n += c.boundary == Boundary::enter && c.vx >= enter.vx[i] &&
-           (c.vx < enter.vx[i + 1] || i + 1 == bins);
+    for (const Entry& c : seen)
+      n += c.face == Boundary::enter && c.at[kEntryVx] >= vx[i] &&
+           (c.at[kEntryVx] < vx[i + 1] || i + 1 == bins);
     EXPECT_NEAR(n, 10'000.0 / bins, 1.0) << i;
   }
 }
@@ -78,11 +79,11 @@ TEST(QuantileSpace, DealsTheEntriesOutEvenlyAlongEveryAxis) {
 TEST(QuantileSpace, ClampsNothing) {
   const auto seen = made_up(5000, 4);
   const StateSpace s = quantile_space({}, seen, 87, {});
-  for (const Crossing& c : seen) {
+  for (const Entry& c : seen) {
     const auto index = s.index_of(c);
     EXPECT_FALSE(index.clamped || index.beyond);
   }
-  const auto far = s.index_of({Boundary::enter, 0.0, 1e6, -1e6});
+  const auto far = s.index_of({Boundary::enter, {0.0, 1e6, -1e6}});
   EXPECT_FALSE(far.clamped);
   EXPECT_TRUE(far.beyond);
 }
@@ -90,7 +91,7 @@ TEST(QuantileSpace, ClampsNothing) {
 TEST(QuantileSpace, IsSymmetricWhereTheEntriesAre) {
   for (const int n : {37, 400, 5001}) {
     auto seen = made_up(n, 5);
-    for (Crossing& c : seen) c.vx = std::round(c.vx);  // many are equal
+    for (Entry& c : seen) c.at[kEntryVx] = std::round(c.at[kEntryVx]);  // many are equal
     add_mirror_images(seen);
     ASSERT_EQ(seen.size(), 2u * static_cast<std::size_t>(n));
     for (const int states : {8, 87, 348}) {
@@ -100,12 +101,13 @@ TEST(QuantileSpace, IsSymmetricWhereTheEntriesAre) {
         for (double& e : edges) e = -e;
         return edges;
       };
-      EXPECT_EQ(bins[0].d, negated(bins[0].d));
-      EXPECT_EQ(bins[0].vx, negated(bins[0].vx));
-      for (const int right : {1, 3}) {
-        EXPECT_EQ(bins[right].d, bins[right + 1].d);
-        EXPECT_EQ(bins[right].vx, negated(bins[right + 1].vx));
-        EXPECT_EQ(bins[right].vy, bins[right + 1].vy);
+      EXPECT_EQ(bins[0].edges[kEntryD], negated(bins[0].edges[kEntryD]));
+      EXPECT_EQ(bins[0].edges[kEntryVx], negated(bins[0].edges[kEntryVx]));
+      for (const int face : {1, 3}) {
+        const auto &right = bins[face].edges, &left = bins[face + 1].edges;
+        EXPECT_EQ(right[kEntryD], left[kEntryD]);
+        EXPECT_EQ(right[kEntryVx], negated(left[kEntryVx]));
+        EXPECT_EQ(right[kEntryVy], left[kEntryVy]);
       }
     }
   }
@@ -114,7 +116,7 @@ TEST(QuantileSpace, IsSymmetricWhereTheEntriesAre) {
 TEST(QuantileSpace, TwinsHaveTheSameBins) {
   GateParams p;
   const auto seen = made_up(3000, 6);
-  const Crossing start{Boundary::enter, 3.0, 1.0, 15.0};
+  const Entry start{Boundary::enter, {3.0, 1.0, 15.0}};
   const StateSpace s = quantile_space(p, seen, 87, {start});
   for (const int power : {-10, -3, 7, 10}) {
     const double length = std::ldexp(1.0, 2 * power), time = std::ldexp(1.0, 2 - 2 * power);
@@ -127,9 +129,10 @@ TEST(QuantileSpace, TwinsHaveTheSameBins) {
         for (double& e : edges) e *= factor;
         return edges;
       };
-      EXPECT_EQ(twin.bins()[b].d, times(s.bins()[b].d, length));
-      EXPECT_EQ(twin.bins()[b].vx, times(s.bins()[b].vx, speed));
-      EXPECT_EQ(twin.bins()[b].vy, times(s.bins()[b].vy, speed));
+      const auto &own = s.bins()[b].edges, &others = twin.bins()[b].edges;
+      EXPECT_EQ(others[kEntryD], times(own[kEntryD], length));
+      EXPECT_EQ(others[kEntryVx], times(own[kEntryVx], speed));
+      EXPECT_EQ(others[kEntryVy], times(own[kEntryVy], speed));
     }
     const Resolution a = resolution_of(s, seen),
                      b = resolution_of(twin, scaled(seen, length, speed));
@@ -140,24 +143,23 @@ TEST(QuantileSpace, TwinsHaveTheSameBins) {
 
 // All alike, or none: bins that a body can still be in.
 TEST(QuantileSpace, TakesEntriesThatAreAllAlike) {
-  const Crossing c{Boundary::enter, 0.0, 0.0, 40.0};
-  const StateSpace s = quantile_space({}, std::vector<Crossing>(1000, c), 87, {c});
+  const Entry c{Boundary::enter, {0.0, 0.0, 40.0}};
+  const StateSpace s = quantile_space({}, std::vector<Entry>(1000, c), 87, {c});
   EXPECT_EQ(s.size(), kBoundaries + 1);
-  EXPECT_EQ(s.bins()[0].vy, (std::vector<double>{10, 40}));  // Table III's, up to the entry
+  EXPECT_EQ(s.bins()[0].edges[kEntryVy],
+            (std::vector<double>{10, 40}));  // Table III's, up to the entry
   EXPECT_EQ(quantile_space({}, {}, 87, {}).size(), kBoundaries);
 }
 
 TEST(Resolution, IsTheVarianceWithinTheStates) {
-  const std::array<Bins, kBoundaries> bins{
-      Bins{{-1, 0, 1}, {-1, 1}, {0, 10}}, Bins{{0, 1}, {-1, 1}, {0, 10}},
-      Bins{{0, 1}, {-1, 1}, {0, 10}}, Bins{{0, 1}, {-1, 1}, {0, 10}},
-      Bins{{0, 1}, {-1, 1}, {0, 10}}};
+  const Bins enter{{{{-1, 0, 1}, {-1, 1}, {0, 10}}}}, side{{{{0, 1}, {-1, 1}, {0, 10}}}};
+  const std::array<Bins, kBoundaries> bins{enter, side, side, side, side};
   // d: values -.75, -.25, .25, .75: variance 5/16 in all, 1/16 within a bin.
-  std::vector<Crossing> seen;
+  std::vector<Entry> seen;
   for (const double d : {-0.75, -0.25, 0.25, 0.75})
-    for (const double vy : {2.0, 6.0}) seen.push_back({Boundary::enter, d, 0.0, vy});
-  seen.push_back({Boundary::right_deflect, 0.5, 0.0, 4.0});
-  seen.push_back({Boundary::right_deflect, 0.5, 0.0, 40.0});  // outside
+    for (const double vy : {2.0, 6.0}) seen.push_back({Boundary::enter, {d, 0.0, vy}});
+  seen.push_back({Boundary::right_deflect, {0.5, 0.0, 4.0}});
+  seen.push_back({Boundary::right_deflect, {0.5, 0.0, 40.0}});  // outside
   const StateSpace space(bins);
   const Resolution r = resolution_of(space, seen);
   EXPECT_EQ(r.entries, 10);
@@ -174,7 +176,7 @@ TEST(Resolution, IsTheVarianceWithinTheStates) {
 // Bins of another scale: nothing is clamped, and everything is in one cell of its boundary.
 TEST(Resolution, TellsBinsThatAreFarTooWide) {
   auto seen = made_up(5000, 7);
-  for (Crossing& c : seen) c = {c.boundary, c.d, 0.01 * c.vx, 15 + 0.01 * c.vy};
+  for (Entry& c : seen) c.at = {c.at[0], 0.01 * c.at[1], 15 + 0.01 * c.at[2]};
   const Resolution r = resolution_of(StateSpace::paper({}), seen);
   EXPECT_LT(r.clamped, r.entries / 2);
   EXPECT_TRUE(r.poor());

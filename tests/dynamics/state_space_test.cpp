@@ -31,8 +31,8 @@ TEST(StateSpace, HasTheStatesOfTableIII) {
   const int states[] = {25, 30, 30, 1, 1};
   int first = 0;
   for (int b = 0; b < kBoundaries; ++b) {
-    EXPECT_EQ(s.first(static_cast<Boundary>(b)), first) << kBoundaryNames[b];
-    for (int i = 0; i < states[b]; ++i) EXPECT_EQ(s.boundary(first + i), static_cast<Boundary>(b));
+    EXPECT_EQ(s.first(b), first) << kBoundaryNames[b];
+    for (int i = 0; i < states[b]; ++i) EXPECT_EQ(s.face(first + i), b);
     first += states[b];
   }
 }
@@ -40,14 +40,15 @@ TEST(StateSpace, HasTheStatesOfTableIII) {
 TEST(StateSpace, HasTheEdgesOfTableIII) {
   const StateSpace space = paper();
   const auto& bins = space.bins();
-  const auto of = [&](Boundary b) -> const Bins& { return bins[static_cast<int>(b)]; };
+  const auto of = [&](Boundary b) { return bins[b].edges; };
+  using AllEdges = std::array<Edges, kMostCoordinates>;
   const Edges fives{-25, -15, -5, 5, 15, 25}, sideways{-20, -10, 0, 10, 20, 30};
-  EXPECT_EQ(of(Boundary::enter), (Bins{fives, fives, {10, 20}}));
-  EXPECT_EQ(of(Boundary::right_deflect), (Bins{{10, 20, 30}, {-30, -20, -10, 0}, sideways}));
-  EXPECT_EQ(of(Boundary::left_deflect), (Bins{{10, 20, 30}, {0, 10, 20, 30}, sideways}));
+  EXPECT_EQ(of(Boundary::enter), (AllEdges{fives, fives, Edges{10, 20}}));
+  EXPECT_EQ(of(Boundary::right_deflect), (AllEdges{{{10, 20, 30}, {-30, -20, -10, 0}, sideways}}));
+  EXPECT_EQ(of(Boundary::left_deflect), (AllEdges{{{10, 20, 30}, {0, 10, 20, 30}, sideways}}));
   // One state each; the bin is that of dynamics/README.md: y in [40, 60].
-  EXPECT_EQ(of(Boundary::right_traverse), (Bins{{10, 30}, {-30, 0}, {-20, 30}}));
-  EXPECT_EQ(of(Boundary::left_traverse), (Bins{{10, 30}, {0, 30}, {-20, 30}}));
+  EXPECT_EQ(of(Boundary::right_traverse), (AllEdges{{{10, 30}, {-30, 0}, {-20, 30}}}));
+  EXPECT_EQ(of(Boundary::left_traverse), (AllEdges{{{10, 30}, {0, 30}, {-20, 30}}}));
 }
 
 // Distances follow the gate, speeds the scene's own unit: in other units the same bins.
@@ -69,9 +70,10 @@ TEST(StateSpace, TableIIIIsInTheScenesOwnUnits) {
         for (double& e : edges) e *= factor;
         return edges;
       };
-      EXPECT_EQ(twin.bins()[b].d, times(space.bins()[b].d, length));
-      EXPECT_EQ(twin.bins()[b].vx, times(space.bins()[b].vx, speed));
-      EXPECT_EQ(twin.bins()[b].vy, times(space.bins()[b].vy, speed));
+      const auto &own = space.bins()[b].edges, &others = twin.bins()[b].edges;
+      EXPECT_EQ(others[kEntryD], times(own[kEntryD], length));
+      EXPECT_EQ(others[kEntryVx], times(own[kEntryVx], speed));
+      EXPECT_EQ(others[kEntryVy], times(own[kEntryVy], speed));
     }
   }
 }
@@ -81,8 +83,8 @@ TEST(StateSpace, OpenBinsClampNothing) {
   const StateSpace closed = paper(), open(closed.bins(), true);
   EXPECT_FALSE(closed == open);
   EXPECT_TRUE(refined(open, 2.0).open());
-  const Crossing outside{Boundary::enter, 0.0, 60.0, 15.0},
-      inside{Boundary::enter, 0.0, 20.0, 15.0};
+  const Entry outside{Boundary::enter, {0.0, 60.0, 15.0}},
+      inside{Boundary::enter, {0.0, 20.0, 15.0}};
   EXPECT_TRUE(closed.index_of(outside).clamped && closed.index_of(outside).beyond);
   EXPECT_FALSE(open.index_of(outside).clamped);
   EXPECT_TRUE(open.index_of(outside).beyond);
@@ -91,50 +93,47 @@ TEST(StateSpace, OpenBinsClampNothing) {
 }
 
 TEST(StateSpace, SingleEntriesAreStatesOfTheirOwn) {
-  const Crossing a{Boundary::enter, 0.0, 0.0, 15.0}, b{Boundary::enter, 4.0, 5.0, 10.0};
+  const Entry a{Boundary::enter, {0.0, 0.0, 15.0}}, b{Boundary::enter, {4.0, 5.0, 10.0}};
   const StateSpace space(paper().bins(), false, {a, b});
   EXPECT_EQ(space.size(), 89);
   EXPECT_EQ(space.trapped(), 89);
   EXPECT_EQ(space.index_of(a).state, 87);
   EXPECT_EQ(space.index_of(b).state, 88);
-  EXPECT_EQ(space.index_of({Boundary::enter, 0.0, 0.0, 15.5}).state, 12);
-  EXPECT_EQ(space.index_of({Boundary::enter, -0.0, 0.0, 15.0}).state, 87);
-  EXPECT_EQ(space.boundary(88), Boundary::enter);
-  EXPECT_EQ(space.cell(88).vx, (std::array<double, 2>{5, 5}));
+  EXPECT_EQ(space.index_of({Boundary::enter, {0.0, 0.0, 15.5}}).state, 12);
+  EXPECT_EQ(space.index_of({Boundary::enter, {-0.0, 0.0, 15.0}}).state, 87);
+  EXPECT_EQ(space.face(88), Boundary::enter);
+  EXPECT_EQ(space.range(88).at[kEntryVx], (std::array<double, 2>{5, 5}));
   Random random(Purpose::row, {1, 2, 3});
   EXPECT_EQ(space.sample(88, random), b);
   EXPECT_EQ(refined(space, 2.0).size(), 698);
   EXPECT_THROW((void)StateSpace(paper().bins(), false, {a, a}), std::invalid_argument);
-  EXPECT_THROW((void)StateSpace(paper().bins(), false, {{Boundary::enter, kInf, 0, 0}}),
+  EXPECT_THROW((void)StateSpace(paper().bins(), false, {{Boundary::enter, {kInf, 0, 0}}}),
                std::invalid_argument);
 }
 
 // The text fixes an order for nobody but us: d slowest, then vx, then vy.
 TEST(StateSpace, CountsDThenVxThenVy) {
   const StateSpace s = paper();
-  const Cell enter = s.cell(7);  // second d, third vx
-  EXPECT_EQ(enter.boundary, Boundary::enter);
-  EXPECT_EQ(enter.d, (std::array<double, 2>{-15, -5}));
-  EXPECT_EQ(enter.vx, (std::array<double, 2>{-5, 5}));
-  EXPECT_EQ(enter.vy, (std::array<double, 2>{10, 20}));
-  const Cell side = s.cell(55 + 15 + 2 * 5 + 4);  // LD: second d, third vx, fifth vy
-  EXPECT_EQ(side.boundary, Boundary::left_deflect);
-  EXPECT_EQ(side.d, (std::array<double, 2>{20, 30}));
-  EXPECT_EQ(side.vx, (std::array<double, 2>{20, 30}));
-  EXPECT_EQ(side.vy, (std::array<double, 2>{20, 30}));
+  const StateRange enter{Boundary::enter, {{{-15, -5}, {-5, 5}, {10, 20}}}};
+  EXPECT_EQ(s.range(7), enter);  // second d, third vx
+  const StateRange side{Boundary::left_deflect, {{{20, 30}, {20, 30}, {20, 30}}}};
+  EXPECT_EQ(s.range(55 + 15 + 2 * 5 + 4), side);  // LD: second d, third vx, fifth vy
 }
 
 // Bins of one boundary tile their box: volumes add up, and no two states share a bin.
-TEST(StateSpace, CellsTileTheBoundary) {
+TEST(StateSpace, RangesTileTheBoundary) {
   const StateSpace s = paper();
   std::array<double, kBoundaries> volume{};
   std::set<std::array<double, 4>> corners;
   for (int state = 0; state < s.size(); ++state) {
-    const Cell c = s.cell(state);
-    for (const auto& side : {c.d, c.vx, c.vy}) EXPECT_LT(side[0], side[1]);
-    volume[static_cast<int>(c.boundary)] +=
-        (c.d[1] - c.d[0]) * (c.vx[1] - c.vx[0]) * (c.vy[1] - c.vy[0]);
-    EXPECT_TRUE(corners.insert({static_cast<double>(c.boundary), c.d[0], c.vx[0], c.vy[0]}).second);
+    const auto [face, at] = s.range(state);
+    double here = 1.0;
+    for (const auto& [from, to] : at) {
+      EXPECT_LT(from, to);
+      here *= to - from;
+    }
+    volume[face] += here;
+    EXPECT_TRUE(corners.insert({static_cast<double>(face), at[0][0], at[1][0], at[2][0]}).second);
   }
   EXPECT_EQ(volume, (std::array<double, kBoundaries>{25000, 30000, 30000, 30000, 30000}));
 }
@@ -146,10 +145,11 @@ TEST(StateSpace, ScalesDistancesWithTheGate) {
   p.body.radius = 20;
   p.run.traverse_y = 100;
   const auto bins = StateSpace::paper(p).bins();
-  EXPECT_EQ(bins[0].d, (Edges{-50, -30, -10, 10, 30, 50}));
-  EXPECT_EQ(bins[1].d, (Edges{20, 30, 40}));
-  EXPECT_EQ(bins[3].d, (Edges{20, 60}));
-  EXPECT_EQ(bins[0].vx, (Edges{-50, -30, -10, 10, 30, 50}));  // a radius of 20 m: 2 m/s for 1 m/s
+  EXPECT_EQ(bins[0].edges[kEntryD], (Edges{-50, -30, -10, 10, 30, 50}));
+  EXPECT_EQ(bins[1].edges[kEntryD], (Edges{20, 30, 40}));
+  EXPECT_EQ(bins[3].edges[kEntryD], (Edges{20, 60}));
+  EXPECT_EQ(bins[0].edges[kEntryVx],
+            (Edges{-50, -30, -10, 10, 30, 50}));  // a radius of 20 m: 2 m/s for 1 m/s
 }
 
 // RT and LT begin at joint + R = 40 m: a gate that ends there has no room for them.
@@ -175,8 +175,8 @@ TEST(Refined, FactorOneIsTheSameSpaceBitForBit) {
   for (const GateParams& p : {GateParams{}, odd}) {
     const StateSpace s = StateSpace::paper(p), same = refined(s, 1.0);
     for (int b = 0; b < kBoundaries; ++b)
-      for (const auto axis : {&Bins::d, &Bins::vx, &Bins::vy}) {
-        const Edges &before = s.bins()[b].*axis, &after = same.bins()[b].*axis;
+      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+        const Edges &before = s.bins()[b].edges[axis], &after = same.bins()[b].edges[axis];
         ASSERT_EQ(after.size(), before.size());
         for (std::size_t i = 0; i < after.size(); ++i)
           EXPECT_TRUE(test::same_bits(after[i], before[i])) << kBoundaryNames[b] << " " << i;
@@ -206,19 +206,19 @@ TEST(Refined, CountsBinsPerAxis) {
 
 TEST(Refined, HasEqualBinsOverTheSameRange) {
   const StateSpace finer = refined(paper(), 2.0), coarser = refined(paper(), 0.5);
-  const auto& fine = finer.bins()[static_cast<int>(Boundary::enter)];
-  EXPECT_EQ(fine.d, (Edges{-25, -20, -15, -10, -5, 0, 5, 10, 15, 20, 25}));
-  EXPECT_EQ(fine.vy, (Edges{10, 15, 20}));
-  const auto& side = finer.bins()[static_cast<int>(Boundary::right_traverse)];
-  EXPECT_EQ(side, (Bins{{10, 20, 30}, {-30, -15, 0}, {-20, 5, 30}}));
-  const auto& coarse = coarser.bins()[static_cast<int>(Boundary::left_deflect)];
-  EXPECT_EQ(coarse.d, (Edges{10, 30}));
-  EXPECT_EQ(coarse.vx, (Edges{0, 15, 30}));
+  const auto& fine = finer.bins()[Boundary::enter].edges;
+  EXPECT_EQ(fine[kEntryD], (Edges{-25, -20, -15, -10, -5, 0, 5, 10, 15, 20, 25}));
+  EXPECT_EQ(fine[kEntryVy], (Edges{10, 15, 20}));
+  const Bins side{{{{10, 20, 30}, {-30, -15, 0}, {-20, 5, 30}}}};
+  EXPECT_EQ(finer.bins()[Boundary::right_traverse], side);
+  const auto& coarse = coarser.bins()[Boundary::left_deflect].edges;
+  EXPECT_EQ(coarse[kEntryD], (Edges{10, 30}));
+  EXPECT_EQ(coarse[kEntryVx], (Edges{0, 15, 30}));
   for (const double factor : {0.1, 0.3, 0.7, 1.9, 3.0, 7.7}) {
     const StateSpace before = paper(), s = refined(before, factor);
     for (int b = 0; b < kBoundaries; ++b)
-      for (const auto axis : {&Bins::d, &Bins::vx, &Bins::vy}) {
-        const Edges &now = s.bins()[b].*axis, &was = before.bins()[b].*axis;
+      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+        const Edges &now = s.bins()[b].edges[axis], &was = before.bins()[b].edges[axis];
         EXPECT_EQ(now.front(), was.front());  // what was clamped stays clamped, and nothing else
         EXPECT_EQ(now.back(), was.back());
         const double width = (was.back() - was.front()) / static_cast<double>(now.size() - 1);
@@ -249,12 +249,12 @@ TEST(Refined, FinerBinsAreNested) {
     return b[0] <= a[0] && a[1] <= b[1];
   };
   for (int state = 0; state < fine.size(); ++state) {
-    const Cell cell = fine.cell(state);
-    const Crossing corner{cell.boundary, cell.d[0], cell.vx[0], cell.vy[0]};
-    const Cell around = coarse.cell(coarse.index_of(corner).state);
-    EXPECT_TRUE(inside(cell.d, around.d) && inside(cell.vx, around.vx) &&
-                inside(cell.vy, around.vy))
-        << state;
+    const StateRange range = fine.range(state);
+    Entry corner{range.face};
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) corner.at[axis] = range.at[axis][0];
+    const StateRange around = coarse.range(coarse.index_of(corner).state);
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+      EXPECT_TRUE(inside(range.at[axis], around.at[axis])) << state << ' ' << axis;
   }
 }
 
@@ -271,28 +271,29 @@ TEST(StateSpace, SampleLiesInItsState) {
   const StateSpace s = paper();
   for (int state = 0; state < s.size(); ++state) {
     Random random(Purpose::row, {1, static_cast<std::uint64_t>(state), 0});
-    const Cell cell = s.cell(state);
+    const auto [from, to] = s.range(state).at[kEntryD];
     double d_sum = 0.0;
     constexpr int n = 1000;
     for (int i = 0; i < n; ++i) {
-      const Crossing c = s.sample(state, random);
+      const Entry c = s.sample(state, random);
       const auto index = s.index_of(c);
       ASSERT_EQ(index.state, state);
       ASSERT_FALSE(index.clamped);
-      d_sum += (c.d - cell.d[0]) / (cell.d[1] - cell.d[0]);
+      d_sum += (c.at[kEntryD] - from) / (to - from);
     }
     // Uniform: mean 1/2 with a standard error of 1 / sqrt(12 n); 87 states, so five of them.
     EXPECT_NEAR(d_sum / n, 0.5, 5 / std::sqrt(12.0 * n));
   }
 }
 
-TEST(StateSpace, CentreAndLowerCornerBelongToTheCell) {
+TEST(StateSpace, MiddleAndLowerCornerBelongToTheRange) {
   const StateSpace s = paper();
   for (int state = 0; state < s.size(); ++state) {
-    const Cell c = s.cell(state);
-    const auto mid = [](const std::array<double, 2>& e) { return 0.5 * (e[0] + e[1]); };
-    EXPECT_EQ(s.index_of({c.boundary, mid(c.d), mid(c.vx), mid(c.vy)}).state, state);
-    const auto corner = s.index_of({c.boundary, c.d[0], c.vx[0], c.vy[0]});
+    const StateRange range = s.range(state);
+    EXPECT_EQ(s.index_of(range.middle()).state, state);
+    Entry low{range.face};
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) low.at[axis] = range.at[axis][0];
+    const auto corner = s.index_of(low);
     EXPECT_EQ(corner.state, state);
     EXPECT_FALSE(corner.clamped);
   }
@@ -301,24 +302,24 @@ TEST(StateSpace, CentreAndLowerCornerBelongToTheCell) {
 // Beyond an outer edge a crossing goes into the nearest bin and is flagged; on the edge it is not.
 TEST(StateSpace, ClampsToTheNearestBinAndSaysSo) {
   const StateSpace s = paper();
-  const Crossing middle{Boundary::enter, 0.0, 0.0, 15.0};
+  const Entry middle{Boundary::enter, {0.0, 0.0, 15.0}};
   const int centre = 2 * 5 + 2;
   ASSERT_EQ(s.index_of(middle).state, centre);
   struct Case {
-    double Crossing::*axis;
+    std::size_t axis;
     double inside, outside;
     int state;
   };
   for (const Case& c :
-       {Case{&Crossing::d, -25.0, std::nextafter(-25.0, -kInf), 2},
-        Case{&Crossing::d, 25.0, std::nextafter(25.0, kInf), 4 * 5 + 2},
-        Case{&Crossing::vx, -25.0, -26.0, 2 * 5}, Case{&Crossing::vx, 25.0, 1e300, 2 * 5 + 4},
-        Case{&Crossing::vy, 10.0, -3.0, centre}, Case{&Crossing::vy, 20.0, 20.000001, centre}}) {
-    Crossing at = middle;
-    at.*c.axis = c.inside;
+       {Case{kEntryD, -25.0, std::nextafter(-25.0, -kInf), 2},
+        Case{kEntryD, 25.0, std::nextafter(25.0, kInf), 4 * 5 + 2},
+        Case{kEntryVx, -25.0, -26.0, 2 * 5}, Case{kEntryVx, 25.0, 1e300, 2 * 5 + 4},
+        Case{kEntryVy, 10.0, -3.0, centre}, Case{kEntryVy, 20.0, 20.000001, centre}}) {
+    Entry at = middle;
+    at.at[c.axis] = c.inside;
     EXPECT_EQ(s.index_of(at).state, c.state);
     EXPECT_FALSE(s.index_of(at).clamped);
-    at.*c.axis = c.outside;
+    at.at[c.axis] = c.outside;
     EXPECT_EQ(s.index_of(at).state, c.state);
     EXPECT_TRUE(s.index_of(at).clamped);
   }
@@ -327,19 +328,21 @@ TEST(StateSpace, ClampsToTheNearestBinAndSaysSo) {
 TEST(StateSpace, EveryBoundaryClampsEverySide) {
   const StateSpace s = paper();
   for (int b = 0; b < kBoundaries; ++b) {
-    const Bins& g = s.bins()[b];
-    const Boundary boundary = static_cast<Boundary>(b);
-    const Crossing low{boundary, g.d.front(), g.vx.front(), g.vy.front()};
-    const Crossing high{boundary, g.d.back(), g.vx.back(), g.vy.back()};
-    const int first = s.first(boundary);
-    const int last =
-        first + static_cast<int>((g.d.size() - 1) * (g.vx.size() - 1) * (g.vy.size() - 1)) - 1;
+    Entry low{b}, high{b};
+    int states = 1;
+    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      const Edges& edges = s.bins()[b].edges[axis];
+      low.at[axis] = edges.front();
+      high.at[axis] = edges.back();
+      states *= static_cast<int>(edges.size()) - 1;
+    }
+    const int first = s.first(b), last = first + states - 1;
     for (const auto& [corner, state, away] : {std::tuple{low, first, -1.0}, {high, last, 1.0}}) {
       EXPECT_EQ(s.index_of(corner).state, state);
       EXPECT_FALSE(s.index_of(corner).clamped);
-      for (const auto axis : {&Crossing::d, &Crossing::vx, &Crossing::vy}) {
-        Crossing beyond = corner;
-        beyond.*axis += away;
+      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+        Entry beyond = corner;
+        beyond.at[axis] += away;
         EXPECT_EQ(s.index_of(beyond).state, state);
         EXPECT_TRUE(s.index_of(beyond).clamped);
       }
@@ -354,9 +357,9 @@ TEST(StateSpace, RefusesEdgesThatMakeNoBins) {
        {Edges{}, Edges{1}, Edges{1, 1}, Edges{2, 1}, Edges{0, 1, 1, 2},
         Edges{0, std::numeric_limits<double>::quiet_NaN(), 2}, Edges{0, kInf}, Edges{-kInf, 0}}) {
     for (int b = 0; b < kBoundaries; ++b) {
-      for (const auto axis : {&Bins::d, &Bins::vx, &Bins::vy}) {
+      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
         auto bins = good;
-        bins[b].*axis = bad;
+        bins[b].edges[axis] = bad;
         try {
           (void)StateSpace(bins);
           ADD_FAILURE() << "accepted for " << kBoundaryNames[b];
@@ -390,12 +393,12 @@ TEST(Crossing, OfEachExit) {
                         {exited_right, {25.1, 47, 5, 3}, left_traverse, 17, 1, 0},
                         {exited_left, {-25.1, -4, -5, 3}, right_deflect, 34, -1, 0}};
   for (const Case& c : cases) {
-    const Crossing crossing = crossing_of(p, c.ending, c.exit);
-    EXPECT_EQ(crossing.boundary, c.boundary);
-    EXPECT_EQ(crossing.d, c.d);
-    EXPECT_EQ(crossing.vx, c.exit.vx);
-    EXPECT_EQ(crossing.vy, c.exit.vy);
-    const Move move = move_into(crossing.boundary);
+    const Entry crossing = crossing_of(p, c.ending, c.exit);
+    EXPECT_EQ(crossing.face, c.boundary);
+    EXPECT_EQ(crossing.at[kEntryD], c.d);
+    EXPECT_EQ(crossing.at[kEntryVx], c.exit.vx);
+    EXPECT_EQ(crossing.at[kEntryVy], c.exit.vy);
+    const Move move = move_into(crossing.face);
     EXPECT_EQ(move.di_x, c.di_x);
     EXPECT_EQ(move.di_y, c.di_y);
   }
@@ -404,13 +407,13 @@ TEST(Crossing, OfEachExit) {
 // Exactly at the joint's height the body is not below it.
 TEST(Crossing, AtTheJointCountsAsAbove) {
   const GateParams p;
-  const Crossing at = crossing_of(p, Ending::exited_left, {-25.1, 30, -5, 0});
-  EXPECT_EQ(at.boundary, Boundary::right_traverse);
-  EXPECT_EQ(at.d, 0.0);
+  const Entry at = crossing_of(p, Ending::exited_left, {-25.1, 30, -5, 0});
+  EXPECT_EQ(at.face, Boundary::right_traverse);
+  EXPECT_EQ(at.at[kEntryD], 0.0);
   const double just_below = std::nextafter(30.0, 0.0);
-  const Crossing below = crossing_of(p, Ending::exited_left, {-25.1, just_below, -5, 0});
-  EXPECT_EQ(below.boundary, Boundary::right_deflect);
-  EXPECT_GT(below.d, 0.0);
+  const Entry below = crossing_of(p, Ending::exited_left, {-25.1, just_below, -5, 0});
+  EXPECT_EQ(below.face, Boundary::right_deflect);
+  EXPECT_GT(below.at[kEntryD], 0.0);
 }
 
 TEST(Crossing, RunsThatStayedInsideHaveNone) {
@@ -438,8 +441,8 @@ TEST(Crossing, RoundTrips) {
       on_border = exit;
       on_border.x = side * 25;
     }
-    const Crossing crossing = crossing_of(p, ending, exit);
-    const Move move = move_into(crossing.boundary);
+    const Entry crossing = crossing_of(p, ending, exit);
+    const Move move = move_into(crossing.face);
     const BodyState entry = entry_state(p, crossing);
     EXPECT_NEAR(entry.x + 50 * move.di_x, on_border.x, 1e-13);
     EXPECT_NEAR(entry.y + 60 * move.di_y, on_border.y, 1e-13);

@@ -76,7 +76,7 @@ TEST(Transitions, TrialsCanBeReplayedAlone) {
   for (int row = 0; row < 87; ++row) {
     for (std::uint64_t trial = 3; trial < 5; ++trial) {
       Random random(Purpose::row, {9, static_cast<std::uint64_t>(row), trial});
-      const Crossing start = expected.space.sample(row, random);
+      const Entry start = expected.space.sample(row, random);
       EXPECT_EQ(expected.space.index_of(start).state, row);
       RandomForce force(p.forces, random);
       const GateRun run = run_gate(p, *method, entry_state(p, start), force);
@@ -115,7 +115,7 @@ TEST(Transitions, StartFromTheEntriesOfTheirRow) {
   const GateParams p = field_scene();
   const auto method = make_method(p);
   const StateSpace space = StateSpace::paper(p);
-  const Crossing middle{Boundary::enter, 1.0, 2.0, 15.0}, fast{Boundary::enter, -3.0, -1.0, 40.0};
+  const Entry middle{Boundary::enter, {1.0, 2.0, 15.0}}, fast{Boundary::enter, {-3.0, -1.0, 40.0}};
   const Entries entries = entries_of(space, {middle, fast, middle});
   const int row = space.index_of(middle).state;
   ASSERT_EQ(space.index_of(fast).state, row);  // clamped, and yet what really enters there
@@ -133,8 +133,8 @@ TEST(Transitions, StartFromTheEntriesOfTheirRow) {
   std::set<double> speeds;
   for (std::uint64_t trial = 0; trial < 4; ++trial) {
     Random random(Purpose::row, {3, static_cast<std::uint64_t>(row), trial});
-    const Crossing start = entries[row][random.below(3)];
-    speeds.insert(start.vy);
+    const Entry start = entries[row][random.below(3)];
+    speeds.insert(start.at[kEntryVy]);
     RandomForce force(p.forces, random);
     const GateRun run = run_gate(p, *method, entry_state(p, start), force);
     ++replayed[run.ending == Ending::trapped
@@ -149,7 +149,7 @@ TEST(Transitions, StartFromTheEntriesOfTheirRow) {
 // A single entry that is a state: all its runs start there, and it has more of them.
 TEST(Transitions, GiveSingleEntriesMoreRuns) {
   const GateParams p = field_scene();
-  const Crossing point{Boundary::enter, 0.0, 0.0, 15.0};
+  const Entry point{Boundary::enter, {0.0, 0.0, 15.0}};
   const StateSpace space(StateSpace::paper(p).bins(), true, {point});
   ASSERT_EQ(space.size(), 88);
   EXPECT_EQ(runs_per_trial(space, 0), 1);
@@ -221,7 +221,7 @@ TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
   // Its own units are as small; the speeds are those of the paper's scene.
   auto bins = StateSpace::paper(p).bins();
   for (Bins& b : bins)
-    for (auto* edges : {&b.vx, &b.vy})
+    for (auto* edges : {&b.edges[kEntryVx], &b.edges[kEntryVy]})
       for (double& edge : *edges) edge /= scale_of(p).speed();
   int predicted = 0;
   for (std::int64_t trial = 0; trial < 10; ++trial) {
@@ -249,12 +249,12 @@ TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
         expected = y < 30 ? Boundary::left_deflect : Boundary::left_traverse;
       else if (to_side < to_top)
         expected = y < 30 ? Boundary::right_deflect : Boundary::right_traverse;
-      EXPECT_EQ(t.space.boundary(column), expected) << row << ' ' << trial;
-      const Cell cell = t.space.cell(column);
+      EXPECT_EQ(t.space.face(column), expected) << row << ' ' << trial;
+      const StateRange range = t.space.range(column);
       const auto outside_bin = [](double v, const std::array<double, 2>& bin) {
         return v < bin[0] || v > bin[1];
       };
-      if (outside_bin(b.vx, cell.vx) || outside_bin(b.vy, cell.vy)) {
+      if (outside_bin(b.vx, range.at[kEntryVx]) || outside_bin(b.vy, range.at[kEntryVy])) {
         EXPECT_EQ(t.clamped[row], 1);
       }
     }

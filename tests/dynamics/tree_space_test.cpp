@@ -15,24 +15,23 @@ namespace {
 using test::Draw;
 
 /// Entries at every boundary but RT and LT, densest at the middle.
-std::vector<Crossing> made_up(int n, std::uint64_t seed) {
+std::vector<Entry> made_up(int n, std::uint64_t seed) {
   Draw draw(seed);
-  std::vector<Crossing> entries;
+  std::vector<Entry> entries;
   for (int i = 0; i < n; ++i) {
     const double narrow = draw.uniform(0.0, 1.0);
-    entries.push_back({static_cast<Boundary>(i % 4 == 0   ? 1
-                                             : i % 4 == 1 ? 2
-                                                          : 0),
-                       draw.uniform(-20, 20) * narrow, draw.uniform(-15, 15), draw.uniform(5, 25)});
+    const int face = i % 4 == 0 ? 1 : i % 4 == 1 ? 2 : 0;
+    const double d = draw.uniform(-20, 20) * narrow, vx = draw.uniform(-15, 15);
+    entries.push_back({face, {d, vx, draw.uniform(5, 25)}});
   }
   return entries;
 }
 
 // By hand: eight entries in a row along vx, two in a leaf, make cuts at the middles.
 TEST(TreeSpace, HalvesAtTheMedianOfTheWidestAxis) {
-  std::vector<Crossing> entries;
+  std::vector<Entry> entries;
   for (const double vx : {8.0, 1.0, 7.0, 2.0, 6.0, 3.0, 5.0, 4.0})
-    entries.push_back({Boundary::enter, 0.1 * vx, vx, 15.0});
+    entries.push_back({Boundary::enter, {0.1 * vx, vx, 15.0}});
   std::vector<int> states;
   const StateSpace space = tree_space({}, entries, 2, {}, &states);
   const Tree& tree = space.trees()[0];
@@ -43,12 +42,12 @@ TEST(TreeSpace, HalvesAtTheMedianOfTheWidestAxis) {
   EXPECT_EQ(tree.nodes[4], (Tree::Node{1, 6.5}));
   EXPECT_EQ(space.size(), 4 + 4);  // and one state for each boundary where nothing was seen
   EXPECT_EQ(states, (std::vector<int>{3, 0, 3, 0, 2, 1, 2, 1}));
-  EXPECT_EQ(space.cell(1).vx, (std::array<double, 2>{2.5, 4.5}));
-  EXPECT_EQ(space.cell(1).d, (std::array<double, 2>{0.1 * 1.0, 0.1 * 8.0}));
-  EXPECT_EQ(space.index_of({Boundary::enter, 0.5, -100.0, 15.0}).state, 0);
-  EXPECT_TRUE(space.index_of({Boundary::enter, 0.5, -100.0, 15.0}).beyond);
-  EXPECT_FALSE(space.index_of({Boundary::enter, 0.5, -100.0, 15.0}).clamped);
-  EXPECT_EQ(space.boundary(4), Boundary::right_deflect);
+  EXPECT_EQ(space.range(1).at[kEntryVx], (std::array<double, 2>{2.5, 4.5}));
+  EXPECT_EQ(space.range(1).at[kEntryD], (std::array<double, 2>{0.1 * 1.0, 0.1 * 8.0}));
+  EXPECT_EQ(space.index_of({Boundary::enter, {0.5, -100.0, 15.0}}).state, 0);
+  EXPECT_TRUE(space.index_of({Boundary::enter, {0.5, -100.0, 15.0}}).beyond);
+  EXPECT_FALSE(space.index_of({Boundary::enter, {0.5, -100.0, 15.0}}).clamped);
+  EXPECT_EQ(space.face(4), Boundary::right_deflect);
 }
 
 TEST(TreeSpace, LeavesHoldFromOnceToTwiceTheEntriesAskedFor) {
@@ -69,9 +68,9 @@ TEST(TreeSpace, LeavesHoldFromOnceToTwiceTheEntriesAskedFor) {
 }
 
 TEST(TreeSpace, EqualEntriesStayTogether) {
-  std::vector<Crossing> entries(100, {Boundary::enter, 1.0, 2.0, 3.0});
+  std::vector<Entry> entries(100, {Boundary::enter, {1.0, 2.0, 3.0}});
   EXPECT_EQ(tree_space({}, entries, 5).trees()[0].nodes.size(), 1u);
-  for (int i = 0; i < 20; ++i) entries.push_back({Boundary::enter, 2.0 + i, 2.0, 3.0});
+  for (int i = 0; i < 20; ++i) entries.push_back({Boundary::enter, {2.0 + i, 2.0, 3.0}});
   std::vector<int> states;
   (void)tree_space({}, entries, 5, {}, &states);
   EXPECT_TRUE(std::all_of(states.begin(), states.begin() + 100, [](int s) { return s == 0; }));
@@ -79,10 +78,10 @@ TEST(TreeSpace, EqualEntriesStayTogether) {
 }
 
 TEST(TreeSpace, PointsAreStatesBehindTheLeaves) {
-  const Crossing start{Boundary::enter, 0.0, 0.0, 15.0};
+  const Entry start{Boundary::enter, {0.0, 0.0, 15.0}};
   const StateSpace space = tree_space({}, made_up(200, 1), 10, {start});
   EXPECT_EQ(space.index_of(start).state, space.size() - 1);
-  EXPECT_EQ(space.cell(space.size() - 1).vy, (std::array<double, 2>{15.0, 15.0}));
+  EXPECT_EQ(space.range(space.size() - 1).at[kEntryVy], (std::array<double, 2>{15.0, 15.0}));
 }
 
 TEST(TreeSpace, AScaledSceneHasTheSameTreeToTheLastBit) {
@@ -98,7 +97,7 @@ TEST(TreeSpace, AScaledSceneHasTheSameTreeToTheLastBit) {
   small.forces.propulsion *= kLength / (kTime * kTime);
   small.forces.random *= kLength / (kTime * kTime);
   auto entries = made_up(1000, 5), scaled = entries;
-  for (Crossing& c : scaled) c = {c.boundary, c.d * kLength, c.vx * kSpeed, c.vy * kSpeed};
+  for (Entry& c : scaled) c.at = {c.at[0] * kLength, c.at[1] * kSpeed, c.at[2] * kSpeed};
   std::vector<int> states, scaled_states;
   const StateSpace here = tree_space({}, entries, 7, {}, &states),
                    there = tree_space(small, scaled, 7, {}, &scaled_states);

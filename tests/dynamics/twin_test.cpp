@@ -75,10 +75,11 @@ TEST_P(Twins, MatricesHaveTheSameCounts) {
     const GateParams q = p.run.method == "penalty" ? twin.of(p) : own_settings(twin.of(p));
     Transitions b(StateSpace::paper(q));
     for (int boundary = 0; boundary < kBoundaries; ++boundary) {
-      const Bins &x = a.space.bins()[boundary], &y = b.space.bins()[boundary];
-      for (std::size_t i = 0; i < x.d.size(); ++i) EXPECT_EQ(x.d[i] * twin.of(1, 0, 0), y.d[i]);
-      for (std::size_t i = 0; i < x.vx.size(); ++i) EXPECT_EQ(x.vx[i] * twin.of(1, -1, 0), y.vx[i]);
-      for (std::size_t i = 0; i < x.vy.size(); ++i) EXPECT_EQ(x.vy[i] * twin.of(1, -1, 0), y.vy[i]);
+      const auto &x = a.space.bins()[boundary].edges, &y = b.space.bins()[boundary].edges;
+      for (std::size_t axis = 0; axis < x.size(); ++axis) {
+        const double unit = axis == kEntryD ? twin.of(1, 0, 0) : twin.of(1, -1, 0);
+        for (std::size_t i = 0; i < x[axis].size(); ++i) EXPECT_EQ(x[axis][i] * unit, y[axis][i]);
+      }
     }
     add_trials(b, q, 1, {0, 2});
     EXPECT_EQ(a.rows, b.rows);

@@ -290,9 +290,10 @@ TEST(Analysis, ChancesOfStartsAreThoseOfTheMirror) {
              right = starts_of(Ending::right_edge);
   const auto image_of = [](const StartChance& s, const std::vector<StartChance>& among) {
     return std::find_if(among.begin(), among.end(), [&](const StartChance& other) {
-      return other.cell.d == std::array{-s.cell.d[1], -s.cell.d[0]} &&
-             other.cell.vx == std::array{-s.cell.vx[1], -s.cell.vx[0]} &&
-             other.cell.vy == s.cell.vy;
+      const auto turned = [&](std::size_t axis) {
+        return std::array{-s.range.at[axis][1], -s.range.at[axis][0]};
+      };
+      return other.range.at == std::array{turned(kEntryD), turned(kEntryVx), s.range.at[kEntryVy]};
     });
   };
   ASSERT_GT(crossed.size(), 20U);
@@ -463,7 +464,7 @@ TEST(Analysis, IsTheSameOnAnyNumberOfThreads) {
 TEST(Analysis, NeedsRunsOfTheStart) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 50);
-  EXPECT_THROW((void)analysed_chain(scene, pool, {Boundary::enter, 1, 2, 3}),
+  EXPECT_THROW((void)analysed_chain(scene, pool, {Boundary::enter, {1, 2, 3}}),
                std::invalid_argument);
 }
 

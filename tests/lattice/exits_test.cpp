@@ -34,7 +34,7 @@ Scene leaving_scene() {
 RunPool pool_of_runs(const Scene& scene, std::int64_t n) {
   RunPool pool;
   StartTrials& s = pool.starts.emplace_back();
-  s.start = {dynamics::Boundary::enter, scene.start.x, scene.start.vx, scene.start.vy};
+  s.start = dynamics::entry_of(scene.start);
   (void)run_field(scene.gate, scene.field, scene.start, dynamics::StateSpace::paper(scene.gate), 9,
                   {0, n}, &s.full);
   return pool;

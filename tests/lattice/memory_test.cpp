@@ -259,7 +259,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   each.keep_passages = true;
   const FieldTally tally =
       run_field(scene.gate, scene.field, kStart.body(), space, 1, {0, 50}, &each);
-  const int first = space.index_of({dynamics::Boundary::enter, 0.0, 0.0, 15.0}).state;
+  const int first = space.index_of({dynamics::Boundary::enter, {0.0, 0.0, 15.0}}).state;
   StateWalks w = no_walks(space);
   add_walks(w, space, first, each);
   w.validate();

@@ -228,7 +228,7 @@ Scene straight_up(int max_gates = 9) {
 dynamics::Transitions all_up(const Scene& scene) {
   dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
   for (int row = 0; row < t.space.size(); ++row) {
-    const auto state = t.space.index_of({dynamics::Boundary::enter, 0.0, 0.0, 15.0}).state;
+    const auto state = t.space.index_of({dynamics::Boundary::enter, {0.0, 0.0, 15.0}}).state;
     t.rows[static_cast<std::size_t>(row)][state] = 100'000;
     t.trials[static_cast<std::size_t>(row)] = 100'000;
   }

@@ -17,7 +17,7 @@ using markov::Ending;
 SceneMatrix matrix(std::int64_t up, const std::string& keys = "") {
   Scene scene = parse_scene("field = { columns = 3, rows = 3, max_gates = 9 }\n" + keys, "scene");
   dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
-  const int state = t.space.index_of({Boundary::enter, 0.0, 0.0, 15.0}).state;
+  const int state = t.space.index_of({Boundary::enter, {0.0, 0.0, 15.0}}).state;
   for (std::size_t row = 0; row < t.rows.size(); ++row) {
     if (up > 0) t.rows[row][state] = up;
     if (up < 1000) t.rows[row][t.space.trapped()] = 1000 - up;

@@ -15,7 +15,7 @@
 namespace gatewalk::lattice {
 namespace {
 
-using dynamics::Crossing;
+using dynamics::Entry;
 
 /// The paper's field: some 4 % of the bodies enter row 3.
 Scene fast_scene() {
@@ -53,11 +53,12 @@ forces.propulsion_N = 8.0
                      "mixed.toml");
 }
 
-double equal_worth(int, int, const Crossing&) { return 1.0; }
+double equal_worth(int, int, const Entry&) { return 1.0; }
 
 /// Has nothing to do with where bodies get: it doubles to the right, and jumps with the speed.
-double wrong_worth(int column, int row, const Crossing& entry) {
-  return std::exp2(column % 3 - row + (std::fmod(std::abs(entry.vx), 2.0) > 1.0 ? 2.0 : 0.0));
+double wrong_worth(int column, int row, const Entry& entry) {
+  return std::exp2(column % 3 - row +
+                   (std::fmod(std::abs(entry.at[dynamics::kEntryVx]), 2.0) > 1.0 ? 2.0 : 0.0));
 }
 
 /// The share of full trials that enter the row.
@@ -133,7 +134,7 @@ TEST(Splitting, RefusesWhatMakesNoSense) {
   const Scene scene = fast_scene();
   EXPECT_THROW((void)split(scene, 1.0, equal_worth, {.row = 0}), std::invalid_argument);
   EXPECT_THROW((void)split(scene, 0.0, equal_worth, {.row = 1}), std::invalid_argument);
-  const auto zero = [](int, int, const Crossing&) { return 0.0; };
+  const auto zero = [](int, int, const Entry&) { return 0.0; };
   EXPECT_THROW((void)split(scene, 1.0, zero, {.row = 2}), std::invalid_argument);
 }
 
@@ -221,7 +222,7 @@ TEST(Splitting, ABoundWhereNobodyCameHoldsAsOftenAsItSays) {
   const RowChance truth = direct(scene, 8, 150'000);
   int without = 0, below = 0, large = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const auto by_row = [](int, int row, const Crossing&) { return std::pow(1.1, row); };
+    const auto by_row = [](int, int row, const Entry&) { return std::pow(1.1, row); };
     const RowChance last =
         split(scene, 1.0, by_row, {.row = 8, .accuracy = 0.9, .most_runs = 1, .seed = seed})
             .rows.back();
@@ -248,7 +249,7 @@ TEST(RareEvent, RunsFewTrialsForTheChainOfACommonEvent) {
 // a larger one, at least 34 times.
 TEST(Splitting, IntervalsHoldAsOftenAsTheySay) {
   const Scene scene = fast_scene();
-  const auto by_row = [](int, int row, const Crossing&) { return std::pow(2.4, row); };
+  const auto by_row = [](int, int row, const Entry&) { return std::pow(2.4, row); };
   const int row = test::usual_or_full(6, 8);
   const int repeats = test::usual_or_full(40, 1000);
   const RowChance truth =

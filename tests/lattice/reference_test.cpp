@@ -202,10 +202,11 @@ TEST(RunField, DrawsTheForceAnewWhenAsked) {
         const GateRun r = run_gate(p, *method, body, force);
         ASSERT_EQ(r.ending, passage.ending) << name << ' ' << i;
         if (r.ending == Ending::trapped) break;
-        const Crossing expected = crossing_of(p, r.ending, r.exit);
-        EXPECT_EQ(expected.boundary, passage.entry.boundary) << name << ' ' << i;
-        for (const auto axis : kCrossingAxes)
-          EXPECT_NEAR(expected.*axis, passage.entry.*axis, p.run.method == "moreau" ? 1e-6 : 0.0);
+        const Entry expected = crossing_of(p, r.ending, r.exit);
+        EXPECT_EQ(expected.face, passage.entry.face) << name << ' ' << i;
+        for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+          EXPECT_NEAR(expected.at[axis], passage.entry.at[axis],
+                      p.run.method == "moreau" ? 1e-6 : 0.0);
         body = shifted_into_next(p, r.ending, r.exit);
         force.drop_hold();
       }
@@ -244,9 +245,9 @@ TEST(RunField, KeepsCrossingsWhenAsked) {
   const auto [split, in_pieces] = kept({{0, 15}, {15, 5}});
   const auto [whole, crossings] = test::on_threads(3, [&] { return kept({{0, 20}}); });
   std::array<std::int64_t, kBoundaries> entries{}, clamped{};
-  for (const Crossing& c : crossings) {
-    ++entries[static_cast<int>(c.boundary)];
-    clamped[static_cast<int>(c.boundary)] += space.index_of(c).clamped;
+  for (const Entry& c : crossings) {
+    ++entries[c.face];
+    clamped[c.face] += space.index_of(c).clamped;
   }
   EXPECT_GT(crossings.size(), 20u);
   EXPECT_EQ(entries, whole.entries);
@@ -254,7 +255,7 @@ TEST(RunField, KeepsCrossingsWhenAsked) {
   EXPECT_EQ(split.entries, whole.entries);
   ASSERT_EQ(in_pieces.size(), crossings.size());
   for (std::size_t i = 0; i < crossings.size(); ++i)
-    EXPECT_TRUE(test::same_bits(in_pieces[i].vx, crossings[i].vx)) << i;
+    EXPECT_TRUE(test::same_bits(in_pieces[i].at[kEntryVx], crossings[i].at[kEntryVx])) << i;
 }
 
 TEST(RunField, TalliesAddInAnyOrderAndNoTrialTwice) {
@@ -287,7 +288,7 @@ TEST(RunField, GatesOfSeveralTypes) {
   const GateParams& first = gates.at(2, 0);
   FieldTrials each{.keep_passages = true};
   (void)run_field(gates, field, kStart, StateSpace::paper(first), 4, {0, 60}, &each);
-  std::vector<Crossing> crossings;
+  std::vector<Entry> crossings;
   int upward = 0, sideways = 0;
   for (std::int64_t i = 0; i < 60; ++i) {
     RandomForce force(first.forces,
@@ -299,8 +300,8 @@ TEST(RunField, GatesOfSeveralTypes) {
       force.enter(p.forces);
       const GateRun r = run_gate(p, *make_method(p), body, force);
       if (r.ending == Ending::trapped) break;
-      const Crossing crossing = crossing_of(p, r.ending, r.exit);
-      const Move move = move_into(crossing.boundary);
+      const Entry crossing = crossing_of(p, r.ending, r.exit);
+      const Move move = move_into(crossing.face);
       if (!field.contains(column + move.di_x, row + move.di_y) || visited == 13) break;
       crossings.push_back(crossing);
       column += move.di_x;
@@ -362,9 +363,9 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
   const FieldParams field;
   // Bins so fine that no gate of a path has the state of another one.
   auto bins = StateSpace::paper(p).bins();
-  bins[0].vx = {-30, 30};
-  bins[0].vy.clear();
-  for (int i = 0; i <= 160; ++i) bins[0].vy.push_back(0.25 * i);
+  bins[0].edges[kEntryVx] = {-30, 30};
+  bins[0].edges[kEntryVy].clear();
+  for (int i = 0; i <= 160; ++i) bins[0].edges[kEntryVy].push_back(0.25 * i);
   const StateSpace space(bins);
   int moves = 0, followed = 0;
   for (const double x : {-17.0, -9.0, -2.0, 0.0, 6.0, 13.0, 21.0}) {
@@ -439,8 +440,8 @@ TEST(Fidelity, ActiveIsGateByGate) {
         plain.trapped += r.ending == Ending::trapped;
         if (r.ending == Ending::trapped) ++plain.trapped_gates(row, column);
         if (r.ending == Ending::trapped || r.ending == Ending::broken) break;
-        const Crossing crossing = crossing_of(p, r.ending, r.exit);
-        const Move move = move_into(crossing.boundary);
+        const Entry crossing = crossing_of(p, r.ending, r.exit);
+        const Move move = move_into(crossing.face);
         const bool leaves = !field.contains(column + move.di_x, row + move.di_y);
         if (leaves)
           why = row + move.di_y > 8      ? markov::Ending::far_edge
@@ -451,8 +452,8 @@ TEST(Fidelity, ActiveIsGateByGate) {
         plain.left_field += leaves;
         plain.cut_off += !leaves && gates == 13;
         if (leaves || gates == 13) break;
-        ++plain.entries[static_cast<int>(crossing.boundary)];
-        plain.clamped[static_cast<int>(crossing.boundary)] += space.index_of(crossing).clamped;
+        ++plain.entries[crossing.face];
+        plain.clamped[crossing.face] += space.index_of(crossing).clamped;
         column += move.di_x;
         row += move.di_y;
         body = shifted_into_next(p, r.ending, r.exit);

@@ -33,7 +33,7 @@ Scene fast_scene() {
 
 StartTrials some_trials(const Scene& scene, std::int64_t n, BodyState from = kStart) {
   StartTrials s;
-  s.start = {Boundary::enter, from.x, from.vx, from.vy};
+  s.start = entry_of(from);
   (void)run_field(scene.gate, scene.field, from, StateSpace::paper(scene.gate), 9, {0, n}, &s.full);
   return s;
 }
@@ -62,16 +62,16 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
     const bool mirror = symmetric(scene.gate);
     RunPool pool;
     pool.starts.push_back(some_trials(scene, 150));
-    pool.scattered.starts = {{Boundary::enter, 1, 2, 12}, {Boundary::enter, -3, 0, 14}};
+    pool.scattered.starts = {{Boundary::enter, {1, 2, 12}}, {Boundary::enter, {-3, 0, 14}}};
     (void)run_field(scene.gate, scene.field, std::vector<BodyState>{{1, 0, 2, 12}, {-3, 0, 0, 14}},
                     StateSpace::paper(scene.gate), 9, {0, 2}, &pool.scattered.each);
     for (const TrialGroup group : {TrialGroup{}, TrialGroup{1, 3}}) {
       const Kernel kernel = kernel_of(scene.gate, pool, 7, group);
       Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(kernel.space.size(), kernel.space.size() + 1);
-      const auto count = [&](const Crossing& from, const GatePassage& to) {
+      const auto count = [&](const Entry& from, const GatePassage& to) {
         for (const bool image : {false, true}) {
           if (image && !mirror) continue;
-          const auto turned = [&](const Crossing& c) { return image ? mirrored(c) : c; };
+          const auto turned = [&](const Entry& c) { return image ? mirrored(c) : c; };
           const int column = to.ending == dynamics::Ending::trapped
                                  ? kernel.space.trapped()
                                  : kernel.space.index_of(turned(to.entry)).state;
@@ -86,7 +86,7 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
       }
       for (auto i = static_cast<std::size_t>(group.group); i < 2;
            i += static_cast<std::size_t>(group.of)) {
-        Crossing entry = pool.scattered.starts[i];
+        Entry entry = pool.scattered.starts[i];
         for (const GatePassage& run : pool.scattered.each.of_trial(i)) {
           count(entry, run);
           entry = run.entry;
@@ -312,7 +312,7 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   std::int64_t go_on = 0;
   for (GatePassage& p : again.first.passages)
     if (p.ending != dynamics::Ending::trapped) {
-      p.entry = {Boundary::enter, 1e3, 0.0, 1e3};
+      p.entry = {Boundary::enter, {1e3, 0.0, 1e3}};
       ++go_on;
     }
   ASSERT_GT(go_on, 200);

@@ -549,9 +549,9 @@ TEST(SceneBins, AreEdgesOfOnesOwn) {
       parse_scene("[bins]\nEN_d_m = [-20, 0, 0.1, 20]\nRD_vy_m_per_s = [-5, 5.5]\n", "x.toml");
   ASSERT_TRUE(scene.bins);
   const auto paper = dynamics::StateSpace::paper(scene.gate).bins();
-  EXPECT_EQ((*scene.bins)[0].d, (std::vector<double>{-20, 0, 0.1, 20}));
-  EXPECT_EQ((*scene.bins)[0].vx, paper[0].vx);
-  EXPECT_EQ((*scene.bins)[1].vy, (std::vector<double>{-5, 5.5}));
+  EXPECT_EQ((*scene.bins)[0].edges[0], (std::vector<double>{-20, 0, 0.1, 20}));
+  EXPECT_EQ((*scene.bins)[0].edges[1], paper[0].edges[1]);
+  EXPECT_EQ((*scene.bins)[1].edges[2], (std::vector<double>{-5, 5.5}));
   EXPECT_EQ((*scene.bins)[2], paper[2]);
   EXPECT_EQ(dynamics::StateSpace(*scene.bins).size(), 15 + 6 + 30 + 2);
 
@@ -566,8 +566,8 @@ TEST(SceneBins, AreEdgesOfOnesOwn) {
 
   const Scene set = parse_scene("[bins]\nEN_d_m = [-20, 20]", "x.toml",
                                 {"bins.EN_d_m=[-9, 1, 9]", "bins.LT_d_m=[0, 30]"});
-  EXPECT_EQ((*set.bins)[0].d, (std::vector<double>{-9, 1, 9}));
-  EXPECT_EQ((*set.bins)[4].d, (std::vector<double>{0, 30}));
+  EXPECT_EQ((*set.bins)[0].edges[0], (std::vector<double>{-9, 1, 9}));
+  EXPECT_EQ((*set.bins)[4].edges[0], (std::vector<double>{0, 30}));
 }
 
 TEST(SceneBins, AreRefusedByFileAndLine) {

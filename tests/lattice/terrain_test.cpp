@@ -394,7 +394,7 @@ TEST(Terrain, KernelsCountTheRunsOfEachType) {
   const Scene scene = mixed();
   const FieldGates gates = gates_of(scene);
   StartTrials s;
-  s.start = {dynamics::Boundary::enter, kStart.x, kStart.vx, kStart.vy};
+  s.start = dynamics::entry_of(kStart);
   (void)run_field(gates, scene.field, kStart, StateSpace::paper(scene.gate), 9, {0, 400}, &s.full);
   RunPool pool;
   pool.starts.push_back(std::move(s));
@@ -411,8 +411,7 @@ TEST(Terrain, KernelsCountTheRunsOfEachType) {
   for (std::size_t type = 0; type < 3; ++type) {
     const markov::Counts& counts = kernel.counts[type];
     for (int b = 0; b < dynamics::kBoundaries; ++b) {
-      const auto boundary = static_cast<dynamics::Boundary>(b);
-      const int first = kernel.space.first(boundary);
+      const int first = kernel.space.first(b);
       const auto leaves = static_cast<int>(
           (kernel.space.trees()[static_cast<std::size_t>(b)].nodes.size() + 1) / 2);
       // Neighbours with the same row share their runs.

@@ -41,7 +41,7 @@ Scene straight_up() {
 dynamics::Transitions all_up(const Scene& scene, std::int64_t runs) {
   dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
   for (int row = 0; row < t.space.size(); ++row) {
-    const auto state = t.space.index_of({dynamics::Boundary::enter, 0.0, 0.0, 15.0}).state;
+    const auto state = t.space.index_of({dynamics::Boundary::enter, {0.0, 0.0, 15.0}}).state;
     t.rows[static_cast<std::size_t>(row)][state] = runs;
     t.trials[static_cast<std::size_t>(row)] = runs;
   }
