@@ -80,7 +80,7 @@ lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& sc
   const auto read = std::from_chars(text.data(), end, choice.factor);
   if (read.ec != std::errc() || read.ptr != end)
     throw UsageError("--bins " + text + ": must be paper, tree, auto, or a factor > 0 such as 2");
-  (void)dynamics::refined(dynamics::StateSpace::paper(scene.gate),
+  (void)dynamics::refined(dynamics::table3_space(scene.gate),
                           choice.factor);  // refuses other factors
   return choice;
 }
@@ -300,8 +300,9 @@ lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatr
     const auto type = static_cast<std::size_t>(
         lattice::gates_of(m.scene).type_of(m.scene.field.start_column(), 0));
     const auto runs = lattice::matrices_of(m.file, m.scene)[type].trials;
-    options.warn(name + " is no state of its own: its row is that of its leaf, " + text_of(range) +
-                 ", " + std::to_string(runs[static_cast<std::size_t>(start.start.input)]) +
+    options.warn(name + " is no state of its own: its row is that of its leaf, " +
+                 text_of(space.section(), range) + ", " +
+                 std::to_string(runs[static_cast<std::size_t>(start.start.input)]) +
                  " runs in all, and as noisy as so few are");
   }
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
@@ -309,10 +310,10 @@ lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatr
   };
   const dynamics::Entry entry = dynamics::entry_of(body);
   bool on_an_edge = false;
-  for (std::size_t axis = 0; axis < dynamics::kMostCoordinates; ++axis)
+  for (std::size_t axis = 0; axis < space.section().coordinates.size(); ++axis)
     on_an_edge = on_an_edge || on_edge(range.at[axis], entry.at[axis]);
   if (on_an_edge)
-    options.remark(name + " lies on an edge of its bin, " + text_of(range) +
+    options.remark(name + " lies on an edge of its bin, " + text_of(space.section(), range) +
                    "; its prediction is that of the whole bin");
   return start;
 }

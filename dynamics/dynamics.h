@@ -13,7 +13,9 @@
 ///                  (stable_lanes.h) and moreau (lanes.h)
 ///   ensemble.h     many runs and their outcomes
 ///   health.h       how far runs can be trusted
-///   state_space.h  how a body enters a gate, as a number: Table III's bins, others, or trees
+///   section.h      what a chain knows of a gate: faces, coordinates of an entry, costs
+///   state_space.h  how a body enters, as a number: bins, or trees
+///   disc_section.h how a disc enters a gate: its section, and Table III's bins
 ///   quantile_bins.h  bins from entries that were seen, and how well bins resolve them
 ///   tree_space.h   trees grown over entries that were seen
 ///   trace.h        one run in full, step by step
@@ -27,12 +29,14 @@
 // clang-format on
 
 #include "dynamics/base/random.h"
+#include "dynamics/disc_section.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/flow.h"
 #include "dynamics/gate.h"
 #include "dynamics/landscape.h"
 #include "dynamics/params.h"
 #include "dynamics/quantile_bins.h"
+#include "dynamics/section.h"
 #include "dynamics/state_space.h"
 #include "dynamics/study/accuracy.h"
 #include "dynamics/study/choice.h"

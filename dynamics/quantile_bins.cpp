@@ -7,10 +7,15 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// Bins per axis whose product is nearest to `states`.
-int bins_per_axis(double states) {
+/// Bins along each of so many coordinates whose product is nearest to `states`.
+int bins_per_axis(double states, std::size_t coordinates) {
+  const auto half_of_product = [&](int bins) {
+    double product = 0.5;
+    for (std::size_t axis = 0; axis < coordinates; ++axis) product *= bins;
+    return product;
+  };
   int n = 1;
-  while (0.5 * n * n * n + 0.5 * (n + 1) * (n + 1) * (n + 1) <= states) ++n;
+  while (half_of_product(n) + half_of_product(n + 1) <= states) ++n;
   return n;
 }
 
@@ -31,11 +36,11 @@ std::size_t between_values(const std::vector<double>& values, std::size_t at, in
 /// Edges of `bins` bins at the quantiles of `values` (not empty), the outermost at their extremes;
 /// those of `range` where all values are the same.
 std::vector<double> quantile_edges(std::vector<double> values, int bins,
-                                   const std::vector<double>& range) {
+                                   const std::array<double, 2>& range) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   if (values.front() == values.back())
-    return {std::min(range.front(), values.front()), std::max(range.back(), values.front())};
+    return {std::min(range[0], values.front()), std::max(range[1], values.front())};
   std::vector<double> edges{values.front()};
   for (int i = 1; i < bins; ++i) {
     const int side = 2 * i - bins;
@@ -53,38 +58,13 @@ std::vector<double> quantile_edges(std::vector<double> values, int bins,
 
 }  // namespace
 
-bool symmetric(const GateParams& p) { return p.beams.stiffness_left == p.beams.stiffness_right; }
-
-Entry mirrored(const Entry& entry) {
-  Entry m = entry;
-  m.at[kEntryVx] = -entry.at[kEntryVx];
-  switch (entry.face) {
-    case Boundary::enter:
-      m.at[kEntryD] = -entry.at[kEntryD];
-      break;
-    case Boundary::right_deflect:
-      m.face = Boundary::left_deflect;
-      break;
-    case Boundary::left_deflect:
-      m.face = Boundary::right_deflect;
-      break;
-    case Boundary::right_traverse:
-      m.face = Boundary::left_traverse;
-      break;
-    case Boundary::left_traverse:
-      m.face = Boundary::right_traverse;
-      break;
-  }
-  return m;
-}
-
-void add_mirror_images(std::vector<Entry>& entries) {
+void add_mirror_images(const Section& section, std::vector<Entry>& entries) {
   const std::size_t n = entries.size();
   entries.reserve(2 * n);
-  for (std::size_t i = 0; i < n; ++i) entries.push_back(mirrored(entries[i]));
+  for (std::size_t i = 0; i < n; ++i) entries.push_back(mirrored(section, entries[i]));
 }
 
-StateSpace quantile_space(const GateParams& p, const std::vector<Entry>& seen, int states,
+StateSpace quantile_space(const Section& section, const std::vector<Entry>& seen, int states,
                           const std::vector<Entry>& points) {
   if (states < 1 || states > kMostStates)
     throw std::invalid_argument("bins: " + std::to_string(states) +
@@ -92,25 +72,28 @@ StateSpace quantile_space(const GateParams& p, const std::vector<Entry>& seen, i
                                 std::to_string(kMostStates) + "]");
   const auto entries = static_cast<std::int64_t>(seen.size());
   const std::int64_t wanted = std::min<std::int64_t>(states, entries / kEntriesPerState);
-  std::array<std::vector<Entry>, kBoundaries> at;
+  std::vector<std::vector<Entry>> at(section.faces.size());
   for (const Entry& c : seen) at[static_cast<std::size_t>(c.face)].push_back(c);
-  std::array<Bins, kBoundaries> bins = StateSpace::paper(p).bins();
-  for (int b = 0; b < kBoundaries; ++b) {
-    const auto here = static_cast<double>(at[b].size());
+  const std::size_t coordinates = section.coordinates.size();
+  std::vector<Bins> bins(section.faces.size());
+  for (std::size_t f = 0; f < bins.size(); ++f) {
+    const auto here = static_cast<double>(at[f].size());
     const int n = bins_per_axis(static_cast<double>(wanted) * here /
-                                static_cast<double>(std::max<std::int64_t>(1, entries)));
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
-      std::vector<double>& e = bins[b].edges[axis];
-      if (at[b].empty()) {
-        e = {e.front(), e.back()};
+                                    static_cast<double>(std::max<std::int64_t>(1, entries)),
+                                coordinates);
+    for (std::size_t axis = 0; axis < coordinates; ++axis) {
+      const std::array<double, 2>& usual = section.faces[f].usual[axis];
+      std::vector<double>& edges = bins[f].edges[axis];
+      if (at[f].empty()) {
+        edges = {usual[0], usual[1]};
         continue;
       }
       std::vector<double> values;
-      for (const Entry& c : at[b]) values.push_back(c.at[axis]);
-      e = quantile_edges(std::move(values), n, e);
+      for (const Entry& c : at[f]) values.push_back(c.at[axis]);
+      edges = quantile_edges(std::move(values), n, usual);
     }
   }
-  return StateSpace(std::move(bins), true, points);
+  return {section, std::move(bins), true, points};
 }
 
 bool Resolution::poor() const {
@@ -135,7 +118,7 @@ Resolution resolution_of(const StateSpace& space, const std::vector<Entry>& seen
     }
   };
   Resolution r;
-  std::vector<Group> of_state(space.size()), of_face(kBoundaries);
+  std::vector<Group> of_state(space.size()), of_face(space.section().faces.size());
   for (const Entry& c : seen) {
     const StateSpace::Index index = space.index_of(c);
     r.clamped += index.clamped;

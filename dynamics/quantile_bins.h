@@ -12,24 +12,18 @@
 
 namespace gatewalk::dynamics {
 
-/// A gate's left half is the mirror image of its right half.
-[[nodiscard]] bool symmetric(const GateParams& p);
-
-/// The mirror image about the gate's middle line: RD becomes LD, and so on.
-[[nodiscard]] Entry mirrored(const Entry& c);
-
 /// Appends the mirror image of every entry.
-void add_mirror_images(std::vector<Entry>& entries);
+void add_mirror_images(const Section& section, std::vector<Entry>& entries);
 
 /// At least so many entries are seen for each state that quantile_space makes.
 inline constexpr std::int64_t kEntriesPerState = 10;
 
 /// An open space of about `states` bins, at most one for kEntriesPerState entries, and `points`.
-/// Each boundary gets its share of them by the entries seen there, on all three axes as many, with
+/// Each face gets its share of them by the entries seen there, along all coordinates as many, with
 /// edges at the quantiles of these entries (fewer where entries coincide). Mirror-symmetric if
-/// `seen` is. A boundary where nothing was seen gets one bin, StateSpace::paper's range. Throws
+/// `seen` is. A face where nothing was seen gets one bin, what is usual there. Throws
 /// std::invalid_argument unless 1 <= states <= kMostStates.
-[[nodiscard]] StateSpace quantile_space(const GateParams& p, const std::vector<Entry>& seen,
+[[nodiscard]] StateSpace quantile_space(const Section& section, const std::vector<Entry>& seen,
                                         int states, const std::vector<Entry>& points);
 
 /// How well a state space tells entries apart.

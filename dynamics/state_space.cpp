@@ -1,6 +1,7 @@
 #include "dynamics/state_space.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -37,91 +38,36 @@ std::vector<double> rebinned(const std::vector<double>& edges, double factor) {
   return equal;
 }
 
+std::invalid_argument not_by_face(const std::string& what) {
+  return std::invalid_argument("state space: not as many " + what + " as faces");
+}
+
 }  // namespace
 
-Move move_into(int face) {
-  switch (face) {
-    case Boundary::enter:
-      return {0, 1};
-    case Boundary::right_deflect:
-    case Boundary::right_traverse:
-      return {-1, 0};
-    case Boundary::left_deflect:
-    case Boundary::left_traverse:
-      return {1, 0};
-  }
-  throw std::logic_error("no such boundary");
-}
-
-Entry crossing_of(const GateParams& p, Ending ending, const BodyState& exit) {
-  const bool below = exit.y < p.beams.joint_y;
-  const double from_joint = std::abs(exit.y - p.beams.joint_y);
-  switch (ending) {
-    case Ending::traversed:
-      return {Boundary::enter, {exit.x, exit.vx, exit.vy}};
-    case Ending::exited_left:
-      return {below ? Boundary::right_deflect : Boundary::right_traverse,
-              {from_joint, exit.vx, exit.vy}};
-    case Ending::exited_right:
-      return {below ? Boundary::left_deflect : Boundary::left_traverse,
-              {from_joint, exit.vx, exit.vy}};
-    case Ending::trapped:
-    case Ending::broken:
-      break;
-  }
-  throw std::logic_error("this run did not leave its gate");
-}
-
-BodyState entry_state(const GateParams& p, const Entry& entry) {
-  const double d = entry.at[kEntryD];
-  BodyState b{0.0, 0.0, entry.at[kEntryVx], entry.at[kEntryVy]};
-  switch (entry.face) {
-    case Boundary::enter:
-      b.x = d;
-      return b;
-    case Boundary::right_deflect:
-      b.x = p.beams.joint_x;
-      b.y = p.beams.joint_y - d;
-      return b;
-    case Boundary::left_deflect:
-      b.x = -p.beams.joint_x;
-      b.y = p.beams.joint_y - d;
-      return b;
-    case Boundary::right_traverse:
-      b.x = p.beams.joint_x;
-      b.y = p.beams.joint_y + d;
-      return b;
-    case Boundary::left_traverse:
-      b.x = -p.beams.joint_x;
-      b.y = p.beams.joint_y + d;
-      return b;
-  }
-  throw std::logic_error("no such boundary");
-}
-
-BodyState shifted_into_next(const GateParams& p, Ending ending, BodyState exit) {
-  const double width = p.gate_width();
-  if (ending == Ending::traversed) exit.y -= p.run.traverse_y;
-  if (ending == Ending::exited_left) exit.x += width;
-  if (ending == Ending::exited_right) exit.x -= width;
-  return exit;
-}
-
-StateSpace::StateSpace(std::array<Bins, kBoundaries> bins, bool open, std::vector<Entry> points)
-    : bins_(std::move(bins)), open_(open), points_(std::move(points)) {
-  for (int b = 0; b < kBoundaries; ++b) {
-    const Bins& g = bins_[b];
-    for (const std::vector<double>& edges : g.edges) {
+StateSpace::StateSpace(Section section, std::vector<Bins> bins, bool open,
+                       std::vector<Entry> points)
+    : section_(std::move(section)),
+      bins_(std::move(bins)),
+      trees_(section_.faces.size()),
+      next_(section_.faces.size()),
+      offset_{0},
+      open_(open),
+      points_(std::move(points)) {
+  section_.validate();
+  if (bins_.size() != section_.faces.size()) throw not_by_face("bins");
+  for (std::size_t f = 0; f < bins_.size(); ++f) {
+    int states = 1;
+    for (std::size_t axis = 0; axis < section_.coordinates.size(); ++axis) {
+      const std::vector<double>& edges = bins_[f].edges[axis];
       const bool ascending =
           std::adjacent_find(edges.begin(), edges.end(), std::greater_equal<>()) == edges.end();
       if (edges.size() < 2 || !ascending ||
           !std::all_of(edges.begin(), edges.end(), [](double e) { return std::isfinite(e); }))
-        throw std::invalid_argument("state space: boundary " + std::string(kBoundaryNames[b]) +
+        throw std::invalid_argument("state space: boundary " + section_.faces[f].name +
                                     " needs at least two ascending, finite bin edges");
+      states *= count(edges);
     }
-    int states = 1;
-    for (const std::vector<double>& edges : g.edges) states *= count(edges);
-    offset_[b + 1] = offset_[b] + states;
+    offset_.push_back(offset_.back() + states);
   }
   require_points();
 }
@@ -130,18 +76,20 @@ namespace {
 
 /// Follows a tree in preorder.
 struct TreeReader {
+  using Range = decltype(StateRange::at);
+
   const Tree& tree;
-  int face;
+  const std::string& face;
+  int coordinates;
   int first_state;
-  std::vector<int> next{};          // as StateSpace::next_
-  std::vector<StateRange>& ranges;  // of the leaves, appended
+  std::vector<int> next{};                    // as StateSpace::next_
+  std::vector<std::array<double, 2>>& sides;  // as StateSpace::sides_, appended
 
   [[noreturn]] void refuse(const char* what) const {
-    throw std::invalid_argument("state space: the tree of boundary " +
-                                std::string(kBoundaryNames[face]) + " " + what);
+    throw std::invalid_argument("state space: the tree of boundary " + face + " " + what);
   }
   /// Takes the nodes of one part, which has this range.
-  void read(StateRange range, int depth = 0) {
+  void read(Range range, int depth = 0) {
     constexpr int kDeepest = 64;
     const std::size_t at = next.size();
     if (at >= tree.nodes.size()) refuse("is not complete");
@@ -149,12 +97,12 @@ struct TreeReader {
     const Tree::Node& node = tree.nodes[at];
     if (node.axis == Tree::kLeaf) {
       next.push_back(first_state++);
-      ranges.push_back(range);
+      sides.insert(sides.end(), range.begin(), range.begin() + coordinates);
       return;
     }
-    if (node.axis < 0 || node.axis >= std::ssize(range.at) || !std::isfinite(node.cut))
+    if (node.axis < 0 || node.axis >= coordinates || !std::isfinite(node.cut))
       refuse("has a cut that is none");
-    std::array<double, 2>& side = range.at[static_cast<std::size_t>(node.axis)];
+    std::array<double, 2>& side = range[static_cast<std::size_t>(node.axis)];
     if (!(side[0] < node.cut && node.cut < side[1])) refuse("has a cut outside its range");
     next.push_back(0);
     const double top = std::exchange(side[1], node.cut);
@@ -167,20 +115,31 @@ struct TreeReader {
 
 }  // namespace
 
-StateSpace::StateSpace(std::array<Tree, kBoundaries> trees, std::vector<Entry> points)
-    : trees_(std::move(trees)), open_(true), points_(std::move(points)) {
-  for (int b = 0; b < kBoundaries; ++b) {
-    TreeReader reader{.tree = trees_[b], .face = b, .first_state = offset_[b], .ranges = ranges_};
-    const auto& seen = trees_[b].seen;
-    for (const auto& range : seen)
+StateSpace::StateSpace(Section section, std::vector<Tree> trees, std::vector<Entry> points)
+    : section_(std::move(section)),
+      bins_(section_.faces.size()),
+      trees_(std::move(trees)),
+      offset_{0},
+      open_(true),
+      points_(std::move(points)) {
+  section_.validate();
+  if (trees_.size() != section_.faces.size()) throw not_by_face("trees");
+  const auto coordinates = static_cast<int>(section_.coordinates.size());
+  for (std::size_t f = 0; f < trees_.size(); ++f) {
+    TreeReader reader{.tree = trees_[f],
+                      .face = section_.faces[f].name,
+                      .coordinates = coordinates,
+                      .first_state = offset_.back(),
+                      .sides = sides_};
+    for (const auto& range : trees_[f].seen)
       if (!std::isfinite(range[1] - range[0]) || !(range[0] <= range[1]))
         reader.refuse("has no range");
-    reader.read({b, seen});
-    if (reader.next.size() != trees_[b].nodes.size()) reader.refuse("has nodes behind its end");
-    next_[b] = std::move(reader.next);
-    offset_[b + 1] = static_cast<int>(ranges_.size());
+    reader.read(trees_[f].seen);
+    if (reader.next.size() != trees_[f].nodes.size()) reader.refuse("has nodes behind its end");
+    next_.push_back(std::move(reader.next));
+    offset_.push_back(static_cast<int>(sides_.size()) / coordinates);
   }
-  if (ranges_.size() > kMostStates)
+  if (bins_and_leaves() > kMostStates)
     throw std::invalid_argument("state space: trees of more than " + std::to_string(kMostStates) +
                                 " leaves");
   require_points();
@@ -210,38 +169,14 @@ Entry StateRange::middle() const {
   return entry;
 }
 
-StateSpace StateSpace::paper(const GateParams& p) {
-  const double w = p.beams.joint_x, y = p.beams.joint_y, r = p.body.radius;
-  if (!(p.run.traverse_y > y + r))
-    throw InvalidParameter("run.traverse_y_m",
-                           "run.traverse_y_m = " + std::to_string(p.run.traverse_y) +
-                               " is not permitted for a chain or a field: it must exceed "
-                               "beams.joint_y_m + body.radius_m = " +
-                               std::to_string(y + r));
-  const double unit = scale_of(p).speed();
-  const auto speeds = [unit](std::vector<double> edges) {  // Table III's, in m/s
-    for (double& v : edges) v *= unit;
-    return edges;
-  };
-  const auto leftward = speeds({-30, -20, -10, 0}), rightward = speeds({0, 10, 20, 30});
-  const auto side_vy = speeds({-20, -10, 0, 10, 20, 30});
-  const std::vector<double> below{r, (r + y) / 2, y}, above{r, p.run.traverse_y - y};
-  return StateSpace({Bins{{{{-w, -0.6 * w, -0.2 * w, 0.2 * w, 0.6 * w, w},
-                            speeds({-25, -15, -5, 5, 15, 25}),
-                            speeds({10, 20})}}},
-                     Bins{{below, leftward, side_vy}}, Bins{{below, rightward, side_vy}},
-                     Bins{{above, speeds({-30, 0}), speeds({-20, 30})}},
-                     Bins{{above, speeds({0, 30}), speeds({-20, 30})}}});
-}
-
 StateSpace::Index StateSpace::index_of(const Entry& entry) const {
   Index index;
   if (const auto point = std::find(points_.begin(), points_.end(), entry); point != points_.end()) {
-    index.state = offset_[kBoundaries] + static_cast<int>(point - points_.begin());
+    index.state = bins_and_leaves() + static_cast<int>(point - points_.begin());
     return index;
   }
   if (has_trees()) {
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+    for (std::size_t axis = 0; axis < section_.coordinates.size(); ++axis) {
       const auto& [low, high] = trees_[entry.face].seen[axis];
       if (entry.at[axis] < low || entry.at[axis] > high) index.beyond = true;
     }
@@ -249,7 +184,7 @@ StateSpace::Index StateSpace::index_of(const Entry& entry) const {
     return index;
   }
   int in_face = 0;
-  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+  for (std::size_t axis = 0; axis < section_.coordinates.size(); ++axis) {
     const std::vector<double>& edges = bins_[entry.face].edges[axis];
     in_face = in_face * count(edges) + bin_of(edges, entry.at[axis], index.beyond);
   }
@@ -259,22 +194,27 @@ StateSpace::Index StateSpace::index_of(const Entry& entry) const {
 }
 
 int StateSpace::face(int state) const {
-  if (state >= offset_[kBoundaries]) return points_.at(state - offset_[kBoundaries]).face;
+  if (state >= bins_and_leaves()) return points_.at(state - bins_and_leaves()).face;
   const auto above = std::upper_bound(offset_.begin(), offset_.end(), state);
   return static_cast<int>(above - offset_.begin()) - 1;
 }
 
 StateRange StateSpace::range(int state) const {
   StateRange range{face(state)};
-  if (state >= offset_[kBoundaries]) {
-    const Entry& point = points_[state - offset_[kBoundaries]];
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+  const std::size_t coordinates = section_.coordinates.size();
+  if (state >= bins_and_leaves()) {
+    const Entry& point = points_[state - bins_and_leaves()];
+    for (std::size_t axis = 0; axis < coordinates; ++axis)
       range.at[axis] = {point.at[axis], point.at[axis]};
     return range;
   }
-  if (has_trees()) return ranges_[static_cast<std::size_t>(state)];
+  if (has_trees()) {
+    const auto* const sides = sides_.data() + static_cast<std::size_t>(state) * coordinates;
+    std::copy(sides, sides + coordinates, range.at.begin());
+    return range;
+  }
   int in_face = state - first(range.face);
-  for (std::size_t axis = kMostCoordinates; axis-- > 0;) {
+  for (std::size_t axis = coordinates; axis-- > 0;) {
     const std::vector<double>& edges = bins_[range.face].edges[axis];
     const int bin = in_face % count(edges);
     range.at[axis] = {edges[bin], edges[bin + 1]};
@@ -286,7 +226,7 @@ StateRange StateSpace::range(int state) const {
 Entry StateSpace::sample(int state, Random& random) const {
   const StateRange range = this->range(state);
   Entry entry{range.face};
-  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {  // one draw each, of points too
+  for (std::size_t axis = 0; axis < section_.coordinates.size(); ++axis) {  // draws for points too
     const auto& [from, to] = range.at[axis];
     entry.at[axis] = from + (to - from) * random.uniform();
   }
@@ -299,18 +239,18 @@ StateSpace refined(const StateSpace& space, double factor) {
                                 " is not permitted: must be finite and > 0");
   if (space.has_trees())
     throw std::invalid_argument("bins: a tree has none that a factor could refine");
-  std::array<Bins, kBoundaries> bins = space.bins();
+  std::vector<Bins> bins = space.bins();
   double states = 0.0;
   for (Bins& b : bins) {
     double here = 1.0;
-    for (std::vector<double>& edges : b.edges) {
-      edges = rebinned(edges, factor);
-      here *= count(edges);
+    for (std::size_t axis = 0; axis < space.section().coordinates.size(); ++axis) {
+      b.edges[axis] = rebinned(b.edges[axis], factor);
+      here *= count(b.edges[axis]);
     }
     states += here;
   }
   if (states > kMostStates) throw too_many_states(factor);
-  return StateSpace(std::move(bins), space.open(), space.points());
+  return {space.section(), std::move(bins), space.open(), space.points()};
 }
 
 std::string text_of(const std::array<double, 2>& range) {
@@ -322,9 +262,35 @@ std::string text_of(const std::array<double, 2>& range) {
   return text.str();
 }
 
-std::string text_of(const StateRange& range) {
-  return std::string(kBoundaryNames[range.face]) + " d " + text_of(range.at[kEntryD]) + " m, vx " +
-         text_of(range.at[kEntryVx]) + " m/s, vy " + text_of(range.at[kEntryVy]) + " m/s";
+namespace {
+
+/// " m/s" for "m s-1", nothing for "1".
+std::string behind_number(const std::string& unit) {
+  std::string text;
+  std::istringstream words(unit == "1" ? "" : unit);
+  for (std::string word; words >> word;)
+    text += word.ends_with("-1") ? "/" + word.substr(0, word.size() - 2) : " " + word;
+  return text;
+}
+
+}  // namespace
+
+StateRange mirrored(const Section& section, const StateRange& range) {
+  const Face& face = section.faces[range.face];
+  StateRange image{face.mirror, range.at};
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    if (face.is_odd(axis)) image.at[axis] = {-range.at[axis][1], -range.at[axis][0]};
+  return image;
+}
+
+std::string text_of(const Section& section, const StateRange& range) {
+  std::string text = section.faces[range.face].name;
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+    const Coordinate& c = section.coordinates[axis];
+    text +=
+        (axis > 0 ? ", " : " ") + c.name + " " + text_of(range.at[axis]) + behind_number(c.unit);
+  }
+  return text;
 }
 
 }  // namespace gatewalk::dynamics

@@ -1,61 +1,17 @@
 #pragma once
-/// The discrete states of the chain: how a body enters a gate, as data. A space is of one of two
-/// kinds: bins on a grid of d, vx and vy (Table III's, or others), or the leaves of trees of cuts.
-/// Who leaves a gate enters the next one; `index_of` turns an entry into a state, says so
-/// when it lay outside every bin, and `sample` puts a body back into a state's range.
+/// The discrete states of the chain: how a body enters a cell, as data. A space is of one of two
+/// kinds: bins on a grid of the entries' coordinates, or the leaves of trees of cuts.
+/// `index_of` turns an entry into a state and says so when it lay outside every bin, and `sample`
+/// puts a body back into a state's range.
 
 #include <array>
-#include <cstddef>
-#include <string_view>
+#include <string>
 #include <vector>
 
-#include "dynamics/gate.h"
+#include "dynamics/base/random.h"
+#include "dynamics/section.h"
 
 namespace gatewalk::dynamics {
-
-inline constexpr std::size_t kMostCoordinates = 3;
-
-/// A body enters: through which face of a gate's border, and where and how fast, by the numbers of
-/// that face's coordinates.
-struct Entry {
-  int face = 0;
-  std::array<double, kMostCoordinates> at{};
-  friend bool operator==(const Entry&, const Entry&) = default;
-};
-
-/// The faces of a gate. `right_*`: through the right side, coming from the right neighbour.
-enum Boundary : int {
-  enter,           // EN, from below; d = x
-  right_deflect,   // RD, right side below the joint; d = joint_y - y
-  left_deflect,    // LD
-  right_traverse,  // RT, right side above the joint; d = y - joint_y
-  left_traverse,   // LT
-};
-inline constexpr int kBoundaries = 5;
-inline constexpr std::array<std::string_view, kBoundaries> kBoundaryNames{"EN", "RD", "LD", "RT",
-                                                                          "LT"};
-/// The coordinates of an entry into a gate: distance along the boundary (m), velocity (m/s).
-inline constexpr std::size_t kEntryD = 0, kEntryVx = 1, kEntryVy = 2;
-
-/// Step in gate indices that leads to entering at this boundary.
-struct Move {
-  int di_x = 0, di_y = 0;
-};
-[[nodiscard]] Move move_into(int face);
-
-/// The entry into the next gate that ends a run. Only for runs that left the gate.
-[[nodiscard]] Entry crossing_of(const GateParams& p, Ending ending, const BodyState& exit);
-
-/// That of a body on the lower edge of its gate, y = 0.
-[[nodiscard]] inline Entry entry_of(const BodyState& b) {
-  return {Boundary::enter, {b.x, b.vx, b.vy}};
-}
-
-/// Body on the boundary of its new gate, in that gate's frame.
-[[nodiscard]] BodyState entry_state(const GateParams& p, const Entry& entry);
-
-/// The same body in the frame of the gate it has moved into: nothing is rounded to the boundary.
-[[nodiscard]] BodyState shifted_into_next(const GateParams& p, Ending ending, BodyState exit);
 
 /// Edges of the bins of one face by coordinate, ascending; n + 1 edges make n bins.
 struct Bins {
@@ -90,40 +46,36 @@ inline constexpr int kMostStates = 1'000'000;
 
 class StateSpace {
  public:
-  /// States are the bins of every boundary (EN, RD, LD, RT, LT; within each by d, then vx, then
-  /// vy), then `points`: single entries that are states of their own, such as where walks start.
-  /// Open: the outermost bins take what lies beyond them, and their outer edges only say how far
-  /// entries were seen; nothing is clamped. Throws std::invalid_argument unless every boundary has
-  /// at least one bin and ascending edges, and all points are finite and different.
-  explicit StateSpace(std::array<Bins, kBoundaries> bins, bool open = false,
-                      std::vector<Entry> points = {});
+  /// States are the bins of every face (within each by the first coordinate, then the next), then
+  /// `points`: single entries that are states of their own, such as where walks start. Open: the
+  /// outermost bins take what lies beyond them, and their outer edges only say how far entries were
+  /// seen; nothing is clamped. Throws std::invalid_argument unless the section is valid, every face
+  /// has at least one bin and ascending edges, and all points are finite and different.
+  StateSpace(Section section, std::vector<Bins> bins, bool open = false,
+             std::vector<Entry> points = {});
 
-  /// States are the leaves of every boundary's tree, within each in preorder, then `points`. Open.
-  /// Throws std::invalid_argument unless every tree is complete with finite cuts that leave both
-  /// sides room, and all points are finite and different.
-  explicit StateSpace(std::array<Tree, kBoundaries> trees, std::vector<Entry> points = {});
+  /// States are the leaves of every face's tree, within each in preorder, then `points`. Open.
+  /// Throws std::invalid_argument unless the section is valid, every face has a tree, complete with
+  /// finite cuts that leave both sides room, and all points are finite and different.
+  StateSpace(Section section, std::vector<Tree> trees, std::vector<Entry> points = {});
 
-  /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size, velocities the
-  /// scene's own unit of speed: the table's in the paper's scenes. RT and LT are one state each;
-  /// their bin is what "Departures" in README.md says: y from joint + R up, velocities of RD and
-  /// LD. Throws InvalidParameter when no disc can be ahead of the beams inside the gate.
-  static StateSpace paper(const GateParams& p);
-
-  [[nodiscard]] int size() const { return offset_[kBoundaries] + static_cast<int>(points_.size()); }
+  [[nodiscard]] const Section& section() const { return section_; }
+  [[nodiscard]] int size() const { return bins_and_leaves() + static_cast<int>(points_.size()); }
   /// Column of "trapped", one past the states.
   [[nodiscard]] int trapped() const { return size(); }
-  [[nodiscard]] bool has_trees() const { return !ranges_.empty(); }
-  /// Of a space of bins; else without any edges.
-  [[nodiscard]] const std::array<Bins, kBoundaries>& bins() const { return bins_; }
-  /// Of a space of trees; else trees of a single leaf.
-  [[nodiscard]] const std::array<Tree, kBoundaries>& trees() const { return trees_; }
+  [[nodiscard]] bool has_trees() const { return !sides_.empty(); }
+  /// By face, of a space of bins; else without any edges.
+  [[nodiscard]] const std::vector<Bins>& bins() const { return bins_; }
+  /// By face, of a space of trees; else trees of a single leaf.
+  [[nodiscard]] const std::vector<Tree>& trees() const { return trees_; }
   [[nodiscard]] bool open() const { return open_; }
   [[nodiscard]] const std::vector<Entry>& points() const { return points_; }
+  /// The face's first state.
   [[nodiscard]] int first(int face) const { return offset_[static_cast<std::size_t>(face)]; }
 
   struct Index {
     int state = 0;
-    bool clamped = false;  // outside every bin of its boundary, put into the nearest
+    bool clamped = false;  // outside every bin of its face, put into the nearest
     bool beyond = false;   // clamped, or in an outermost bin that is open, beyond its outer edge
   };
   [[nodiscard]] Index index_of(const Entry& entry) const;
@@ -136,15 +88,17 @@ class StateSpace {
   friend bool operator==(const StateSpace&, const StateSpace&) = default;
 
  private:
+  [[nodiscard]] int bins_and_leaves() const { return offset_.back(); }
   void require_points() const;
   [[nodiscard]] int leaf_of(int face, const Entry& entry) const;
 
-  std::array<Bins, kBoundaries> bins_;
-  std::array<Tree, kBoundaries> trees_;
-  std::array<std::vector<int>, kBoundaries> next_;  // of a tree's node: where the part above its
-                                                    // cut is; of a leaf: its state
-  std::vector<StateRange> ranges_;                  // of the leaves
-  std::array<int, kBoundaries + 1> offset_{};
+  Section section_;
+  std::vector<Bins> bins_;              // by face
+  std::vector<Tree> trees_;             // by face
+  std::vector<std::vector<int>> next_;  // by face; of a tree's node: where the part above its cut
+                                        // is; of a leaf: its state
+  std::vector<std::array<double, 2>> sides_;  // (leaves x coordinates)
+  std::vector<int> offset_;                   // (faces + 1)
   bool open_ = false;
   std::vector<Entry> points_;
 };
@@ -156,8 +110,11 @@ class StateSpace {
 /// has at most kMostStates states.
 [[nodiscard]] StateSpace refined(const StateSpace& space, double factor);
 
+/// The mirror image of a state's range.
+[[nodiscard]] StateRange mirrored(const Section& section, const StateRange& range);
+
 /// "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"
-[[nodiscard]] std::string text_of(const StateRange& range);
+[[nodiscard]] std::string text_of(const Section& section, const StateRange& range);
 /// "[-5, 5]", or "15" for a single value.
 [[nodiscard]] std::string text_of(const std::array<double, 2>& range);
 

@@ -24,10 +24,12 @@ auto less_along(std::size_t axis) {
 /// Grows trees, in preorder.
 class Grower {
  public:
-  Grower(const Scale& scale, std::size_t per_leaf, std::vector<int>& state_of)
-      : per_unit_{1.0 / scale.length, 1.0 / scale.speed(), 1.0 / scale.speed()},
-        per_leaf_(per_leaf),
-        state_of_(state_of) {}
+  Grower(const std::vector<Coordinate>& coordinates, std::size_t per_leaf,
+         std::vector<int>& state_of)
+      : per_leaf_(per_leaf), state_of_(state_of) {
+    for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
+      per_unit_[axis] = 1.0 / coordinates[axis].scale;
+  }
 
   [[nodiscard]] Tree grow(Entries entries) {
     tree_ = {.nodes = {}, .seen = {}};
@@ -41,16 +43,13 @@ class Grower {
     return std::move(tree_);
   }
   /// A tree of one state, for which nothing was seen.
-  [[nodiscard]] Tree unseen(const Bins& bins) {
+  [[nodiscard]] Tree unseen(const Face& face) {
     ++states_;
-    Tree tree;
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
-      tree.seen[axis] = {bins.edges[axis].front(), bins.edges[axis].back()};
-    return tree;
+    return {.nodes = {Tree::Node{}}, .seen = face.usual};
   }
 
  private:
-  /// Axes by how far the entries spread along them, in the scene's own units, the most first.
+  /// Axes by how far the entries spread along them, on their scales, the most first.
   [[nodiscard]] std::array<std::size_t, kMostCoordinates> axes_by_spread(Entries entries) const {
     const auto n = static_cast<double>(entries.size());
     const std::array<double, kMostCoordinates> origin = entries.front().at;
@@ -115,7 +114,7 @@ class Grower {
     tree_.nodes.push_back({});
   }
 
-  std::array<double, kMostCoordinates> per_unit_;
+  std::array<double, kMostCoordinates> per_unit_{};  // 0 behind the last
   std::size_t per_leaf_;
   std::vector<int>& state_of_;
   int states_ = 0;  // leaves so far, of all trees
@@ -124,22 +123,21 @@ class Grower {
 
 }  // namespace
 
-StateSpace tree_space(const GateParams& p, const std::vector<Entry>& seen, int per_leaf,
+StateSpace tree_space(const Section& section, const std::vector<Entry>& seen, int per_leaf,
                       std::vector<Entry> points, std::vector<int>* state_of) {
   if (per_leaf < 1)
     throw std::invalid_argument("tree: " + std::to_string(per_leaf) +
                                 " entries per leaf are not permitted: must be 1 or more");
-  const StateSpace unseen = StateSpace::paper(p);
-  std::array<std::vector<Seen>, kBoundaries> at;
+  std::vector<std::vector<Seen>> at(section.faces.size());
   for (std::size_t i = 0; i < seen.size(); ++i)
     at[static_cast<std::size_t>(seen[i].face)].push_back({seen[i].at, static_cast<int>(i)});
   std::vector<int> states(seen.size());
-  Grower grower(scale_of(p), static_cast<std::size_t>(per_leaf), states);
-  std::array<Tree, kBoundaries> trees;
-  for (int b = 0; b < kBoundaries; ++b)
-    trees[b] = at[b].empty() ? grower.unseen(unseen.bins()[b]) : grower.grow(at[b]);
+  Grower grower(section.coordinates, static_cast<std::size_t>(per_leaf), states);
+  std::vector<Tree> trees;
+  for (std::size_t f = 0; f < at.size(); ++f)
+    trees.push_back(at[f].empty() ? grower.unseen(section.faces[f]) : grower.grow(at[f]));
   if (state_of != nullptr) *state_of = std::move(states);
-  return StateSpace(std::move(trees), std::move(points));
+  return {section, std::move(trees), std::move(points)};
 }
 
 }  // namespace gatewalk::dynamics

@@ -1,7 +1,7 @@
 #pragma once
 /// State spaces whose states are the leaves of trees grown over entries that were seen: many small
 /// leaves where bodies enter often, few large ones elsewhere.
-/// Cuts are midpoints of data and axes are compared in the scene's own units: a scene whose
+/// Cuts are midpoints of data and coordinates are compared on their scales: a scene whose
 /// lengths, times and masses are multiplied by powers of 4 gets the same trees times these powers,
 /// bit for bit.
 
@@ -15,13 +15,12 @@ namespace gatewalk::dynamics {
 /// predictions average over all leaves: from 5 to 20 all are as good (markov/README.md).
 inline constexpr int kEntriesPerLeaf = 7;
 
-/// Open; and `points`. Per boundary the entries are halved at the median of the axis along which
-/// they spread most (largest standard deviation, d in Scale::length, velocities in Scale::speed())
-/// until a half would have fewer than `per_leaf`; equal values stay together. A boundary where
-/// nothing was seen is one state, StateSpace::paper's range. Throws std::invalid_argument unless
-/// per_leaf >= 1, and for more than kMostStates leaves. `state_of`, if given: the state of each
-/// entry, as index_of says it.
-[[nodiscard]] StateSpace tree_space(const GateParams& p, const std::vector<Entry>& seen,
+/// Open; and `points`. Per face the entries are halved at the median of the coordinate along which
+/// they spread most (largest standard deviation, in Coordinate::scale) until a half would have
+/// fewer than `per_leaf`; equal values stay together. A face where nothing was seen is one state,
+/// of what is usual there. Throws std::invalid_argument unless per_leaf >= 1, and for more than
+/// kMostStates leaves. `state_of`, if given: the state of each entry, as index_of says it.
+[[nodiscard]] StateSpace tree_space(const Section& section, const std::vector<Entry>& seen,
                                     int per_leaf = kEntriesPerLeaf, std::vector<Entry> points = {},
                                     std::vector<int>* state_of = nullptr);
 

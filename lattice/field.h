@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/disc_section.h"
 #include "dynamics/params.h"
 
 namespace gatewalk::lattice {
@@ -58,6 +59,8 @@ class FieldGates {
   [[nodiscard]] const dynamics::GateParams& at(int column, int row) const {
     return types_[static_cast<std::size_t>(type_of(column, row))];
   }
+  /// How bodies enter any of them. Throws InvalidParameter as dynamics::disc_section.
+  [[nodiscard]] dynamics::Section section() const { return dynamics::disc_section(types_.front()); }
   /// Throws std::invalid_argument unless types are given for a field of this size, or one for all.
   void require_fits(const FieldParams& field) const;
 

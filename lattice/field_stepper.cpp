@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "dynamics/state_space.h"
+#include "dynamics/disc_section.h"
 #include "lattice/complementarity.h"
 
 namespace gatewalk::lattice {
@@ -109,7 +109,7 @@ GateRun FieldStepper::run_gate(RandomForce& force) {
 }
 
 void FieldStepper::go_on(Ending ending) {
-  const Move move = move_into(crossing_of(p_, ending, body_).face);
+  const Face& move = disc_section().faces[crossing_of(p_, ending, body_).face];
   const std::size_t next = find(column() + move.di_x, row() + move.di_y);
   body_ = shifted_into_next(p_, ending, body_);
   last_ = current_;

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <vector>
-
-#include "dynamics/quantile_bins.h"
 
 namespace gatewalk::lattice {
 
@@ -15,8 +14,8 @@ using namespace dynamics;
 std::vector<markov::Exit> exits_of(const StateSpace& space) {
   std::vector<markov::Exit> exits(space.size() + 1);
   for (int state = 0; state < space.size(); ++state) {
-    const Move move = move_into(space.face(state));
-    exits[state] = {state, move.di_x, move.di_y};
+    const Face& face = space.section().faces[space.face(state)];
+    exits[state] = {state, face.di_x, face.di_y};
   }
   return exits;  // the last one is a default Exit: trapped
 }
@@ -49,7 +48,7 @@ CountedField counted_field(const FieldGates& gates,
       const int point = row - (space.size() - static_cast<int>(space.points().size()));
       if (point >= 0) {
         const dynamics::Entry& entry = space.points()[static_cast<std::size_t>(point)];
-        if (dynamics::mirrored(entry) != entry) continue;
+        if (dynamics::mirrored(space.section(), entry) != entry) continue;
       }
       images[static_cast<std::size_t>(row)] = 2;
     }
@@ -72,40 +71,19 @@ ChainStart chain_start(const StateSpace& space, const FieldParams& field, const 
 
 namespace {
 
-struct Axis {
-  const char* name;
-  const char* unit;
-  const char* meaning;
-};
-constexpr std::array<Axis, kMostCoordinates> kAxes{
-    Axis{"d", "m", "bin edges of the distance along the boundary"},
-    Axis{"vx", "m s-1", "bin edges of the lateral velocity"},
-    Axis{"vy", "m s-1", "bin edges of the forward velocity"}};
-
-std::string array_name(int boundary, const Axis& axis) {
-  return std::string(kBoundaryNames[boundary]) + "_" + axis.name + "_edges";
+std::string edges_array(const Face& face, const Coordinate& coordinate) {
+  return face.name + "_" + coordinate.name + "_edges";
 }
 
-/// A table of a tree: by node, in preorder, but `seen`: low and high by axis.
-struct TreeArray {
-  const char *name, *unit, *meaning;
-};
-constexpr TreeArray kTreeAxis{"tree_axis", "1",
-                              "axis of each node's cut: 0 d, 1 vx, 2 vy; -1: a leaf, which is a "
-                              "state"};
-constexpr TreeArray kTreeCut{"tree_cut", "m or m s-1", "place of each node's cut"};
-constexpr TreeArray kTreeSeen{"tree_seen", "m or m s-1",
-                              "between what entries were seen: d low, d high, vx, vy"};
-
-std::string array_name(int boundary, const TreeArray& array) {
-  return std::string(kBoundaryNames[boundary]) + "_" + array.name;
-}
+// Tables of a face's tree: by node, in preorder, but the last one: low and high by coordinate.
+std::string tree_array(const Face& face, const char* name) { return face.name + "_tree_" + name; }
+constexpr const char *kTreeAxis = "axis", *kTreeCut = "cut", *kTreeSeen = "seen";
 
 // Only a space that is open, or has points, has these.
 constexpr const char* kOpenBins = "outermost_bins_are_open";
 constexpr const char* kPointBoundary = "point_boundary";
 
-std::string point_array(const Axis& axis) { return std::string("point_") + axis.name; }
+std::string point_array(const Coordinate& coordinate) { return "point_" + coordinate.name; }
 
 const std::vector<double>* find_array(const markov::CountsFile& in, const std::string& name) {
   for (const auto& array : in.arrays)
@@ -113,31 +91,34 @@ const std::vector<double>* find_array(const markov::CountsFile& in, const std::s
   return nullptr;
 }
 
-std::vector<Entry> points_in(const markov::CountsFile& in, const std::string& path) {
+std::vector<Entry> points_in(const markov::CountsFile& in, const Section& section,
+                             const std::string& path) {
   const std::vector<double>* const boundary = find_array(in, kPointBoundary);
   if (!boundary) return {};
   std::vector<Entry> points(boundary->size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double b = (*boundary)[i];
-    if (!(b >= 0.0 && b < kBoundaries && b == std::floor(b)))
+    if (!(b >= 0.0 && b < static_cast<double>(section.faces.size()) && b == std::floor(b)))
       throw markov::BadFile(path + ": " + kPointBoundary + " names no boundary");
     points[i].face = static_cast<int>(b);
   }
-  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-    const std::vector<double>* const values = find_array(in, point_array(kAxes[axis]));
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+    const std::string name = point_array(section.coordinates[axis]);
+    const std::vector<double>* const values = find_array(in, name);
     if (!values || values->size() != points.size())
-      throw markov::BadFile(path + ": " + point_array(kAxes[axis]) + " does not belong to " +
-                            kPointBoundary);
+      throw markov::BadFile(path + ": " + name + " does not belong to " + kPointBoundary);
     for (std::size_t i = 0; i < points.size(); ++i) points[i].at[axis] = (*values)[i];
   }
   return points;
 }
 
-void add_tree(markov::CountsFile& out, int boundary, const Tree& tree) {
-  const auto add = [&](const TreeArray& array, std::vector<double> values) {
-    out.arrays.push_back({array_name(boundary, array), array.unit,
-                          std::string(kBoundaryNames[boundary]) + ": " + array.meaning +
-                              "; nodes in preorder, states are the leaves of EN, RD, LD, RT, LT",
+void add_tree(markov::CountsFile& out, const Section& section, const Face& face, const Tree& tree) {
+  const auto add = [&](const char* name, const std::string& unit, const std::string& meaning,
+                       std::vector<double> values) {
+    out.arrays.push_back({tree_array(face, name), unit,
+                          face.name + ": " + meaning +
+                              "; nodes in preorder, states are the leaves of " +
+                              names_of(section.faces),
                           std::move(values)});
   };
   std::vector<double> axis, cut, seen;
@@ -145,96 +126,122 @@ void add_tree(markov::CountsFile& out, int boundary, const Tree& tree) {
     axis.push_back(node.axis);
     cut.push_back(node.cut);
   }
-  for (const auto& range : tree.seen) seen.insert(seen.end(), range.begin(), range.end());
-  add(kTreeAxis, std::move(axis));
-  add(kTreeCut, std::move(cut));
-  add(kTreeSeen, std::move(seen));
+  std::string units, sides;
+  std::set<std::string> told;
+  for (std::size_t k = 0; k < section.coordinates.size(); ++k) {
+    const Coordinate& c = section.coordinates[k];
+    seen.insert(seen.end(), tree.seen[k].begin(), tree.seen[k].end());
+    sides += k == 0 ? c.name + " low, " + c.name + " high" : ", " + c.name;
+    if (told.insert(c.unit).second) units += (k > 0 ? " or " : "") + c.unit;
+  }
+  add(kTreeAxis, "1",
+      "axis of each node's cut: " + numbers_of(section.coordinates) +
+          "; -1: a leaf, which is a state",
+      std::move(axis));
+  add(kTreeCut, units, "place of each node's cut", std::move(cut));
+  add(kTreeSeen, units, "between what entries were seen: " + sides, std::move(seen));
 }
 
-Tree tree_in(const markov::CountsFile& in, int boundary, const std::string& path) {
-  const auto find = [&](const TreeArray& array) -> const std::vector<double>& {
-    if (const auto* values = find_array(in, array_name(boundary, array))) return *values;
-    throw markov::BadFile(path + ": no " + array_name(boundary, array));
+Tree tree_in(const markov::CountsFile& in, const Section& section, const Face& face,
+             const std::string& path) {
+  const auto find = [&](const char* name) -> const std::vector<double>& {
+    if (const auto* values = find_array(in, tree_array(face, name))) return *values;
+    throw markov::BadFile(path + ": no " + tree_array(face, name));
   };
   const std::vector<double>&axis = find(kTreeAxis), &cut = find(kTreeCut), &seen = find(kTreeSeen);
+  const auto coordinates = static_cast<double>(section.coordinates.size());
   Tree tree;
-  if (axis.size() != cut.size() || seen.size() != 2 * tree.seen.size())
-    throw markov::BadFile(path + ": tables of the tree of " +
-                          std::string(kBoundaryNames[boundary]) + " do not fit each other");
+  if (axis.size() != cut.size() || seen.size() != 2 * section.coordinates.size())
+    throw markov::BadFile(path + ": tables of the tree of " + face.name + " do not fit each other");
   tree.nodes.clear();
   for (std::size_t i = 0; i < axis.size(); ++i) {
-    if (!(axis[i] >= Tree::kLeaf && axis[i] < std::ssize(kAxes) && axis[i] == std::floor(axis[i])))
-      throw markov::BadFile(path + ": " + array_name(boundary, kTreeAxis) + " names no axis");
+    if (!(axis[i] >= Tree::kLeaf && axis[i] < coordinates && axis[i] == std::floor(axis[i])))
+      throw markov::BadFile(path + ": " + tree_array(face, kTreeAxis) + " names no axis");
     tree.nodes.push_back({static_cast<int>(axis[i]), cut[i]});
   }
   for (std::size_t k = 0; k < seen.size(); ++k) tree.seen[k / 2][k % 2] = seen[k];
   return tree;
 }
 
-StateSpace bins_in(const markov::CountsFile& in, const std::string& path) {
-  std::array<Bins, kBoundaries> bins;
-  for (int b = 0; b < kBoundaries; ++b)
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-      const std::string name = array_name(b, kAxes[axis]);
-      if (const auto* values = find_array(in, name)) bins[b].edges[axis] = *values;
-      if (bins[b].edges[axis].empty()) throw markov::BadFile(path + ": no bin edges " + name);
+StateSpace bins_in(const markov::CountsFile& in, const Section& section, const std::string& path) {
+  std::vector<Bins> bins;
+  for (const Face& face : section.faces) {
+    auto& edges = bins.emplace_back().edges;
+    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+      const std::string name = edges_array(face, section.coordinates[axis]);
+      if (const auto* values = find_array(in, name)) edges[axis] = *values;
+      if (edges[axis].empty()) throw markov::BadFile(path + ": no bin edges " + name);
     }
-  return StateSpace(std::move(bins), find_array(in, kOpenBins) != nullptr, points_in(in, path));
+  }
+  return {section, std::move(bins), find_array(in, kOpenBins) != nullptr,
+          points_in(in, section, path)};
 }
 
-StateSpace trees_in(const markov::CountsFile& in, const std::string& path) {
-  std::array<Tree, kBoundaries> trees;
-  for (int b = 0; b < kBoundaries; ++b) trees[b] = tree_in(in, b, path);
-  return StateSpace(std::move(trees), points_in(in, path));
+StateSpace trees_in(const markov::CountsFile& in, const Section& section, const std::string& path) {
+  std::vector<Tree> trees;
+  for (const Face& face : section.faces) trees.push_back(tree_in(in, section, face, path));
+  return {section, std::move(trees), points_in(in, section, path)};
+}
+
+void add_bins(markov::CountsFile& out, const Section& section, const Face& face, const Bins& bins) {
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+    const Coordinate& c = section.coordinates[axis];
+    out.arrays.push_back({edges_array(face, c), c.unit,
+                          face.name + ": bin edges of the " + c.words + "; states are numbered " +
+                              names_of(section.faces) + ", within each by " +
+                              names_of(section.coordinates, ", then "),
+                          bins.edges[axis]});
+  }
 }
 
 // What the runs behind each count took: tables in the order of the counts.
 constexpr const char* kCountCosts = "count_";
-std::string cost_array(const CostName& cost, bool squares, const std::string& type) {
-  return kCountCosts + std::string(cost.key) + (squares ? "_squared" : "") +
-         (type.empty() ? "" : "_of_" + type);
+std::string cost_array(const CostInfo& cost, bool squares, const std::string& type) {
+  return kCountCosts + cost.key + (squares ? "_squared" : "") + (type.empty() ? "" : "_of_" + type);
 }
 
 void add_costs(markov::CountsFile& out, const Transitions& t, const std::string& type) {
-  std::array<std::array<std::vector<double>, 2>, kCosts> tables;
+  const std::vector<CostInfo>& costs = t.space.section().costs;
+  std::vector<std::array<std::vector<double>, 2>> tables(costs.size());
   for (std::size_t row = 0; row < t.rows.size(); ++row) {
     if (t.costs[row].size() != t.rows[row].size()) return;
     for (const auto& [column, sums] : t.costs[row])
-      for (std::size_t c = 0; c < kCosts; ++c) {
+      for (std::size_t c = 0; c < costs.size(); ++c) {
         tables[c][0].push_back(sums.sum[c]);
         tables[c][1].push_back(sums.squares[c]);
       }
   }
-  for (std::size_t c = 0; c < kCosts; ++c)
+  for (std::size_t c = 0; c < costs.size(); ++c)
     for (const bool squares : {false, true}) {
-      const std::string unit(kCostNames[c].unit);
-      out.arrays.push_back({cost_array(kCostNames[c], squares, type), squares ? unit + "2" : unit,
+      const std::string& unit = costs[c].unit;
+      out.arrays.push_back({cost_array(costs[c], squares, type), squares ? unit + "2" : unit,
                             std::string(squares ? "sum of squares" : "sum") + " over the runs of " +
-                                "each count: " + std::string(kCostNames[c].words),
+                                "each count: " + costs[c].words,
                             std::move(tables[c][squares])});
     }
 }
 
 void read_costs(const markov::CountsFile& in, const std::string& type, const std::string& path,
                 Transitions& t) {
-  std::array<std::array<const std::vector<double>*, 2>, kCosts> tables;
+  const std::vector<CostInfo>& costs = t.space.section().costs;
+  std::vector<std::array<const std::vector<double>*, 2>> tables(costs.size());
   std::size_t counts = 0, missing = 0;
   for (const auto& row : t.rows) counts += row.size();
-  for (std::size_t c = 0; c < kCosts; ++c)
+  for (std::size_t c = 0; c < costs.size(); ++c)
     for (const bool squares : {false, true}) {
-      const std::string name = cost_array(kCostNames[c], squares, type);
+      const std::string name = cost_array(costs[c], squares, type);
       const auto* const table = tables[c][squares] = find_array(in, name);
       missing += table == nullptr;
       if (table != nullptr && table->size() != counts)
         throw markov::BadFile(path + ": " + name + " does not belong to the counts");
     }
-  if (missing == 2 * kCosts) return;  // an older file
+  if (missing == 2 * costs.size()) return;  // an older file
   if (missing > 0) throw markov::BadFile(path + ": some tables of what runs took are missing");
   std::size_t at = 0;
   for (std::size_t row = 0; row < t.rows.size(); ++row)
     for (const auto& [column, n] : t.rows[row]) {
       CostSums& sums = t.costs[row][column];
-      for (std::size_t c = 0; c < kCosts; ++c) {
+      for (std::size_t c = 0; c < costs.size(); ++c) {
         sums.sum[c] = (*tables[c][0])[at];
         sums.squares[c] = (*tables[c][1])[at];
       }
@@ -243,12 +250,13 @@ void read_costs(const markov::CountsFile& in, const std::string& type, const std
 }
 
 /// Tables that do not belong to the state space.
-std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays) {
-  std::erase_if(arrays, [](const markov::NamedArray& a) {
-    const bool of_boundary =
-        std::any_of(kBoundaryNames.begin(), kBoundaryNames.end(),
-                    [&](std::string_view b) { return a.name.starts_with(std::string(b) + "_"); });
-    return of_boundary || a.name == kOpenBins || a.name.starts_with("point_") ||
+std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays,
+                                          const Section& section) {
+  std::erase_if(arrays, [&](const markov::NamedArray& a) {
+    const bool of_face =
+        std::any_of(section.faces.begin(), section.faces.end(),
+                    [&](const Face& face) { return a.name.starts_with(face.name + "_"); });
+    return of_face || a.name == kOpenBins || a.name.starts_with("point_") ||
            a.name.starts_with(kCountCosts);
   });
   return arrays;
@@ -283,14 +291,12 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
   }
   out.exits = exits_of(t.space);
   out.arrays.insert(out.arrays.end(), file.arrays.begin(), file.arrays.end());
-  for (int b = 0; b < kBoundaries && t.space.has_trees(); ++b) add_tree(out, b, t.space.trees()[b]);
-  for (int b = 0; b < kBoundaries && !t.space.has_trees(); ++b)
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis)
-      out.arrays.push_back({array_name(b, kAxes[axis]), kAxes[axis].unit,
-                            std::string(kBoundaryNames[b]) + ": " + kAxes[axis].meaning +
-                                "; states are numbered EN, RD, LD, RT, LT, within each by d, then "
-                                "vx, then vy",
-                            t.space.bins()[b].edges[axis]});
+  const Section& section = t.space.section();
+  for (std::size_t f = 0; f < section.faces.size(); ++f)
+    if (t.space.has_trees())
+      add_tree(out, section, section.faces[f], t.space.trees()[f]);
+    else
+      add_bins(out, section, section.faces[f], t.space.bins()[f]);
   if (t.space.open() && !t.space.has_trees())
     out.arrays.push_back(
         {kOpenBins, "1", "the outermost bins take what lies beyond their edges", {1.0}});
@@ -299,12 +305,12 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
     for (const Entry& c : t.space.points()) boundary.push_back(c.face);
     const std::string meaning = "entries that are states of their own, numbered after all bins";
     out.arrays.push_back(
-        {kPointBoundary, "1", meaning + ": 0 EN, 1 RD, 2 LD, 3 RT, 4 LT", boundary});
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+        {kPointBoundary, "1", meaning + ": " + numbers_of(section.faces), boundary});
+    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
       std::vector<double> values;
       for (const Entry& c : t.space.points()) values.push_back(c.at[axis]);
-      out.arrays.push_back(
-          {point_array(kAxes[axis]), kAxes[axis].unit, meaning, std::move(values)});
+      const Coordinate& c = section.coordinates[axis];
+      out.arrays.push_back({point_array(c), c.unit, meaning, std::move(values)});
     }
   }
   out.text = file.text;
@@ -325,15 +331,16 @@ MatrixFile read_matrix(const std::string& path) {
     }
   }();
   try {
-    const bool has_trees = find_array(in, array_name(0, kTreeAxis)) != nullptr;
-    const StateSpace space = has_trees ? trees_in(in, path) : bins_in(in, path);
+    const Section& section = disc_section();
+    const bool has_trees = find_array(in, tree_array(section.faces.front(), kTreeAxis)) != nullptr;
+    const StateSpace space = has_trees ? trees_in(in, section, path) : bins_in(in, section, path);
     if (space.size() != in.counts.rows())
       throw markov::BadFile(path + ": its state space makes " + std::to_string(space.size()) +
                             " states, the counts have " + std::to_string(in.counts.rows()) +
                             " rows");
     if (in.exits != exits_of(space))
       throw markov::BadFile(path + ": exits are not those of its states");
-    MatrixFile file{transitions_of(space, in), in.text, others_in(in.arrays)};
+    MatrixFile file{transitions_of(space, in), in.text, others_in(in.arrays, section)};
     read_costs(in, "", path, file.transitions);
     for (const auto& [name, of_type] : in.types) {
       const auto at = file.types.emplace(name, transitions_of(space, of_type)).first;

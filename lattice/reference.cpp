@@ -52,7 +52,7 @@ std::optional<Entry> follow(RunningTrial& t, const FieldGates& gates, const Fiel
   }
   const Entry crossing = crossing_of(p, run.ending, run.exit);
   if (keep_passages) t.passages.push_back({run.ending, type, crossing, costs});
-  const Move move = move_into(crossing.face);
+  const Face& move = space.section().faces[crossing.face];
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
     t.ending =
         markov::edge_before({field.columns, field.rows}, t.column + move.di_x, t.row + move.di_y);
@@ -270,7 +270,7 @@ FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const 
   gates.require_fits(field);
   for (const GateParams& p : gates.types()) validate(p, field);
   const GateParams& first = gates.at(field.start_column(), 0);
-  const StateSpace space = StateSpace::paper(first);  // `follow` counts with it; nobody asks here
+  const StateSpace space = table3_space(first);  // `follow` counts with it; nobody asks here
   RunningTrial t;
   t.column = field.start_column();
   RandomForce force = field_force(first, start, seed, trial);

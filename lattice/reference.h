@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/disc_section.h"
 #include "dynamics/ensemble.h"
-#include "dynamics/state_space.h"
 #include "dynamics/trace.h"
 #include "lattice/field.h"
 #include "markov/walk.h"

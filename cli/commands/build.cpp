@@ -65,7 +65,7 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
   const lattice::TreeChain chain = lattice::make_tree_chain(scene, how, options.work());
   const Json bins = "tree", space = to_json(chain, how.accuracy.accuracy);
   const int status = give_out(options, scene, {chain.transitions, bins, space, settled, {}},
-                              lattice::arrays_of(chain.pool));
+                              lattice::arrays_of(chain.pool, chain.kernel.space.section()));
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
   if (chain.prediction) warn_of(options, *chain.prediction, how.accuracy.accuracy);
   if (chain.range && !chain.range->reached)

@@ -31,7 +31,7 @@ struct Reading {
 /// A start on an edge of its bin is a start at random in one of two bins.
 bool on_an_edge(const ValidatedStart& start) {
   using namespace dynamics;
-  const Bins bins = StateSpace::paper({}).bins()[Boundary::enter];
+  const Bins bins = table3_space({}).bins()[Boundary::enter];
   const auto among = [](double x, const std::vector<double>& edges) {
     return std::find(edges.begin(), edges.end(), x) != edges.end();
   };
@@ -207,7 +207,7 @@ Claim drag(const Findings& f) {
 }
 
 Claim states() {
-  const auto space = dynamics::StateSpace::paper({});
+  const auto space = dynamics::table3_space({});
   return {"states",
           "Sec. III-C, Table III",
           "87 input and 88 output states.",

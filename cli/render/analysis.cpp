@@ -284,7 +284,7 @@ Json to_json(const AnalysedField& f) {
     q["kept_per_gate"] = a.endless->second / a.endless->survival;
     q["rows_per_gate"] = a.endless->rows_per_cell;
     for (std::size_t b = 0; b < a.endless_boundaries.size(); ++b)
-      q["boundaries"][std::string(dynamics::kBoundaryNames[b])] = a.endless_boundaries[b];
+      q["boundaries"][a.space.section().faces[b].name] = a.endless_boundaries[b];
     q["states"] = a.endless->states;
   }
   json["answer_from"] = f.from_trials ? "trials" : "chain";

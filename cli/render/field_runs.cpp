@@ -33,8 +33,8 @@ Json to_json(const lattice::FieldTally& tally, const lattice::Scene& scene,
                           {"cut_off", share_interval(tally.cut_off, tally.trials)}};
   Json entries;
   for (int b = 0; b < dynamics::kBoundaries; ++b)
-    entries[std::string(dynamics::kBoundaryNames[b])] = {{"count", tally.entries[b]},
-                                                         {"outside_bins", tally.clamped[b]}};
+    entries[dynamics::disc_section().faces[b].name] = {{"count", tally.entries[b]},
+                                                       {"outside_bins", tally.clamped[b]}};
   json["entries_between_gates"] = std::move(entries);
   json["bins"] = scene.bins ? "scene" : "paper";  // what outside_bins counts by
   if (settled) json["method"] = to_json(*settled);
@@ -89,7 +89,7 @@ std::string table_of(const markov::WalkTally& tally, const lattice::ChainStart& 
       limits_text(scene) + map_of(tally.final_cells.cast<double>() / n) +
       map_of_trapped(tally.trapped_cells.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) +
-      "\nstart: " + text_of(space.range(start.start.input)) +
+      "\nstart: " + text_of(space.section(), space.range(start.start.input)) +
       "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has, "
       "the chain's own error (bins, memory) gatewalk validate measures.\n";
   if (tally.unsampled > 0)

@@ -43,8 +43,8 @@ std::string row_table(const Transitions& t) {
   for (int row = 0; row < t.space.size(); ++row) {
     const StateRange range = t.space.range(row);
     const auto share = outcome_shares(t, row);
-    out << padded(std::to_string(row + 1), 4) << "  " << kBoundaryNames[range.face] << " "
-        << padded(dynamics::text_of(range.at[kEntryD]) + " ", -12)
+    out << padded(std::to_string(row + 1), 4) << "  " << t.space.section().faces[range.face].name
+        << " " << padded(dynamics::text_of(range.at[kEntryD]) + " ", -12)
         << padded(dynamics::text_of(range.at[kEntryVx]) + " ", -12)
         << padded(dynamics::text_of(range.at[kEntryVy]) + " ", -12)
         << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
@@ -64,7 +64,7 @@ std::string outputs_table(const Transitions& t, int row) {
       out << "trapped\n";
       continue;
     }
-    out << text_of(t.space.range(column)) << "\n";
+    out << text_of(t.space.section(), t.space.range(column)) << "\n";
   }
   return out.str();
 }
@@ -201,7 +201,7 @@ Json to_json(const lattice::MatrixFile& file, const std::string& path) {
     for (const auto& [column, count] : t.rows[row])
       outputs.push_back({{"output", column + 1}, {"count", count}});
     json["rows"].push_back({{"input", row + 1},
-                            {"boundary", kBoundaryNames[range.face]},
+                            {"boundary", t.space.section().faces[range.face].name},
                             {"d_m", range.at[kEntryD]},
                             {"vx_m_per_s", range.at[kEntryVx]},
                             {"vy_m_per_s", range.at[kEntryVy]},

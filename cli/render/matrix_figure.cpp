@@ -52,10 +52,11 @@ std::vector<StateGroup> groups_of(const StateSpace& space, int per_block, bool w
     if (states > 0) groups.push_back({name, first, states, (states + per_block - 1) / per_block});
   };
   const int starts = static_cast<int>(space.points().size()), all = space.size();
-  for (int b = 0; b < dynamics::kBoundaries; ++b) {
-    const int first = space.first(b);
-    const int next = b + 1 < dynamics::kBoundaries ? space.first(b + 1) : all - starts;
-    add(std::string(dynamics::kBoundaryNames[b]), first, next - first);
+  const auto faces = static_cast<int>(space.section().faces.size());
+  for (int face = 0; face < faces; ++face) {
+    const int first = space.first(face);
+    const int next = face + 1 < faces ? space.first(face + 1) : all - starts;
+    add(space.section().faces[face].name, first, next - first);
   }
   add(starts == 1 ? "start" : "starts", all - starts, starts);
   if (with_trapped) add("trapped", space.trapped(), 1);

@@ -9,7 +9,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
-#include "dynamics/state_space.h"
+#include "dynamics/disc_section.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -28,15 +28,14 @@ std::string p_words(double p) {
 }
 
 std::string outcome_name(int outcome) {
-  return outcome == dynamics::kBoundaries
-             ? "trapped"
-             : std::string(dynamics::kBoundaryNames[static_cast<std::size_t>(outcome)]);
+  return outcome == dynamics::kBoundaries ? "trapped"
+                                          : dynamics::disc_section().faces[outcome].name;
 }
 
 /// What a label means.
 std::string label_name(Question q, int label) {
   if (q == Question::gate_before)
-    return std::string(lattice::kOrigins[static_cast<std::size_t>(label)]);
+    return lattice::origins_of(dynamics::disc_section())[static_cast<std::size_t>(label)];
   if (q == Question::visit)
     return "gate number " + std::to_string(label + 1) +
            (label + 1 == lattice::kVisits ? " or later" : "");
@@ -128,9 +127,9 @@ template <class Value>
 Json by_ways(const std::vector<Value>& values) {
   Json j;
   std::size_t at = 0;
-  for (const std::string_view from : dynamics::kBoundaryNames)
+  for (int from = 0; from < dynamics::kBoundaries; ++from)
     for (int to = 0; to <= dynamics::kBoundaries; ++to)
-      j[std::string(from)][outcome_name(to)] = values[at++];
+      j[outcome_name(from)][outcome_name(to)] = values[at++];
   return j;
 }
 

@@ -35,6 +35,7 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
   const markov::FinalDistribution& f = s.final;
   const lattice::EndingShares shares = shown_endings(s.shares, f);
   const bool intervals = !std::isnan(shares.interval.front().front());
+  const dynamics::StateSpace& space = of.matrix.file.transitions.space;
   std::string table =
       endings_text(shares,
                    intervals
@@ -45,7 +46,7 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
       limits_text(of.matrix.scene) + map_of(f.final_cells) +
       map_of_trapped(markov::trapped_cells(f)) + "departed " + percent(f.left_field, 1.0, 2) +
       "\n" + cli::table_of(s.exits, of.matrix.scene) +
-      "start: " + text_of(of.matrix.file.transitions.space.range(s.start.start.input)) + "\n";
+      "start: " + text_of(space.section(), space.range(s.start.start.input)) + "\n";
   if (f.unsampled > 0.0)
     table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)

@@ -39,7 +39,7 @@ StartTexts::StartTexts(const std::vector<lattice::PaperStart>& starts) : texts(s
 Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space) {
   return {{"input", start.start.input + 1},
           {"counted_from", 1},
-          {"bin", text_of(space.range(start.start.input))},
+          {"bin", text_of(space.section(), space.range(start.start.input))},
           {"clamped", start.clamped}};
 }
 

@@ -159,7 +159,7 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
   const auto method = make_method(p);
   // Without room ahead of the beams there is no next gate, and no column.
   std::optional<StateSpace> space;
-  if (p.run.traverse_y > p.beams.joint_y + p.body.radius) space = StateSpace::paper(p);
+  if (p.run.traverse_y > p.beams.joint_y + p.body.radius) space = table3_space(p);
   const std::size_t before = ends.trials.size();
   ends.trials.resize(before + static_cast<std::size_t>(range.count));
   struct Faults {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/state_space.h"
+#include "dynamics/disc_section.h"
 #include "dynamics/study/verdict.h"
 
 namespace gatewalk::dynamics {

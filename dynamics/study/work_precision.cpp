@@ -33,7 +33,7 @@ class Charting {
  public:
   Charting(const GateParams& p, const BodyState& start, const WorkPrecisionOptions& options,
            const Work& work)
-      : start_(start), options_(options), work_(work), space_(StateSpace::paper(p)) {
+      : start_(start), options_(options), work_(work), space_(table3_space(p)) {
     chart_.label = options.label;
     chart_.params = p;
     chart_.trials = options.trials;
@@ -213,7 +213,7 @@ const ChartPoint* WorkPrecision::cheapest() const {
 // ---- All of it ----
 
 void require_reference(const GateParams& p) {
-  (void)StateSpace::paper(p);
+  (void)table3_space(p);
   for (const Setting& s : {reference_setting(p), second_reference_setting(p)})
     (void)make_method(s.applied_to(p));
 }

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dynamics/quantile_bins.h"
 #include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {
@@ -65,7 +64,8 @@ std::vector<std::vector<Entry>> entries_of_leaves(const Kernel& kernel, const Fi
       entries[static_cast<std::size_t>(kernel.space.index_of(c).state)].push_back(c);
     };
     put(entry);
-    if (symmetric(gates.types()[static_cast<std::size_t>(type)])) put(mirrored(entry));
+    if (symmetric(gates.types()[static_cast<std::size_t>(type)]))
+      put(mirrored(kernel.space.section(), entry));
   });
   return entries;
 }

@@ -22,7 +22,7 @@ PoolRunner::PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most
     : scene_(scene),
       gates_(gates_of(scene)),
       field_(scene.field),
-      space_(StateSpace::paper(scene.gate)),
+      space_(table3_space(scene.gate)),
       seed_(seed),
       most_runs_(most_runs),
       work_(work) {

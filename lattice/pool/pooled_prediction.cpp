@@ -334,13 +334,12 @@ PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
 }
 
 StartRange usual_range(const Scene& scene) {
-  const Bins bins = StateSpace::paper(scene.gate).bins().front();
-  const auto holding = [](const std::vector<double>& edges, double own) {
-    return std::array<double, 2>{std::min(edges.front(), own), std::max(edges.back(), own)};
+  const auto usual = disc_section(scene.gate).faces[Boundary::enter].usual;
+  const auto holding = [](const std::array<double, 2>& range, double own) {
+    return std::array<double, 2>{std::min(range[0], own), std::max(range[1], own)};
   };
-  return {holding(bins.edges[kEntryD], scene.start.x),
-          holding(bins.edges[kEntryVx], scene.start.vx),
-          holding(bins.edges[kEntryVy], scene.start.vy)};
+  return {holding(usual[kEntryD], scene.start.x), holding(usual[kEntryVx], scene.start.vx),
+          holding(usual[kEntryVy], scene.start.vy)};
 }
 
 PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& range,

@@ -7,8 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dynamics/quantile_bins.h"
-
 namespace gatewalk::lattice {
 namespace {
 
@@ -119,9 +117,9 @@ markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
   std::vector<std::int64_t> runs(static_cast<std::size_t>(space.size()), 0);
   for (const int r : row) ++runs[static_cast<std::size_t>(r)];
   first.resize(runs.size());
-  for (int b = 0; b < kBoundaries; ++b) {
-    const int begin = space.first(b);
-    join_leaves(space.trees()[static_cast<std::size_t>(b)], runs.data() + begin, least, begin,
+  for (int face = 0; face < std::ssize(space.trees()); ++face) {
+    const int begin = space.first(face);
+    join_leaves(space.trees()[static_cast<std::size_t>(face)], runs.data() + begin, least, begin,
                 first.data() + begin);
   }
   for (int& r : row) r = first[static_cast<std::size_t>(r)];
@@ -171,24 +169,26 @@ std::int64_t RunPool::trials() const {
 
 Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, TrialGroup group) {
   const std::vector<std::size_t> images = images_of(gates);
+  const Section section = gates.section();
   std::vector<Entry> entries;
   std::vector<std::uint8_t> types;
   each_kernel_run(pool, group, [&](const Entry& entry, const GatePassage& run, const auto*) {
     entries.push_back(entry);
-    if (images[run.type] == 2) entries.push_back(mirrored(entry));
+    if (images[run.type] == 2) entries.push_back(mirrored(section, entry));
     types.resize(entries.size(), run.type);
   });
   std::vector<int> row, column;
   const std::int64_t fits = 2 * std::ssize(entries) / kMostStates;
   per_leaf = static_cast<int>(std::max<std::int64_t>(per_leaf, fits));
-  StateSpace space = tree_space(gates.types().front(), entries, per_leaf, {}, &row);
+  StateSpace space = tree_space(section, entries, per_leaf, {}, &row);
   column.reserve(row.size());
   each_kernel_run(pool, group, [&](const Entry&, const GatePassage& run, const GatePassage* next) {
     const std::size_t at = column.size() + images[run.type];
     for (std::size_t image = 0; image < images[run.type]; ++image)
-      column.push_back(next && image < images[next->type]
-                           ? row[at + image]
-                           : output_of(space, run, image == 0 ? run.entry : mirrored(run.entry)));
+      column.push_back(
+          next && image < images[next->type]
+              ? row[at + image]
+              : output_of(space, run, image == 0 ? run.entry : mirrored(section, run.entry)));
   });
   Kernel kernel{std::move(space), {}};
   const auto seen_in = [&](const std::vector<Entry>& there, const std::vector<int>& states) {
@@ -221,7 +221,8 @@ SeenEntries::SeenEntries(const StateSpace& space, const std::vector<Entry>& entr
   Box none;
   none.low.fill(kNone);
   none.high.fill(-kNone);
-  boxes.assign(static_cast<std::size_t>(space.size() / kStatesOfBox + kBoundaries + 1), none);
+  boxes.assign(
+      static_cast<std::size_t>(space.size() / kStatesOfBox + std::ssize(space.trees()) + 1), none);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     Box& b = boxes[place_of(space, state[i])];
     ++b.entries;
@@ -260,7 +261,7 @@ double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldPa
       if (passages.size() > 1 || passage.ending == Ending::trapped ||
           passage.ending == Ending::broken)
         continue;  // the kernel has the entry, or there is none
-      const Move move = move_into(passage.entry.face);
+      const Face& move = kernel.space.section().faces[passage.entry.face];
       const int column = field.start_column() + move.di_x;
       if (!field.contains(column, move.di_y)) continue;
       const auto type = static_cast<std::size_t>(gates.type_of(column, move.di_y));
@@ -269,17 +270,19 @@ double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldPa
       ++here[type][at];
       if (!kernel.seen[type].boxes[at].holds(passage.entry)) ++outside;
     }
-  // Of n entries the next one of the same kind lies beyond one of the six sides of their box with
-  // 6 / (n + 1), about; how many of several do is the less certain the more there are of one box.
+  // Of n entries the next one of the same kind lies beyond one of the sides of their box with
+  // sides / (n + 1), about; how many of several do is the less certain the more there are of one
+  // box.
   constexpr std::int64_t kFew = 12;  // of fewer nothing is known
+  const double sides = 2.0 * static_cast<double>(kernel.space.section().coordinates.size());
   double expected = 0.0, variance = 0.0;
   for (std::size_t type = 0; type < here.size(); ++type)
     for (std::size_t i = 0; i < here[type].size(); ++i) {
       const std::int64_t n = kernel.seen[type].boxes[i].entries;
       if (n < kFew) continue;
-      const double mean = 6.0 * static_cast<double>(here[type][i]) / static_cast<double>(n + 1);
+      const double mean = sides * static_cast<double>(here[type][i]) / static_cast<double>(n + 1);
       expected += mean;
-      variance += mean + mean * mean / 6.0;
+      variance += mean + mean * mean / sides;
     }
   return std::max(0.0, static_cast<double>(outside) - expected - 2.0 * std::sqrt(variance)) /
          static_cast<double>(start.first_runs());
@@ -291,6 +294,7 @@ std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const FieldGa
   const auto row_of = [&](std::size_t type, int leaf) {
     return kernel.shared_by.empty() ? leaf : kernel.shared_by[type][static_cast<std::size_t>(leaf)];
   };
+  const Section& section = kernel.space.section();
   std::vector<std::vector<CostSums>> sums;
   for (const markov::Counts& counts : kernel.counts)
     sums.emplace_back(static_cast<std::size_t>(counts.nonZeros()));
@@ -298,9 +302,10 @@ std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const FieldGa
     const markov::Counts& counts = kernel.counts[run.type];
     for (std::size_t image = 0; image < images[run.type]; ++image) {
       const bool mirror = image == 1;
-      const int leaf = kernel.space.index_of(mirror ? mirrored(entry) : entry).state;
+      const int leaf = kernel.space.index_of(mirror ? mirrored(section, entry) : entry).state;
       const int row = row_of(run.type, leaf);
-      const int column = output_of(kernel.space, run, mirror ? mirrored(run.entry) : run.entry);
+      const int column =
+          output_of(kernel.space, run, mirror ? mirrored(section, run.entry) : run.entry);
       const auto *begin = counts.innerIndexPtr() + counts.outerIndexPtr()[row],
                  *end = counts.innerIndexPtr() + counts.outerIndexPtr()[row + 1];
       const auto* const at = std::lower_bound(begin, end, column);
@@ -326,14 +331,14 @@ template <class Use>
 void each_first_run(const FieldGates& gates, const StateSpace& space, const StartTrials& start,
                     TrialGroup group, Use use) {
   const std::vector<std::size_t> images = images_of(gates);
-  const bool in_the_middle = mirrored(start.start) == start.start;
+  const bool in_the_middle = mirrored(space.section(), start.start) == start.start;
   for (const FieldTrials* trials : {&start.full, &start.first})
     for (std::int64_t i = group.group; i < std::ssize(trials->final_gates); i += group.of) {
       const GatePassage& passage = trials->of_trial(static_cast<std::size_t>(i)).front();
       if (passage.ending == Ending::broken) continue;
       use(output_of(space, passage, passage.entry), passage);
       if (in_the_middle && images[passage.type] == 2)
-        use(output_of(space, passage, mirrored(passage.entry)), passage);
+        use(output_of(space, passage, mirrored(space.section(), passage.entry)), passage);
     }
 }
 
@@ -365,7 +370,8 @@ std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& s
     if (passage.ending == Ending::broken) continue;
     ++row[static_cast<std::size_t>(output_of(space, passage, passage.entry))];
     if (images[passage.type] == 2)
-      ++row[static_cast<std::size_t>(output_of(space, passage, mirrored(passage.entry)))];
+      ++row[static_cast<std::size_t>(
+          output_of(space, passage, mirrored(space.section(), passage.entry)))];
   }
   return row;
 }
@@ -403,7 +409,8 @@ std::vector<Transitions> transitions_of(const Kernel& kernel, const FieldGates& 
   const int start_type = gates.type_of(field.start_column(), 0);
   for (const markov::Counts& counts : kernel.counts) {
     const bool has_first = std::ssize(all) == start_type;
-    Transitions& t = all.emplace_back(StateSpace(kernel.space.trees(), starts));
+    Transitions& t =
+        all.emplace_back(StateSpace(kernel.space.section(), kernel.space.trees(), starts));
     const auto add = [&](int row, int column, std::int64_t n) {
       t.rows[static_cast<std::size_t>(row)]
             [column == kernel.space.trapped() ? t.space.trapped() : column] += n;

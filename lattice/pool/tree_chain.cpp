@@ -31,8 +31,9 @@ std::vector<markov::FinalDistribution> answers(const Scene& scene, const RunPool
 
 /// Larger leaves, until there are no more states than that.
 void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t seed) {
-  if (most < kBoundaries)
-    throw std::invalid_argument("a chain has " + std::to_string(kBoundaries) +
+  const auto faces = std::ssize(chain.kernel.space.trees());
+  if (most < faces)
+    throw std::invalid_argument("a chain has " + std::to_string(faces) +
                                 " states at least, one for each way to enter a gate; " +
                                 std::to_string(most) + " are too few");
   const Kernel full = chain.kernel;
@@ -95,62 +96,82 @@ TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options, const 
 namespace {
 
 struct RunArray {
-  const char *name, *unit, *meaning;
+  std::string name, unit, meaning;
 };
-constexpr RunArray kTrialRuns{"trial_runs", "1",
-                              "gate runs of each trial, one after the other in run_*"},
+const RunArray kTrialRuns{"trial_runs", "1",
+                          "gate runs of each trial, one after the other in run_*"},
     kTrialKind{"trial_kind", "1",
                "0: from anywhere; from a start of its own: 1 through the field, 2 one gate only"},
     kRunEnding{"run_ending", "1",
                "how each gate run ended: 0 traversed, 1 exited left, 2 exited right, 3 trapped"},
-    kRunBoundary{"run_boundary", "1",
-                 "how it entered the next gate: 0 EN, 1 RD, 2 LD, 3 RT, 4 LT (trapped: 0)"},
     // Only where there are several.
     kRunType{"run_type", "1",
              "type of the gate of each run: 0 the scene's own, then those of its terrain that are "
              "not like one before, by name"};
 
-/// By coordinate: where each trial started, and where each run entered the next gate.
-constexpr std::array<RunArray, kMostCoordinates> kTrialStart{
-    {{"trial_d", "m", "where each trial started, on the lower edge of a gate"},
-     {"trial_vx", "m s-1", "lateral velocity there"},
-     {"trial_vy", "m s-1", "forward velocity there"}}},
-    kRunEntry{{{"run_d", "m", "where on that boundary (trapped: 0)"},
-               {"run_vx", "m s-1", "lateral velocity there (trapped: 0)"},
-               {"run_vy", "m s-1", "forward velocity there (trapped: 0)"}}};
+RunArray face_array(const Section& section) {
+  return {"run_boundary", "1",
+          "how it entered the next gate: " + numbers_of(section.faces) + " (trapped: 0)"};
+}
+/// Where each trial started, by coordinate.
+std::vector<RunArray> start_arrays(const Section& section) {
+  std::vector<RunArray> arrays;
+  for (const Coordinate& c : section.coordinates)
+    arrays.push_back({"trial_" + c.name, c.unit,
+                      arrays.empty() ? "where each trial started, on the lower edge of a gate"
+                                     : c.words + " there"});
+  return arrays;
+}
+/// Where each run entered the next gate, by coordinate.
+std::vector<RunArray> entry_arrays(const Section& section) {
+  std::vector<RunArray> arrays;
+  for (const Coordinate& c : section.coordinates)
+    arrays.push_back(
+        {"run_" + c.name, c.unit,
+         (arrays.empty() ? "where on that boundary" : c.words + " there") + " (trapped: 0)"});
+  return arrays;
+}
+/// What each run took, by cost; older files have none.
+std::vector<RunArray> cost_arrays(const Section& section) {
+  std::vector<RunArray> arrays;
+  for (const CostInfo& c : section.costs)
+    arrays.push_back({"run_" + c.key, c.unit, c.words + ", of each gate run"});
+  return arrays;
+}
 
 enum Kind : int { kScattered, kFullTrial, kFirstRun };
-
-/// What a run took: "run_seconds", ...; older files have none.
-std::string array_name(const CostName& cost) { return "run_" + std::string(cost.key); }
 
 /// Appends trials to the tables.
 struct RunTables {
   std::vector<double> trial_runs, trial_kind;
-  std::vector<double> ending, type, boundary;
-  std::array<std::vector<double>, kMostCoordinates> start, entry;
-  std::array<std::vector<double>, kCosts> costs;
+  std::vector<double> ending, type, face;
+  std::vector<std::vector<double>> start, entry;  // by coordinate
+  std::vector<std::vector<double>> costs;         // by cost
+
+  explicit RunTables(const Section& section)
+      : start(section.coordinates.size()),
+        entry(section.coordinates.size()),
+        costs(section.costs.size()) {}
 
   void add(int kind, const Entry& from, std::span<const GatePassage> passages) {
     trial_kind.push_back(kind);
     trial_runs.push_back(static_cast<double>(passages.size()));
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
-      start[axis].push_back(from.at[axis]);
+    for (std::size_t axis = 0; axis < start.size(); ++axis) start[axis].push_back(from.at[axis]);
     for (const GatePassage& p : passages) {
       ending.push_back(static_cast<double>(p.ending));
       type.push_back(p.type);
-      boundary.push_back(p.entry.face);
-      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+      face.push_back(p.entry.face);
+      for (std::size_t axis = 0; axis < entry.size(); ++axis)
         entry[axis].push_back(p.entry.at[axis]);
-      for (std::size_t c = 0; c < kCosts; ++c) costs[c].push_back(p.costs[c]);
+      for (std::size_t c = 0; c < costs.size(); ++c) costs[c].push_back(p.costs[c]);
     }
   }
 };
 
 }  // namespace
 
-std::vector<markov::NamedArray> arrays_of(const RunPool& pool) {
-  RunTables t;
+std::vector<markov::NamedArray> arrays_of(const RunPool& pool, const Section& section) {
+  RunTables t(section);
   for (const StartTrials& s : pool.starts)
     for (const int kind : {kFullTrial, kFirstRun}) {
       const FieldTrials& trials = kind == kFullTrial ? s.full : s.first;
@@ -163,16 +184,17 @@ std::vector<markov::NamedArray> arrays_of(const RunPool& pool) {
   const auto add = [&](const RunArray& array, std::vector<double>& values) {
     arrays.push_back({array.name, array.unit, array.meaning, std::move(values)});
   };
+  const auto add_all = [&](const std::vector<RunArray>& all,
+                           std::vector<std::vector<double>>& values) {
+    for (std::size_t i = 0; i < all.size(); ++i) add(all[i], values[i]);
+  };
   add(kTrialRuns, t.trial_runs);
   add(kTrialKind, t.trial_kind);
-  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) add(kTrialStart[axis], t.start[axis]);
+  add_all(start_arrays(section), t.start);
   add(kRunEnding, t.ending);
-  add(kRunBoundary, t.boundary);
-  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) add(kRunEntry[axis], t.entry[axis]);
-  for (std::size_t c = 0; c < kCosts; ++c)
-    arrays.push_back({array_name(kCostNames[c]), std::string(kCostNames[c].unit),
-                      std::string(kCostNames[c].words) + ", of each gate run",
-                      std::move(t.costs[c])});
+  add(face_array(section), t.face);
+  add_all(entry_arrays(section), t.entry);
+  add_all(cost_arrays(section), t.costs);
   if (std::any_of(t.type.begin(), t.type.end(), [](double type) { return type != 0.0; }))
     add(kRunType, t.type);
   return arrays;
@@ -197,24 +219,25 @@ class RunReader {
   RunReader(const MatrixFile& file, std::size_t types, const std::string& path)
       : file_(file),
         types_(types),
+        section_(file.transitions.space.section()),
         path_(path),
         runs_(table(kTrialRuns)),
         kind_(table(kTrialKind)),
-        start_(tables(kTrialStart)),
+        start_(tables(start_arrays(section_))),
         ending_(table(kRunEnding)),
         type_(find(file, kRunType.name)),
-        boundary_(table(kRunBoundary)),
-        entry_(tables(kRunEntry)) {
+        face_(table(face_array(section_))),
+        entry_(tables(entry_arrays(section_))) {
     if (kind_.size() != runs_.size()) refuse("trials");
     for (const auto* t : start_)
       if (t->size() != runs_.size()) refuse("trials");
-    if (boundary_.size() != ending_.size()) refuse("runs");
+    if (face_.size() != ending_.size()) refuse("runs");
     for (const auto* t : entry_)
       if (t->size() != ending_.size()) refuse("runs");
     if (type_ != nullptr && type_->size() != ending_.size()) refuse("runs");
-    for (std::size_t c = 0; c < kCosts; ++c) {
-      costs_[c] = find(file, array_name(kCostNames[c]));
-      if (costs_[c] != nullptr && costs_[c]->size() != ending_.size()) refuse("runs");
+    for (const RunArray& array : cost_arrays(section_)) {
+      costs_.push_back(find(file, array.name));
+      if (costs_.back() != nullptr && costs_.back()->size() != ending_.size()) refuse("runs");
     }
   }
 
@@ -237,10 +260,10 @@ class RunReader {
     if (const auto* values = find(file_, array.name)) return *values;
     throw markov::BadFile(path_ + ": no table " + array.name);
   }
-  using Columns = std::array<const std::vector<double>*, kMostCoordinates>;  // by coordinate
-  [[nodiscard]] Columns tables(const std::array<RunArray, kMostCoordinates>& arrays) const {
+  using Columns = std::vector<const std::vector<double>*>;
+  [[nodiscard]] Columns tables(const std::vector<RunArray>& arrays) const {
     Columns columns;
-    for (std::size_t axis = 0; axis < arrays.size(); ++axis) columns[axis] = &table(arrays[axis]);
+    for (const RunArray& array : arrays) columns.push_back(&table(array));
     return columns;
   }
   /// A whole number in [0, end).
@@ -275,11 +298,11 @@ class RunReader {
       const std::string run = "run " + std::to_string(at_ + 1);
       const auto ending = static_cast<Ending>(whole(ending_[at_], 4, run));
       if (ending == Ending::trapped && k + 1 < count) refuse(run);
-      const int face = whole(boundary_[at_], kBoundaries, run);
+      const int face = whole(face_[at_], static_cast<double>(section_.faces.size()), run);
       const int type =
           type_ == nullptr ? 0 : whole((*type_)[at_], static_cast<double>(types_), run);
-      Costs costs;
-      for (std::size_t c = 0; c < kCosts; ++c)
+      Costs costs{};
+      for (std::size_t c = 0; c < costs_.size(); ++c)
         sum[c] += costs[c] = costs_[c] == nullptr ? std::nan("") : (*costs_[c])[at_];
       trials.passages.push_back(
           {ending, static_cast<std::uint8_t>(type), entry(face, entry_, at_, run), costs});
@@ -292,20 +315,22 @@ class RunReader {
 
   const MatrixFile& file_;
   std::size_t types_;  // of gates
+  const Section& section_;
   const std::string& path_;
   const std::vector<double>&runs_, &kind_;
   Columns start_;
   const std::vector<double>& ending_;
   const std::vector<double>* type_;  // null: all are the first
-  const std::vector<double>& boundary_;
+  const std::vector<double>& face_;
   Columns entry_;
-  std::array<const std::vector<double>*, kCosts> costs_{};  // null: an older file
-  std::size_t at_ = 0;                                      // run
+  Columns costs_;       // null: an older file
+  std::size_t at_ = 0;  // run
 };
 
 /// Follows trials through a field by their passages, to where and how they end there. False when
 /// they were not run in such a field.
-bool follow(const FieldGates& gates, const FieldParams& field, FieldTrials& trials) {
+bool follow(const FieldGates& gates, const FieldParams& field, const Section& section,
+            FieldTrials& trials) {
   for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
     int column = field.start_column(), row = 0;
     std::optional<markov::Ending> ending;
@@ -317,7 +342,7 @@ bool follow(const FieldGates& gates, const FieldParams& field, FieldTrials& tria
         ending = markov::Ending::trapped;
         break;
       }
-      const Move move = move_into(p.entry.face);
+      const Face& move = section.faces[p.entry.face];
       if (!field.contains(column + move.di_x, row + move.di_y)) {
         ending =
             markov::edge_before({field.columns, field.rows}, column + move.di_x, row + move.di_y);
@@ -365,7 +390,8 @@ RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& p
   const FieldGates gates = gates_of(scene);
   RunPool pool = RunReader(file, gates.types().size(), path).read();
   scatter_others(pool, gates.type_of(scene.field.start_column(), 0));
-  for (StartTrials& s : pool.starts) s.knows_endings = follow(gates, scene.field, s.full);
+  const Section& section = file.transitions.space.section();
+  for (StartTrials& s : pool.starts) s.knows_endings = follow(gates, scene.field, section, s.full);
   return pool;
 }
 

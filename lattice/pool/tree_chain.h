@@ -41,10 +41,11 @@ struct TreeChain {
 /// Part of the accuracy asked for a range that error bars of a single start are to keep.
 inline constexpr double kPartForOne = 0.5;
 
-/// The runs of a pool as tables of a matrix file, and back. Starts know how their full trials end
-/// where these were run in the scene's field. Throws markov::BadFile naming `path` when they do not
-/// add up.
-[[nodiscard]] std::vector<markov::NamedArray> arrays_of(const RunPool& pool);
+/// The runs of a pool of entries in this section as tables of a matrix file, and back. Starts know
+/// how their full trials end where these were run in the scene's field. Throws markov::BadFile
+/// naming `path` when they do not add up.
+[[nodiscard]] std::vector<markov::NamedArray> arrays_of(const RunPool& pool,
+                                                        const dynamics::Section& section);
 [[nodiscard]] bool has_runs(const MatrixFile& file);
 [[nodiscard]] RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& path);
 

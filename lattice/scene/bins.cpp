@@ -46,7 +46,7 @@ BinsChoice usual_bins(const Scene& scene) {
 }
 
 StateSpace fixed_space(const Scene& scene) {
-  return scene.bins ? StateSpace(*scene.bins) : StateSpace::paper(scene.gate);
+  return scene.bins ? StateSpace(disc_section(scene.gate), *scene.bins) : table3_space(scene.gate);
 }
 
 Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::int64_t trials,
@@ -56,8 +56,7 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
   field.fidelity = Fidelity::active;
   field.max_gates = field.max_gates == 0 ? kPilotGates : std::min(field.max_gates, kPilotGates);
   const FieldGates gates = gates_of(scene);
-  const StateSpace space =
-      StateSpace::paper(scene.gate);  // run_field counts with it; nobody asks here
+  const StateSpace space = table3_space(scene.gate);  // run_field counts with it; nobody asks here
   for (const BodyState& start : starts) {
     const Entry entry = entry_of(start);
     if (start.y == 0.0 &&
@@ -77,7 +76,9 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
 }
 
 int states_for(double scale) {
-  const double states = std::round(kAutoStates * scale * scale * scale);
+  double states = kAutoStates;
+  for (std::size_t axis = 0; axis < disc_section().coordinates.size(); ++axis) states *= scale;
+  states = std::round(states);
   if (!(states >= 1.0 && states <= kMostStates))
     throw std::invalid_argument("makes fewer than 1 or more than " + std::to_string(kMostStates) +
                                 " states");
@@ -87,8 +88,9 @@ int states_for(double scale) {
 SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
   std::vector<Entry> entries = pilot.entries;
   const std::vector<GateParams> types = gates_of(scene).types();
-  if (std::all_of(types.begin(), types.end(), symmetric)) add_mirror_images(entries);
-  StateSpace space = quantile_space(scene.gate, entries, states_for(scale), pilot.starts);
+  const Section section = disc_section(scene.gate);
+  if (std::all_of(types.begin(), types.end(), symmetric)) add_mirror_images(section, entries);
+  StateSpace space = quantile_space(section, entries, states_for(scale), pilot.starts);
   Entries of_rows = entries_of(space, entries);
   return {std::move(space), std::move(of_rows)};
 }
@@ -96,7 +98,7 @@ SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
 States states_of(const Scene& scene, const BinsChoice& choice, const std::vector<BodyState>& starts,
                  std::uint64_t seed, const Work& work) {
   using Kind = BinsChoice::Kind;
-  (void)StateSpace::paper(scene.gate);  // refuses gates too short for their beams
+  (void)table3_space(scene.gate);  // refuses gates too short for their beams
   if (choice.kind == Kind::tree)
     throw std::invalid_argument("bins: a tree is grown from runs (make_tree_chain)");
   Pilot pilot = run_pilot(scene, starts, choice.kind == Kind::paper ? kJudgingTrials : kPilotTrials,
@@ -109,7 +111,7 @@ States states_of(const Scene& scene, const BinsChoice& choice, const std::vector
     for (const Entry& start : pilot.starts) entries.insert(entries.end(), kPilotTrials, start);
     seen.entries = entries_of(seen.space, entries);
   } else {
-    seen.space = refined(StateSpace::paper(scene.gate), choice.factor);
+    seen.space = refined(table3_space(scene.gate), choice.factor);
   }
   const Resolution resolution = resolution_of(seen.space, pilot.entries);
   if (choice.by_default && choice.kind == Kind::paper && resolution.poor()) {

@@ -73,7 +73,7 @@ struct States {
 };
 /// The states that `choice` says for walks from `starts`; auto where Table III by default does not
 /// resolve the scene. Throws InvalidParameter as
-/// StateSpace::paper.
+/// dynamics::table3_space.
 [[nodiscard]] States states_of(const Scene& scene, const BinsChoice& choice,
                                const std::vector<dynamics::BodyState>& starts, std::uint64_t seed,
                                const dynamics::Work& work = {});

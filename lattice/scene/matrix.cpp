@@ -83,13 +83,14 @@ SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string&
 
 std::string entry_bins(const dynamics::StateSpace& space) {
   constexpr dynamics::Boundary kEnter = dynamics::Boundary::enter;
-  if (space.has_trees()) return text_of(dynamics::StateRange{kEnter, space.trees()[kEnter].seen});
+  if (space.has_trees())
+    return text_of(space.section(), dynamics::StateRange{kEnter, space.trees()[kEnter].seen});
   dynamics::StateRange range{kEnter};
-  for (std::size_t axis = 0; axis < dynamics::kMostCoordinates; ++axis) {
+  for (std::size_t axis = 0; axis < space.section().coordinates.size(); ++axis) {
     const std::vector<double>& edges = space.bins()[kEnter].edges[axis];
     range.at[axis] = {edges.front(), edges.back()};
   }
-  return text_of(range);
+  return text_of(space.section(), range);
 }
 
 ChainStart start_in_bins(const dynamics::StateSpace& space, const FieldParams& field,

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/disc_section.h"
 #include "dynamics/params.h"
-#include "dynamics/state_space.h"
 #include "lattice/field.h"
 #include "lattice/scene/terrain.h"
 
@@ -24,7 +24,7 @@ struct Variation {
 };
 
 /// Bin edges of every boundary, as StateSpace takes them.
-using SceneBins = std::array<dynamics::Bins, dynamics::kBoundaries>;
+using SceneBins = std::vector<dynamics::Bins>;
 
 struct Scene {
   dynamics::GateParams gate;

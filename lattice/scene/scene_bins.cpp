@@ -15,17 +15,14 @@ namespace {
 
 using namespace dynamics;
 
-constexpr std::array<std::string_view, kMostCoordinates> kBinKeys{"d_m", "vx_m_per_s",
-                                                                  "vy_m_per_s"};
-
 std::string key_of(int boundary, std::size_t axis) {
-  return std::string(kBoundaryNames[boundary]) + "_" + std::string(kBinKeys[axis]);
+  return disc_section().faces[boundary].name + "_" + disc_section().coordinates[axis].key;
 }
 
 std::string all_keys() {
   std::string names;
   for (int b = 0; b < kBoundaries; ++b)
-    for (std::size_t axis = 0; axis < kBinKeys.size(); ++axis)
+    for (std::size_t axis = 0; axis < disc_section().coordinates.size(); ++axis)
       names += (names.empty() ? "" : ", ") + key_of(b, axis);
   return names;
 }
@@ -78,7 +75,7 @@ std::vector<GivenEdges> edges_in(const toml::table& document,
     const std::string at = origin(value.source().begin.line), name(key.str());
     bool known = false;
     for (int b = 0; b < kBoundaries; ++b)
-      for (std::size_t axis = 0; axis < kBinKeys.size(); ++axis) {
+      for (std::size_t axis = 0; axis < disc_section().coordinates.size(); ++axis) {
         const std::string own = key_of(b, axis);
         const auto unit = unit_of(name, own);
         if (!unit) continue;
@@ -96,7 +93,7 @@ std::vector<GivenEdges> edges_in(const toml::table& document,
 
 std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<GivenEdges>& given) {
   if (given.empty()) return std::nullopt;
-  SceneBins bins = StateSpace::paper(gate).bins();
+  SceneBins bins = table3_space(gate).bins();
   const double side = gate.beams.joint_x, joint = gate.beams.joint_y;
   const double above = gate.run.traverse_y - joint;
   for (const GivenEdges& g : given) {
@@ -126,7 +123,7 @@ std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<Given
 std::string bins_toml(const SceneBins& bins) {
   std::string lines = "[bins]\n";
   for (int b = 0; b < kBoundaries; ++b)
-    for (std::size_t axis = 0; axis < kBinKeys.size(); ++axis)
+    for (std::size_t axis = 0; axis < disc_section().coordinates.size(); ++axis)
       lines += key_of(b, axis) + " = " + text(bins[b].edges[axis]) + "\n";
   return lines;
 }

@@ -32,7 +32,7 @@ struct GivenEdges {
 
 /// The bins of these edges in this gate, the last ones of a key; axes without any have Table III's
 /// in the scene's own units. None without edges. Throws SceneError when distances lie outside their
-/// boundary or there are too many states, InvalidParameter as StateSpace::paper.
+/// boundary or there are too many states, InvalidParameter as table3_space.
 [[nodiscard]] std::optional<SceneBins> bins_of(const dynamics::GateParams& gate,
                                                const std::vector<GivenEdges>& given);
 

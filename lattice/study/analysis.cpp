@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dynamics/quantile_bins.h"
 #include "lattice/pool/passages.h"
 #include "lattice/statistics/group_spread.h"
 #include "lattice/statistics/share_95.h"
@@ -59,18 +58,11 @@ markov::Ending mirrored(markov::Ending ending) {
   return ending == markov::Ending::right_edge ? markov::Ending::left_edge : ending;
 }
 
-/// Of entries from below.
-StateRange mirrored(const StateRange& range) {
-  const auto turned = [](const std::array<double, 2>& side) {
-    return std::array{-side[1], -side[0]};
-  };
-  return {range.face, {turned(range.at[kEntryD]), turned(range.at[kEntryVx]), range.at[kEntryVy]}};
-}
-
-/// What both hold; none if that is nothing.
-std::optional<StateRange> common_part(const StateRange& a, const StateRange& b) {
+/// What both hold, along so many coordinates; none if that is nothing.
+std::optional<StateRange> common_part(const StateRange& a, const StateRange& b,
+                                      std::size_t coordinates) {
   StateRange both = a;
-  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+  for (std::size_t axis = 0; axis < coordinates; ++axis) {
     both.at[axis] = {std::max(a.at[axis][0], b.at[axis][0]),
                      std::min(a.at[axis][1], b.at[axis][1])};
     if (!(both.at[axis][0] < both.at[axis][1])) return {};
@@ -106,7 +98,7 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Fie
   const auto mean_of = [&](const Chances& s, const Entry& start) {
     const double own = s.of_target(1, first_cell, s.space.index_of(start).state);
     if (!in_mirror) return own;
-    const int there = s.space.index_of(dynamics::mirrored(start)).state;
+    const int there = s.space.index_of(dynamics::mirrored(s.space.section(), start)).state;
     return std::midpoint(own, (s.of_image ? *s.of_image : s.of_target)(1, first_cell, there));
   };
   const auto runs_of = [&](int state) {
@@ -137,7 +129,9 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Fie
       continue;
     }
     for (const int other : entries)
-      if (const auto both = common_part(space.range(state), mirrored(space.range(other))))
+      if (const auto both = common_part(space.range(state),
+                                        dynamics::mirrored(space.section(), space.range(other)),
+                                        space.section().coordinates.size()))
         add(*both, first.is_sampled(state) && first.is_sampled(other));
   }
   return starts;
@@ -214,7 +208,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
           1.0 / (static_cast<double>(field.rows) * field.columns);
   try {
     out.endless = markov::quasi_stationary(c.chain, type_share);
-    out.endless_boundaries.assign(kBoundaries, 0.0);
+    out.endless_boundaries.assign(space.section().faces.size(), 0.0);
     for (int state = 0; state < space.size(); ++state)
       out.endless_boundaries[static_cast<std::size_t>(space.face(state))] +=
           out.endless->states[static_cast<std::size_t>(state)];

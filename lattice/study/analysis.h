@@ -54,7 +54,7 @@ struct Analysis {
   std::vector<markov::TimedWalk> walks;                                         // seconds
   std::optional<markov::QuasiStationary> endless;                               // none: see below
   std::string why_not_endless;
-  std::vector<double> endless_boundaries;  // its states by dynamics::Boundary
+  std::vector<double> endless_boundaries;  // its states by face
   std::vector<StartChance> starts;
   markov::FrequentPaths paths;
   /// (rows x columns) visits of bodies that end in the target, per body of these; and per cent that

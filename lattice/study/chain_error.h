@@ -101,7 +101,7 @@ struct ChainErrorPlan {
 };
 /// Curves by their factor, those of uniform starts first. Runs the pilot that bins are made from,
 /// if they are. Throws std::invalid_argument for a start inside the gate and for a factor that
-/// makes no state or too many; InvalidParameter as StateSpace::paper.
+/// makes no state or too many; InvalidParameter as dynamics::table3_space.
 [[nodiscard]] ChainErrorPlan plan_chain_error(const Scene& scene, const ChainErrorOptions& options,
                                               const dynamics::Work& work = {});
 

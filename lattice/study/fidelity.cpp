@@ -45,7 +45,7 @@ std::vector<double> time_trials(const std::vector<FidelityVariant>& variants,
 
 FidelityOfStart run_start(const std::vector<FidelityVariant>& variants, const PaperStart& start,
                           const FidelityOptions& options, const dynamics::Work& work) {
-  const auto space = dynamics::StateSpace::paper(variants[0].scene.gate);
+  const auto space = dynamics::table3_space(variants[0].scene.gate);
   FidelityOfStart all{start, {}};
   for (const FidelityVariant& v : variants) {
     FieldTally tally(v.scene.field);
@@ -83,7 +83,7 @@ std::vector<FidelityVariant> fidelity_variants(const Scene& scene) {
   };
   for (const Fidelity f : {Fidelity::active, Fidelity::remember, Fidelity::all}) add(f, "moreau");
   add(Fidelity::active, dynamics::GateParams{}.run.method);
-  (void)dynamics::StateSpace::paper(scene.gate);  // refuses gates too short for their beams
+  (void)dynamics::table3_space(scene.gate);  // refuses gates too short for their beams
   return all;
 }
 

@@ -1,7 +1,10 @@
 #include "lattice/study/memory.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "dynamics/base/share.h"
@@ -9,23 +12,22 @@
 namespace gatewalk::lattice {
 namespace {
 
-using dynamics::Boundary;
+using dynamics::Section;
 using dynamics::StateSpace;
 
-/// Of a state, as kOrigins lists them.
-int origin_of(const StateSpace& space, int state) {
+/// Of bodies that enter by this face, in its right half or not.
+std::string origin_name(const Section& section, int face, bool right) {
+  const dynamics::Face& f = section.faces[face];
+  if (f.mirror != face || !f.is_odd(0)) return f.origin;
+  return f.origin + (right ? " in the right half" : " in the left half");
+}
+
+/// Of a state, its place among the origins.
+int origin_of(const StateSpace& space, int state, const std::vector<std::string>& origins) {
   const dynamics::StateRange range = space.range(state);
-  switch (range.face) {
-    case Boundary::enter:
-      return range.at[dynamics::kEntryD][0] + range.at[dynamics::kEntryD][1] < 0.0 ? 0 : 1;
-    case Boundary::right_deflect:
-    case Boundary::right_traverse:
-      return 2;
-    case Boundary::left_deflect:
-    case Boundary::left_traverse:
-      break;
-  }
-  return 3;
+  const auto& [from, to] = range.at[0];
+  const std::string name = origin_name(space.section(), range.face, !(from + to < 0.0));
+  return static_cast<int>(std::find(origins.begin(), origins.end(), name) - origins.begin());
 }
 
 /// The runs with each kind of label. Those of a walk's first gate have no gate before.
@@ -34,18 +36,19 @@ struct Labelled {
 };
 
 Labelled labelled(const StateWalks& w, const StateSpace& space) {
+  const std::vector<std::string> all_origins = origins_of(space.section());
   std::vector<int> origins;
-  for (int s = 0; s < std::ssize(w.way); ++s) origins.push_back(origin_of(space, s % space.size()));
+  for (int s = 0; s < std::ssize(w.way); ++s)
+    origins.push_back(origin_of(space, s % space.size(), all_origins));
   Labelled all;
   for (std::int64_t walk = 0; walk < w.walks(); ++walk) {
     int row = 0;
     for (std::int64_t i = w.begin(walk); i < w.passed[walk]; ++i) {
       const std::int32_t state = w.state[i], next = w.next[i];
-      const std::int32_t outcome =
-          next == StateWalks::kTrapped ? dynamics::kBoundaries : w.way[next];
+      const std::int32_t outcome = next == StateWalks::kTrapped ? w.ways : w.way[next];
       const std::int64_t visit = i - w.begin(walk);
       if (visit > 0) {
-        row += dynamics::move_into(space.face(state % space.size())).di_y;
+        row += space.section().faces[space.face(state % space.size())].di_y;
         all.gate_before.push_back({state, origins[w.state[i - 1]], outcome});
       }
       all.visit.push_back(
@@ -58,9 +61,19 @@ Labelled labelled(const StateWalks& w, const StateSpace& space) {
 
 }  // namespace
 
+std::vector<std::string> origins_of(const Section& section) {
+  std::vector<std::string> all;
+  for (int face = 0; face < std::ssize(section.faces); ++face)
+    for (const bool right : {false, true}) {
+      std::string name = origin_name(section, face, right);
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(std::move(name));
+    }
+  return all;
+}
+
 StateWalks no_walks(const StateSpace& space, std::size_t types) {
   StateWalks walks;
-  walks.ways = dynamics::kBoundaries;
+  walks.ways = static_cast<int>(space.section().faces.size());
   for (std::size_t type = 0; type < types; ++type)
     for (int s = 0; s < space.size(); ++s) walks.way.push_back(space.face(s));
   return walks;

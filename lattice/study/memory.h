@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,10 +31,10 @@ namespace gatewalk::lattice {
 void add_walks(StateWalks& walks, const dynamics::StateSpace& space, int first,
                const FieldTrials& each, const std::vector<int>& same = {});
 
-/// The coarse state that a body came from, of the gate before.
-inline constexpr std::array<std::string_view, 4> kOrigins{"from below in the left half",
-                                                          "from below in the right half",
-                                                          "from the right", "from the left"};
+/// The coarse states that a body may come from, of the gate before: the origins of the section's
+/// faces, in two halves where mirror images enter by the same face ("from below in the left half",
+/// "from below in the right half", "from the right", "from the left").
+[[nodiscard]] std::vector<std::string> origins_of(const dynamics::Section& section);
 /// Visits from the sixth on, and rows from i_y = 5 on, count as one.
 inline constexpr int kVisits = 6, kRows = 6;
 
@@ -54,8 +55,8 @@ struct MemoryStudy {
   std::int64_t walks = 0, runs = 0;
   /// Not asked (no steps) of gates of several types: which one comes next depends on the place.
   GatesAhead ahead;
-  /// Labels: kOrigins; the visit, and the row of the field, from 0. Outcomes: boundary of the next
-  /// entry, or trapped (kBoundaries).
+  /// Labels: origins_of; the visit, and the row of the field, from 0. Outcomes: boundary of the
+  /// next entry, or trapped (behind the faces).
   Independence gate_before, visit, row;
 
   [[nodiscard]] const Independence& independence(Question q) const {

@@ -260,7 +260,7 @@ class Parameters {
     if (run.ending == Ending::broken) return std::nan("");
     if (run.ending == Ending::trapped) return is(markov::Ending::trapped);
     const Entry crossing = crossing_of(p, run.ending, run.exit);
-    const Move move = move_into(crossing.face);
+    const Face& move = part.space.section().faces[crossing.face];
     const auto column = static_cast<int>(s.place.cell % field_.columns) + move.di_x,
                row = static_cast<int>(s.place.cell / field_.columns) + move.di_y;
     if (!field_.contains(column, row))

@@ -66,7 +66,7 @@ class SplitTrial {
     if (run.ending == Ending::trapped || run.ending == Ending::broken) return;
     const GateParams& p = aim_.gates.at(body.column, body.row);
     const Entry entry = crossing_of(p, run.ending, run.exit);
-    const Move move = move_into(entry.face);
+    const Face& move = disc_section().faces[entry.face];
     body.column += move.di_x;
     body.row += move.di_y;
     if (body.column < 0 || body.column >= aim_.columns) return;

@@ -7,7 +7,6 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "dynamics/quantile_bins.h"
 #include "dynamics/transitions.h"
 #include "lattice/gate_chain.h"
 #include "lattice/statistics/matrix_noise.h"

@@ -66,7 +66,7 @@ Case read_case(const std::string& matrix) {
 
 dynamics::Transitions build(double bins, std::int64_t trials) {
   const GateParams p = bench::field_gate();
-  dynamics::Transitions t(dynamics::refined(dynamics::StateSpace::paper(p), bins));
+  dynamics::Transitions t(dynamics::refined(dynamics::table3_space(p), bins));
   dynamics::add_trials(t, p, bench::kSeed, {0, trials});
   return t;
 }
@@ -74,8 +74,8 @@ dynamics::Transitions build(double bins, std::int64_t trials) {
 lattice::FieldTally cross_field(const char* method, std::int64_t trials,
                                 std::uint64_t seed = bench::kSeed) {
   const GateParams p = bench::by(bench::field_gate(), method);
-  return lattice::run_field(p, bench::kField, bench::kFieldStart, dynamics::StateSpace::paper(p),
-                            seed, {0, trials});
+  return lattice::run_field(p, bench::kField, bench::kFieldStart, dynamics::table3_space(p), seed,
+                            {0, trials});
 }
 
 void size_study(const std::vector<std::string>& a) {

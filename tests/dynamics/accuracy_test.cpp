@@ -152,7 +152,7 @@ TEST(WeakError, OfTwoStartsDoesNotCancel) {
 }
 
 TEST(WeakError, OfColumns) {
-  const StateSpace space = StateSpace::paper(GateParams{});
+  const StateSpace space = table3_space(GateParams{});
   std::vector<TrialEnd> reference(5, left()), run = reference;
   run[0].column = space.size() + 1;  // broken, the last column
   run[1].column = 3;
@@ -228,7 +228,7 @@ TEST(TrialEnds, AreThoseOfGateTrials) {
   add_trial_ends(ends, p, {}, 5, {120, 80});
   const GateTally tally = run_gate_trials(p, {}, 5, {0, 200});
   std::array<std::int64_t, kOutcomes> n{};
-  const StateSpace space = StateSpace::paper(p);
+  const StateSpace space = table3_space(p);
   for (const TrialEnd& e : ends.trials) {
     ++n[static_cast<std::size_t>(e.outcome)];
     EXPECT_EQ(e.column == space.trapped(), e.outcome == Outcome::trapped);
@@ -259,7 +259,7 @@ TEST(TrialEnds, AgainstThemselvesAreExact) {
   const GateParams p = test::study(10.0);
   TrialEnds ends;
   add_trial_ends(ends, p, {}, 5, {0, 100});
-  const WeakError weak = column_error(ends.trials, ends.trials, StateSpace::paper(p));
+  const WeakError weak = column_error(ends.trials, ends.trials, table3_space(p));
   EXPECT_EQ(weak.total_variation, 0.0);
   EXPECT_EQ(weak.chance, 0.0);
   EXPECT_EQ(weak.changed, 0);
@@ -279,7 +279,7 @@ TEST(TrialEnds, CutShortIsBroken) {
   EXPECT_FALSE(whole.out_of_work);
   EXPECT_TRUE(cut.out_of_work);
   EXPECT_LT(cut.watch.steps, 100 + 2 * steps_per_hold(p));
-  const StateSpace space = StateSpace::paper(p);
+  const StateSpace space = table3_space(p);
   EXPECT_EQ(end_of(p, space, cut).outcome, Outcome::broken);
   EXPECT_EQ(end_of(p, space, cut).column, space.size() + 1);
 }

@@ -6,12 +6,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dynamics/disc_section.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::dynamics {
 namespace {
 
 using test::Draw;
+
+const Section kPaper = disc_section(GateParams{});
 
 /// Entries at every boundary, those of EN as many as all others together; unequal left and right.
 std::vector<Entry> made_up(int n, std::uint64_t seed) {
@@ -38,7 +41,7 @@ TEST(QuantileSpace, HasItsEdgesMidwayBetweenTheEntries) {
   for (int copy = 0; copy < 10; ++copy)
     for (const double v : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0})
       seen.push_back({Boundary::enter, {-v, v, 2 * v}});
-  const StateSpace s = quantile_space({}, seen, 8, {});  // 2 x 2 x 2
+  const StateSpace s = quantile_space(kPaper, seen, 8, {});  // 2 x 2 x 2
   const Bins& enter = s.bins()[0];
   EXPECT_EQ(enter.edges[0], (std::vector<double>{-128, -12, -1}));
   EXPECT_EQ(enter.edges[1], (std::vector<double>{1, 12, 128}));
@@ -49,21 +52,21 @@ TEST(QuantileSpace, HasItsEdgesMidwayBetweenTheEntries) {
 
 TEST(QuantileSpace, HasAboutAsManyStatesAsAskedFor) {
   const auto seen = made_up(20'000, 1);
-  EXPECT_EQ(quantile_space({}, seen, 1, {}).size(), kBoundaries);
+  EXPECT_EQ(quantile_space(kPaper, seen, 1, {}).size(), kBoundaries);
   for (const int states : {87, 348, 1000}) {
-    const StateSpace s = quantile_space({}, seen, states, {});
+    const StateSpace s = quantile_space(kPaper, seen, states, {});
     EXPECT_GE(s.size(), states / 2) << states;
     EXPECT_LE(s.size(), 2 * states + kBoundaries) << states;
   }
   // No more than entries can tell: 300 entries, 30 states.
-  EXPECT_LE(quantile_space({}, made_up(300, 2), 1000, {}).size(), 60);
-  EXPECT_THROW((void)quantile_space({}, seen, 0, {}), std::invalid_argument);
-  EXPECT_THROW((void)quantile_space({}, seen, kMostStates + 1, {}), std::invalid_argument);
+  EXPECT_LE(quantile_space(kPaper, made_up(300, 2), 1000, {}).size(), 60);
+  EXPECT_THROW((void)quantile_space(kPaper, seen, 0, {}), std::invalid_argument);
+  EXPECT_THROW((void)quantile_space(kPaper, seen, kMostStates + 1, {}), std::invalid_argument);
 }
 
 TEST(QuantileSpace, DealsTheEntriesOutEvenlyAlongEveryAxis) {
   const auto seen = made_up(20'000, 3);
-  const StateSpace s = quantile_space({}, seen, 348, {});
+  const StateSpace s = quantile_space(kPaper, seen, 348, {});
   const std::vector<double>& vx = s.bins()[0].edges[kEntryVx];
   const auto bins = static_cast<int>(vx.size()) - 1;
   ASSERT_GE(bins, 4);
@@ -78,7 +81,7 @@ TEST(QuantileSpace, DealsTheEntriesOutEvenlyAlongEveryAxis) {
 
 TEST(QuantileSpace, ClampsNothing) {
   const auto seen = made_up(5000, 4);
-  const StateSpace s = quantile_space({}, seen, 87, {});
+  const StateSpace s = quantile_space(kPaper, seen, 87, {});
   for (const Entry& c : seen) {
     const auto index = s.index_of(c);
     EXPECT_FALSE(index.clamped || index.beyond);
@@ -92,10 +95,10 @@ TEST(QuantileSpace, IsSymmetricWhereTheEntriesAre) {
   for (const int n : {37, 400, 5001}) {
     auto seen = made_up(n, 5);
     for (Entry& c : seen) c.at[kEntryVx] = std::round(c.at[kEntryVx]);  // many are equal
-    add_mirror_images(seen);
+    add_mirror_images(kPaper, seen);
     ASSERT_EQ(seen.size(), 2u * static_cast<std::size_t>(n));
     for (const int states : {8, 87, 348}) {
-      const auto bins = quantile_space({}, seen, states, {}).bins();
+      const auto bins = quantile_space(kPaper, seen, states, {}).bins();
       const auto negated = [](std::vector<double> edges) {
         std::reverse(edges.begin(), edges.end());
         for (double& e : edges) e = -e;
@@ -117,12 +120,12 @@ TEST(QuantileSpace, TwinsHaveTheSameBins) {
   GateParams p;
   const auto seen = made_up(3000, 6);
   const Entry start{Boundary::enter, {3.0, 1.0, 15.0}};
-  const StateSpace s = quantile_space(p, seen, 87, {start});
+  const StateSpace s = quantile_space(disc_section(p), seen, 87, {start});
   for (const int power : {-10, -3, 7, 10}) {
     const double length = std::ldexp(1.0, 2 * power), time = std::ldexp(1.0, 2 - 2 * power);
     const double speed = length / time;
-    const auto twin =
-        quantile_space(p, scaled(seen, length, speed), 87, scaled({start}, length, speed));
+    const auto twin = quantile_space(disc_section(p), scaled(seen, length, speed), 87,
+                                     scaled({start}, length, speed));
     EXPECT_EQ(twin.size(), s.size());
     for (std::size_t b = 0; b < kBoundaries; ++b) {
       const auto times = [](std::vector<double> edges, double factor) {
@@ -144,23 +147,23 @@ TEST(QuantileSpace, TwinsHaveTheSameBins) {
 // All alike, or none: bins that a body can still be in.
 TEST(QuantileSpace, TakesEntriesThatAreAllAlike) {
   const Entry c{Boundary::enter, {0.0, 0.0, 40.0}};
-  const StateSpace s = quantile_space({}, std::vector<Entry>(1000, c), 87, {c});
+  const StateSpace s = quantile_space(kPaper, std::vector<Entry>(1000, c), 87, {c});
   EXPECT_EQ(s.size(), kBoundaries + 1);
   EXPECT_EQ(s.bins()[0].edges[kEntryVy],
             (std::vector<double>{10, 40}));  // Table III's, up to the entry
-  EXPECT_EQ(quantile_space({}, {}, 87, {}).size(), kBoundaries);
+  EXPECT_EQ(quantile_space(kPaper, {}, 87, {}).size(), kBoundaries);
 }
 
 TEST(Resolution, IsTheVarianceWithinTheStates) {
   const Bins enter{{{{-1, 0, 1}, {-1, 1}, {0, 10}}}}, side{{{{0, 1}, {-1, 1}, {0, 10}}}};
-  const std::array<Bins, kBoundaries> bins{enter, side, side, side, side};
+  const std::vector<Bins> bins{enter, side, side, side, side};
   // d: values -.75, -.25, .25, .75: variance 5/16 in all, 1/16 within a bin.
   std::vector<Entry> seen;
   for (const double d : {-0.75, -0.25, 0.25, 0.75})
     for (const double vy : {2.0, 6.0}) seen.push_back({Boundary::enter, {d, 0.0, vy}});
   seen.push_back({Boundary::right_deflect, {0.5, 0.0, 4.0}});
   seen.push_back({Boundary::right_deflect, {0.5, 0.0, 40.0}});  // outside
-  const StateSpace space(bins);
+  const StateSpace space(kPaper, bins);
   const Resolution r = resolution_of(space, seen);
   EXPECT_EQ(r.entries, 10);
   EXPECT_EQ(r.clamped, 1);
@@ -177,10 +180,10 @@ TEST(Resolution, IsTheVarianceWithinTheStates) {
 TEST(Resolution, TellsBinsThatAreFarTooWide) {
   auto seen = made_up(5000, 7);
   for (Entry& c : seen) c.at = {c.at[0], 0.01 * c.at[1], 15 + 0.01 * c.at[2]};
-  const Resolution r = resolution_of(StateSpace::paper({}), seen);
+  const Resolution r = resolution_of(table3_space({}), seen);
   EXPECT_LT(r.clamped, r.entries / 2);
   EXPECT_TRUE(r.poor());
-  EXPECT_FALSE(resolution_of(quantile_space({}, seen, 87, {}), seen).poor());
+  EXPECT_FALSE(resolution_of(quantile_space(kPaper, seen, 87, {}), seen).poor());
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST_P(Requirement, HalvingTheStepKeepsTheOutput) {
     (event() ? half.run.event_tolerance : half.run.step) *= 0.5;
     const auto coarse = trials(p, n), fine = trials(half, n);
     const WeakError by_outcome = outcome_error(coarse, fine);
-    const WeakError by_column = column_error(coarse, fine, StateSpace::paper(p));
+    const WeakError by_column = column_error(coarse, fine, table3_space(p));
     outcomes = std::max(outcomes, by_outcome.total_variation);
     columns = std::max(columns, by_column.total_variation);
     chance = std::max(chance, by_column.chance);

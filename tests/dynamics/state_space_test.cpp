@@ -1,4 +1,4 @@
-#include "dynamics/state_space.h"
+#include "dynamics/disc_section.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,91 @@ using test::Draw;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 using Edges = std::vector<double>;
 
-StateSpace paper() { return StateSpace::paper(GateParams{}); }
+const Section kPaper = disc_section(GateParams{});
+StateSpace paper() { return table3_space(GateParams{}); }
+
+// ---- Sections ----
+
+/// Points of unit speed in squares: two coordinates, nobody's disc.
+Section squares() {
+  return {.faces = {{"S", 0, 1, 0, 0b11, "from below", {{{-1, 1}, {-2, 2}}}},
+                    {"W", 1, 0, 2, 0b00, "from the left", {{{-1, 1}, {-2, 2}}}},
+                    {"E", -1, 0, 1, 0b00, "from the right", {{{-1, 1}, {-2, 2}}}}},
+          .coordinates = {{"s", "s_m", "m", "place", 0.5}, {"v", "v", "1", "velocity", 2.0}},
+          .costs = {{"time_s", "s", "duration"}}};
+}
+
+TEST(Section, RefusesWhatIsNone) {
+  EXPECT_NO_THROW(squares().validate());
+  EXPECT_NO_THROW(disc_section().validate());
+  const auto expect_refused = [](auto change) {
+    Section section = squares();
+    change(section);
+    EXPECT_THROW(section.validate(), std::invalid_argument);
+    EXPECT_THROW((void)StateSpace(section, std::vector<Tree>(section.faces.size())),
+                 std::invalid_argument);
+  };
+  expect_refused([](Section& s) { s.faces.clear(); });
+  expect_refused([](Section& s) { s.faces.resize(kMostFaces + 1, s.faces[0]); });
+  expect_refused([](Section& s) { s.coordinates.clear(); });
+  expect_refused([](Section& s) { s.coordinates.resize(kMostCoordinates + 1); });
+  expect_refused([](Section& s) { s.costs.resize(kMostCosts + 1); });
+  expect_refused([](Section& s) { s.coordinates[1].scale = 0.0; });
+  expect_refused([](Section& s) { s.coordinates[0].scale = kInf; });
+  expect_refused([](Section& s) { s.faces[2].name = "W"; });
+  expect_refused([](Section& s) { s.faces[0].name.clear(); });
+  expect_refused([](Section& s) { s.faces[0].di_y = 0; });
+  expect_refused([](Section& s) { s.faces[1].mirror = 3; });
+  expect_refused([](Section& s) { s.faces[1].mirror = 0; });
+  expect_refused([](Section& s) { s.faces[1].odd = 0b10; });
+  expect_refused([](Section& s) { s.faces[1].di_x = 2; });
+}
+
+TEST(Section, OfADiscKnowsItsMirrorImages) {
+  const auto image = [](Entry entry) { return mirrored(disc_section(), entry); };
+  EXPECT_EQ(image({enter, {3, 4, 15}}), (Entry{enter, {-3, -4, 15}}));
+  EXPECT_EQ(image({right_deflect, {3, -4, 15}}), (Entry{left_deflect, {3, 4, 15}}));
+  EXPECT_EQ(image({left_deflect, {3, 4, 15}}), (Entry{right_deflect, {3, -4, 15}}));
+  EXPECT_EQ(image({right_traverse, {3, -4, 15}}), (Entry{left_traverse, {3, 4, 15}}));
+  EXPECT_EQ(image({left_traverse, {3, 4, 15}}), (Entry{right_traverse, {3, -4, 15}}));
+  EXPECT_EQ(image({enter, {0, 0, 15}}), (Entry{enter, {0, 0, 15}}));  // -0 == 0
+  const StateRange range{enter, {{{1, 2}, {-3, 4}, {5, 6}}}};
+  EXPECT_EQ(mirrored(disc_section(), range), (StateRange{enter, {{{-2, -1}, {-4, 3}, {5, 6}}}}));
+}
+
+// The scales and usual ranges are a gate's own; what files tell is not.
+TEST(Section, OfADiscIsOneForAllGates) {
+  GateParams p;
+  p.body.radius = 5.0;
+  const Section section = disc_section(p);
+  EXPECT_EQ(section, disc_section());
+  EXPECT_EQ(section.coordinates[kEntryD].scale, scale_of(p).length);
+  EXPECT_EQ(section.coordinates[kEntryVy].scale, scale_of(p).speed());
+  EXPECT_EQ(section.faces[right_deflect].usual[kEntryD], (std::array{5.0, 30.0}));
+  EXPECT_EQ(names_of(section.faces), "EN, RD, LD, RT, LT");
+  EXPECT_EQ(numbers_of(section.coordinates), "0 d, 1 vx, 2 vy");
+  EXPECT_NE(squares(), disc_section());
+}
+
+TEST(Section, OfTwoCoordinatesMakesSpaces) {
+  const Bins two_by_three{{Edges{-1, 0, 1}, Edges{-2, -1, 1, 2}}};
+  const StateSpace bins(squares(), {two_by_three, two_by_three, two_by_three});
+  EXPECT_EQ(bins.size(), 18);
+  Random random(Purpose::row, {1, 2, 3});
+  for (int state = 0; state < bins.size(); ++state)
+    EXPECT_EQ(bins.index_of(bins.sample(state, random)).state, state);
+  EXPECT_EQ(text_of(bins.section(), bins.range(7)), "W s [-1, 0] m, v [-1, 1]");
+  EXPECT_EQ(refined(bins, 2.0).size(), 3 * 4 * 6);
+  const Tree cut{.nodes = {{1, 0.0}, {}, {}}, .seen = {{{-1, 1}, {-2, 2}}}};
+  const StateSpace trees(squares(), {cut, Tree{}, cut}, {{1, {0.5, 0.5}}});
+  EXPECT_EQ(trees.size(), 6);
+  EXPECT_EQ(trees.index_of({2, {0.0, 1.0}}).state, 4);
+  EXPECT_EQ(trees.index_of({1, {0.5, 0.5}}).state, 5);
+  EXPECT_EQ(trees.range(3).at[1], (std::array<double, 2>{-2, 0}));
+  const Tree third{.nodes = {{2, 0.0}, {}, {}}, .seen = {{{-1, 1}, {-2, 2}, {-1, 1}}}};
+  EXPECT_THROW((void)StateSpace(squares(), {third, cut, cut}), std::invalid_argument);
+  EXPECT_THROW((void)StateSpace(squares(), std::vector<Tree>{cut, cut}), std::invalid_argument);
+}
 
 // ---- Table III ----
 
@@ -31,7 +115,7 @@ TEST(StateSpace, HasTheStatesOfTableIII) {
   const int states[] = {25, 30, 30, 1, 1};
   int first = 0;
   for (int b = 0; b < kBoundaries; ++b) {
-    EXPECT_EQ(s.first(b), first) << kBoundaryNames[b];
+    EXPECT_EQ(s.first(b), first) << disc_section().faces[b].name;
     for (int i = 0; i < states[b]; ++i) EXPECT_EQ(s.face(first + i), b);
     first += states[b];
   }
@@ -64,7 +148,7 @@ TEST(StateSpace, TableIIIIsInTheScenesOwnUnits) {
     p.body.mass *= mass;
     p.forces.random_rate /= time;
     for (double* f : {&p.forces.propulsion, &p.forces.random}) *f *= mass * length / (time * time);
-    const StateSpace twin = StateSpace::paper(p);
+    const StateSpace twin = table3_space(p);
     for (std::size_t b = 0; b < kBoundaries; ++b) {
       const auto times = [](Edges edges, double factor) {
         for (double& e : edges) e *= factor;
@@ -80,7 +164,7 @@ TEST(StateSpace, TableIIIIsInTheScenesOwnUnits) {
 
 // Open: the outermost bins take everything, and say when it lies beyond their edges.
 TEST(StateSpace, OpenBinsClampNothing) {
-  const StateSpace closed = paper(), open(closed.bins(), true);
+  const StateSpace closed = paper(), open(closed.section(), closed.bins(), true);
   EXPECT_FALSE(closed == open);
   EXPECT_TRUE(refined(open, 2.0).open());
   const Entry outside{Boundary::enter, {0.0, 60.0, 15.0}},
@@ -94,7 +178,7 @@ TEST(StateSpace, OpenBinsClampNothing) {
 
 TEST(StateSpace, SingleEntriesAreStatesOfTheirOwn) {
   const Entry a{Boundary::enter, {0.0, 0.0, 15.0}}, b{Boundary::enter, {4.0, 5.0, 10.0}};
-  const StateSpace space(paper().bins(), false, {a, b});
+  const StateSpace space(kPaper, paper().bins(), false, {a, b});
   EXPECT_EQ(space.size(), 89);
   EXPECT_EQ(space.trapped(), 89);
   EXPECT_EQ(space.index_of(a).state, 87);
@@ -106,8 +190,8 @@ TEST(StateSpace, SingleEntriesAreStatesOfTheirOwn) {
   Random random(Purpose::row, {1, 2, 3});
   EXPECT_EQ(space.sample(88, random), b);
   EXPECT_EQ(refined(space, 2.0).size(), 698);
-  EXPECT_THROW((void)StateSpace(paper().bins(), false, {a, a}), std::invalid_argument);
-  EXPECT_THROW((void)StateSpace(paper().bins(), false, {{Boundary::enter, {kInf, 0, 0}}}),
+  EXPECT_THROW((void)StateSpace(kPaper, paper().bins(), false, {a, a}), std::invalid_argument);
+  EXPECT_THROW((void)StateSpace(kPaper, paper().bins(), false, {{Boundary::enter, {kInf, 0, 0}}}),
                std::invalid_argument);
 }
 
@@ -144,7 +228,7 @@ TEST(StateSpace, ScalesDistancesWithTheGate) {
   p.beams.joint_y = 40;
   p.body.radius = 20;
   p.run.traverse_y = 100;
-  const auto bins = StateSpace::paper(p).bins();
+  const auto bins = table3_space(p).bins();
   EXPECT_EQ(bins[0].edges[kEntryD], (Edges{-50, -30, -10, 10, 30, 50}));
   EXPECT_EQ(bins[1].edges[kEntryD], (Edges{20, 30, 40}));
   EXPECT_EQ(bins[3].edges[kEntryD], (Edges{20, 60}));
@@ -157,13 +241,13 @@ TEST(StateSpace, RefusesAGateThatEndsInTheBeams) {
   GateParams p;
   p.run.traverse_y = 40.0;
   try {
-    (void)StateSpace::paper(p);
+    (void)table3_space(p);
     ADD_FAILURE() << "accepted";
   } catch (const InvalidParameter& e) {
     EXPECT_EQ(e.key(), "run.traverse_y_m");
   }
   p.run.traverse_y = 40.001;
-  EXPECT_EQ(StateSpace::paper(p).size(), 87);
+  EXPECT_EQ(table3_space(p).size(), 87);
 }
 
 // ---- Finer and coarser ----
@@ -173,13 +257,14 @@ TEST(Refined, FactorOneIsTheSameSpaceBitForBit) {
   odd.beams.joint_x = 31.7;
   odd.body.radius = 7.3;
   for (const GateParams& p : {GateParams{}, odd}) {
-    const StateSpace s = StateSpace::paper(p), same = refined(s, 1.0);
+    const StateSpace s = table3_space(p), same = refined(s, 1.0);
     for (int b = 0; b < kBoundaries; ++b)
       for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
         const Edges &before = s.bins()[b].edges[axis], &after = same.bins()[b].edges[axis];
         ASSERT_EQ(after.size(), before.size());
         for (std::size_t i = 0; i < after.size(); ++i)
-          EXPECT_TRUE(test::same_bits(after[i], before[i])) << kBoundaryNames[b] << " " << i;
+          EXPECT_TRUE(test::same_bits(after[i], before[i]))
+              << disc_section().faces[b].name << " " << i;
       }
     EXPECT_EQ(same.size(), 87);
   }
@@ -352,7 +437,7 @@ TEST(StateSpace, EveryBoundaryClampsEverySide) {
 
 TEST(StateSpace, RefusesEdgesThatMakeNoBins) {
   const auto good = paper().bins();
-  EXPECT_EQ(StateSpace(good), paper());
+  EXPECT_EQ(StateSpace(kPaper, good), paper());
   for (const Edges& bad :
        {Edges{}, Edges{1}, Edges{1, 1}, Edges{2, 1}, Edges{0, 1, 1, 2},
         Edges{0, std::numeric_limits<double>::quiet_NaN(), 2}, Edges{0, kInf}, Edges{-kInf, 0}}) {
@@ -361,10 +446,11 @@ TEST(StateSpace, RefusesEdgesThatMakeNoBins) {
         auto bins = good;
         bins[b].edges[axis] = bad;
         try {
-          (void)StateSpace(bins);
-          ADD_FAILURE() << "accepted for " << kBoundaryNames[b];
+          (void)StateSpace(kPaper, bins);
+          ADD_FAILURE() << "accepted for " << disc_section().faces[b].name;
         } catch (const std::invalid_argument& e) {
-          EXPECT_NE(std::string(e.what()).find(kBoundaryNames[b]), std::string::npos) << e.what();
+          EXPECT_NE(std::string(e.what()).find(disc_section().faces[b].name), std::string::npos)
+              << e.what();
         }
       }
     }
@@ -398,7 +484,7 @@ TEST(Crossing, OfEachExit) {
     EXPECT_EQ(crossing.at[kEntryD], c.d);
     EXPECT_EQ(crossing.at[kEntryVx], c.exit.vx);
     EXPECT_EQ(crossing.at[kEntryVy], c.exit.vy);
-    const Move move = move_into(crossing.face);
+    const Face& move = disc_section().faces[crossing.face];
     EXPECT_EQ(move.di_x, c.di_x);
     EXPECT_EQ(move.di_y, c.di_y);
   }
@@ -442,7 +528,7 @@ TEST(Crossing, RoundTrips) {
       on_border.x = side * 25;
     }
     const Entry crossing = crossing_of(p, ending, exit);
-    const Move move = move_into(crossing.face);
+    const Face& move = disc_section().faces[crossing.face];
     const BodyState entry = entry_state(p, crossing);
     EXPECT_NEAR(entry.x + 50 * move.di_x, on_border.x, 1e-13);
     EXPECT_NEAR(entry.y + 60 * move.di_y, on_border.y, 1e-13);

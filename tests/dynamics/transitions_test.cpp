@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dynamics/disc_section.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 
@@ -19,7 +20,7 @@ GateParams field_scene() { return {}; }  // Sec. III-C, F = 8, Rm = 40
 
 Transitions built(std::uint64_t seed, TrialRange range) {
   const GateParams p = field_scene();
-  Transitions t(StateSpace::paper(p));
+  Transitions t(table3_space(p));
   add_trials(t, p, seed, range);
   return t;
 }
@@ -35,7 +36,7 @@ void expect_same(const Transitions& a, const Transitions& b) {
 }
 
 TEST(Transitions, StartEmpty) {
-  const Transitions t(StateSpace::paper(field_scene()));
+  const Transitions t(table3_space(field_scene()));
   EXPECT_EQ(t.counts().nonZeros(), 0);
   EXPECT_EQ(t.counts().rows(), 87);
   EXPECT_EQ(t.counts().cols(), 88);
@@ -71,7 +72,7 @@ TEST(Transitions, EveryTrialIsCountedOnce) {
 TEST(Transitions, TrialsCanBeReplayedAlone) {
   const GateParams p = field_scene();
   const auto method = make_method(p);
-  Transitions expected(StateSpace::paper(p));
+  Transitions expected(table3_space(p));
   std::set<int> columns;
   for (int row = 0; row < 87; ++row) {
     for (std::uint64_t trial = 3; trial < 5; ++trial) {
@@ -104,7 +105,7 @@ TEST(Transitions, SameCountsOnAnyNumberOfThreadsAndForAnySplit) {
   expect_same(on(2), whole);
   expect_same(on(8), whole);
   const GateParams p = field_scene();
-  Transitions split(StateSpace::paper(p));
+  Transitions split(table3_space(p));
   for (const TrialRange part : {TrialRange{0, 1}, {1, 0}, {1, 4}, {5, 1}})
     add_trials(split, p, 5, part);
   expect_same(split, whole);
@@ -114,7 +115,7 @@ TEST(Transitions, SameCountsOnAnyNumberOfThreadsAndForAnySplit) {
 TEST(Transitions, StartFromTheEntriesOfTheirRow) {
   const GateParams p = field_scene();
   const auto method = make_method(p);
-  const StateSpace space = StateSpace::paper(p);
+  const StateSpace space = table3_space(p);
   const Entry middle{Boundary::enter, {1.0, 2.0, 15.0}}, fast{Boundary::enter, {-3.0, -1.0, 40.0}};
   const Entries entries = entries_of(space, {middle, fast, middle});
   const int row = space.index_of(middle).state;
@@ -150,7 +151,7 @@ TEST(Transitions, StartFromTheEntriesOfTheirRow) {
 TEST(Transitions, GiveSingleEntriesMoreRuns) {
   const GateParams p = field_scene();
   const Entry point{Boundary::enter, {0.0, 0.0, 15.0}};
-  const StateSpace space(StateSpace::paper(p).bins(), true, {point});
+  const StateSpace space(disc_section(p), table3_space(p).bins(), true, {point});
   ASSERT_EQ(space.size(), 88);
   EXPECT_EQ(runs_per_trial(space, 0), 1);
   EXPECT_EQ(runs_per_trial(space, 87), 8);
@@ -191,7 +192,7 @@ TEST(Transitions, OtherSeedOtherCounts) { EXPECT_NE(built(1, {0, 5}).rows, built
 
 // Row 0: 3 to a neighbour, 2 trapped, 1 of the 3 clamped; row 86: all 5 trapped; others empty.
 TEST(Transitions, TotalsAddUpTheRows) {
-  Transitions t(StateSpace::paper(field_scene()));
+  Transitions t(table3_space(field_scene()));
   EXPECT_EQ(t.totals().runs, 0);
   EXPECT_EQ(t.totals().empty_rows, 87);
   EXPECT_EQ(t.totals().clamped_share(), 0.0);
@@ -219,13 +220,13 @@ TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
   p.run.method = "moreau";  // nothing is hit; `stable` would look for hits every half radius
   p.run.step = kPaperStep;
   // Its own units are as small; the speeds are those of the paper's scene.
-  auto bins = StateSpace::paper(p).bins();
+  auto bins = table3_space(p).bins();
   for (Bins& b : bins)
     for (auto* edges : {&b.edges[kEntryVx], &b.edges[kEntryVy]})
       for (double& edge : *edges) edge /= scale_of(p).speed();
   int predicted = 0;
   for (std::int64_t trial = 0; trial < 10; ++trial) {
-    Transitions t{StateSpace(bins)};
+    Transitions t{StateSpace(disc_section(p), bins)};
     add_trials(t, p, 1, {trial, 1});
     for (int row = 0; row < t.space.size(); ++row) {
       Random random(Purpose::row,

@@ -7,12 +7,15 @@
 #include <map>
 #include <stdexcept>
 
+#include "dynamics/disc_section.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::dynamics {
 namespace {
 
 using test::Draw;
+
+const Section kPaper = disc_section(GateParams{});
 
 /// Entries at every boundary but RT and LT, densest at the middle.
 std::vector<Entry> made_up(int n, std::uint64_t seed) {
@@ -33,7 +36,7 @@ TEST(TreeSpace, HalvesAtTheMedianOfTheWidestAxis) {
   for (const double vx : {8.0, 1.0, 7.0, 2.0, 6.0, 3.0, 5.0, 4.0})
     entries.push_back({Boundary::enter, {0.1 * vx, vx, 15.0}});
   std::vector<int> states;
-  const StateSpace space = tree_space({}, entries, 2, {}, &states);
+  const StateSpace space = tree_space(kPaper, entries, 2, {}, &states);
   const Tree& tree = space.trees()[0];
   ASSERT_EQ(tree.nodes.size(), 7u);
   EXPECT_EQ(tree.nodes[0], (Tree::Node{1, 4.5}));
@@ -53,7 +56,7 @@ TEST(TreeSpace, HalvesAtTheMedianOfTheWidestAxis) {
 TEST(TreeSpace, LeavesHoldFromOnceToTwiceTheEntriesAskedFor) {
   const auto entries = made_up(5000, 3);
   std::vector<int> states;
-  const StateSpace space = tree_space({}, entries, 7, {}, &states);
+  const StateSpace space = tree_space(kPaper, entries, 7, {}, &states);
   std::map<int, int> held;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     EXPECT_EQ(space.index_of(entries[i]).state, states[i]);
@@ -69,17 +72,17 @@ TEST(TreeSpace, LeavesHoldFromOnceToTwiceTheEntriesAskedFor) {
 
 TEST(TreeSpace, EqualEntriesStayTogether) {
   std::vector<Entry> entries(100, {Boundary::enter, {1.0, 2.0, 3.0}});
-  EXPECT_EQ(tree_space({}, entries, 5).trees()[0].nodes.size(), 1u);
+  EXPECT_EQ(tree_space(kPaper, entries, 5).trees()[0].nodes.size(), 1u);
   for (int i = 0; i < 20; ++i) entries.push_back({Boundary::enter, {2.0 + i, 2.0, 3.0}});
   std::vector<int> states;
-  (void)tree_space({}, entries, 5, {}, &states);
+  (void)tree_space(kPaper, entries, 5, {}, &states);
   EXPECT_TRUE(std::all_of(states.begin(), states.begin() + 100, [](int s) { return s == 0; }));
   EXPECT_GT(states.back(), 0);
 }
 
 TEST(TreeSpace, PointsAreStatesBehindTheLeaves) {
   const Entry start{Boundary::enter, {0.0, 0.0, 15.0}};
-  const StateSpace space = tree_space({}, made_up(200, 1), 10, {start});
+  const StateSpace space = tree_space(kPaper, made_up(200, 1), 10, {start});
   EXPECT_EQ(space.index_of(start).state, space.size() - 1);
   EXPECT_EQ(space.range(space.size() - 1).at[kEntryVy], (std::array<double, 2>{15.0, 15.0}));
 }
@@ -99,8 +102,8 @@ TEST(TreeSpace, AScaledSceneHasTheSameTreeToTheLastBit) {
   auto entries = made_up(1000, 5), scaled = entries;
   for (Entry& c : scaled) c.at = {c.at[0] * kLength, c.at[1] * kSpeed, c.at[2] * kSpeed};
   std::vector<int> states, scaled_states;
-  const StateSpace here = tree_space({}, entries, 7, {}, &states),
-                   there = tree_space(small, scaled, 7, {}, &scaled_states);
+  const StateSpace here = tree_space(kPaper, entries, 7, {}, &states),
+                   there = tree_space(disc_section(small), scaled, 7, {}, &scaled_states);
   EXPECT_EQ(states, scaled_states);
   for (std::size_t i = 0; i < here.trees()[0].nodes.size(); ++i) {
     const Tree::Node &a = here.trees()[0].nodes[i], &b = there.trees()[0].nodes[i];
@@ -110,19 +113,19 @@ TEST(TreeSpace, AScaledSceneHasTheSameTreeToTheLastBit) {
 }
 
 TEST(TreeSpace, RefusesTreesThatAreNone) {
-  const auto tree_of = [](std::vector<Tree::Node> nodes) {
+  const auto space_of = [](std::vector<Tree::Node> nodes) {
     Tree tree{.nodes = std::move(nodes), .seen = {{{-1, 1}, {-1, 1}, {-1, 1}}}};
-    return std::array<Tree, kBoundaries>{tree, Tree{}, Tree{}, Tree{}, Tree{}};
+    return StateSpace(kPaper, {tree, Tree{}, Tree{}, Tree{}, Tree{}});
   };
-  EXPECT_NO_THROW(StateSpace(tree_of({{0, 0.0}, {}, {}})));
-  EXPECT_THROW(StateSpace(tree_of({{0, 0.0}, {}})), std::invalid_argument);
-  EXPECT_THROW(StateSpace(tree_of({{0, 0.0}, {}, {}, {}})), std::invalid_argument);
-  EXPECT_THROW(StateSpace(tree_of({{3, 0.0}, {}, {}})), std::invalid_argument);
-  EXPECT_THROW(StateSpace(tree_of({{0, 2.0}, {}, {}})), std::invalid_argument);
-  EXPECT_THROW(StateSpace(tree_of({{0, std::nan("")}, {}, {}})), std::invalid_argument);
-  EXPECT_THROW(StateSpace(tree_of({})), std::invalid_argument);
-  EXPECT_THROW((void)tree_space({}, {}, 0), std::invalid_argument);
-  EXPECT_THROW((void)refined(tree_space({}, made_up(50, 1)), 2.0), std::invalid_argument);
+  EXPECT_NO_THROW((void)space_of({{0, 0.0}, {}, {}}));
+  EXPECT_THROW((void)space_of({{0, 0.0}, {}}), std::invalid_argument);
+  EXPECT_THROW((void)space_of({{0, 0.0}, {}, {}, {}}), std::invalid_argument);
+  EXPECT_THROW((void)space_of({{3, 0.0}, {}, {}}), std::invalid_argument);
+  EXPECT_THROW((void)space_of({{0, 2.0}, {}, {}}), std::invalid_argument);
+  EXPECT_THROW((void)space_of({{0, std::nan("")}, {}, {}}), std::invalid_argument);
+  EXPECT_THROW((void)space_of({}), std::invalid_argument);
+  EXPECT_THROW((void)tree_space(kPaper, {}, 0), std::invalid_argument);
+  EXPECT_THROW((void)refined(tree_space(kPaper, made_up(50, 1)), 2.0), std::invalid_argument);
 }
 
 }  // namespace

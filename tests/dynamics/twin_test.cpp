@@ -68,12 +68,12 @@ TEST_P(Twins, RunsHaveTheSameBits) {
 // Vector lanes and the matrix.
 TEST_P(Twins, MatricesHaveTheSameCounts) {
   const GateParams p = scene(GetParam());
-  Transitions a(StateSpace::paper(p));
+  Transitions a(table3_space(p));
   add_trials(a, p, 1, {0, 2});
   for (const Twin& twin : {Twin{-10, 10, -10}, Twin{5, 7, -2}, Twin{-1, 0, 0}, Twin{0, 1, 0}}) {
     SCOPED_TRACE(testing::Message() << twin);
     const GateParams q = p.run.method == "penalty" ? twin.of(p) : own_settings(twin.of(p));
-    Transitions b(StateSpace::paper(q));
+    Transitions b(table3_space(q));
     for (int boundary = 0; boundary < kBoundaries; ++boundary) {
       const auto &x = a.space.bins()[boundary].edges, &y = b.space.bins()[boundary].edges;
       for (std::size_t axis = 0; axis < x.size(); ++axis) {

@@ -121,7 +121,7 @@ TEST(WorkPrecision, RunsEverySettingAgainstTheReference) {
   EXPECT_EQ(chart.points[2].errors.strong.position,
             strong_error(p, some.trials, reference.trials).position);
   EXPECT_EQ(chart.points[2].errors.columns.changed,
-            column_error(some.trials, reference.trials, StateSpace::paper(p)).changed);
+            column_error(some.trials, reference.trials, table3_space(p)).changed);
   EXPECT_EQ(chart.reference.other.strong.position,
             strong_error(p, stable.trials, reference.trials).position);
   EXPECT_LT(chart.reference.own.strong.position, chart.points[2].errors.strong.position);

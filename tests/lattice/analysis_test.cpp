@@ -38,8 +38,8 @@ Scene open_scene() {
 StartTrials some_trials(const Scene& scene, std::int64_t n) {
   StartTrials s;
   s.start = entry_of(scene.start);
-  (void)run_field(gates_of(scene), scene.field, scene.start, StateSpace::paper(scene.gate), 9,
-                  {0, n}, &s.full);
+  (void)run_field(gates_of(scene), scene.field, scene.start, table3_space(scene.gate), 9, {0, n},
+                  &s.full);
   return s;
 }
 
@@ -109,7 +109,7 @@ TEST(Costs, OfTrialsDoNotDependOnPiecesOrThreads) {
     FieldCosts costs(scene.gate);
     for (const TrialRange& range : ranges) {
       FieldTrials each;
-      (void)run_field(scene.gate, scene.field, scene.start, StateSpace::paper(scene.gate), 9, range,
+      (void)run_field(scene.gate, scene.field, scene.start, table3_space(scene.gate), 9, range,
                       &each);
       costs.add(each);
     }
@@ -198,10 +198,10 @@ TEST(Analysis, CostsAreThoseOfAllRunsBehindACount) {
 TEST(Analysis, CostsComeBackFromAFile) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 100);
-  MatrixFile file{
-      Transitions(StateSpace(kernel_of(scene.gate, pool).space.trees(), {entry_of(scene.start)})),
-      {}};
-  file.arrays = arrays_of(pool);
+  MatrixFile file{Transitions(StateSpace(disc_section(), kernel_of(scene.gate, pool).space.trees(),
+                                         {entry_of(scene.start)})),
+                  {}};
+  file.arrays = arrays_of(pool, disc_section());
   const RunPool back = pool_of(file, scene, "file");
   ASSERT_EQ(back.starts[0].full.passages.size(), pool.starts[0].full.passages.size());
   for (std::size_t i = 0; i < pool.starts[0].full.passages.size(); ++i)
@@ -215,7 +215,7 @@ TEST(Analysis, CostsComeBackFromAFile) {
 
 TEST(Analysis, BinsKeepWhatTheirRunsTook) {
   const Scene scene = open_scene();
-  const StateSpace space = StateSpace::paper(scene.gate);
+  const StateSpace space = table3_space(scene.gate);
   Transitions whole(space), pieces(space);
   add_trials(whole, scene.gate, 1, {0, 60});
   for (const TrialRange& range : {TrialRange{0, 7}, TrialRange{7, 53}})
@@ -257,8 +257,8 @@ TEST(Analysis, AgreesWithTheFullDynamics) {
   const Analysis a = analyze(scene, analysed_chain(scene, pool, entry_of(scene.start)), {});
   FieldCosts costs(scene.gate);
   FieldTrials each;
-  (void)run_field(scene.gate, scene.field, scene.start, StateSpace::paper(scene.gate), 777,
-                  {0, 20'000}, &each);
+  (void)run_field(scene.gate, scene.field, scene.start, table3_space(scene.gate), 777, {0, 20'000},
+                  &each);
   costs.add(each);
   for (std::size_t k = 0; k < kCosts; ++k) {
     const auto cost = static_cast<Cost>(k);
@@ -324,8 +324,8 @@ TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
     for (const ParamInfo& info : gate_param_table())
       if (info.key == key) info.ref(other.gate) *= factor;
     constexpr std::int64_t kTrials = 40'000;
-    const FieldTally t = run_field(other.gate, other.field, other.start,
-                                   StateSpace::paper(other.gate), 5, {0, kTrials});
+    const FieldTally t =
+        run_field(other.gate, other.field, other.start, table3_space(other.gate), 5, {0, kTrials});
     return static_cast<double>(t.endings[static_cast<std::size_t>(Ending::far_edge)]) / kTrials;
   };
   int seen = 0;

@@ -47,7 +47,7 @@ TEST(FieldTruth, IsNoneOfBrokenTrials) {
 }
 
 /// One state per boundary: EN, RD, LD, RT, LT.
-StateSpace five_states() { return dynamics::refined(StateSpace::paper({}), 0.01); }
+StateSpace five_states() { return dynamics::refined(dynamics::table3_space({}), 0.01); }
 
 /// Of 1000 runs that enter from below so many go on upwards, and so many to the left, where no run
 /// was made; the others are trapped.

@@ -35,7 +35,7 @@ RunPool pool_of_runs(const Scene& scene, std::int64_t n) {
   RunPool pool;
   StartTrials& s = pool.starts.emplace_back();
   s.start = dynamics::entry_of(scene.start);
-  (void)run_field(scene.gate, scene.field, scene.start, dynamics::StateSpace::paper(scene.gate), 9,
+  (void)run_field(scene.gate, scene.field, scene.start, dynamics::table3_space(scene.gate), 9,
                   {0, n}, &s.full);
   return pool;
 }
@@ -55,7 +55,7 @@ TEST(Exits, OfTrialsAreThoseOfTheirLastGates) {
   const Scene scene = leaving_scene();
   FieldTrials each;
   const FieldTally tally = run_field(scene.gate, scene.field, scene.start,
-                                     dynamics::StateSpace::paper(scene.gate), 3, {0, 2000}, &each);
+                                     dynamics::table3_space(scene.gate), 3, {0, 2000}, &each);
   ExitCounts counts(scene.field);
   counts.add(each);
   EXPECT_EQ(counts.trials, 2000);

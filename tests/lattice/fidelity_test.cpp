@@ -88,7 +88,7 @@ TEST(FidelityStudy, RunsTheTrialsOfTheFullDynamics) {
                            if (done == 0) told.emplace_back(what);
                          }});
   ASSERT_EQ(study.starts.size(), 2u);
-  const auto space = dynamics::StateSpace::paper({});
+  const auto space = dynamics::table3_space({});
   for (std::size_t v = 0; v < variants.size(); ++v) {
     dynamics::Health health;
     for (const FidelityOfStart& s : study.starts) {

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace dynamics;
 
-StateSpace paper() { return StateSpace::paper(GateParams{}); }
+StateSpace paper() { return table3_space(GateParams{}); }
 
 /// Counts without physics: every third row, a few columns each.
 Transitions made_up() {
@@ -160,8 +160,9 @@ TEST(CountedField, KnowsWhichRowsHoldMirrorImages) {
   even.beams.stiffness_right = even.beams.stiffness_left;
   GateParams uneven = even;
   uneven.beams.stiffness_right *= 2.0;
-  Transitions t(StateSpace(std::array<Tree, kBoundaries>{}, {{Boundary::enter, {0.0, 0.0, 1.0}},
-                                                             {Boundary::enter, {0.1, 0.0, 1.0}}}));
+  Transitions t(
+      StateSpace(disc_section(), std::vector<Tree>(kBoundaries),
+                 {{Boundary::enter, {0.0, 0.0, 1.0}}, {Boundary::enter, {0.1, 0.0, 1.0}}}));
   ASSERT_EQ(t.space.size(), kBoundaries + 2);
   for (int row = 0; row < t.space.size(); ++row) t.rows[row][0] = t.trials[row] = 40;
   const auto runs = [&](const CountedField& field) {
@@ -268,9 +269,9 @@ TEST_F(MatrixOnDisk, KeepsBinsThatAreNotThePapers) {
   GateParams p;
   p.beams.joint_x = 31.0;
   p.body.radius = 7.1;
-  auto bins = StateSpace::paper(p).bins();
+  auto bins = table3_space(p).bins();
   bins[0].edges[kEntryVy] = {0.1, 10.0, 20.0};  // 50 EN states
-  const Transitions t{StateSpace(bins)};
+  const Transitions t{StateSpace(disc_section(p), bins)};
   write_matrix(path(), {t, {}});
   const StateSpace back = read_matrix(path()).transitions.space;
   EXPECT_EQ(back, t.space);
@@ -280,7 +281,7 @@ TEST_F(MatrixOnDisk, KeepsBinsThatAreNotThePapers) {
 TEST_F(MatrixOnDisk, KeepsOpenBinsAndSingleEntries) {
   const std::vector<Entry> points{{Boundary::enter, {0, 0, 15}},
                                   {Boundary::left_traverse, {12, 3.5, -1}}};
-  Transitions t{StateSpace(paper().bins(), true, points)};
+  Transitions t{StateSpace(disc_section(), paper().bins(), true, points)};
   t.rows[88][89] = 7;
   t.trials[88] = 7;
   write_matrix(path(), {t, {}});

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dynamics/disc_section.h"
 #include "lattice/gate_chain.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/draws.h"
@@ -30,7 +31,7 @@ constexpr int kMaxGates = 8;
 constexpr markov::Start kStart{2, 0, 0};
 
 /// One state per boundary: EN, RD, LD, RT, LT; and trapped.
-StateSpace five_states() { return dynamics::refined(StateSpace::paper({}), 0.01); }
+StateSpace five_states() { return dynamics::refined(dynamics::table3_space({}), 0.01); }
 
 /// The true chain, in thousandths, row by row.
 constexpr std::array<std::array<double, 6>, 5> kTruth{{{250, 150, 200, 30, 20, 350},

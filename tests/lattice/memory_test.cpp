@@ -252,9 +252,15 @@ TEST(Memory, SameBitsForAnyThreadsAndRefusals) {
 
 const PaperStart kStart{0.0, 0.0, 15.0};
 
+TEST(Memory, OriginsAreWhereBodiesComeFrom) {
+  EXPECT_EQ(origins_of(dynamics::disc_section()),
+            (std::vector<std::string>{"from below in the left half", "from below in the right half",
+                                      "from the right", "from the left"}));
+}
+
 TEST(Memory, WalksAreTheTrialsInStates) {
   const Scene scene = parse_scene("", "scene");
-  const auto space = dynamics::StateSpace::paper(scene.gate);
+  const auto space = dynamics::table3_space(scene.gate);
   FieldTrials each;
   each.keep_passages = true;
   const FieldTally tally =
@@ -283,7 +289,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
 TEST(Memory, OfTheForceIsWhatItsHoldDoes) {
   const auto memory_of = [&](const std::string& text) {
     const Scene scene = parse_scene(text, "scene");
-    const auto space = dynamics::StateSpace::paper(scene.gate);
+    const auto space = dynamics::table3_space(scene.gate);
     const auto trials = [&](HeldForce held) {
       RunTrials t{FieldTally(scene.field), {}};
       t.tally =

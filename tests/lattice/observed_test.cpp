@@ -226,7 +226,7 @@ Scene straight_up(int max_gates = 9) {
       "straight");
 }
 dynamics::Transitions all_up(const Scene& scene) {
-  dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
+  dynamics::Transitions t(dynamics::table3_space(scene.gate));
   for (int row = 0; row < t.space.size(); ++row) {
     const auto state = t.space.index_of({dynamics::Boundary::enter, {0.0, 0.0, 15.0}}).state;
     t.rows[static_cast<std::size_t>(row)][state] = 100'000;

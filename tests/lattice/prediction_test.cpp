@@ -16,7 +16,7 @@ using markov::Ending;
 /// trapped.
 SceneMatrix matrix(std::int64_t up, const std::string& keys = "") {
   Scene scene = parse_scene("field = { columns = 3, rows = 3, max_gates = 9 }\n" + keys, "scene");
-  dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
+  dynamics::Transitions t(dynamics::table3_space(scene.gate));
   const int state = t.space.index_of({Boundary::enter, {0.0, 0.0, 15.0}}).state;
   for (std::size_t row = 0; row < t.rows.size(); ++row) {
     if (up > 0) t.rows[row][state] = up;

@@ -33,9 +33,8 @@ struct Ran : FieldTally {
 Ran run(const FieldGates& gates, const FieldParams& field, TrialRange range, std::uint64_t seed = 1,
         const BodyState& start = kStart) {
   Ran ran(field);
-  static_cast<FieldTally&>(ran) =
-      run_field(gates, field, start, StateSpace::paper(gates.at(field.start_column(), 0)), seed,
-                range, &ran.each);
+  static_cast<FieldTally&>(ran) = run_field(
+      gates, field, start, table3_space(gates.at(field.start_column(), 0)), seed, range, &ran.each);
   return ran;
 }
 
@@ -193,7 +192,7 @@ TEST(RunField, DrawsTheForceAnewWhenAsked) {
     const auto method = make_method(p);
     FieldTrials each;
     each.keep_passages = true;
-    (void)run_field(p, {9, 9, 4}, kStart, StateSpace::paper(p), 8, {0, 20}, &each,
+    (void)run_field(p, {9, 9, 4}, kStart, table3_space(p), 8, {0, 20}, &each,
                     HeldForce::drawn_anew);
     for (std::size_t i = 0; i < 20; ++i) {
       RandomForce force(p.forces, Random(Purpose::field, {8, stream_row(p, kStart), i}));
@@ -233,7 +232,7 @@ TEST(RunField, KeepsCrossingsWhenAsked) {
   const GateParams p;
   const FieldParams field;
   const BodyState start{0, 0, 0, 15};
-  const StateSpace space = StateSpace::paper(p);
+  const StateSpace space = table3_space(p);
   const auto kept = [&](std::initializer_list<TrialRange> ranges) {
     FieldTrials each{.keep_passages = true};
     FieldTally tally(field);
@@ -261,7 +260,7 @@ TEST(RunField, KeepsCrossingsWhenAsked) {
 TEST(RunField, TalliesAddInAnyOrderAndNoTrialTwice) {
   const GateParams p;
   const FieldParams field;
-  const StateSpace space = StateSpace::paper(p);
+  const StateSpace space = table3_space(p);
   const auto part = [&](TrialRange range) { return run_field(p, field, kStart, space, 1, range); };
   FieldTally tally = part({30, 20});
   tally += part({0, 30});
@@ -287,7 +286,7 @@ TEST(RunField, GatesOfSeveralTypes) {
   const FieldGates gates = FieldGates::by_cell({soft, strong, slow}, 5, types);
   const GateParams& first = gates.at(2, 0);
   FieldTrials each{.keep_passages = true};
-  (void)run_field(gates, field, kStart, StateSpace::paper(first), 4, {0, 60}, &each);
+  (void)run_field(gates, field, kStart, table3_space(first), 4, {0, 60}, &each);
   std::vector<Entry> crossings;
   int upward = 0, sideways = 0;
   for (std::int64_t i = 0; i < 60; ++i) {
@@ -301,7 +300,7 @@ TEST(RunField, GatesOfSeveralTypes) {
       const GateRun r = run_gate(p, *make_method(p), body, force);
       if (r.ending == Ending::trapped) break;
       const Entry crossing = crossing_of(p, r.ending, r.exit);
-      const Move move = move_into(crossing.face);
+      const Face& move = disc_section().faces[crossing.face];
       if (!field.contains(column + move.di_x, row + move.di_y) || visited == 13) break;
       crossings.push_back(crossing);
       column += move.di_x;
@@ -362,11 +361,11 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
   p.beams.stiffness_left = p.beams.stiffness_right = 60.0;
   const FieldParams field;
   // Bins so fine that no gate of a path has the state of another one.
-  auto bins = StateSpace::paper(p).bins();
+  auto bins = table3_space(p).bins();
   bins[0].edges[kEntryVx] = {-30, 30};
   bins[0].edges[kEntryVy].clear();
   for (int i = 0; i <= 160; ++i) bins[0].edges[kEntryVy].push_back(0.25 * i);
-  const StateSpace space(bins);
+  const StateSpace space(disc_section(p), bins);
   int moves = 0, followed = 0;
   for (const double x : {-17.0, -9.0, -2.0, 0.0, 6.0, 13.0, 21.0}) {
     SCOPED_TRACE(x);
@@ -426,7 +425,7 @@ TEST(Fidelity, ActiveIsGateByGate) {
     GateParams p;
     p.run.method = name;
     const auto method = make_method(p);
-    const StateSpace space = StateSpace::paper(p);
+    const StateSpace space = table3_space(p);
     Ran plain(field);
     for (std::uint64_t trial = 0; trial < 60; ++trial) {
       RandomForce force(p.forces, Random(Purpose::field, {6, stream_row(p, kStart), trial}));
@@ -441,7 +440,7 @@ TEST(Fidelity, ActiveIsGateByGate) {
         if (r.ending == Ending::trapped) ++plain.trapped_gates(row, column);
         if (r.ending == Ending::trapped || r.ending == Ending::broken) break;
         const Entry crossing = crossing_of(p, r.ending, r.exit);
-        const Move move = move_into(crossing.face);
+        const Face& move = disc_section().faces[crossing.face];
         const bool leaves = !field.contains(column + move.di_x, row + move.di_y);
         if (leaves)
           why = row + move.di_y > 8      ? markov::Ending::far_edge
@@ -584,7 +583,7 @@ TEST(Fidelity, NeedsMethodMoreau) {
 TEST(RunField, ScenesThatCannotBeRunAreRefused) {
   GateParams p;
   p.run.step = 0.003;
-  EXPECT_THROW((void)run_field(p, {}, kStart, StateSpace::paper(p), 1, {0, 1}), InvalidParameter);
+  EXPECT_THROW((void)run_field(p, {}, kStart, table3_space(p), 1, {0, 1}), InvalidParameter);
 }
 
 // A traced trial is the one that was counted: final gate, ending, and every crossing on the way.

@@ -6,7 +6,7 @@
 
 #include "dynamics/base/random.h"
 #include "dynamics/base/share.h"
-#include "dynamics/quantile_bins.h"
+#include "dynamics/disc_section.h"
 #include "lattice/pool/pool_answers.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/pool/tree_chain.h"
@@ -34,7 +34,7 @@ Scene fast_scene() {
 StartTrials some_trials(const Scene& scene, std::int64_t n, BodyState from = kStart) {
   StartTrials s;
   s.start = entry_of(from);
-  (void)run_field(scene.gate, scene.field, from, StateSpace::paper(scene.gate), 9, {0, n}, &s.full);
+  (void)run_field(scene.gate, scene.field, from, table3_space(scene.gate), 9, {0, n}, &s.full);
   return s;
 }
 
@@ -64,14 +64,16 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
     pool.starts.push_back(some_trials(scene, 150));
     pool.scattered.starts = {{Boundary::enter, {1, 2, 12}}, {Boundary::enter, {-3, 0, 14}}};
     (void)run_field(scene.gate, scene.field, std::vector<BodyState>{{1, 0, 2, 12}, {-3, 0, 0, 14}},
-                    StateSpace::paper(scene.gate), 9, {0, 2}, &pool.scattered.each);
+                    table3_space(scene.gate), 9, {0, 2}, &pool.scattered.each);
     for (const TrialGroup group : {TrialGroup{}, TrialGroup{1, 3}}) {
       const Kernel kernel = kernel_of(scene.gate, pool, 7, group);
       Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(kernel.space.size(), kernel.space.size() + 1);
       const auto count = [&](const Entry& from, const GatePassage& to) {
         for (const bool image : {false, true}) {
           if (image && !mirror) continue;
-          const auto turned = [&](const Entry& c) { return image ? mirrored(c) : c; };
+          const auto turned = [&](const Entry& c) {
+            return image ? mirrored(disc_section(), c) : c;
+          };
           const int column = to.ending == dynamics::Ending::trapped
                                  ? kernel.space.trapped()
                                  : kernel.space.index_of(turned(to.entry)).state;
@@ -254,7 +256,7 @@ TEST(PooledPrediction, IsAsAccurateAsItSaysAndTheSameOnAnyThreads) {
   EXPECT_TRUE(one.reached);
   EXPECT_LE(one.starts[0].error.total_variation, 0.05);
   const FieldTally truth =
-      run_field(scene.gate, scene.field, kStart, StateSpace::paper(scene.gate), 77, {0, 20'000});
+      run_field(scene.gate, scene.field, kStart, table3_space(scene.gate), 77, {0, 20'000});
   EXPECT_LE(total_variation(one.starts[0].final.final_cells, shares(truth.final_gates)), 0.055);
   EXPECT_LT(one.gate_runs, 20'000);
 }
@@ -290,7 +292,7 @@ TEST(PooledPrediction, EntriesWhereNoRunEnteredAreInTheBar) {
   EXPECT_TRUE(known.reached);
   EXPECT_GT(known.starts[0].trials, 100);
   const FieldTally truth =
-      run_field(scene.gate, scene.field, fast, StateSpace::paper(scene.gate), 77, {0, 5000});
+      run_field(scene.gate, scene.field, fast, table3_space(scene.gate), 77, {0, 5000});
   EXPECT_LE(total_variation(known.starts[0].final.final_cells, shares(truth.final_gates)), 0.11);
   EXPECT_LE(total_variation(guess.starts[0].final.final_cells, shares(truth.final_gates)),
             guess.starts[0].error.total_variation);
@@ -306,7 +308,7 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   one_gate.max_gates = 1;
   StartTrials again;
   again.start = pool.starts[0].start;
-  (void)run_field(scene.gate, one_gate, kStart, StateSpace::paper(scene.gate), 10, {0, 1000},
+  (void)run_field(scene.gate, one_gate, kStart, table3_space(scene.gate), 10, {0, 1000},
                   &again.first);
   EXPECT_LT(unseen_share(kernel, scene.gate, scene.field, again), 0.01);
   std::int64_t go_on = 0;
@@ -417,8 +419,9 @@ TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
   const TreeChain chain =
       make_tree_chain(scene, {.accuracy = {.accuracy = 0.05}, .starts = {kStart, {0, 0, 0, 15}}});
   const std::string path = testing::TempDir() + "tree_chain.nc";
-  write_matrix(path,
-               {chain.transitions.front(), {{"scene", to_toml(scene)}}, arrays_of(chain.pool)});
+  write_matrix(path, {chain.transitions.front(),
+                      {{"scene", to_toml(scene)}},
+                      arrays_of(chain.pool, dynamics::disc_section())});
   const MatrixFile file = read_matrix(path);
   EXPECT_EQ(file.transitions.space, chain.transitions.front().space);
   EXPECT_EQ(file.transitions.rows, chain.transitions.front().rows);
@@ -471,7 +474,7 @@ TEST(TreeChain, DamagedRunsAreRefused) {
   const Scene scene = fast_scene();
   const TreeChain chain =
       make_tree_chain(scene, {.accuracy = {.accuracy = 0.2}, .starts = {kStart}});
-  MatrixFile file{chain.transitions.front(), {}, arrays_of(chain.pool)};
+  MatrixFile file{chain.transitions.front(), {}, arrays_of(chain.pool, dynamics::disc_section())};
   EXPECT_NO_THROW((void)pool_of(file, scene, "x.nc"));
   for (markov::NamedArray& array : file.arrays) {
     MatrixFile bad = file;

@@ -548,12 +548,12 @@ TEST(SceneBins, AreEdgesOfOnesOwn) {
   const Scene scene =
       parse_scene("[bins]\nEN_d_m = [-20, 0, 0.1, 20]\nRD_vy_m_per_s = [-5, 5.5]\n", "x.toml");
   ASSERT_TRUE(scene.bins);
-  const auto paper = dynamics::StateSpace::paper(scene.gate).bins();
+  const auto paper = dynamics::table3_space(scene.gate).bins();
   EXPECT_EQ((*scene.bins)[0].edges[0], (std::vector<double>{-20, 0, 0.1, 20}));
   EXPECT_EQ((*scene.bins)[0].edges[1], paper[0].edges[1]);
   EXPECT_EQ((*scene.bins)[1].edges[2], (std::vector<double>{-5, 5.5}));
   EXPECT_EQ((*scene.bins)[2], paper[2]);
-  EXPECT_EQ(dynamics::StateSpace(*scene.bins).size(), 15 + 6 + 30 + 2);
+  EXPECT_EQ(dynamics::StateSpace(dynamics::disc_section(), *scene.bins).size(), 15 + 6 + 30 + 2);
 
   const Scene again = parse_scene(to_toml(scene), "again.toml");
   EXPECT_EQ(again.bins, scene.bins);

@@ -395,7 +395,7 @@ TEST(Terrain, KernelsCountTheRunsOfEachType) {
   const FieldGates gates = gates_of(scene);
   StartTrials s;
   s.start = dynamics::entry_of(kStart);
-  (void)run_field(gates, scene.field, kStart, StateSpace::paper(scene.gate), 9, {0, 400}, &s.full);
+  (void)run_field(gates, scene.field, kStart, table3_space(scene.gate), 9, {0, 400}, &s.full);
   RunPool pool;
   pool.starts.push_back(std::move(s));
   constexpr int kPerLeaf = 7;
@@ -442,8 +442,8 @@ TEST(Terrain, TheChainIsThatOfItsOwnDynamics) {
   RunPool pool;
   const auto p = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.03});
   ASSERT_TRUE(p.reached);
-  const FieldTally truth = run_field(gates_of(scene), scene.field, kStart,
-                                     StateSpace::paper(scene.gate), 77, {0, 20'000});
+  const FieldTally truth =
+      run_field(gates_of(scene), scene.field, kStart, table3_space(scene.gate), 77, {0, 20'000});
   const double tv = total_variation(p.starts[0].final.final_cells, shares(truth.final_gates));
   const double floor = expected_total_variation(p.starts[0].final.final_cells, truth.trials);
   EXPECT_LT(tv, floor + p.starts[0].error.total_variation);
@@ -459,7 +459,9 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
       make_tree_chain(scene, {.accuracy = {.accuracy = 0.08}, .starts = {kStart}});
   ASSERT_EQ(chain.transitions.size(), 3U);
   const std::string path = testing::TempDir() + "terrain.nc";
-  MatrixFile file{chain.transitions.front(), {{"scene", to_toml(scene)}}, arrays_of(chain.pool)};
+  MatrixFile file{chain.transitions.front(),
+                  {{"scene", to_toml(scene)}},
+                  arrays_of(chain.pool, dynamics::disc_section())};
   put_matrices(file, scene, chain.transitions);
   write_matrix(path, file);
 

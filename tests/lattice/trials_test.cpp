@@ -21,7 +21,7 @@ TEST(FieldTrials, AreThoseOfRunFieldAndChecked) {
 
 TEST(Walks, AreThoseOfTheWalker) {
   // Up, or trapped: a coin.
-  dynamics::Transitions t(dynamics::StateSpace::paper({}));
+  dynamics::Transitions t(dynamics::table3_space({}));
   for (auto& row : t.rows) row = {{0, 1}, {t.space.trapped(), 1}};
   for (auto& n : t.trials) n = 2;
   const FieldParams field{.columns = 3, .rows = 3, .max_gates = 9};

@@ -39,7 +39,7 @@ Scene straight_up() {
 
 /// Every entry goes up and enters the next gate where it came in.
 dynamics::Transitions all_up(const Scene& scene, std::int64_t runs) {
-  dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
+  dynamics::Transitions t(dynamics::table3_space(scene.gate));
   for (int row = 0; row < t.space.size(); ++row) {
     const auto state = t.space.index_of({dynamics::Boundary::enter, {0.0, 0.0, 15.0}}).state;
     t.rows[static_cast<std::size_t>(row)][state] = runs;
@@ -50,7 +50,7 @@ dynamics::Transitions all_up(const Scene& scene, std::int64_t runs) {
 
 /// Every entry is trapped.
 dynamics::Transitions all_trapped(const Scene& scene, std::int64_t runs) {
-  dynamics::Transitions t(dynamics::StateSpace::paper(scene.gate));
+  dynamics::Transitions t(dynamics::table3_space(scene.gate));
   for (int row = 0; row < t.space.size(); ++row) {
     t.rows[static_cast<std::size_t>(row)][t.space.trapped()] = runs;
     t.trials[static_cast<std::size_t>(row)] = runs;

@@ -1,0 +1,47 @@
+#include "dynamics/section.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace gatewalk::dynamics {
+
+void Section::validate() const {
+  const auto refuse = [](const std::string& what) {
+    throw std::invalid_argument("section: " + what);
+  };
+  if (faces.empty() || faces.size() > kMostFaces)
+    refuse(std::to_string(faces.size()) + " faces are not permitted: must be 1 to " +
+           std::to_string(kMostFaces));
+  if (coordinates.empty() || coordinates.size() > kMostCoordinates)
+    refuse(std::to_string(coordinates.size()) + " coordinates are not permitted: must be 1 to " +
+           std::to_string(kMostCoordinates));
+  if (costs.size() > kMostCosts)
+    refuse(std::to_string(costs.size()) + " costs are not permitted: must be at most " +
+           std::to_string(kMostCosts));
+  for (int f = 0; f < std::ssize(faces); ++f) {
+    const Face& face = faces[f];
+    if (face.name.empty()) refuse("a face has no name");
+    for (int other = 0; other < f; ++other)
+      if (faces[other].name == face.name) refuse("two faces are named " + face.name);
+    if (face.di_x == 0 && face.di_y == 0) refuse("face " + face.name + " leads nowhere");
+    if (face.mirror < 0 || face.mirror >= std::ssize(faces))
+      refuse("face " + face.name + " has no mirror image");
+    const Face& image = faces[face.mirror];
+    if (image.mirror != f || image.odd != face.odd || image.di_x != -face.di_x ||
+        image.di_y != face.di_y)
+      refuse("face " + face.name + " is not the mirror image of " + image.name);
+  }
+  for (const Coordinate& c : coordinates)
+    if (!(std::isfinite(c.scale) && c.scale > 0.0))
+      refuse("the scale of coordinate " + c.name + " must be finite and > 0");
+}
+
+Entry mirrored(const Section& section, const Entry& entry) {
+  const Face& face = section.faces[entry.face];
+  Entry image{face.mirror, entry.at};
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    if (face.is_odd(axis)) image.at[axis] = -entry.at[axis];
+  return image;
+}
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,93 @@
+#pragma once
+/// What a chain knows of a kind of cell, as data: the faces of its border through which bodies
+/// enter, the coordinates of an entry, and what a passage takes. No force, no beam.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gatewalk::dynamics {
+
+inline constexpr std::size_t kMostFaces = 64, kMostCoordinates = 3, kMostCosts = 5;
+
+/// A body enters: through which face, and where and how fast.
+struct Entry {
+  int face = 0;
+  std::array<double, kMostCoordinates> at{};  // by coordinate; 0 behind the last
+  friend bool operator==(const Entry&, const Entry&) = default;
+};
+
+/// What is told of every entry; the first one is its place on the face.
+struct Coordinate {
+  std::string name;    // "vx", in tables
+  std::string key;     // "vx_m_per_s", in JSON and scenes
+  std::string unit;    // "m s-1"
+  std::string words;   // "lateral velocity"
+  double scale = 1.0;  // > 0, what spreads along coordinates are compared in
+
+  /// The same one, on whatever scale.
+  friend bool operator==(const Coordinate& a, const Coordinate& b) {
+    return a.name == b.name && a.key == b.key && a.unit == b.unit && a.words == b.words;
+  }
+};
+
+/// A part of a cell's border with coordinates of its own.
+struct Face {
+  std::string name;        // "EN"
+  int di_x = 0, di_y = 0;  // the move from cell to cell that enters through it
+  int mirror = 0;          // the face by which mirror images enter: itself in the middle
+  std::uint8_t odd = 0;    // bit k: coordinate k changes its sign in the mirror
+  std::string origin;      // where bodies come from: "from below"
+  /// By coordinate, from and to: of its only state where no entry was seen.
+  std::array<std::array<double, 2>, kMostCoordinates> usual{};
+
+  [[nodiscard]] bool is_odd(std::size_t coordinate) const { return (odd >> coordinate & 1) != 0; }
+  /// The same one, whatever is usual there.
+  friend bool operator==(const Face& a, const Face& b) {
+    return a.name == b.name && a.di_x == b.di_x && a.di_y == b.di_y && a.mirror == b.mirror &&
+           a.odd == b.odd && a.origin == b.origin;
+  }
+};
+
+/// What a passage takes: its name in files, with the unit, and in words.
+struct CostInfo {
+  std::string key, unit, words;  // "time_s", "s", "duration"
+  friend bool operator==(const CostInfo&, const CostInfo&) = default;
+};
+
+/// The surface of section that all cells of a field share: entries are points on it.
+struct Section {
+  std::vector<Face> faces;              // 1 to kMostFaces
+  std::vector<Coordinate> coordinates;  // 1 to kMostCoordinates
+  std::vector<CostInfo> costs;          // up to kMostCosts
+
+  /// Throws std::invalid_argument unless there are as many as that, faces have different names,
+  /// lead somewhere and are the mirror images of their mirror images, and scales are finite and >
+  /// 0.
+  void validate() const;
+  friend bool operator==(const Section&, const Section&) = default;
+};
+
+/// The names of faces or coordinates: "EN, RD, LD".
+template <class Named>
+[[nodiscard]] std::string names_of(const std::vector<Named>& all,
+                                   const std::string& between = ", ") {
+  std::string text;
+  for (const Named& one : all) text += (text.empty() ? "" : between) + one.name;
+  return text;
+}
+/// What their numbers in files mean: "0 EN, 1 RD, 2 LD".
+template <class Named>
+[[nodiscard]] std::string numbers_of(const std::vector<Named>& all) {
+  std::string text;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    text += (i > 0 ? ", " : "") + std::to_string(i) + " " + all[i].name;
+  return text;
+}
+
+/// The mirror image, left for right.
+[[nodiscard]] Entry mirrored(const Section& section, const Entry& entry);
+
+}  // namespace gatewalk::dynamics
