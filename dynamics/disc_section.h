@@ -4,9 +4,9 @@
 
 #include <cstddef>
 
+#include "dynamics/cells/section.h"
+#include "dynamics/cells/state_space.h"
 #include "dynamics/gate.h"
-#include "dynamics/section.h"
-#include "dynamics/state_space.h"
 
 namespace gatewalk::dynamics {
 

@@ -19,7 +19,7 @@ GateRun run_gate_trial(const GateParams& p, const Method& method, const BodyStat
 void GateTally::add(const GateParams& p, const GateRun& run) {
   ++trials;
   ++counts[static_cast<std::size_t>(outcome_of(run))];
-  health.add(p, run);
+  add_run(health, p, run);
 }
 
 GateTally& GateTally::operator+=(const GateTally& o) {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "dynamics/base/trial_set.h"
+#include "dynamics/cells/health.h"
 #include "dynamics/gate.h"
-#include "dynamics/health.h"
 
 namespace gatewalk::dynamics {
 

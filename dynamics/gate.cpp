@@ -43,18 +43,24 @@ void settle_energy(const GateParams& p, const BodyState& start, GateRun& run) {
   run.lost = run.propulsion_work + run.random_work - (kinetic(run.exit) - kinetic(start));
 }
 
-void CostSums::add(const Costs& costs) {
-  for (std::size_t c = 0; c < kCosts; ++c) {
-    sum[c] += costs[c];
-    squares[c] += costs[c] * costs[c];
-  }
-}
-CostSums& CostSums::operator+=(const CostSums& other) {
-  for (std::size_t c = 0; c < kCosts; ++c) {
-    sum[c] += other.sum[c];
-    squares[c] += other.squares[c];
-  }
-  return *this;
+void add_run(Health& health, const GateParams& p, const GateRun& run) {
+  const Watch& w = run.watch;
+  const double energy_scale =
+      p.forces.propulsion * p.run.traverse_y + 0.5 * p.body.mass * w.max_speed * w.max_speed;
+  ++health.runs;
+  health.penetrating += w.max_penetration > 0.01 * p.body.radius;
+  health.creating_energy += w.energy_created > 1e-4 * energy_scale;
+  health.fast += w.fast_steps > 0;
+  health.unstable += w.unstable_steps > 0;
+  health.broken += run.ending == Ending::broken;
+  health.undefined_contacts += w.undefined_contacts;
+  health.forced_holds += w.forced_holds;
+  health.impacts += w.impacts;
+  health.steps += w.steps;
+  health.evaluations += w.evaluations;
+  health.worst_penetration = std::max(health.worst_penetration, w.max_penetration);
+  health.worst_energy_created = std::max(health.worst_energy_created, w.energy_created);
+  health.worst_speed = std::max(health.worst_speed, w.max_speed);
 }
 
 Ending ending(const GateParams& p, const GateState& s) {

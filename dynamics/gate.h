@@ -6,6 +6,8 @@
 #include <limits>
 #include <string_view>
 
+#include "dynamics/cells/costs.h"
+#include "dynamics/cells/health.h"
 #include "dynamics/contact.h"
 #include "dynamics/methods/method.h"
 #include "dynamics/random_force.h"
@@ -31,6 +33,9 @@ struct GateRun {
 /// Fills in forward, propulsion_work and lost, from where the run began, its exit and random_work.
 void settle_energy(const GateParams& p, const BodyState& start, GateRun& run);
 
+/// Counts a run, and what went wrong in it.
+void add_run(Health& health, const GateParams& p, const GateRun& run);
+
 /// What a run takes.
 enum class Cost : std::uint8_t { seconds, forward, propulsion_work, random_work, lost };
 /// Its name in files, with the unit, and in words.
@@ -46,19 +51,11 @@ inline constexpr std::array kCostNames{
     CostName{"lost_J", "J", "energy lost: to hits, dampers and drag, and left in the beams"},
 };
 inline constexpr std::size_t kCosts = kCostNames.size();
+static_assert(kCosts <= kMostCosts);
 /// By Cost.
-using Costs = std::array<double, kCosts>;
 [[nodiscard]] inline Costs costs_of(const GateRun& run) {
   return {run.seconds, run.forward, run.propulsion_work, run.random_work, run.lost};
 }
-
-/// What runs took together, and the sum of the squares.
-struct CostSums {
-  Costs sum{}, squares{};
-  void add(const Costs& costs);
-  CostSums& operator+=(const CostSums& other);
-  friend bool operator==(const CostSums&, const CostSums&) = default;
-};
 
 /// How a run ends, and for one that traversed by which beam.
 enum class Outcome : std::uint8_t {

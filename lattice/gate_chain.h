@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/transitions.h"
+#include "dynamics/cells/transitions.h"
 #include "lattice/field.h"
 #include "lattice/statistics/matrix_noise.h"
 #include "markov/formats/counts.h"

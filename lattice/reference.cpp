@@ -41,7 +41,7 @@ std::optional<Entry> follow(RunningTrial& t, const FieldGates& gates, const Fiel
                             const StateSpace& space, const GateRun& run, bool keep_passages) {
   const auto type = static_cast<std::uint8_t>(gates.type_of(t.column, t.row));
   const GateParams& p = gates.types()[type];
-  t.health.add(p, run);
+  add_run(t.health, p, run);
   ++t.gates;
   const Costs costs = costs_of(run);
   for (std::size_t c = 0; c < kCosts; ++c) t.costs[c] += costs[c];

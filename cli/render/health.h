@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/render/json_fwd.h"
-#include "dynamics/health.h"
+#include "dynamics/cells/health.h"
 
 namespace gatewalk::cli {
 

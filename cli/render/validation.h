@@ -5,7 +5,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "dynamics/transitions.h"
+#include "dynamics/cells/transitions.h"
 #include "lattice/study/validation.h"
 
 namespace gatewalk::cli {

@@ -175,7 +175,7 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
       },
       [&](RunSlot& slot, const GateRun& run) {
         Faults& f = faults.local();
-        f.health.add(p, run);
+        add_run(f.health, p, run);
         f.out_of_work += run.out_of_work;
         ends.trials[before + static_cast<std::size_t>(slot.trial)] =
             space ? end_of(p, *space, run) : end_without_column(run);

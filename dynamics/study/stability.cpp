@@ -182,7 +182,7 @@ MapPoint run_point(MapKind kind, std::string_view method, double x, double y, st
     const std::int64_t spent = std::max(point.health.steps, point.health.evaluations);
     const GateRun run = run_gate_trial(scene.p, *stepper, start, seed, trial,
                                        std::max<std::int64_t>(0, kMostWorkPerPoint - spent));
-    point.health.add(scene.p, run);
+    add_run(point.health, scene.p, run);
     point.out_of_work += run.out_of_work;
     // Nothing but a hit pushes it sideways.
     if (scene.hit_expected >= 0) missed |= (run.exit.vx != 0.0) != (scene.hit_expected == 1);

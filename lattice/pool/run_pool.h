@@ -10,8 +10,8 @@
 #include <functional>
 #include <vector>
 
-#include "dynamics/state_space.h"
-#include "dynamics/tree_space.h"
+#include "dynamics/cells/state_space.h"
+#include "dynamics/cells/tree_space.h"
 #include "lattice/gate_chain.h"
 #include "lattice/reference.h"
 

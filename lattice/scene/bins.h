@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
+#include "dynamics/cells/quantile_bins.h"
+#include "dynamics/cells/transitions.h"
 #include "dynamics/ensemble.h"
-#include "dynamics/quantile_bins.h"
-#include "dynamics/transitions.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/transitions.h"
+#include "dynamics/cells/transitions.h"
 #include "lattice/reference.h"
 #include "lattice/scene/table4.h"
 #include "lattice/statistics/compare.h"

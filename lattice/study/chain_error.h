@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/transitions.h"
+#include "dynamics/cells/transitions.h"
 #include "lattice/scene/bins.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/chain_answers.h"

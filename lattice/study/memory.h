@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/state_space.h"
+#include "dynamics/cells/state_space.h"
 #include "lattice/reference.h"
 #include "lattice/statistics/gates_ahead.h"
 #include "lattice/statistics/independence.h"

@@ -244,7 +244,7 @@ class Parameters {
           },
           [&](RunSlot& slot, const GateRun& run) {
             const std::size_t i = here[static_cast<std::size_t>(slot.trial)];
-            health.local().add(p, run);
+            add_run(health.local(), p, run);
             out[i] = value_of(p, samples_[i], run);
             return false;
           });

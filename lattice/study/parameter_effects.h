@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/health.h"
+#include "dynamics/cells/health.h"
 #include "lattice/pool/costed_chain.h"
 #include "lattice/pool/passages.h"
 #include "lattice/scene/scene.h"

@@ -200,7 +200,7 @@ Splitting split(const Scene& scene, double start_value, const EntryValue& value,
             bodies[i].force = slot.force;
             return false;
           });
-      for (const std::size_t i : wave) result.health.add(p, runs[i]);
+      for (const std::size_t i : wave) add_run(result.health, p, runs[i]);
     }
     return runs;
   };

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/health.h"
+#include "dynamics/cells/health.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/scene/scene.h"
 

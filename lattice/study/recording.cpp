@@ -108,7 +108,7 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
     const FieldTrace t = trace_field(gates, scene.field, scene.start, seed, trial, most_moments);
     for (const auto& visit : t.visits) {
       append(r, visit.trace, visit.column - scene.field.start_column(), visit.row);
-      r.health.add(gates.at(visit.column, visit.row), visit.trace.run);
+      add_run(r.health, gates.at(visit.column, visit.row), visit.trace.run);
     }
     r.gates = static_cast<int>(t.visits.size());
     r.ending = field_ending(t.ending);
@@ -117,7 +117,7 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
     dynamics::RandomForce force = dynamics::gate_force(scene.gate, seed, trial);
     const auto t = dynamics::trace_gate(scene.gate, *method, scene.start, force, most_moments);
     append(r, t, 0, 0);
-    r.health.add(scene.gate, t.run);
+    add_run(r.health, scene.gate, t.run);
     r.ending = dynamics::name_of(dynamics::outcome_of(t.run));
   }
   r.seconds = r.moments.back().time;

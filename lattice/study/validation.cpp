@@ -7,7 +7,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "dynamics/transitions.h"
+#include "dynamics/cells/transitions.h"
 #include "lattice/gate_chain.h"
 #include "lattice/statistics/matrix_noise.h"
 

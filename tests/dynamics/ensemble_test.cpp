@@ -48,11 +48,11 @@ GateRun healthy_run() {
 TEST(Health, JudgesEachRun) {
   const GateParams p;
   Health h;
-  h.add(p, healthy_run());
+  add_run(h, p, healthy_run());
   GateRun run = healthy_run();
   run.watch.max_penetration = 0.0999;
   run.watch.energy_created = 0.0679;
-  h.add(p, run);
+  add_run(h, p, run);
   EXPECT_TRUE(h.clean());
   EXPECT_EQ(h.runs, 2);
   EXPECT_EQ(h.worst_penetration, 0.0999);
@@ -63,7 +63,7 @@ TEST(Health, JudgesEachRun) {
     GateRun bad = healthy_run();
     change(bad);
     Health one;
-    one.add(p, bad);
+    add_run(one, p, bad);
     EXPECT_FALSE(one.clean());
     Health sum = h;
     sum += one;
@@ -84,7 +84,7 @@ TEST(Health, FewForcedHoldsAreNoFault) {
   run.watch.impacts = 5;
   run.watch.steps = 3000;
   Health h;
-  h.add(GateParams{}, run);
+  add_run(h, GateParams{}, run);
   EXPECT_TRUE(h.clean());
   Health twice = h;
   twice += h;

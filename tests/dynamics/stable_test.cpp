@@ -944,7 +944,7 @@ TEST(Stable, RunsAnySceneItAccepts) {
       const double energy = p.body.mass * speed * speed;
       const BodyState& b = run.exit;
       Health health;
-      health.add(p, run);
+      add_run(health, p, run);
       seen[i] = {false,
                  run.ending == Ending::broken,
                  std::isfinite(b.x + b.y + b.vx + b.vy),

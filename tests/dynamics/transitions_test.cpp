@@ -1,4 +1,4 @@
-#include "dynamics/transitions.h"
+#include "dynamics/row_trials.h"
 
 #include <gtest/gtest.h>
 
@@ -90,7 +90,7 @@ TEST(Transitions, TrialsCanBeReplayedAlone) {
       columns.insert(column);
       ++expected.rows[row][column];
       ++expected.trials[row];
-      expected.health.add(p, run);
+      add_run(expected.health, p, run);
     }
   }
   expect_same(built(9, {3, 2}), expected);

@@ -1,4 +1,4 @@
-#include "dynamics/tree_space.h"
+#include "dynamics/cells/tree_space.h"
 
 #include <gtest/gtest.h>
 

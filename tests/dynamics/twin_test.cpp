@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/landscape.h"
+#include "dynamics/row_trials.h"
 #include "dynamics/study/accuracy.h"
 #include "dynamics/study/choice.h"
 #include "dynamics/trace.h"
-#include "dynamics/transitions.h"
 
 namespace gatewalk::dynamics {
 namespace {

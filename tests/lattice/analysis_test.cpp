@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "dynamics/ensemble.h"
+#include "dynamics/row_trials.h"
 #include "dynamics/runs.h"
 #include "lattice/field_costs.h"
 #include "lattice/pool/lumped_chain.h"

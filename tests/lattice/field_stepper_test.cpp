@@ -468,7 +468,7 @@ TEST(FieldStepper, HealthIsKept) {
       RandomForce force(p.forces, Random(Purpose::field, {15, 0, trial}));
       for (int gate = 0; gate < 3; ++gate) {
         const GateRun run = stepper.run_gate(force);
-        health.add(p, run);
+        add_run(health, p, run);
         if (run.ending == Ending::trapped || stepper.row() == 8) break;
         stepper.go_on(run.ending);
       }

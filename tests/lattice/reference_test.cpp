@@ -434,7 +434,7 @@ TEST(Fidelity, ActiveIsGateByGate) {
       auto why = markov::Ending::trapped;  // no run breaks here
       for (int gates = 1;; ++gates) {
         const GateRun r = run_gate(p, *method, body, force);
-        plain.health.add(p, r);
+        add_run(plain.health, p, r);
         plain.broken += r.ending == Ending::broken;
         plain.trapped += r.ending == Ending::trapped;
         if (r.ending == Ending::trapped) ++plain.trapped_gates(row, column);

@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/cells/costs.h"
+
 namespace gatewalk::dynamics {
 
-inline constexpr std::size_t kMostFaces = 64, kMostCoordinates = 3, kMostCosts = 5;
+inline constexpr std::size_t kMostFaces = 64, kMostCoordinates = 3;
 
 /// A body enters: through which face, and where and how fast.
 struct Entry {
@@ -49,12 +51,6 @@ struct Face {
     return a.name == b.name && a.di_x == b.di_x && a.di_y == b.di_y && a.mirror == b.mirror &&
            a.odd == b.odd && a.origin == b.origin;
   }
-};
-
-/// What a passage takes: its name in files, with the unit, and in words.
-struct CostInfo {
-  std::string key, unit, words;  // "time_s", "s", "duration"
-  friend bool operator==(const CostInfo&, const CostInfo&) = default;
 };
 
 /// The surface of section that all cells of a field share: entries are points on it.

@@ -6,9 +6,6 @@
 
 namespace gatewalk::dynamics {
 
-struct GateParams;
-struct GateRun;
-
 /// What went wrong, or nearly, over many runs. A run is counted as
 /// - penetrating: the disc sank into a beam by more than 1 % of its radius;
 /// - creating energy: energy less work done rose by more than 1e-4 of propulsion * traverse_y plus
@@ -40,7 +37,6 @@ struct Health {
   std::int64_t checked_trials = 0;    // run again by a better method
   double outcome_error = 0.0;  // total variation of their outcomes that chance does not explain
 
-  void add(const GateParams& p, const GateRun& run);
   Health& operator+=(const Health& other);
   [[nodiscard]] bool piled_up() const {
     return static_cast<double>(forced_holds) > kPermittedHolds * static_cast<double>(steps);

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "dynamics/state_space.h"
+#include "dynamics/cells/state_space.h"
 
 namespace gatewalk::dynamics {
 

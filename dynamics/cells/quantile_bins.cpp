@@ -1,4 +1,4 @@
-#include "dynamics/quantile_bins.h"
+#include "dynamics/cells/quantile_bins.h"
 
 #include <algorithm>
 #include <stdexcept>

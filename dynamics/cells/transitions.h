@@ -1,13 +1,14 @@
 #pragma once
-/// Runs -> integer counts: the input-output matrix of Eq. (16) before it is divided by anything.
+/// Integer counts of passages from state to state: a matrix before it is divided by anything.
 
 #include <Eigen/SparseCore>
 #include <cstdint>
 #include <map>
 #include <vector>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/state_space.h"
+#include "dynamics/cells/costs.h"
+#include "dynamics/cells/health.h"
+#include "dynamics/cells/state_space.h"
 
 namespace gatewalk::dynamics {
 
@@ -52,12 +53,5 @@ using Entries = std::vector<std::vector<Entry>>;  // (n)
 [[nodiscard]] std::int64_t runs_per_trial(const StateSpace& space, int row);
 /// The same of all rows together.
 [[nodiscard]] std::int64_t runs_per_trial(const StateSpace& space);
-
-/// Adds trials `range` of every row: starts uniform in the row's bin, or drawn from `entries` in a
-/// row that has any; random force from the stream {seed, row, run}. On all threads of the current
-/// TBB arena; same counts for any number of them. A broken run is counted in `health` and in no
-/// column; the caller decides.
-void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,
-                const Entries& entries = {});
 
 }  // namespace gatewalk::dynamics

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dynamics/base/random.h"
-#include "dynamics/section.h"
+#include "dynamics/cells/section.h"
 
 namespace gatewalk::dynamics {
 

@@ -1,4 +1,4 @@
-#include "dynamics/state_space.h"
+#include "dynamics/cells/state_space.h"
 
 #include <algorithm>
 #include <cmath>

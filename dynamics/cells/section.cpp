@@ -1,4 +1,4 @@
-#include "dynamics/section.h"
+#include "dynamics/cells/section.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dynamics/state_space.h"
+#include "dynamics/cells/state_space.h"
 
 namespace gatewalk::dynamics {
 
