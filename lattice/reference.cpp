@@ -110,7 +110,7 @@ std::vector<Entry> FieldTrials::entries() const {
   std::vector<Entry> all;
   for (std::size_t i = 0; i < passed.size(); ++i) {
     const auto of = of_trial(i);
-    for (const GatePassage& p : of.first(of.size() - 1)) all.push_back(p.entry);
+    for (std::size_t k = 0; k + 1 < of.size(); ++k) all.push_back(of[k].entry);
   }
   return all;
 }
@@ -227,13 +227,14 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
   tally.held.add(range);
   tally.trials = range.count;
   for (const RunningTrial& t : trials) tally_trial(tally, t);
+  if (keep_passages && each->passages.empty()) each->passages = PassageTable(space.section());
   if (each != nullptr)
     for (const RunningTrial& t : trials) {
       each->final_gates.push_back(t.row * field.columns + t.column);
       each->endings.push_back(t.ending);
       each->costs.push_back(t.costs);
       if (!keep_passages) continue;
-      each->passages.insert(each->passages.end(), t.passages.begin(), t.passages.end());
+      for (const GatePassage& passage : t.passages) each->passages.push_back(passage);
       each->passed.push_back(std::ssize(each->passages));
     }
   return tally;

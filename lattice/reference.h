@@ -5,13 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "dynamics/disc_section.h"
 #include "dynamics/ensemble.h"
 #include "dynamics/trace.h"
 #include "lattice/field.h"
+#include "lattice/passage_table.h"
 #include "markov/walk.h"
 
 namespace gatewalk::lattice {
@@ -42,28 +42,19 @@ struct FieldTally {
   FieldTally& operator+=(const FieldTally& other);
 };
 
-/// How a trial's run through one gate ended, that gate's type, with which entry into the next
-/// gate, inside the field or outside (no entry where it did not leave its gate), and what it took.
-struct GatePassage {
-  dynamics::Ending ending = dynamics::Ending::trapped;
-  std::uint8_t type = 0;  // of FieldGates::types()
-  dynamics::Entry entry{};
-  dynamics::Costs costs{};
-};
-
 /// What each trial did, in the order of their numbers.
 struct FieldTrials {
   std::vector<std::int32_t> final_gates{};               // row * columns + column
   std::vector<std::optional<markov::Ending>> endings{};  // none: a run stopped being finite
   std::vector<dynamics::Costs> costs{};                  // of all its runs together
   bool keep_passages = false;
-  std::vector<GatePassage> passages{};  // of all trials, if kept, ...
-  std::vector<std::int64_t> passed{};   // ... and how many of them each trial and those before
-                                        // it have
+  PassageTable passages{};             // of all trials, if kept, ...
+  std::vector<std::int64_t> passed{};  // ... and how many of them each trial and those before
+                                       // it have
   /// Passages of trial number `at` in this order, from the first gate on.
-  [[nodiscard]] std::span<const GatePassage> of_trial(std::size_t at) const {
-    const std::int64_t begin = at == 0 ? 0 : passed[at - 1];
-    return {passages.data() + begin, static_cast<std::size_t>(passed[at] - begin)};
+  [[nodiscard]] PassageTable::Rows of_trial(std::size_t at) const {
+    return passages.rows(static_cast<std::size_t>(at == 0 ? 0 : passed[at - 1]),
+                         static_cast<std::size_t>(passed[at]));
   }
   /// Those into gates that trials then ran through, in their order.
   [[nodiscard]] std::vector<dynamics::Entry> entries() const;

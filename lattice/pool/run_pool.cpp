@@ -18,13 +18,16 @@ using namespace dynamics;
 template <class StartOf, class Use>
 void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, StartOf start_of,
               Use use) {
+  constexpr GatePassage kNone{.ending = Ending::broken};
   for (std::int64_t i = group.group; i < std::ssize(trials.final_gates); i += group.of) {
     const auto passages = trials.of_trial(static_cast<std::size_t>(i));
-    for (std::size_t k = skipped; k < passages.size(); ++k)
-      if (passages[k].ending != Ending::broken)
-        use(k == 0 ? start_of(i) : passages[k - 1].entry, passages[k],
-            k + 1 < passages.size() && passages[k + 1].ending != Ending::broken ? &passages[k + 1]
-                                                                                : nullptr);
+    for (std::size_t k = skipped; k < passages.size(); ++k) {
+      const GatePassage passage = passages[k];
+      if (passage.ending == Ending::broken) continue;
+      const GatePassage next = k + 1 < passages.size() ? passages[k + 1] : kNone;
+      use(k == 0 ? start_of(i) : passages[k - 1].entry, passage,
+          next.ending == Ending::broken ? nullptr : &next);
+    }
   }
 }
 
@@ -257,7 +260,7 @@ double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldPa
   for (const FieldTrials* trials : {&start.full, &start.first})
     for (std::size_t i = 0; i < trials->final_gates.size(); ++i) {
       const auto passages = trials->of_trial(i);
-      const GatePassage& passage = passages.front();
+      const GatePassage passage = passages.front();
       if (passages.size() > 1 || passage.ending == Ending::trapped ||
           passage.ending == Ending::broken)
         continue;  // the kernel has the entry, or there is none
@@ -334,7 +337,7 @@ void each_first_run(const FieldGates& gates, const StateSpace& space, const Star
   const bool in_the_middle = mirrored(space.section(), start.start) == start.start;
   for (const FieldTrials* trials : {&start.full, &start.first})
     for (std::int64_t i = group.group; i < std::ssize(trials->final_gates); i += group.of) {
-      const GatePassage& passage = trials->of_trial(static_cast<std::size_t>(i)).front();
+      const GatePassage passage = trials->of_trial(static_cast<std::size_t>(i)).front();
       if (passage.ending == Ending::broken) continue;
       use(output_of(space, passage, passage.entry), passage);
       if (in_the_middle && images[passage.type] == 2)
@@ -366,7 +369,7 @@ std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& s
   const std::vector<std::size_t> images = images_of(gates);
   std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
   for (std::size_t i = 0; i < trials.starts.size(); ++i) {
-    const GatePassage& passage = trials.each.of_trial(i).front();
+    const GatePassage passage = trials.each.of_trial(i).front();
     if (passage.ending == Ending::broken) continue;
     ++row[static_cast<std::size_t>(output_of(space, passage, passage.entry))];
     if (images[passage.type] == 2)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 
 #include "lattice/pool/pool_answers.h"
@@ -153,11 +152,11 @@ struct RunTables {
         entry(section.coordinates.size()),
         costs(section.costs.size()) {}
 
-  void add(int kind, const Entry& from, std::span<const GatePassage> passages) {
+  void add(int kind, const Entry& from, const PassageTable::Rows& passages) {
     trial_kind.push_back(kind);
     trial_runs.push_back(static_cast<double>(passages.size()));
     for (std::size_t axis = 0; axis < start.size(); ++axis) start[axis].push_back(from.at[axis]);
-    for (const GatePassage& p : passages) {
+    for (const GatePassage p : passages) {
       ending.push_back(static_cast<double>(p.ending));
       type.push_back(p.type);
       face.push_back(p.entry.face);
@@ -293,6 +292,7 @@ class RunReader {
     FieldTrials& trials = kind == kScattered   ? pool.scattered.each
                           : kind == kFullTrial ? pool.starts[own].full
                                                : pool.starts[own].first;
+    if (trials.passages.empty()) trials.passages = PassageTable(section_);
     Costs sum{};
     for (int k = 0; k < count; ++k, ++at_) {
       const std::string run = "run " + std::to_string(at_ + 1);
@@ -335,7 +335,8 @@ bool follow(const FieldGates& gates, const FieldParams& field, const Section& se
     int column = field.start_column(), row = 0;
     std::optional<markov::Ending> ending;
     const auto passages = trials.of_trial(i);
-    for (const GatePassage& p : passages) {
+    for (std::size_t k = 0; k < passages.size(); ++k) {
+      const GatePassage p = passages[k];
       if (ending || p.type != gates.type_of(column, row))
         return false;  // it went on where this field has an end, or another gate
       if (p.ending == Ending::trapped) {
@@ -346,7 +347,7 @@ bool follow(const FieldGates& gates, const FieldParams& field, const Section& se
       if (!field.contains(column + move.di_x, row + move.di_y)) {
         ending =
             markov::edge_before({field.columns, field.rows}, column + move.di_x, row + move.di_y);
-      } else if (&p == &passages.back()) {
+      } else if (k + 1 == passages.size()) {
         ending = markov::Ending::cut_off;
       } else {
         column += move.di_x;
@@ -364,17 +365,17 @@ bool follow(const FieldGates& gates, const FieldParams& field, const Section& se
 }
 
 /// Trials that began in a gate of another type than trials do here are none of a start's own.
-void scatter_others(RunPool& pool, int type) {
+void scatter_others(RunPool& pool, const Section& section, int type) {
   const auto is_other = [&](const StartTrials& s) {
     const FieldTrials& any = s.full.passages.empty() ? s.first : s.full;
-    return any.passages.front().type != type;
+    return any.passages[0].type != type;
   };
   FieldTrials& each = pool.scattered.each;
+  if (each.passages.empty()) each.passages = PassageTable(section);
   for (const StartTrials& s : pool.starts)
     for (const FieldTrials* trials : {&s.full, &s.first})
       for (std::size_t i = 0; i < trials->final_gates.size() && is_other(s); ++i) {
-        const auto passages = trials->of_trial(i);
-        each.passages.insert(each.passages.end(), passages.begin(), passages.end());
+        for (const GatePassage p : trials->of_trial(i)) each.passages.push_back(p);
         each.passed.push_back(std::ssize(each.passages));
         each.final_gates.push_back(0);
         each.endings.push_back({});
@@ -389,8 +390,8 @@ void scatter_others(RunPool& pool, int type) {
 RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& path) {
   const FieldGates gates = gates_of(scene);
   RunPool pool = RunReader(file, gates.types().size(), path).read();
-  scatter_others(pool, gates.type_of(scene.field.start_column(), 0));
   const Section& section = file.transitions.space.section();
+  scatter_others(pool, section, gates.type_of(scene.field.start_column(), 0));
   for (StartTrials& s : pool.starts) s.knows_endings = follow(gates, scene.field, section, s.full);
   return pool;
 }

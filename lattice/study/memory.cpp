@@ -89,7 +89,7 @@ void add_walks(StateWalks& walks, const StateSpace& space, int first, const Fiel
   for (std::size_t trial = 0; trial < each.passed.size(); ++trial) {
     states.clear();
     std::int32_t at = first;
-    for (const GatePassage& passage : each.of_trial(trial)) {
+    for (const GatePassage passage : each.of_trial(trial)) {
       if (passage.ending == dynamics::Ending::broken) break;
       states.push_back(in_gate(passage.type, at));
       at = passage.ending == dynamics::Ending::trapped ? StateWalks::kTrapped

@@ -274,7 +274,12 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   EXPECT_EQ(std::count(w.next.begin(), w.next.end(), StateWalks::kTrapped), tally.trapped);
   for (std::int64_t walk = 0; walk < 50; ++walk) EXPECT_EQ(w.state[w.begin(walk)], first);
   // A run that broke is left out, and what would come after it.
-  each.passages[0].ending = dynamics::Ending::broken;
+  PassageTable broken(space.section());
+  for (GatePassage passage : each.passages.rows()) {
+    if (broken.empty()) passage.ending = dynamics::Ending::broken;
+    broken.push_back(passage);
+  }
+  each.passages = broken;
   StateWalks fewer = no_walks(space);
   add_walks(fewer, space, first, each);
   fewer.validate();

@@ -89,7 +89,7 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
       for (auto i = static_cast<std::size_t>(group.group); i < 2;
            i += static_cast<std::size_t>(group.of)) {
         Entry entry = pool.scattered.starts[i];
-        for (const GatePassage& run : pool.scattered.each.of_trial(i)) {
+        for (const GatePassage run : pool.scattered.each.of_trial(i)) {
           count(entry, run);
           entry = run.entry;
         }
@@ -298,6 +298,29 @@ TEST(PooledPrediction, EntriesWhereNoRunEnteredAreInTheBar) {
             guess.starts[0].error.total_variation);
 }
 
+TEST(PassageTable, KeepsWhatWasPutThere) {
+  const std::vector<GatePassage> passages{
+      {dynamics::Ending::traversed, 0, {Boundary::enter, {1, 2, 3}}, {4, 5, 6, 7, 8}},
+      {dynamics::Ending::exited_left, 255, {Boundary::right_traverse, {-1, 0, 0.5}}, {1}},
+      {dynamics::Ending::trapped, 3, {}, {9}}};
+  PassageTable table(disc_section());
+  EXPECT_TRUE(table.empty());
+  for (const GatePassage& p : passages) table.push_back(p);
+  ASSERT_EQ(table.size(), passages.size());
+  std::size_t i = 0;
+  for (const GatePassage back : table.rows()) {
+    EXPECT_EQ(back.ending, passages[i].ending);
+    EXPECT_EQ(back.type, passages[i].type);
+    EXPECT_EQ(back.entry, passages[i].entry);
+    EXPECT_EQ(back.costs, passages[i].costs);
+    ++i;
+  }
+  EXPECT_EQ(i, passages.size());
+  EXPECT_EQ(table.rows(1, 3).size(), 2u);
+  EXPECT_EQ(table.rows(1, 3).front().type, 255);
+  EXPECT_EQ(table.rows(1, 3).back().type, 3);
+}
+
 TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   const Scene scene = fast_scene();
   RunPool pool;
@@ -312,11 +335,15 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
                   &again.first);
   EXPECT_LT(unseen_share(kernel, scene.gate, scene.field, again), 0.01);
   std::int64_t go_on = 0;
-  for (GatePassage& p : again.first.passages)
+  PassageTable elsewhere(disc_section());
+  for (GatePassage p : again.first.passages.rows()) {
     if (p.ending != dynamics::Ending::trapped) {
       p.entry = {Boundary::enter, {1e3, 0.0, 1e3}};
       ++go_on;
     }
+    elsewhere.push_back(p);
+  }
+  again.first.passages = elsewhere;
   ASSERT_GT(go_on, 200);
   EXPECT_NEAR(unseen_share(kernel, scene.gate, scene.field, again),
               static_cast<double>(go_on) / 1000, 0.1);

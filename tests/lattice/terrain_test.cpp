@@ -405,8 +405,9 @@ TEST(Terrain, KernelsCountTheRunsOfEachType) {
   for (std::size_t i = 0; i < 400; ++i) {
     const auto passages = pool.starts[0].full.of_trial(i);
     EXPECT_EQ(passages.front().type, gates.type_of(2, 0));
-    for (const GatePassage& run : passages.subspan(1))
-      runs[run.type] += symmetric(gates.types()[run.type]) ? 2 : 1;  // mirror images
+    for (std::size_t k = 1; k < passages.size(); ++k)
+      runs[passages[k].type] +=
+          symmetric(gates.types()[passages[k].type]) ? 2 : 1;  // mirror images
   }
   for (std::size_t type = 0; type < 3; ++type) {
     const markov::Counts& counts = kernel.counts[type];
