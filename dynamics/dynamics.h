@@ -12,6 +12,7 @@
 ///     state_space.h    how a body enters, as a number: bins, or trees
 ///     quantile_bins.h  bins from entries that were seen, and how well bins resolve them
 ///     tree_space.h     trees grown over entries that were seen
+///     cell_map.h       which type of cell stands where
 ///     transitions.h    counts from state to state
 ///     health.h         how far runs can be trusted
 ///   base/          random streams, shares with intervals, sets of trials, long work that can be watched

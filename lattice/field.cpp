@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "dynamics/disc_section.h"
+
 namespace gatewalk::lattice {
 namespace {
 
@@ -61,6 +63,12 @@ FieldGates FieldGates::by_cell(std::vector<dynamics::GateParams> types, int colu
   gates.columns_ = columns;
   gates.type_of_cell_ = std::move(type_of_cell);
   return gates;
+}
+
+dynamics::CellMap FieldGates::map() const {
+  dynamics::CellMap map{dynamics::disc_section(types_.front()), {}, columns_, type_of_cell_};
+  for (const dynamics::GateParams& p : types_) map.types.push_back({dynamics::symmetric(p)});
+  return map;
 }
 
 void FieldGates::require_fits(const FieldParams& field) const {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/disc_section.h"
+#include "dynamics/cells/cell_map.h"
 #include "dynamics/params.h"
 
 namespace gatewalk::lattice {
@@ -53,14 +53,13 @@ class FieldGates {
     return type_of_cell_.empty() ? 0
                                  : type_of_cell_[static_cast<std::size_t>(row * columns_ + column)];
   }
-  /// (rows x columns) of types(), and their columns; empty: all are the first.
-  [[nodiscard]] const std::vector<int>& type_of_cell() const { return type_of_cell_; }
-  [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] const dynamics::GateParams& at(int column, int row) const {
     return types_[static_cast<std::size_t>(type_of(column, row))];
   }
-  /// How bodies enter any of them. Throws InvalidParameter as dynamics::disc_section.
-  [[nodiscard]] dynamics::Section section() const { return dynamics::disc_section(types_.front()); }
+  /// (rows x columns) of types(); empty: all are the first.
+  [[nodiscard]] const std::vector<int>& type_of_cell() const { return type_of_cell_; }
+  /// What a chain knows of them. Throws InvalidParameter as dynamics::disc_section.
+  [[nodiscard]] dynamics::CellMap map() const;
   /// Throws std::invalid_argument unless types are given for a field of this size, or one for all.
   void require_fits(const FieldParams& field) const;
 

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dynamics/disc_section.h"
+
 namespace gatewalk::lattice {
 
 using namespace dynamics;
@@ -24,26 +26,25 @@ markov::Chain make_chain(const Transitions& t) {
   return markov::Chain::from_counts(t.counts(), exits_of(t.space));
 }
 
-markov::FieldChain field_chain(const FieldGates& gates, std::vector<markov::Chain> chains) {
-  if (gates.type_of_cell().empty()) return {std::move(chains.front())};
-  return markov::FieldChain::by_cell(std::move(chains), gates.columns(), gates.type_of_cell());
+markov::FieldChain field_chain(const CellMap& map, std::vector<markov::Chain> chains) {
+  if (map.type_of_cell.empty()) return {std::move(chains.front())};
+  return markov::FieldChain::by_cell(std::move(chains), map.columns, map.type_of_cell);
 }
 
-markov::FieldChain make_chain(const FieldGates& gates, const std::vector<Transitions>& matrices) {
+markov::FieldChain make_chain(const CellMap& map, const std::vector<Transitions>& matrices) {
   std::vector<markov::Chain> chains;
   for (const Transitions& t : matrices) chains.push_back(make_chain(t));
-  return field_chain(gates, std::move(chains));
+  return field_chain(map, std::move(chains));
 }
 
-CountedField counted_field(const FieldGates& gates,
-                           const std::vector<dynamics::Transitions>& matrices) {
-  CountedField field{make_chain(gates, matrices), {}, matrices.front().space.has_trees()};
+CountedField counted_field(const CellMap& map, const std::vector<dynamics::Transitions>& matrices) {
+  CountedField field{make_chain(map, matrices), {}, matrices.front().space.has_trees()};
   for (const dynamics::Transitions& t : matrices) field.counts.push_back(t.counts());
   if (!field.small_rows) return field;  // bins count no images
   for (std::size_t m = 0; m < matrices.size(); ++m) {
     const dynamics::StateSpace& space = matrices[m].space;
     auto& images = field.images.emplace_back(static_cast<std::size_t>(space.size()), 1);
-    if (!dynamics::symmetric(gates.types()[m])) continue;
+    if (!map.types[m].symmetric) continue;
     for (int row = 0; row < space.size(); ++row) {
       const int point = row - (space.size() - static_cast<int>(space.points().size()));
       if (point >= 0) {

@@ -18,15 +18,15 @@ namespace gatewalk::lattice {
 
 [[nodiscard]] markov::Chain make_chain(const dynamics::Transitions& t);
 
-/// A chain for each of gates.types(), where that type stands.
-[[nodiscard]] markov::FieldChain field_chain(const FieldGates& gates,
+/// A chain for each of map.types, where that type stands.
+[[nodiscard]] markov::FieldChain field_chain(const dynamics::CellMap& map,
                                              std::vector<markov::Chain> chains);
 /// The same of matrices with the same states.
-[[nodiscard]] markov::FieldChain make_chain(const FieldGates& gates,
+[[nodiscard]] markov::FieldChain make_chain(const dynamics::CellMap& map,
                                             const std::vector<dynamics::Transitions>& matrices);
 
-/// Every cell draws from the matrix of its type; matrices as gates.types().
-[[nodiscard]] CountedField counted_field(const FieldGates& gates,
+/// Every cell draws from the matrix of its type; matrices as map.types.
+[[nodiscard]] CountedField counted_field(const dynamics::CellMap& map,
                                          const std::vector<dynamics::Transitions>& matrices);
 /// Every cell draws from the same matrix.
 [[nodiscard]] CountedField counted_field(const dynamics::Transitions& matrix);

@@ -34,7 +34,7 @@ int run_walk(const Arguments& arguments) {
   const std::int64_t walks = options.count("walks");
 
   const markov::FieldChain chain =
-      lattice::make_chain(lattice::gates_of(m.scene), lattice::matrices_of(m.file, m.scene));
+      lattice::make_chain(lattice::gates_of(m.scene).map(), lattice::matrices_of(m.file, m.scene));
   const dynamics::Stopwatch watch;
   const auto tally =
       lattice::walks(chain, m.scene.field, start, walks, options.seed(), options.work());

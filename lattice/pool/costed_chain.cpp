@@ -30,17 +30,17 @@ std::vector<markov::Reward> rewards_of(const std::vector<std::int64_t>& counts,
 
 }  // namespace
 
-CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+CostedChain costed_chain(const Kernel& kernel, const CellMap& map, const FieldParams& field,
                          const RunPool& pool, const StartTrials& start, TrialGroup group) {
-  const auto first = first_row(gates, kernel.space, start, group);
-  const auto first_sums = first_cost_sums(gates, kernel.space, start, group);
-  const auto sums = cost_sums(kernel, gates, pool, group);
+  const auto first = first_row(map, kernel.space, start, group);
+  const auto first_sums = first_cost_sums(map, kernel.space, start, group);
+  const auto sums = cost_sums(kernel, map, pool, group);
   markov::Rewards rewards;
   for (std::size_t type = 0; type < kernel.counts.size(); ++type) {
     const markov::Counts& k = kernel.counts[type];
     std::vector<std::int64_t> counts(k.valuePtr(), k.valuePtr() + k.nonZeros());
     std::vector<CostSums> costs = sums[type];
-    if (static_cast<int>(type) == gates.type_of(field.start_column(), 0))
+    if (static_cast<int>(type) == map.type_of(field.start_column(), 0))
       for (std::size_t output = 0; output < first.size(); ++output)
         if (first[output] > 0) {
           counts.push_back(first[output]);
@@ -48,7 +48,7 @@ CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates, const Fi
         }
     rewards.push_back(rewards_of(counts, costs));
   }
-  return {chain_of(kernel, gates, field, {first}),
+  return {chain_of(kernel, map, field, {first}),
           std::move(rewards),
           {field.start_column(), 0, kernel.space.size()}};
 }
@@ -56,7 +56,7 @@ CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates, const Fi
 namespace {
 
 /// Entries of the pool's runs by leaf, mirror images too.
-std::vector<std::vector<Entry>> entries_of_leaves(const Kernel& kernel, const FieldGates& gates,
+std::vector<std::vector<Entry>> entries_of_leaves(const Kernel& kernel, const CellMap& map,
                                                   const RunPool& pool, TrialGroup group) {
   std::vector<std::vector<Entry>> entries(static_cast<std::size_t>(kernel.space.size()));
   each_entry(pool, group, [&](const Entry& entry, int type) {
@@ -64,7 +64,7 @@ std::vector<std::vector<Entry>> entries_of_leaves(const Kernel& kernel, const Fi
       entries[static_cast<std::size_t>(kernel.space.index_of(c).state)].push_back(c);
     };
     put(entry);
-    if (symmetric(gates.types()[static_cast<std::size_t>(type)]))
+    if (map.types[static_cast<std::size_t>(type)].symmetric)
       put(mirrored(kernel.space.section(), entry));
   });
   return entries;
@@ -77,13 +77,13 @@ AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool, const Entr
   const std::size_t own = pool.place_of(start);
   if (own == pool.starts.size())
     throw std::invalid_argument("analysis: the start has no runs of its own");
-  const FieldGates gates = gates_of(scene);
+  const CellMap map = gates_of(scene).map();
   const auto chain_of_group = [&](TrialGroup group) -> AnalysedChain {
-    Kernel kernel = kernel_of(gates, pool, per_leaf, group);
-    CostedChain chain = costed_chain(kernel, gates, scene.field, pool, pool.starts[own], group);
-    auto entries = entries_of_leaves(kernel, gates, pool, group);
+    Kernel kernel = kernel_of(map, pool, per_leaf, group);
+    CostedChain chain = costed_chain(kernel, map, scene.field, pool, pool.starts[own], group);
+    auto entries = entries_of_leaves(kernel, map, pool, group);
     entries.push_back({start});
-    const auto type = static_cast<std::size_t>(gates.type_of(scene.field.start_column(), 0));
+    const auto type = static_cast<std::size_t>(map.type_of(scene.field.start_column(), 0));
     std::vector<std::int64_t> runs;
     for (int state = 0; state < kernel.space.size(); ++state)
       runs.push_back(kernel.counts[type].row(state).sum());
@@ -123,7 +123,7 @@ AnalysedChain analysed_chain(const Scene& scene, const std::vector<Transitions>&
     rewards.push_back(rewards_of(counts, sums));
   }
   const StateSpace& space = matrices.front().space;
-  return {.chain = {make_chain(gates_of(scene), matrices), std::move(rewards), start},
+  return {.chain = {make_chain(gates_of(scene).map(), matrices), std::move(rewards), start},
           .space = space,
           .entry = [space](int state, Random& random) { return space.sample(state, random); }};
 }

@@ -22,7 +22,7 @@ struct CostedChain {
 };
 /// From the runs of one group of the trials, and that group's first runs from `start`, whose row is
 /// the last one.
-[[nodiscard]] CostedChain costed_chain(const Kernel& kernel, const FieldGates& gates,
+[[nodiscard]] CostedChain costed_chain(const Kernel& kernel, const dynamics::CellMap& map,
                                        const FieldParams& field, const RunPool& pool,
                                        const StartTrials& start, TrialGroup group = {});
 

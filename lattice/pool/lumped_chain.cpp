@@ -38,7 +38,7 @@ void cut(std::span<int> states, std::size_t axis, int parts, const std::vector<E
 
 }  // namespace
 
-std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const FieldGates& gates,
+std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynamics::CellMap& map,
                                         const FieldParams& field, const std::vector<double>& visits,
                                         const LumpingParts& parts) {
   const CostedChain& c = chain.chain;
@@ -76,7 +76,7 @@ std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const FieldG
     chains.push_back(std::move(of_type.chain));
   }
   try {
-    const auto error = markov::lumping_error(c.chain, field_chain(gates, std::move(chains)), group,
+    const auto error = markov::lumping_error(c.chain, field_chain(map, std::move(chains)), group,
                                              cells, c.start, {.max_cells = field.max_gates});
     lumped.endings = error.endings;
     lumped.final_gates = error.final_cells;

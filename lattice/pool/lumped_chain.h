@@ -28,7 +28,7 @@ struct LumpedChain {
 /// `visits`: of each of the chain's states, in gates of all types, by which rows of a part count.
 /// None where walks of either chain do not end.
 [[nodiscard]] std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain,
-                                                      const FieldGates& gates,
+                                                      const dynamics::CellMap& map,
                                                       const FieldParams& field,
                                                       const std::vector<double>& visits,
                                                       const LumpingParts& parts);

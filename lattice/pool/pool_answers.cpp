@@ -35,8 +35,8 @@ bool by_walks(std::int64_t nonzeros, const FieldParams& field) {
 /// Whether adjoints of all chains pay: measured, they take as long as predictions from as many
 /// starts as a quarter of the cells; and all steps, also those that nobody walks any more. They are
 /// of gates of one type.
-bool pays_adjoint(const FieldGates& gates, const FieldParams& field, std::size_t starts) {
-  return gates.types().size() == 1 && field.max_gates > 0 &&
+bool pays_adjoint(const dynamics::CellMap& map, const FieldParams& field, std::size_t starts) {
+  return map.types.size() == 1 && field.max_gates > 0 &&
          field.max_gates <= 2 * (field.columns + field.rows) &&
          4 * static_cast<std::int64_t>(starts) >= std::int64_t{field.columns} * field.rows;
 }
@@ -90,13 +90,13 @@ FinalDistribution shares_of(const markov::WalkTally& tally) {
 }
 
 /// Exact, or by `walks` where there are any.
-KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Rows& first_rows,
+KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map, const Rows& first_rows,
                          const FieldParams& field, markov::WalkRange walks, std::uint64_t seed) {
   std::vector<markov::Start> places;
   for (std::size_t i = 0; i < first_rows.size(); ++i)
     places.push_back({field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
   const markov::Field cells{field.columns, field.rows};
-  const markov::FieldChain chain = chain_of(kernel, gates, field, first_rows);
+  const markov::FieldChain chain = chain_of(kernel, map, field, first_rows);
   if (walks.count == 0)
     return {markov::predict(chain, cells, places, {.max_cells = field.max_gates})};
   const markov::Walker walker(chain);
@@ -108,25 +108,25 @@ KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Ro
 
 }  // namespace
 
-KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates, const Rows& first_rows,
+KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map, const Rows& first_rows,
                          const FieldParams& field, std::uint64_t seed) {
   const std::int64_t of_a_type = kernel.nonzeros() / std::ssize(kernel.counts);
-  return answers_of(kernel, gates, first_rows, field, {0, by_walks(of_a_type, field) ? kWalks : 0},
+  return answers_of(kernel, map, first_rows, field, {0, by_walks(of_a_type, field) ? kWalks : 0},
                     seed);
 }
 
-PoolChains::PoolChains(const FieldGates& gates, const FieldParams& field, int per_leaf,
+PoolChains::PoolChains(const dynamics::CellMap& map, const FieldParams& field, int per_leaf,
                        std::size_t starts, std::uint64_t seed)
-    : gates_(gates),
+    : map_(map),
       field_(field),
-      per_leaf_(pays_adjoint(gates, field, starts) ? 2 * per_leaf : per_leaf),
+      per_leaf_(pays_adjoint(map, field, starts) ? 2 * per_leaf : per_leaf),
       seed_(seed) {}
 
 bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
   constexpr std::int64_t kMostNumbers = 100'000'000;  // that adjoints keep
   const std::int64_t cells = std::int64_t{field_.columns} * field_.rows,
                      states = 2 * 2 * kernel_runs(pool) / per_leaf_;  // of all chains, at most
-  return pays_adjoint(gates_, field_, starts) && 2 * cells * states <= kMostNumbers;
+  return pays_adjoint(map_, field_, starts) && 2 * cells * states <= kMostNumbers;
 }
 
 void PoolChains::renew(const RunPool& pool) {
@@ -136,7 +136,7 @@ void PoolChains::renew(const RunPool& pool) {
   std::vector<std::optional<Kernel>> kernels(kTrialGroups + 1);
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
-    kernels[static_cast<std::size_t>(g + 1)] = kernel_of(gates_, pool, per_leaf_, group);
+    kernels[static_cast<std::size_t>(g + 1)] = kernel_of(map_, pool, per_leaf_, group);
   });
   chains_.clear();
   for (auto& kernel : kernels) chains_.push_back({.kernel = std::move(*kernel)});
@@ -145,7 +145,7 @@ void PoolChains::renew(const RunPool& pool) {
 KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows& rows) const {
   if (!chain.adjoint) {
     const std::int64_t walks = group < 0 ? kWalks : kWalksOfGroup;
-    return answers_of(chain.kernel, gates_, rows, field_,
+    return answers_of(chain.kernel, map_, rows, field_,
                       {group < 0 ? 0 : kWalks + group * kWalksOfGroup, by_walks_ ? walks : 0},
                       seed_);
   }
@@ -158,7 +158,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
   renew(pool);
   if (!chains_.front().adjoint && by_adjoint(pool, starts.size()))
     for (GroupChain& c : chains_)
-      c.adjoint.emplace(chain_of(c.kernel, gates_, field_, {}).chains().front(),
+      c.adjoint.emplace(chain_of(c.kernel, map_, field_, {}).chains().front(),
                         markov::Field{field_.columns, field_.rows}, field_.start_column(), 0,
                         field_.max_gates);
   const std::size_t n = starts.size();
@@ -169,7 +169,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.nonzeros()};
   for (const std::size_t s : starts)
-    said.unseen.push_back(unseen_share(chains_.front().kernel, gates_, field_, pool.starts[s]));
+    said.unseen.push_back(unseen_share(chains_.front().kernel, map_, field_, pool.starts[s]));
   const bool with_kernels = !by_walks_ || chains_.front().adjoint;
   if (with_kernels) said.kernels = said.groups;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
@@ -177,7 +177,7 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
     Rows rows;
     const auto add = [&](TrialGroup group) {
       for (const std::size_t s : starts)
-        rows.push_back(first_row(gates_, chain.kernel.space, pool.starts[s], group));
+        rows.push_back(first_row(map_, chain.kernel.space, pool.starts[s], group));
     };
     if (g >= 0) add({g, kTrialGroups});
     if (g < 0 || with_kernels) add({});

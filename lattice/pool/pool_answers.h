@@ -19,7 +19,7 @@ struct KernelAnswers {
   std::vector<markov::FinalDistribution> final;  // (starts)
   std::int64_t walks = 0;                        // behind each; 0: they are exact
 };
-[[nodiscard]] KernelAnswers answers_of(const Kernel& kernel, const FieldGates& gates,
+[[nodiscard]] KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
                                        const std::vector<std::vector<std::int64_t>>& first_rows,
                                        const FieldParams& field, std::uint64_t seed);
 
@@ -39,8 +39,8 @@ class PoolChains {
  public:
   /// For so many starts at first. Where these are many, their answers come by the adjoint, and
   /// leaves are twice as large, so that this takes less.
-  PoolChains(const FieldGates& gates, const FieldParams& field, int per_leaf, std::size_t starts,
-             std::uint64_t seed);
+  PoolChains(const dynamics::CellMap& map, const FieldParams& field, int per_leaf,
+             std::size_t starts, std::uint64_t seed);
 
   /// Whether answers for so many starts come by the adjoint: further ones then cost nothing.
   [[nodiscard]] bool by_adjoint(const RunPool& pool, std::size_t starts) const;
@@ -57,7 +57,7 @@ class PoolChains {
   [[nodiscard]] KernelAnswers answers(const GroupChain& chain, int group,
                                       const std::vector<std::vector<std::int64_t>>& rows) const;
 
-  FieldGates gates_;
+  dynamics::CellMap map_;
   const FieldParams& field_;
   int per_leaf_;
   std::uint64_t seed_;

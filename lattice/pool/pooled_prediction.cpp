@@ -139,7 +139,7 @@ class PredictionRun {
         pool_(pool),
         options_(options),
         runner_(scene, options.seed, options.most_runs, work),
-        chains_(gates_of(scene), scene.field, options.per_leaf, starts.size(), options.seed) {
+        chains_(gates_of(scene).map(), scene.field, options.per_leaf, starts.size(), options.seed) {
     place(starts);
     result_.starts.resize(starts.size());
     open_ = all();
@@ -364,7 +364,7 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
   std::vector<std::size_t> all(kTried);
   std::iota(all.begin(), all.end(), 0);
   runner.run_scattered(pool.scattered, range, kBegin);
-  PoolChains chains(gates_of(scene), scene.field, options.per_leaf, kTried, options.seed);
+  PoolChains chains(gates_of(scene).map(), scene.field, options.per_leaf, kTried, options.seed);
   for (;;) {
     tried.scattered = std::move(pool.scattered);
     const PoolAnswers said = chains.ask(tried, all);

@@ -74,9 +74,9 @@ markov::Counts counted(const std::vector<int>& row, const std::vector<int>& colu
 }
 
 /// By type: how many counts a run makes, 2 with its mirror image.
-std::vector<std::size_t> images_of(const FieldGates& gates) {
+std::vector<std::size_t> images_of(const CellMap& map) {
   std::vector<std::size_t> images;
-  for (const GateParams& p : gates.types()) images.push_back(symmetric(p) ? 2 : 1);
+  for (const CellMap::Type& type : map.types) images.push_back(type.symmetric ? 2 : 1);
   return images;
 }
 
@@ -170,9 +170,9 @@ std::int64_t RunPool::trials() const {
   return trials;
 }
 
-Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, TrialGroup group) {
-  const std::vector<std::size_t> images = images_of(gates);
-  const Section section = gates.section();
+Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGroup group) {
+  const std::vector<std::size_t> images = images_of(map);
+  const Section& section = map.section;
   std::vector<Entry> entries;
   std::vector<std::uint8_t> types;
   each_kernel_run(pool, group, [&](const Entry& entry, const GatePassage& run, const auto*) {
@@ -197,12 +197,12 @@ Kernel kernel_of(const FieldGates& gates, const RunPool& pool, int per_leaf, Tri
   const auto seen_in = [&](const std::vector<Entry>& there, const std::vector<int>& states) {
     if (group.of == 1) kernel.seen.emplace_back(kernel.space, there, states);
   };
-  if (gates.types().size() == 1) {
+  if (map.types.size() == 1) {
     kernel.counts.push_back(counted(row, column, kernel.space.size()));
     seen_in(entries, row);
     return kernel;
   }
-  for (std::size_t type = 0; type < gates.types().size(); ++type) {
+  for (std::size_t type = 0; type < map.types.size(); ++type) {
     std::vector<Entry> there;
     std::vector<int> from, to;
     for (std::size_t i = 0; i < types.size(); ++i) {
@@ -250,7 +250,7 @@ bool SeenEntries::Box::holds(const Entry& entry) const {
   return true;
 }
 
-double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+double unseen_share(const Kernel& kernel, const CellMap& map, const FieldParams& field,
                     const StartTrials& start) {
   if (field.max_gates == 1 || start.first_runs() == 0) return 0.0;
   // First runs that enter each box, by type of the gate entered.
@@ -267,7 +267,7 @@ double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldPa
       const Face& move = kernel.space.section().faces[passage.entry.face];
       const int column = field.start_column() + move.di_x;
       if (!field.contains(column, move.di_y)) continue;
-      const auto type = static_cast<std::size_t>(gates.type_of(column, move.di_y));
+      const auto type = static_cast<std::size_t>(map.type_of(column, move.di_y));
       const std::size_t at =
           SeenEntries::place_of(kernel.space, kernel.space.index_of(passage.entry).state);
       ++here[type][at];
@@ -291,9 +291,9 @@ double unseen_share(const Kernel& kernel, const FieldGates& gates, const FieldPa
          static_cast<double>(start.first_runs());
 }
 
-std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const FieldGates& gates,
+std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const CellMap& map,
                                              const RunPool& pool, TrialGroup group) {
-  const std::vector<std::size_t> images = images_of(gates);
+  const std::vector<std::size_t> images = images_of(map);
   const auto row_of = [&](std::size_t type, int leaf) {
     return kernel.shared_by.empty() ? leaf : kernel.shared_by[type][static_cast<std::size_t>(leaf)];
   };
@@ -331,9 +331,9 @@ namespace {
 
 /// Calls use(output, passage) for the first runs of a start's trials of one group.
 template <class Use>
-void each_first_run(const FieldGates& gates, const StateSpace& space, const StartTrials& start,
+void each_first_run(const CellMap& map, const StateSpace& space, const StartTrials& start,
                     TrialGroup group, Use use) {
-  const std::vector<std::size_t> images = images_of(gates);
+  const std::vector<std::size_t> images = images_of(map);
   const bool in_the_middle = mirrored(space.section(), start.start) == start.start;
   for (const FieldTrials* trials : {&start.full, &start.first})
     for (std::int64_t i = group.group; i < std::ssize(trials->final_gates); i += group.of) {
@@ -347,26 +347,26 @@ void each_first_run(const FieldGates& gates, const StateSpace& space, const Star
 
 }  // namespace
 
-std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& space,
+std::vector<std::int64_t> first_row(const CellMap& map, const StateSpace& space,
                                     const StartTrials& start, TrialGroup group) {
   std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
-  each_first_run(gates, space, start, group,
+  each_first_run(map, space, start, group,
                  [&](int output, const GatePassage&) { ++row[static_cast<std::size_t>(output)]; });
   return row;
 }
 
-std::vector<CostSums> first_cost_sums(const FieldGates& gates, const StateSpace& space,
+std::vector<CostSums> first_cost_sums(const CellMap& map, const StateSpace& space,
                                       const StartTrials& start, TrialGroup group) {
   std::vector<CostSums> row(static_cast<std::size_t>(space.size()) + 1);
-  each_first_run(gates, space, start, group, [&](int output, const GatePassage& run) {
+  each_first_run(map, space, start, group, [&](int output, const GatePassage& run) {
     row[static_cast<std::size_t>(output)].add(run.costs);
   });
   return row;
 }
 
-std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& space,
+std::vector<std::int64_t> first_row(const CellMap& map, const StateSpace& space,
                                     const ScatteredTrials& trials) {
-  const std::vector<std::size_t> images = images_of(gates);
+  const std::vector<std::size_t> images = images_of(map);
   std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
   for (std::size_t i = 0; i < trials.starts.size(); ++i) {
     const GatePassage passage = trials.each.of_trial(i).front();
@@ -379,9 +379,9 @@ std::vector<std::int64_t> first_row(const FieldGates& gates, const StateSpace& s
   return row;
 }
 
-markov::FieldChain chain_of(const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+markov::FieldChain chain_of(const Kernel& kernel, const CellMap& map, const FieldParams& field,
                             const std::vector<std::vector<std::int64_t>>& first_rows) {
-  const int start_type = gates.type_of(field.start_column(), 0);
+  const int start_type = map.type_of(field.start_column(), 0);
   std::vector<markov::Chain> chains;
   for (const markov::Counts& k : kernel.counts) {
     const bool has_first = std::ssize(chains) == start_type;
@@ -402,14 +402,14 @@ markov::FieldChain chain_of(const Kernel& kernel, const FieldGates& gates, const
     counts.finalize();
     chains.push_back(markov::Chain::from_counts(counts, exits_of(kernel.space)));
   }
-  return field_chain(gates, std::move(chains));
+  return field_chain(map, std::move(chains));
 }
 
-std::vector<Transitions> transitions_of(const Kernel& kernel, const FieldGates& gates,
+std::vector<Transitions> transitions_of(const Kernel& kernel, const CellMap& map,
                                         const FieldParams& field, const std::vector<Entry>& starts,
                                         const std::vector<std::vector<std::int64_t>>& first_rows) {
   std::vector<Transitions> all;
-  const int start_type = gates.type_of(field.start_column(), 0);
+  const int start_type = map.type_of(field.start_column(), 0);
   for (const markov::Counts& counts : kernel.counts) {
     const bool has_first = std::ssize(all) == start_type;
     Transitions& t =

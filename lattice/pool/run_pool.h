@@ -94,46 +94,46 @@ struct Kernel {
 /// From the runs of one group of the trials but the starts' own first ones. With mirror images a
 /// run makes two counts. Runs that broke are left out. Leaves are larger where there would be more
 /// than kMostStates of them.
-[[nodiscard]] Kernel kernel_of(const FieldGates& gates, const RunPool& pool,
+[[nodiscard]] Kernel kernel_of(const dynamics::CellMap& map, const RunPool& pool,
                                int per_leaf = dynamics::kEntriesPerLeaf, TrialGroup group = {});
 
 /// What the runs behind each of the kernel's counts took: by type, in the order of the nonzeros.
 [[nodiscard]] std::vector<std::vector<dynamics::CostSums>> cost_sums(const Kernel& kernel,
-                                                                     const FieldGates& gates,
+                                                                     const dynamics::CellMap& map,
                                                                      const RunPool& pool,
                                                                      TrialGroup group = {});
 
 /// How often the start's own first runs of one group ended in each of the kernel's outputs (n + 1).
 /// A start in the middle of a symmetric gate has mirror images too.
-[[nodiscard]] std::vector<std::int64_t> first_row(const FieldGates& gates,
+[[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::CellMap& map,
                                                   const dynamics::StateSpace& space,
                                                   const StartTrials& start, TrialGroup group = {});
 
 /// What these took (n + 1).
-[[nodiscard]] std::vector<dynamics::CostSums> first_cost_sums(const FieldGates& gates,
+[[nodiscard]] std::vector<dynamics::CostSums> first_cost_sums(const dynamics::CellMap& map,
                                                               const dynamics::StateSpace& space,
                                                               const StartTrials& start,
                                                               TrialGroup group = {});
 
 /// The same of trials that start anywhere: how often their first runs ended so.
-[[nodiscard]] std::vector<std::int64_t> first_row(const FieldGates& gates,
+[[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::CellMap& map,
                                                   const dynamics::StateSpace& space,
                                                   const ScatteredTrials& trials);
 
 /// The share of the start's first runs that enter the next gate of the field where no run of the
 /// kernel did, less what chance alone would make: what the kernel says of these is a guess.
-[[nodiscard]] double unseen_share(const Kernel& kernel, const FieldGates& gates,
+[[nodiscard]] double unseen_share(const Kernel& kernel, const dynamics::CellMap& map,
                                   const FieldParams& field, const StartTrials& start);
 
 /// The kernel's rows, and behind them `first_rows`, which nothing leads to: they are those of the
 /// gate in which trials start.
-[[nodiscard]] markov::FieldChain chain_of(const Kernel& kernel, const FieldGates& gates,
+[[nodiscard]] markov::FieldChain chain_of(const Kernel& kernel, const dynamics::CellMap& map,
                                           const FieldParams& field,
                                           const std::vector<std::vector<std::int64_t>>& first_rows);
 
 /// The same as matrices, in which the starts are states of their own.
 [[nodiscard]] std::vector<dynamics::Transitions> transitions_of(
-    const Kernel& kernel, const FieldGates& gates, const FieldParams& field,
+    const Kernel& kernel, const dynamics::CellMap& map, const FieldParams& field,
     const std::vector<dynamics::Entry>& starts,
     const std::vector<std::vector<std::int64_t>>& first_rows);
 

@@ -12,20 +12,20 @@ namespace {
 
 using namespace dynamics;
 
-std::vector<std::vector<std::int64_t>> own_rows(const FieldGates& gates, const RunPool& pool,
+std::vector<std::vector<std::int64_t>> own_rows(const CellMap& map, const RunPool& pool,
                                                 const StateSpace& space) {
   std::vector<std::vector<std::int64_t>> rows;
-  for (const StartTrials& s : pool.starts) rows.push_back(first_row(gates, space, s));
+  for (const StartTrials& s : pool.starts) rows.push_back(first_row(map, space, s));
   return rows;
 }
 
 /// What walks from the starts end with, or from anywhere in the range where there are none.
 std::vector<markov::FinalDistribution> answers(const Scene& scene, const RunPool& pool,
                                                const Kernel& kernel, std::uint64_t seed) {
-  const FieldGates gates = gates_of(scene);
-  auto rows = own_rows(gates, pool, kernel.space);
-  if (rows.empty()) rows.push_back(first_row(gates, kernel.space, pool.scattered));
-  return answers_of(kernel, gates, rows, scene.field, seed).final;
+  const CellMap map = gates_of(scene).map();
+  auto rows = own_rows(map, pool, kernel.space);
+  if (rows.empty()) rows.push_back(first_row(map, kernel.space, pool.scattered));
+  return answers_of(kernel, map, rows, scene.field, seed).final;
 }
 
 /// Larger leaves, until there are no more states than that.
@@ -40,7 +40,7 @@ void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t 
     const double times = static_cast<double>(chain.kernel.space.size()) / most;
     chain.per_leaf = std::max(chain.per_leaf + 1,
                               static_cast<int>(std::ceil(chain.per_leaf * std::sqrt(times))));
-    chain.kernel = kernel_of(gates_of(scene), chain.pool, chain.per_leaf);
+    chain.kernel = kernel_of(gates_of(scene).map(), chain.pool, chain.per_leaf);
   }
   if (chain.kernel.space.size() == full.space.size()) return;
   const auto before = answers(scene, chain.pool, full, seed),
@@ -54,8 +54,8 @@ std::vector<Transitions> transitions_with(const Scene& scene, const RunPool& poo
                                           const Kernel& kernel) {
   std::vector<Entry> starts;
   for (const StartTrials& s : pool.starts) starts.push_back(s.start);
-  const FieldGates gates = gates_of(scene);
-  return transitions_of(kernel, gates, scene.field, starts, own_rows(gates, pool, kernel.space));
+  const CellMap map = gates_of(scene).map();
+  return transitions_of(kernel, map, scene.field, starts, own_rows(map, pool, kernel.space));
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options, const 
     if (range) rest.most_runs = std::max<std::int64_t>(1, rest.most_runs - range->gate_runs);
     prediction = predict_pooled(scene, pool, options.starts, rest, work);
   }
-  Kernel kernel = kernel_of(gates_of(scene), pool, options.accuracy.per_leaf);
+  Kernel kernel = kernel_of(gates_of(scene).map(), pool, options.accuracy.per_leaf);
   TreeChain chain{.pool = std::move(pool),
                   .kernel = kernel,
                   .transitions = {},
@@ -329,21 +329,20 @@ class RunReader {
 
 /// Follows trials through a field by their passages, to where and how they end there. False when
 /// they were not run in such a field.
-bool follow(const FieldGates& gates, const FieldParams& field, const Section& section,
-            FieldTrials& trials) {
+bool follow(const CellMap& map, const FieldParams& field, FieldTrials& trials) {
   for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
     int column = field.start_column(), row = 0;
     std::optional<markov::Ending> ending;
     const auto passages = trials.of_trial(i);
     for (std::size_t k = 0; k < passages.size(); ++k) {
       const GatePassage p = passages[k];
-      if (ending || p.type != gates.type_of(column, row))
+      if (ending || p.type != map.type_of(column, row))
         return false;  // it went on where this field has an end, or another gate
       if (p.ending == Ending::trapped) {
         ending = markov::Ending::trapped;
         break;
       }
-      const Face& move = section.faces[p.entry.face];
+      const Face& move = map.section.faces[p.entry.face];
       if (!field.contains(column + move.di_x, row + move.di_y)) {
         ending =
             markov::edge_before({field.columns, field.rows}, column + move.di_x, row + move.di_y);
@@ -365,13 +364,13 @@ bool follow(const FieldGates& gates, const FieldParams& field, const Section& se
 }
 
 /// Trials that began in a gate of another type than trials do here are none of a start's own.
-void scatter_others(RunPool& pool, const Section& section, int type) {
+void scatter_others(RunPool& pool, const CellMap& map, int type) {
   const auto is_other = [&](const StartTrials& s) {
     const FieldTrials& any = s.full.passages.empty() ? s.first : s.full;
     return any.passages[0].type != type;
   };
   FieldTrials& each = pool.scattered.each;
-  if (each.passages.empty()) each.passages = PassageTable(section);
+  if (each.passages.empty()) each.passages = PassageTable(map.section);
   for (const StartTrials& s : pool.starts)
     for (const FieldTrials* trials : {&s.full, &s.first})
       for (std::size_t i = 0; i < trials->final_gates.size() && is_other(s); ++i) {
@@ -388,18 +387,17 @@ void scatter_others(RunPool& pool, const Section& section, int type) {
 }  // namespace
 
 RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& path) {
-  const FieldGates gates = gates_of(scene);
-  RunPool pool = RunReader(file, gates.types().size(), path).read();
-  const Section& section = file.transitions.space.section();
-  scatter_others(pool, section, gates.type_of(scene.field.start_column(), 0));
-  for (StartTrials& s : pool.starts) s.knows_endings = follow(gates, scene.field, section, s.full);
+  const CellMap map = gates_of(scene).map();
+  RunPool pool = RunReader(file, map.types.size(), path).read();
+  scatter_others(pool, map, map.type_of(scene.field.start_column(), 0));
+  for (StartTrials& s : pool.starts) s.knows_endings = follow(map, scene.field, s.full);
   return pool;
 }
 
 std::vector<Transitions> matrices_of(const Scene& scene, const RunPool& pool,
                                      const std::vector<BodyState>& starts, int per_leaf) {
-  const FieldGates gates = gates_of(scene);
-  const Kernel kernel = kernel_of(gates, pool, per_leaf);
+  const CellMap map = gates_of(scene).map();
+  const Kernel kernel = kernel_of(map, pool, per_leaf);
   std::vector<Entry> points;
   std::vector<std::vector<std::int64_t>> rows;
   for (const BodyState& b : starts) {
@@ -409,9 +407,9 @@ std::vector<Transitions> matrices_of(const Scene& scene, const RunPool& pool,
     if (own == pool.starts.size())
       throw std::invalid_argument("matrix: a start has no runs of its own");
     points.push_back(entry);
-    rows.push_back(first_row(gates, kernel.space, pool.starts[own]));
+    rows.push_back(first_row(map, kernel.space, pool.starts[own]));
   }
-  return transitions_of(kernel, gates, scene.field, points, rows);
+  return transitions_of(kernel, map, scene.field, points, rows);
 }
 
 }  // namespace gatewalk::lattice

@@ -44,13 +44,13 @@ void require_memory(const CostedChain& c, const FieldParams& field, bool with_gr
 }
 
 /// Whether a mirror image of the field is the field itself.
-bool same_in_mirror(const FieldGates& gates, const FieldParams& field) {
+bool same_in_mirror(const CellMap& map, const FieldParams& field) {
   for (int row = 0; row < field.rows; ++row)
     for (int column = 0; column < field.columns; ++column)
-      if (gates.type_of(column, row) != gates.type_of(field.columns - 1 - column, row))
-        return false;
+      if (map.type_of(column, row) != map.type_of(field.columns - 1 - column, row)) return false;
   return field.columns % 2 == 1 &&
-         std::all_of(gates.types().begin(), gates.types().end(), symmetric);
+         std::all_of(map.types.begin(), map.types.end(),
+                     [](const CellMap::Type& type) { return type.symmetric; });
 }
 
 markov::Ending mirrored(markov::Ending ending) {
@@ -72,13 +72,13 @@ std::optional<StateRange> common_part(const StateRange& a, const StateRange& b,
 
 /// The chance of the target by start. In a field that is its own mirror image, a start is as likely
 /// to end so as its image to end so in the mirror: the mean of both, where their states overlap.
-std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const FieldGates& gates,
+std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const CellMap& map,
                                            const FieldParams& field, const Passages& passages,
                                            const std::vector<Passages>& groups) {
   const CostedChain& c = chain.chain;
   const StateSpace& space = chain.space;
   const markov::Ending target = passages.chance().ending(), image = mirrored(target);
-  const bool in_mirror = same_in_mirror(gates, field);
+  const bool in_mirror = same_in_mirror(map, field);
   const markov::Field cells{field.columns, field.rows};
   const std::int64_t first_cell = std::int64_t{c.start.row} * field.columns + c.start.column;
   const markov::Chain& first = c.chain.at(c.start.column, c.start.row);
@@ -142,7 +142,7 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Fie
 Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisOptions& options,
                  const Work& work) {
   const Stopwatch watch;
-  const FieldGates gates = gates_of(scene);
+  const CellMap map = gates_of(scene).map();
   const FieldParams& field = scene.field;
   const CostedChain& c = chain.chain;
   const StateSpace& space = chain.space;
@@ -158,9 +158,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
         paths = markov::most_frequent_paths(c.chain, cells, c.start, field.max_gates,
                                             passages.chance(), options.paths);
       },
-      [&] {
-        lumped = lumped_chain(chain, gates, field, passages.state_visits(), options.lumping);
-      });
+      [&] { lumped = lumped_chain(chain, map, field, passages.state_visits(), options.lumping); });
 
   Analysis out{.target = options.target,
                .target_chance = passages.at_start(),
@@ -201,10 +199,10 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     out.walks = markov::timed_walks(c.chain, cells, c.start, field.max_gates, c.rewards,
                                     options.timed_walks, options.seed);
 
-  std::vector<double> type_share(gates.types().size(), 0.0);
+  std::vector<double> type_share(map.types.size(), 0.0);
   for (int row = 0; row < field.rows; ++row)
     for (int column = 0; column < field.columns; ++column)
-      type_share[static_cast<std::size_t>(gates.type_of(column, row))] +=
+      type_share[static_cast<std::size_t>(map.type_of(column, row))] +=
           1.0 / (static_cast<double>(field.rows) * field.columns);
   try {
     out.endless = markov::quasi_stationary(c.chain, type_share);
@@ -216,13 +214,13 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     out.why_not_endless = e.what();
   }
 
-  out.starts = chances_of_starts(chain, gates, field, passages, groups);
+  out.starts = chances_of_starts(chain, map, field, passages, groups);
 
-  out.types.resize(gates.types().size());
+  out.types.resize(map.types.size());
   passages.each([&](const Passages::Place& place, double visits) {
     const auto column = static_cast<int>(place.cell % field.columns),
                row = static_cast<int>(place.cell / field.columns);
-    Analysis::Type& type = out.types[static_cast<std::size_t>(gates.type_of(column, row))];
+    Analysis::Type& type = out.types[static_cast<std::size_t>(map.type_of(column, row))];
     type.visits += visits;
     type.trapped += visits * trapped_share(c.chain.at(column, row), place.input);
   });
@@ -232,7 +230,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     if (!of_trapped) {
       out.trapping = out.passed;
       out.state_trapping.resize(static_cast<std::size_t>(space.size()));
-      out.type_trapping.resize(gates.types().size());
+      out.type_trapping.resize(map.types.size());
     }
     passages.each([&](const Passages::Place& place, double visits) {
       const double part = visits * passages.chance(place) / out.target_chance;
@@ -243,7 +241,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
       if (of_trapped || trapped >= 1.0) return;  // nobody goes on from there
       const double effect = part * trapped / (1.0 - trapped);
       out.trapping.data()[place.cell] += effect;
-      out.type_trapping[static_cast<std::size_t>(gates.type_of(column, row))] += effect;
+      out.type_trapping[static_cast<std::size_t>(map.type_of(column, row))] += effect;
       if (place.input < space.size())
         out.state_trapping[static_cast<std::size_t>(place.input)] += effect;
     });

@@ -80,7 +80,7 @@ std::vector<Resampled> resampled_predictions(const CountedField& gates, const ma
 CountedField field_of(const SceneMatrix& base, const std::string& base_path,
                       const std::vector<RowMatrix>& others) {
   if (others.empty())
-    return counted_field(gates_of(base.scene), matrices_of(base.file, base.scene));
+    return counted_field(gates_of(base.scene).map(), matrices_of(base.file, base.scene));
   for (const Scene* scene : {&base.scene, &others.front().matrix.scene})
     if (scene->terrain)
       throw std::invalid_argument(name_of(others.front()) +

@@ -293,13 +293,13 @@ class Pool {
   }
 
   /// Leaves of so many entries at least.
-  [[nodiscard]] Kernel kernel(const FieldGates& gates, int per_leaf) const {
-    return kernel_of(gates, pool_, per_leaf);
+  [[nodiscard]] Kernel kernel(const CellMap& map, int per_leaf) const {
+    return kernel_of(map, pool_, per_leaf);
   }
   /// In the field of the scene, which has the same types of gates.
   [[nodiscard]] markov::FieldChain chain(const Kernel& kernel, const Scene& scene) const {
-    const FieldGates gates = gates_of(scene);
-    return chain_of(kernel, gates, scene.field, {first_row(gates, kernel.space, start())});
+    const CellMap map = gates_of(scene).map();
+    return chain_of(kernel, map, scene.field, {first_row(map, kernel.space, start())});
   }
   [[nodiscard]] std::int64_t gate_runs() const { return gate_runs_; }
   [[nodiscard]] const Health& health() const { return health_; }
@@ -347,12 +347,12 @@ class Pool {
 RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const Work& work) {
   const Stopwatch watch;
   const Scene deep = up_to_row(scene, options.row);
-  const FieldGates gates = gates_of(deep);
+  const CellMap map = gates_of(deep).map();
   const Pool pool(deep, options.most_runs / 4, options.seed, work);
   RareEvent event{.splitting = {}, .chain = {}, .pool_runs = pool.gate_runs()};
   work.tell("chain", 0, 2);
   {
-    const markov::FieldChain chain = pool.chain(pool.kernel(gates, kEntriesPerLeaf), deep);
+    const markov::FieldChain chain = pool.chain(pool.kernel(map, kEntriesPerLeaf), deep);
     event.chain = markov::row_chances(chain, {deep.field.columns, deep.field.rows},
                                       {deep.field.start_column(), 0, chain.inputs() - 1});
   }
@@ -361,7 +361,7 @@ RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const 
 
   // As far as the chain knows a way, which is one of larger leaves too: all entries into rows
   // behind that are worth the same.
-  const Kernel kernel = pool.kernel(gates, kPerLeafOfValues);
+  const Kernel kernel = pool.kernel(map, kPerLeafOfValues);
   const auto known = static_cast<int>(std::find(event.chain.begin(), event.chain.end(), 0.0) -
                                       event.chain.begin());
   markov::Committor values;

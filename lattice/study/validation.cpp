@@ -265,14 +265,14 @@ Validation validate_chain(const Scene& scene, const std::vector<dynamics::Transi
   if (matrices.size() != gates.types().size())
     throw std::invalid_argument("validate: needs a matrix for each type of gate");
   const dynamics::StateSpace& space = matrices.front().space;
-  const markov::FieldChain chain = make_chain(gates, matrices);
+  const markov::FieldChain chain = make_chain(gates.map(), matrices);
   const Setup setup{scene,
                     gates,
                     space,
                     matrices.size() > 1 ? same_states(matrices) : std::vector<int>{},
                     options,
                     options.walks.value_or(options.trials),
-                    counted_field(gates, matrices),
+                    counted_field(gates.map(), matrices),
                     markov::Predictor(chain),
                     markov::Walker(chain),
                     work};

@@ -142,8 +142,8 @@ TEST(Analysis, LeavesOfOneRunTakeWhatTheTrialsTook) {
   scene.gate.beams.stiffness_left = 300.0;  // no mirror images
   const RunPool pool = pool_of_trials(scene, 300);
   const FieldGates gates = gates_of(scene);
-  const Kernel kernel = kernel_of(gates, pool, 1);
-  const CostedChain c = costed_chain(kernel, gates, scene.field, pool, pool.starts[0]);
+  const Kernel kernel = kernel_of(gates.map(), pool, 1);
+  const CostedChain c = costed_chain(kernel, gates.map(), scene.field, pool, pool.starts[0]);
   const auto totals = markov::walk_totals(c.chain, {5, 3}, c.start, 8, c.rewards);
   FieldCosts own(scene.gate);
   own.add(pool.starts[0].full);
@@ -175,8 +175,8 @@ TEST(Analysis, CostsAreThoseOfAllRunsBehindACount) {
     }
     const FieldGates gates = gates_of(scene);
     const RunPool pool = pool_of_trials(scene, 200);
-    const Kernel kernel = kernel_of(gates, pool);
-    const auto sums = cost_sums(kernel, gates, pool);
+    const Kernel kernel = kernel_of(gates.map(), pool);
+    const auto sums = cost_sums(kernel, gates.map(), pool);
     ASSERT_EQ(sums.size(), gates.types().size());
     for (std::size_t type = 0; type < sums.size(); ++type) {
       const markov::Counts& counts = kernel.counts[type];
@@ -199,8 +199,9 @@ TEST(Analysis, CostsAreThoseOfAllRunsBehindACount) {
 TEST(Analysis, CostsComeBackFromAFile) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 100);
-  MatrixFile file{Transitions(StateSpace(disc_section(), kernel_of(scene.gate, pool).space.trees(),
-                                         {entry_of(scene.start)})),
+  MatrixFile file{Transitions(StateSpace(
+                      disc_section(), kernel_of(FieldGates(scene.gate).map(), pool).space.trees(),
+                      {entry_of(scene.start)})),
                   {}};
   file.arrays = arrays_of(pool, disc_section());
   const RunPool back = pool_of(file, scene, "file");
@@ -432,7 +433,7 @@ TEST(Analysis, MorePartsLoseLess) {
   const AnalysedChain chain = analysed_chain(scene, pool, entry_of(scene.start));
   const Passages passages(chain.chain, scene.field, Ending::far_edge, true);
   const auto lumped = [&](const LumpingParts& parts) {
-    return lumped_chain(chain, gates_of(scene), scene.field, passages.state_visits(), parts)
+    return lumped_chain(chain, gates_of(scene).map(), scene.field, passages.state_visits(), parts)
         .value();
   };
   const LumpedChain boundaries = lumped({}), some = lumped({2, 1, 3}), all = lumped({99, 99, 99});

@@ -172,9 +172,10 @@ TEST(CountedField, KnowsWhichRowsHoldMirrorImages) {
     return all;
   };
   using Runs = std::vector<std::int64_t>;
-  EXPECT_EQ(runs(counted_field(FieldGates(even), {t})), (Runs{20, 20, 20, 20, 20, 20, 40}));
-  EXPECT_EQ(runs(counted_field(FieldGates(uneven), {t})), (Runs{40, 40, 40, 40, 40, 40, 40}));
-  EXPECT_EQ(counted_field(FieldGates(even), {made_up()}).images.size(), 0U);  // bins count none
+  EXPECT_EQ(runs(counted_field(FieldGates(even).map(), {t})), (Runs{20, 20, 20, 20, 20, 20, 40}));
+  EXPECT_EQ(runs(counted_field(FieldGates(uneven).map(), {t})), (Runs{40, 40, 40, 40, 40, 40, 40}));
+  EXPECT_EQ(counted_field(FieldGates(even).map(), {made_up()}).images.size(),
+            0U);  // bins count none
 }
 
 TEST(Resampled, IsNamedBySeedAndReplicate) {

@@ -44,10 +44,10 @@ TEST(RunPool, LeavesOfOneRunGiveTheTrialsThemselves) {
   scene.gate.beams.stiffness_left = 300.0;  // no mirror images
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 200));
-  const Kernel kernel = kernel_of(scene.gate, pool, 1);
-  const auto row = first_row(scene.gate, kernel.space, pool.starts[0]);
-  const auto p = markov::predict(chain_of(kernel, scene.gate, scene.field, {row}), {9, 9},
-                                 {{4, 0, kernel.space.size()}}, {.max_cells = 13});
+  const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 1);
+  const auto row = first_row(FieldGates(scene.gate).map(), kernel.space, pool.starts[0]);
+  const auto p = markov::predict(chain_of(kernel, FieldGates(scene.gate).map(), scene.field, {row}),
+                                 {9, 9}, {{4, 0, kernel.space.size()}}, {.max_cells = 13});
   const auto own = shares_of(pool.starts[0].full, scene.field);
   EXPECT_LT(total_variation(p[0].final_cells, own.final_cells), 1e-12);
   for (std::size_t e = 0; e < markov::kEndings; ++e)
@@ -66,7 +66,7 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
     (void)run_field(scene.gate, scene.field, std::vector<BodyState>{{1, 0, 2, 12}, {-3, 0, 0, 14}},
                     table3_space(scene.gate), 9, {0, 2}, &pool.scattered.each);
     for (const TrialGroup group : {TrialGroup{}, TrialGroup{1, 3}}) {
-      const Kernel kernel = kernel_of(scene.gate, pool, 7, group);
+      const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 7, group);
       Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(kernel.space.size(), kernel.space.size() + 1);
       const auto count = [&](const Entry& from, const GatePassage& to) {
         for (const bool image : {false, true}) {
@@ -103,8 +103,8 @@ TEST(RunPool, AStartInTheMiddleHasMirrorImagesInItsRow) {
   const Scene scene = fast_scene();
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 100, {0, 0, 0, 15}));
-  const Kernel kernel = kernel_of(scene.gate, pool);
-  const auto row = first_row(scene.gate, kernel.space, pool.starts[0]);
+  const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool);
+  const auto row = first_row(FieldGates(scene.gate).map(), kernel.space, pool.starts[0]);
   EXPECT_EQ(std::accumulate(row.begin(), row.end(), std::int64_t{0}), 200);
   EXPECT_EQ(pool.gate_runs(), std::ssize(pool.starts[0].full.passages));
 }
@@ -325,7 +325,7 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   const Scene scene = fast_scene();
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 4000));
-  const Kernel kernel = kernel_of(scene.gate, pool);
+  const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool);
   // Other trials of the same start, through the first gate only.
   FieldParams one_gate = scene.field;
   one_gate.max_gates = 1;
@@ -333,7 +333,7 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   again.start = pool.starts[0].start;
   (void)run_field(scene.gate, one_gate, kStart, table3_space(scene.gate), 10, {0, 1000},
                   &again.first);
-  EXPECT_LT(unseen_share(kernel, scene.gate, scene.field, again), 0.01);
+  EXPECT_LT(unseen_share(kernel, FieldGates(scene.gate).map(), scene.field, again), 0.01);
   std::int64_t go_on = 0;
   PassageTable elsewhere(disc_section());
   for (GatePassage p : again.first.passages.rows()) {
@@ -345,11 +345,11 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   }
   again.first.passages = elsewhere;
   ASSERT_GT(go_on, 200);
-  EXPECT_NEAR(unseen_share(kernel, scene.gate, scene.field, again),
+  EXPECT_NEAR(unseen_share(kernel, FieldGates(scene.gate).map(), scene.field, again),
               static_cast<double>(go_on) / 1000, 0.1);
   FieldParams last_row = scene.field;
   last_row.rows = 1;  // who leaves upwards has crossed: nothing more is to be known of that
-  EXPECT_EQ(unseen_share(kernel, scene.gate, last_row, again), 0.0);
+  EXPECT_EQ(unseen_share(kernel, FieldGates(scene.gate).map(), last_row, again), 0.0);
 }
 
 TEST(PooledPrediction, StopsAtTheLimitOfRunsAndSaysSo) {
@@ -386,12 +386,13 @@ TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
     all.push_back(pool.starts.size());
     pool.starts.push_back(some_trials(scene, 64, b));
   }
-  PoolChains chains(scene.gate, scene.field, 5, all.size(), 1);
+  PoolChains chains(FieldGates(scene.gate).map(), scene.field, 5, all.size(), 1);
   ASSERT_TRUE(chains.by_adjoint(pool, all.size()));
   ASSERT_FALSE(chains.by_adjoint(pool, few.size()));
   const PoolAnswers many = chains.ask(pool, all);
   // Few starts are asked one by one; many have leaves of twice the size.
-  const PoolAnswers two = PoolChains(scene.gate, scene.field, 10, few.size(), 1).ask(pool, few);
+  const PoolAnswers two =
+      PoolChains(FieldGates(scene.gate).map(), scene.field, 10, few.size(), 1).ask(pool, few);
   EXPECT_EQ(many.states, two.states);
   for (std::size_t i = 0; i < few.size(); ++i) {
     const auto near = [&](const markov::FinalDistribution& a, const markov::FinalDistribution& b) {

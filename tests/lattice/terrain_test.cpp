@@ -399,7 +399,7 @@ TEST(Terrain, KernelsCountTheRunsOfEachType) {
   RunPool pool;
   pool.starts.push_back(std::move(s));
   constexpr int kPerLeaf = 7;
-  const Kernel kernel = kernel_of(gates, pool, kPerLeaf);
+  const Kernel kernel = kernel_of(gates.map(), pool, kPerLeaf);
   ASSERT_EQ(kernel.counts.size(), 3U);
   std::vector<std::int64_t> runs(3, 0);
   for (std::size_t i = 0; i < 400; ++i) {
@@ -482,7 +482,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   // Walks with the matrices end as the prediction from them says.
   const ChainStart start = chain_start(matrices[0].space, m.scene.field, kStart);
   const auto walked =
-      walks(make_chain(gates_of(m.scene), matrices), m.scene.field, start, 100'000, 4);
+      walks(make_chain(gates_of(m.scene).map(), matrices), m.scene.field, start, 100'000, 4);
   const auto exact = predict(field_of(m, path, {}), m.scene.field, {start}, {}, 1);
   const auto& final = exact.starts[0].final.final_cells;
   EXPECT_LT(total_variation(shares(walked.final_cells), final),
