@@ -107,11 +107,22 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
   return a;
 }
 
-/// So many times the trials make the square of the error as small as is wanted. A long way is gone
-/// in two steps: the error is known the better the nearer it is.
+/// By how much a round of more trials goes on. Errors fall as 1 / sqrt(trials); but an error bar is
+/// an estimate itself, the better the nearer it is to what is wanted.
+struct Schedule {
+  double far = 2.5;          // from so many times the trials on ...
+  double part_of_far = 0.6;  // ... only so much of them at once, ...
+  double most = 16.0;        // ... and no more than so many times: else trials may be wasted
+  double margin = 1.1;       // nearer by, so much more than needed, and ...
+  double least = 1.2;        // ... no less than so many times: else rounds may be many
+};
+
+/// So many times the trials.
 double times_more(double error, double wanted) {
+  constexpr Schedule by;
   const double times = (error / wanted) * (error / wanted);
-  return times > 2.5 ? std::min(0.6 * times, 16.0) : std::max(1.1 * times, 1.2);
+  return times > by.far ? std::min(by.part_of_far * times, by.most)
+                        : std::max(by.margin * times, by.least);
 }
 
 /// What direct simulation would take for the same error bar, by this run's speed.
@@ -189,8 +200,8 @@ class PredictionRun {
   /// Answers for the open starts, and closes those that are certain enough. False where more trials
   /// are not wanted, or would not help.
   [[nodiscard]] bool ask() {
-    // All by the adjoint, closed ones too: that costs nothing, and an answer that was closed by
-    // luck is seen to be uncertain.
+    // By the adjoint all starts cost as much as one. So closed ones are asked again: an error bar
+    // that was small by chance is seen to be larger.
     if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
     std::vector<std::size_t> asked;
     for (const std::size_t k : open_) asked.push_back(places_[k]);
@@ -379,7 +390,8 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
     result.worst_kernel_error_95 = errors.back();
     result.reached = result.kernel_error_95 <= options.accuracy;
     if (result.reached || !runner.may_go_on()) break;
-    // To try a large pool costs more than its runs: the last step is made on trust.
+    // To try a large pool costs more than its runs: after the last step it is not tried again, and
+    // its error is taken to fall as 1 / sqrt(runs).
     const auto n = static_cast<double>(pool.scattered.starts.size());
     const bool last = pool.scattered.starts.size() >= kLargestTried;
     const double times = std::min(times_more(result.kernel_error_95, options.accuracy), 4.0);

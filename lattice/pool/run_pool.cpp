@@ -13,8 +13,8 @@ namespace {
 using namespace dynamics;
 
 /// Calls use(entry, passage, next) for the runs of some trials of the group that did not break, but
-/// the first `skipped` ones of each trial. `start_of(i)`: where trial i started; `next`: the run
-/// that follows it, which the next call is for; null if there is none.
+/// the first `skipped` ones of each trial. `start_of(i)`: where trial i started; `next`: the
+/// following run of the same trial, which is the next call's passage, or null.
 template <class StartOf, class Use>
 void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, StartOf start_of,
               Use use) {

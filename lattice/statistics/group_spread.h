@@ -2,7 +2,8 @@
 /// How far off a prediction may be that was made from trials: predictions from groups of the
 /// trials, each with states of its own, differ from each other by sampling, and their mean from the
 /// whole one's by what larger states cost (a group of an eighth of the trials has states eight
-/// times as large). Both are counted, at the cost of one prediction more.
+/// times as large). Both are counted, at the cost of one prediction more. In the field's words:
+/// random groups, or batch means, as in Wolter, Introduction to Variance Estimation (2007), ch. 2.
 
 #include <array>
 #include <cstdint>
@@ -43,8 +44,8 @@ class GroupSpread {
   GroupSpread(const markov::FinalDistribution& whole,
               const std::vector<markov::FinalDistribution>& groups);
 
-  /// From errors drawn as the groups differ. `trials`: behind the prediction. They say what shares
-  /// can be that no group sees, here and below.
+  /// From errors drawn as the groups differ. `trials`: behind the prediction. Where no
+  /// group has a share, so many trials say how large it can be; here and below.
   [[nodiscard]] Error95 error(std::int64_t trials, std::uint64_t seed) const;
   /// Final gates: low and high (rows x columns).
   [[nodiscard]] std::array<CellProbabilities, 2> gates_95(std::int64_t trials) const;

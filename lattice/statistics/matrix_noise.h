@@ -14,7 +14,7 @@ namespace gatewalk::lattice {
 struct CountedField {
   markov::FieldChain chains;
   std::vector<markov::Counts> counts;  // one per type, as chains.chains()
-  bool small_rows = false;             // trees': rows of a few runs
+  bool small_rows = false;             // rows of a few runs each, as those of trees
   /// By matrix and row: how many counts a run makes in it, 2 with its mirror image; empty: 1.
   std::vector<std::vector<std::int64_t>> images{};
 

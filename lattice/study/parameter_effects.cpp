@@ -29,7 +29,8 @@ struct Terms {
     largest = std::max(largest, std::abs(x));
   }
   [[nodiscard]] double mean() const { return sum / static_cast<double>(n); }
-  /// Then there are larger ones that were not seen.
+  /// One of them makes a tenth of the sum: rarer ones may be larger still, and the mean is not to
+  /// be trusted.
   [[nodiscard]] bool few_make_it() const {
     constexpr double kMostOfOne = 0.1;
     return !(largest < kMostOfOne * sizes);

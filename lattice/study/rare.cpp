@@ -25,8 +25,8 @@ using namespace dynamics;
 constexpr double kWindow = 2.0;
 constexpr double kAbove95 = 0.025;  // of a two-sided 95 % interval, beyond either end
 
-// Of one entry; and of one trial's: then bodies are no longer split, which costs accuracy only.
-constexpr int kMostCopies = 100;
+constexpr int kMostCopies = 100;  // that one entry is split into
+/// Bodies that one trial is split into; from then on none is split, which costs accuracy only.
 constexpr std::uint64_t kMostOfTrial = std::uint64_t{1} << 20;
 
 struct Body {
@@ -359,8 +359,8 @@ RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const 
   event.chain_seconds = watch.seconds();
   work.tell("chain", 1, 2);
 
-  // As far as the chain knows a way, which is one of larger leaves too: all entries into rows
-  // behind that are worth the same.
+  // Values of entries are those of a chain with larger leaves: it has a way to every row to which
+  // the fine chain has one. All entries into rows behind these are worth the same.
   const Kernel kernel = pool.kernel(map, kPerLeafOfValues);
   const auto known = static_cast<int>(std::find(event.chain.begin(), event.chain.end(), 0.0) -
                                       event.chain.begin());
