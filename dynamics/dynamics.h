@@ -7,7 +7,7 @@
 ///   flow.h         free motion in closed form
 ///   methods/       time stepping, one file per method behind methods/method.h
 ///   random_force.h the held lateral force of Eq. (1)
-///   cells/         what a chain knows of any cell, and nothing of discs and beams:
+///   cells/         what a chain knows of any cell (health.h alone still speaks of a disc's faults):
 ///     section.h        faces, the coordinates of an entry, costs (costs.h)
 ///     state_space.h    how a body enters, as a number: bins, or trees
 ///     quantile_bins.h  bins from entries that were seen, and how well bins resolve them

@@ -283,6 +283,8 @@ Transitions transitions_of(const StateSpace& space, const markov::RowCounts& in)
 
 void write_matrix(const std::string& path, const MatrixFile& file) {
   const Transitions& t = file.transitions;
+  if (t.space.section() != disc_section())  // as read_matrix would take it
+    throw std::invalid_argument(path + ": a matrix file is of a disc in gates, not of other cells");
   markov::CountsFile out;
   static_cast<markov::RowCounts&>(out) = row_counts(t);
   add_costs(out, t, "");

@@ -1,5 +1,5 @@
 #pragma once
-/// Counts + state space -> chain: the only place where dynamics and markov meet. Also the file that
+/// Counts + state space -> chain. Also the file that
 /// holds a matrix with everything it came from.
 
 #include <map>
@@ -50,7 +50,7 @@ struct MatrixFile {
   std::map<std::string, dynamics::Transitions> types{};  // of other gates in the field, by name
 };
 
-/// As markov::write_counts.
+/// As markov::write_counts. Throws std::invalid_argument for other cells than a disc's.
 void write_matrix(const std::string& path, const MatrixFile& file);
 
 /// As markov::read_counts; throws markov::BadFile also when the bins or exits are not those of a

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 #include "dynamics/cells/section.h"
@@ -15,21 +16,26 @@ namespace gatewalk::lattice {
 /// gate, inside the field or outside (no entry where it did not leave its gate), and what it took.
 struct GatePassage {
   dynamics::Ending ending = dynamics::Ending::trapped;
-  std::uint8_t type = 0;  // of FieldGates::types()
+  std::uint8_t type = 0;  // of the field's types
   dynamics::Entry entry{};
   dynamics::Costs costs{};
 };
 
 class PassageTable {
  public:
-  /// Without a section: for none.
   PassageTable() = default;
-  explicit PassageTable(const dynamics::Section& section)
-      : coordinates_(section.coordinates.size()), costs_(section.costs.size()) {}
+  explicit PassageTable(const dynamics::Section& section) { begin(section); }
+  /// Says what an empty table is of; one that has passages stays as it is.
+  void begin(const dynamics::Section& section) {
+    if (!empty()) return;
+    coordinates_ = section.coordinates.size();
+    costs_ = section.costs.size();
+  }
 
   [[nodiscard]] std::size_t size() const { return endings_.size(); }
   [[nodiscard]] bool empty() const { return endings_.empty(); }
   void push_back(const GatePassage& passage) {
+    if (coordinates_ == 0) throw std::logic_error("passages of no section");
     endings_.push_back(passage.ending);
     types_.push_back(passage.type);
     faces_.push_back(static_cast<std::uint8_t>(passage.entry.face));

@@ -52,7 +52,7 @@ std::optional<Entry> follow(RunningTrial& t, const FieldGates& gates, const Fiel
   }
   const Entry crossing = crossing_of(p, run.ending, run.exit);
   if (keep_passages) t.passages.push_back({run.ending, type, crossing, costs});
-  const Face& move = space.section().faces[crossing.face];
+  const Face& move = disc_section().faces[crossing.face];
   if (!field.contains(t.column + move.di_x, t.row + move.di_y)) {
     t.ending =
         markov::edge_before({field.columns, field.rows}, t.column + move.di_x, t.row + move.di_y);
@@ -227,7 +227,7 @@ FieldTally run_from(const FieldGates& gates, const FieldParams& field,
   tally.held.add(range);
   tally.trials = range.count;
   for (const RunningTrial& t : trials) tally_trial(tally, t);
-  if (keep_passages && each->passages.empty()) each->passages = PassageTable(space.section());
+  if (keep_passages) each->passages.begin(disc_section());
   if (each != nullptr)
     for (const RunningTrial& t : trials) {
       each->final_gates.push_back(t.row * field.columns + t.column);

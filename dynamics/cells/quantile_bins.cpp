@@ -82,15 +82,15 @@ StateSpace quantile_space(const Section& section, const std::vector<Entry>& seen
                                     static_cast<double>(std::max<std::int64_t>(1, entries)),
                                 coordinates);
     for (std::size_t axis = 0; axis < coordinates; ++axis) {
-      const std::array<double, 2>& usual = section.faces[f].usual[axis];
       std::vector<double>& edges = bins[f].edges[axis];
       if (at[f].empty()) {
+        const std::array<double, 2>& usual = usual_at(section, section.faces[f])[axis];
         edges = {usual[0], usual[1]};
         continue;
       }
       std::vector<double> values;
       for (const Entry& c : at[f]) values.push_back(c.at[axis]);
-      edges = quantile_edges(std::move(values), n, usual);
+      edges = quantile_edges(std::move(values), n, section.faces[f].usual[axis]);
     }
   }
   return {section, std::move(bins), true, points};

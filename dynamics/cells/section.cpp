@@ -20,10 +20,9 @@ void Section::validate() const {
            std::to_string(kMostCosts));
   for (int f = 0; f < std::ssize(faces); ++f) {
     const Face& face = faces[f];
-    if (face.name.empty()) refuse("a face has no name");
-    for (int other = 0; other < f; ++other)
-      if (faces[other].name == face.name) refuse("two faces are named " + face.name);
     if (face.di_x == 0 && face.di_y == 0) refuse("face " + face.name + " leads nowhere");
+    if (face.odd >> coordinates.size() != 0)
+      refuse("face " + face.name + " has an odd coordinate that is none");
     if (face.mirror < 0 || face.mirror >= std::ssize(faces))
       refuse("face " + face.name + " has no mirror image");
     const Face& image = faces[face.mirror];
@@ -31,9 +30,29 @@ void Section::validate() const {
         image.di_y != face.di_y)
       refuse("face " + face.name + " is not the mirror image of " + image.name);
   }
+  const auto require_names = [&](const auto& all, auto name, const std::string& what) {
+    for (auto one = all.begin(); one != all.end(); ++one) {
+      if (((*one).*name).empty()) refuse("a " + what + " has no name");
+      for (auto other = all.begin(); other != one; ++other)
+        if ((*one).*name == (*other).*name) refuse("two " + what + "s are named " + (*one).*name);
+    }
+  };
+  require_names(faces, &Face::name, "face");
+  require_names(coordinates, &Coordinate::name, "coordinate");
+  require_names(costs, &CostInfo::key, "cost");
   for (const Coordinate& c : coordinates)
     if (!(std::isfinite(c.scale) && c.scale > 0.0))
       refuse("the scale of coordinate " + c.name + " must be finite and > 0");
+}
+
+const std::array<std::array<double, 2>, kMostCoordinates>& usual_at(const Section& section,
+                                                                    const Face& face) {
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    if (!(face.usual[axis][0] < face.usual[axis][1]))
+      throw std::invalid_argument("section: nothing was seen to enter by face " + face.name +
+                                  ", and no usual range of " + section.coordinates[axis].name +
+                                  " is given there");
+  return face.usual;
 }
 
 Entry mirrored(const Section& section, const Entry& entry) {

@@ -59,9 +59,9 @@ struct Section {
   std::vector<Coordinate> coordinates;  // 1 to kMostCoordinates
   std::vector<CostInfo> costs;          // up to kMostCosts
 
-  /// Throws std::invalid_argument unless there are as many as that, faces have different names,
-  /// lead somewhere and are the mirror images of their mirror images, and scales are finite and >
-  /// 0.
+  /// Throws std::invalid_argument unless there are as many as that, all of a kind have different
+  /// names (costs: keys), faces lead somewhere and are the mirror images of their mirror images,
+  /// and scales are finite and > 0.
   void validate() const;
   friend bool operator==(const Section&, const Section&) = default;
 };
@@ -82,6 +82,11 @@ template <class Named>
     text += (i > 0 ? ", " : "") + std::to_string(i) + " " + all[i].name;
   return text;
 }
+
+/// The face's usual ranges, for a state where no entry was seen. Throws std::invalid_argument
+/// naming the face where it has none.
+[[nodiscard]] const std::array<std::array<double, 2>, kMostCoordinates>& usual_at(
+    const Section& section, const Face& face);
 
 /// The mirror image, left for right.
 [[nodiscard]] Entry mirrored(const Section& section, const Entry& entry);

@@ -147,9 +147,11 @@ StateSpace::StateSpace(Section section, std::vector<Tree> trees, std::vector<Ent
 
 void StateSpace::require_points() const {
   for (auto c = points_.begin(); c != points_.end(); ++c)
-    if (!std::isfinite(std::accumulate(c->at.begin(), c->at.end(), 0.0)) ||
+    if (c->face < 0 || c->face >= std::ssize(section_.faces) ||
+        !std::isfinite(std::accumulate(c->at.begin(), c->at.end(), 0.0)) ||
         std::find(points_.begin(), c, *c) != c)
-      throw std::invalid_argument("state space: single entries must be finite and different");
+      throw std::invalid_argument(
+          "state space: single entries must be on a face, finite and different");
 }
 
 int StateSpace::leaf_of(int face, const Entry& entry) const {

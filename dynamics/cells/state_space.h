@@ -50,13 +50,13 @@ class StateSpace {
   /// `points`: single entries that are states of their own, such as where walks start. Open: the
   /// outermost bins take what lies beyond them, and their outer edges only say how far entries were
   /// seen; nothing is clamped. Throws std::invalid_argument unless the section is valid, every face
-  /// has at least one bin and ascending edges, and all points are finite and different.
+  /// has at least one bin and ascending edges, and all points are on a face, finite and different.
   StateSpace(Section section, std::vector<Bins> bins, bool open = false,
              std::vector<Entry> points = {});
 
   /// States are the leaves of every face's tree, within each in preorder, then `points`. Open.
   /// Throws std::invalid_argument unless the section is valid, every face has a tree, complete with
-  /// finite cuts that leave both sides room, and all points are finite and different.
+  /// finite cuts that leave both sides room, and all points are on a face, finite and different.
   StateSpace(Section section, std::vector<Tree> trees, std::vector<Entry> points = {});
 
   [[nodiscard]] const Section& section() const { return section_; }

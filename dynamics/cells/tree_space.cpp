@@ -24,16 +24,15 @@ auto less_along(std::size_t axis) {
 /// Grows trees, in preorder.
 class Grower {
  public:
-  Grower(const std::vector<Coordinate>& coordinates, std::size_t per_leaf,
-         std::vector<int>& state_of)
-      : per_leaf_(per_leaf), state_of_(state_of) {
-    for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
-      per_unit_[axis] = 1.0 / coordinates[axis].scale;
+  Grower(const Section& section, std::size_t per_leaf, std::vector<int>& state_of)
+      : section_(section), per_leaf_(per_leaf), state_of_(state_of) {
+    for (std::size_t axis = 0; axis < axes(); ++axis)
+      per_unit_[axis] = 1.0 / section.coordinates[axis].scale;
   }
 
   [[nodiscard]] Tree grow(Entries entries) {
     tree_ = {.nodes = {}, .seen = {}};
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+    for (std::size_t axis = 0; axis < axes(); ++axis) {
       const auto [low, high] =
           std::minmax_element(entries.begin(), entries.end(), less_along(axis));
       tree_.seen[axis][0] = low->at[axis];
@@ -45,10 +44,12 @@ class Grower {
   /// A tree of one state, for which nothing was seen.
   [[nodiscard]] Tree unseen(const Face& face) {
     ++states_;
-    return {.nodes = {Tree::Node{}}, .seen = face.usual};
+    return {.nodes = {Tree::Node{}}, .seen = usual_at(section_, face)};
   }
 
  private:
+  [[nodiscard]] std::size_t axes() const { return section_.coordinates.size(); }
+
   /// Axes by how far the entries spread along them, on their scales, the most first.
   [[nodiscard]] std::array<std::size_t, kMostCoordinates> axes_by_spread(Entries entries) const {
     const auto n = static_cast<double>(entries.size());
@@ -97,7 +98,7 @@ class Grower {
   void add(Entries entries) {
     if (entries.size() >= 2 * per_leaf_)
       for (const std::size_t axis : axes_by_spread(entries)) {
-        const std::size_t below = halve(entries, axis);
+        const std::size_t below = axis < axes() ? halve(entries, axis) : 0;
         if (below == 0) continue;
         const Entries low = entries.first(below), high = entries.subspan(below);
         const double from = std::max_element(low.begin(), low.end(), less_along(axis))->at[axis],
@@ -114,6 +115,7 @@ class Grower {
     tree_.nodes.push_back({});
   }
 
+  const Section& section_;
   std::array<double, kMostCoordinates> per_unit_{};  // 0 behind the last
   std::size_t per_leaf_;
   std::vector<int>& state_of_;
@@ -132,7 +134,7 @@ StateSpace tree_space(const Section& section, const std::vector<Entry>& seen, in
   for (std::size_t i = 0; i < seen.size(); ++i)
     at[static_cast<std::size_t>(seen[i].face)].push_back({seen[i].at, static_cast<int>(i)});
   std::vector<int> states(seen.size());
-  Grower grower(section.coordinates, static_cast<std::size_t>(per_leaf), states);
+  Grower grower(section, static_cast<std::size_t>(per_leaf), states);
   std::vector<Tree> trees;
   for (std::size_t f = 0; f < at.size(); ++f)
     trees.push_back(at[f].empty() ? grower.unseen(section.faces[f]) : grower.grow(at[f]));

@@ -1,9 +1,9 @@
 #pragma once
 /// Gate runs of full trials, pooled over all gates of a type, since one is like the other; and the
 /// chain that they make: a start's own first runs are its row, all later runs fill the rows of
-/// trees grown over the entries that were seen (dynamics/tree_space.h), their mirror images too
-/// where the gate is symmetric. All types share the trees: what enters a gate comes from another
-/// one.
+/// trees grown over the entries that were seen (dynamics/cells/tree_space.h), their mirror images
+/// too where the gate is symmetric. All types share the trees: what enters a gate comes from
+/// another one.
 
 #include <array>
 #include <cstdint>

@@ -292,7 +292,7 @@ class RunReader {
     FieldTrials& trials = kind == kScattered   ? pool.scattered.each
                           : kind == kFullTrial ? pool.starts[own].full
                                                : pool.starts[own].first;
-    if (trials.passages.empty()) trials.passages = PassageTable(section_);
+    trials.passages.begin(section_);
     Costs sum{};
     for (int k = 0; k < count; ++k, ++at_) {
       const std::string run = "run " + std::to_string(at_ + 1);
@@ -370,7 +370,7 @@ void scatter_others(RunPool& pool, const CellMap& map, int type) {
     return any.passages[0].type != type;
   };
   FieldTrials& each = pool.scattered.each;
-  if (each.passages.empty()) each.passages = PassageTable(map.section);
+  each.passages.begin(map.section);
   for (const StartTrials& s : pool.starts)
     for (const FieldTrials* trials : {&s.full, &s.first})
       for (std::size_t i = 0; i < trials->final_gates.size() && is_other(s); ++i) {

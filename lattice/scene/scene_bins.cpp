@@ -111,7 +111,8 @@ std::optional<SceneBins> bins_of(const GateParams& gate, const std::vector<Given
   double states = 0.0;
   for (const Bins& b : bins) {
     double here = 1.0;
-    for (const std::vector<double>& edges : b.edges) here *= static_cast<double>(edges.size() - 1);
+    for (std::size_t axis = 0; axis < disc_section().coordinates.size(); ++axis)
+      here *= static_cast<double>(b.edges[axis].size() - 1);
     states += here;
   }
   if (states > kMostStates)

@@ -17,10 +17,7 @@ std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from)
   const auto space = fixed_space(scene);
   for (int i = 0; i < 8; ++i) {
     const dynamics::StateRange range = space.range(i * (space.size() - 1) / 7);
-    dynamics::Entry middle{range.face};
-    for (std::size_t axis = 0; axis < middle.at.size(); ++axis)
-      middle.at[axis] = 0.5 * (range.at[axis][0] + range.at[axis][1]);
-    starts.push_back(dynamics::entry_state(scene.gate, middle));
+    starts.push_back(dynamics::entry_state(scene.gate, range.middle()));
   }
   return starts;
 }

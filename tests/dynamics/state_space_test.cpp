@@ -10,6 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "dynamics/cells/quantile_bins.h"
+#include "dynamics/cells/tree_space.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::dynamics {
@@ -45,10 +47,27 @@ TEST(Section, RefusesWhatIsNone) {
                  std::invalid_argument);
   };
   expect_refused([](Section& s) { s.faces.clear(); });
-  expect_refused([](Section& s) { s.faces.resize(kMostFaces + 1, s.faces[0]); });
+  expect_refused([](Section& s) {
+    while (s.faces.size() <= kMostFaces) {
+      s.faces.push_back(s.faces[0]);
+      s.faces.back().name += std::to_string(s.faces.size());
+      s.faces.back().mirror = static_cast<int>(s.faces.size()) - 1;
+    }
+  });
   expect_refused([](Section& s) { s.coordinates.clear(); });
-  expect_refused([](Section& s) { s.coordinates.resize(kMostCoordinates + 1); });
-  expect_refused([](Section& s) { s.costs.resize(kMostCosts + 1); });
+  const auto grown = [](auto& all, auto name, std::size_t most) {
+    while (all.size() <= most) {
+      all.push_back(all[0]);
+      all.back().*name += std::to_string(all.size());
+    }
+  };
+  expect_refused([&](Section& s) { grown(s.coordinates, &Coordinate::name, kMostCoordinates); });
+  expect_refused([&](Section& s) { grown(s.costs, &CostInfo::key, kMostCosts); });
+  expect_refused([](Section& s) { s.coordinates[1].name = "s"; });
+  expect_refused([](Section& s) { s.coordinates[1].name.clear(); });
+  expect_refused([](Section& s) { s.costs[0].key.clear(); });
+  expect_refused([](Section& s) { s.costs.push_back(s.costs[0]); });
+  expect_refused([](Section& s) { s.faces[0].odd = 0b100; });
   expect_refused([](Section& s) { s.coordinates[1].scale = 0.0; });
   expect_refused([](Section& s) { s.coordinates[0].scale = kInf; });
   expect_refused([](Section& s) { s.faces[2].name = "W"; });
@@ -104,6 +123,26 @@ TEST(Section, OfTwoCoordinatesMakesSpaces) {
   const Tree third{.nodes = {{2, 0.0}, {}, {}}, .seen = {{{-1, 1}, {-2, 2}, {-1, 1}}}};
   EXPECT_THROW((void)StateSpace(squares(), {third, cut, cut}), std::invalid_argument);
   EXPECT_THROW((void)StateSpace(squares(), std::vector<Tree>{cut, cut}), std::invalid_argument);
+  for (const int face : {-1, 3})
+    EXPECT_THROW((void)StateSpace(squares(), {cut, cut, cut}, {{face, {0.5, 0.5}}}),
+                 std::invalid_argument);
+}
+
+TEST(Section, OfTwoCoordinatesGrowsTreesAndBins) {
+  std::vector<Entry> seen;  // what lies behind the last coordinate is nobody's
+  for (int i = 0; i < 400; ++i)
+    seen.push_back({i % 2, {-1.0 + 0.005 * i, std::sin(i), static_cast<double>(i)}});
+  const StateSpace trees = tree_space(squares(), seen, 10);
+  EXPECT_GT(trees.size(), 30);
+  for (const Tree& tree : trees.trees())
+    for (const Tree::Node& node : tree.nodes) EXPECT_LT(node.axis, 2);
+  EXPECT_EQ(trees.trees()[2].seen[1], (std::array<double, 2>{-2, 2}));  // the usual range
+  const StateSpace bins = quantile_space(squares(), seen, 8, {});
+  EXPECT_EQ(bins.size(), 9);  // 2 x 2 for either half of them, and one where nothing was seen
+  Section lacking = squares();
+  lacking.faces[2].usual = {};
+  EXPECT_THROW((void)tree_space(lacking, seen, 10), std::invalid_argument);
+  EXPECT_THROW((void)quantile_space(lacking, seen, 8, {}), std::invalid_argument);
 }
 
 // ---- Table III ----

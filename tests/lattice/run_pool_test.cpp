@@ -321,6 +321,20 @@ TEST(PassageTable, KeepsWhatWasPutThere) {
   EXPECT_EQ(table.rows(1, 3).back().type, 3);
 }
 
+TEST(PassageTable, HasAsManyColumnsAsItsSection) {
+  dynamics::Section two = disc_section();
+  two.coordinates.pop_back();
+  two.costs.resize(1);
+  PassageTable table(two);
+  for (double x : {1.0, 2.0})
+    table.push_back({dynamics::Ending::traversed, 0, {Boundary::enter, {x, -x, 9}}, {x, 9}});
+  EXPECT_EQ(table[1].entry, (Entry{Boundary::enter, {2, -2, 0}}));
+  EXPECT_EQ(table[1].costs, (dynamics::Costs{2}));
+  table.begin(disc_section());  // it has passages: stays as it is
+  EXPECT_EQ(table[0].entry, (Entry{Boundary::enter, {1, -1, 0}}));
+  EXPECT_THROW(PassageTable().push_back({}), std::logic_error);
+}
+
 TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   const Scene scene = fast_scene();
   RunPool pool;
