@@ -271,7 +271,7 @@ FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const 
   gates.require_fits(field);
   for (const GateParams& p : gates.types()) validate(p, field);
   const GateParams& first = gates.at(field.start_column(), 0);
-  const StateSpace space = table3_space(first);  // `follow` counts with it; nobody asks here
+  const StateSpace space = table3_space(first);  // for counts of clamped entries, unused here
   RunningTrial t;
   t.column = field.start_column();
   RandomForce force = field_force(first, start, seed, trial);

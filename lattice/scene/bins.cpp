@@ -56,7 +56,7 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
   field.fidelity = Fidelity::active;
   field.max_gates = field.max_gates == 0 ? kPilotGates : std::min(field.max_gates, kPilotGates);
   const FieldGates gates = gates_of(scene);
-  const StateSpace space = table3_space(scene.gate);  // run_field counts with it; nobody asks here
+  const StateSpace space = table3_space(scene.gate);  // for counts of clamped entries, unused here
   for (const BodyState& start : starts) {
     const Entry entry = entry_of(start);
     if (start.y == 0.0 &&
