@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamics/contact.h"
+#include "dynamics/disc/contact.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::lattice {
 namespace {

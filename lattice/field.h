@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/cells/cell_map.h"
-#include "dynamics/params.h"
+#include "dynamics/disc/params.h"
 
 namespace gatewalk::lattice {
 

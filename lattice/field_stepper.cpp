@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 #include "lattice/complementarity.h"
 
 namespace gatewalk::lattice {

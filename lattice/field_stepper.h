@@ -16,9 +16,9 @@
 
 #include <vector>
 
-#include "dynamics/flow.h"
-#include "dynamics/gate.h"
-#include "dynamics/methods/moreau.h"
+#include "dynamics/disc/flow.h"
+#include "dynamics/disc/gate.h"
+#include "dynamics/disc/methods/moreau.h"
 #include "lattice/field.h"
 
 namespace gatewalk::lattice {

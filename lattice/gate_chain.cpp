@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::lattice {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dynamics/cells/section.h"
-#include "dynamics/gate.h"
+#include "dynamics/disc/gate.h"
 
 namespace gatewalk::lattice {
 

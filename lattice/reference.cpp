@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "dynamics/runs.h"
+#include "dynamics/disc/runs.h"
 #include "lattice/field_stepper.h"
 
 namespace gatewalk::lattice {

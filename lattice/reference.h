@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "dynamics/disc_section.h"
-#include "dynamics/ensemble.h"
-#include "dynamics/trace.h"
+#include "dynamics/disc/disc_section.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/trace.h"
 #include "lattice/field.h"
 #include "lattice/passage_table.h"
 #include "markov/walk.h"

@@ -4,7 +4,7 @@
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
-#include "dynamics/study/accuracy.h"
+#include "dynamics/disc/study/accuracy.h"
 
 namespace gatewalk::cli {
 

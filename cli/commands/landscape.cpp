@@ -7,7 +7,7 @@
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
-#include "dynamics/study/accuracy.h"
+#include "dynamics/disc/study/accuracy.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include "cli/render/stability.h"
 #include "cli/render/text.h"
 #include "dynamics/base/work.h"
-#include "dynamics/study/accuracy.h"
+#include "dynamics/disc/study/accuracy.h"
 
 namespace gatewalk::cli {
 

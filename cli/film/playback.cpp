@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dynamics/contact.h"
+#include "dynamics/disc/contact.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "cli/paper/claims.h"
 #include "cli/paper/studies.h"
-#include "dynamics/landscape.h"
+#include "dynamics/disc/landscape.h"
 
 namespace gatewalk::cli {
 

@@ -9,7 +9,7 @@
 
 #include "cli/paper/findings.h"
 #include "cli/render/figure.h"
-#include "dynamics/landscape.h"
+#include "dynamics/disc/landscape.h"
 
 namespace gatewalk::cli {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "dynamics/params.h"
+#include "dynamics/disc/params.h"
 
 namespace gatewalk::cli {
 

@@ -5,7 +5,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 
 namespace gatewalk::cli {
 

@@ -6,8 +6,8 @@
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/quantity.h"
-#include "dynamics/ensemble.h"
-#include "dynamics/landscape.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/landscape.h"
 
 namespace gatewalk::cli {
 

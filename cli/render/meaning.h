@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/render/json_fwd.h"
-#include "dynamics/study/meaning.h"
+#include "dynamics/disc/study/meaning.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {

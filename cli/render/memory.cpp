@@ -9,7 +9,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "cli/render/quantity.h"
 #include "cli/render/recording.h"
 #include "cli/render/text.h"
-#include "dynamics/landscape.h"
+#include "dynamics/disc/landscape.h"
 
 namespace gatewalk::cli {
 namespace {

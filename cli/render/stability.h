@@ -7,7 +7,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "dynamics/study/stability.h"
+#include "dynamics/disc/study/stability.h"
 
 namespace gatewalk::cli {
 

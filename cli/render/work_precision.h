@@ -6,7 +6,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "dynamics/study/work_precision.h"
+#include "dynamics/disc/study/work_precision.h"
 
 namespace gatewalk::cli {
 

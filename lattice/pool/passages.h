@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/params.h"
+#include "dynamics/disc/params.h"
 #include "lattice/field.h"
 #include "lattice/pool/costed_chain.h"
 #include "markov/committor.h"

@@ -7,7 +7,7 @@
 #include "dynamics/base/work.h"
 #include "dynamics/cells/quantile_bins.h"
 #include "dynamics/cells/transitions.h"
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dynamics/row_trials.h"
+#include "dynamics/disc/row_trials.h"
 #include "lattice/scene/settle.h"
 #include "markov/formats/counts.h"
 

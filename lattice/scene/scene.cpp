@@ -17,7 +17,7 @@
 #include <utility>
 #include <variant>
 
-#include "dynamics/methods/method.h"
+#include "dynamics/disc/methods/method.h"
 #include "lattice/scene/digits.h"
 #include "lattice/scene/edit_distance.h"
 #include "lattice/scene/map_file.h"

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/disc_section.h"
-#include "dynamics/params.h"
+#include "dynamics/disc/disc_section.h"
+#include "dynamics/disc/params.h"
 #include "lattice/field.h"
 #include "lattice/scene/terrain.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/study/choice.h"
+#include "dynamics/disc/study/choice.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {

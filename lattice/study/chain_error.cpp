@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "dynamics/row_trials.h"
+#include "dynamics/disc/row_trials.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/scene/matrix.h"
 #include "lattice/study/one_thread.h"

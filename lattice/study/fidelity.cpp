@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "dynamics/methods/method.h"
+#include "dynamics/disc/methods/method.h"
 
 namespace gatewalk::lattice {
 namespace {

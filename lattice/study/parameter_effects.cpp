@@ -7,9 +7,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "dynamics/contact.h"
-#include "dynamics/methods/method.h"
-#include "dynamics/runs.h"
+#include "dynamics/disc/contact.h"
+#include "dynamics/disc/methods/method.h"
+#include "dynamics/disc/runs.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/statistics/group_spread.h"
 

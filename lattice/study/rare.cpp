@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "dynamics/base/share.h"
-#include "dynamics/runs.h"
+#include "dynamics/disc/runs.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/scene/settle.h"

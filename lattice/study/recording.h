@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/ensemble.h"
-#include "dynamics/trace.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/trace.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "dynamics/landscape.h"
+#include "dynamics/disc/landscape.h"
 #include "lattice/study/recording.h"
 
 namespace gatewalk::lattice {

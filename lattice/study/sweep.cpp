@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "dynamics/study/accuracy.h"
+#include "dynamics/disc/study/accuracy.h"
 #include "lattice/scene/units.h"
 
 namespace gatewalk::lattice {

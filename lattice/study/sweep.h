@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::lattice {

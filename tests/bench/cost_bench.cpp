@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/row_trials.h"
+#include "dynamics/disc/row_trials.h"
 #include "lattice/scene/scene.h"
 #include "markov/markov.h"
 #include "scenes.h"

@@ -1,4 +1,4 @@
-% octave paper_euler.m [TRIALS]: the paper's scheme as its text gives it (ours: dynamics/methods/paper.cpp),
+% octave paper_euler.m [TRIALS]: the paper's scheme as its text gives it (ours: dynamics/disc/methods/paper.cpp),
 % one gate from rest, a plain loop. Prints condition,trials,seconds,steps,traversed,exited,trapped.
 1;
 

@@ -10,7 +10,7 @@
 
 #include "cli/film/replay.h"
 #include "cli/render/json.h"
-#include "dynamics/landscape.h"
+#include "dynamics/disc/landscape.h"
 #include "tests/cli/films.h"
 
 namespace gatewalk::cli {

@@ -1,4 +1,4 @@
-#include "dynamics/study/accuracy.h"
+#include "dynamics/disc/study/accuracy.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "dynamics/study/choice.h"
+#include "dynamics/disc/study/choice.h"
 
 #include <gtest/gtest.h>
 

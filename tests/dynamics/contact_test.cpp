@@ -1,4 +1,4 @@
-#include "dynamics/contact.h"
+#include "dynamics/disc/contact.h"
 
 #include <gtest/gtest.h>
 

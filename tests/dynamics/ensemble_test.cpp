@@ -1,4 +1,4 @@
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 
 #include <gtest/gtest.h>
 

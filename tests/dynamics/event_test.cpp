@@ -1,4 +1,4 @@
-#include "dynamics/methods/event.h"
+#include "dynamics/disc/methods/event.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/gate.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/gate.h"
 #include "tests/support/long.h"
 #include "tests/support/measured.h"
 #include "tests/support/mirror.h"

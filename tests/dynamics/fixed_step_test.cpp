@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/gate.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/gate.h"
 #include "tests/support/long.h"
 #include "tests/support/measured.h"
 #include "tests/support/mirror.h"

@@ -1,4 +1,4 @@
-#include "dynamics/flow.h"
+#include "dynamics/disc/flow.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "dynamics/gate.h"
+#include "dynamics/disc/gate.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-#include "dynamics/landscape.h"
+#include "dynamics/disc/landscape.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "dynamics/base/random.h"
-#include "dynamics/contact.h"
+#include "dynamics/disc/contact.h"
 #include "tests/support/scenes.h"
 
 namespace gatewalk::dynamics {

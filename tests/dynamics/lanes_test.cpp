@@ -1,11 +1,11 @@
-#include "dynamics/lanes.h"
+#include "dynamics/disc/lanes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 #include "tests/support/gate_runs.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/numbers.h"

@@ -1,4 +1,4 @@
-#include "dynamics/study/meaning.h"
+#include "dynamics/disc/study/meaning.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "dynamics/base/random.h"
-#include "dynamics/landscape.h"
-#include "dynamics/methods/method.h"
-#include "dynamics/random_force.h"
+#include "dynamics/disc/landscape.h"
+#include "dynamics/disc/methods/method.h"
+#include "dynamics/disc/random_force.h"
 #include "tests/support/free_beam.h"
 
 namespace gatewalk::dynamics {

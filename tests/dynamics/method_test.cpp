@@ -1,14 +1,14 @@
-#include "dynamics/methods/method.h"
+#include "dynamics/disc/methods/method.h"
 
 #include <gtest/gtest.h>
 
 #include <typeinfo>
 
-#include "dynamics/methods/event.h"
-#include "dynamics/methods/moreau.h"
-#include "dynamics/methods/paper.h"
-#include "dynamics/methods/penalty.h"
-#include "dynamics/methods/stable.h"
+#include "dynamics/disc/methods/event.h"
+#include "dynamics/disc/methods/moreau.h"
+#include "dynamics/disc/methods/paper.h"
+#include "dynamics/disc/methods/penalty.h"
+#include "dynamics/disc/methods/stable.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 

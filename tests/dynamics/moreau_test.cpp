@@ -1,4 +1,4 @@
-#include "dynamics/methods/moreau.h"
+#include "dynamics/disc/methods/moreau.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/gate.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/gate.h"
 #include "tests/support/free_beam.h"
 #include "tests/support/measured.h"
 #include "tests/support/numbers.h"

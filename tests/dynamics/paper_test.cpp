@@ -1,12 +1,12 @@
-#include "dynamics/methods/paper.h"
+#include "dynamics/disc/methods/paper.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/gate.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/gate.h"
 #include "tests/support/free_beam.h"
 #include "tests/support/measured.h"
 #include "tests/support/numbers.h"

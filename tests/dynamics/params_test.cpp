@@ -1,4 +1,4 @@
-#include "dynamics/params.h"
+#include "dynamics/disc/params.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "dynamics/methods/penalty.h"
+#include "dynamics/disc/methods/penalty.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/gate.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/gate.h"
 #include "tests/support/free_beam.h"
 #include "tests/support/measured.h"
 #include "tests/support/numbers.h"

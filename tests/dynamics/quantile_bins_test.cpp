@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::dynamics {

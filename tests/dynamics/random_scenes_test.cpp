@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "dynamics/study/accuracy.h"
-#include "dynamics/study/choice.h"
+#include "dynamics/disc/study/accuracy.h"
+#include "dynamics/disc/study/choice.h"
 #include "tests/support/long.h"
 #include "tests/support/measured.h"
 

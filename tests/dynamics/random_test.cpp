@@ -1,5 +1,5 @@
 #include "dynamics/base/random.h"
-#include "dynamics/random_force.h"
+#include "dynamics/disc/random_force.h"
 
 #include <gtest/gtest.h>
 

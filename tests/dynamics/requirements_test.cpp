@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/study/accuracy.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/study/accuracy.h"
 #include "tests/support/long.h"
 #include "tests/support/measured.h"
 #include "tests/support/scenes.h"

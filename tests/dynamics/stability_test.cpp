@@ -1,12 +1,12 @@
-#include "dynamics/study/stability.h"
+#include "dynamics/disc/study/stability.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/methods/paper.h"
-#include "dynamics/study/accuracy.h"
+#include "dynamics/disc/methods/paper.h"
+#include "dynamics/disc/study/accuracy.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::dynamics {

@@ -1,4 +1,4 @@
-#include "dynamics/stable_lanes.h"
+#include "dynamics/disc/stable_lanes.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 #include "tests/support/gate_runs.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/long.h"

@@ -1,4 +1,4 @@
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 
 #include <gtest/gtest.h>
 

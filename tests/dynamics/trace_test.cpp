@@ -1,10 +1,10 @@
-#include "dynamics/trace.h"
+#include "dynamics/disc/trace.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 

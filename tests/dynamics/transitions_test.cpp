@@ -1,4 +1,4 @@
-#include "dynamics/row_trials.h"
+#include "dynamics/disc/row_trials.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::dynamics {

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 
 namespace gatewalk::dynamics {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamics/landscape.h"
-#include "dynamics/row_trials.h"
-#include "dynamics/study/accuracy.h"
-#include "dynamics/study/choice.h"
-#include "dynamics/trace.h"
+#include "dynamics/disc/landscape.h"
+#include "dynamics/disc/row_trials.h"
+#include "dynamics/disc/study/accuracy.h"
+#include "dynamics/disc/study/choice.h"
+#include "dynamics/disc/trace.h"
 
 namespace gatewalk::dynamics {
 namespace {

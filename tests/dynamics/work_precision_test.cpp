@@ -1,4 +1,4 @@
-#include "dynamics/study/work_precision.h"
+#include "dynamics/disc/study/work_precision.h"
 
 #include <gtest/gtest.h>
 

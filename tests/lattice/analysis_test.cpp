@@ -6,9 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/row_trials.h"
-#include "dynamics/runs.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/row_trials.h"
+#include "dynamics/disc/runs.h"
 #include "lattice/field_costs.h"
 #include "lattice/pool/lumped_chain.h"
 #include "lattice/pool/passages.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dynamics/row_trials.h"
+#include "dynamics/disc/row_trials.h"
 #include "lattice/gate_chain.h"
 
 namespace gatewalk::lattice {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dynamics/contact.h"
+#include "dynamics/disc/contact.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::lattice {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "dynamics/ensemble.h"
+#include "dynamics/disc/ensemble.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "dynamics/row_trials.h"
+#include "dynamics/disc/row_trials.h"
 #include "lattice/statistics/matrix_noise.h"
 #include "markov/chain.h"
 #include "markov/predict.h"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 #include "lattice/gate_chain.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/draws.h"

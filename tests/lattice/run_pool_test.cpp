@@ -6,7 +6,7 @@
 
 #include "dynamics/base/random.h"
 #include "dynamics/base/share.h"
-#include "dynamics/disc_section.h"
+#include "dynamics/disc/disc_section.h"
 #include "lattice/pool/pool_answers.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/pool/tree_chain.h"

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "dynamics/ensemble.h"
-#include "dynamics/runs.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/runs.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamics/gate.h"
+#include "dynamics/disc/gate.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::test {

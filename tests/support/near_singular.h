@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "dynamics/methods/method.h"
+#include "dynamics/disc/methods/method.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::test {

@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
-#include "dynamics/gate.h"
-#include "dynamics/methods/method.h"
+#include "dynamics/disc/gate.h"
+#include "dynamics/disc/methods/method.h"
 
 namespace gatewalk::test {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "dynamics/params.h"
+#include "dynamics/disc/params.h"
 
 namespace gatewalk::test {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/params.h"
+#include "dynamics/disc/params.h"
 
 namespace gatewalk::test {
 

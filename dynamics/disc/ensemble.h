@@ -1,0 +1,50 @@
+#pragma once
+/// Many gate runs at once.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "dynamics/base/trial_set.h"
+#include "dynamics/cells/health.h"
+#include "dynamics/disc/gate.h"
+
+namespace gatewalk::dynamics {
+
+/// The force of trial number `trial` from one start.
+[[nodiscard]] RandomForce gate_force(const GateParams& p, std::uint64_t seed, std::int64_t trial);
+
+/// Trial number `trial` from one start: the same run whoever asks for it. `most_work` as in
+/// run_gate.
+[[nodiscard]] GateRun run_gate_trial(
+    const GateParams& p, const Method& method, const BodyState& start, std::uint64_t seed,
+    std::int64_t trial, std::int64_t most_work = std::numeric_limits<std::int64_t>::max());
+
+/// Outcomes of single-gate trials. Tallies add in any order.
+struct GateTally {
+  std::int64_t trials = 0;
+  TrialSet held;                                 // which, where they were run by range
+  std::array<std::int64_t, kOutcomes> counts{};  // by Outcome
+  Health health;
+
+  [[nodiscard]] std::int64_t operator[](Outcome outcome) const {
+    return counts[static_cast<std::size_t>(outcome)];
+  }
+  [[nodiscard]] std::int64_t traversed() const {
+    return (*this)[Outcome::traversed_left] + (*this)[Outcome::traversed_right] +
+           (*this)[Outcome::traversed_even];
+  }
+  [[nodiscard]] std::int64_t exited() const {
+    return (*this)[Outcome::exited_left] + (*this)[Outcome::exited_right];
+  }
+  void add(const GateParams& p, const GateRun& run);
+  /// Throws std::invalid_argument, and changes nothing, when a trial would be counted twice.
+  GateTally& operator+=(const GateTally& other);
+};
+
+/// Runs `range` from one start, on all threads of the current TBB arena. Throws InvalidParameter
+/// for a scene that cannot be run.
+[[nodiscard]] GateTally run_gate_trials(const GateParams& p, const BodyState& start,
+                                        std::uint64_t seed, TrialRange range);
+
+}  // namespace gatewalk::dynamics

@@ -1,0 +1,38 @@
+#pragma once
+/// One word for how far a method can be trusted on a scene: the worst that its runs showed.
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "dynamics/disc/ensemble.h"
+
+namespace gatewalk::dynamics {
+
+/// From good to bad. `missed_hit` is for scenes whose hits are known beforehand.
+enum class Verdict : std::uint8_t {
+  fine,
+  missed_hit,    // a hit that should have been was not, or the other way round
+  no_formula,    // contacts for which the method has no formula
+  too_fast,      // disc or beam moved so far in a step that hits may have been missed
+  outcomes,      // a better method gives other outcomes
+  energy,        // energy from nothing
+  penetration,   // the disc sank into a beam by more than 1 % of its radius
+  beyond_bound,  // steps longer than the method's stability bound for free beams: explains the
+                 // above
+  stuck,         // hits piled up or the run took more work than it was granted
+  not_finite,
+  refused,  // the method does not take the scene: InvalidParameter
+};
+inline constexpr std::array<std::string_view, 11> kVerdictNames{
+    "ok",          "missed hit",   "no formula", "too fast",   "outcomes off", "energy",
+    "penetration", "beyond bound", "stuck",      "not finite", "refused"};
+[[nodiscard]] inline std::string_view name_of(Verdict v) {
+  return kVerdictNames[static_cast<std::size_t>(v)];
+}
+
+/// The worst fault that more than `permitted` (a share) of the runs showed. No run may break or be
+/// cut short; contacts without a formula are compared with the number of steps.
+[[nodiscard]] Verdict judge(const Health& health, std::int64_t out_of_work, double permitted);
+
+}  // namespace gatewalk::dynamics
