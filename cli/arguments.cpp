@@ -117,14 +117,15 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
 std::optional<lattice::StartRange> range_of(const Options& options, const lattice::Scene& scene) {
   if (!options.has("starts")) return std::nullopt;
   const std::string text = options.text("starts");
-  if (text == "all") return lattice::usual_range(scene);
+  if (text == "all") return lattice::usual_range(lattice::problem_of(scene));
   lattice::StartRange range;
   std::istringstream in(text);
   char between = ',';
-  for (auto* axis : {&range.d, &range.vx, &range.vy}) {
+  for (std::size_t axis = 0; axis < dynamics::disc_section().coordinates.size(); ++axis) {
+    auto& [low, high] = range.at[axis];
     char colon = 0;
-    if (between != ',' || !(in >> (*axis)[0] >> colon >> (*axis)[1]) || colon != ':' ||
-        !((*axis)[0] <= (*axis)[1]) || !std::isfinite((*axis)[1] - (*axis)[0]))
+    if (between != ',' || !(in >> low >> colon >> high) || colon != ':' || !(low <= high) ||
+        !std::isfinite(high - low))
       throw UsageError("--starts " + text +
                        ": must be all, or three ranges of d, vx, vy in m and m/s, e.g. "
                        "-5:5,-10:10,10:20");
@@ -133,7 +134,8 @@ std::optional<lattice::StartRange> range_of(const Options& options, const lattic
   }
   if (between != 0) throw UsageError("--starts " + text + ": has more than three ranges");
   const double side = scene.gate.beams.joint_x;
-  if (!(range.d[0] >= -side && range.d[1] <= side))
+  const auto& d = range.at[dynamics::kEntryD];
+  if (!(d[0] >= -side && d[1] <= side))
     throw UsageError("--starts " + text + ": d must lie inside the gate, [" + digits(-side) + ", " +
                      digits(side) + "]");
   return range;
@@ -147,26 +149,26 @@ double accuracy_of(const lattice::MatrixFile& file, const std::string& path) {
 }
 
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
-                   const std::vector<dynamics::BodyState>& bodies) {
+                   const std::vector<dynamics::Entry>& starts) {
   const Json states = recorded(file, path, "state_space");
   if (states.is_null() || !states.contains("range") || states.at("range").is_null()) return;
   const Json& range = states.at("range");
-  const auto outside = [&](const char* key, double x) {
-    return x < range.at(key).at(0).get<double>() || x > range.at(key).at(1).get<double>();
-  };
+  const auto& coordinates = file.transitions.space.section().coordinates;
   const auto& own = file.transitions.space.points();
-  const auto count = std::count_if(bodies.begin(), bodies.end(), [&](const dynamics::BodyState& b) {
-    if (std::find(own.begin(), own.end(), dynamics::entry_of(b)) != own.end()) return false;
-    return outside("d_m", b.x) || outside("vx_m_per_s", b.vx) || outside("vy_m_per_s", b.vy);
+  dynamics::StateRange built{starts.empty() ? 0 : starts.front().face};
+  for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
+    for (std::size_t end = 0; end < 2; ++end)
+      built.at[axis][end] = range.at(coordinates[axis].key).at(end).get<double>();
+  const auto count = std::count_if(starts.begin(), starts.end(), [&](const dynamics::Entry& entry) {
+    if (std::find(own.begin(), own.end(), entry) != own.end()) return false;
+    for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
+      if (entry.at[axis] < built.at[axis][0] || entry.at[axis] > built.at[axis][1]) return true;
+    return false;
   });
-  const auto axis = [&](const char* key) {
-    return "[" + digits(range.at(key).at(0).get<double>()) + ", " +
-           digits(range.at(key).at(1).get<double>()) + "]";
-  };
   if (count > 0)
     options.warn(std::to_string(count) + (count == 1 ? " start lies" : " starts lie") +
-                 " outside the range that " + path + " was built for: d " + axis("d_m") +
-                 " m, vx " + axis("vx_m_per_s") + " m/s, vy " + axis("vy_m_per_s") + " m/s");
+                 " outside the range that " + path +
+                 " was built for: " + text_of(file.transitions.space.section(), built));
 }
 
 int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
@@ -176,30 +178,30 @@ int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
 }
 
 void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
-                   const std::vector<dynamics::BodyState>& bodies) {
+                   const std::vector<dynamics::Entry>& starts) {
   if (!lattice::has_runs(m.file)) return;
-  warn_of_range(options, m.file, path, bodies);
-  lattice::RunPool pool = lattice::pool_of(m.file, m.scene, path);
-  std::vector<dynamics::BodyState> unknown;
-  for (const dynamics::BodyState& b : bodies)
-    if (pool.place_of(dynamics::entry_of(b)) == pool.starts.size()) unknown.push_back(b);
+  warn_of_range(options, m.file, path, starts);
+  const lattice::Problem problem = lattice::problem_of(m.scene);
+  lattice::RunPool pool = lattice::pool_of(m.file, problem, path);
+  std::vector<dynamics::Entry> unknown;
+  for (const dynamics::Entry& entry : starts)
+    if (pool.place_of(entry) == pool.starts.size()) unknown.push_back(entry);
   if (unknown.empty()) return;
   lattice::AccuracyOptions how;
   how.accuracy = accuracy_of(m.file, path);
   how.most_runs = std::max<std::int64_t>(100'000, pool.gate_runs());
   how.per_leaf = entries_per_leaf(m.file, path);
   how.seed = options.seed();
-  const auto prediction = lattice::predict_pooled(m.scene, pool, unknown, how, options.work());
+  const auto prediction = lattice::predict_pooled(problem, pool, unknown, how, options.work());
   options.remark(std::to_string(prediction.gate_runs) + " gate runs from starts that " + path +
                  " does not know");
   options.warn(complaint(prediction.health));
   warn_of(options, prediction, how.accuracy);
-  std::vector<dynamics::BodyState> all;
-  for (const lattice::StartTrials& s : pool.starts)
-    all.push_back(dynamics::entry_state(m.scene.gate, s.start));
+  std::vector<dynamics::Entry> all;
+  for (const lattice::StartTrials& s : pool.starts) all.push_back(s.start);
   dynamics::Health health = m.file.transitions.health;
   health += prediction.health;
-  lattice::put_matrices(m.file, m.scene, lattice::matrices_of(m.scene, pool, all, how.per_leaf));
+  lattice::put_matrices(m.file, m.scene, lattice::matrices_of(problem, pool, all, how.per_leaf));
   m.file.transitions.health = health;
 }
 
@@ -271,13 +273,13 @@ lattice::SceneMatrix read_matrix(const Options& options, const std::string& matr
 }
 
 lattice::ChainStart checked_start(const Options& options, const dynamics::StateSpace& space,
-                                  const lattice::FieldParams& field,
-                                  const dynamics::BodyState& body, const std::string& name) {
-  const lattice::ChainStart start = lattice::start_in_bins(space, field, body, name);
+                                  const lattice::FieldParams& field, const dynamics::Entry& entry,
+                                  const std::string& name) {
+  const lattice::ChainStart start = lattice::start_in_bins(space, field, entry, name);
   if (start.beyond)
     options.warn(
         name + " lies beyond every entry that the bins were made from, " +
-        lattice::entry_bins(space) +
+        lattice::entry_bins(space, entry.face) +
         "; the prediction is that of the outermost bin. A matrix of a scene with this start suits "
         "it");
   return start;
@@ -286,13 +288,13 @@ lattice::ChainStart checked_start(const Options& options, const dynamics::StateS
 void require_inside_bins(const Options& options, const std::vector<lattice::PaperStart>& starts,
                          const lattice::Scene& scene, const dynamics::StateSpace& space) {
   for (const lattice::PaperStart& s : starts)
-    (void)checked_start(options, space, scene.field, s.body(), "start" + start_text(s));
+    (void)checked_start(options, space, scene.field, s.entry(), "start" + start_text(s));
 }
 
 lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatrix& m,
-                                const dynamics::BodyState& body, const std::string& name) {
+                                const dynamics::Entry& entry, const std::string& name) {
   const dynamics::StateSpace& space = m.file.transitions.space;
-  const lattice::ChainStart start = checked_start(options, space, m.scene.field, body, name);
+  const lattice::ChainStart start = checked_start(options, space, m.scene.field, entry, name);
   const dynamics::StateRange range = space.range(start.start.input);
   const bool own_state =
       start.start.input >= space.size() - static_cast<int>(space.points().size());
@@ -308,7 +310,6 @@ lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatr
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
     return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
   };
-  const dynamics::Entry entry = dynamics::entry_of(body);
   bool on_an_edge = false;
   for (std::size_t axis = 0; axis < space.section().coordinates.size(); ++axis)
     on_an_edge = on_an_edge || on_edge(range.at[axis], entry.at[axis]);

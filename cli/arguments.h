@@ -9,6 +9,7 @@
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/bins.h"
 #include "lattice/scene/matrix.h"
+#include "lattice/scene/scene_problem.h"
 #include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
 
@@ -46,15 +47,15 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
 
 /// Says so where starts that a matrix does not know lie outside the range that it was built for.
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
-                   const std::vector<dynamics::BodyState>& bodies);
+                   const std::vector<dynamics::Entry>& starts);
 
 /// The accuracy for one start that a matrix of trees was made for.
 [[nodiscard]] double accuracy_of(const lattice::MatrixFile& file, const std::string& path);
 [[nodiscard]] int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path);
-/// A matrix of trees, in which each of these bodies' starts is a state of its own: trials are added
+/// A matrix of trees, in which each of these starts is a state of its own: trials are added
 /// for those that it does not know, which is said. Other matrices stay as they are.
 void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
-                   const std::vector<dynamics::BodyState>& bodies);
+                   const std::vector<dynamics::Entry>& starts);
 
 /// A chain has field.fidelity "active" alone: refuses another one that a scene or --set asks for,
 /// and warns of that of a matrix's own scene. Throws UsageError.
@@ -83,15 +84,15 @@ void require_active(const Options& options, const lattice::Scene& scene);
 /// lattice::start_in_bins; warns when the start lies beyond every entry that open bins were made
 /// from.
 lattice::ChainStart checked_start(const Options& options, const dynamics::StateSpace& space,
-                                  const lattice::FieldParams& field,
-                                  const dynamics::BodyState& body, const std::string& name);
+                                  const lattice::FieldParams& field, const dynamics::Entry& entry,
+                                  const std::string& name);
 /// The same for each of them.
 void require_inside_bins(const Options& options, const std::vector<lattice::PaperStart>& starts,
                          const lattice::Scene& scene, const dynamics::StateSpace& space);
 /// As checked_start. Remarks when the start lies on an edge of its bin: then another bin would
 /// serve it as well.
 [[nodiscard]] lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatrix& m,
-                                              const dynamics::BodyState& body,
+                                              const dynamics::Entry& entry,
                                               const std::string& name);
 
 /// exit_status of a result with this health; warns of the faults seen, `where` first.

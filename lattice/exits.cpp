@@ -30,12 +30,11 @@ FieldExits with_intervals(const ExitShares& own, const std::vector<ExitShares>& 
 
 }  // namespace
 
-std::vector<double> exit_bounds(const dynamics::GateParams& p, const FieldParams& field,
+std::vector<double> exit_bounds(double width, double length, const FieldParams& field,
                                 std::size_t side) {
   std::vector<double> bounds;
   for (int i = 0; i <= (side == kFarSide ? field.columns : field.rows); ++i)
-    bounds.push_back(side == kFarSide ? (i - field.start_column() - 0.5) * p.gate_width()
-                                      : i * p.gate_length());
+    bounds.push_back(side == kFarSide ? (i - field.start_column() - 0.5) * width : i * length);
   return bounds;
 }
 

@@ -18,9 +18,10 @@ inline constexpr std::array<markov::Ending, 3> kSides{
 inline constexpr std::size_t kFarSide = 0;
 
 /// Bounds of the places along side number `side` of kSides, m (places + 1): along the far one from
-/// the middle of the start's column, along the others from the near end of the field.
-[[nodiscard]] std::vector<double> exit_bounds(const dynamics::GateParams& p,
-                                              const FieldParams& field, std::size_t side);
+/// the middle of the start's column, along the others from the near end of the field. Of cells of
+/// this width and length (m).
+[[nodiscard]] std::vector<double> exit_bounds(double width, double length, const FieldParams& field,
+                                              std::size_t side);
 
 /// Trials by the place at which they left the field.
 struct ExitCounts {

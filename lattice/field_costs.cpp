@@ -5,8 +5,6 @@
 
 namespace gatewalk::lattice {
 
-using dynamics::Cost;
-
 void FieldCosts::add(const FieldTrials& trials) {
   for (std::size_t i = 0; i < trials.costs.size(); ++i) {
     if (!trials.endings[i]) continue;
@@ -14,17 +12,17 @@ void FieldCosts::add(const FieldTrials& trials) {
     Sums& s = sums_[e];
     ++s.trials;
     s.add(trials.costs[i]);
-    const double seconds = trials.costs[i][static_cast<std::size_t>(Cost::seconds)];
+    const double seconds = trials.costs[i].front();
     ++durations_[e][std::llround(seconds / bin_)];
   }
 }
 
-double FieldCosts::Sums::mean(Cost cost) const {
-  return sum[static_cast<std::size_t>(cost)] / static_cast<double>(trials);
+double FieldCosts::Sums::mean(std::size_t cost) const {
+  return sum[cost] / static_cast<double>(trials);
 }
-double FieldCosts::Sums::sd(Cost cost) const {
+double FieldCosts::Sums::sd(std::size_t cost) const {
   const double m = mean(cost);
-  const double square = squares[static_cast<std::size_t>(cost)] / static_cast<double>(trials);
+  const double square = squares[cost] / static_cast<double>(trials);
   return std::sqrt(std::max(0.0, square - m * m));
 }
 

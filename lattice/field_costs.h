@@ -14,8 +14,8 @@ namespace gatewalk::lattice {
 /// Sums over trials, in the order in which they are added.
 class FieldCosts {
  public:
-  /// Durations are kept to a thousandth of the time limit of a gate.
-  explicit FieldCosts(const dynamics::GateParams& p) : bin_(p.run.time_limit / 1000.0) {}
+  /// Durations, the first cost, are kept to `bin` (s).
+  explicit FieldCosts(double bin) : bin_(bin) {}
 
   /// Trials that broke are left out.
   void add(const FieldTrials& trials);
@@ -23,8 +23,8 @@ class FieldCosts {
   /// Of trials with these endings.
   struct Sums : dynamics::CostSums {
     std::int64_t trials = 0;
-    [[nodiscard]] double mean(dynamics::Cost cost) const;
-    [[nodiscard]] double sd(dynamics::Cost cost) const;
+    [[nodiscard]] double mean(std::size_t cost) const;  // by Section::costs
+    [[nodiscard]] double sd(std::size_t cost) const;
   };
   [[nodiscard]] double bin() const { return bin_; }  // s
   [[nodiscard]] Sums all() const;

@@ -7,8 +7,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamics/disc/disc_section.h"
-
 namespace gatewalk::lattice {
 
 using namespace dynamics;
@@ -61,12 +59,8 @@ CountedField counted_field(const dynamics::Transitions& matrix) {
   return {make_chain(matrix), {matrix.counts()}, matrix.space.has_trees()};
 }
 
-ChainStart chain_start(const StateSpace& space, const FieldParams& field, const BodyState& body) {
-  if (body.y != 0.0)
-    throw std::invalid_argument(
-        "start.y_m = " + std::to_string(body.y) +
-        " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
-  const auto index = space.index_of(entry_of(body));
+ChainStart chain_start(const StateSpace& space, const FieldParams& field, const Entry& entry) {
+  const auto index = space.index_of(entry);
   return {{field.start_column(), 0, index.state}, index.clamped, index.beyond};
 }
 
@@ -283,8 +277,6 @@ Transitions transitions_of(const StateSpace& space, const markov::RowCounts& in)
 
 void write_matrix(const std::string& path, const MatrixFile& file) {
   const Transitions& t = file.transitions;
-  if (t.space.section() != disc_section())  // as read_matrix would take it
-    throw std::invalid_argument(path + ": a matrix file is of a disc in gates, not of other cells");
   markov::CountsFile out;
   static_cast<markov::RowCounts&>(out) = row_counts(t);
   add_costs(out, t, "");
@@ -320,7 +312,7 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
   markov::write_counts(path, out);
 }
 
-MatrixFile read_matrix(const std::string& path) {
+MatrixFile read_matrix(const std::string& path, const SectionOf& section_of) {
   const markov::CountsFile in = [&] {
     try {
       return markov::read_counts(path);
@@ -334,7 +326,7 @@ MatrixFile read_matrix(const std::string& path) {
     }
   }();
   try {
-    const Section& section = disc_section();
+    const Section section = section_of(in.text);
     const bool has_trees = find_array(in, tree_array(section.faces.front(), kTreeAxis)) != nullptr;
     const StateSpace space = has_trees ? trees_in(in, section, path) : bins_in(in, section, path);
     if (space.size() != in.counts.rows())

@@ -2,10 +2,12 @@
 /// Counts + state space -> chain. Also the file that
 /// holds a matrix with everything it came from.
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "dynamics/cells/cell_map.h"
 #include "dynamics/cells/transitions.h"
 #include "lattice/field.h"
 #include "lattice/statistics/matrix_noise.h"
@@ -31,15 +33,14 @@ namespace gatewalk::lattice {
 /// Every cell draws from the same matrix.
 [[nodiscard]] CountedField counted_field(const dynamics::Transitions& matrix);
 
-/// The chain's start for a body that starts in gate (0, 0): its state, and whether it lies outside
-/// the bins as StateSpace::Index says. A body inside the gate (y > 0) has no state of its own:
-/// throws std::invalid_argument.
+/// The chain's start for a body that enters the field's start cell so: its state, and whether it
+/// lies outside the bins as StateSpace::Index says.
 struct ChainStart {
   markov::Start start;
   bool clamped = false, beyond = false;
 };
 [[nodiscard]] ChainStart chain_start(const dynamics::StateSpace& space, const FieldParams& field,
-                                     const dynamics::BodyState& body);
+                                     const dynamics::Entry& entry);
 
 /// A matrix on disk: counts, trials and clamped crossings of every row, the state space, and `text`
 /// (scene, seed, version, command, ...).
@@ -50,11 +51,13 @@ struct MatrixFile {
   std::map<std::string, dynamics::Transitions> types{};  // of other gates in the field, by name
 };
 
-/// As markov::write_counts. Throws std::invalid_argument for other cells than a disc's.
+/// As markov::write_counts.
 void write_matrix(const std::string& path, const MatrixFile& file);
 
-/// As markov::read_counts; throws markov::BadFile also when the bins or exits are not those of a
-/// gate's state space.
-[[nodiscard]] MatrixFile read_matrix(const std::string& path);
+/// The section of a file's cells, by its texts.
+using SectionOf = std::function<dynamics::Section(const std::map<std::string, std::string>& text)>;
+/// As markov::read_counts; throws markov::BadFile also when the bins or exits are not those of the
+/// section's state space.
+[[nodiscard]] MatrixFile read_matrix(const std::string& path, const SectionOf& section_of);
 
 }  // namespace gatewalk::lattice

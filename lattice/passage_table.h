@@ -1,5 +1,5 @@
 #pragma once
-/// Passages through gates, many of them, in columns: as small as the section allows.
+/// Passages through cells, many of them, in columns: as small as the section allows.
 
 #include <algorithm>
 #include <cstddef>
@@ -7,15 +7,14 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamics/cells/section.h"
-#include "dynamics/disc/gate.h"
+#include "dynamics/cells/cell.h"
 
 namespace gatewalk::lattice {
 
-/// How a trial's run through one gate ended, that gate's type, with which entry into the next
-/// gate, inside the field or outside (no entry where it did not leave its gate), and what it took.
-struct GatePassage {
-  dynamics::Ending ending = dynamics::Ending::trapped;
+/// How a trial's passage through one cell ended, that cell's type, with which entry into the next
+/// cell, inside the field or outside (no entry where it did not leave its cell), and what it took.
+struct CellPassage {
+  dynamics::Fate fate = dynamics::Fate::trapped;
   std::uint8_t type = 0;  // of the field's types
   dynamics::Entry entry{};
   dynamics::Costs costs{};
@@ -32,18 +31,18 @@ class PassageTable {
     costs_ = section.costs.size();
   }
 
-  [[nodiscard]] std::size_t size() const { return endings_.size(); }
-  [[nodiscard]] bool empty() const { return endings_.empty(); }
-  void push_back(const GatePassage& passage) {
+  [[nodiscard]] std::size_t size() const { return fates_.size(); }
+  [[nodiscard]] bool empty() const { return fates_.empty(); }
+  void push_back(const CellPassage& passage) {
     if (coordinates_ == 0) throw std::logic_error("passages of no section");
-    endings_.push_back(passage.ending);
+    fates_.push_back(passage.fate);
     types_.push_back(passage.type);
     faces_.push_back(static_cast<std::uint8_t>(passage.entry.face));
     at_.insert(at_.end(), passage.entry.at.begin(), passage.entry.at.begin() + coordinates_);
     took_.insert(took_.end(), passage.costs.begin(), passage.costs.begin() + costs_);
   }
-  [[nodiscard]] GatePassage operator[](std::size_t i) const {
-    GatePassage passage{endings_[i], types_[i], {faces_[i]}, {}};
+  [[nodiscard]] CellPassage operator[](std::size_t i) const {
+    CellPassage passage{fates_[i], types_[i], {faces_[i]}, {}};
     std::copy_n(at_.data() + i * coordinates_, coordinates_, passage.entry.at.begin());
     std::copy_n(took_.data() + i * costs_, costs_, passage.costs.begin());
     return passage;
@@ -55,7 +54,7 @@ class PassageTable {
     struct Iterator {
       const PassageTable* table;
       std::size_t at;
-      GatePassage operator*() const { return (*table)[at]; }
+      CellPassage operator*() const { return (*table)[at]; }
       Iterator& operator++() {
         ++at;
         return *this;
@@ -65,9 +64,9 @@ class PassageTable {
     Rows(const PassageTable& table, std::size_t begin, std::size_t end)
         : table_(&table), begin_(begin), end_(end) {}
     [[nodiscard]] std::size_t size() const { return end_ - begin_; }
-    [[nodiscard]] GatePassage operator[](std::size_t i) const { return (*table_)[begin_ + i]; }
-    [[nodiscard]] GatePassage front() const { return (*this)[0]; }
-    [[nodiscard]] GatePassage back() const { return (*this)[size() - 1]; }
+    [[nodiscard]] CellPassage operator[](std::size_t i) const { return (*table_)[begin_ + i]; }
+    [[nodiscard]] CellPassage front() const { return (*this)[0]; }
+    [[nodiscard]] CellPassage back() const { return (*this)[size() - 1]; }
     [[nodiscard]] Iterator begin() const { return {table_, begin_}; }
     [[nodiscard]] Iterator end() const { return {table_, end_}; }
 
@@ -80,7 +79,7 @@ class PassageTable {
 
  private:
   std::size_t coordinates_ = 0, costs_ = 0;
-  std::vector<dynamics::Ending> endings_;
+  std::vector<dynamics::Fate> fates_;
   std::vector<std::uint8_t> types_, faces_;
   std::vector<double> at_;    // (passages x coordinates)
   std::vector<double> took_;  // (passages x costs)

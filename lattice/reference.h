@@ -1,20 +1,24 @@
 #pragma once
-/// The reference: the full dynamics of a body through the field, gate by gate, written plainly;
-/// with or without memory and neighbours (field.fidelity).
+/// The reference: trials of bodies through the field, cell by cell, written plainly.
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "dynamics/disc/disc_section.h"
-#include "dynamics/disc/ensemble.h"
-#include "dynamics/disc/trace.h"
+#include "dynamics/base/trial_set.h"
+#include "dynamics/cells/cell.h"
+#include "dynamics/cells/state_space.h"
 #include "lattice/field.h"
 #include "lattice/passage_table.h"
 #include "markov/walk.h"
 
 namespace gatewalk::lattice {
+
+/// Moves from cell to cell, by the face that is entered.
+using FaceCounts = std::array<std::int64_t, dynamics::kMostFaces>;
 
 /// Counts of trials through the field. Tallies add in any order.
 struct FieldTally {
@@ -28,11 +32,10 @@ struct FieldTally {
   /// The same by markov::Ending, of which no trial is `unsampled`; the four edges: left_field.
   std::array<std::int64_t, markov::kEndings> endings{};
   markov::CellCounts trapped_gates,
-      departed_gates;  // of final_gates: trapped there; left the field from there
-  std::array<std::int64_t, dynamics::kBoundaries>
-      entries{};  // crossings between gates, by boundary
-  std::array<std::int64_t, dynamics::kBoundaries> clamped{};  // of these, outside every bin
-  dynamics::Health health;                                    // over all gate runs
+      departed_gates;       // of final_gates: trapped there; left the field from there
+  FaceCounts entries{};     // of the moves inside the field
+  FaceCounts clamped{};     // of these, outside every bin, if that was asked for
+  dynamics::Health health;  // over all passages
 
   explicit FieldTally(const FieldParams& f)
       : final_gates(markov::CellCounts::Zero(f.rows, f.columns)),
@@ -47,67 +50,83 @@ struct FieldTrials {
   std::vector<std::int32_t> final_gates{};               // row * columns + column
   std::vector<std::optional<markov::Ending>> endings{};  // none: a run stopped being finite
   std::vector<dynamics::Costs> costs{};                  // of all its runs together
+  /// Number of the body that made each trial, where one made several: they go together when trials
+  /// are taken in groups. Empty: each has its own.
+  std::vector<std::int32_t> bodies{};
   bool keep_passages = false;
   PassageTable passages{};             // of all trials, if kept, ...
   std::vector<std::int64_t> passed{};  // ... and how many of them each trial and those before
                                        // it have
-  /// Passages of trial number `at` in this order, from the first gate on.
+  /// Passages of trial number `at` in this order, from the first cell on.
   [[nodiscard]] PassageTable::Rows of_trial(std::size_t at) const {
     return passages.rows(static_cast<std::size_t>(at == 0 ? 0 : passed[at - 1]),
                          static_cast<std::size_t>(passed[at]));
   }
-  /// Those into gates that trials then ran through, in their order.
+  /// Those into cells that trials then ran through, in their order.
   [[nodiscard]] std::vector<dynamics::Entry> entries() const;
 };
 
-/// What becomes of the draw in force when a body enters the next gate: it is held for the rest of
-/// its time, as in the model, or dropped, and the next one of the same sequence drawn: a force
-/// without memory from gate to gate.
-enum class HeldForce : std::uint8_t { goes_on, drawn_anew };
+/// What becomes of what a body carries when it enters the next cell (dynamics::Carried): it is
+/// kept, as in the model, or dropped: bodies without memory from cell to cell.
+enum class Memory : std::uint8_t { kept, dropped };
 
-/// The number that names a start in its trials' streams: other starts, other noise. From the start
-/// in the scene's own units (Scale), so that a rescaled scene has the same noise.
-[[nodiscard]] std::uint64_t stream_row(const dynamics::GateParams& p,
-                                       const dynamics::BodyState& start);
+/// Puts the body of trial number i of a range, from 0, there, as it enters its first cell.
+using BeginTrial = std::function<void(std::int64_t i, dynamics::Body& body)>;
 
-/// Runs trials `range` through the field. field.fidelity says what a gate is: fresh, with beams at
-/// rest, whenever the body enters (active), or one of many that go on and act beyond their bounds
-/// (remember, all; field_stepper.h). The random force goes on from gate to gate; its stream is
-/// {seed, stream_row(p, start), trial} whatever the fidelity, p the gate that trials start in.
-/// `held` says what goes on of the draw in force.
-/// run.time_limit_s counts from the entry into a gate. `space` only counts what the chain would
-/// have clamped. What each trial did is appended to `each`, if given. Trials in gates of one type
-/// are run together, in lanes where the method has them. On all threads of the current TBB arena,
-/// same result for any number of them. Throws InvalidParameter, also for gates of several types
-/// with another fidelity than `active`.
-[[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,
-                                   const dynamics::BodyState& start,
-                                   const dynamics::StateSpace& space, std::uint64_t seed,
+/// The body of a trial from this entry into `cell`: its noise is the stream {seed,
+/// stream_of(start), trial}.
+void begin_trial(const dynamics::Cell& cell, const dynamics::Entry& start, std::uint64_t seed,
+                 std::int64_t trial, dynamics::Body& body);
+
+/// Runs trials `range` through the field, in which each cell is fresh whenever a body enters, and
+/// may be entered again. Trials in cells of one type are run together. `space` only counts what its
+/// bins would have clamped. What each trial did is appended to `each`, if given. On all threads of
+/// the current TBB arena, same result for any number of them. Throws std::invalid_argument where
+/// the cells' map is not of this field, or has no cells to run.
+[[nodiscard]] FieldTally run_field(const dynamics::CellField& cells, const FieldParams& field,
+                                   const BeginTrial& begin, dynamics::TrialRange range,
+                                   FieldTrials* each = nullptr,
+                                   const dynamics::StateSpace* space = nullptr,
+                                   Memory memory = Memory::kept);
+/// The same from one start.
+[[nodiscard]] FieldTally run_field(const dynamics::CellField& cells, const FieldParams& field,
+                                   const dynamics::Entry& start, std::uint64_t seed,
                                    dynamics::TrialRange range, FieldTrials* each = nullptr,
-                                   HeldForce held = HeldForce::goes_on);
+                                   const dynamics::StateSpace* space = nullptr,
+                                   Memory memory = Memory::kept);
 
-/// The same with a start of its own for each trial, (range.count) of them.
-[[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,
-                                   const std::vector<dynamics::BodyState>& starts,
-                                   const dynamics::StateSpace& space, std::uint64_t seed,
-                                   dynamics::TrialRange range, FieldTrials* each = nullptr);
+/// One trial on its way through the field, whoever carries its body.
+class RunningTrial {
+ public:
+  explicit RunningTrial(const FieldParams& field) : column_(field.start_column()) {}
 
-/// A trial through the field in full.
-struct FieldTrace {
-  struct Visit {
-    int column = 0, row = 0;
-    dynamics::GateTrace
-        trace;  // in the gate's own frame and time, work and losses from its entry on
-  };
-  std::vector<Visit> visits;
-  std::optional<markov::Ending> ending;  // none: a run stopped being finite
+  /// Takes a passage through the cell where the trial is. The entry into the next cell; none when
+  /// the trial ends here. Passages are kept if asked for.
+  [[nodiscard]] std::optional<dynamics::Entry> follow(const dynamics::CellMap& map,
+                                                      const FieldParams& field,
+                                                      const dynamics::Passage& passage,
+                                                      bool keep_passages);
+  void add_to(FieldTally& tally) const;
+  void add_to(FieldTrials& each, const FieldParams& field) const;
+
+  [[nodiscard]] std::int32_t column() const { return column_; }
+  [[nodiscard]] std::int32_t row() const { return row_; }
+  [[nodiscard]] const std::optional<markov::Ending>& ending() const { return ending_; }
+
+  /// The body, while it waits for cells of another type.
+  std::unique_ptr<dynamics::Body> waiting;
+
+ private:
+  std::optional<markov::Ending> ending_;  // none: a passage broke
+  std::int32_t column_, row_ = 0;
+  int cells_ = 0;  // visited
+  dynamics::Costs costs_{};
+  std::vector<CellPassage> passages_;
 };
 
-/// Trial number `trial` of run_field, the same to the last bit. Throws InvalidParameter, also for
-/// another fidelity than `active`, and TraceTooLong when all visits together have more samples.
-[[nodiscard]] FieldTrace trace_field(
-    const FieldGates& gates, const FieldParams& field, const dynamics::BodyState& start,
-    std::uint64_t seed, std::int64_t trial,
-    std::size_t most_samples = std::numeric_limits<std::size_t>::max());
+/// The tally of trials that have ended, and `each` of them.
+[[nodiscard]] FieldTally tally_of(const std::vector<RunningTrial>& trials,
+                                  const dynamics::CellMap& map, const FieldParams& field,
+                                  dynamics::TrialRange range, FieldTrials* each);
 
 }  // namespace gatewalk::lattice

@@ -10,9 +10,9 @@
 #include "cli/render/matrix.h"
 #include "cli/render/prediction.h"
 #include "cli/render/scene.h"
+#include "lattice/scene/scene_trials.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/prediction.h"
-#include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -30,7 +30,7 @@ markov::Ending target_of(const Options& options) {
 /// "3,1,2". Throws UsageError for anything else.
 lattice::LumpingParts lumping_of(const Options& options) {
   constexpr int kMost = 1000;
-  std::array<int, 3> parts{};
+  lattice::LumpingParts parts(3);
   const std::string text = options.text("lump");
   const char *at = text.data(), *const end = at + text.size();
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -41,7 +41,7 @@ lattice::LumpingParts lumping_of(const Options& options) {
                        std::to_string(kMost) + ": parts of d, of vx and of vy, as in 3,1,2");
     at = next + 1;
   }
-  return {parts[0], parts[1], parts[2]};
+  return parts;
 }
 
 /// What is analysed, and what is said of how it ends.
@@ -63,9 +63,11 @@ struct Subject {
 Subject from_runs(const Options& options, lattice::Scene scene, lattice::RunPool pool,
                   const lattice::AccuracyOptions& how,
                   const std::optional<lattice::Settled>& settled) {
-  auto prediction = lattice::predict_pooled(scene, pool, {scene.start}, how, options.work());
+  const lattice::Problem problem = lattice::problem_of(scene);
+  auto prediction = lattice::predict_pooled(problem, pool, {problem.start}, how, options.work());
   warn_of(options, prediction, how.accuracy);
-  auto chain = lattice::analysed_chain(scene, pool, dynamics::entry_of(scene.start), how.per_leaf);
+  auto chain = lattice::analysed_chain(problem, pool, pool.starts[pool.place_of(problem.start)],
+                                       how.per_leaf);
   return {.scene = std::move(scene),
           .chain = std::move(chain),
           .pool = std::move(pool),
@@ -90,20 +92,20 @@ Subject from_bins(const Options& options, const lattice::SceneMatrix& m,
     if (options.has(other))
       throw UsageError(std::string("--") + other + ": " + path +
                        " has bins and keeps no gate runs that could be added to");
-  const auto start =
-      ready_start(options, m, m.scene.start, given.empty() ? "the start" : title_of(given.front()));
+  const auto start = ready_start(options, m, lattice::own_start(m.scene).entry(),
+                                 given.empty() ? "the start" : title_of(given.front()));
   const auto prediction = lattice::predict(lattice::field_of(m, path, {}), m.scene.field, {start},
                                            {}, options.seed(), options.work());
   const Json status = recorded_status(m.file);
-  return {
-      .scene = m.scene,
-      .chain = lattice::analysed_chain(m.scene, lattice::matrices_of(m.file, m.scene), start.start),
-      .endings = prediction.starts.front().shares,
-      .status = status,
-      .settled = recorded(m.file, path, "method"),
-      .clean = faults_recorded(status).empty(),
-      .states = m.file.transitions.space.size(),
-      .seconds = prediction.seconds};
+  return {.scene = m.scene,
+          .chain = lattice::analysed_chain(lattice::problem_of(m.scene),
+                                           lattice::matrices_of(m.file, m.scene), start.start),
+          .endings = prediction.starts.front().shares,
+          .status = status,
+          .settled = recorded(m.file, path, "method"),
+          .clean = faults_recorded(status).empty(),
+          .states = m.file.transitions.space.size(),
+          .seconds = prediction.seconds};
 }
 
 Subject subject_of(const Options& options, const std::vector<lattice::PaperStart>& given) {
@@ -111,7 +113,10 @@ Subject subject_of(const Options& options, const std::vector<lattice::PaperStart
   lattice::AccuracyOptions how = accuracy_of(options);
   const auto with_start = [&](lattice::Scene& scene) {
     lattice::require_inside(given, scene);
-    if (!given.empty()) scene.start = lattice::entries_at(given).front();
+    if (!given.empty()) {
+      (void)given.front().entry();  // refuses a start inside the gate
+      scene.start = given.front().body();
+    }
   };
   if (!is_matrix(path)) {
     if (options.has("scene"))
@@ -129,7 +134,7 @@ Subject subject_of(const Options& options, const std::vector<lattice::PaperStart
   if (!lattice::has_runs(m.file)) return from_bins(options, m, given);
   if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
   how.per_leaf = entries_per_leaf(m.file, path);
-  lattice::RunPool pool = lattice::pool_of(m.file, m.scene, path);
+  lattice::RunPool pool = lattice::pool_of(m.file, lattice::problem_of(m.scene), path);
   return from_runs(options, std::move(m.scene), std::move(pool), how, {});
 }
 
@@ -191,19 +196,20 @@ int run_analyze(const Arguments& arguments) {
   if (given.size() > 1) throw UsageError("--start: an analysis is of one start");
   Subject s = subject_of(options, given);
   const dynamics::Work work = options.work();
-  const auto analysis = lattice::analyze(s.scene, *s.chain, how, work);
+  const lattice::Problem problem = lattice::problem_of(s.scene);
+  const auto analysis = lattice::analyze(problem, *s.chain, how, work);
   if (s.pool) s.chain.reset();  // that for parameters is larger
   lattice::ParameterEffects effects;
   if (parameters.runs > 0 && analysis.is_certain())
     effects.chance = analysis.target_chance;
   else if (parameters.runs > 0 && s.pool)
-    effects = lattice::parameter_effects(s.scene, *s.pool, how.target, parameters, s.per_leaf,
+    effects = lattice::parameter_effects(problem, *s.pool, how.target, parameters, s.per_leaf,
                                          s.most_runs, work);
   else if (parameters.runs > 0)
-    effects = lattice::parameter_effects(s.scene, *s.chain, how.target, parameters, work);
+    effects = lattice::parameter_effects(problem, *s.chain, how.target, parameters, work);
   std::optional<DirectTrials> direct;
   if (options.has("trials")) {
-    lattice::FieldCosts costs(s.scene.gate);
+    lattice::FieldCosts costs(lattice::bin_of_durations(s.scene.gate));
     auto tally = lattice::field_trials(s.scene, options.trials(), options.seed(), work, &costs);
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }

@@ -55,14 +55,15 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
   how.range = range_of(options, scene);
   if (options.has("states"))
     how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
-  for (const lattice::PaperStart& s : given_starts(options)) how.starts.push_back(s.body());
+  for (const lattice::PaperStart& s : given_starts(options)) how.starts.push_back(s.entry());
   lattice::require_inside(given_starts(options), scene);
-  if (how.starts.empty() && !how.range) how.starts = {scene.start};
+  if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene).entry()};
   if (scene.field.fidelity != lattice::Fidelity::active)
     options.warn("field.fidelity = \"" + std::string(lattice::name_of(scene.field.fidelity)) +
                  "\" is of the full dynamics: a chain always has \"active\"");
   const dynamics::Stopwatch watch;
-  const lattice::TreeChain chain = lattice::make_tree_chain(scene, how, options.work());
+  const lattice::TreeChain chain =
+      lattice::make_tree_chain(lattice::problem_of(scene), how, options.work());
   const Json bins = "tree", space = to_json(chain, how.accuracy.accuracy);
   const int status = give_out(options, scene, {chain.transitions, bins, space, settled, {}},
                               lattice::arrays_of(chain.pool, chain.kernel.space.section()));

@@ -8,7 +8,7 @@
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "cli/terminal/output.h"
-#include "lattice/study/trials.h"
+#include "lattice/scene/scene_trials.h"
 
 namespace gatewalk::cli {
 
@@ -28,7 +28,7 @@ int run_lattice(const Arguments& arguments) {
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
 
   const dynamics::Stopwatch watch;
-  lattice::FieldCosts costs(scene.gate);
+  lattice::FieldCosts costs(lattice::bin_of_durations(scene.gate));
   lattice::ExitCounts counts(scene.field);
   const auto tally =
       lattice::field_trials(scene, trials, options.seed(), options.work(), &costs, &counts);

@@ -65,8 +65,9 @@ Predicted predicted(const Options& options, lattice::Scene& scene, bool first) {
   Predicted p{first ? settle_method(options, scene, kFrom)
                     : lattice::settle_method(scene, kFrom, options.seed(), options.work()),
               {}};
+  const lattice::Problem problem = lattice::problem_of(scene);
   lattice::RunPool pool;
-  p.prediction = lattice::predict_pooled(scene, pool, {scene.start}, how, options.work());
+  p.prediction = lattice::predict_pooled(problem, pool, {problem.start}, how, options.work());
   warn_of(options, p.prediction, how.accuracy);
   return p;
 }

@@ -60,10 +60,10 @@ markov::PredictOptions::Solver solver_of(const std::string& name) {
 }
 
 /// Starts given, else the scene's.
-std::vector<dynamics::BodyState> bodies_of(const std::vector<lattice::PaperStart>& given,
-                                           const lattice::Scene& scene) {
+std::vector<dynamics::Entry> entries_of(const std::vector<lattice::PaperStart>& given,
+                                        const lattice::Scene& scene) {
   lattice::require_inside(given, scene);
-  return given.empty() ? std::vector{scene.start} : lattice::entries_at(given);
+  return lattice::entries_at(given.empty() ? std::vector{lattice::own_start(scene)} : given);
 }
 
 /// A map for each start.
@@ -94,8 +94,9 @@ int predict_accurately(const Options& options, const lattice::Scene& scene,
                        const std::optional<lattice::Settled>& settled, lattice::RunPool pool,
                        const lattice::AccuracyOptions& how) {
   const std::vector<lattice::PaperStart> given = given_starts(options);
-  const auto bodies = bodies_of(given, scene);
-  const auto prediction = lattice::predict_pooled(scene, pool, bodies, how, options.work());
+  const auto starts = entries_of(given, scene);
+  const auto prediction =
+      lattice::predict_pooled(lattice::problem_of(scene), pool, starts, how, options.work());
   Json json = to_json(prediction, scene, how.accuracy, !given.empty());
   if (settled) json["method"] = to_json(*settled);
   say_left_out(json, scene.field.columns, scene.field.rows);
@@ -126,7 +127,7 @@ int predict_scene(const Options& options) {
     throw UsageError("--solver has no meaning for a scene: it is for a matrix");
   lattice::Scene scene = lattice::read_scene(path, options.overrides());
   const lattice::AccuracyOptions how = accuracy_of(options);
-  (void)bodies_of(given_starts(options), scene);
+  (void)entries_of(given_starts(options), scene);
   require_active(options, scene);
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   return predict_accurately(options, scene, settled, {}, how);
@@ -140,7 +141,8 @@ int predict_from_runs(const Options& options, const lattice::SceneMatrix& m) {
   how.per_leaf = entries_per_leaf(m.file, path);
   if (options.has("first-runs"))
     how.first_runs = options.count("first-runs", lattice::PoolRunner::kLeastTrials);
-  return predict_accurately(options, m.scene, {}, lattice::pool_of(m.file, m.scene, path), how);
+  return predict_accurately(options, m.scene, {},
+                            lattice::pool_of(m.file, lattice::problem_of(m.scene), path), how);
 }
 
 }  // namespace
@@ -194,7 +196,7 @@ int run_predict(const Arguments& arguments) {
   const lattice::SceneMatrix m = read_matrix(options);
   require_active(options, m.scene);
   lattice::require_inside(given, m.scene);
-  warn_of_range(options, m.file, path, bodies_of(given, m.scene));
+  warn_of_range(options, m.file, path, entries_of(given, m.scene));
   const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0;
   if (lattice::has_runs(m.file) && others.empty() && solver == "auto" && !no_runs)
     return predict_from_runs(options, m);
@@ -206,8 +208,9 @@ int run_predict(const Arguments& arguments) {
   const lattice::CountedField gates = lattice::field_of(m, path, others);
   std::vector<lattice::ChainStart> starts;
   for (const lattice::PaperStart& s : given)
-    starts.push_back(ready_start(options, m, s.body(), title_of(s)));
-  if (given.empty()) starts.push_back(ready_start(options, m, m.scene.start, "the start"));
+    starts.push_back(ready_start(options, m, s.entry(), title_of(s)));
+  if (given.empty())
+    starts.push_back(ready_start(options, m, lattice::own_start(m.scene).entry(), "the start"));
   if ((solver == "klu" || solver == "march") && m.scene.field.max_gates != 0)
     throw UsageError("--solver " + solver + " needs field.max_gates = 0 (no limit), it is " +
                      std::to_string(m.scene.field.max_gates));

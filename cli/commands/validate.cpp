@@ -81,7 +81,7 @@ Validated build_subject(const Options& options) {
   const lattice::BinsChoice choice = bins_choice(options, scene, options.has("matrix-trials"));
   auto starts = starts_for(options, scene);
   lattice::require_inside(starts, scene);
-  const auto bodies = lattice::entries_at(starts);
+  const auto entries = lattice::entries_at(starts);
   auto observed = experiment_of(options, scene);
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   if (tree && options.has("matrix-trials"))
@@ -94,8 +94,9 @@ Validated build_subject(const Options& options) {
     require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   if (tree) {
-    lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = bodies};
-    lattice::TreeChain chain = lattice::make_tree_chain(scene, how, options.work());
+    lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = entries};
+    lattice::TreeChain chain =
+        lattice::make_tree_chain(lattice::problem_of(scene), how, options.work());
     warn_of(options, *chain.prediction, how.accuracy.accuracy);
     Json status = to_json(chain.transitions.front().health),
          states = to_json(chain, how.accuracy.accuracy);
@@ -106,7 +107,7 @@ Validated build_subject(const Options& options) {
             settled ? to_json(*settled) : Json(),
             std::move(states)};
   }
-  const lattice::States states = states_of(options, scene, choice, bodies);
+  const lattice::States states = states_of(options, scene, choice, lattice::bodies_at(starts));
   for (const std::string& text : complaints(states)) options.warn(text);
   auto built = lattice::build_matrices(scene, states, trials, options.seed(), options.work());
   Json status = to_json(built.front().health);
@@ -191,10 +192,13 @@ int run_validate(const Arguments& arguments) {
   }
   const lattice::Scene& scene = subject.matrix.scene;
   const auto matrices = lattice::matrices_of(subject.matrix.file, scene);
-  const ValidatedMatrix matrix{matrices,       options.text("matrix"), watch.seconds(),
-                               subject.status, subject.settled,        subject.states};
+  const ValidatedMatrix matrix{matrices,        subject.starts, options.text("matrix"),
+                               watch.seconds(), subject.status, subject.settled,
+                               subject.states};
 
-  const auto result = lattice::validate_chain(scene, matrices, subject.starts, how, options.work());
+  const auto result =
+      lattice::validate_chain(lattice::problem_of(scene), matrices,
+                              lattice::entries_at(subject.starts), how, options.work());
 
   Json json = to_json(result, scene, matrix);
   std::string table = table_of(result, scene, matrix);

@@ -28,9 +28,10 @@ int run_walk(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::SceneMatrix m = read_matrix(options);
   require_active(options, m.scene);
-  add_starts_to(m, options.text("matrix"), options, {m.scene.start});
+  const dynamics::Entry own = lattice::own_start(m.scene).entry();
+  add_starts_to(m, options.text("matrix"), options, {own});
   const dynamics::Transitions& t = m.file.transitions;
-  const lattice::ChainStart start = ready_start(options, m, m.scene.start, "the start");
+  const lattice::ChainStart start = ready_start(options, m, own, "the start");
   const std::int64_t walks = options.count("walks");
 
   const markov::FieldChain chain =

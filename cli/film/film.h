@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/study/recording.h"
+#include "lattice/scene/recording.h"
 
 namespace gatewalk::cli {
 

@@ -4,6 +4,7 @@
 #include "cli/paper/claims.h"
 #include "cli/paper/studies.h"
 #include "lattice/reference.h"
+#include "lattice/scene/disc_field.h"
 
 namespace gatewalk::cli {
 

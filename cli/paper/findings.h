@@ -11,6 +11,7 @@
 
 #include "cli/paper/verdicts.h"
 #include "cli/render/json.h"
+#include "lattice/scene/table4.h"
 #include "lattice/study/validation.h"
 
 namespace gatewalk::cli {

@@ -82,8 +82,8 @@ Spent spent(const FieldCosts& costs, std::optional<markov::Ending> ending) {
   Spent s;
   s.share = static_cast<double>(sums.trials) / static_cast<double>(costs.all().trials);
   for (std::size_t c = 0; c < kCosts; ++c) {
-    s.mean[c] = sums.mean(static_cast<Cost>(c));
-    s.sd[c] = sums.sd(static_cast<Cost>(c));
+    s.mean[c] = sums.mean(c);
+    s.sd[c] = sums.sd(c);
   }
   return s;
 }
@@ -292,8 +292,10 @@ Json to_json(const AnalysedField& f) {
   if (a.lumped)
     json["lumping"] = {
         {"states",
-         a.lumping.parts() == 1 ? Json("one for each boundary") : Json("parts of each boundary")},
-        {"parts", {a.lumping.d, a.lumping.vx, a.lumping.vy}},
+         std::all_of(a.lumping.begin(), a.lumping.end(), [](int parts) { return parts == 1; })
+             ? Json("one for each boundary")
+             : Json("parts of each boundary")},
+        {"parts", a.lumping},
         {"count", a.lumped->states},
         {"largest_difference", a.lumped->largest},
         {"error", {{"endings", a.lumped->endings}, {"final_gates", a.lumped->final_gates}}}};

@@ -7,6 +7,7 @@
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "lattice/field_costs.h"
+#include "lattice/scene/scene.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/parameter_effects.h"

@@ -5,7 +5,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "lattice/study/chain_error.h"
+#include "lattice/scene/chain_error.h"
 
 namespace gatewalk::cli {
 

@@ -22,7 +22,7 @@ const EndingName& name_of_side(std::size_t side) {
 }
 
 std::vector<double> place_bounds(const lattice::Scene& scene, std::size_t side) {
-  return lattice::exit_bounds(scene.gate, scene.field, side);
+  return lattice::exit_bounds(scene.gate.gate_width(), scene.gate.gate_length(), scene.field, side);
 }
 
 /// A place with its bounds, to which the caller adds its shares.

@@ -15,12 +15,12 @@
 namespace gatewalk::cli {
 namespace {
 
-using lattice::FidelityChange;
 using lattice::FidelityOfStart;
 using lattice::FidelityRun;
 using lattice::FidelityStudy;
 using lattice::FidelityVariant;
 using lattice::FieldTally;
+using lattice::PairedChange;
 using lattice::Sufficiency;
 
 std::string step_text(const FidelityVariant& v) { return quantity(v.scene.gate.run.step, "s", 7); }
@@ -31,7 +31,7 @@ double share(std::int64_t part, const FieldTally& of) {
 
 /// "Start 0, 0, 15: active is enough: ..."
 std::string sentence(const FidelityOfStart& s) {
-  const auto about = [](const char* name, const FidelityChange& c) {
+  const auto about = [](const char* name, const PairedChange& c) {
     return std::string(name) + " has TV " + fixed(c.apart.total_variation, 4) + " +- " +
            fixed(c.uncertainty(), 4) + " where chance makes " +
            fixed(c.in_pairs.floor_total_variation, 4) + " (p " +
@@ -93,7 +93,7 @@ Json to_json(const FidelityStudy& study) {
   j["machine"] = machine();
   j["trials"] = study.trials;
   j["threads"] = study.threads;
-  j["bound"] = lattice::kFidelityBound;
+  j["bound"] = lattice::kSmallChange;
   j["starts"] = Json::array();
   for (const FidelityOfStart& s : study.starts) {
     Json one;
@@ -122,7 +122,7 @@ std::string csv_of(const FidelityStudy& study) {
       const lattice::Scene& scene = study.variants[v].scene;
       const FidelityRun& run = s.runs[v];
       const FieldTally& t = run.tally;
-      const FidelityChange c = run.change.value_or(FidelityChange{});
+      const PairedChange c = run.change.value_or(PairedChange{});
       const auto changed = [&](double x) {
         return run.change ? x : std::numeric_limits<double>::quiet_NaN();  // an empty field
       };
@@ -162,7 +162,7 @@ std::string table_of(const FidelityStudy& study) {
   for (const FidelityOfStart& s : study.starts)
     for (std::size_t v = 0; v < study.variants.size(); ++v)
       out << line_of(s, study.variants[v], s.runs[v]) << "\n";
-  out << "\nActive is enough where TV is at most " << lattice::kFidelityBound
+  out << "\nActive is enough where TV is at most " << lattice::kSmallChange
       << " with its uncertainty (+-) added, and\n"
       << "not enough where it is more with that taken off: what chance makes of pairs 95 times in\n"
       << "100, and 3 trials of " << study.trials << " that may yet show what none did.\n";

@@ -6,7 +6,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "lattice/study/fidelity.h"
+#include "lattice/scene/fidelity.h"
 
 namespace gatewalk::cli {
 

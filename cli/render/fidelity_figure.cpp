@@ -33,7 +33,7 @@ Figure figure_of(const FidelityStudy& study) {
   // A line for each variant of each start, from the top down.
   std::vector<std::string> rows(variants);  // "line TV TV- TV+ chance ms"
   std::string tics;
-  double most = lattice::kFidelityBound, slowest = 0.0;
+  double most = lattice::kSmallChange, slowest = 0.0;
   for (std::size_t s = 0; s < n; ++s) {
     const lattice::FidelityOfStart& of = study.starts[s];
     const double first = kRow * static_cast<double>(s) + 0.5 * (kRow - 3 * kLine);
@@ -65,7 +65,7 @@ Figure figure_of(const FidelityStudy& study) {
     entries.push_back("with points ps 0.8 " + look + " title '" + plain_name(study, v) + "'");
   }
   entries.push_back("with points pt 2 ps 0.7 lw 1.2 lt -1 title 'chance'");
-  const std::string bound = digits(lattice::kFidelityBound);
+  const std::string bound = digits(lattice::kSmallChange);
   entries.push_back("with lines lt -1 dt 2 title 'bound " + bound + "'");
   return {Sheet::kWidth, sheet.height,
           blocks + "set multiplot\n" + sheet.key(8, 30, {entries[0], entries[1]}) +

@@ -6,6 +6,7 @@
 
 #include "cli/render/json_fwd.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
 

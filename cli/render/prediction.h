@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "cli/render/json_fwd.h"
+#include "lattice/scene/row_matrices.h"
+#include "lattice/scene/table4.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {

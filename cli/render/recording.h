@@ -5,7 +5,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "lattice/study/recording.h"
+#include "lattice/scene/recording.h"
 
 namespace gatewalk::cli {
 

@@ -103,13 +103,15 @@ Json to_json(const lattice::TreeChain& c, double accuracy) {
       j["error_95"].push_back(a.error.total_variation);
   }
   j["range"] = nullptr;
-  if (c.range)
-    j["range"] = {{"d_m", c.range->range.d},
-                  {"vx_m_per_s", c.range->range.vx},
-                  {"vy_m_per_s", c.range->range.vy},
-                  {"tried_on_starts", c.range->tried_on},
-                  {"kernel_error_95", c.range->kernel_error_95},
-                  {"worst_kernel_error_95", c.range->worst_kernel_error_95}};
+  if (c.range) {
+    Json& range = j["range"] = Json::object();
+    const std::vector<Coordinate>& coordinates = c.transitions.front().space.section().coordinates;
+    for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
+      range[coordinates[axis].key] = c.range->range.at[axis];
+    range["tried_on_starts"] = c.range->tried_on;
+    range["kernel_error_95"] = c.range->kernel_error_95;
+    range["worst_kernel_error_95"] = c.range->worst_kernel_error_95;
+  }
   j["states_bias"] = c.states_bias;
   return j;
 }

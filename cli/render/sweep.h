@@ -6,7 +6,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
-#include "lattice/study/sweep.h"
+#include "lattice/scene/sweep.h"
 
 namespace gatewalk::cli {
 

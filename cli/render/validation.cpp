@@ -51,17 +51,17 @@ namespace {
 
 Json to_json(const lattice::MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; }
 
-Json to_json(const lattice::StartValidation& r, const lattice::Scene& scene) {
+Json to_json(const lattice::StartValidation& r, const lattice::PaperStart& start,
+             const lattice::Scene& scene) {
   Json j;
   j["verdict"] = verdict(r);
   j["trials_and_matrix"] = cli::to_json(r.judgement);
   j["trials_and_matrix"]["resampled_matrices"] = r.resampled;
-  j["start"] = {{"d_m", r.start.d},
-                {"vx_m_per_s", r.start.vx},
-                {"vy_m_per_s", r.start.vy},
+  j["start"] = {{"d_m", start.d},
+                {"vx_m_per_s", start.vx},
+                {"vy_m_per_s", start.vy},
                 {"clamped", r.chain_start.clamped}};
-  if (r.start.corrcoef)
-    j["paper"] = {{"corrcoef", *r.start.corrcoef}, {"rmse_per_100", *r.start.rmse}};
+  if (start.corrcoef) j["paper"] = {{"corrcoef", *start.corrcoef}, {"rmse_per_100", *start.rmse}};
   j["exact"] = cli::to_json(r.exact_against);
   j["exact"]["total_variation_of_matrix_sampling"] = {{"mean", r.matrix_noise_mean},
                                                       {"sd", r.matrix_noise_sd}};
@@ -159,7 +159,9 @@ std::string endings_table(const lattice::Validation& v, const StartTexts& labels
 }
 
 /// Beside what the paper prints, where these are its starts.
-std::string table4_table(const lattice::Validation& v, const StartTexts& labels, bool papers) {
+std::string table4_table(const lattice::Validation& v,
+                         const std::vector<lattice::PaperStart>& starts, const StartTexts& labels,
+                         bool papers) {
   std::ostringstream out;
   const std::string blank(labels.header.size(), ' ');
   out << "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean "
@@ -174,9 +176,9 @@ std::string table4_table(const lattice::Validation& v, const StartTexts& labels,
     const auto printed = [&](const std::optional<double>& x) {
       return padded(papers && x ? fixed(*x, 3) : "-", 6);
     };
-    out << labels.texts[k] << "  |" << printed(r.start.corrcoef) << "  "
+    out << labels.texts[k] << "  |" << printed(starts[k].corrcoef) << "  "
         << padded(with_sd(p.exact_corrcoef), -15) << padded(fixed(r.floor_100_exact.corrcoef, 3), 5)
-        << "  " << padded(with_sd(p.walks_corrcoef), -15) << "|" << printed(r.start.rmse) << "  "
+        << "  " << padded(with_sd(p.walks_corrcoef), -15) << "|" << printed(starts[k].rmse) << "  "
         << padded(with_sd(p.exact_rmse), -15) << padded(fixed(r.floor_100_exact.rmse_per_100, 3), 5)
         << "  " << with_sd(p.walks_rmse) << "\n";
   }
@@ -251,6 +253,12 @@ dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix) {
   return total;
 }
 
+/// Crossings through the sides above the joints.
+std::int64_t traverse_sides(const lattice::Validation& v) {
+  return v.entries_by[dynamics::Boundary::right_traverse] +
+         v.entries_by[dynamics::Boundary::left_traverse];
+}
+
 }  // namespace
 
 Json to_json(const lattice::Validation& v, const lattice::Scene& scene,
@@ -259,9 +267,10 @@ Json to_json(const lattice::Validation& v, const lattice::Scene& scene,
   json["trials"] = v.trials;
   json["walks"] = v.walks;
   json["starts"] = Json::array();
-  for (const lattice::StartValidation& r : v.starts) json["starts"].push_back(to_json(r, scene));
+  for (std::size_t k = 0; k < v.starts.size(); ++k)
+    json["starts"].push_back(to_json(v.starts[k], matrix.starts[k], scene));
   json["crossings"] = {{"between_gates", v.entries},
-                       {"RT_and_LT_share", share(v.traverse_sides, v.entries)},
+                       {"RT_and_LT_share", share(traverse_sides(v), v.entries)},
                        {"clamped_share", share(v.clamped, v.entries)}};
   const auto total = totals_of(matrix);
   json["matrix"] = {{"gate_runs", total.runs},
@@ -280,17 +289,15 @@ Json to_json(const lattice::Validation& v, const lattice::Scene& scene,
 std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
                      const ValidatedMatrix& matrix) {
   const bool papers = lattice::like_table4(scene);
-  std::vector<lattice::PaperStart> starts;
-  for (const lattice::StartValidation& r : v.starts) starts.push_back(r.start);
-  const StartTexts labels(starts);
+  const StartTexts labels(matrix.starts);
   const auto crossings = static_cast<double>(v.entries);
-  std::string table = endings_table(v, labels) + table4_table(v, labels, papers) +
+  std::string table = endings_table(v, labels) + table4_table(v, matrix.starts, labels, papers) +
                       final_gates_table(v, labels) + exits_table(v, labels) +
                       seconds_table(v, labels);
   table += "\nMatrix: " + std::to_string(totals_of(matrix).runs) + " gate runs, " +
            (matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path) +
            ". Crossings between gates in the dynamics: " +
-           percent(static_cast<double>(v.traverse_sides), crossings) + " through RT or LT" +
+           percent(static_cast<double>(traverse_sides(v)), crossings) + " through RT or LT" +
            (papers ? " (paper: fewer than 4 %), " : ", ") +
            percent(static_cast<double>(v.clamped), crossings) + " outside the bins.\n" +
            states_line(matrix.states);

@@ -6,6 +6,8 @@
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "dynamics/cells/transitions.h"
+#include "lattice/scene/scene.h"
+#include "lattice/scene/table4.h"
 #include "lattice/study/validation.h"
 
 namespace gatewalk::cli {
@@ -14,9 +16,10 @@ namespace gatewalk::cli {
 /// making says of it.
 struct ValidatedMatrix {
   const std::vector<dynamics::Transitions>& matrices;
-  std::string path;                       // empty: it was built for this
-  double seconds = 0.0;                   // to build or read it
-  const Json &status, &settled, &states;  // null where there is none
+  const std::vector<lattice::PaperStart>& starts;  // as the validation's
+  std::string path;                                // empty: it was built for this
+  double seconds = 0.0;                            // to build or read it
+  const Json &status, &settled, &states;           // null where there is none
 };
 
 /// One sentence: whether the chain agrees with the dynamics from one start.

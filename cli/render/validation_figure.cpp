@@ -30,7 +30,8 @@ std::string rows_of(const CellProbabilities& blocks, bool roots) {
 }
 
 std::string summary(const StartValidation& v) {
-  return title_of(v.start) + ": total variation " + fixed(v.exact_against.total_variation, 3) +
+  return title_of(lattice::start_at(v.start)) + ": total variation " +
+         fixed(v.exact_against.total_variation, 3) +
          " (chance: " + fixed(v.exact_against.floor_total_variation, 3) + ")";
 }
 

@@ -21,6 +21,8 @@ struct CellMap {
     return type_of_cell.empty() ? 0
                                 : type_of_cell[static_cast<std::size_t>(row * columns + column)];
   }
+  /// Throws std::invalid_argument unless types are given for a field of this size, or one for all.
+  void require_fits(int field_columns, int field_rows) const;
 };
 
 }  // namespace gatewalk::dynamics

@@ -17,9 +17,9 @@ using namespace dynamics;
 
 /// Means over the draws behind each count, as the chain's nonzeros stand.
 std::vector<markov::Reward> rewards_of(const std::vector<std::int64_t>& counts,
-                                       const std::vector<CostSums>& sums) {
-  std::vector<markov::Reward> rewards(kCosts);
-  for (std::size_t c = 0; c < kCosts; ++c)
+                                       const std::vector<CostSums>& sums, std::size_t costs) {
+  std::vector<markov::Reward> rewards(costs);
+  for (std::size_t c = 0; c < costs; ++c)
     for (std::size_t i = 0; i < counts.size(); ++i) {
       const auto n = static_cast<double>(counts[i]);
       rewards[c].mean.push_back(sums[i].sum[c] / n);
@@ -31,22 +31,23 @@ std::vector<markov::Reward> rewards_of(const std::vector<std::int64_t>& counts,
 }  // namespace
 
 CostedChain costed_chain(const Kernel& kernel, const CellMap& map, const FieldParams& field,
-                         const RunPool& pool, const StartTrials& start, TrialGroup group) {
-  const auto first = first_row(map, kernel.space, start, group);
-  const auto first_sums = first_cost_sums(map, kernel.space, start, group);
+                         const RunPool& pool, const PoolStart& start, TrialGroup group) {
+  const int start_type = map.type_of(field.start_column(), 0);
   const auto sums = cost_sums(kernel, map, pool, group);
+  const auto first = first_row(kernel, map, pool, start, start_type, group);
+  const auto first_sums = first_cost_sums(kernel, sums, map, pool, start, start_type, group);
   markov::Rewards rewards;
   for (std::size_t type = 0; type < kernel.counts.size(); ++type) {
     const markov::Counts& k = kernel.counts[type];
     std::vector<std::int64_t> counts(k.valuePtr(), k.valuePtr() + k.nonZeros());
     std::vector<CostSums> costs = sums[type];
-    if (static_cast<int>(type) == map.type_of(field.start_column(), 0))
+    if (static_cast<int>(type) == start_type)
       for (std::size_t output = 0; output < first.size(); ++output)
         if (first[output] > 0) {
           counts.push_back(first[output]);
           costs.push_back(first_sums[output]);
         }
-    rewards.push_back(rewards_of(counts, costs));
+    rewards.push_back(rewards_of(counts, costs, map.section.costs.size()));
   }
   return {chain_of(kernel, map, field, {first}),
           std::move(rewards),
@@ -70,20 +71,31 @@ std::vector<std::vector<Entry>> entries_of_leaves(const Kernel& kernel, const Ce
   return entries;
 }
 
+/// Entries of the start's row: the one, or those seen.
+std::vector<Entry> first_entries(const Kernel& kernel, const RunPool& pool, const PoolStart& start,
+                                 TrialGroup group,
+                                 const std::vector<std::vector<Entry>>& of_leaves) {
+  if (start.own != nullptr) return {*start.entry};
+  if (start.entry)
+    return of_leaves[static_cast<std::size_t>(kernel.space.index_of(*start.entry).state)];
+  std::vector<Entry> entries;
+  for (std::int64_t i = 0; i < std::ssize(pool.scattered.starts); ++i)
+    if (group.holds(pool.scattered.each, i))
+      entries.push_back(pool.scattered.starts[static_cast<std::size_t>(i)]);
+  return entries;
+}
+
 }  // namespace
 
-AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool, const Entry& start,
+AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const PoolStart& start,
                              int per_leaf) {
-  const std::size_t own = pool.place_of(start);
-  if (own == pool.starts.size())
-    throw std::invalid_argument("analysis: the start has no runs of its own");
-  const CellMap map = gates_of(scene).map();
+  const CellMap& map = problem.map();
   const auto chain_of_group = [&](TrialGroup group) -> AnalysedChain {
     Kernel kernel = kernel_of(map, pool, per_leaf, group);
-    CostedChain chain = costed_chain(kernel, map, scene.field, pool, pool.starts[own], group);
+    CostedChain chain = costed_chain(kernel, map, problem.field, pool, start, group);
     auto entries = entries_of_leaves(kernel, map, pool, group);
-    entries.push_back({start});
-    const auto type = static_cast<std::size_t>(map.type_of(scene.field.start_column(), 0));
+    entries.push_back(first_entries(kernel, pool, start, group, entries));
+    const auto type = static_cast<std::size_t>(problem.start_type());
     std::vector<std::int64_t> runs;
     for (int state = 0; state < kernel.space.size(); ++state)
       runs.push_back(kernel.counts[type].row(state).sum());
@@ -105,7 +117,7 @@ AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool, const Entr
   return whole;
 }
 
-AnalysedChain analysed_chain(const Scene& scene, const std::vector<Transitions>& matrices,
+AnalysedChain analysed_chain(const Problem& problem, const std::vector<Transitions>& matrices,
                              const markov::Start& start) {
   markov::Rewards rewards;
   for (const Transitions& t : matrices) {
@@ -120,10 +132,10 @@ AnalysedChain analysed_chain(const Scene& scene, const std::vector<Transitions>&
         counts.push_back(n);
         sums.push_back(known == t.costs[row].end() ? unknown : known->second);
       }
-    rewards.push_back(rewards_of(counts, sums));
+    rewards.push_back(rewards_of(counts, sums, t.space.section().costs.size()));
   }
   const StateSpace& space = matrices.front().space;
-  return {.chain = {make_chain(gates_of(scene).map(), matrices), std::move(rewards), start},
+  return {.chain = {make_chain(problem.map(), matrices), std::move(rewards), start},
           .space = space,
           .entry = [space](int state, Random& random) { return space.sample(state, random); }};
 }

@@ -8,13 +8,13 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/scene/scene.h"
+#include "lattice/problem.h"
 #include "markov/totals.h"
 
 namespace gatewalk::lattice {
 
 /// A field's chain from one start, with what its draws take: the quantities are those of
-/// dynamics::kCostNames.
+/// Section::costs.
 struct CostedChain {
   markov::FieldChain chain;
   markov::Rewards rewards;
@@ -24,7 +24,7 @@ struct CostedChain {
 /// the last one.
 [[nodiscard]] CostedChain costed_chain(const Kernel& kernel, const dynamics::CellMap& map,
                                        const FieldParams& field, const RunPool& pool,
-                                       const StartTrials& start, TrialGroup group = {});
+                                       const PoolStart& start, TrialGroup group = {});
 
 /// What is analysed.
 struct AnalysedChain {
@@ -36,14 +36,13 @@ struct AnalysedChain {
   std::vector<AnalysedChain> groups{};  // kTrialGroups, of groups of the trials; or none
   std::vector<std::int64_t> runs{};     // of trees: by state, in gates of the start's type
 };
-/// Of trees, from the pool's runs; with error bars. Throws std::invalid_argument when the pool has
-/// no runs of `start`.
-[[nodiscard]] AnalysedChain analysed_chain(const Scene& scene, const RunPool& pool,
-                                           const dynamics::Entry& start,
+/// Of trees, from the pool's runs; with error bars.
+[[nodiscard]] AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool,
+                                           const PoolStart& start,
                                            int per_leaf = dynamics::kEntriesPerLeaf);
-/// Of matrices, one for each of gates_of(scene).types(). What runs took is not a number where they
+/// Of matrices, one for each type. What runs took is not a number where they
 /// do not know it.
-[[nodiscard]] AnalysedChain analysed_chain(const Scene& scene,
+[[nodiscard]] AnalysedChain analysed_chain(const Problem& problem,
                                            const std::vector<dynamics::Transitions>& matrices,
                                            const markov::Start& start);
 

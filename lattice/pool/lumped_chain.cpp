@@ -58,9 +58,7 @@ std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynami
     for (const int s : states) groups[keys[static_cast<std::size_t>(s)]].push_back(s);
     for (auto& [key, members] : groups) cut(members, axis, into, places, visits, keys);
   };
-  refine(dynamics::kEntryD, parts.d);
-  refine(dynamics::kEntryVx, parts.vx);
-  refine(dynamics::kEntryVy, parts.vy);
+  for (std::size_t axis = 0; axis < parts.size(); ++axis) refine(axis, parts[axis]);
   std::map<std::vector<int>, int> numbers;
   for (const auto& key : keys) numbers.try_emplace(key, 0);
   int groups = 0;

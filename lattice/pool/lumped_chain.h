@@ -10,12 +10,10 @@
 
 namespace gatewalk::lattice {
 
-/// Into how many parts the states of each boundary are cut by d, then each part by vx, then by vy;
-/// the parts of a cut are visited about as often.
-struct LumpingParts {
-  int d = 1, vx = 1, vy = 1;
-  [[nodiscard]] int parts() const { return d * vx * vy; }
-};
+/// Into how many parts the states of each boundary are cut by the first coordinate, then each part
+/// by the next one; the parts of a cut are visited about as often. Coordinates without a number are
+/// not cut.
+using LumpingParts = std::vector<int>;
 
 struct LumpedChain {
   int states = 0;  // the start's own is one of them

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "dynamics/disc/params.h"
 #include "lattice/field.h"
 #include "lattice/pool/costed_chain.h"
 #include "markov/committor.h"

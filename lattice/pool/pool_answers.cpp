@@ -154,7 +154,7 @@ KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows
   return answers;
 }
 
-PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>& starts) {
+PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<PoolStart>& starts) {
   renew(pool);
   if (!chains_.front().adjoint && by_adjoint(pool, starts.size()))
     for (GroupChain& c : chains_)
@@ -168,16 +168,17 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<std::size_t>&
                    .unseen = {},
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.nonzeros()};
-  for (const std::size_t s : starts)
-    said.unseen.push_back(unseen_share(chains_.front().kernel, map_, field_, pool.starts[s]));
+  for (const PoolStart& s : starts)
+    said.unseen.push_back(s.own ? unseen_share(chains_.front().kernel, map_, field_, *s.own) : 0.0);
   const bool with_kernels = !by_walks_ || chains_.front().adjoint;
   if (with_kernels) said.kernels = said.groups;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const GroupChain& chain = chains_[static_cast<std::size_t>(g + 1)];
     Rows rows;
     const auto add = [&](TrialGroup group) {
-      for (const std::size_t s : starts)
-        rows.push_back(first_row(map_, chain.kernel.space, pool.starts[s], group));
+      for (const PoolStart& s : starts)
+        rows.push_back(
+            first_row(chain.kernel, map_, pool, s, map_.type_of(field_.start_column(), 0), group));
     };
     if (g >= 0) add({g, kTrialGroups});
     if (g < 0 || with_kernels) add({});

@@ -45,8 +45,7 @@ class PoolChains {
   /// Whether answers for so many starts come by the adjoint: further ones then cost nothing.
   [[nodiscard]] bool by_adjoint(const RunPool& pool, std::size_t starts) const;
 
-  /// Of those starts of the pool.
-  [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<std::size_t>& starts);
+  [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<PoolStart>& starts);
 
  private:
   struct GroupChain {

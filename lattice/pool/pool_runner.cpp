@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/scene/settle.h"
-
 namespace gatewalk::lattice {
 namespace {
 
@@ -17,32 +15,24 @@ constexpr std::int64_t kFullOwn = std::int64_t{1} << 41, kFirstOwn = std::int64_
 
 }  // namespace
 
-PoolRunner::PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most_runs,
+PoolRunner::PoolRunner(const Problem& problem, std::uint64_t seed, std::int64_t most_runs,
                        const Work& work)
-    : scene_(scene),
-      gates_(gates_of(scene)),
-      field_(scene.field),
-      space_(table3_space(scene.gate)),
-      seed_(seed),
-      most_runs_(most_runs),
-      work_(work) {
-  field_.fidelity = Fidelity::active;
-}
+    : problem_(problem), seed_(seed), most_runs_(most_runs), work_(work) {}
 
 void PoolRunner::run_full(StartTrials& s, std::int64_t count) {
   const std::int64_t done = std::ssize(s.full.final_gates);
   run("full trials", count, true, [&](TrialRange range) {
-    return run_field(gates_, field_, entry_state(scene_.gate, s.start), space_, seed_,
+    return run_field(problem_.cells, problem_.field, s.start, seed_,
                      {kFullOwn + done + range.first, range.count}, &s.full);
   });
 }
 
 void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
-  FieldParams one_gate = field_;
+  FieldParams one_gate = problem_.field;
   one_gate.max_gates = 1;
   const std::int64_t done = std::ssize(s.first.final_gates);
   run("first runs", count, false, [&](TrialRange range) {
-    return run_field(gates_, one_gate, entry_state(scene_.gate, s.start), space_, seed_,
+    return run_field(problem_.cells, one_gate, s.start, seed_,
                      {kFirstOwn + done + range.first, range.count}, &s.first);
   });
 }
@@ -50,33 +40,33 @@ void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
 void PoolRunner::run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count) {
   const std::int64_t done = std::ssize(s.starts);
   run("scattered trials", count, true, [&](TrialRange range) {
-    std::vector<BodyState> bodies;
-    for (std::int64_t i = 0; i < range.count; ++i) {
-      bodies.push_back(drawn(starts, done + range.first + i));
-      s.starts.push_back(entry_of(bodies.back()));
-    }
-    return run_field(gates_, field_, bodies, space_, seed_,
-                     {kScatteredOwn + done + range.first, range.count}, &s.each);
+    const std::int64_t first = done + range.first;
+    for (std::int64_t i = 0; i < range.count; ++i) s.starts.push_back(drawn(starts, first + i));
+    const Cell& cell = problem_.cells.at(problem_.field.start_column(), 0);
+    return run_field(
+        problem_.cells, problem_.field,
+        [&](std::int64_t i, Body& body) {
+          begin_trial(cell, s.starts[static_cast<std::size_t>(first + i)], seed_,
+                      kScatteredOwn + first + i, body);
+        },
+        {kScatteredOwn + first, range.count}, &s.each);
   });
 }
 
-BodyState PoolRunner::drawn(const StartRange& starts, std::int64_t i) const {
+Entry PoolRunner::drawn(const StartRange& starts, std::int64_t i) const {
   Random random(Purpose::resampling,
                 {seed_, static_cast<std::uint64_t>(kScatteredOwn), static_cast<std::uint64_t>(i)});
-  const auto within = [&](const std::array<double, 2>& r) {
-    return r[0] + (r[1] - r[0]) * random.uniform();
-  };
-  BodyState b;
-  b.x = within(starts.d);
-  b.vx = within(starts.vx);
-  b.vy = within(starts.vy);
-  return b;
+  Entry entry{starts.face};
+  for (std::size_t axis = 0; axis < problem_.map().section.coordinates.size(); ++axis) {
+    const auto& [from, to] = starts.at[axis];
+    entry.at[axis] = from + (to - from) * random.uniform();
+  }
+  return entry;
 }
 
 void PoolRunner::finish() {
-  if (gate_runs > 0)
-    check_outcomes(scene_, RunsFrom::everywhere, seed_, std::max(trials_, gate_runs / 10), health,
-                   work_);
+  if (gate_runs > 0 && problem_.check)
+    problem_.check(std::max(trials_, gate_runs / 10), seed_, health, work_);
 }
 
 void PoolRunner::run(const char* what, std::int64_t count, bool through_field,

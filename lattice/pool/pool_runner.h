@@ -9,15 +9,13 @@
 
 #include "dynamics/base/work.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/scene/scene.h"
+#include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {
 
-/// Starts on the lower edge of a gate, between these.
-struct StartRange {
-  std::array<double, 2> d{}, vx{}, vy{};  // m, m/s
-};
+/// Starts by one face, between these.
+using StartRange = dynamics::StateRange;
 
 class PoolRunner {
  public:
@@ -25,7 +23,7 @@ class PoolRunner {
 
   /// Trials of the seed that no other command runs; no more are begun than `most_runs` gate runs
   /// would take, about, but for the least of a call.
-  PoolRunner(const Scene& scene, std::uint64_t seed, std::int64_t most_runs,
+  PoolRunner(const Problem& problem, std::uint64_t seed, std::int64_t most_runs,
              const dynamics::Work& work);
 
   /// Full trials from the start; runs through its first gate only; trials from anywhere in a range.
@@ -34,7 +32,7 @@ class PoolRunner {
   void run_first(StartTrials& s, std::int64_t count);
   void run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count);
   /// Start number `i` in the range.
-  [[nodiscard]] dynamics::BodyState drawn(const StartRange& starts, std::int64_t i) const;
+  [[nodiscard]] dynamics::Entry drawn(const StartRange& starts, std::int64_t i) const;
 
   [[nodiscard]] bool may_go_on() const { return gate_runs < most_runs_; }
   /// Gate runs of a trial through the field, in the mean of those so far.
@@ -55,10 +53,7 @@ class PoolRunner {
   void run(const char* what, std::int64_t count, bool through_field,
            const std::function<FieldTally(dynamics::TrialRange)>& carry_out);
 
-  const Scene& scene_;
-  FieldGates gates_;
-  FieldParams field_;
-  dynamics::StateSpace space_;
+  const Problem& problem_;
   std::uint64_t seed_;
   std::int64_t most_runs_;
   const dynamics::Work& work_;

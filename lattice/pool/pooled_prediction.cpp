@@ -41,7 +41,7 @@ void widen(std::array<double, 2>& interval, double share) {
 }
 
 /// Error bars of one start; `pooled`: trials in the pool, `chance`: of the walks behind `whole`.
-StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t pooled,
+StartAnswer answer_of(const FieldParams& field, const StartTrials& s, std::int64_t pooled,
                       FinalDistribution whole, double chance, double unseen,
                       const std::vector<FinalDistribution>& groups,
                       const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
@@ -60,7 +60,7 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
           : std::min(1.0, GroupSpread(whole, kernels).error(pooled, seed).total_variation + unseen);
   Error95 of_trials{1.0, 0.0, 100.0};
   if (a.trials > 0) {
-    CellCounts counts = CellCounts::Zero(scene.field.rows, scene.field.columns);
+    CellCounts counts = CellCounts::Zero(field.rows, field.columns);
     for (const std::int32_t cell : s.full.final_gates) ++counts.data()[cell];
     of_trials = error_of_shares(counts, seed);
     a.trials_error_95 = of_trials.total_variation;
@@ -78,7 +78,7 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
       a.error.corrcoef = std::nan("");
     }
     for (auto& interval : a.endings.interval) widen(interval, unseen);
-    a.endings = a.endings.with_limit(scene.field.max_gates);
+    a.endings = a.endings.with_limit(field.max_gates);
     for (SideExits& side : a.exits)
       for (auto& interval : side.interval) widen(interval, unseen);
     a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
@@ -87,12 +87,12 @@ StartAnswer answer_of(const Scene& scene, const StartTrials& s, std::int64_t poo
     return a;
   }
   a.error = of_trials;
-  a.final = shares_of(s.full, scene.field);
+  a.final = shares_of(s.full, field);
   std::array<std::int64_t, markov::kEndings> endings{};
   for (const auto& e : s.full.endings)
     if (e) ++endings[static_cast<std::size_t>(*e)];
-  a.endings = EndingShares(endings, a.trials).with_limit(scene.field.max_gates);
-  ExitCounts exits(scene.field);
+  a.endings = EndingShares(endings, a.trials).with_limit(field.max_gates);
+  ExitCounts exits(field);
   exits.add(s.full);
   a.exits = exits_of(exits);
   a.gates_95 = {a.final.final_cells, a.final.final_cells};
@@ -144,13 +144,13 @@ double median(std::vector<double> values) {
 /// Adds trials of the starts whose answers are not certain enough, until all are.
 class PredictionRun {
  public:
-  PredictionRun(const Scene& scene, RunPool& pool, const std::vector<BodyState>& starts,
+  PredictionRun(const Problem& problem, RunPool& pool, const std::vector<Entry>& starts,
                 const AccuracyOptions& options, const Work& work)
-      : scene_(scene),
+      : problem_(problem),
         pool_(pool),
         options_(options),
-        runner_(scene, options.seed, options.most_runs, work),
-        chains_(gates_of(scene).map(), scene.field, options.per_leaf, starts.size(), options.seed) {
+        runner_(problem, options.seed, options.most_runs, work),
+        chains_(problem.map(), problem.field, options.per_leaf, starts.size(), options.seed) {
     place(starts);
     result_.starts.resize(starts.size());
     open_ = all();
@@ -178,14 +178,9 @@ class PredictionRun {
   }
 
   /// Finds the starts in the pool, or puts them there with some trials each.
-  void place(const std::vector<BodyState>& starts) {
+  void place(const std::vector<Entry>& starts) {
     const bool has_kernel = pool_.gate_runs() > 0;
-    for (const BodyState& body : starts) {
-      if (body.y != 0.0)
-        throw std::invalid_argument("start.y_m = " + std::to_string(body.y) +
-                                    " is not permitted for a chain: its states are entries from "
-                                    "below, start.y_m must be 0");
-      const Entry entry = entry_of(body);
+    for (const Entry& entry : starts) {
       places_.push_back(pool_.place_of(entry));
       if (places_.back() < pool_.starts.size()) continue;
       StartTrials& s = pool_.starts.emplace_back();
@@ -203,8 +198,8 @@ class PredictionRun {
     // By the adjoint all starts cost as much as one. So closed ones are asked again: an error bar
     // that was small by chance is seen to be larger.
     if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
-    std::vector<std::size_t> asked;
-    for (const std::size_t k : open_) asked.push_back(places_[k]);
+    std::vector<PoolStart> asked;
+    for (const std::size_t k : open_) asked.push_back(pool_.starts[places_[k]]);
     PoolAnswers said = chains_.ask(pool_, asked);
     result_.states = said.states;
     result_.nonzeros = said.nonzeros;
@@ -214,7 +209,7 @@ class PredictionRun {
     tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t i) {
       chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
       result_.starts[open_[i]] = answer_of(
-          scene_, pool_.starts[asked[i]], pooled, std::move(said.whole.final[i]), chances[i],
+          problem_.field, *asked[i].own, pooled, std::move(said.whole.final[i]), chances[i],
           said.unseen[i], said.groups[i],
           said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i], options_.seed);
     });
@@ -301,7 +296,7 @@ class PredictionRun {
   }
 
   const Stopwatch watch_;
-  const Scene& scene_;
+  const Problem& problem_;
   RunPool& pool_;
   const AccuracyOptions& options_;
   PoolRunner runner_;
@@ -337,31 +332,35 @@ FinalDistribution shares_of(const FieldTrials& trials, const FieldParams& field)
   return d;
 }
 
-PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
-                                const std::vector<BodyState>& starts,
-                                const AccuracyOptions& options, const Work& work) {
+PooledPrediction predict_pooled(const Problem& problem, RunPool& pool,
+                                const std::vector<Entry>& starts, const AccuracyOptions& options,
+                                const Work& work) {
   require_fine(options);
-  return PredictionRun(scene, pool, starts, options, work).carry_out();
+  return PredictionRun(problem, pool, starts, options, work).carry_out();
 }
 
-StartRange usual_range(const Scene& scene) {
-  const auto usual = disc_section(scene.gate).faces[Boundary::enter].usual;
-  const auto holding = [](const std::array<double, 2>& range, double own) {
-    return std::array<double, 2>{std::min(range[0], own), std::max(range[1], own)};
-  };
-  return {holding(usual[kEntryD], scene.start.x), holding(usual[kEntryVx], scene.start.vx),
-          holding(usual[kEntryVy], scene.start.vy)};
+StartRange usual_range(const Problem& problem) {
+  const Section& section = problem.map().section;
+  const Entry& start = problem.start;
+  StartRange range{start.face,
+                   usual_at(section, section.faces[static_cast<std::size_t>(start.face)])};
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+    auto& [low, high] = range.at[axis];
+    low = std::min(low, start.at[axis]);
+    high = std::max(high, start.at[axis]);
+  }
+  return range;
 }
 
-PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& range,
+PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& range,
                        const AccuracyOptions& options, const Work& work) {
   require_fine(options);
-  for (const auto* r : {&range.d, &range.vx, &range.vy})
-    if (!((*r)[0] <= (*r)[1])) throw std::invalid_argument("range of starts: is empty");
+  for (const auto& [low, high] : range.at)
+    if (!(low <= high)) throw std::invalid_argument("range of starts: is empty");
   constexpr int kTried = 7;
   constexpr std::int64_t kFirstRuns = 400, kBegin = 2000, kLargestTried = 20'000;
   const Stopwatch watch;
-  PoolRunner runner(scene, options.seed, options.most_runs, work);
+  PoolRunner runner(problem, options.seed, options.most_runs, work);
   PooledRange result;
   result.range = range;
   result.tried_on = kTried;
@@ -369,13 +368,12 @@ PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& rang
   RunPool tried;
   for (int k = 0; k < kTried; ++k) {
     StartTrials& s = tried.starts.emplace_back();
-    s.start = entry_of(runner.drawn(range, -1 - k));
+    s.start = runner.drawn(range, -1 - k);
     runner.run_first(s, kFirstRuns);
   }
-  std::vector<std::size_t> all(kTried);
-  std::iota(all.begin(), all.end(), 0);
+  const std::vector<PoolStart> all(tried.starts.begin(), tried.starts.end());
   runner.run_scattered(pool.scattered, range, kBegin);
-  PoolChains chains(gates_of(scene).map(), scene.field, options.per_leaf, kTried, options.seed);
+  PoolChains chains(problem.map(), problem.field, options.per_leaf, kTried, options.seed);
   for (;;) {
     tried.scattered = std::move(pool.scattered);
     const PoolAnswers said = chains.ask(tried, all);

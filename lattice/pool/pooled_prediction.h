@@ -55,14 +55,13 @@ struct PooledPrediction {
   dynamics::Health health;
 };
 
-/// Answers for `starts` (y = 0, different): exact for the chain, or from 4 million walks where that
+/// Answers for `starts` (different): exact for the chain, or from 4 million walks where that
 /// would take long (large fields, very many runs), whose chance is in the error bar. The pool keeps
 /// all runs; what it holds already is used. Trials are those of the seed that no other command
-/// runs. The same but for the seconds on any number of threads. Throws std::invalid_argument for a
-/// start inside the gate and an accuracy outside (0, 1), as run_field, and std::runtime_error when
-/// a run broke.
-[[nodiscard]] PooledPrediction predict_pooled(const Scene& scene, RunPool& pool,
-                                              const std::vector<dynamics::BodyState>& starts,
+/// runs. The same but for the seconds on any number of threads. Throws std::invalid_argument for an
+/// accuracy outside (0, 1), as run_field, and std::runtime_error when a run broke.
+[[nodiscard]] PooledPrediction predict_pooled(const Problem& problem, RunPool& pool,
+                                              const std::vector<dynamics::Entry>& starts,
                                               const AccuracyOptions& options,
                                               const dynamics::Work& work = {});
 
@@ -70,8 +69,8 @@ struct PooledPrediction {
 [[nodiscard]] markov::FinalDistribution shares_of(const FieldTrials& trials,
                                                   const FieldParams& field);
 
-/// Those of entries from below of Table III in the scene's own units, and the scene's start.
-[[nodiscard]] StartRange usual_range(const Scene& scene);
+/// The usual entries by the start's face, and the start.
+[[nodiscard]] StartRange usual_range(const Problem& problem);
 
 /// What trials from all over a range of starts make of a pool.
 struct PooledRange {
@@ -90,7 +89,7 @@ struct PooledRange {
 /// Adds trials that start uniformly in the range until the chain's own part of the error bar, with
 /// endlessly many first runs, is below options.accuracy at half of the starts that it is tried on.
 /// Throws as predict_pooled, and std::invalid_argument for an empty range.
-[[nodiscard]] PooledRange pool_range(const Scene& scene, RunPool& pool, const StartRange& range,
+[[nodiscard]] PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& range,
                                      const AccuracyOptions& options,
                                      const dynamics::Work& work = {});
 

@@ -18,15 +18,16 @@ using namespace dynamics;
 template <class StartOf, class Use>
 void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, StartOf start_of,
               Use use) {
-  constexpr GatePassage kNone{.ending = Ending::broken};
-  for (std::int64_t i = group.group; i < std::ssize(trials.final_gates); i += group.of) {
+  constexpr CellPassage kNone{.fate = Fate::broken};
+  for (std::int64_t i = 0; i < std::ssize(trials.final_gates); ++i) {
+    if (!group.holds(trials, i)) continue;
     const auto passages = trials.of_trial(static_cast<std::size_t>(i));
     for (std::size_t k = skipped; k < passages.size(); ++k) {
-      const GatePassage passage = passages[k];
-      if (passage.ending == Ending::broken) continue;
-      const GatePassage next = k + 1 < passages.size() ? passages[k + 1] : kNone;
+      const CellPassage passage = passages[k];
+      if (passage.fate == Fate::broken) continue;
+      const CellPassage next = k + 1 < passages.size() ? passages[k + 1] : kNone;
       use(k == 0 ? start_of(i) : passages[k - 1].entry, passage,
-          next.ending == Ending::broken ? nullptr : &next);
+          next.fate == Fate::broken ? nullptr : &next);
     }
   }
 }
@@ -44,8 +45,8 @@ void each_kernel_run(const RunPool& pool, TrialGroup group, Use use) {
 // Leaves next to each other in preorder lie near each other; some hundred entries.
 constexpr int kStatesOfBox = 16;
 
-int output_of(const StateSpace& space, const GatePassage& passage, const Entry& entry) {
-  return passage.ending == Ending::trapped ? space.trapped() : space.index_of(entry).state;
+int output_of(const StateSpace& space, const CellPassage& passage, const Entry& entry) {
+  return passage.fate == Fate::trapped ? space.trapped() : space.index_of(entry).state;
 }
 
 /// Counts of runs from row[i] to column[i].
@@ -141,7 +142,7 @@ markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
 
 void each_entry(const RunPool& pool, TrialGroup group,
                 const std::function<void(const Entry& entry, int type)>& use) {
-  each_kernel_run(pool, group, [&](const Entry& entry, const GatePassage& run, const auto*) {
+  each_kernel_run(pool, group, [&](const Entry& entry, const CellPassage& run, const auto*) {
     use(entry, run.type);
   });
 }
@@ -175,7 +176,7 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
   const Section& section = map.section;
   std::vector<Entry> entries;
   std::vector<std::uint8_t> types;
-  each_kernel_run(pool, group, [&](const Entry& entry, const GatePassage& run, const auto*) {
+  each_kernel_run(pool, group, [&](const Entry& entry, const CellPassage& run, const auto*) {
     entries.push_back(entry);
     if (images[run.type] == 2) entries.push_back(mirrored(section, entry));
     types.resize(entries.size(), run.type);
@@ -185,7 +186,7 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
   per_leaf = static_cast<int>(std::max<std::int64_t>(per_leaf, fits));
   StateSpace space = tree_space(section, entries, per_leaf, {}, &row);
   column.reserve(row.size());
-  each_kernel_run(pool, group, [&](const Entry&, const GatePassage& run, const GatePassage* next) {
+  each_kernel_run(pool, group, [&](const Entry&, const CellPassage& run, const CellPassage* next) {
     const std::size_t at = column.size() + images[run.type];
     for (std::size_t image = 0; image < images[run.type]; ++image)
       column.push_back(
@@ -260,9 +261,8 @@ double unseen_share(const Kernel& kernel, const CellMap& map, const FieldParams&
   for (const FieldTrials* trials : {&start.full, &start.first})
     for (std::size_t i = 0; i < trials->final_gates.size(); ++i) {
       const auto passages = trials->of_trial(i);
-      const GatePassage passage = passages.front();
-      if (passages.size() > 1 || passage.ending == Ending::trapped ||
-          passage.ending == Ending::broken)
+      const CellPassage passage = passages.front();
+      if (passages.size() > 1 || passage.fate != Fate::left)
         continue;  // the kernel has the entry, or there is none
       const Face& move = kernel.space.section().faces[passage.entry.face];
       const int column = field.start_column() + move.di_x;
@@ -301,7 +301,7 @@ std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const CellMap
   std::vector<std::vector<CostSums>> sums;
   for (const markov::Counts& counts : kernel.counts)
     sums.emplace_back(static_cast<std::size_t>(counts.nonZeros()));
-  each_kernel_run(pool, group, [&](const Entry& entry, const GatePassage& run, const auto*) {
+  each_kernel_run(pool, group, [&](const Entry& entry, const CellPassage& run, const auto*) {
     const markov::Counts& counts = kernel.counts[run.type];
     for (std::size_t image = 0; image < images[run.type]; ++image) {
       const bool mirror = image == 1;
@@ -329,52 +329,66 @@ std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const CellMap
 
 namespace {
 
-/// Calls use(output, passage) for the first runs of a start's trials of one group.
+/// Calls use(output, passage) for the first runs of these trials of one group, where `with_images`
+/// for their mirror images too.
 template <class Use>
-void each_first_run(const CellMap& map, const StateSpace& space, const StartTrials& start,
-                    TrialGroup group, Use use) {
+void each_first_run(const CellMap& map, const StateSpace& space, const FieldTrials& trials,
+                    bool with_images, TrialGroup group, Use use) {
   const std::vector<std::size_t> images = images_of(map);
-  const bool in_the_middle = mirrored(space.section(), start.start) == start.start;
-  for (const FieldTrials* trials : {&start.full, &start.first})
-    for (std::int64_t i = group.group; i < std::ssize(trials->final_gates); i += group.of) {
-      const GatePassage passage = trials->of_trial(static_cast<std::size_t>(i)).front();
-      if (passage.ending == Ending::broken) continue;
-      use(output_of(space, passage, passage.entry), passage);
-      if (in_the_middle && images[passage.type] == 2)
-        use(output_of(space, passage, mirrored(space.section(), passage.entry)), passage);
-    }
+  for (std::int64_t i = 0; i < std::ssize(trials.final_gates); ++i) {
+    if (!group.holds(trials, i)) continue;
+    const CellPassage passage = trials.of_trial(static_cast<std::size_t>(i)).front();
+    if (passage.fate == Fate::broken) continue;
+    use(output_of(space, passage, passage.entry), passage);
+    if (with_images && images[passage.type] == 2)
+      use(output_of(space, passage, mirrored(space.section(), passage.entry)), passage);
+  }
+}
+
+/// The same of a start with runs of its own, or of all scattered trials.
+template <class Use>
+void each_first_run(const CellMap& map, const StateSpace& space, const RunPool& pool,
+                    const PoolStart& start, TrialGroup group, Use use) {
+  if (start.own == nullptr)
+    return each_first_run(map, space, pool.scattered.each, true, group, use);
+  const bool in_the_middle = mirrored(space.section(), start.own->start) == start.own->start;
+  for (const FieldTrials* trials : {&start.own->full, &start.own->first})
+    each_first_run(map, space, *trials, in_the_middle, group, use);
 }
 
 }  // namespace
 
-std::vector<std::int64_t> first_row(const CellMap& map, const StateSpace& space,
-                                    const StartTrials& start, TrialGroup group) {
-  std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
-  each_first_run(map, space, start, group,
-                 [&](int output, const GatePassage&) { ++row[static_cast<std::size_t>(output)]; });
+std::vector<std::int64_t> first_row(const Kernel& kernel, const CellMap& map, const RunPool& pool,
+                                    const PoolStart& start, int type, TrialGroup group) {
+  std::vector<std::int64_t> row(static_cast<std::size_t>(kernel.space.size()) + 1, 0);
+  if (start.own == nullptr && start.entry) {
+    const int leaf = kernel.space.index_of(*start.entry).state;
+    for (markov::Counts::InnerIterator it(kernel.counts[static_cast<std::size_t>(type)], leaf); it;
+         ++it)
+      row[static_cast<std::size_t>(it.col())] = it.value();
+  } else {
+    each_first_run(map, kernel.space, pool, start, group, [&](int output, const CellPassage&) {
+      ++row[static_cast<std::size_t>(output)];
+    });
+  }
   return row;
 }
 
-std::vector<CostSums> first_cost_sums(const CellMap& map, const StateSpace& space,
-                                      const StartTrials& start, TrialGroup group) {
-  std::vector<CostSums> row(static_cast<std::size_t>(space.size()) + 1);
-  each_first_run(map, space, start, group, [&](int output, const GatePassage& run) {
-    row[static_cast<std::size_t>(output)].add(run.costs);
-  });
-  return row;
-}
-
-std::vector<std::int64_t> first_row(const CellMap& map, const StateSpace& space,
-                                    const ScatteredTrials& trials) {
-  const std::vector<std::size_t> images = images_of(map);
-  std::vector<std::int64_t> row(static_cast<std::size_t>(space.size()) + 1, 0);
-  for (std::size_t i = 0; i < trials.starts.size(); ++i) {
-    const GatePassage passage = trials.each.of_trial(i).front();
-    if (passage.ending == Ending::broken) continue;
-    ++row[static_cast<std::size_t>(output_of(space, passage, passage.entry))];
-    if (images[passage.type] == 2)
-      ++row[static_cast<std::size_t>(
-          output_of(space, passage, mirrored(space.section(), passage.entry)))];
+std::vector<CostSums> first_cost_sums(const Kernel& kernel,
+                                      const std::vector<std::vector<CostSums>>& sums,
+                                      const CellMap& map, const RunPool& pool,
+                                      const PoolStart& start, int type, TrialGroup group) {
+  std::vector<CostSums> row(static_cast<std::size_t>(kernel.space.size()) + 1);
+  if (start.own == nullptr && start.entry) {
+    const markov::Counts& counts = kernel.counts[static_cast<std::size_t>(type)];
+    const int leaf = kernel.space.index_of(*start.entry).state;
+    for (auto k = counts.outerIndexPtr()[leaf]; k < counts.outerIndexPtr()[leaf + 1]; ++k)
+      row[static_cast<std::size_t>(counts.innerIndexPtr()[k])] =
+          sums[static_cast<std::size_t>(type)][static_cast<std::size_t>(k)];
+  } else {
+    each_first_run(map, kernel.space, pool, start, group, [&](int output, const CellPassage& run) {
+      row[static_cast<std::size_t>(output)].add(run.costs);
+    });
   }
   return row;
 }

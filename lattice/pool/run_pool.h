@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "dynamics/cells/state_space.h"
@@ -50,9 +51,25 @@ struct RunPool {
   [[nodiscard]] std::int64_t trials() const;
 };
 
-/// Trials number group, group + of, group + 2 of, ... of every start.
+/// Trials number group, group + of, group + 2 of, ... of every start; where bodies made several
+/// trials each, all those of bodies number group, group + of, ...
 struct TrialGroup {
   std::int64_t group = 0, of = 1;
+  [[nodiscard]] bool holds(const FieldTrials& trials, std::int64_t trial) const {
+    return (trials.bodies.empty() ? trial : trials.bodies[static_cast<std::size_t>(trial)]) % of ==
+           group;
+  }
+};
+
+/// What a chain begins with.
+struct PoolStart {
+  const StartTrials* own = nullptr;        // first runs of a start's own; else ...
+  std::optional<dynamics::Entry> entry{};  // ... the runs of its leaf; or, without an entry, ...
+                                           // ... the first runs of all scattered trials
+
+  PoolStart(const StartTrials& start)
+      : own(&start), entry(start.start) {}  // NOLINT: the usual case
+  explicit PoolStart(std::optional<dynamics::Entry> by = {}) : entry(by) {}
 };
 
 /// Calls use(entry, type of the gate) for all runs of the group's trials but the starts' own first
@@ -103,22 +120,19 @@ struct Kernel {
                                                                      const RunPool& pool,
                                                                      TrialGroup group = {});
 
-/// How often the start's own first runs of one group ended in each of the kernel's outputs (n + 1).
-/// A start in the middle of a symmetric gate has mirror images too.
-[[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::CellMap& map,
-                                                  const dynamics::StateSpace& space,
-                                                  const StartTrials& start, TrialGroup group = {});
+/// How often the first runs from the start, of one group of the trials, in a cell of this type,
+/// ended in each of the kernel's outputs (n + 1). A start in the middle of a symmetric cell has
+/// mirror images too, and so have those of scattered trials.
+[[nodiscard]] std::vector<std::int64_t> first_row(const Kernel& kernel,
+                                                  const dynamics::CellMap& map, const RunPool& pool,
+                                                  const PoolStart& start, int type,
+                                                  TrialGroup group = {});
 
-/// What these took (n + 1).
-[[nodiscard]] std::vector<dynamics::CostSums> first_cost_sums(const dynamics::CellMap& map,
-                                                              const dynamics::StateSpace& space,
-                                                              const StartTrials& start,
-                                                              TrialGroup group = {});
-
-/// The same of trials that start anywhere: how often their first runs ended so.
-[[nodiscard]] std::vector<std::int64_t> first_row(const dynamics::CellMap& map,
-                                                  const dynamics::StateSpace& space,
-                                                  const ScatteredTrials& trials);
+/// What these took (n + 1); `sums`: cost_sums of the kernel.
+[[nodiscard]] std::vector<dynamics::CostSums> first_cost_sums(
+    const Kernel& kernel, const std::vector<std::vector<dynamics::CostSums>>& sums,
+    const dynamics::CellMap& map, const RunPool& pool, const PoolStart& start, int type,
+    TrialGroup group = {});
 
 /// The share of the start's first runs that enter the next gate of the field where no run of the
 /// kernel did, less what chance alone would make: what the kernel says of these is a guess.

@@ -12,24 +12,25 @@ namespace {
 
 using namespace dynamics;
 
-std::vector<std::vector<std::int64_t>> own_rows(const CellMap& map, const RunPool& pool,
-                                                const StateSpace& space) {
+std::vector<std::vector<std::int64_t>> own_rows(const Problem& problem, const RunPool& pool,
+                                                const Kernel& kernel) {
   std::vector<std::vector<std::int64_t>> rows;
-  for (const StartTrials& s : pool.starts) rows.push_back(first_row(map, space, s));
+  for (const StartTrials& s : pool.starts)
+    rows.push_back(first_row(kernel, problem.map(), pool, s, problem.start_type()));
   return rows;
 }
 
 /// What walks from the starts end with, or from anywhere in the range where there are none.
-std::vector<markov::FinalDistribution> answers(const Scene& scene, const RunPool& pool,
+std::vector<markov::FinalDistribution> answers(const Problem& problem, const RunPool& pool,
                                                const Kernel& kernel, std::uint64_t seed) {
-  const CellMap map = gates_of(scene).map();
-  auto rows = own_rows(map, pool, kernel.space);
-  if (rows.empty()) rows.push_back(first_row(map, kernel.space, pool.scattered));
-  return answers_of(kernel, map, rows, scene.field, seed).final;
+  const CellMap& map = problem.map();
+  auto rows = own_rows(problem, pool, kernel);
+  if (rows.empty()) rows.push_back(first_row(kernel, map, pool, PoolStart(), problem.start_type()));
+  return answers_of(kernel, map, rows, problem.field, seed).final;
 }
 
 /// Larger leaves, until there are no more states than that.
-void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t seed) {
+void limit_states(TreeChain& chain, const Problem& problem, int most, std::uint64_t seed) {
   const auto faces = std::ssize(chain.kernel.space.trees());
   if (most < faces)
     throw std::invalid_argument("a chain has " + std::to_string(faces) +
@@ -40,27 +41,27 @@ void limit_states(TreeChain& chain, const Scene& scene, int most, std::uint64_t 
     const double times = static_cast<double>(chain.kernel.space.size()) / most;
     chain.per_leaf = std::max(chain.per_leaf + 1,
                               static_cast<int>(std::ceil(chain.per_leaf * std::sqrt(times))));
-    chain.kernel = kernel_of(gates_of(scene).map(), chain.pool, chain.per_leaf);
+    chain.kernel = kernel_of(problem.map(), chain.pool, chain.per_leaf);
   }
   if (chain.kernel.space.size() == full.space.size()) return;
-  const auto before = answers(scene, chain.pool, full, seed),
-             after = answers(scene, chain.pool, chain.kernel, seed);
+  const auto before = answers(problem, chain.pool, full, seed),
+             after = answers(problem, chain.pool, chain.kernel, seed);
   for (std::size_t i = 0; i < before.size(); ++i)
     chain.states_bias =
         std::max(chain.states_bias, total_variation(before[i].final_cells, after[i].final_cells));
 }
 
-std::vector<Transitions> transitions_with(const Scene& scene, const RunPool& pool,
+std::vector<Transitions> transitions_with(const Problem& problem, const RunPool& pool,
                                           const Kernel& kernel) {
   std::vector<Entry> starts;
   for (const StartTrials& s : pool.starts) starts.push_back(s.start);
-  const CellMap map = gates_of(scene).map();
-  return transitions_of(kernel, map, scene.field, starts, own_rows(map, pool, kernel.space));
+  const CellMap& map = problem.map();
+  return transitions_of(kernel, map, problem.field, starts, own_rows(problem, pool, kernel));
 }
 
 }  // namespace
 
-TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options, const Work& work) {
+TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, const Work& work) {
   if (options.starts.empty() && !options.range)
     throw std::invalid_argument("a chain needs a start, or a range of starts");
   RunPool pool;
@@ -69,22 +70,23 @@ TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options, const 
   if (options.range) {
     AccuracyOptions part = options.accuracy;
     part.accuracy *= 1.2 * kPartForOne;
-    range = pool_range(scene, pool, *options.range, part, work);
+    range = pool_range(problem, pool, *options.range, part, work);
   }
   if (!options.starts.empty()) {
     AccuracyOptions rest = options.accuracy;
     if (range) rest.most_runs = std::max<std::int64_t>(1, rest.most_runs - range->gate_runs);
-    prediction = predict_pooled(scene, pool, options.starts, rest, work);
+    prediction = predict_pooled(problem, pool, options.starts, rest, work);
   }
-  Kernel kernel = kernel_of(gates_of(scene).map(), pool, options.accuracy.per_leaf);
+  Kernel kernel = kernel_of(problem.map(), pool, options.accuracy.per_leaf);
   TreeChain chain{.pool = std::move(pool),
                   .kernel = kernel,
                   .transitions = {},
                   .per_leaf = options.accuracy.per_leaf,
                   .prediction = std::move(prediction),
                   .range = std::move(range)};
-  if (options.most_states) limit_states(chain, scene, *options.most_states, options.accuracy.seed);
-  chain.transitions = transitions_with(scene, chain.pool, chain.kernel);
+  if (options.most_states)
+    limit_states(chain, problem, *options.most_states, options.accuracy.seed);
+  chain.transitions = transitions_with(problem, chain.pool, chain.kernel);
   if (chain.range) chain.transitions.front().health += chain.range->health;
   if (chain.prediction) chain.transitions.front().health += chain.prediction->health;
   return chain;
@@ -101,12 +103,32 @@ const RunArray kTrialRuns{"trial_runs", "1",
                           "gate runs of each trial, one after the other in run_*"},
     kTrialKind{"trial_kind", "1",
                "0: from anywhere; from a start of its own: 1 through the field, 2 one gate only"},
-    kRunEnding{"run_ending", "1",
-               "how each gate run ended: 0 traversed, 1 exited left, 2 exited right, 3 trapped"},
     // Only where there are several.
     kRunType{"run_type", "1",
              "type of the gate of each run: 0 the scene's own, then those of its terrain that are "
-             "not like one before, by name"};
+             "not like one before, by name"},
+    // Only where not all start by the first face.
+    kTrialFace{"trial_face", "1", "by which face each trial started, numbered as run_boundary"},
+    // Only where one body made several trials.
+    kTrialBody{"trial_body", "1", "number of the body that made each trial"};
+
+/// How a run ended: by the move that it made, or without one.
+enum RunEnding : int { kForward, kToLeft, kToRight, kTrapped, kBack, kLost, kRunEndings };
+
+int ending_of(const Section& section, const CellPassage& passage) {
+  if (passage.fate != Fate::left) return passage.fate == Fate::trapped ? kTrapped : kLost;
+  const Face& move = section.faces[static_cast<std::size_t>(passage.entry.face)];
+  if (move.di_y != 0) return move.di_y > 0 ? kForward : kBack;
+  return move.di_x < 0 ? kToLeft : kToRight;
+}
+
+/// `others`: some ended in another way than a gate's runs do.
+RunArray ending_array(bool others) {
+  return {"run_ending", "1",
+          std::string("how each gate run ended: 0 traversed, 1 exited left, 2 exited right, 3 "
+                      "trapped") +
+              (others ? ", 4 moved back, 5 lost from sight" : "")};
+}
 
 RunArray face_array(const Section& section) {
   return {"run_boundary", "1",
@@ -142,22 +164,25 @@ enum Kind : int { kScattered, kFullTrial, kFirstRun };
 
 /// Appends trials to the tables.
 struct RunTables {
-  std::vector<double> trial_runs, trial_kind;
+  const Section& section;
+  std::vector<double> trial_runs, trial_kind, trial_face, trial_body;
   std::vector<double> ending, type, face;
   std::vector<std::vector<double>> start, entry;  // by coordinate
   std::vector<std::vector<double>> costs;         // by cost
 
-  explicit RunTables(const Section& section)
-      : start(section.coordinates.size()),
+  explicit RunTables(const Section& of)
+      : section(of),
+        start(section.coordinates.size()),
         entry(section.coordinates.size()),
         costs(section.costs.size()) {}
 
   void add(int kind, const Entry& from, const PassageTable::Rows& passages) {
     trial_kind.push_back(kind);
     trial_runs.push_back(static_cast<double>(passages.size()));
+    trial_face.push_back(from.face);
     for (std::size_t axis = 0; axis < start.size(); ++axis) start[axis].push_back(from.at[axis]);
-    for (const GatePassage p : passages) {
-      ending.push_back(static_cast<double>(p.ending));
+    for (const CellPassage p : passages) {
+      ending.push_back(ending_of(section, p));
       type.push_back(p.type);
       face.push_back(p.entry.face);
       for (std::size_t axis = 0; axis < entry.size(); ++axis)
@@ -179,6 +204,14 @@ std::vector<markov::NamedArray> arrays_of(const RunPool& pool, const Section& se
     }
   for (std::size_t i = 0; i < pool.scattered.starts.size(); ++i)
     t.add(kScattered, pool.scattered.starts[i], pool.scattered.each.of_trial(i));
+  if (!pool.scattered.each.bodies.empty()) {
+    t.trial_body.assign(t.trial_runs.size() - pool.scattered.starts.size(), 0.0);
+    t.trial_body.insert(t.trial_body.end(), pool.scattered.each.bodies.begin(),
+                        pool.scattered.each.bodies.end());
+  }
+  const auto any = [](const std::vector<double>& values, double above) {
+    return std::any_of(values.begin(), values.end(), [=](double x) { return x > above; });
+  };
   std::vector<markov::NamedArray> arrays;
   const auto add = [&](const RunArray& array, std::vector<double>& values) {
     arrays.push_back({array.name, array.unit, array.meaning, std::move(values)});
@@ -190,12 +223,13 @@ std::vector<markov::NamedArray> arrays_of(const RunPool& pool, const Section& se
   add(kTrialRuns, t.trial_runs);
   add(kTrialKind, t.trial_kind);
   add_all(start_arrays(section), t.start);
-  add(kRunEnding, t.ending);
+  add(ending_array(any(t.ending, kTrapped)), t.ending);
   add(face_array(section), t.face);
   add_all(entry_arrays(section), t.entry);
   add_all(cost_arrays(section), t.costs);
-  if (std::any_of(t.type.begin(), t.type.end(), [](double type) { return type != 0.0; }))
-    add(kRunType, t.type);
+  if (any(t.type, 0.0)) add(kRunType, t.type);
+  if (any(t.trial_face, 0.0)) add(kTrialFace, t.trial_face);
+  if (!t.trial_body.empty()) add(kTrialBody, t.trial_body);
   return arrays;
 }
 
@@ -223,11 +257,15 @@ class RunReader {
         runs_(table(kTrialRuns)),
         kind_(table(kTrialKind)),
         start_(tables(start_arrays(section_))),
-        ending_(table(kRunEnding)),
+        start_face_(find(file, kTrialFace.name)),
+        body_(find(file, kTrialBody.name)),
+        ending_(table(ending_array(false))),
         type_(find(file, kRunType.name)),
         face_(table(face_array(section_))),
         entry_(tables(entry_arrays(section_))) {
     if (kind_.size() != runs_.size()) refuse("trials");
+    for (const auto* t : {start_face_, body_})
+      if (t != nullptr && t->size() != runs_.size()) refuse("trials");
     for (const auto* t : start_)
       if (t->size() != runs_.size()) refuse("trials");
     if (face_.size() != ending_.size()) refuse("runs");
@@ -282,13 +320,20 @@ class RunReader {
 
   void read_trial(std::size_t i, RunPool& pool) {
     const std::string what = "trial " + std::to_string(i + 1);
-    const Entry start = entry(Boundary::enter, start_, i, what);
+    const auto faces = static_cast<double>(section_.faces.size());
+    const Entry start =
+        entry(start_face_ == nullptr ? 0 : whole((*start_face_)[i], faces, what), start_, i, what);
     const int kind = whole(kind_[i], 3, what);
     const int count = whole(runs_[i], static_cast<double>(ending_.size() - at_) + 1.0, what);
     if (count == 0) refuse(what);
     const std::size_t own = pool.place_of(start);
     if (kind != kScattered && own == pool.starts.size()) refuse(what);
-    if (kind == kScattered) pool.scattered.starts.push_back(start);
+    if (kind == kScattered) {
+      pool.scattered.starts.push_back(start);
+      constexpr double kMostBodies = 1 << 30;
+      if (body_ != nullptr)
+        pool.scattered.each.bodies.push_back(whole((*body_)[i], kMostBodies, what));
+    }
     FieldTrials& trials = kind == kScattered   ? pool.scattered.each
                           : kind == kFullTrial ? pool.starts[own].full
                                                : pool.starts[own].first;
@@ -296,16 +341,20 @@ class RunReader {
     Costs sum{};
     for (int k = 0; k < count; ++k, ++at_) {
       const std::string run = "run " + std::to_string(at_ + 1);
-      const auto ending = static_cast<Ending>(whole(ending_[at_], 4, run));
-      if (ending == Ending::trapped && k + 1 < count) refuse(run);
-      const int face = whole(face_[at_], static_cast<double>(section_.faces.size()), run);
+      const int ending = whole(ending_[at_], kRunEndings, run);
+      const Fate fate = ending == kTrapped ? Fate::trapped
+                        : ending == kLost  ? Fate::broken
+                                           : Fate::left;
+      if (fate != Fate::left && k + 1 < count) refuse(run);
+      const int face = whole(face_[at_], faces, run);
       const int type =
           type_ == nullptr ? 0 : whole((*type_)[at_], static_cast<double>(types_), run);
       Costs costs{};
       for (std::size_t c = 0; c < costs_.size(); ++c)
         sum[c] += costs[c] = costs_[c] == nullptr ? std::nan("") : (*costs_[c])[at_];
       trials.passages.push_back(
-          {ending, static_cast<std::uint8_t>(type), entry(face, entry_, at_, run), costs});
+          {fate, static_cast<std::uint8_t>(type), entry(face, entry_, at_, run), costs});
+      if (ending_of(section_, trials.passages[trials.passages.size() - 1]) != ending) refuse(run);
     }
     trials.passed.push_back(std::ssize(trials.passages));
     trials.final_gates.push_back(0);
@@ -319,6 +368,7 @@ class RunReader {
   const std::string& path_;
   const std::vector<double>&runs_, &kind_;
   Columns start_;
+  const std::vector<double>*start_face_, *body_;  // null: all are the first, each has its own
   const std::vector<double>& ending_;
   const std::vector<double>* type_;  // null: all are the first
   const std::vector<double>& face_;
@@ -335,10 +385,11 @@ bool follow(const CellMap& map, const FieldParams& field, FieldTrials& trials) {
     std::optional<markov::Ending> ending;
     const auto passages = trials.of_trial(i);
     for (std::size_t k = 0; k < passages.size(); ++k) {
-      const GatePassage p = passages[k];
+      const CellPassage p = passages[k];
       if (ending || p.type != map.type_of(column, row))
         return false;  // it went on where this field has an end, or another gate
-      if (p.ending == Ending::trapped) {
+      if (p.fate == Fate::broken) return false;
+      if (p.fate == Fate::trapped) {
         ending = markov::Ending::trapped;
         break;
       }
@@ -374,7 +425,7 @@ void scatter_others(RunPool& pool, const CellMap& map, int type) {
   for (const StartTrials& s : pool.starts)
     for (const FieldTrials* trials : {&s.full, &s.first})
       for (std::size_t i = 0; i < trials->final_gates.size() && is_other(s); ++i) {
-        for (const GatePassage p : trials->of_trial(i)) each.passages.push_back(p);
+        for (const CellPassage p : trials->of_trial(i)) each.passages.push_back(p);
         each.passed.push_back(std::ssize(each.passages));
         each.final_gates.push_back(0);
         each.endings.push_back({});
@@ -386,30 +437,29 @@ void scatter_others(RunPool& pool, const CellMap& map, int type) {
 
 }  // namespace
 
-RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& path) {
-  const CellMap map = gates_of(scene).map();
+RunPool pool_of(const MatrixFile& file, const Problem& problem, const std::string& path) {
+  const CellMap& map = problem.map();
   RunPool pool = RunReader(file, map.types.size(), path).read();
-  scatter_others(pool, map, map.type_of(scene.field.start_column(), 0));
-  for (StartTrials& s : pool.starts) s.knows_endings = follow(map, scene.field, s.full);
+  scatter_others(pool, map, problem.start_type());
+  for (StartTrials& s : pool.starts) s.knows_endings = follow(map, problem.field, s.full);
   return pool;
 }
 
-std::vector<Transitions> matrices_of(const Scene& scene, const RunPool& pool,
-                                     const std::vector<BodyState>& starts, int per_leaf) {
-  const CellMap map = gates_of(scene).map();
+std::vector<Transitions> matrices_of(const Problem& problem, const RunPool& pool,
+                                     const std::vector<Entry>& starts, int per_leaf) {
+  const CellMap& map = problem.map();
   const Kernel kernel = kernel_of(map, pool, per_leaf);
   std::vector<Entry> points;
   std::vector<std::vector<std::int64_t>> rows;
-  for (const BodyState& b : starts) {
-    const Entry entry = entry_of(b);
+  for (const Entry& entry : starts) {
     if (std::find(points.begin(), points.end(), entry) != points.end()) continue;
     const std::size_t own = pool.place_of(entry);
     if (own == pool.starts.size())
       throw std::invalid_argument("matrix: a start has no runs of its own");
     points.push_back(entry);
-    rows.push_back(first_row(map, kernel.space, pool.starts[own]));
+    rows.push_back(first_row(kernel, map, pool, pool.starts[own], problem.start_type()));
   }
-  return transitions_of(kernel, map, scene.field, points, rows);
+  return transitions_of(kernel, map, problem.field, points, rows);
 }
 
 }  // namespace gatewalk::lattice

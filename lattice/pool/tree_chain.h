@@ -7,22 +7,22 @@
 #include <string>
 #include <vector>
 
+#include "lattice/gate_chain.h"
 #include "lattice/pool/pooled_prediction.h"
-#include "lattice/scene/matrix.h"
 
 namespace gatewalk::lattice {
 
 struct TreeOptions {
   AccuracyOptions accuracy{};
-  std::vector<dynamics::BodyState> starts{};  // that are states of their own
-  std::optional<StartRange> range{};          // of starts that it is to be good for
-  std::optional<int> most_states{};           // not counting the starts
+  std::vector<dynamics::Entry> starts{};  // that are states of their own
+  std::optional<StartRange> range{};      // of starts that it is to be good for
+  std::optional<int> most_states{};       // not counting the starts
 };
 
 struct TreeChain {
   RunPool pool;
   Kernel kernel;
-  /// By gates_of(scene).types(); the first one has the health of all.
+  /// By types; the first one has the health of all.
   std::vector<dynamics::Transitions> transitions;
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::optional<PooledPrediction> prediction;  // of the starts, before states were limited
@@ -35,7 +35,7 @@ struct TreeChain {
 /// it: the other half is for its own first runs, and for the worst of many. Throws as
 /// predict_pooled and pool_range; std::invalid_argument for neither start nor range, and for fewer
 /// states than boundaries.
-[[nodiscard]] TreeChain make_tree_chain(const Scene& scene, const TreeOptions& options,
+[[nodiscard]] TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options,
                                         const dynamics::Work& work = {});
 
 /// Part of the accuracy asked for a range that error bars of a single start are to keep.
@@ -47,12 +47,13 @@ inline constexpr double kPartForOne = 0.5;
 [[nodiscard]] std::vector<markov::NamedArray> arrays_of(const RunPool& pool,
                                                         const dynamics::Section& section);
 [[nodiscard]] bool has_runs(const MatrixFile& file);
-[[nodiscard]] RunPool pool_of(const MatrixFile& file, const Scene& scene, const std::string& path);
+[[nodiscard]] RunPool pool_of(const MatrixFile& file, const Problem& problem,
+                              const std::string& path);
 
-/// The matrices of a pool, by gates_of(scene).types(), with these starts as states of their own.
+/// The matrices of a pool, by types, with these starts as states of their own.
 /// Each start needs runs of its own.
 [[nodiscard]] std::vector<dynamics::Transitions> matrices_of(
-    const Scene& scene, const RunPool& pool, const std::vector<dynamics::BodyState>& starts,
+    const Problem& problem, const RunPool& pool, const std::vector<dynamics::Entry>& starts,
     int per_leaf);
 
 }  // namespace gatewalk::lattice

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lattice/reference.h"
+#include "lattice/scene/disc_field.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -56,7 +56,6 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
   field.fidelity = Fidelity::active;
   field.max_gates = field.max_gates == 0 ? kPilotGates : std::min(field.max_gates, kPilotGates);
   const FieldGates gates = gates_of(scene);
-  const StateSpace space = table3_space(scene.gate);  // for counts of clamped entries, unused here
   for (const BodyState& start : starts) {
     const Entry entry = entry_of(start);
     if (start.y == 0.0 &&
@@ -64,9 +63,9 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
       pilot.starts.push_back(entry);
     work.in_pieces("pilot", trials, [&](TrialRange range) {
       FieldTrials each{.final_gates = {}, .keep_passages = true};
-      pilot.health += run_field(gates, field, start, space, seed,
-                                {kPilotsOwn + range.first, range.count}, &each)
-                          .health;
+      pilot.health +=
+          run_field(gates, field, start, seed, {kPilotsOwn + range.first, range.count}, &each)
+              .health;
       const std::vector<Entry> entries = each.entries();
       pilot.entries.insert(pilot.entries.end(), entries.begin(), entries.end());
     });

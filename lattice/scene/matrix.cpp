@@ -9,6 +9,10 @@
 
 namespace gatewalk::lattice {
 
+MatrixFile read_matrix(const std::string& path) {
+  return read_matrix(path, [](const auto&) { return dynamics::disc_section(); });
+}
+
 void require_unbroken(const dynamics::Transitions& t) {
   if (t.health.broken > 0)
     throw std::runtime_error("matrix: " + std::to_string(t.health.broken) +
@@ -82,24 +86,24 @@ SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string&
   return {std::move(file), std::move(scene)};
 }
 
-std::string entry_bins(const dynamics::StateSpace& space) {
-  constexpr dynamics::Boundary kEnter = dynamics::Boundary::enter;
+std::string entry_bins(const dynamics::StateSpace& space, int face) {
+  const auto at = static_cast<std::size_t>(face);
   if (space.has_trees())
-    return text_of(space.section(), dynamics::StateRange{kEnter, space.trees()[kEnter].seen});
-  dynamics::StateRange range{kEnter};
+    return text_of(space.section(), dynamics::StateRange{face, space.trees()[at].seen});
+  dynamics::StateRange range{face};
   for (std::size_t axis = 0; axis < space.section().coordinates.size(); ++axis) {
-    const std::vector<double>& edges = space.bins()[kEnter].edges[axis];
+    const std::vector<double>& edges = space.bins()[at].edges[axis];
     range.at[axis] = {edges.front(), edges.back()};
   }
   return text_of(space.section(), range);
 }
 
 ChainStart start_in_bins(const dynamics::StateSpace& space, const FieldParams& field,
-                         const dynamics::BodyState& body, const std::string& name) {
-  const ChainStart start = chain_start(space, field, body);
+                         const dynamics::Entry& entry, const std::string& name) {
+  const ChainStart start = chain_start(space, field, entry);
   if (start.clamped)
     throw std::invalid_argument(
-        name + " lies outside the chain's bins, " + entry_bins(space) +
+        name + " lies outside the chain's bins, " + entry_bins(space, entry.face) +
         ": take a start inside them, or other bins: gatewalk build --bins auto makes them "
         "for the scene's start, a table [bins] in the scene names their edges");
   return start;

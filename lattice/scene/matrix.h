@@ -10,6 +10,9 @@
 
 namespace gatewalk::lattice {
 
+/// As read_matrix, of any cells.
+[[nodiscard]] MatrixFile read_matrix(const std::string& path);
+
 /// Throws std::runtime_error when a run of the matrix broke.
 void require_unbroken(const dynamics::Transitions& t);
 
@@ -46,8 +49,8 @@ struct SceneMatrix {
 /// As chain_start; `name` ("the start") begins the message. Throws std::invalid_argument when the
 /// start lies outside the chain's bins.
 [[nodiscard]] ChainStart start_in_bins(const dynamics::StateSpace& space, const FieldParams& field,
-                                       const dynamics::BodyState& body, const std::string& name);
-/// The bins of entries from below: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s".
-[[nodiscard]] std::string entry_bins(const dynamics::StateSpace& space);
+                                       const dynamics::Entry& entry, const std::string& name);
+/// The bins of entries by a face: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s".
+[[nodiscard]] std::string entry_bins(const dynamics::StateSpace& space, int face);
 
 }  // namespace gatewalk::lattice

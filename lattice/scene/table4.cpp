@@ -40,15 +40,23 @@ std::vector<PaperStart> usual_starts(const Scene& scene) {
   return {own_start(scene)};
 }
 
-std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& starts) {
+dynamics::Entry PaperStart::entry() const {
+  if (y != 0.0)
+    throw std::invalid_argument(
+        "start.y_m = " + toml_float(y) +
+        " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
+  return dynamics::entry_of(body());
+}
+
+std::vector<dynamics::Entry> entries_at(const std::vector<PaperStart>& starts) {
+  std::vector<dynamics::Entry> entries;
+  for (const PaperStart& s : starts) entries.push_back(s.entry());
+  return entries;
+}
+
+std::vector<dynamics::BodyState> bodies_at(const std::vector<PaperStart>& starts) {
   std::vector<dynamics::BodyState> bodies;
-  for (const PaperStart& s : starts) {
-    if (s.y != 0.0)
-      throw std::invalid_argument(
-          "start.y_m = " + toml_float(s.y) +
-          " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
-    bodies.push_back(s.body());
-  }
+  for (const PaperStart& s : starts) bodies.push_back(s.body());
   return bodies;
 }
 
@@ -59,6 +67,21 @@ void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
       throw std::invalid_argument("--start: d = " + toml_float(s.d) +
                                   " m must lie inside the gate, (-" + toml_float(side) + ", " +
                                   toml_float(side) + ")");
+}
+
+bool like_table4(const Scene& scene) {
+  if (scene.terrain) return false;
+  const dynamics::GateParams paper;
+  for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
+    const bool free = info.key == "forces.propulsion_N" || info.key == "forces.random_N" ||
+                      info.key.substr(0, 4) == "run.";
+    if (!free && info.get(scene.gate) != info.get(paper)) return false;
+  }
+  const FieldParams field;
+  return scene.gate.run.time_limit == paper.run.time_limit &&
+         scene.gate.run.traverse_y == paper.run.traverse_y &&
+         scene.field.columns == field.columns && scene.field.rows == field.rows &&
+         scene.field.max_gates == field.max_gates;
 }
 
 }  // namespace gatewalk::lattice

@@ -16,6 +16,8 @@ struct PaperStart {
   double y = 0.0;  // m
 
   [[nodiscard]] dynamics::BodyState body() const { return {d, y, vx, vy}; }
+  /// Throws std::invalid_argument for a start inside the gate: a chain's states are entries.
+  [[nodiscard]] dynamics::Entry entry() const;
 };
 
 /// That of a body that enters so from below.
@@ -27,10 +29,14 @@ struct PaperStart {
 /// The same, or those of Table IV, in the scene's own units, in the paper's field with the
 /// paper's start.
 [[nodiscard]] std::vector<PaperStart> usual_starts(const Scene& scene);
-/// The bodies of starts of a chain. Throws std::invalid_argument when one does not start on the
-/// lower edge of its gate: a chain's states are entries.
-[[nodiscard]] std::vector<dynamics::BodyState> entries_at(const std::vector<PaperStart>& starts);
+/// Those of starts of a chain. Throws as PaperStart::entry.
+[[nodiscard]] std::vector<dynamics::Entry> entries_at(const std::vector<PaperStart>& starts);
+[[nodiscard]] std::vector<dynamics::BodyState> bodies_at(const std::vector<PaperStart>& starts);
 /// Throws std::invalid_argument unless all of them lie between the sides of the scene's gates.
 void require_inside(const std::vector<PaperStart>& starts, const Scene& scene);
+
+/// Body, beams, drag and field of the paper's Table IV, whatever the forces (it does not print
+/// them): only then do its numbers belong beside these.
+[[nodiscard]] bool like_table4(const Scene& scene);
 
 }  // namespace gatewalk::lattice

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lattice/field.h"
+#include "lattice/scene/gates.h"
 
 namespace gatewalk::lattice {
 

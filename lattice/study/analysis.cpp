@@ -33,9 +33,10 @@ double trapped_share(const markov::Chain& chain, int input) {
 /// draw and beside some waves of shares and totals; as much again for all groups.
 void require_memory(const CostedChain& c, const FieldParams& field, bool with_groups) {
   constexpr double kMostBytes = 8.0 * (1 << 30);
+  const auto costs = static_cast<double>(c.rewards.front().size());
   const double states = static_cast<double>(field.columns) * field.rows * c.chain.inputs();
   const double numbers =
-      field.max_gates > 0 ? 2.0 * (1.0 + 2.0 * kCosts) + 4.0 * field.max_gates : 4.0;
+      field.max_gates > 0 ? 2.0 * (1.0 + 2.0 * costs) + 4.0 * field.max_gates : 4.0;
   if (states * numbers * sizeof(double) * (with_groups ? 2.0 : 1.0) > kMostBytes)
     throw std::invalid_argument(
         "analysis: the states of " + std::to_string(field.columns) + " x " +
@@ -73,7 +74,8 @@ std::optional<StateRange> common_part(const StateRange& a, const StateRange& b,
 /// The chance of the target by start. In a field that is its own mirror image, a start is as likely
 /// to end so as its image to end so in the mirror: the mean of both, where their states overlap.
 std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const CellMap& map,
-                                           const FieldParams& field, const Passages& passages,
+                                           const FieldParams& field, int start_face,
+                                           const Passages& passages,
                                            const std::vector<Passages>& groups) {
   const CostedChain& c = chain.chain;
   const StateSpace& space = chain.space;
@@ -122,7 +124,7 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Cel
   };
   std::vector<int> entries;
   for (int state = 0; state < space.size(); ++state)
-    if (space.face(state) == Boundary::enter) entries.push_back(state);
+    if (space.face(state) == start_face) entries.push_back(state);
   for (const int state : entries) {
     if (!in_mirror) {
       add(space.range(state), first.is_sampled(state));
@@ -139,11 +141,11 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Cel
 
 }  // namespace
 
-Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisOptions& options,
+Analysis analyze(const Problem& problem, const AnalysedChain& chain, const AnalysisOptions& options,
                  const Work& work) {
   const Stopwatch watch;
-  const CellMap map = gates_of(scene).map();
-  const FieldParams& field = scene.field;
+  const CellMap& map = problem.map();
+  const FieldParams& field = problem.field;
   const CostedChain& c = chain.chain;
   const StateSpace& space = chain.space;
   const markov::Field cells{field.columns, field.rows};
@@ -188,14 +190,14 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     return mean_95(value(out.totals), parts);
   };
   out.gates = of_totals([](const markov::WalkTotals& t) { return t.visits.sum(); });
-  for (std::size_t k = 0; k < kCosts; ++k) {
-    out.costs[k] = of_totals(
-        [k](const markov::WalkTotals& t) { return markov::WalkTotals::all(t.totals[k]).mean(); });
+  for (std::size_t k = 0; k < map.section.costs.size(); ++k) {
+    out.costs.push_back(of_totals(
+        [k](const markov::WalkTotals& t) { return markov::WalkTotals::all(t.totals[k]).mean(); }));
     for (std::size_t e = 0; e < markov::kEndings; ++e)
-      out.costs_of[e][k] =
-          of_totals([k, e](const markov::WalkTotals& t) { return t.totals[k][e].mean(); });
+      out.costs_of[e].push_back(
+          of_totals([k, e](const markov::WalkTotals& t) { return t.totals[k][e].mean(); }));
   }
-  if (std::isfinite(out.costs[0].mean))
+  if (!out.costs.empty() && std::isfinite(out.costs[0].mean))
     out.walks = markov::timed_walks(c.chain, cells, c.start, field.max_gates, c.rewards,
                                     options.timed_walks, options.seed);
 
@@ -214,7 +216,7 @@ Analysis analyze(const Scene& scene, const AnalysedChain& chain, const AnalysisO
     out.why_not_endless = e.what();
   }
 
-  out.starts = chances_of_starts(chain, map, field, passages, groups);
+  out.starts = chances_of_starts(chain, map, field, problem.start.face, passages, groups);
 
   out.types.resize(map.types.size());
   passages.each([&](const Passages::Place& place, double visits) {

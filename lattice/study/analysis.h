@@ -11,7 +11,7 @@
 #include "dynamics/base/work.h"
 #include "lattice/pool/costed_chain.h"
 #include "lattice/pool/lumped_chain.h"
-#include "lattice/scene/scene.h"
+#include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"
 #include "markov/paths.h"
 #include "markov/quasi_stationary.h"
@@ -27,9 +27,10 @@ struct AnalysisOptions {
   std::uint64_t seed = 1;
 };
 
-/// The chance of the target from one of the ways to enter the first gate from below; NaN where no
-/// run did. In a field that is its own mirror image the mean with that of the image, by ranges that
-/// two states have in common. The interval: sampling, and what smaller states would change.
+/// The chance of the target from one of the ways to enter the first cell by the start's face; NaN
+/// where no run did. In a field that is its own mirror image the mean with that of the image, by
+/// ranges that two states have in common. The interval: sampling, and what smaller states would
+/// change.
 struct StartChance {
   dynamics::StateRange range;
   Mean95 chance;
@@ -45,14 +46,14 @@ struct Analysis {
     return !(target_chance > 0.0 && target_chance < 1.0 - kRounding);
   }
   bool by_groups = false;     // of trials, which make the intervals; none of bins
-  markov::WalkTotals totals;  // quantities by dynamics::Cost
+  markov::WalkTotals totals;  // quantities by Section::costs
   /// Gates visited, and what bodies took, of all of them. Intervals: sampling, and what smaller
   /// states would change; none without groups.
   Mean95 gates;
-  std::array<Mean95, dynamics::kCosts> costs;
-  std::array<std::array<Mean95, dynamics::kCosts>, markov::kEndings> costs_of;  // by ending
-  std::vector<markov::TimedWalk> walks;                                         // seconds
-  std::optional<markov::QuasiStationary> endless;                               // none: see below
+  std::vector<Mean95> costs;                                   // by Section::costs
+  std::array<std::vector<Mean95>, markov::kEndings> costs_of;  // by ending
+  std::vector<markov::TimedWalk> walks;                        // seconds
+  std::optional<markov::QuasiStationary> endless;              // none: see below
   std::string why_not_endless;
   std::vector<double> endless_boundaries;  // its states by face
   std::vector<StartChance> starts;
@@ -63,11 +64,11 @@ struct Analysis {
   /// of one that nobody ends in, the latter is empty.
   markov::CellProbabilities passed, trapping;
   std::vector<double> state_trapping;  // the latter by state, in all gates together
-  std::vector<double> type_trapping;   // and by type of gates_of(scene).types()
+  std::vector<double> type_trapping;   // and by type of cell
   struct Type {
     double visits = 0.0, trapped = 0.0;  // expected, of a body
   };
-  std::vector<Type> types;     // by gates_of(scene).types()
+  std::vector<Type> types;     // of cells
   dynamics::StateSpace space;  // of the chain
   LumpingParts lumping;
   std::optional<LumpedChain> lumped;  // none where it cannot be made
@@ -75,7 +76,7 @@ struct Analysis {
 };
 
 /// Throws std::invalid_argument for fields whose states would take more than some 8 GiB.
-[[nodiscard]] Analysis analyze(const Scene& scene, const AnalysedChain& chain,
+[[nodiscard]] Analysis analyze(const Problem& problem, const AnalysedChain& chain,
                                const AnalysisOptions& options, const dynamics::Work& work = {});
 
 }  // namespace gatewalk::lattice

@@ -89,11 +89,11 @@ void add_walks(StateWalks& walks, const StateSpace& space, int first, const Fiel
   for (std::size_t trial = 0; trial < each.passed.size(); ++trial) {
     states.clear();
     std::int32_t at = first;
-    for (const GatePassage passage : each.of_trial(trial)) {
-      if (passage.ending == dynamics::Ending::broken) break;
+    for (const CellPassage passage : each.of_trial(trial)) {
+      if (passage.fate == dynamics::Fate::broken) break;
       states.push_back(in_gate(passage.type, at));
-      at = passage.ending == dynamics::Ending::trapped ? StateWalks::kTrapped
-                                                       : space.index_of(passage.entry).state;
+      at = passage.fate == dynamics::Fate::trapped ? StateWalks::kTrapped
+                                                   : space.index_of(passage.entry).state;
     }
     walks.add(states, at);
   }
@@ -172,8 +172,8 @@ ForceMemory force_memory(const RunTrials& held, const RunTrials& anew, std::uint
     if (a) ++only_held[static_cast<std::size_t>(*a)];
     if (b) ++only_anew[static_cast<std::size_t>(*b)];
   }
-  ForceMemory memory{fidelity_change({anew.tally, anew.each.final_gates},
-                                     {held.tally, held.each.final_gates}, seed),
+  ForceMemory memory{paired_change({anew.each.final_gates, anew.tally.final_gates},
+                                   {held.each.final_gates, held.tally.final_gates}, seed),
                      {}};
   for (std::size_t e = 0; e < markov::kEndings; ++e)
     memory.endings[e] =

@@ -15,7 +15,7 @@
 #include "lattice/reference.h"
 #include "lattice/statistics/gates_ahead.h"
 #include "lattice/statistics/independence.h"
-#include "lattice/study/fidelity.h"
+#include "lattice/statistics/paired_change.h"
 
 namespace gatewalk::lattice {
 
@@ -103,7 +103,7 @@ void keep_endings(FieldTrials& all, const FieldTrials& more);
 
 /// The same trials with the random force held over crossings, as the model has it, and drawn anew.
 struct ForceMemory {
-  FidelityChange change;                                   // of the final gates
+  PairedChange change;                                     // of the final gates
   std::array<PairedDifference, markov::kEndings> endings;  // drawn anew less held, by Ending
 
   [[nodiscard]] bool matters() const {

@@ -1,15 +1,11 @@
 #include "lattice/study/parameter_effects.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
-#include "dynamics/disc/contact.h"
-#include "dynamics/disc/methods/method.h"
-#include "dynamics/disc/runs.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/statistics/group_spread.h"
 
@@ -37,19 +33,6 @@ struct Terms {
   }
 };
 
-/// A gate with so many times the number; steps still fit into a hold of the random force.
-GateParams changed(GateParams p, const ParamInfo& info, double factor) {
-  info.ref(p) *= factor;
-  if (info.key == "forces.random_rate_Hz") p.run.step /= factor;
-  return p;
-}
-
-// Numbers that are how a scene is computed, not what it is.
-bool is_physical(std::string_view key) {
-  return key != "run.step_s" && key != "run.event_tolerance_m" && key != "run.tolerance" &&
-         key != "contact.impulse_threshold_Ns";
-}
-
 /// Of what passages take for a chain and for its groups, 8 GiB hold so many states.
 double most_states(const FieldParams& field) {
   constexpr double kMostBytes = 8.0 * (1 << 30), kNumbers = 2.0 * 4.0;
@@ -57,39 +40,33 @@ double most_states(const FieldParams& field) {
          (kNumbers * sizeof(double) * field.columns * field.rows * std::max(1, field.max_gates));
 }
 
-/// From a body that enters so to the nearer of the beams at rest (m); negative: there is no room.
-double room(const GateParams& p, const Entry& entry) {
-  const BodyState body = entry_state(p, entry);
-  return std::min(nearest(p, kLeft, body, 0.0).gap, nearest(p, kRight, body, 0.0).gap);
-}
-
 class Parameters {
  public:
-  Parameters(const Scene& scene, const AnalysedChain& chain, const Passages& passages,
+  Parameters(const Problem& problem, const AnalysedChain& chain, const Passages& passages,
              const std::vector<Passages>& groups, const ParameterOptions& options)
-      : field_(scene.field), gates_(gates_of(scene)), options_(options) {
+      : field_(problem.field), cells_(problem.cells), options_(options) {
     add_samples(chain, passages, options.runs);
     for (std::size_t g = 0; g < groups.size(); ++g)
       add_samples(chain.groups[g], groups[g], options.runs / std::ssize(groups));
-    as_it_is_ = values([](const GateParams& p) { return p; });
+    as_it_is_ = values(cells_.cells);
   }
 
-  /// None where the number is zero, or cannot be changed.
-  [[nodiscard]] std::optional<ParameterEffect> effect(const ParamInfo& info) {
-    double value = info.get(gates_.types().front());
+  /// Of that number of the cells. None where it is zero, or cannot be changed.
+  [[nodiscard]] std::optional<ParameterEffect> effect(std::size_t number) {
+    std::vector<Cell::Number> of_types;
+    for (const auto& cell : cells_.cells) of_types.push_back(cell->numbers()[number]);
+    double value = of_types.front().value;
     bool any = false;
-    for (const GateParams& p : gates_.types()) {
-      any = any || info.get(p) != 0.0;
-      if (info.get(p) != value) value = std::nan("");
+    for (const Cell::Number& n : of_types) {
+      any = any || n.value != 0.0;
+      if (n.value != of_types.front().value) value = std::nan("");
     }
     const double step = options_.relative_step;
-    const bool up = allowed(info, 1.0 + step), down = allowed(info, 1.0 - step);
+    const Cells larger = changed(number, 1.0 + step), smaller = changed(number, 1.0 - step);
+    const bool up = !larger.empty(), down = !smaller.empty();
     if (!any || (!up && !down)) return {};
-    const auto with = [&](double factor) {
-      return values([&](const GateParams& p) { return changed(p, info, factor); });
-    };
-    const std::vector<double> above = up ? with(1.0 + step) : as_it_is_,
-                              below = down ? with(1.0 - step) : as_it_is_;
+    const std::vector<double> above = up ? values(larger) : as_it_is_,
+                              below = down ? values(smaller) : as_it_is_;
     const auto used = [&](std::size_t i) {
       return std::isfinite(above[i] + below[i] + as_it_is_[i]);
     };
@@ -109,7 +86,7 @@ class Parameters {
     const auto both = [&](const Sides& s, std::size_t part) {
       return (more(s, part) + less(s, part)) / (up && down ? 2.0 : 1.0);
     };
-    ParameterEffect e{info.key, value, {}, {}};
+    ParameterEffect e{of_types.front().key, value, {}, {}};
     e.left_out =
         1.0 - static_cast<double>(changes.both.front().n) / static_cast<double>(options_.runs);
     constexpr double kMostLeftOut = 0.05;
@@ -118,7 +95,7 @@ class Parameters {
       return of_parts(few, [&](std::size_t part) { return both(s, part); });
     };
     e.elasticity = central(changes);
-    for (int type = 0; type < std::ssize(gates_.types()) && gates_.types().size() > 1; ++type)
+    for (int type = 0; type < std::ssize(cells_.cells) && cells_.cells.size() > 1; ++type)
       e.of_type.push_back(central(sides([&](std::size_t i) { return samples_[i].type == type; })));
     e.more = up ? more(changes, 0) : std::nan("");
     e.less = down ? less(changes, 0) : std::nan("");
@@ -163,10 +140,10 @@ class Parameters {
           draws.place((static_cast<double>(i) + random.uniform()) / static_cast<double>(count));
       const auto column = static_cast<int>(place.cell % field_.columns),
                  row = static_cast<int>(place.cell / field_.columns);
-      const int type = gates_.type_of(column, row);
+      const int type = cells_.map.type_of(column, row);
       const Entry entry = chain.entry(place.input, random);
       samples_.push_back({parts_.size() - 1, place, type, entry, draws.weight(place),
-                          room(gates_.types()[static_cast<std::size_t>(type)], entry)});
+                          cells_.cells[static_cast<std::size_t>(type)]->clearance(entry)});
     }
   }
 
@@ -204,74 +181,67 @@ class Parameters {
     return mean_95(value(0), groups);
   }
 
-  [[nodiscard]] bool allowed(const ParamInfo& info, double factor) const {
-    return std::all_of(gates_.types().begin(), gates_.types().end(), [&](const GateParams& gate) {
-      const GateParams p = changed(gate, info, factor);
-      if (!info.permits(info.get(p))) return false;
-      try {
-        dynamics::validate(p);
-        (void)make_method(p);
-      } catch (const InvalidParameter&) {
-        return false;
-      }
-      return true;
-    });
+  using Cells = std::vector<std::shared_ptr<const Cell>>;  // by type
+
+  /// With so many times the number in cells of all types; none where one does not permit it.
+  [[nodiscard]] Cells changed(std::size_t number, double times) const {
+    Cells cells;
+    for (const auto& cell : cells_.cells) {
+      cells.push_back(cell->with(number, times));
+      if (!cells.back()) return {};
+    }
+    return cells;
   }
 
-  /// The chance of the target behind a run of each sample, in gates changed so; NaN where it broke,
-  /// and where the changed gate's beams are in the way of the entry, which bodies then make
-  /// otherwise.
-  template <class Change>
-  [[nodiscard]] std::vector<double> values(Change change) {
+  /// The chance of the target behind a passage of each sample through these cells; NaN where it
+  /// broke, and where a changed cell is in the way of the entry, which bodies then make otherwise.
+  [[nodiscard]] std::vector<double> values(const Cells& cells) {
     std::vector<double> out(samples_.size());
-    tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do
-    for (int type = 0; type < std::ssize(gates_.types()); ++type) {
-      const GateParams p = change(gates_.types()[static_cast<std::size_t>(type)]);
+    for (int type = 0; type < std::ssize(cells); ++type) {
+      const Cell& cell = *cells[static_cast<std::size_t>(type)];
       std::vector<std::size_t> here;
       for (std::size_t i = 0; i < samples_.size(); ++i) {
         if (samples_[i].type != type) continue;
-        if (room(p, samples_[i].entry) < std::min(0.0, samples_[i].room))
+        if (cell.clearance(samples_[i].entry) < std::min(0.0, samples_[i].room))
           out[i] = std::nan("");
         else
           here.push_back(i);
       }
-      const auto method = make_method(p);
       carry_out_trials(
-          p, *method, std::ssize(here),
-          [&](RunSlot& slot) {
-            const std::size_t i = here[static_cast<std::size_t>(slot.trial)];
-            slot.start = entry_state(p, samples_[i].entry);
-            slot.force = RandomForce(p.forces, drawn(Draw::noise, i));
+          cell, std::ssize(here),
+          [&](Body& body) {
+            const std::size_t i = here[static_cast<std::size_t>(body.trial)];
+            body.entry = samples_[i].entry;
+            body.random = drawn(Draw::noise, i);
+            cell.begin(body);
           },
-          [&](RunSlot& slot, const GateRun& run) {
-            const std::size_t i = here[static_cast<std::size_t>(slot.trial)];
-            add_run(health.local(), p, run);
-            out[i] = value_of(p, samples_[i], run);
+          [&](Body& body, const Passage& passage) {
+            const std::size_t i = here[static_cast<std::size_t>(body.trial)];
+            out[i] = value_of(samples_[i], passage);
             return false;
-          });
+          },
+          health_);
     }
-    for (const Health& part : health) health_ += part;
     return out;
   }
 
-  [[nodiscard]] double value_of(const GateParams& p, const Sample& s, const GateRun& run) const {
+  [[nodiscard]] double value_of(const Sample& s, const Passage& passage) const {
     const Part& part = parts_[s.part];
     const markov::EndingChance& chance = part.passages.chance();
     const auto is = [&](markov::Ending e) { return chance.ending() == e ? 1.0 : 0.0; };
-    if (run.ending == Ending::broken) return std::nan("");
-    if (run.ending == Ending::trapped) return is(markov::Ending::trapped);
-    const Entry crossing = crossing_of(p, run.ending, run.exit);
-    const Face& move = part.space.section().faces[crossing.face];
+    if (passage.fate == Fate::broken) return std::nan("");
+    if (passage.fate == Fate::trapped) return is(markov::Ending::trapped);
+    const Face& move = part.space.section().faces[static_cast<std::size_t>(passage.next.face)];
     const auto column = static_cast<int>(s.place.cell % field_.columns) + move.di_x,
                row = static_cast<int>(s.place.cell / field_.columns) + move.di_y;
     if (!field_.contains(column, row))
       return is(markov::edge_before({field_.columns, field_.rows}, column, row));
     return chance(s.place.draw + 1, std::int64_t{row} * field_.columns + column,
-                  part.space.index_of(crossing).state);
+                  part.space.index_of(passage.next).state);
   }
 
   const FieldParams& field_;
-  FieldGates gates_;
+  const CellField& cells_;
   const ParameterOptions& options_;
   std::vector<Part> parts_;  // that of all trials, and of the groups
   std::vector<Sample> samples_;
@@ -281,22 +251,22 @@ class Parameters {
 
 }  // namespace
 
-ParameterEffects parameter_effects(const Scene& scene, const AnalysedChain& chain,
+ParameterEffects parameter_effects(const Problem& problem, const AnalysedChain& chain,
                                    markov::Ending target, const ParameterOptions& options,
                                    const Work& work) {
   const Stopwatch watch;
   const char* const kRuns = "gate runs for parameters";
-  std::vector<const ParamInfo*> infos;
-  for (const ParamInfo& info : gate_param_table())
-    if (is_physical(info.key)) infos.push_back(&info);
+  if (problem.is_recorded())
+    throw std::invalid_argument("parameters: runs were recorded, there is no cell to change");
+  const std::size_t numbers = problem.cells.cells.front()->numbers().size();
   const auto [passages, groups] =
-      all_passages(chain, scene.field, target, false, "chain for parameters", work);
+      all_passages(chain, problem.field, target, false, "chain for parameters", work);
   ParameterEffects out{.chance = passages.at_start(), .effects = {}, .health = {}};
   if (passages.at_start() > 0.0) {
-    Parameters parameters(scene, chain, passages, groups, options);
-    for (std::size_t k = 0; k < infos.size(); ++k) {
-      work.tell(kRuns, static_cast<std::int64_t>(k), std::ssize(infos));
-      if (auto effect = parameters.effect(*infos[k])) out.effects.push_back(std::move(*effect));
+    Parameters parameters(problem, chain, passages, groups, options);
+    for (std::size_t k = 0; k < numbers; ++k) {
+      work.tell(kRuns, static_cast<std::int64_t>(k), static_cast<std::int64_t>(numbers));
+      if (auto effect = parameters.effect(k)) out.effects.push_back(std::move(*effect));
     }
     out.health = parameters.health();
   }
@@ -304,17 +274,16 @@ ParameterEffects parameter_effects(const Scene& scene, const AnalysedChain& chai
   return out;
 }
 
-ParameterEffects parameter_effects(const Scene& scene, RunPool& pool, markov::Ending target,
+ParameterEffects parameter_effects(const Problem& problem, RunPool& pool, markov::Ending target,
                                    const ParameterOptions& options, int per_leaf,
                                    std::int64_t most_runs, const Work& work) {
   const Stopwatch watch;
   constexpr std::int64_t kPoolOfRuns = 25;
-  const Entry start = entry_of(scene.start);
-  const std::size_t own = pool.place_of(start);
+  const std::size_t own = pool.place_of(problem.start);
   if (own == pool.starts.size())
     throw std::invalid_argument("parameters: the start has no runs of its own");
   const std::int64_t had = pool.gate_runs();
-  PoolRunner runner(scene, options.seed, most_runs, work);
+  PoolRunner runner(problem, options.seed, most_runs, work);
   const auto lacking = [&] {
     return static_cast<double>(std::min(kPoolOfRuns * options.runs - pool.gate_runs(),
                                         most_runs - runner.gate_runs)) /
@@ -330,9 +299,10 @@ ParameterEffects parameter_effects(const Scene& scene, RunPool& pool, markov::En
   }
   const auto runs = static_cast<double>(pool.gate_runs());
   const double leaf = std::max(per_leaf * std::sqrt(runs / static_cast<double>(had)),
-                               2.0 * runs / most_states(scene.field));  // with mirror images
-  const auto chain = analysed_chain(scene, pool, start, static_cast<int>(std::ceil(leaf)));
-  ParameterEffects out = parameter_effects(scene, chain, target, options, work);
+                               2.0 * runs / most_states(problem.field));  // with mirror images
+  const auto chain =
+      analysed_chain(problem, pool, pool.starts[own], static_cast<int>(std::ceil(leaf)));
+  ParameterEffects out = parameter_effects(problem, chain, target, options, work);
   out.health += runner.health;
   out.added_runs = runner.gate_runs;
   out.pool_runs = pool.gate_runs();

@@ -2,21 +2,21 @@
 /// How the chance of an ending answers to the numbers of a scene.
 
 #include <cstdint>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/health.h"
 #include "lattice/pool/costed_chain.h"
 #include "lattice/pool/passages.h"
-#include "lattice/scene/scene.h"
+#include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {
 
 struct ParameterEffect {
-  std::string_view key;  // dynamics::ParamInfo's
-  double value = 0.0;    // NaN where types differ in it
+  std::string key;     // dynamics::Cell::Number's
+  double value = 0.0;  // NaN where types differ in it
   /// Per cent that the chance changes for one per cent of the value in gates of all types: (P+ -
   /// P-) / (2 P step). What the number does at each gate is taken to first order; over the gates of
   /// a way to the target these changes multiply. The interval counts chance in these gate runs and
@@ -25,7 +25,7 @@ struct ParameterEffect {
   Mean95 elasticity;
   std::vector<Mean95> of_type;    // the same, in gates of one type alone
   double more = 0.0, less = 0.0;  // the same to one side each, with more and with less of the
-                                  // number; NaN where the scene does not permit it
+                                  // number; NaN where the cell does not permit it
   bool bends = false;             // these differ by more than chance: no single number says it
   /// Share of the places where bodies cannot enter a gate that is changed so, or where runs broke.
   double left_out = 0.0;
@@ -50,16 +50,16 @@ struct ParameterEffects {
 /// In the places that bodies pass on their way to the target: gate runs with a little more and a
 /// little less of each number under the same noise, and what the chain says of where they lead. The
 /// same with each of the chain's groups, for the interval. What runs take is not used.
-[[nodiscard]] ParameterEffects parameter_effects(const Scene& scene, const AnalysedChain& chain,
+[[nodiscard]] ParameterEffects parameter_effects(const Problem& problem, const AnalysedChain& chain,
                                                  markov::Ending target,
                                                  const ParameterOptions& options,
                                                  const dynamics::Work& work = {});
 
-/// The same of the chain of a pool, from its runs of the scene's start. So that the chain's error
+/// The same of the chain of a pool, from its runs of the start. So that the chain's error
 /// is no more than chance makes in the runs for parameters, full trials are added until it has 25
 /// times as many, `most_runs` new gate runs at most, about; its states grow with the square root of
 /// that. Throws as predict_pooled.
-[[nodiscard]] ParameterEffects parameter_effects(const Scene& scene, RunPool& pool,
+[[nodiscard]] ParameterEffects parameter_effects(const Problem& problem, RunPool& pool,
                                                  markov::Ending target,
                                                  const ParameterOptions& options,
                                                  int per_leaf = dynamics::kEntriesPerLeaf,

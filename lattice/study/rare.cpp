@@ -10,10 +10,8 @@
 #include <utility>
 
 #include "dynamics/base/share.h"
-#include "dynamics/disc/runs.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/pool_runner.h"
-#include "lattice/scene/settle.h"
 #include "markov/committor.h"
 
 namespace gatewalk::lattice {
@@ -29,17 +27,17 @@ constexpr int kMostCopies = 100;  // that one entry is split into
 /// Bodies that one trial is split into; from then on none is split, which costs accuracy only.
 constexpr std::uint64_t kMostOfTrial = std::uint64_t{1} << 20;
 
-struct Body {
+/// A body and what it stands for.
+struct Weighted {
   std::int64_t trial = 0;  // of the block
   int column = 0, row = 0;
   double weight = 1.0;
-  BodyState from;
-  RandomForce force;
+  Body body;
 };
 
 /// What all trials of a call share.
 struct Aim {
-  const FieldGates& gates;
+  const CellField& cells;
   int columns, target;
   double start_value;
   const EntryValue& value;
@@ -61,19 +59,19 @@ class SplitTrial {
   /// Weight that entered rows 1, 2, ..., (target).
   [[nodiscard]] const std::vector<double>& entered() const { return entered_; }
 
-  /// Takes a body's run, and adds to `next` the bodies that go on from it.
-  void take(Body body, const GateRun& run, std::vector<Body>& next) {
-    if (run.ending == Ending::trapped || run.ending == Ending::broken) return;
-    const GateParams& p = aim_.gates.at(body.column, body.row);
-    const Entry entry = crossing_of(p, run.ending, run.exit);
-    const Face& move = disc_section().faces[entry.face];
-    body.column += move.di_x;
-    body.row += move.di_y;
-    if (body.column < 0 || body.column >= aim_.columns) return;
-    if (move.di_y > 0) entered_[static_cast<std::size_t>(body.row) - 1] += body.weight;
-    if (body.row == aim_.target) return;
-    body.from = shifted_into_next(p, run.ending, run.exit);
-    const double worth = aim_.value(body.column, body.row, entry);
+  /// Takes a body's passage, and adds to `next` the bodies that go on from it.
+  void take(const Weighted& before, const Passage& passage, std::vector<Weighted>& next) {
+    if (passage.fate != Fate::left) return;
+    const Entry& entry = passage.next;
+    const Face& move = aim_.cells.map.section.faces[static_cast<std::size_t>(entry.face)];
+    const int column = before.column + move.di_x, row = before.row + move.di_y;
+    if (column < 0 || column >= aim_.columns) return;
+    if (move.di_y > 0) entered_[static_cast<std::size_t>(row) - 1] += before.weight;
+    if (row == aim_.target) return;
+    Weighted body = before;
+    body.column = column;
+    body.row = row;
+    const double worth = aim_.value(column, row, entry);
     if (!(worth > 0.0)) throw std::invalid_argument("splitting: a value is not positive");
     const double parts = body.weight * worth / aim_.start_value;
     const bool within = parts >= 1.0 / kWindow && parts <= kWindow;
@@ -86,9 +84,10 @@ class SplitTrial {
     const int copies =
         static_cast<int>(whole) + (!too_many && chance_.uniform() < parts - whole ? 1 : 0);
     body.weight /= too_many ? whole : parts;
+    const Cell& cell_before = aim_.cells.at(before.column, before.row);
     for (int copy = 0; copy < copies; ++copy) {
       next.push_back(body);
-      if (copy > 0) next.back().force.go_on_with(random());
+      if (copy > 0) cell_before.fork(next.back().body, random());
     }
   }
 
@@ -147,78 +146,91 @@ std::array<double, 2> RowChance::interval_95() const {
   return {probability / factor, std::min(1.0, probability * factor)};
 }
 
-Scene up_to_row(const Scene& scene, int row) {
+Problem up_to_row(const Problem& problem, int row) {
   if (row < 1) throw std::invalid_argument("the row to enter must be 1 or more");
-  Scene deep = scene;
+  Problem deep = problem;
   deep.field.rows = row;
   deep.field.max_gates = 0;
-  if (!scene.terrain) return deep;
-  if (row > scene.field.rows)
+  std::vector<int>& types = deep.cells.map.type_of_cell;
+  if (types.empty()) return deep;
+  if (row > problem.field.rows)
     throw std::invalid_argument(
-        scene.source + ": the terrain has " + std::to_string(scene.field.rows) +
-        " rows; the row to enter (--row) must be at most " + std::to_string(scene.field.rows) +
-        (scene.terrain->shares.empty() ? "" : ", or field.rows larger: as many are drawn"));
-  deep.terrain->type_of_cell.resize(static_cast<std::size_t>(deep.field.columns) *
-                                    static_cast<std::size_t>(row));  // the near rows
+        problem.source + ": the map has " + std::to_string(problem.field.rows) +
+        " rows; the row to enter (--row) must be at most " + std::to_string(problem.field.rows));
+  types.resize(static_cast<std::size_t>(deep.field.columns) *
+               static_cast<std::size_t>(row));  // the near rows
   return deep;
 }
 
-Splitting split(const Scene& scene, double start_value, const EntryValue& value,
+namespace {
+
+void require_splittable(const Problem& problem) {
+  if (problem.is_recorded())
+    throw std::invalid_argument(problem.source +
+                                ": rare needs new runs, which recorded runs do not give");
+  for (const Face& face : problem.map().section.faces)
+    if (face.di_y < 0)
+      throw std::invalid_argument(problem.source + ": bodies may move back by face " + face.name +
+                                  ": a body that enters a row again would be counted twice, so "
+                                  "rare cannot be asked of such cells");
+}
+
+}  // namespace
+
+Splitting split(const Problem& problem, double start_value, const EntryValue& value,
                 const SplittingOptions& options, const Work& work) {
-  const FieldGates gates = gates_of(up_to_row(scene, options.row));
+  require_splittable(problem);
+  const Problem deep = up_to_row(problem, options.row);
+  const CellField& cells = deep.cells;
   if (!(start_value > 0.0)) throw std::invalid_argument("splitting: a value is not positive");
-  if (scene.field.fidelity != Fidelity::active)
-    throw InvalidParameter("field.fidelity", "field.fidelity must be \"active\" for splitting");
-  std::vector<std::unique_ptr<const Method>> methods;
-  for (const GateParams& p : gates.types()) methods.push_back(make_method(p));
-  const GateParams& first = gates.at(scene.field.start_column(), 0);
+  const Cell& first = cells.at(deep.field.start_column(), 0);
   Splitting result;
   Sums sums(options.row);
-  const Aim aim{gates,        scene.field.columns,           options.row, start_value, value,
-                options.seed, stream_row(first, scene.start)};
-  /// Each body's run through its gate; those in gates of one type together.
-  const auto run_all = [&](std::vector<Body>& bodies) {
-    std::vector<GateRun> runs(bodies.size());
-    std::vector<std::vector<std::size_t>> of_type(gates.types().size());
+  const Aim aim{cells,        deep.field.columns,         options.row, start_value, value,
+                options.seed, first.stream_of(deep.start)};
+  /// Each body's passage through its cell; those in cells of one type together.
+  const auto run_all = [&](std::vector<Weighted>& bodies) {
+    std::vector<Passage> passages(bodies.size());
+    std::vector<std::vector<std::size_t>> of_type(cells.cells.size());
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      of_type[static_cast<std::size_t>(gates.type_of(bodies[i].column, bodies[i].row))].push_back(
-          i);
+      of_type[static_cast<std::size_t>(cells.map.type_of(bodies[i].column, bodies[i].row))]
+          .push_back(i);
     for (std::size_t type = 0; type < of_type.size(); ++type) {
       const std::vector<std::size_t>& wave = of_type[type];
-      const GateParams& p = gates.types()[type];
       carry_out_trials(
-          p, *methods[type], std::ssize(wave),
-          [&](RunSlot& slot) {
-            const Body& body = bodies[wave[static_cast<std::size_t>(slot.trial)]];
-            slot.start = body.from;
-            slot.force = body.force;
-            slot.force.enter(p.forces);
+          *cells.cells[type], std::ssize(wave),
+          [&](Body& body) {
+            const Body& waiting = bodies[wave[static_cast<std::size_t>(body.trial)]].body;
+            body.entry = waiting.entry;
+            body.random = waiting.random;
+            body.carried = waiting.carried;
           },
-          [&](RunSlot& slot, const GateRun& run) {
-            const std::size_t i = wave[static_cast<std::size_t>(slot.trial)];
-            runs[i] = run;
-            bodies[i].force = slot.force;
+          [&](Body& body, const Passage& passage) {
+            const std::size_t i = wave[static_cast<std::size_t>(body.trial)];
+            passages[i] = passage;
+            bodies[i].body = body;
             return false;
-          });
-      for (const std::size_t i : wave) add_run(result.health, p, runs[i]);
+          },
+          result.health);
     }
-    return runs;
+    return passages;
   };
   std::int64_t wanted_in_all = 0;
   // Gate by gate: all bodies of a block run through one gate, so that many are in flight at a time.
   const auto run_block = [&](TrialRange range) {
     std::vector<SplitTrial> trials;
-    std::vector<Body> bodies, next;
+    std::vector<Weighted> bodies, next;
     for (std::int64_t i = 0; i < range.count; ++i) {
       SplitTrial& t = trials.emplace_back(aim, range.first + i);
-      bodies.push_back({i, scene.field.start_column(), 0, 1.0, scene.start,
-                        RandomForce(first.forces, t.random())});
+      Body body{.entry = deep.start, .random = t.random()};
+      first.begin(body);
+      bodies.push_back({i, deep.field.start_column(), 0, 1.0, body});
     }
     while (!bodies.empty()) {
       work.tell("split trials", range.first, wanted_in_all);
-      const std::vector<GateRun> runs = run_all(bodies);
+      const std::vector<Passage> passages = run_all(bodies);
       for (std::size_t i = 0; i < bodies.size(); ++i)
-        trials[static_cast<std::size_t>(bodies[i].trial)].take(bodies[i], runs[i], next);
+        trials[static_cast<std::size_t>(bodies[i].trial)].take(bodies[i], passages[i], next);
       bodies = std::exchange(next, {});
     }
     for (const SplitTrial& t : trials) sums.add(t.entered());
@@ -269,37 +281,37 @@ constexpr std::int64_t kPoolTrials = 60'000, kFewestPoolTrials = kPoolTrials / 8
 /// The pool of a field: full trials from its start, no more than take so many gate runs, about.
 class Pool {
  public:
-  Pool(const Scene& scene, std::int64_t most_runs, std::uint64_t seed, const Work& work)
+  Pool(const Problem& problem, std::int64_t most_runs, std::uint64_t seed, const Work& work)
       : seed_(seed), work_(work) {
-    pool_.starts.push_back({.start = entry_of(scene.start)});
-    if (gates_of(scene).types().size() == 1) {
-      run_until_known(scene, most_runs);
+    pool_.starts.push_back({.start = problem.start});
+    const std::vector<int>& map = problem.map().type_of_cell;
+    if (map.empty()) {
+      run_until_known(problem, most_runs);
     } else {
-      run_in(scene, kPoolTrials / 2, most_runs / 2);
-      const std::vector<int>& map = scene.terrain->type_of_cell;
+      run_in(problem, kPoolTrials / 2, most_runs / 2);
       const std::set<int> types(map.begin(), map.end());
       const std::int64_t parts = 2 * std::ssize(types);
       for (const int type : types) {
-        Scene plain = scene;
-        std::vector<int>& cells = plain.terrain->type_of_cell;
+        Problem plain = problem;
+        std::vector<int>& cells = plain.cells.map.type_of_cell;
         std::fill(cells.begin(), cells.end(), type);
-        const auto start = static_cast<std::size_t>(scene.field.start_column());
+        const auto start = static_cast<std::size_t>(problem.field.start_column());
         cells[start] = map[start];
         run_in(plain, kPoolTrials / parts, most_runs / parts);
       }
     }
-    check_outcomes(scene, RunsFrom::everywhere, seed, std::ssize(start().full.final_gates), health_,
-                   work);
+    if (problem.check) problem.check(std::ssize(start().full.final_gates), seed, health_, work);
   }
 
   /// Leaves of so many entries at least.
   [[nodiscard]] Kernel kernel(const CellMap& map, int per_leaf) const {
     return kernel_of(map, pool_, per_leaf);
   }
-  /// In the field of the scene, which has the same types of gates.
-  [[nodiscard]] markov::FieldChain chain(const Kernel& kernel, const Scene& scene) const {
-    const CellMap map = gates_of(scene).map();
-    return chain_of(kernel, map, scene.field, {first_row(map, kernel.space, start())});
+  /// In that field, which has the same types of cells.
+  [[nodiscard]] markov::FieldChain chain(const Kernel& kernel, const Problem& problem) const {
+    const CellMap& map = problem.map();
+    return chain_of(kernel, map, problem.field,
+                    {first_row(kernel, map, pool_, start(), problem.start_type())});
   }
   [[nodiscard]] std::int64_t gate_runs() const { return gate_runs_; }
   [[nodiscard]] const Health& health() const { return health_; }
@@ -309,16 +321,16 @@ class Pool {
 
   static constexpr std::int64_t kFirst = 100;  // then a runner knows how many gates a trial takes
 
-  void run_in(const Scene& scene, std::int64_t trials, std::int64_t most_runs) {
-    PoolRunner runner(scene, seed_, most_runs, work_);
+  void run_in(const Problem& problem, std::int64_t trials, std::int64_t most_runs) {
+    PoolRunner runner(problem, seed_, most_runs, work_);
     runner.run_full(pool_.starts.front(), kFirst);
     if (runner.may_go_on()) runner.run_full(pool_.starts.front(), trials - kFirst);
     add(runner);
   }
   /// Twice as many trials again and again, until the way to the target is known; fewer also where
   /// nobody leaves the first gate.
-  void run_until_known(const Scene& scene, std::int64_t most_runs) {
-    PoolRunner runner(scene, seed_, most_runs, work_);
+  void run_until_known(const Problem& problem, std::int64_t most_runs) {
+    PoolRunner runner(problem, seed_, most_runs, work_);
     const auto& endings = start().full.endings;
     runner.run_full(pool_.starts.front(), kFirst);
     for (std::int64_t trials = kFewestPoolTrials; trials <= kPoolTrials && runner.may_go_on();
@@ -344,10 +356,11 @@ class Pool {
 
 }  // namespace
 
-RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const Work& work) {
+RareEvent rare_event(const Problem& problem, const SplittingOptions& options, const Work& work) {
   const Stopwatch watch;
-  const Scene deep = up_to_row(scene, options.row);
-  const CellMap map = gates_of(deep).map();
+  require_splittable(problem);
+  const Problem deep = up_to_row(problem, options.row);
+  const CellMap& map = deep.map();
   const Pool pool(deep, options.most_runs / 4, options.seed, work);
   RareEvent event{.splitting = {}, .chain = {}, .pool_runs = pool.gate_runs()};
   work.tell("chain", 0, 2);
@@ -367,7 +380,7 @@ RareEvent rare_event(const Scene& scene, const SplittingOptions& options, const 
   markov::Committor values;
   std::vector<double> least;  // by row
   if (known > 0) {
-    const Scene part = up_to_row(deep, known);
+    const Problem part = up_to_row(deep, known);
     values = markov::committor(pool.chain(kernel, part), {part.field.columns, known});
     const std::ptrdiff_t of_row = std::ptrdiff_t{values.columns} * values.inputs;
     for (auto row = values.values.begin(); row != values.values.end(); row += of_row)

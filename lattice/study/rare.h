@@ -11,7 +11,7 @@
 #include "dynamics/base/work.h"
 #include "dynamics/cells/health.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/scene/scene.h"
+#include "lattice/problem.h"
 
 namespace gatewalk::lattice {
 
@@ -45,18 +45,18 @@ struct Splitting {
   dynamics::Health health;
 };
 
-/// The scene with as many rows of gates as there are before `row`, and no limit of gates. Throws
-/// std::invalid_argument where its terrain has fewer, and for a row below 1.
-[[nodiscard]] Scene up_to_row(const Scene& scene, int row);
+/// The field with as many rows of cells as there are before `row`, and no limit of cells. Throws
+/// std::invalid_argument where its map has fewer, and for a row below 1.
+[[nodiscard]] Problem up_to_row(const Problem& problem, int row);
 
-/// Full trials from the scene's start, without limit of gates. A body of weight w that enters a
+/// Full trials from the start, without limit of gates. A body of weight w that enters a
 /// gate of value v is to weigh v0/v, v0 the value of the start: within a factor of two it goes on
 /// as it is; else it becomes a whole number of bodies of such weights, by chance so that the mean
 /// is w, each with random forces of its own from then on. The weights that enter a row add up to an
 /// unbiased estimate of the chance to enter it, whatever the values. The same bits on any number of
-/// threads. Throws dynamics::InvalidParameter, also for another fidelity than `active`;
-/// std::invalid_argument as up_to_row and for a value that is not positive.
-[[nodiscard]] Splitting split(const Scene& scene, double start_value, const EntryValue& value,
+/// threads. Throws std::invalid_argument as up_to_row, for a value that is not positive, for
+/// recorded runs, and where bodies may move back to a row before: they would be counted twice.
+[[nodiscard]] Splitting split(const Problem& problem, double start_value, const EntryValue& value,
                               const SplittingOptions& options, const dynamics::Work& work = {});
 
 struct RareEvent {
@@ -71,7 +71,7 @@ struct RareEvent {
 /// of that where some hundreds of them enter the row or none leaves the first gate. Where gates are
 /// of several types half of these run through fields of one type each, but for the first gate: else
 /// types that stand far from the start would be seen by few bodies.
-[[nodiscard]] RareEvent rare_event(const Scene& scene, const SplittingOptions& options,
+[[nodiscard]] RareEvent rare_event(const Problem& problem, const SplittingOptions& options,
                                    const dynamics::Work& work = {});
 
 }  // namespace gatewalk::lattice

@@ -1,22 +1,28 @@
 #include "lattice/study/trials.h"
 
-#include "lattice/scene/bins.h"
-#include "lattice/scene/settle.h"
-
 namespace gatewalk::lattice {
 
-FieldTally field_trials(const Scene& scene, std::int64_t trials, std::uint64_t seed,
+FieldTally field_trials(const FieldParams& field, std::int64_t trials, const RunTrialRange& run,
                         const dynamics::Work& work, FieldCosts* costs, ExitCounts* exits) {
-  const dynamics::StateSpace space = fixed_space(scene);
-  const FieldGates gates = gates_of(scene);
-  FieldTally tally(scene.field);
+  FieldTally tally(field);
   work.in_pieces("field trials", trials, [&](dynamics::TrialRange range) {
     FieldTrials each;
-    tally += run_field(gates, scene.field, scene.start, space, seed, range, &each);
+    tally += run(range, each);
     if (costs != nullptr) costs->add(each);
     if (exits != nullptr) exits->add(each);
   });
-  check_outcomes(scene, RunsFrom::everywhere, seed, trials, tally.health, work);
+  return tally;
+}
+
+FieldTally field_trials(const Problem& problem, std::int64_t trials, std::uint64_t seed,
+                        const dynamics::Work& work, FieldCosts* costs, ExitCounts* exits) {
+  FieldTally tally = field_trials(
+      problem.field, trials,
+      [&](dynamics::TrialRange range, FieldTrials& each) {
+        return run_field(problem.cells, problem.field, problem.start, seed, range, &each);
+      },
+      work, costs, exits);
+  if (problem.check) problem.check(trials, seed, tally.health, work);
   return tally;
 }
 

@@ -2,22 +2,28 @@
 /// Many trials through the field, and many walks, watched and checked.
 
 #include <cstdint>
+#include <functional>
 
 #include "dynamics/base/work.h"
 #include "lattice/exits.h"
 #include "lattice/field_costs.h"
 #include "lattice/gate_chain.h"
+#include "lattice/problem.h"
 #include "lattice/reference.h"
-#include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {
 
-/// Trials 0, 1, ... through the field from the scene's start; entries are counted by
-/// fixed_space(scene). A sample is run again by a better method (check_outcomes). What they took is
-/// added to `costs`, and where they left the field to `exits`, if given. Throws as run_field.
-[[nodiscard]] FieldTally field_trials(const Scene& scene, std::int64_t trials, std::uint64_t seed,
-                                      const dynamics::Work& work = {}, FieldCosts* costs = nullptr,
-                                      ExitCounts* exits = nullptr);
+/// Carries out a range of trials through the field, and says what each did.
+using RunTrialRange = std::function<FieldTally(dynamics::TrialRange range, FieldTrials& each)>;
+/// Trials 0, 1, ... What they took is added to `costs`, and where they left the field to `exits`,
+/// if given. Throws as `run`.
+[[nodiscard]] FieldTally field_trials(const FieldParams& field, std::int64_t trials,
+                                      const RunTrialRange& run, const dynamics::Work& work = {},
+                                      FieldCosts* costs = nullptr, ExitCounts* exits = nullptr);
+/// Of a problem's cells, from its start; a sample is run again by a better method, if there is one.
+[[nodiscard]] FieldTally field_trials(const Problem& problem, std::int64_t trials,
+                                      std::uint64_t seed, const dynamics::Work& work = {},
+                                      FieldCosts* costs = nullptr, ExitCounts* exits = nullptr);
 
 /// Walks 0, 1, ... of the chain. Throws as markov::Walker::walk.
 [[nodiscard]] markov::WalkTally walks(const markov::FieldChain& chain, const FieldParams& field,

@@ -66,8 +66,7 @@ class BlocksOf100 {
 
 /// What all starts share.
 struct Setup {
-  const Scene& scene;
-  const FieldGates types;
+  const Problem& problem;
   const dynamics::StateSpace& space;
   const std::vector<int> same;  // states of all types: which are one
   const ValidationOptions& options;
@@ -77,7 +76,7 @@ struct Setup {
   markov::Walker walker;
   const dynamics::Work& work;
 
-  [[nodiscard]] markov::Field field() const { return {scene.field.columns, scene.field.rows}; }
+  [[nodiscard]] markov::Field field() const { return {problem.field.columns, problem.field.rows}; }
 };
 
 /// Predictions from resampled matrices, (starts x replicates): fewer for large fields, which cost
@@ -86,7 +85,7 @@ std::vector<std::vector<markov::FinalDistribution>> resampled_predictions(
     const Setup& setup, const std::vector<markov::Start>& starts) {
   constexpr std::int64_t kMost = 999, kAtLeast = 50, kTogether = 8, kMostNumbers = 25'000'000;
   const markov::Field field = setup.field();
-  const int max_gates = setup.scene.field.max_gates;
+  const int max_gates = setup.problem.field.max_gates;
   const std::int64_t numbers = std::int64_t{field.columns} * field.rows * std::ssize(starts);
   const std::int64_t count =
       std::max(kAtLeast, affordable_replicates(setup.gates, field, max_gates,
@@ -113,7 +112,7 @@ TimedWalks walk(const Setup& setup, const markov::Start& start) {
   TimedWalks walked;
   const Stopwatch watch;
   setup.work.in_pieces("walks", setup.walks, [&](TrialRange range) {
-    walked.tally += setup.walker.walk(setup.field(), start, setup.scene.field.max_gates,
+    walked.tally += setup.walker.walk(setup.field(), start, setup.problem.field.max_gates,
                                       setup.options.seed, {range.first, range.count});
   });
   walked.seconds = watch.seconds();
@@ -128,12 +127,12 @@ struct TimedTrials {
 };
 
 /// Their walks through the states are added to `remembered`.
-TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov::Start& place,
+TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const markov::Start& place,
                        const markov::FinalDistribution& exact, StateWalks& remembered) {
-  TimedTrials seen{{FieldTally(setup.scene.field), {}}, ExitCounts(setup.scene.field)};
+  TimedTrials seen{{FieldTally(setup.problem.field), {}}, ExitCounts(setup.problem.field)};
   BlocksOf100 blocks(exact.final_cells, setup.walks, [&](std::int64_t first, std::int64_t n) {
     std::vector<std::int32_t> cells;
-    (void)setup.walker.walk(setup.field(), place, setup.scene.field.max_gates, setup.options.seed,
+    (void)setup.walker.walk(setup.field(), place, setup.problem.field.max_gates, setup.options.seed,
                             {first, n}, &cells);
     return cells;
   });
@@ -141,8 +140,8 @@ TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov
     const Stopwatch watch;
     FieldTrials each;
     each.keep_passages = range.first < kMostRemembered;
-    seen.trials.tally += run_field(setup.types, setup.scene.field, start.body(), setup.space,
-                                   setup.options.seed, range, &each);
+    seen.trials.tally += run_field(setup.problem.cells, setup.problem.field, start,
+                                   setup.options.seed, range, &each, &setup.space);
     seen.seconds += watch.seconds();
     blocks.add(each.final_gates);
     seen.exits.add(each);
@@ -156,11 +155,11 @@ TimedTrials run_trials(const Setup& setup, const PaperStart& start, const markov
 }
 
 /// The same trials with the force drawn anew at crossings, against these.
-ForceMemory run_anew(const Setup& setup, const PaperStart& start, const RunTrials& held) {
-  RunTrials anew{FieldTally(setup.scene.field), {}};
+ForceMemory run_anew(const Setup& setup, const dynamics::Entry& start, const RunTrials& held) {
+  RunTrials anew{FieldTally(setup.problem.field), {}};
   setup.work.in_pieces("force drawn anew", setup.options.trials, [&](TrialRange range) {
-    anew.tally += run_field(setup.types, setup.scene.field, start.body(), setup.space,
-                            setup.options.seed, range, &anew.each, HeldForce::drawn_anew);
+    anew.tally += run_field(setup.problem.cells, setup.problem.field, start, setup.options.seed,
+                            range, &anew.each, &setup.space, Memory::dropped);
   });
   return force_memory(held, anew, setup.options.seed);
 }
@@ -168,17 +167,17 @@ ForceMemory run_anew(const Setup& setup, const PaperStart& start, const RunTrial
 /// As many as fit a fixed amount of work, 999 to 9999: each draw deals out the trials and
 /// multiplies with a matrix of gates x gates.
 std::int64_t null_draws_for(const Setup& setup) {
-  const std::int64_t cells = std::int64_t{setup.scene.field.columns} * setup.scene.field.rows;
+  const std::int64_t cells = std::int64_t{setup.problem.field.columns} * setup.problem.field.rows;
   const std::int64_t gates = std::min<std::int64_t>(cells, kMostEnergyGates);
   return setup.options.null_draws.value_or(std::clamp<std::int64_t>(
       100'000'000 / (setup.options.trials + setup.walks + gates * gates / 8), 999, 9999));
 }
 
-StartValidation validate_start(const Setup& setup, const PaperStart& start,
+StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
                                const std::vector<markov::FinalDistribution>& resampled,
                                StateWalks& remembered) {
-  const int max_gates = setup.scene.field.max_gates;
-  const ChainStart chain_start = lattice::chain_start(setup.space, setup.scene.field, start.body());
+  const int max_gates = setup.problem.field.max_gates;
+  const ChainStart chain_start = lattice::chain_start(setup.space, setup.problem.field, start);
   const Stopwatch exact_watch;
   const markov::FinalDistribution exact =
       setup.predictor.predict(setup.field(), chain_start.start, {.max_cells = max_gates});
@@ -249,36 +248,36 @@ Finding finding_of(bool differs, double total_variation, double floor_95) {
   return total_variation <= floor_95 ? Finding::within_trials : Finding::within_trials_and_matrix;
 }
 
-Validation validate_chain(const Scene& scene, const std::vector<dynamics::Transitions>& matrices,
-                          const std::vector<PaperStart>& starts, const ValidationOptions& options,
-                          const dynamics::Work& work) {
+Validation validate_chain(const Problem& problem,
+                          const std::vector<dynamics::Transitions>& matrices,
+                          const std::vector<dynamics::Entry>& starts,
+                          const ValidationOptions& options, const dynamics::Work& work) {
   if (options.trials < 1 || options.walks.value_or(1) < 1)
     throw std::invalid_argument("validate: needs a trial and a walk at least");
   if (options.observed && starts.size() != 1)
     throw std::invalid_argument("validate: an experiment belongs to one start");
   constexpr std::int64_t kMostGates = 100'000;
-  if (std::int64_t{scene.field.columns} * scene.field.rows > kMostGates)
+  if (std::int64_t{problem.field.columns} * problem.field.rows > kMostGates)
     throw std::invalid_argument("validate compares fields of up to " + std::to_string(kMostGates) +
-                                " gates; field.columns = " + std::to_string(scene.field.columns) +
-                                " and field.rows = " + std::to_string(scene.field.rows));
-  const FieldGates gates = gates_of(scene);
-  if (matrices.size() != gates.types().size())
+                                " gates; field.columns = " + std::to_string(problem.field.columns) +
+                                " and field.rows = " + std::to_string(problem.field.rows));
+  const dynamics::CellMap& map = problem.map();
+  if (matrices.size() != map.types.size())
     throw std::invalid_argument("validate: needs a matrix for each type of gate");
   const dynamics::StateSpace& space = matrices.front().space;
-  const markov::FieldChain chain = make_chain(gates.map(), matrices);
-  const Setup setup{scene,
-                    gates,
+  const markov::FieldChain chain = make_chain(map, matrices);
+  const Setup setup{problem,
                     space,
                     matrices.size() > 1 ? same_states(matrices) : std::vector<int>{},
                     options,
                     options.walks.value_or(options.trials),
-                    counted_field(gates.map(), matrices),
+                    counted_field(map, matrices),
                     markov::Predictor(chain),
                     markov::Walker(chain),
                     work};
   std::vector<markov::Start> places;
-  for (const PaperStart& start : starts)
-    places.push_back(chain_start(space, scene.field, start.body()).start);
+  for (const dynamics::Entry& start : starts)
+    places.push_back(chain_start(space, problem.field, start).start);
   const auto resampled = resampled_predictions(setup, places);
 
   Validation v{.trials = options.trials, .walks = setup.walks, .starts = {}, .health = {}};
@@ -288,32 +287,16 @@ Validation validate_chain(const Scene& scene, const std::vector<dynamics::Transi
     v.starts.push_back(validate_start(setup, starts[k], resampled[k], remembered));
     const FieldTally& d = v.starts.back().dynamics;
     v.health += d.health;
-    for (int b = 0; b < dynamics::kBoundaries; ++b) {
-      v.entries += d.entries[b];
-      v.clamped += d.clamped[b];
+    for (std::size_t f = 0; f < d.entries.size(); ++f) {
+      v.entries += d.entries[f];
+      v.clamped += d.clamped[f];
+      v.entries_by[f] += d.entries[f];
     }
-    v.traverse_sides += d.entries[dynamics::Boundary::right_traverse] +
-                        d.entries[dynamics::Boundary::left_traverse];
   }
   v.memory = study_memory(remembered, space,
                           {.null_draws = options.null_draws, .seed = options.seed}, work);
   v.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return v;
-}
-
-bool like_table4(const Scene& scene) {
-  if (scene.terrain) return false;
-  const dynamics::GateParams paper;
-  for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
-    const bool free = info.key == "forces.propulsion_N" || info.key == "forces.random_N" ||
-                      info.key.substr(0, 4) == "run.";
-    if (!free && info.get(scene.gate) != info.get(paper)) return false;
-  }
-  const FieldParams field;
-  return scene.gate.run.time_limit == paper.run.time_limit &&
-         scene.gate.run.traverse_y == paper.run.traverse_y &&
-         scene.field.columns == field.columns && scene.field.rows == field.rows &&
-         scene.field.max_gates == field.max_gates;
 }
 
 }  // namespace gatewalk::lattice

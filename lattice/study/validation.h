@@ -10,9 +10,8 @@
 #include "dynamics/base/work.h"
 #include "lattice/exits.h"
 #include "lattice/gate_chain.h"
+#include "lattice/problem.h"
 #include "lattice/reference.h"
-#include "lattice/scene/scene.h"
-#include "lattice/scene/table4.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/memory.h"
@@ -77,7 +76,7 @@ struct ValidationOptions {
 
 /// Everything about one start. Trials, walks and p-values belong to the options' seed.
 struct StartValidation {
-  PaperStart start;
+  dynamics::Entry start;
   ChainStart chain_start;
   FieldTally dynamics;
   markov::WalkTally walks;
@@ -103,27 +102,23 @@ struct StartValidation {
 struct Validation {
   std::int64_t trials = 0, walks = 0;  // per start
   std::vector<StartValidation> starts;
-  dynamics::Health health;  // of the matrix's runs and the trials
-  // Crossings between gates of all trials, through RT or LT, and outside every bin.
-  std::int64_t entries = 0, traverse_sides = 0, clamped = 0;
+  dynamics::Health health;                // of the matrix's runs and the trials
+  std::int64_t entries = 0, clamped = 0;  // between gates, of all trials; outside every bin
+  FaceCounts entries_by{};                // of these, by face
   std::size_t threads = 0;
   MemoryStudy memory{};  // of the first kMostRemembered trials of each start
 };
 
 inline constexpr std::int64_t kMostRemembered = 100'000;
 
-/// Compares the chain of these matrices, one for each of gates_of(scene).types(), with the full
+/// Compares the chain of these matrices, one for each type, with the full
 /// dynamics from each start. Some 50 predictions of every gate are kept: throws
 /// std::invalid_argument for fields of more than 100 000 gates, for an experiment and several
 /// starts, and as chain_start and run_field do.
-[[nodiscard]] Validation validate_chain(const Scene& scene,
+[[nodiscard]] Validation validate_chain(const Problem& problem,
                                         const std::vector<dynamics::Transitions>& matrices,
-                                        const std::vector<PaperStart>& starts,
+                                        const std::vector<dynamics::Entry>& starts,
                                         const ValidationOptions& options,
                                         const dynamics::Work& work = {});
-
-/// Body, beams, drag and field of the paper's Table IV, whatever the forces (it does not print
-/// them): only then do its numbers belong beside these.
-[[nodiscard]] bool like_table4(const Scene& scene);
 
 }  // namespace gatewalk::lattice

@@ -1,5 +1,5 @@
 // The chain's error against its cost: truths, answers and summaries by hand, and what is charted.
-#include "lattice/study/chain_error.h"
+#include "lattice/scene/chain_error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lattice/complementarity.h"
+#include "lattice/scene/complementarity.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What memory and neighbours change: counts and verdicts by hand, and the trials that are compared.
-#include "lattice/study/fidelity.h"
+#include "lattice/scene/fidelity.h"
 
 #include <gtest/gtest.h>
 
@@ -32,37 +32,37 @@ FidelityRun ending_in(const std::vector<std::int32_t>& gates) {
   return run;
 }
 
-TEST(FidelityChange, CountsTrialsAndDistributionsApart) {
+TEST(PairedChange, CountsTrialsAndDistributionsApart) {
   // One of four trials ends elsewhere, whichever of the two a draw of the null takes.
-  const FidelityChange one = fidelity_change(ending_in({0, 1, 2, 8}), ending_in({0, 1, 2, 3}), 1);
+  const PairedChange one = fidelity_change(ending_in({0, 1, 2, 8}), ending_in({0, 1, 2, 3}), 1);
   EXPECT_EQ(one.changed, 0.25);
   EXPECT_EQ(one.apart.total_variation, 0.25);
   EXPECT_EQ(one.in_pairs.total_variation, 0.25);
   EXPECT_EQ(one.in_pairs.floor_total_variation_95, 0.25);
   EXPECT_EQ(one.uncertainty(), 0.25 + 3.0 / 4);
   // Two trials change places: every trial is another one, the distribution is the same.
-  const FidelityChange swapped = fidelity_change(ending_in({1, 0}), ending_in({0, 1}), 1);
+  const PairedChange swapped = fidelity_change(ending_in({1, 0}), ending_in({0, 1}), 1);
   EXPECT_EQ(swapped.changed, 1.0);
   EXPECT_EQ(swapped.apart.total_variation, 0.0);
   EXPECT_EQ(swapped.in_pairs.floor_total_variation_95, 1.0);  // half of the draws
 }
 
 /// 1000 trials, of which chance makes 0.01: uncertain by 0.013.
-FidelityChange seen(double total_variation) {
-  FidelityChange c{.trials = 1000};
+PairedChange seen(double total_variation) {
+  PairedChange c{.trials = 1000};
   c.apart.total_variation = total_variation;
   c.in_pairs.floor_total_variation_95 = 0.01;
   return c;
 }
 
-TEST(FidelityChange, IsJudgedWithItsUncertainty) {
+TEST(PairedChange, IsJudgedWithItsUncertainty) {
   EXPECT_EQ(seen(0.0169).active_is(), Sufficiency::enough);
   EXPECT_EQ(seen(0.0171).active_is(), Sufficiency::cannot_tell);
   EXPECT_EQ(seen(0.0429).active_is(), Sufficiency::cannot_tell);
   EXPECT_EQ(seen(0.0431).active_is(), Sufficiency::not_enough);
   // Where no trial changed, a hundred are the fewest that can tell.
-  EXPECT_EQ(FidelityChange{.trials = 100}.active_is(), Sufficiency::enough);
-  EXPECT_EQ(FidelityChange{.trials = 99}.active_is(), Sufficiency::cannot_tell);
+  EXPECT_EQ(PairedChange{.trials = 100}.active_is(), Sufficiency::enough);
+  EXPECT_EQ(PairedChange{.trials = 99}.active_is(), Sufficiency::cannot_tell);
 }
 
 TEST(FidelityOfStart, IsWhatTheWorseOfMemoryAndNeighboursSays) {

@@ -1,4 +1,4 @@
-#include "lattice/field_stepper.h"
+#include "lattice/scene/field_stepper.h"
 
 #include <gtest/gtest.h>
 

@@ -275,7 +275,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   for (std::int64_t walk = 0; walk < 50; ++walk) EXPECT_EQ(w.state[w.begin(walk)], first);
   // A run that broke is left out, and what would come after it.
   PassageTable broken(space.section());
-  for (GatePassage passage : each.passages.rows()) {
+  for (CellPassage passage : each.passages.rows()) {
     if (broken.empty()) passage.ending = dynamics::Ending::broken;
     broken.push_back(passage);
   }

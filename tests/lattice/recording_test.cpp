@@ -1,4 +1,4 @@
-#include "lattice/study/recording.h"
+#include "lattice/scene/recording.h"
 
 #include <gtest/gtest.h>
 

@@ -197,7 +197,7 @@ TEST(RunField, DrawsTheForceAnewWhenAsked) {
     for (std::size_t i = 0; i < 20; ++i) {
       RandomForce force(p.forces, Random(Purpose::field, {8, stream_row(p, kStart), i}));
       BodyState body = kStart;
-      for (const GatePassage passage : each.of_trial(i)) {
+      for (const CellPassage passage : each.of_trial(i)) {
         const GateRun r = run_gate(p, *method, body, force);
         ASSERT_EQ(r.ending, passage.ending) << name << ' ' << i;
         if (r.ending == Ending::trapped) break;

@@ -68,7 +68,7 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
     for (const TrialGroup group : {TrialGroup{}, TrialGroup{1, 3}}) {
       const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 7, group);
       Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(kernel.space.size(), kernel.space.size() + 1);
-      const auto count = [&](const Entry& from, const GatePassage& to) {
+      const auto count = [&](const Entry& from, const CellPassage& to) {
         for (const bool image : {false, true}) {
           if (image && !mirror) continue;
           const auto turned = [&](const Entry& c) {
@@ -89,7 +89,7 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
       for (auto i = static_cast<std::size_t>(group.group); i < 2;
            i += static_cast<std::size_t>(group.of)) {
         Entry entry = pool.scattered.starts[i];
-        for (const GatePassage run : pool.scattered.each.of_trial(i)) {
+        for (const CellPassage run : pool.scattered.each.of_trial(i)) {
           count(entry, run);
           entry = run.entry;
         }
@@ -299,16 +299,16 @@ TEST(PooledPrediction, EntriesWhereNoRunEnteredAreInTheBar) {
 }
 
 TEST(PassageTable, KeepsWhatWasPutThere) {
-  const std::vector<GatePassage> passages{
+  const std::vector<CellPassage> passages{
       {dynamics::Ending::traversed, 0, {Boundary::enter, {1, 2, 3}}, {4, 5, 6, 7, 8}},
       {dynamics::Ending::exited_left, 255, {Boundary::right_traverse, {-1, 0, 0.5}}, {1}},
       {dynamics::Ending::trapped, 3, {}, {9}}};
   PassageTable table(disc_section());
   EXPECT_TRUE(table.empty());
-  for (const GatePassage& p : passages) table.push_back(p);
+  for (const CellPassage& p : passages) table.push_back(p);
   ASSERT_EQ(table.size(), passages.size());
   std::size_t i = 0;
-  for (const GatePassage back : table.rows()) {
+  for (const CellPassage back : table.rows()) {
     EXPECT_EQ(back.ending, passages[i].ending);
     EXPECT_EQ(back.type, passages[i].type);
     EXPECT_EQ(back.entry, passages[i].entry);
@@ -350,7 +350,7 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   EXPECT_LT(unseen_share(kernel, FieldGates(scene.gate).map(), scene.field, again), 0.01);
   std::int64_t go_on = 0;
   PassageTable elsewhere(disc_section());
-  for (GatePassage p : again.first.passages.rows()) {
+  for (CellPassage p : again.first.passages.rows()) {
     if (p.ending != dynamics::Ending::trapped) {
       p.entry = {Boundary::enter, {1e3, 0.0, 1e3}};
       ++go_on;

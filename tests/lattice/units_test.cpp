@@ -10,7 +10,7 @@
 #include "lattice/scene/digits.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/terrain.h"
-#include "lattice/study/sweep.h"
+#include "lattice/scene/sweep.h"
 
 namespace gatewalk::lattice {
 namespace {

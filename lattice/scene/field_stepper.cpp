@@ -1,9 +1,9 @@
-#include "lattice/field_stepper.h"
+#include "lattice/scene/field_stepper.h"
 
 #include <algorithm>
 
 #include "dynamics/disc/disc_section.h"
-#include "lattice/complementarity.h"
+#include "lattice/scene/complementarity.h"
 
 namespace gatewalk::lattice {
 

@@ -1,4 +1,4 @@
-#include "lattice/study/chain_error.h"
+#include "lattice/scene/chain_error.h"
 
 #include <tbb/parallel_for.h>
 
@@ -12,8 +12,10 @@
 
 #include "dynamics/disc/row_trials.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/scene/disc_field.h"
 #include "lattice/scene/matrix.h"
-#include "lattice/study/one_thread.h"
+#include "lattice/scene/one_thread.h"
+#include "lattice/scene/scene_problem.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -104,8 +106,8 @@ void begin_truths(ChainErrorChart& chart, const Scene& scene, const Work& work) 
     FieldTruth t{start, FieldTally(scene.field)};
     t.seconds_per_trial =
         seconds_per_item(work, chart.options.truth_trials, 10, [&](TrialRange range) {
-          t.tally +=
-              run_field(scene.gate, scene.field, start.body(), space, chart.options.seed, range);
+          t.tally += run_field(scene.gate, scene.field, start.body(), chart.options.seed, range,
+                               nullptr, &space);
         });
     chart.truths.push_back(std::move(t));
   }
@@ -121,9 +123,10 @@ void see_entries(ChainErrorChart& chart, const Scene& scene, const Work& work) {
   for (const PaperStart& start : chart.options.starts) {
     work.in_pieces("pilot", chart.pilot_trials, [&](TrialRange range) {
       FieldTrials each{.final_gates = {}, .keep_passages = true};
-      chart.health += run_field(scene.gate, scene.field, start.body(), space, chart.options.seed,
-                                {chart.options.truth_trials + range.first, range.count}, &each)
-                          .health;
+      chart.health +=
+          run_field(scene.gate, scene.field, start.body(), chart.options.seed,
+                    {chart.options.truth_trials + range.first, range.count}, &each, &space)
+              .health;
       const auto entries = each.entries();
       seen.insert(seen.end(), entries.begin(), entries.end());
     });
@@ -167,11 +170,11 @@ void finish_truths(ChainErrorChart& chart, const Scene& scene, TimedWork& work) 
   const StateSpace space = fixed_space(scene);
   for (FieldTruth& t : chart.truths) {
     const std::int64_t done = t.tally.trials;
-    work.in_pieces(1e3 * t.seconds_per_trial, chart.options.truth_trials - done,
-                   [&](TrialRange range) {
-                     t.tally += run_field(scene.gate, scene.field, t.start.body(), space,
-                                          chart.options.seed, {done + range.first, range.count});
-                   });
+    work.in_pieces(
+        1e3 * t.seconds_per_trial, chart.options.truth_trials - done, [&](TrialRange range) {
+          t.tally += run_field(scene.gate, scene.field, t.start.body(), chart.options.seed,
+                               {done + range.first, range.count}, nullptr, &space);
+        });
     t = field_truth(t.start, std::move(t.tally), t.seconds_per_trial);
     chart.health += t.tally.health;
   }
@@ -240,6 +243,7 @@ std::vector<TreePoint> tree_points(const ChainErrorChart& chart, const Scene& sc
                                    const FieldTruth& truth, dynamics::Health& health,
                                    const Work& work) {
   constexpr auto n = static_cast<double>(kTreePredictions);
+  const Problem problem = problem_of(scene);
   std::vector<TreePoint> points;
   for (const double accuracy : kTreeAccuracies) {
     TreePoint p{};
@@ -250,7 +254,7 @@ std::vector<TreePoint> tree_points(const ChainErrorChart& chart, const Scene& sc
       const double cpu = one_thread_seconds([&] {
         const dynamics::Stopwatch watch;
         RunPool pool;
-        made = predict_pooled(scene, pool, {truth.start.body()},
+        made = predict_pooled(problem, pool, {truth.start.entry()},
                               {.accuracy = accuracy,
                                .most_runs = chart.options.runs_limit,
                                .seed = chart.options.seed + static_cast<std::uint64_t>(k)},
@@ -312,7 +316,8 @@ ChainErrorPlan plan_chain_error(const Scene& scene, const ChainErrorOptions& opt
                                 const Work& work) {
   require_no_terrain(scene, "a chart of the chain's error");
   ChainErrorPlan plan{options, usual_bins(scene)};
-  const std::vector<dynamics::BodyState> bodies = entries_at(options.starts);
+  (void)entries_at(options.starts);  // refuses starts inside the gate
+  const std::vector<dynamics::BodyState> bodies = bodies_at(options.starts);
   const bool from_pilot = plan.bins.kind == BinsChoice::Kind::automatic;
   plan.pilot_trials = options.visited.value_or(from_pilot ? kPilotTrials : 0);
   if (from_pilot) {

@@ -1,4 +1,4 @@
-#include "lattice/study/sweep.h"
+#include "lattice/scene/sweep.h"
 
 #include <algorithm>
 #include <charconv>

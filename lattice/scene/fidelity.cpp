@@ -1,10 +1,11 @@
-#include "lattice/study/fidelity.h"
+#include "lattice/scene/fidelity.h"
 
 #include <tbb/global_control.h>
 
 #include <limits>
 
 #include "dynamics/disc/methods/method.h"
+#include "lattice/scene/disc_field.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -14,7 +15,12 @@ constexpr std::int64_t kTimedAtOnce = 16;
 
 FieldTally run(const FidelityVariant& v, const PaperStart& start, const dynamics::StateSpace& space,
                std::uint64_t seed, dynamics::TrialRange range, FieldTrials* each = nullptr) {
-  return run_field(v.scene.gate, v.scene.field, start.body(), space, seed, range, each);
+  return run_field(v.scene.gate, v.scene.field, start.body(), seed, range, each, &space);
+}
+
+PairedChange change_of(const FidelityRun& variant, const FidelityRun& base, std::uint64_t seed) {
+  return paired_change({variant.final_gates, variant.tally.final_gates},
+                       {base.final_gates, base.tally.final_gates}, seed);
 }
 
 /// Seconds per trial of every variant. The same trials by every one in turn, so that a busy moment
@@ -58,7 +64,7 @@ FidelityOfStart run_start(const std::vector<FidelityVariant>& variants, const Pa
   const std::vector<double> seconds = time_trials(variants, start, space, options, work);
   for (std::size_t v = 0; v < variants.size(); ++v) {
     all.runs[v].seconds_per_trial = seconds[v];
-    if (v > 0) all.runs[v].change = fidelity_change(all.runs[v], all.runs[0], options.seed);
+    if (v > 0) all.runs[v].change = change_of(all.runs[v], all.runs[0], options.seed);
   }
   return all;
 }
@@ -85,27 +91,6 @@ std::vector<FidelityVariant> fidelity_variants(const Scene& scene) {
   add(Fidelity::active, dynamics::GateParams{}.run.method);
   (void)dynamics::table3_space(scene.gate);  // refuses gates too short for their beams
   return all;
-}
-
-Sufficiency FidelityChange::active_is() const {
-  const double tv = apart.total_variation;
-  if (tv + uncertainty() <= kFidelityBound) return Sufficiency::enough;
-  return tv - uncertainty() > kFidelityBound ? Sufficiency::not_enough : Sufficiency::cannot_tell;
-}
-
-FidelityChange fidelity_change(const FidelityRun& variant, const FidelityRun& base,
-                               std::uint64_t seed) {
-  const auto &after = variant.final_gates, &before = base.final_gates;
-  const markov::CellCounts &cells = variant.tally.final_gates, &base_cells = base.tally.final_gates;
-  const std::int64_t trials = base.tally.trials;
-  std::int64_t changed = 0;
-  for (std::size_t i = 0; i < after.size(); ++i) changed += after[i] != before[i];
-  const std::int64_t null_draws = std::clamp<std::int64_t>(100'000'000 / trials, 999, 9999);
-  return {.trials = trials,
-          .changed = static_cast<double>(changed) / static_cast<double>(trials),
-          .apart = compare(cells, base_cells, null_draws, seed),
-          .in_pairs = compare_pairs(after, before, static_cast<int>(base_cells.rows()),
-                                    static_cast<int>(base_cells.cols()), null_draws, seed)};
 }
 
 dynamics::Health FidelityStudy::health(std::size_t variant) const {

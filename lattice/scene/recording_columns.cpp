@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "dynamics/disc/landscape.h"
-#include "lattice/study/recording.h"
+#include "lattice/scene/recording.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -1,10 +1,10 @@
-#include "lattice/study/recording.h"
+#include "lattice/scene/recording.h"
 
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
 
-#include "lattice/reference.h"
+#include "lattice/scene/disc_field.h"
 #include "lattice/scene/settle.h"
 #include "lattice/statistics/ending_shares.h"
 

@@ -1,4 +1,4 @@
-#include "lattice/study/chain_answers.h"
+#include "lattice/scene/chain_answers.h"
 
 #include <tbb/parallel_for.h>
 
@@ -10,8 +10,8 @@
 #include <string>
 
 #include "lattice/gate_chain.h"
+#include "lattice/scene/one_thread.h"
 #include "lattice/statistics/matrix_noise.h"
-#include "lattice/study/one_thread.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 
@@ -169,7 +169,7 @@ ChainAnswers ask_matrices(const std::vector<Transitions>& matrices, const FieldP
                           const Work& work) {
   Questions q{{field.columns, field.rows}, field.max_gates, {}, truths, seed};
   for (const FieldTruth& t : truths)
-    q.starts.push_back(chain_start(matrices[0].space, field, t.start.body()).start);
+    q.starts.push_back(chain_start(matrices[0].space, field, t.start.entry()).start);
 
   // The first one alone, for its times.
   const std::int64_t count = std::ssize(matrices);

@@ -1,4 +1,4 @@
-#include "lattice/field.h"
+#include "lattice/scene/gates.h"
 
 #include <cmath>
 #include <sstream>
@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "dynamics/disc/disc_section.h"
+#include "dynamics/disc/disc_cell.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -71,13 +71,11 @@ dynamics::CellMap FieldGates::map() const {
   return map;
 }
 
-void FieldGates::require_fits(const FieldParams& field) const {
-  if (type_of_cell_.empty()) return;
-  if (columns_ != field.columns || std::ssize(type_of_cell_) != std::int64_t{columns_} * field.rows)
-    throw std::invalid_argument("field: types for " + std::to_string(columns_) + " columns and " +
-                                std::to_string(std::ssize(type_of_cell_) / columns_) +
-                                " rows, the field has " + std::to_string(field.columns) + " and " +
-                                std::to_string(field.rows));
+dynamics::CellField FieldGates::cells() const {
+  dynamics::CellField field{map(), {}};
+  for (const dynamics::GateParams& p : types_)
+    field.cells.push_back(std::make_shared<dynamics::DiscCell>(p));
+  return field;
 }
 
 }  // namespace gatewalk::lattice

@@ -12,8 +12,8 @@
 #include "dynamics/base/work.h"
 #include "dynamics/cells/transitions.h"
 #include "lattice/scene/bins.h"
+#include "lattice/scene/chain_answers.h"
 #include "lattice/scene/scene.h"
-#include "lattice/study/chain_answers.h"
 
 namespace gatewalk::lattice {
 

@@ -12,7 +12,7 @@
 #include "lattice/reference.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/table4.h"
-#include "lattice/statistics/compare.h"
+#include "lattice/statistics/paired_change.h"
 
 namespace gatewalk::lattice {
 
@@ -28,41 +28,13 @@ struct FidelityVariant {
 /// Throws InvalidParameter when one of them cannot be run.
 [[nodiscard]] std::vector<FidelityVariant> fidelity_variants(const Scene& scene);
 
-/// `active` is enough while the total variation that it costs is no more than this: what is asked
-/// of a good chain.
-inline constexpr double kFidelityBound = 0.03;
-/// What trials say about doing without memory or neighbours.
-enum class Sufficiency { enough, cannot_tell, not_enough };
-
-/// What a variant changes, of the final gates of the same trials.
-struct FidelityChange {
-  std::int64_t trials = 0;
-  double changed = 0.0;   // share of the trials whose final gate is another one
-  Comparison apart{};     // as if the noise were not shared
-  Comparison in_pairs{};  // trial by trial
-
-  /// How far the total variation seen may be from that of infinitely many trials, at 95 %: as much
-  /// as chance makes of the pairs that differ (triangle inequality), and what 3 of N trials change
-  /// when none of N shows it.
-  [[nodiscard]] double uncertainty() const {
-    return in_pairs.floor_total_variation_95 + 3.0 / static_cast<double>(trials);
-  }
-  /// Whether the total variation is within kFidelityBound with the uncertainty added, or beyond it
-  /// with that taken off.
-  [[nodiscard]] Sufficiency active_is() const;
-};
-
 /// One variant from one start.
 struct FidelityRun {
   FieldTally tally;
-  std::vector<std::int32_t> final_gates;   // of each trial, as FieldTrials has them
-  double seconds_per_trial = 0.0;          // wall clock
-  std::optional<FidelityChange> change{};  // against the first variant, which has none
+  std::vector<std::int32_t> final_gates;  // of each trial, as FieldTrials has them
+  double seconds_per_trial = 0.0;         // wall clock
+  std::optional<PairedChange> change{};   // against the first variant, which has none
 };
-
-/// `variant` against `base`, the same trials.
-[[nodiscard]] FidelityChange fidelity_change(const FidelityRun& variant, const FidelityRun& base,
-                                             std::uint64_t seed);
 
 struct FidelityOfStart {
   PaperStart start;
@@ -70,7 +42,7 @@ struct FidelityOfStart {
 
   /// Whether active is enough from here: the worse of what remember and all say.
   [[nodiscard]] Sufficiency active_is() const {
-    return std::max(runs[1].change->active_is(), runs[2].change->active_is());
+    return std::max(runs[1].change->without_is(), runs[2].change->without_is());
   }
 };
 

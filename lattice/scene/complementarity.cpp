@@ -1,4 +1,4 @@
-#include "lattice/complementarity.h"
+#include "lattice/scene/complementarity.h"
 
 #include <algorithm>
 #include <stdexcept>
