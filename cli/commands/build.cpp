@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/commands/recorded.h"
 #include "cli/render/choice.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
@@ -79,7 +80,7 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
 
 int run_build(const Arguments& arguments) {
   Options options(
-      "build SCENE -o MATRIX.nc [options]",
+      "build SCENE|RUNS.csv -o MATRIX.nc [options]",
       "Makes the transition matrix of one gate. By default its states are the leaves of trees,\n"
       "grown over the gate runs of full trials from the scene's start (or --start, --starts)\n"
       "until predictions are as accurate as --accuracy says. With --bins paper it is the\n"
@@ -93,6 +94,7 @@ int run_build(const Arguments& arguments) {
   options.main_output_file("MATRIX.nc", "matrix file to write (NetCDF-4)",
                            Options::Content::binary);
   add_bins(options);
+  add_cell(options);
   add_starts(options,
              "the scene's start; gatewalk validate takes those of Table IV in the paper's field; "
              "tree only: each is a state of its own");
@@ -101,6 +103,7 @@ int run_build(const Arguments& arguments) {
                    "entries from below span, in the scene's own units");
   options.add_count("states", "S", "tree: at most S states beside the starts");
   if (!options.parse(arguments)) return kFine;
+  if (options.has("cell")) return build_recorded(options);
   lattice::Scene scene = options.read_scene();
   if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)
     throw UsageError(scene.source + ": the scene with its map has " + std::to_string(bytes) +

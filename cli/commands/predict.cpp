@@ -1,6 +1,7 @@
 #include <charconv>
 
 #include "cli/arguments.h"
+#include "cli/commands/recorded.h"
 #include "cli/render/choice.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
@@ -12,6 +13,7 @@
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "cli/terminal/output.h"
+#include "lattice/cells/cell_matrix.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
@@ -184,11 +186,12 @@ int run_predict(const Arguments& arguments) {
       "seed of all trials; of a matrix of bins: of the resampled matrices behind the "
       "intervals");
   if (!options.parse(arguments)) return kFine;
-  if (const auto starts = given_starts(options);
+  if (const auto starts = options.texts("start");
       options.has("figure") && starts.size() > kMostPictures)
     throw UsageError("--figure: shows at most " + std::to_string(kMostPictures) +
                      " starts, these are " + std::to_string(starts.size()));
   if (!is_matrix(options.text("matrix"))) return predict_scene(options);
+  if (lattice::is_of_cells(options.text("matrix"))) return predict_recorded(options);
   const std::string solver = options.text("solver"), path = options.text("matrix");
   const markov::PredictOptions how{.solver = solver_of(solver)};
   const std::vector<lattice::PaperStart> given = given_starts(options);

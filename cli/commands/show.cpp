@@ -1,6 +1,7 @@
 #include "cli/command.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
+#include "lattice/cells/cell_matrix.h"
 
 namespace gatewalk::cli {
 
@@ -19,7 +20,7 @@ int run_show(const Arguments& arguments) {
   options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
   const std::string path = options.text("matrix");
-  lattice::MatrixFile file = lattice::read_matrix(path);
+  lattice::MatrixFile file = lattice::read_any_matrix(path);
   if (options.has("type")) {
     const auto type = file.types.find(options.text("type"));
     if (type == file.types.end())

@@ -21,16 +21,16 @@ const EndingName& name_of_side(std::size_t side) {
                        [&](const EndingName& e) { return e.ending == kSides[side]; });
 }
 
-std::vector<double> place_bounds(const lattice::Scene& scene, std::size_t side) {
-  return lattice::exit_bounds(scene.gate.gate_width(), scene.gate.gate_length(), scene.field, side);
+std::vector<double> place_bounds(const ShownField& shown, std::size_t side) {
+  return lattice::exit_bounds(shown.width, shown.length, shown.field, side);
 }
 
 /// A place with its bounds, to which the caller adds its shares.
 template <class Add>
-Json json_by_place(const lattice::Scene& scene, Add add) {
+Json json_by_place(const ShownField& shown, Add add) {
   Json json;
   for (std::size_t side = 0; side < kSides.size(); ++side) {
-    const std::vector<double> bounds = place_bounds(scene, side);
+    const std::vector<double> bounds = place_bounds(shown, side);
     Json& places = json[name_of_side(side).key] = Json::array();
     for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
       Json place = {{"from_m", bounds[i]}, {"to_m", bounds[i + 1]}};
@@ -48,15 +48,15 @@ double largest_share(const SideExits& side) {
 
 }  // namespace
 
-Json to_json(const FieldExits& exits, const lattice::Scene& scene) {
-  return json_by_place(scene, [&](Json& place, std::size_t side, std::size_t i) {
+Json to_json(const FieldExits& exits, const ShownField& shown) {
+  return json_by_place(shown, [&](Json& place, std::size_t side, std::size_t i) {
     place["share"] = exits[side].share[i];
     place["interval_95"] = exits[side].interval[i];
   });
 }
 
-Json to_json(const FieldExits& dynamics, const FieldExits& chain, const lattice::Scene& scene) {
-  return json_by_place(scene, [&](Json& place, std::size_t side, std::size_t i) {
+Json to_json(const FieldExits& dynamics, const FieldExits& chain, const ShownField& shown) {
+  return json_by_place(shown, [&](Json& place, std::size_t side, std::size_t i) {
     place["dynamics"] = dynamics[side].share[i];
     place["dynamics_95"] = dynamics[side].interval[i];
     place["exact"] = chain[side].share[i];
@@ -64,13 +64,13 @@ Json to_json(const FieldExits& dynamics, const FieldExits& chain, const lattice:
   });
 }
 
-std::string table_of(const FieldExits& exits, const lattice::Scene& scene) {
+std::string table_of(const FieldExits& exits, const ShownField& shown) {
   constexpr std::size_t kMost = 15;
   std::string text;
   for (std::size_t side = 0; side < kSides.size(); ++side) {
     const SideExits& e = exits[side];
     if (e.share.size() > kMost) return "";
-    const std::vector<double> bounds = place_bounds(scene, side);
+    const std::vector<double> bounds = place_bounds(shown, side);
     const Sized metre = readable_unit("m", std::max(-bounds.front(), bounds.back()));
     for (std::size_t i = 0; i < e.share.size(); ++i) {
       if (e.share[i] == 0.0) continue;
@@ -97,7 +97,7 @@ std::string places_outside(const FieldExits& dynamics, const FieldExits& chain) 
 
 double height_of_exits() { return 214.0; }
 
-std::string panels_of(const FieldExits& exits, const lattice::Scene& scene, const Sheet& sheet,
+std::string panels_of(const FieldExits& exits, const ShownField& shown, const Sheet& sheet,
                       double top, const std::string& tag) {
   constexpr double kHead = 40, kTall = 116;
   const std::array<Box, kSides.size()> boxes{{{374, 480, top + kHead, top + kHead + kTall},
@@ -109,7 +109,7 @@ std::string panels_of(const FieldExits& exits, const lattice::Scene& scene, cons
   for (std::size_t side = 0; side < kSides.size(); ++side) {
     const bool far = side == lattice::kFarSide;
     const SideExits& e = exits[side];
-    std::vector<double> bounds = place_bounds(scene, side);
+    std::vector<double> bounds = place_bounds(shown, side);
     const Sized metre = readable_unit("m", std::max(-bounds.front(), bounds.back()));
     for (double& b : bounds) b /= metre.size;
     double most = far ? largest_share(e) : sides;

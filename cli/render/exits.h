@@ -5,19 +5,19 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/shown_field.h"
 #include "lattice/exits.h"
-#include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
 
 /// By side, with the names of endings: the places with their bounds (m), shares and intervals.
-[[nodiscard]] Json to_json(const lattice::FieldExits& exits, const lattice::Scene& scene);
+[[nodiscard]] Json to_json(const lattice::FieldExits& exits, const ShownField& shown);
 /// The same of the dynamics beside a chain.
 [[nodiscard]] Json to_json(const lattice::FieldExits& dynamics, const lattice::FieldExits& chain,
-                           const lattice::Scene& scene);
+                           const ShownField& shown);
 /// A line for each place that bodies leave at; empty if none does, and for fields too large to
 /// print.
-[[nodiscard]] std::string table_of(const lattice::FieldExits& exits, const lattice::Scene& scene);
+[[nodiscard]] std::string table_of(const lattice::FieldExits& exits, const ShownField& shown);
 /// Of how many places the chain's share lies outside the interval of the dynamics: "3 of 27".
 [[nodiscard]] std::string places_outside(const lattice::FieldExits& dynamics,
                                          const lattice::FieldExits& chain);
@@ -25,7 +25,7 @@ namespace gatewalk::cli {
 /// Height of the panels, and the panels from this height on: bars with 95 % intervals by place
 /// along each side. `tag` tells their data from that of others.
 [[nodiscard]] double height_of_exits();
-[[nodiscard]] std::string panels_of(const lattice::FieldExits& exits, const lattice::Scene& scene,
+[[nodiscard]] std::string panels_of(const lattice::FieldExits& exits, const ShownField& shown,
                                     const Sheet& sheet, double top, const std::string& tag);
 
 }  // namespace gatewalk::cli

@@ -154,8 +154,8 @@ std::vector<ShareBar> bars_of(const lattice::EndingShares& endings) {
 
 }  // namespace
 
-Figure figure_of(const std::vector<FieldPicture>& pictures, const lattice::Scene& scene) {
-  const TypeMarks types(scene);
+Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& shown) {
+  const TypeMarks types(shown);
   if (pictures.empty() || pictures.size() > kMostPictures)
     throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostPictures) +
                                 " starts, these are " + std::to_string(pictures.size()));
@@ -188,7 +188,7 @@ Figure figure_of(const std::vector<FieldPicture>& pictures, const lattice::Scene
            small_map("trapped, % of all", maps[i], plan.small(0), sheet, "$trapped" + tag) +
            small_map("departed, % of all", maps[i], plan.small(1), sheet, "$left" + tag) +
            share_bars(sheet, plan.bars(), "$endings" + tag, bars_of(p.endings));
-    if (p.exits) out += panels_of(*p.exits, scene, sheet, plan.exits(), tag);
+    if (p.exits) out += panels_of(*p.exits, shown, sheet, plan.exits(), tag);
   }
   return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
 }

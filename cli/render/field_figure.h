@@ -7,10 +7,10 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/shown_field.h"
 #include "lattice/exits.h"
 #include "lattice/lattice.h"
 #include "lattice/reference.h"
-#include "lattice/scene/scene.h"
 #include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 
@@ -34,8 +34,7 @@ struct FieldPicture {
 /// along its sides they left; of several starts one below the other. Of a field with several types
 /// of gates, which is which. Throws std::invalid_argument for more than kMostPictures.
 inline constexpr std::size_t kMostPictures = 8;
-[[nodiscard]] Figure figure_of(const std::vector<FieldPicture>& pictures,
-                               const lattice::Scene& scene);
+[[nodiscard]] Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& shown);
 
 /// Tics of an axis over blocks of gates that is so many points long, named by the gates in the
 /// blocks' middle, counted from `zero`; and its range.

@@ -172,10 +172,14 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
 
 namespace {
 
+constexpr auto kBack = static_cast<std::size_t>(lattice::kWentBack.ending);
+
+/// `back`: some went back, which is an ending of its own then.
 template <class Values>
-Json by_name(const Values& values) {
+Json by_name(const Values& values, bool back) {
   Json j;
   for (const EndingName& e : kEndingNames) j[e.key] = values[static_cast<std::size_t>(e.ending)];
+  if (back) j[lattice::kWentBack.key] = values[kBack];
   return j;
 }
 
@@ -189,9 +193,15 @@ std::string percents(double share) {
   return text.str();
 }
 
-Json endings(const std::array<std::int64_t, markov::kEndings>& counts) { return by_name(counts); }
-Json endings(const std::array<double, markov::kEndings>& shares) { return by_name(shares); }
-Json endings_95(const lattice::EndingShares& shares) { return by_name(shares.interval); }
+Json endings(const std::array<std::int64_t, markov::kEndings>& counts) {
+  return by_name(counts, counts[kBack] > 0);
+}
+Json endings(const std::array<double, markov::kEndings>& shares) {
+  return by_name(shares, shares[kBack] > 0.0);
+}
+Json endings_95(const lattice::EndingShares& shares) {
+  return by_name(shares.interval, shares.share[kBack] > 0.0);
+}
 
 lattice::EndingShares shown_endings(lattice::EndingShares shares,
                                     const markov::FinalDistribution& f) {
@@ -210,7 +220,9 @@ std::string with_interval(double share, const std::array<double, 2>& interval) {
 
 std::string endings_text(const lattice::EndingShares& shares, const std::string& of) {
   std::string text;
-  for (const EndingName& e : kEndingNames) {
+  std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
+  if (shares.share[kBack] > 0.0) names.push_back(lattice::kWentBack);
+  for (const EndingName& e : names) {
     const auto at = static_cast<std::size_t>(e.ending);
     text += padded(e.name, -11) + padded(percents(shares.share[at]), 7) + " %";
     if (!std::isnan(shares.interval[at][0]))

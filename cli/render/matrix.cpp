@@ -26,28 +26,37 @@ std::int64_t gate_runs_of(const lattice::MatrixFile& file, const std::string& pa
 }
 
 /// Share of a row's trials that came out at each boundary of the next gate, and trapped.
-std::array<double, kBoundaries + 1> outcome_shares(const Transitions& t, int row) {
-  std::array<double, kBoundaries + 1> share{};
+std::vector<double> outcome_shares(const Transitions& t, int row) {
+  const auto faces = std::ssize(t.space.section().faces);
+  std::vector<double> share(static_cast<std::size_t>(faces) + 1, 0.0);
   if (t.trials[row] == 0) return share;
   for (const auto& [column, n] : t.rows[row]) {
-    const int b = column == t.space.trapped() ? kBoundaries : t.space.face(column);
-    share[b] += static_cast<double>(n) / static_cast<double>(t.trials[row]);
+    const int b = column == t.space.trapped() ? static_cast<int>(faces) : t.space.face(column);
+    share[static_cast<std::size_t>(b)] +=
+        static_cast<double>(n) / static_cast<double>(t.trials[row]);
   }
   return share;
 }
 
 std::string row_table(const Transitions& t) {
   std::ostringstream out;
-  out << "\n  in  from d (m)       vx (m/s)    vy (m/s)    trials clamped |   EN    RD    LD    "
-         "RT    LT  trap (%)\n";
+  const Section& section = t.space.section();
+  out << "\n  in  from";
+  for (const Coordinate& c : section.coordinates) {
+    const std::string unit = behind_number(c.unit);
+    const std::string head = c.name + (unit.empty() ? "" : " (" + unit.substr(1) + ")");
+    out << (&c == &section.coordinates.front() ? " " + padded(head, -13) : padded(head, -12));
+  }
+  out << "trials clamped |";
+  for (const Face& face : section.faces) out << padded(face.name, 5) << " ";
+  out << " trap (%)\n";
   for (int row = 0; row < t.space.size(); ++row) {
     const StateRange range = t.space.range(row);
     const auto share = outcome_shares(t, row);
-    out << padded(std::to_string(row + 1), 4) << "  " << t.space.section().faces[range.face].name
-        << " " << padded(dynamics::text_of(range.at[kEntryD]) + " ", -12)
-        << padded(dynamics::text_of(range.at[kEntryVx]) + " ", -12)
-        << padded(dynamics::text_of(range.at[kEntryVy]) + " ", -12)
-        << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
+    out << padded(std::to_string(row + 1), 4) << "  " << section.faces[range.face].name << " ";
+    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+      out << padded(dynamics::text_of(range.at[axis]) + " ", -12);
+    out << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
         << " |";
     for (const double s : share) out << padded(fixed(100.0 * s, 1), 6);
     out << "\n";
@@ -200,14 +209,14 @@ Json to_json(const lattice::MatrixFile& file, const std::string& path) {
     Json outputs = Json::array();
     for (const auto& [column, count] : t.rows[row])
       outputs.push_back({{"output", column + 1}, {"count", count}});
-    json["rows"].push_back({{"input", row + 1},
-                            {"boundary", t.space.section().faces[range.face].name},
-                            {"d_m", range.at[kEntryD]},
-                            {"vx_m_per_s", range.at[kEntryVx]},
-                            {"vy_m_per_s", range.at[kEntryVy]},
-                            {"trials", t.trials[row]},
-                            {"clamped", t.clamped[row]},
-                            {"outputs", std::move(outputs)}});
+    const Section& section = t.space.section();
+    Json shown = {{"input", row + 1}, {"boundary", section.faces[range.face].name}};
+    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+      shown[section.coordinates[axis].key] = range.at[axis];
+    shown["trials"] = t.trials[row];
+    shown["clamped"] = t.clamped[row];
+    shown["outputs"] = std::move(outputs);
+    json["rows"].push_back(std::move(shown));
   }
   if (Json states = recorded(file, path, "state_space"); !states.is_null())
     json["state_space"] = std::move(states);

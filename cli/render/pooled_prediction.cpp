@@ -15,13 +15,13 @@
 namespace gatewalk::cli {
 namespace {
 
-void add_to(Json& json, const lattice::StartAnswer& a, const lattice::Scene& scene) {
+void add_to(Json& json, const lattice::StartAnswer& a, const ShownField& shown) {
   const markov::FinalDistribution& f = a.final;
-  const lattice::EndingShares shown = shown_endings(a.endings, f);
-  json["endings"] = endings(shown.share);
-  json["endings_95"] = endings_95(shown);
+  const lattice::EndingShares told = shown_endings(a.endings, f);
+  json["endings"] = endings(told.share);
+  json["endings_95"] = endings_95(told);
   add_final_gates(json, f);
-  json["exits"] = cli::to_json(a.exits, scene);
+  json["exits"] = cli::to_json(a.exits, shown);
   json["final_gates_95"] = {{"low", small_grid(a.gates_95[0])},
                             {"high", small_grid(a.gates_95[1])}};
   json["answer_from"] = a.from_trials ? "trials" : "chain";
@@ -35,13 +35,13 @@ void add_to(Json& json, const lattice::StartAnswer& a, const lattice::Scene& sce
   json["direct_seconds"] = std::isfinite(a.direct_seconds) ? Json(a.direct_seconds) : Json();
 }
 
-std::string table_of(const lattice::StartAnswer& a, const lattice::Scene& scene) {
+std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
   const markov::FinalDistribution& f = a.final;
   std::string table =
       endings_text(shown_endings(a.endings, f),
                    "of all bodies, 95 % intervals that count everything") +
-      limits_text(scene) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
-      "departed " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(a.exits, scene) +
+      limits_text(shown) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
+      "departed " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(a.exits, shown) +
       "error: at most " + fixed(a.error.total_variation, 4) +
       " in total variation of the final gates, corrcoef at least " + fixed(a.error.corrcoef, 4) +
       ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
@@ -53,6 +53,10 @@ std::string table_of(const lattice::StartAnswer& a, const lattice::Scene& scene)
   if (f.unsampled > 0.0)
     table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   return table;
+}
+
+std::string title_of(const dynamics::Section& section, const lattice::StartAnswer& a) {
+  return a.as_seen ? "start: all entries that were seen first" : cli::title_of(section, a.start);
 }
 
 double worst_error(const lattice::PooledPrediction& p) {
@@ -69,14 +73,15 @@ Json direct_seconds(const lattice::PooledPrediction& p) {
 
 }  // namespace
 
-Json to_json(const lattice::PooledPrediction& p, const lattice::Scene& scene, double accuracy,
+Json to_json(const lattice::PooledPrediction& p, const ShownField& shown, double accuracy,
              bool given) {
   Json json;
-  if (!given) add_to(json, p.starts.front(), scene);
+  if (!given) add_to(json, p.starts.front(), shown);
   for (std::size_t k = 0; given && k < p.starts.size(); ++k) {
     Json one;
-    one["start"] = to_json(lattice::start_at(p.starts[k].start));
-    add_to(one, p.starts[k], scene);
+    one["start"] =
+        p.starts[k].as_seen ? Json("as seen") : to_json(shown.map.section, p.starts[k].start);
+    add_to(one, p.starts[k], shown);
     json["starts"].push_back(std::move(one));
   }
   json["accuracy"] = accuracy;
@@ -92,12 +97,11 @@ Json to_json(const lattice::PooledPrediction& p, const lattice::Scene& scene, do
   return json;
 }
 
-std::string table_of(const lattice::PooledPrediction& p, const lattice::Scene& scene, bool given) {
+std::string table_of(const lattice::PooledPrediction& p, const ShownField& shown, bool given) {
   std::string table;
   for (std::size_t k = 0; k < p.starts.size(); ++k)
-    table += (k > 0 ? "\n" : "") +
-             (given ? title_of(lattice::start_at(p.starts[k].start)) + "\n" : "") +
-             table_of(p.starts[k], scene);
+    table += (k > 0 ? "\n" : "") + (given ? title_of(shown.map.section, p.starts[k]) + "\n" : "") +
+             table_of(p.starts[k], shown);
   const Json direct = direct_seconds(p);
   table += std::to_string(p.gate_runs) + " gate runs, " + std::to_string(p.states) + " states, " +
            fixed(p.seconds, 2) + " s";

@@ -37,19 +37,22 @@ std::string shown_range(const lattice::KeyInfo& k) {
 
 }  // namespace
 
-std::string limits_text(const lattice::Scene& scene) {
-  std::string text = "(trapped: still in the same gate " +
-                     quantity(scene.gate.run.time_limit, "s") + " after entering it";
-  if (scene.field.max_gates > 0)
-    text += "; cut off: would go on from gate number " + std::to_string(scene.field.max_gates) +
+std::string limits_text(const ShownField& shown) {
+  std::string text = std::isnan(shown.time_limit)
+                         ? "(trapped: as the runs say"
+                         : "(trapped: still in the same gate " + quantity(shown.time_limit, "s") +
+                               " after entering it";
+  if (shown.field.max_gates > 0)
+    text += "; cut off: would go on from gate number " + std::to_string(shown.field.max_gates) +
             ", the limit field.max_gates, 0 for none";
   return text + ")\n";
 }
 
-std::string too_few_gates(const lattice::Scene& scene) {
-  if (scene.field.max_gates == 0 || scene.field.max_gates >= scene.field.rows) return "";
-  return "nobody can cross: field.max_gates = " + std::to_string(scene.field.max_gates) +
-         " is less than field.rows = " + std::to_string(scene.field.rows);
+std::string too_few_gates(const ShownField& shown) {
+  const lattice::FieldParams& field = shown.field;
+  if (field.max_gates == 0 || field.max_gates >= field.rows) return "";
+  return "nobody can cross: field.max_gates = " + std::to_string(field.max_gates) +
+         " is less than field.rows = " + std::to_string(field.rows);
 }
 
 std::string scene_line(const lattice::Scene& scene) {

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "cli/render/json_fwd.h"
-#include "lattice/scene/scene.h"
+#include "cli/render/shown_field.h"
 
 namespace gatewalk::cli {
 
 /// What is run, in one line: start, body, forces, beams, method.
 [[nodiscard]] std::string scene_line(const lattice::Scene& scene);
 /// What two of the endings mean in this scene, below them.
-[[nodiscard]] std::string limits_text(const lattice::Scene& scene);
+[[nodiscard]] std::string limits_text(const ShownField& shown);
 /// That no body can cross the field within the gates it may visit; empty if one can.
-[[nodiscard]] std::string too_few_gates(const lattice::Scene& scene);
+[[nodiscard]] std::string too_few_gates(const ShownField& shown);
 
 /// Every key with its value, unit, range, meaning and source.
 [[nodiscard]] Json to_json(const std::vector<lattice::KeyInfo>& keys);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 
 #include "cli/render/json.h"
 #include "cli/render/text.h"
@@ -10,6 +11,26 @@ namespace gatewalk::cli {
 
 Json to_json(const lattice::PaperStart& start) {
   return {{"d_m", start.d}, {"vx_m_per_s", start.vx}, {"vy_m_per_s", start.vy}};
+}
+
+Json to_json(const dynamics::Section& section, const dynamics::Entry& entry) {
+  Json json = Json::object();
+  if (entry.face != 0) json["face"] = section.faces[static_cast<std::size_t>(entry.face)].name;
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    json[section.coordinates[axis].key] = entry.at[axis];
+  return json;
+}
+
+std::string title_of(const dynamics::Section& section, const dynamics::Entry& entry) {
+  std::ostringstream title;
+  title << "start";
+  if (entry.face != 0) title << " " << section.faces[static_cast<std::size_t>(entry.face)].name;
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+    const dynamics::Coordinate& c = section.coordinates[axis];
+    title << (axis > 0 ? ", " : " ") << c.name << " " << entry.at[axis]
+          << dynamics::behind_number(c.unit);
+  }
+  return title.str();
 }
 
 StartTexts::StartTexts(const std::vector<lattice::PaperStart>& starts) : texts(starts.size()) {

@@ -49,8 +49,8 @@ std::vector<std::string> type_names(const lattice::Scene& scene) {
   return names;
 }
 
-TypeMarks::TypeMarks(const lattice::Scene& scene) : gates_(lattice::gates_of(scene)) {
-  std::vector<std::string> names = type_names(scene);
+TypeMarks::TypeMarks(const ShownField& shown) : map_(shown.map) {
+  std::vector<std::string> names = shown.types;
   if (names.empty()) return;
   std::rotate(names.begin(), names.begin() + 1, names.end());
   if (names.size() > kMarkLooks + 1) {
@@ -83,12 +83,12 @@ TypeMarks::Drawn TypeMarks::on(const FieldMap& map, double width, double height,
   const double left = std::max(0.0, 0.5 - kAside / width),
                up = std::max(0.0, 0.5 - kAside / height);
   Drawn drawn;
-  for (std::size_t type = 1; type < gates_.types().size(); ++type) {
+  for (std::size_t type = 1; type < map_.types.size(); ++type) {
     std::string rows;
     for (Eigen::Index r = 0; r < map.rows.count; ++r)
       for (Eigen::Index c = 0; c < map.columns.count; ++c)
-        if (static_cast<std::size_t>(gates_.type_of(static_cast<int>(map.columns.first + c),
-                                                    static_cast<int>(map.rows.first + r))) == type)
+        if (static_cast<std::size_t>(map_.type_of(static_cast<int>(map.columns.first + c),
+                                                  static_cast<int>(map.rows.first + r))) == type)
           rows += digits(static_cast<double>(c) - left) + " " +
                   digits(static_cast<double>(r) + up) + "\n";
     if (rows.empty()) continue;

@@ -6,7 +6,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
-#include "lattice/scene/scene.h"
+#include "cli/render/shown_field.h"
 
 namespace gatewalk::cli {
 
@@ -18,7 +18,7 @@ namespace gatewalk::cli {
 /// all gates are alike.
 class TypeMarks {
  public:
-  explicit TypeMarks(const lattice::Scene& scene);
+  explicit TypeMarks(const ShownField& shown);
 
   /// For `plot`: its data, to be defined before, and what it adds behind a map whose gates are so
   /// many points wide and high; both empty where gates are too small for marks. `tag` tells the
@@ -39,7 +39,7 @@ class TypeMarks {
     std::string name;
     double left, top;  // in the legend
   };
-  lattice::FieldGates gates_;
+  dynamics::CellMap map_;
   std::vector<Entry> entries_;  // the title, then a type each, the scene's own last
 };
 

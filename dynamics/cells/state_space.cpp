@@ -264,9 +264,6 @@ std::string text_of(const std::array<double, 2>& range) {
   return text.str();
 }
 
-namespace {
-
-/// " m/s" for "m s-1", nothing for "1".
 std::string behind_number(const std::string& unit) {
   std::string text;
   std::istringstream words(unit == "1" ? "" : unit);
@@ -274,8 +271,6 @@ std::string behind_number(const std::string& unit) {
     text += word.ends_with("-1") ? "/" + word.substr(0, word.size() - 2) : " " + word;
   return text;
 }
-
-}  // namespace
 
 StateRange mirrored(const Section& section, const StateRange& range) {
   const Face& face = section.faces[range.face];

@@ -117,5 +117,7 @@ class StateSpace {
 [[nodiscard]] std::string text_of(const Section& section, const StateRange& range);
 /// "[-5, 5]", or "15" for a single value.
 [[nodiscard]] std::string text_of(const std::array<double, 2>& range);
+/// A unit behind a number: " m/s" for "m s-1", nothing for "1".
+[[nodiscard]] std::string behind_number(const std::string& unit);
 
 }  // namespace gatewalk::dynamics

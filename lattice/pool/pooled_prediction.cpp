@@ -40,17 +40,16 @@ void widen(std::array<double, 2>& interval, double share) {
   interval = {std::max(0.0, interval[0] - share), std::min(1.0, interval[1] + share)};
 }
 
-/// Error bars of one start; `pooled`: trials in the pool, `chance`: of the walks behind `whole`.
-StartAnswer answer_of(const FieldParams& field, const StartTrials& s, std::int64_t pooled,
-                      FinalDistribution whole, double chance, double unseen,
-                      const std::vector<FinalDistribution>& groups,
-                      const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
+/// The chain's answer for one start with its error bars; `first_runs` behind its first row,
+/// `pooled`: trials in the pool, `chance`: of the walks behind `whole`.
+StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std::int64_t pooled,
+                         FinalDistribution whole, double chance, double unseen,
+                         const std::vector<FinalDistribution>& groups,
+                         const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
   StartAnswer a;
-  a.start = s.start;
-  a.trials = s.knows_endings ? std::ssize(s.full.final_gates) : 0;
-  a.first_runs = s.first_runs();
+  a.first_runs = first_runs;
   const GroupSpread spread(whole, groups);
-  const std::int64_t behind = std::min(a.first_runs, pooled);
+  const std::int64_t behind = std::min(first_runs, pooled);
   a.error = spread.error(behind, seed);
   a.unseen = unseen;
   a.error.total_variation = std::min(1.0, std::hypot(a.error.total_variation, chance) + unseen);
@@ -58,34 +57,42 @@ StartAnswer answer_of(const FieldParams& field, const StartTrials& s, std::int64
       kernels.empty()
           ? a.error.total_variation
           : std::min(1.0, GroupSpread(whole, kernels).error(pooled, seed).total_variation + unseen);
-  Error95 of_trials{1.0, 0.0, 100.0};
-  if (a.trials > 0) {
-    CellCounts counts = CellCounts::Zero(field.rows, field.columns);
-    for (const std::int32_t cell : s.full.final_gates) ++counts.data()[cell];
-    of_trials = error_of_shares(counts, seed);
-    a.trials_error_95 = of_trials.total_variation;
-    a.from_trials = a.trials_error_95 < 0.95 * a.error.total_variation;
+  a.endings = spread.endings_95(behind);
+  a.gates_95 = spread.gates_95(behind);
+  std::vector<ExitShares> group_exits;
+  for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
+  a.exits = exits_of_groups(exit_shares(whole), group_exits, evidence_of(whole, behind));
+  if (unseen > 0.0) {  // moved from one gate to another they make the largest RMSE
+    const auto gates = static_cast<double>(a.gates_95[0].size());
+    a.error.rmse_per_100 += 100.0 * unseen * std::sqrt(2.0 / gates);
+    a.error.corrcoef = std::nan("");
   }
-  if (!a.from_trials) {
-    a.endings = spread.endings_95(behind);
-    a.gates_95 = spread.gates_95(behind);
-    std::vector<ExitShares> group_exits;
-    for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
-    a.exits = exits_of_groups(exit_shares(whole), group_exits, evidence_of(whole, behind));
-    if (unseen > 0.0) {  // moved from one gate to another they make the largest RMSE
-      const auto gates = static_cast<double>(a.gates_95[0].size());
-      a.error.rmse_per_100 += 100.0 * unseen * std::sqrt(2.0 / gates);
-      a.error.corrcoef = std::nan("");
-    }
-    for (auto& interval : a.endings.interval) widen(interval, unseen);
-    a.endings = a.endings.with_limit(field.max_gates);
-    for (SideExits& side : a.exits)
-      for (auto& interval : side.interval) widen(interval, unseen);
-    a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
-    a.gates_95[1] = (a.gates_95[1] + unseen).min(1.0);
-    a.final = std::move(whole);
-    return a;
-  }
+  for (auto& interval : a.endings.interval) widen(interval, unseen);
+  a.endings = a.endings.with_limit(field.max_gates);
+  for (SideExits& side : a.exits)
+    for (auto& interval : side.interval) widen(interval, unseen);
+  a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
+  a.gates_95[1] = (a.gates_95[1] + unseen).min(1.0);
+  a.final = std::move(whole);
+  return a;
+}
+
+/// The same, or the shares of the start's own trials where these are the more certain.
+StartAnswer answer_of(const FieldParams& field, const StartTrials& s, std::int64_t pooled,
+                      FinalDistribution whole, double chance, double unseen,
+                      const std::vector<FinalDistribution>& groups,
+                      const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
+  StartAnswer a = chain_answer(field, s.first_runs(), pooled, std::move(whole), chance, unseen,
+                               groups, kernels, seed);
+  a.start = s.start;
+  a.trials = s.knows_endings ? std::ssize(s.full.final_gates) : 0;
+  if (a.trials == 0) return a;
+  CellCounts counts = CellCounts::Zero(field.rows, field.columns);
+  for (const std::int32_t cell : s.full.final_gates) ++counts.data()[cell];
+  const Error95 of_trials = error_of_shares(counts, seed);
+  a.trials_error_95 = of_trials.total_variation;
+  a.from_trials = a.trials_error_95 < 0.95 * a.error.total_variation;
+  if (!a.from_trials) return a;
   a.error = of_trials;
   a.final = shares_of(s.full, field);
   std::array<std::int64_t, markov::kEndings> endings{};
@@ -350,6 +357,73 @@ StartRange usual_range(const Problem& problem) {
     high = std::max(high, start.at[axis]);
   }
   return range;
+}
+
+namespace {
+
+KernelAnswers whole_answers(const Kernel& kernel, const Problem& problem, const RunPool& pool,
+                            const std::vector<PoolStart>& starts, std::uint64_t seed) {
+  std::vector<std::vector<std::int64_t>> rows;
+  for (const PoolStart& s : starts)
+    rows.push_back(first_row(kernel, problem.map(), pool, s, problem.start_type()));
+  return answers_of(kernel, problem.map(), rows, problem.field, seed);
+}
+
+}  // namespace
+
+std::vector<FinalDistribution> predict_whole(const Problem& problem, const RunPool& pool,
+                                             const std::vector<std::optional<Entry>>& starts,
+                                             int per_leaf, std::uint64_t seed) {
+  const Kernel kernel = kernel_of(problem.map(), pool, per_leaf);
+  std::vector<PoolStart> asked;
+  for (const auto& start : starts) asked.emplace_back(start);
+  return whole_answers(kernel, problem, pool, asked, seed).final;
+}
+
+PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
+                                  const std::vector<std::optional<Entry>>& starts, int per_leaf,
+                                  std::uint64_t seed) {
+  const Stopwatch watch;
+  const CellMap& map = problem.map();
+  const std::int64_t bodies = pool.bodies();
+  std::vector<PoolStart> asked;
+  for (const auto& start : starts) asked.emplace_back(start);
+  PooledPrediction result;
+  PoolAnswers said;
+  if (bodies >= kLeastBodies) {
+    said = PoolChains(map, problem.field, per_leaf, starts.size(), seed).ask(pool, asked);
+  } else {
+    const Kernel kernel = kernel_of(map, pool, per_leaf);
+    said.whole = whole_answers(kernel, problem, pool, asked, seed);
+    said.states = kernel.space.size();
+    said.nonzeros = kernel.nonzeros();
+  }
+  result.states = said.states;
+  result.nonzeros = said.nonzeros;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    StartAnswer& a = result.starts.emplace_back();
+    if (bodies >= kLeastBodies) {
+      const double chance = chance_of_walks(said.whole.final[i], said.whole.walks);
+      a = chain_answer(problem.field, bodies, bodies, std::move(said.whole.final[i]), chance, 0.0,
+                       said.groups[i],
+                       said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i],
+                       seed);
+    } else {
+      const double unknown = std::nan("");
+      a.error = {unknown, unknown, unknown};
+      a.kernel_error_95 = unknown;
+      a.final = std::move(said.whole.final[i]);
+      a.endings = EndingShares(a.final.endings);
+      a.exits = exits_of(exit_shares(a.final), {}, 0);
+      a.gates_95.fill(
+          CellProbabilities::Constant(problem.field.rows, problem.field.columns, unknown));
+    }
+    a.start = starts[i].value_or(Entry{});
+    a.as_seen = !starts[i];
+    a.direct_seconds = std::nan("");
+  }
+  result.seconds = watch.seconds();
+  return result;
 }
 
 PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& range,

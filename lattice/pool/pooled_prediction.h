@@ -26,7 +26,8 @@ struct AccuracyOptions {
 
 /// What is said of one start.
 struct StartAnswer {
-  dynamics::Entry start;
+  dynamics::Entry start{};
+  bool as_seen = false;             // not one start: all first entries of the pool's trials
   markov::FinalDistribution final;  // the answer
   bool from_trials = false;         // it is the shares of the start's own full trials
   Error95 error;
@@ -64,6 +65,19 @@ struct PooledPrediction {
                                               const std::vector<dynamics::Entry>& starts,
                                               const AccuracyOptions& options,
                                               const dynamics::Work& work = {});
+
+/// From the runs that a pool has, to which none can be added: for each start, or (none) for all
+/// first entries of its scattered trials. A start of no runs of its own has those of its leaf. With
+/// fewer than kLeastBodies bodies there are no intervals (NaN).
+inline constexpr std::int64_t kLeastBodies = 2 * kTrialGroups;
+[[nodiscard]] PooledPrediction predict_recorded(
+    const Problem& problem, const RunPool& pool,
+    const std::vector<std::optional<dynamics::Entry>>& starts, int per_leaf, std::uint64_t seed);
+
+/// The same answers without error bars.
+[[nodiscard]] std::vector<markov::FinalDistribution> predict_whole(
+    const Problem& problem, const RunPool& pool,
+    const std::vector<std::optional<dynamics::Entry>>& starts, int per_leaf, std::uint64_t seed);
 
 /// The shares of trials themselves.
 [[nodiscard]] markov::FinalDistribution shares_of(const FieldTrials& trials,

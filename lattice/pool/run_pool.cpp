@@ -171,6 +171,12 @@ std::int64_t RunPool::trials() const {
   return trials;
 }
 
+std::int64_t RunPool::bodies() const {
+  const std::vector<std::int32_t>& made = scattered.each.bodies;
+  if (made.empty()) return trials();
+  return trials() - std::ssize(made) + 1 + *std::max_element(made.begin(), made.end());
+}
+
 Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGroup group) {
   const std::vector<std::size_t> images = images_of(map);
   const Section& section = map.section;

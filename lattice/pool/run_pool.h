@@ -49,6 +49,8 @@ struct RunPool {
   [[nodiscard]] std::int64_t gate_runs() const;
   /// Those that ran through the field.
   [[nodiscard]] std::int64_t trials() const;
+  /// Bodies that made them.
+  [[nodiscard]] std::int64_t bodies() const;
 };
 
 /// Trials number group, group + of, group + 2 of, ... of every start; where bodies made several

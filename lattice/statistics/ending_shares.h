@@ -11,8 +11,8 @@
 
 namespace gatewalk::lattice {
 
-/// The five that a gate chain has, with their names in files and in tables. (It has no way out
-/// backwards; states never sampled are told apart.)
+/// The five that a gate chain has, with their names in files and in tables. (States never sampled
+/// are told apart.)
 struct EndingName {
   markov::Ending ending;
   const char *key, *name;
@@ -23,6 +23,9 @@ inline constexpr std::array<EndingName, 5> kEndingNames{
      {markov::Ending::right_edge, "right_side", "right side"},
      {markov::Ending::trapped, "trapped", "trapped"},
      {markov::Ending::cut_off, "cut_off", "cut off"}}};
+
+/// Where cells let bodies move back: those who leave over the side that they came in by.
+inline constexpr EndingName kWentBack{markov::Ending::near_edge, "went_back", "went back"};
 
 /// By either of its names; none for any other.
 [[nodiscard]] std::optional<markov::Ending> ending_named(std::string_view name);

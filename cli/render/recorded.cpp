@@ -1,0 +1,77 @@
+#include "cli/render/recorded.h"
+
+#include "cli/render/final_gates.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
+#include "lattice/pool/pooled_prediction.h"
+
+namespace gatewalk::cli {
+namespace {
+
+struct Fates {
+  std::int64_t left = 0, trapped = 0, lost = 0;
+};
+
+Fates fates_of(const lattice::RunPool& pool) {
+  Fates fates;
+  const lattice::PassageTable& passages = pool.scattered.each.passages;
+  for (std::size_t i = 0; i < passages.size(); ++i) {
+    const dynamics::Fate fate = passages[i].fate;
+    ++(fate == dynamics::Fate::left      ? fates.left
+       : fate == dynamics::Fate::trapped ? fates.trapped
+                                         : fates.lost);
+  }
+  return fates;
+}
+
+}  // namespace
+
+Json to_json(const lattice::RunPool& pool) {
+  const Fates fates = fates_of(pool);
+  return {{"bodies", pool.bodies()}, {"trials", pool.trials()},  {"passages", pool.gate_runs()},
+          {"left", fates.left},      {"trapped", fates.trapped}, {"lost", fates.lost}};
+}
+
+std::string table_of(const lattice::RunPool& pool) {
+  const Fates fates = fates_of(pool);
+  return std::to_string(pool.bodies()) + " bodies, " + std::to_string(pool.trials()) + " trials, " +
+         std::to_string(pool.gate_runs()) + " passages: " + std::to_string(fates.left) + " left, " +
+         std::to_string(fates.trapped) + " trapped, " + std::to_string(fates.lost) + " lost\n";
+}
+
+std::vector<std::string> doubts(const lattice::RunPool& pool, const lattice::Problem& problem) {
+  std::vector<std::string> said;
+  if (pool.bodies() < lattice::kLeastBodies)
+    said.push_back("no error bars: they need " + std::to_string(lattice::kLeastBodies) +
+                   " bodies at least, these are " + std::to_string(pool.bodies()));
+  std::vector<bool> entered(problem.map().section.faces.size(), false);
+  lattice::each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
+    entered[static_cast<std::size_t>(entry.face)] = true;
+  });
+  for (std::size_t f = 0; f < entered.size(); ++f)
+    if (!entered[f])
+      said.push_back("nobody was seen to enter by face " + problem.map().section.faces[f].name +
+                     ": what would become of such a body is not known");
+  return said;
+}
+
+Json to_json(const LostBounds& bounds) {
+  return {{"lost_share", bounds.lost},
+          {"if_trapped", endings(bounds.final[0].endings)},
+          {"if_left", endings(bounds.final[1].endings)}};
+}
+
+std::string table_of(const LostBounds& bounds) {
+  if (!(bounds.lost > 0.0)) return "";
+  std::string text = percent(bounds.lost, 1.0, 2) +
+                     " of the passages were lost from sight and are left out. If "
+                     "all of these bodies had been trapped, or all had left:\n";
+  for (const EndingName& e : kEndingNames) {
+    const auto at = static_cast<std::size_t>(e.ending);
+    text += padded(e.name, -11) + padded(percents(bounds.final[0].endings[at]), 7) + " %, " +
+            padded(percents(bounds.final[1].endings[at]), 7) + " %\n";
+  }
+  return text;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,25 @@
+#pragma once
+/// What results are shown of: the field, its cells' size and types, how entries are told.
+
+#include <string>
+#include <vector>
+
+#include "dynamics/cells/cell_map.h"
+#include "lattice/cells/cell_file.h"
+#include "lattice/field.h"
+#include "lattice/scene/scene.h"
+
+namespace gatewalk::cli {
+
+struct ShownField {
+  lattice::FieldParams field;
+  double width = 0.0, length = 0.0;  // m, of a cell
+  double time_limit = 0.0;           // s, until a body is trapped; NaN: somebody said so
+  std::vector<std::string> types;    // names by type, "s/t" where two are alike; none where all are
+  dynamics::CellMap map;             // section, which type stands where
+
+  ShownField(const lattice::Scene& scene);  // NOLINT(google-explicit-constructor)
+  explicit ShownField(const lattice::CellFile& cells);
+};
+
+}  // namespace gatewalk::cli

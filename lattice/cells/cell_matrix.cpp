@@ -1,0 +1,57 @@
+#include "lattice/cells/cell_matrix.h"
+
+#include <utility>
+
+#include "lattice/pool/tree_chain.h"
+#include "lattice/scene/matrix.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+CellFile cells_in(const std::map<std::string, std::string>& text, const std::string& path,
+                  const std::vector<std::string>& overrides) {
+  return parse_cell_file(text.at(kCellText), path + " (its cells)", overrides);
+}
+
+MatrixFile read_file(const std::string& path) {
+  return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
+    if (!text.contains(kCellText)) throw markov::BadFile(path + ": holds no cells");
+    return cells_in(text, path, {}).map.section;
+  });
+}
+
+}  // namespace
+
+bool is_of_cells(const std::string& path) {
+  return markov::text_of_counts(path, kCellText).has_value();
+}
+
+CellMatrix read_cell_matrix(const std::string& path, const std::vector<std::string>& overrides) {
+  CellMatrix m{read_file(path), {}, {}, {}};
+  m.cells = cells_in(m.file.text, path, overrides);
+  m.pool = pool_of(m.file, problem_of(m.cells, {}), path);
+  m.problem = problem_of(m.cells, m.pool);
+  return m;
+}
+
+std::vector<dynamics::Transitions> cell_matrices(const Problem& problem, const RunPool& pool,
+                                                 int per_leaf) {
+  return transitions_of(kernel_of(problem.map(), pool, per_leaf), problem.map(), problem.field, {},
+                        {});
+}
+
+MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices, CellFile cells,
+                            const RunPool& pool, std::map<std::string, std::string> text) {
+  cells.has_scale.assign(cells.has_scale.size(), true);
+  text[kCellText] = to_toml(cells);
+  MatrixFile file{std::move(matrices.front()), std::move(text), arrays_of(pool, cells.map.section)};
+  for (std::size_t type = 1; type < matrices.size(); ++type)
+    file.types.emplace(cells.types[type], std::move(matrices[type]));
+  return file;
+}
+
+MatrixFile read_any_matrix(const std::string& path) {
+  return is_of_cells(path) ? read_file(path) : read_matrix(path);
+}
+
+}  // namespace gatewalk::lattice

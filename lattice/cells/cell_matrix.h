@@ -1,0 +1,40 @@
+#pragma once
+/// Matrix files of cells that are not ours: the chain of their runs, the runs, and the cell file.
+
+#include <string>
+#include <vector>
+
+#include "lattice/cells/recorded_pool.h"
+#include "lattice/gate_chain.h"
+
+namespace gatewalk::lattice {
+
+/// The key of a matrix file's text that has the cell file.
+inline constexpr const char* kCellText = "cell";
+
+/// Whether a file is a matrix of such cells.
+[[nodiscard]] bool is_of_cells(const std::string& path);
+
+/// What such a file holds. The field and start are the cell file's, with overrides.
+struct CellMatrix {
+  MatrixFile file;
+  CellFile cells;
+  RunPool pool;
+  Problem problem;
+};
+/// Throws markov::BadFile, and SceneError for an override that is not permitted.
+[[nodiscard]] CellMatrix read_cell_matrix(const std::string& path,
+                                          const std::vector<std::string>& overrides = {});
+
+/// The matrices of a pool, by type, without starts of their own.
+[[nodiscard]] std::vector<dynamics::Transitions> cell_matrices(const Problem& problem,
+                                                               const RunPool& pool, int per_leaf);
+/// A file of these, with `text` beside the cell file: scales are kept as they are.
+[[nodiscard]] MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices,
+                                          CellFile cells, const RunPool& pool,
+                                          std::map<std::string, std::string> text);
+
+/// The section of a matrix file of any cells: of the cell file, or of a disc in its gate.
+[[nodiscard]] MatrixFile read_any_matrix(const std::string& path);
+
+}  // namespace gatewalk::lattice

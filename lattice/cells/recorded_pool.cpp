@@ -1,0 +1,111 @@
+#include "lattice/cells/recorded_pool.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace gatewalk::lattice {
+
+using namespace dynamics;
+
+RunPool pool_of(const RecordedRuns& runs) {
+  RunPool pool;
+  FieldTrials& each = pool.scattered.each;
+  each.passages = runs.passages;
+  for (const RecordedTrial& trial : runs.trials) {
+    pool.scattered.starts.push_back(trial.start);
+    each.bodies.push_back(trial.body);
+    each.passed.push_back(trial.first + trial.count);
+    each.final_gates.push_back(0);  // not told: tracks need not run through the field at hand
+    each.endings.push_back({});
+    each.costs.push_back({});
+  }
+  return pool;
+}
+
+Problem problem_of(const CellFile& cells, const RunPool& pool) {
+  Problem problem{.cells = {cells.map, {}},
+                  .field = cells.field,
+                  .start = cells.start.value_or(Entry{}),
+                  .width = cells.width,
+                  .length = cells.length,
+                  .types = cells.types,
+                  .source = cells.source,
+                  .check = {}};
+  Section& section = problem.cells.map.section;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::vector<std::array<std::array<double, 2>, kMostCoordinates>> seen(section.faces.size());
+  for (auto& face : seen) face.fill({kNone, -kNone});
+  each_entry(pool, {}, [&](const Entry& entry, int) {
+    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+      auto& [low, high] = seen[static_cast<std::size_t>(entry.face)][axis];
+      low = std::min(low, entry.at[axis]);
+      high = std::max(high, entry.at[axis]);
+    }
+  });
+  for (std::size_t f = 0; f < section.faces.size(); ++f)
+    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+      auto& usual = section.faces[f].usual[axis];
+      if (usual[0] < usual[1]) continue;
+      const double half = 0.5 * section.coordinates[axis].scale;
+      const auto& [low, high] = seen[f][axis];
+      usual = low < high    ? std::array{low, high}
+              : low <= high ? std::array{low - half, high + half}
+                            : std::array{-half, half};
+    }
+  return problem;
+}
+
+double lost_share(const RunPool& pool) {
+  const PassageTable& passages = pool.scattered.each.passages;
+  std::int64_t lost = 0;
+  for (std::size_t i = 0; i < passages.size(); ++i) lost += passages[i].fate == Fate::broken;
+  return static_cast<double>(lost) / static_cast<double>(passages.size());
+}
+
+RunPool with_lost(const RunPool& pool, const Problem& problem, LostFate fate, int per_leaf,
+                  std::uint64_t seed) {
+  const Kernel kernel = kernel_of(problem.map(), pool, per_leaf);
+  const FieldTrials& from = pool.scattered.each;
+  // Of each state and type, the passages that left.
+  std::vector<std::vector<std::size_t>> left(static_cast<std::size_t>(kernel.space.size()) *
+                                             problem.map().types.size());
+  const auto place_of = [&](const Entry& entry, const CellPassage& passage) {
+    return static_cast<std::size_t>(kernel.space.index_of(entry).state) *
+               problem.map().types.size() +
+           passage.type;
+  };
+  const auto each_passage = [&](auto use) {
+    for (std::size_t i = 0; i < from.passed.size(); ++i) {
+      Entry entry = pool.scattered.starts[i];
+      const auto begin = static_cast<std::size_t>(i == 0 ? 0 : from.passed[i - 1]);
+      for (std::size_t k = begin; k < static_cast<std::size_t>(from.passed[i]); ++k) {
+        const CellPassage passage = from.passages[k];
+        use(k, entry, passage);
+        entry = passage.entry;
+      }
+    }
+  };
+  each_passage([&](std::size_t k, const Entry& entry, const CellPassage& passage) {
+    if (passage.fate == Fate::left) left[place_of(entry, passage)].push_back(k);
+  });
+  RunPool told = pool;
+  PassageTable passages(problem.map().section);
+  passages.reserve(from.passages.size());
+  each_passage([&](std::size_t k, const Entry& entry, CellPassage passage) {
+    if (passage.fate == Fate::broken && fate == LostFate::trapped) passage.fate = Fate::trapped;
+    if (passage.fate == Fate::broken) {
+      const auto& others = left[place_of(entry, passage)];
+      if (!others.empty()) {
+        Random random(Purpose::resampling, {seed, 0, static_cast<std::uint64_t>(k)});
+        passage = from.passages[others[static_cast<std::size_t>(
+            random.below(static_cast<std::int64_t>(others.size())))]];
+      }
+    }
+    passages.push_back(passage);
+  });
+  told.scattered.each.passages = std::move(passages);
+  return told;
+}
+
+}  // namespace gatewalk::lattice
