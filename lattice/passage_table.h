@@ -48,6 +48,14 @@ class PassageTable {
     std::copy_n(took_.data() + i * costs_, costs_, passage.costs.begin());
     return passage;
   }
+  /// Makes room for so many passages.
+  void reserve(std::size_t passages) {
+    endings_.reserve(passages);
+    types_.reserve(passages);
+    faces_.reserve(passages);
+    at_.reserve(passages * coordinates_);
+    took_.reserve(passages * costs_);
+  }
 
   /// Some rows, one after the other, which are made as they are read.
   class Rows {

@@ -1,4 +1,3 @@
-#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -11,13 +10,10 @@ namespace gatewalk::cli {
 namespace {
 
 void declare(Options& options) {
-  options.positional("tracks",
-                     "tracks: a table with a line a place (CSV), DeepLabCut's CSV, or "
-                     "movement's NetCDF",
-                     true);
+  options.positional(
+      "tracks", "a table with a line a place (CSV), DeepLabCut's CSV, or movement's NetCDF", true);
   options.input_file("cell", "the cells and what is measured of an entry (cell.toml)");
-  options.main_output_file("RUNS.csv", "the passages, a line each; - is standard output",
-                           Options::Content::text);
+  options.main_output_file("RUNS.csv", "the passages, a line each", Options::Content::binary);
   options.add_number("fastest", "M/S",
                      "no body is faster from frame to frame, its noise included: what is, is a "
                      "jump (must be given)");
@@ -27,16 +23,12 @@ void declare(Options& options) {
   options.add_number("metres-per-unit", "X", "of the file's x and y; 1: metres");
   options.add_text("key-point", "NAME", "the key point that is the body's place");
   options.add_number("confidence", "X", "places with less are not seen");
-  options.add_text("origin", "X,Y",
-                   "lower left corner of the cell in column 0 and row 0, in the file's unit",
+  options.add_text("origin", "X,Y", "lower left corner of column 0 and row 0, in the file's unit",
                    "0,0");
   options.add_flag("y-down", "y grows downwards in the file, as in pictures; upwards without it");
   options.add_text("lattice", "COLUMNS,ROWS",
-                   "cells that there are, from the origin on (default: those of the map; without "
-                   "one, wherever bodies go)");
-  options.add_text("window", "N|Xs",
-                   "of the local fits, in frames (odd) or seconds (default: where velocities have "
-                   "the least error)");
+                   "cells that there are, from the origin on (default: the map's, or all there)");
+  options.add_text("window", "N|Xs", "of local fits, frames or seconds (default: least error)");
   options.add_count("bridge", "N", "frames that may be missing without a gap", "0");
   options.add_figure("all tracks over the cells, and where they were cut");
 }
@@ -57,14 +49,14 @@ lattice::TrackOptions track_options(const Options& options) {
     return options.has(name) ? std::optional(options.number(name)) : std::nullopt;
   };
   const auto origin = pair_of(options, "origin");
-  return {options.text("columns"),
-          number("fps"),
-          number("metres-per-unit"),
-          number("confidence"),
-          options.text("key-point"),
-          origin[0],
-          origin[1],
-          options.has("y-down")};
+  return {.columns = options.text("columns"),
+          .fps = number("fps"),
+          .metres_per_unit = number("metres-per-unit"),
+          .confidence = number("confidence"),
+          .key_point = options.text("key-point"),
+          .origin_x = origin[0],
+          .origin_y = origin[1],
+          .y_down = options.has("y-down")};
 }
 
 lattice::CutOptions cut_options(const Options& options) {
@@ -75,10 +67,11 @@ lattice::CutOptions cut_options(const Options& options) {
                           .bridge = static_cast<int>(options.count("bridge", 0, 1000))};
   if (!options.has("lattice")) return cut;
   const auto [columns, rows] = pair_of(options, "lattice");
+  if (!(columns >= 1 && columns <= 1e6 && rows >= 1 && rows <= 1e6) ||
+      columns != std::floor(columns) || rows != std::floor(rows))
+    throw UsageError("--lattice " + options.text("lattice") + ": must be two whole numbers from 1");
   cut.columns = static_cast<int>(columns);
   cut.rows = static_cast<int>(rows);
-  if (cut.columns != columns || cut.rows != rows || cut.columns < 1 || cut.rows < 1)
-    throw UsageError("--lattice " + options.text("lattice") + ": must be two whole numbers from 1");
   return cut;
 }
 
@@ -104,9 +97,9 @@ int run_passages(const Arguments& arguments) {
   Json json = to_json(cut, file, cell);
   json["made_by"] = to_json(options.provenance());
   const std::string path = options.text("output");
-  options.write(path, lattice::runs_csv(cut, file, cell, {options.canonical()}));
-  if (path != "-" || !options.text("json").empty())
-    options.give_out(json, path == "-" ? "" : table_of(cut, file, cell));
+  options.keep_old(path);
+  lattice::write_runs(path, cell, lattice::recorded_runs(cut, file, cell));
+  options.give_out(json, table_of(cut, file, cell));
   options.draw([&] { return figure_of(cut, cell); });
   return kFine;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -35,17 +36,12 @@ const Measured& measured(const dynamics::Coordinate& coordinate) {
                               "its middle), vx, vy, speed (m/s), heading (rad)");
 }
 
-void add_digits(std::string& text, double x, int digits) {
-  std::array<char, 32> buffer{};
-  text.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x,
-                                           std::chars_format::general, digits)
-                                 .ptr);
-}
-/// For messages.
+/// Six digits, for messages.
 std::string rounded(double x) {
-  std::string text;
-  add_digits(text, x, 6);
-  return text;
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x,
+                                       std::chars_format::general, 6)
+                             .ptr};
 }
 
 /// A border crossed at a time, on the smooth path.
@@ -275,11 +271,12 @@ class Cutter {
     (void)finish(*now, path.time.back() - since, CutEnd::lost, {path.x.back(), path.y.back()}, {});
   }
 
-  /// Trapped, if it took longer than that; true: then the trial is at its end.
+  /// Trapped, if it took as long as that; true: then the trial is at its end.
   bool finish(CutPassage& passage, double time, CutEnd end, std::array<double, 2> to, Entry out) {
-    const bool trapped = cell_.trapped_after && time > *cell_.trapped_after;
+    const bool trapped = cell_.trapped_after && time >= *cell_.trapped_after;
     passage.end = trapped ? CutEnd::trapped : end;
-    passage.time = trapped ? *cell_.trapped_after : time;
+    // Straight through a corner takes no time, and the format has no passage without any.
+    passage.time = trapped ? *cell_.trapped_after : std::max(time, 1e-6 * file_.interval);
     passage.to = to;
     if (passage.end == CutEnd::left) passage.out = out;
     cut_.passages.push_back(passage);
@@ -346,16 +343,10 @@ std::string face_move(const dynamics::Face& face) {
          std::to_string(face.di_y) + ")";
 }
 
-/// Mirror images (x to -x) of what tracks have are what they are: a symmetric cell must say so.
-void require_mirror(const CellFile& cell) {
+/// What changes its sign in the mirror (x to -x) is known of tracks: a symmetric cell must say so.
+void require_odd(const CellFile& cell) {
   const auto& section = cell.map.section;
   for (const dynamics::Face& face : section.faces) {
-    const dynamics::Face& image = section.faces[static_cast<std::size_t>(face.mirror)];
-    if (image.di_x != -face.di_x || image.di_y != face.di_y)
-      throw std::invalid_argument(cell.source + ": the mirror of " + face_move(face) +
-                                  " must be the face with the move (" + std::to_string(-face.di_x) +
-                                  ", " + std::to_string(face.di_y) + "), not " +
-                                  printable(image.name));
     for (std::size_t k = 0; k < section.coordinates.size(); ++k) {
       const Measured& m = measured(section.coordinates[k]);
       const bool is_odd = face.di_y != 0 ? m.is_odd_upwards : m.is_odd_sideways;
@@ -407,63 +398,43 @@ void require_measurable(const CellFile& cell) {
   }
   if (std::any_of(cell.map.types.begin(), cell.map.types.end(),
                   [](const auto& type) { return type.symmetric; }))
-    require_mirror(cell);
+    require_odd(cell);
 }
 
 CutTracks cut_tracks(const TrackFile& file, const CellFile& cell, const CutOptions& options) {
   return Cutter(file, cell, options).cut();
 }
 
-std::string runs_csv(const CutTracks& cut, const TrackFile& file, const CellFile& cell,
-                     const std::vector<std::string>& comments) {
-  const auto& section = cell.map.section;
-  const std::size_t n = section.coordinates.size();
-  const bool has_types = cell.map.types.size() > 1;
-  std::string text;
-  for (const std::string& comment : comments) text += "# " + comment + "\n";
-  text += "body,trial,in,";
-  for (const auto& c : section.coordinates) text += c.name + ",";
-  text += "out,";
-  for (const auto& c : section.coordinates) text += "out_" + c.name + ",";
-  text += has_types ? "time_s,type\n" : "time_s\n";
-  const auto add = [&](double x) { add_digits(text, x, 9); };
-  const auto add_name = [&](const std::string& name) {
-    const bool is_plain = name.find_first_of(",\"#") == name.npos;
-    if (is_plain) {
-      text += name;
-      return;
-    }
-    text += '"';
-    for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-    text += '"';
-  };
+RecordedRuns recorded_runs(const CutTracks& cut, const TrackFile& file, const CellFile& cell) {
+  const auto& costs = cell.map.section.costs;
+  RecordedRuns runs;
+  runs.passages.begin(cell.map.section);
+  std::vector<std::int32_t> numbers(file.tracks.size(), -1);  // of bodies, by track
+  const CutPassage* last = nullptr;
   for (const CutPassage& p : cut.passages) {
-    add_name(file.tracks[p.track].body);
-    text += "," + std::to_string(p.trial) + ",";
-    add_name(section.faces[static_cast<std::size_t>(p.in.face)].name);
-    for (std::size_t k = 0; k < n; ++k) {
-      text += ',';
-      add(p.in.at[k]);
+    std::int32_t& body = numbers[p.track];
+    if (body < 0) {
+      body = static_cast<std::int32_t>(runs.bodies.size());
+      runs.bodies.push_back(file.tracks[p.track].body);
     }
-    text += ',';
-    if (p.end == CutEnd::left) {
-      add_name(section.faces[static_cast<std::size_t>(p.out.face)].name);
-    } else {
-      text += p.end == CutEnd::trapped ? "trapped" : "lost";
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-      text += ',';
-      if (p.end == CutEnd::left) add(p.out.at[k]);
-    }
-    text += ',';
-    add(p.time);
-    if (has_types) {
-      text += ',';
-      add_name(cell.types[static_cast<std::size_t>(p.type)]);
-    }
-    text += '\n';
+    if (!last || last->track != p.track || last->trial != p.trial)
+      runs.trials.push_back({p.in, body, static_cast<std::int64_t>(runs.passages.size()), 0});
+    last = &p;
+    ++runs.trials.back().count;
+    GatePassage row{.ending = p.end == CutEnd::left      ? dynamics::Ending::traversed
+                              : p.end == CutEnd::trapped ? dynamics::Ending::trapped
+                                                         : dynamics::Ending::broken,
+                    .type = static_cast<std::uint8_t>(p.type),
+                    .entry = p.out};
+    for (std::size_t c = 0; c < costs.size(); ++c)
+      row.costs[c] = costs[c].key == "time_s" ? p.time : std::numeric_limits<double>::quiet_NaN();
+    runs.passages.push_back(row);
+    runs.trapped += p.end == CutEnd::trapped ? 1 : 0;
+    runs.lost += p.end == CutEnd::lost ? 1 : 0;
+    for (std::size_t c = 0; c < costs.size(); ++c)
+      runs.unknown[c] += p.end != CutEnd::lost && std::isnan(row.costs[c]) ? 1 : 0;
   }
-  return text;
+  return runs;
 }
 
 }  // namespace gatewalk::lattice

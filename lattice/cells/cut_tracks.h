@@ -10,6 +10,7 @@
 #include "dynamics/cells/section.h"
 #include "lattice/cells/cell_file.h"
 #include "lattice/cells/local_fit.h"
+#include "lattice/cells/recorded.h"
 #include "lattice/cells/tracks.h"
 
 namespace gatewalk::lattice {
@@ -71,8 +72,8 @@ void require_measurable(const CellFile& cell);
 [[nodiscard]] CutTracks cut_tracks(const TrackFile& file, const CellFile& cell,
                                    const CutOptions& options);
 
-/// The passages as recorded runs, a line each; `comments` come first.
-[[nodiscard]] std::string runs_csv(const CutTracks& cut, const TrackFile& file,
-                                   const CellFile& cell, const std::vector<std::string>& comments);
+/// The passages as recorded runs. What else a passage takes is not known of tracks.
+[[nodiscard]] RecordedRuns recorded_runs(const CutTracks& cut, const TrackFile& file,
+                                         const CellFile& cell);
 
 }  // namespace gatewalk::lattice

@@ -23,18 +23,14 @@
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene_bins.h"
 #include "lattice/scene/scene_terrain.h"
-#include "lattice/scene/toml_mistake.h"
+#include "lattice/scene/toml_settings.h"
 #include "lattice/scene/toml_text.h"
 #include "lattice/scene/units.h"
 
 namespace gatewalk::lattice {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr std::string_view kStandardInput = "standard input";
-// Every level of a dotted key costs a dot and, in the parser's destructors, stack. Brackets are
-// limited by the parser itself (256 deep).
-constexpr int kMaxDots = 2000;
 constexpr std::size_t kLongestCompared = 100;  // bytes of an unknown key
 
 // ---- The table of keys
@@ -44,21 +40,6 @@ constexpr const char* kFidelityKey = "field.fidelity";
 constexpr std::string_view kSweepTable = "sweep";
 
 using Slot = std::variant<double*, int*, std::string*, Fidelity*>;
-
-/// What a number may be. An open end is not itself permitted.
-struct Interval {
-  double low, high;
-  bool low_open = false, high_open = false;
-
-  [[nodiscard]] bool permits(double v) const {
-    return (low_open ? v > low : v >= low) && (high_open ? v < high : v <= high);  // false for NaN
-  }
-  [[nodiscard]] std::string text() const {
-    std::string range = dynamics::ParamInfo{{}, {}, low, high, low_open, {}}.range();
-    if (high_open) range.back() = ')';
-    return range;
-  }
-};
 
 struct SceneKey {
   std::string_view key;
@@ -70,8 +51,8 @@ struct SceneKey {
 /// Every key of a scene in canonical order: those of GateParams, then field and start.
 const std::vector<SceneKey>& scene_keys() {
   static const std::vector<SceneKey> keys = [] {
-    const auto fixed = [](double low, double high) {
-      return [low, high](const Scene&) { return Interval{low, high}; };
+    const auto fixed = [](Interval interval) {
+      return [interval](const Scene&) { return interval; };
     };
     std::vector<SceneKey> all;
     for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
@@ -100,13 +81,13 @@ const std::vector<SceneKey>& scene_keys() {
           {key, [slot](Scene& s) { return Slot(slot(s)); }, std::move(permitted), meaning});
     };
     add(
-        "field.columns", [](Scene& s) { return &s.field.columns; }, fixed(1, 2001),
+        "field.columns", [](Scene& s) { return &s.field.columns; }, fixed(kFieldSizes),
         "gates side by side");
     add(
-        "field.rows", [](Scene& s) { return &s.field.rows; }, fixed(1, 2001),
+        "field.rows", [](Scene& s) { return &s.field.rows; }, fixed(kFieldSizes),
         "gates one behind the other");
     add(
-        "field.max_gates", [](Scene& s) { return &s.field.max_gates; }, fixed(0, 1e9),
+        "field.max_gates", [](Scene& s) { return &s.field.max_gates; }, fixed(kGateLimits),
         "gates a body may visit before it is cut off, 0: no limit");
     add(
         kFidelityKey, [](Scene& s) { return &s.field.fidelity; }, {},
@@ -201,48 +182,6 @@ std::string closest_keys(std::string_view name) {
 
 // ---- From TOML to settings
 
-/// One key that a file or an override gives.
-struct Setting {
-  const toml::node* value;
-  std::string origin;
-  std::string spelled;  // the key as it is written, perhaps in another unit
-
-  /// The origin, with what stands there where that is another unit and not said by itself.
-  [[nodiscard]] std::string where(std::string_view key) const {
-    return spelled == key || origin.starts_with("--set ")
-               ? origin
-               : origin + " (" + std::string(leaf_of(spelled)) + shown_value(*value) + ")";
-  }
-};
-using Settings = std::map<std::string, Setting, std::less<>>;
-
-void refuse_deep_nesting(std::string_view text, const Origin& origin) {
-  int dots = 0;
-  std::size_t line = 1;
-  while (!text.empty()) {
-    const std::string_view row = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), row.size() + 1));
-    const std::size_t first = row.find_first_not_of(" \t");
-    if (first != row.npos && row[first] != '#') {
-      dots += static_cast<int>(std::count(row.begin(), row.end(), '.'));
-    }
-    if (dots > kMaxDots) {
-      throw SceneError(origin(line) + ": nested too deeply: too many dotted keys");
-    }
-    ++line;
-  }
-}
-
-toml::table parse_toml(std::string_view text, const Origin& origin) {
-  refuse_deep_nesting(text, origin);
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    const std::size_t line = error.source().begin.line;
-    throw SceneError(origin(line) + ": " + text_row(text, line) + ": " + toml_mistake(text, line));
-  }
-}
-
 /// Every key that `document` sets. Refuses what is no key of a scene.
 Settings settings_of(const toml::table& document, const Origin& origin) {
   Settings settings;
@@ -332,24 +271,13 @@ std::vector<Variation> variations_of(const toml::table& document, const Origin& 
 /// Adds "key=value" to `settings`; `documents` keeps the parsed values alive.
 void apply_override(const std::string& given, std::deque<toml::table>& documents,
                     Settings& settings) {
-  const std::string begin = "--set " + printable(given);
-  const Origin origin = [&begin](std::size_t) { return begin; };
-  const std::size_t equals = given.find('=');
-  if (equals == given.npos || given.find_first_of("\r\n") != given.npos) {
-    throw SceneError(begin + ": must be KEY=VALUE, for example forces.random_N=20");
-  }
-  const std::string name(trimmed(std::string_view(given).substr(0, equals)));
-  std::string value(trimmed(std::string_view(given).substr(equals + 1)));
-
-  // A bare word for a text key: quotes seldom survive a shell.
-  if ((name == kMethodKey || name == kFidelityKey) && value.find_first_of("\"'") == value.npos)
-    value = "\"" + value + "\"";
-
-  documents.push_back(parse_toml(name + " = " + value, origin));
-  const Settings added = settings_of(documents.back(), origin);
+  Override read = parse_override(
+      given, [](std::string_view key) { return key == kMethodKey || key == kFidelityKey; });
+  documents.push_back(std::move(read.document));
+  const Settings added = settings_of(documents.back(), [&read](std::size_t) { return read.begin; });
   if (added.empty() && !documents.back().contains(kBinsTable) &&
       !documents.back().contains(kTerrainTable))
-    throw SceneError(begin + ": sets no key");
+    throw SceneError(read.begin + ": sets no key");
   for (const auto& [key, setting] : added) settings[key] = setting;
 }
 
@@ -358,19 +286,14 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
 /// `shown`: what a message calls the key; a number may be in the unit of the setting's spelling.
 void assign(const SceneKey& key, const Setting& setting, Scene& scene, std::string_view shown) {
   const auto refusal = [&](const std::string& allowed) {
-    return SceneError(setting.origin + ": " + std::string(shown) + shown_value(*setting.value) +
-                      " is not permitted: must " + allowed);
+    return SceneError(refusal_of(setting, shown, allowed));
   };
   const Slot slot = key.slot(scene);
-  const auto* whole = setting.value->as_integer();
-
   if (auto* const* text = std::get_if<std::string*>(&slot)) {
     const auto* string = setting.value->as_string();
     if (!string) throw refusal("be text, such as \"" + **text + "\"");
     **text = string->get();
-    return;
-  }
-  if (auto* const* fidelity = std::get_if<Fidelity*>(&slot)) {
+  } else if (auto* const* fidelity = std::get_if<Fidelity*>(&slot)) {
     const auto* string = setting.value->as_string();
     const auto& names = kFidelityNames;
     const auto name = string ? std::find(names.begin(), names.end(), string->get()) : names.end();
@@ -381,29 +304,11 @@ void assign(const SceneKey& key, const Setting& setting, Scene& scene, std::stri
       throw refusal("be one of " + known);
     }
     **fidelity = static_cast<Fidelity>(name - names.begin());
-    return;
+  } else if (auto* const* integer = std::get_if<int*>(&slot)) {
+    **integer = whole_number_of(setting, key.permitted(scene), shown);
+  } else {
+    *std::get<double*>(slot) = number_of(setting, key.key, key.permitted(scene), shown);
   }
-
-  const Interval interval = key.permitted(scene);
-  const KeyUnit unit = unit_of(setting.spelled, key.key).value();
-  const std::string allowed =
-      Interval{in_given_unit(interval.low, unit), in_given_unit(interval.high, unit),
-               interval.low_open, interval.high_open}
-          .text() +
-      (unit.shown.empty() ? "" : " " + unit.shown);
-  if (auto* const* integer = std::get_if<int*>(&slot)) {
-    if (!whole) throw refusal("be a whole number in " + allowed);
-    if (!interval.permits(static_cast<double>(whole->get()))) throw refusal("lie in " + allowed);
-    **integer = static_cast<int>(whole->get());
-    return;
-  }
-
-  const auto* floating = setting.value->as_floating_point();
-  if (!whole && !floating) throw refusal("be a number in " + allowed);
-  const double number =
-      in_own_unit(floating ? floating->get() : static_cast<double>(whole->get()), unit);
-  if (!interval.permits(number)) throw refusal("lie in " + allowed);
-  *std::get<double*>(slot) = number;
 }
 
 void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
@@ -519,7 +424,7 @@ SceneError unreadable(const std::string& name) {
 }
 
 std::string read_all(std::FILE* file, const std::string& name) {
-  std::string text(kMaxBytes + 1, '\0');  // one more than allowed, so that parse_scene notices
+  std::string text(kMostSceneBytes + 1, '\0');  // one more than allowed, so that this is noticed
   errno = 0;
   text.resize(std::fread(text.data(), 1, text.size(), file));
   if (std::ferror(file)) throw unreadable(name);
@@ -591,12 +496,8 @@ std::string map_file_in(std::string_view text, const std::string& folder) {
 Scene parse_scene(std::string_view text, std::string name,
                   const std::vector<std::string>& overrides) {
   if (name == "-") name = kStandardInput;
-  if (text.size() > kMaxBytes) {
-    throw SceneError(name + ": is too large for a scene: more than " + std::to_string(kMaxBytes) +
-                     " bytes");
-  }
   const Origin origin = [&name](std::size_t line) { return name + ":" + std::to_string(line); };
-  const toml::table document = parse_toml(text, origin);
+  const toml::table document = parse_toml_file(text, name, "a scene");
   const Settings of_file = settings_of(document, origin);
   Settings settings = of_file;
   std::deque<toml::table> override_documents;

@@ -20,13 +20,6 @@ namespace {
 constexpr std::size_t kMostTypes = 100;
 constexpr const char* kKeys = "map, map_file, grey, random, seed and types";
 
-bool is_name(std::string_view name) {
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  return !name.empty() && name.size() <= 60 && is_letter(name.front()) &&
-         std::all_of(name.begin(), name.end(),
-                     [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
-}
-
 const toml::table& table_at(const toml::node& node, const std::string& name, const Origin& origin) {
   if (const auto* table = node.as_table()) return *table;
   throw SceneError(origin(node.source().begin.line) + ": " + name + shown_value(node) +
@@ -84,14 +77,14 @@ std::vector<std::string> names_in(const std::string& row, int columns) {
 }
 
 std::string all_names(const Terrain& terrain) {
-  std::string names(kOwnGate);
+  std::string names = terrain.own;
   for (const Terrain::Type& type : terrain.types) names += ", " + type.name;
   return names;
 }
 
-/// Place of a type among the terrain's, from 1; 0: the scene's own gate; -1: none.
+/// Place of a type among the terrain's, from 1; 0: its own gate; -1: none.
 int type_named(const Terrain& terrain, std::string_view name) {
-  if (name == kOwnGate) return 0;
+  if (name == terrain.own) return 0;
   for (std::size_t i = 0; i < terrain.types.size(); ++i)
     if (terrain.types[i].name == name) return static_cast<int>(i) + 1;
   return -1;
@@ -186,7 +179,7 @@ std::map<std::string, double> type_shares(const TerrainSettings& settings, const
     const std::string begin = given.where() + ": terrain." + key + shown_value(*given.value);
     if (type_named(terrain, name) < 1)
       throw SceneError(begin + ": " + printable(name) + " is no type of gate: there are " +
-                       all_names(terrain) + "; what the shares leave is \".\"");
+                       all_names(terrain) + "; what the shares leave is \"" + terrain.own + "\"");
     const auto share = given.value->value<double>();
     if (!given.value->is_number() || !(*share >= 0.0 && *share <= 1.0))
       throw SceneError(begin + " is not permitted: must be a share in [0, 1]");
@@ -276,10 +269,15 @@ std::optional<Terrain> terrain_of(const TerrainSettings& settings, const FieldPa
       where += " (" + given.spelled + shown_value(*given.value) + ")";
     terrain.types.back().keys.push_back({name, x, where});
   }
-  const std::string where = settings.begin()->second.where();
   if (terrain.types.size() > kMostTypes)
-    throw SceneError(where + ": [terrain] has more than " + std::to_string(kMostTypes) + " types");
+    throw SceneError(settings.begin()->second.where() + ": [terrain] has more than " +
+                     std::to_string(kMostTypes) + " types");
+  read_map(terrain, settings, field);
+  return terrain;
+}
 
+void read_map(Terrain& terrain, const TerrainSettings& settings, const FieldParams& field) {
+  const std::string where = settings.begin()->second.where();
   const auto map = settings.find("map"), file = settings.find("map_file"),
              seed = settings.find("seed");
   const auto random = settings.lower_bound("random.");
@@ -315,7 +313,6 @@ std::optional<Terrain> terrain_of(const TerrainSettings& settings, const FieldPa
     terrain.type_of_cell = cells_of(rows_of_file(file->second, path),
                                     file->second.where() + ": terrain.map_file", terrain, field);
   }
-  return terrain;
 }
 
 }  // namespace gatewalk::lattice

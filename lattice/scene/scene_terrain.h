@@ -9,13 +9,11 @@
 #include <string>
 
 #include "lattice/scene/terrain.h"
+#include "lattice/scene/toml_settings.h"
 
 namespace gatewalk::lattice {
 
 inline constexpr std::string_view kTerrainTable = "terrain";
-
-/// `origin(line)` is how a message begins: "scenes/x.toml:12" or "--set terrain.seed=6".
-using Origin = std::function<std::string(std::size_t line)>;
 
 /// One key of the table, as a file or an override gives it; the node must outlive it.
 struct TerrainSetting {
@@ -37,6 +35,10 @@ void add_terrain(TerrainSettings& settings, const toml::table& document, const O
 /// The value of the key `name` of a scene, for a type. Throws SceneError when it is not permitted.
 using TypeValue =
     std::function<double(std::string_view name, const TerrainSetting& given, const std::string&)>;
+
+/// Reads the map (map, map_file and grey, random and seed) of a terrain whose types are known.
+/// Throws SceneError as terrain_of.
+void read_map(Terrain& terrain, const TerrainSettings& settings, const FieldParams& field);
 
 /// None without settings. Throws SceneError naming the line, row and column for a map that does not
 /// fill the field or has a type that there is not, and for shares that are none.

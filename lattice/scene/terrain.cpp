@@ -91,7 +91,7 @@ std::vector<int> drawn_map(const Terrain& terrain, const FieldParams& field) {
 }
 
 std::vector<std::string> map_rows(const Terrain& terrain, const FieldParams& field) {
-  std::vector<std::string> names{std::string(kOwnGate)};
+  std::vector<std::string> names{terrain.own};
   for (const Terrain::Type& type : terrain.types) names.push_back(type.name);
   const bool letters = std::all_of(names.begin(), names.end(),
                                    [](const std::string& name) { return name.size() == 1; });

@@ -13,7 +13,9 @@ namespace gatewalk::lattice {
 
 struct Scene;
 
-/// What stands where. The scene's own gate has the name ".".
+inline constexpr std::string_view kOwnGate = ".";
+
+/// What stands where.
 struct Terrain {
   /// A key that a type has otherwise than the scene.
   struct Key {
@@ -25,14 +27,13 @@ struct Terrain {
     std::string name;  // letters, digits and _, a letter first
     std::vector<Key> keys;
   };
-  std::vector<Type> types;  // by name
+  std::string own{kOwnGate};  // name of the scene's own gate
+  std::vector<Type> types;    // by name
   /// (rows x columns), the near row first. 0: the scene's own gate, i: types[i - 1].
   std::vector<int> type_of_cell;
   std::map<std::string, double> shares{};  // of a map that is drawn; empty for one that is given
   std::uint64_t seed = 1;                  // of that map
 };
-
-inline constexpr std::string_view kOwnGate = ".";
 
 /// Beams, forces and contacts, but not the joints: all gates of a field have body, size, method and
 /// time limit in common.

@@ -3,6 +3,7 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,14 @@ namespace gatewalk::lattice {
     shown += "...";
   }
   return shown;
+}
+
+/// A name in files: a letter, then letters, digits and _, at most 60.
+[[nodiscard]] inline bool is_name(std::string_view name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  return !name.empty() && name.size() <= 60 && is_letter(name.front()) &&
+         std::all_of(name.begin(), name.end(),
+                     [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 /// " = -3", " = \"fast\"", " (an array)": the value behind a key, as a message shows it.

@@ -116,10 +116,20 @@ Target target_at(const std::string& path) {
   return {false, old.st_mode & 07777};
 }
 
-void write_into_stream(const std::string& path, std::string_view bytes) {
+using MakeBytes = std::function<void(const WriteBytes&)>;
+
+void write_made(const std::string& path, int descriptor, const MakeBytes& make) {
+  make([&](std::string_view bytes) {
+    if (!write_all(descriptor, bytes)) fail_with_errno(path);
+  });
+}
+
+void write_into_stream(const std::string& path, const MakeBytes& make) {
   const IgnoreBrokenPipe guard;
   FileDescriptor stream(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (stream.get() < 0 || !write_all(stream.get(), bytes) || !stream.close()) fail_with_errno(path);
+  if (stream.get() < 0) fail_with_errno(path);
+  write_made(path, stream.get(), make);
+  if (!stream.close()) fail_with_errno(path);
 }
 
 }  // namespace
@@ -158,16 +168,21 @@ void require_replaceable(const std::string& path) {
 }
 
 void replace_file(const std::string& path, std::string_view bytes) {
+  replace_file(path, [bytes](const WriteBytes& write) { write(bytes); });
+}
+
+void replace_file(const std::string& path, const MakeBytes& make) {
   const Target target = target_at(path);
-  if (target.is_stream) return write_into_stream(path, bytes);
+  if (target.is_stream) return write_into_stream(path, make);
   const std::string folder = folder_of(path);
   const FileDescriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.get() < 0) fail(path, "folder " + folder + ": " + std::strerror(errno));
 
   const Temporary temporary(path);
   FileDescriptor file(temporary.open_file());
-  if ((target.permissions && ::fchmod(file.get(), *target.permissions) != 0) ||
-      !write_all(file.get(), bytes) || ::fsync(file.get()) != 0 || !file.close() ||
+  if (target.permissions && ::fchmod(file.get(), *target.permissions) != 0) fail_with_errno(path);
+  write_made(path, file.get(), make);
+  if (::fsync(file.get()) != 0 || !file.close() ||
       ::rename(temporary.name().c_str(), path.c_str()) != 0)
     fail_with_errno(path);
   // Some file systems cannot sync a folder and say EINVAL; nothing is lost there.

@@ -2,6 +2,7 @@
 /// Files that are replaced as a whole: a reader never sees half of one.
 
 #include <csignal>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,11 @@ namespace gatewalk::markov {
 /// is written into; links to anything else, folders, sockets and block devices are refused. Throws
 /// std::runtime_error naming the file and the reason; no temporary file stays behind.
 void replace_file(const std::string& path, std::string_view bytes);
+
+/// Takes the next bytes of a file.
+using WriteBytes = std::function<void(std::string_view bytes)>;
+/// The same with bytes that `make` hands on piece by piece; what it throws leaves `path` as it was.
+void replace_file(const std::string& path, const std::function<void(const WriteBytes&)>& make);
 
 /// Throws std::runtime_error, as replace_file would, when `path` cannot be written: to be asked
 /// before long work, not after it. Makes and removes a temporary file in its folder.

@@ -18,9 +18,11 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 #include <thread>
 
 #include "chains.h"
+#include "markov/formats/file.h"
 
 namespace {
 
@@ -580,6 +582,24 @@ TEST_F(ChainIo, WhateverCallFailsTheOldFileOrTheNewOneIsWhole) {
     // 3 writes (64 KB in pieces of 30 000 bytes), sync, close, rename, sync of the folder.
     EXPECT_EQ(failures, 7);
   }
+}
+
+TEST_F(ChainIo, AFileMadeInPiecesIsReplacedAsAWholeOrNotAtAll) {
+  put_bytes(path("text"), "old");
+  const auto make = [&](bool fails) {
+    replace_file(path("text"), [&](const WriteBytes& write) {
+      write("in ");
+      write("");
+      if (fails) throw std::invalid_argument("no more");
+      write("pieces");
+    });
+  };
+  EXPECT_THROW(make(true), std::invalid_argument);
+  EXPECT_EQ(bytes_of(path("text")), "old");
+  EXPECT_EQ(files(), 1);
+  make(false);
+  EXPECT_EQ(bytes_of(path("text")), "in pieces");
+  EXPECT_EQ(files(), 1);
 }
 
 TEST_F(ChainIo, NeverWritesOverWhatIsNoRegularFile) {

@@ -1,0 +1,632 @@
+#include "lattice/cells/recorded.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+#include "dynamics/cells/cell.h"
+#include "lattice/scene/csv.h"
+#include "lattice/scene/digits.h"
+#include "lattice/scene/edit_distance.h"
+#include "lattice/scene/toml_text.h"
+#include "markov/formats/file.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Costs;
+using dynamics::Entry;
+using dynamics::Fate;
+using dynamics::Section;
+
+constexpr std::size_t kBlock = 1 << 20;  // bytes read and written at once
+constexpr double kSameClock = 1e-9;      // relative: how far a time may be off trapped_after_s
+constexpr const char* kNumber = "a number, such as 0.25 or -2.5e-1";
+
+/// What a line tells of a passage.
+struct RecordedPassage {
+  Fate fate = Fate::broken;
+  std::uint8_t type = 0;
+  Entry next{};  // 0 where it did not leave
+  Costs costs{};
+};
+
+void add_to(PassageTable& table, const RecordedPassage& p) {
+  const auto ending = p.fate == Fate::left      ? dynamics::Ending::traversed
+                      : p.fate == Fate::trapped ? dynamics::Ending::trapped
+                                                : dynamics::Ending::broken;
+  table.push_back({ending, p.type, p.next, p.costs});
+}
+
+RecordedPassage passage_of(const GatePassage& row) {
+  const Fate fate = row.ending == dynamics::Ending::trapped  ? Fate::trapped
+                    : row.ending == dynamics::Ending::broken ? Fate::broken
+                                                             : Fate::left;
+  return {fate, row.type, row.entry, row.costs};
+}
+
+// ---- Columns
+
+/// The columns of a table, in the order in which they are written.
+std::vector<std::string> column_names(const CellFile& cells, bool with_type) {
+  std::vector<std::string> names{"body", "trial"};
+  if (with_type) names.emplace_back("type");
+  for (const std::string begin : {"", "out_"}) {
+    names.emplace_back(begin.empty() ? "in" : "out");
+    for (const auto& coordinate : cells.map.section.coordinates)
+      names.push_back(begin + coordinate.name);
+  }
+  for (const auto& cost : cells.map.section.costs) names.push_back(cost.key);
+  return names;
+}
+
+std::string with_commas(const std::vector<std::string>& names) {
+  std::string line;
+  for (const std::string& name : names) line += (line.empty() ? "" : ",") + name;
+  return line;
+}
+
+constexpr std::size_t kMostColumns = 5 + 2 * dynamics::kMostCoordinates + dynamics::kMostCosts;
+
+/// Where in a line what stands.
+struct Columns {
+  std::size_t count = 0, body = 0, trial = 0, in = 0, out = 0;
+  std::size_t type = kMostColumns;  // none
+  std::array<std::size_t, dynamics::kMostCoordinates> in_at{}, out_at{};
+  std::array<std::size_t, dynamics::kMostCosts> costs{};
+  std::vector<std::string> names;
+};
+
+// ---- Lines
+
+/// Hands out the lines of a file, in blocks, without their ends.
+class Lines {
+ public:
+  explicit Lines(const std::string& path) : name_(path == "-" ? "standard input" : path) {
+    errno = 0;
+    file_ = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    struct stat found = {};
+    if (file_ < 0 || ::fstat(file_, &found) != 0) fail();
+    if (S_ISREG(found.st_mode)) bytes_ = found.st_size;
+  }
+  ~Lines() {
+    if (file_ > STDIN_FILENO) ::close(file_);
+  }
+  Lines(const Lines&) = delete;
+  Lines& operator=(const Lines&) = delete;
+
+  /// Valid until the next one. False: there is none.
+  [[nodiscard]] bool next(std::string_view& line) {
+    const char* end = nullptr;
+    while (!(end = static_cast<const char*>(std::memchr(at(), '\n', rest()))))
+      if (!fill()) {
+        if (rest() == 0) return false;
+        end = at() + rest();
+        break;
+      }
+    ++number_;
+    line = {at(), static_cast<std::size_t>(end - at())};
+    begin_ = std::min(end_, begin_ + line.size() + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    return true;
+  }
+  [[nodiscard]] std::int64_t number() const { return number_; }  // of the line, from 1
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// Of a regular file; else 0.
+  [[nodiscard]] std::int64_t bytes() const { return bytes_; }
+  /// Of the lines handed out so far.
+  [[nodiscard]] std::int64_t bytes_read() const {
+    return read_ - static_cast<std::int64_t>(rest());
+  }
+  [[noreturn]] void refuse(const std::string& what) const { refuse(number_, what); }
+  [[noreturn]] void refuse(std::int64_t number, const std::string& what) const {
+    throw std::invalid_argument(name_ + ":" + std::to_string(number) + ": " + what);
+  }
+
+ private:
+  [[nodiscard]] const char* at() const { return buffer_.data() + begin_; }
+  [[nodiscard]] std::size_t rest() const { return end_ - begin_; }
+  [[noreturn]] void fail() const {
+    throw std::invalid_argument(name_ + ": cannot be read: " + std::strerror(errno));
+  }
+  /// Reads on behind what is left. False at the end.
+  bool fill() {
+    std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
+              buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
+    end_ -= std::exchange(begin_, 0);
+    if (end_ == buffer_.size())
+      refuse(number_ + 1, "is longer than " + std::to_string(kBlock) + " bytes");
+    ssize_t got = 0;
+    while ((got = ::read(file_, buffer_.data() + end_, buffer_.size() - end_)) < 0)
+      if (errno != EINTR) fail();
+    end_ += static_cast<std::size_t>(got);
+    read_ += got;
+    return got > 0;
+  }
+
+  std::string name_;
+  int file_ = -1;
+  std::int64_t bytes_ = 0, read_ = 0, number_ = 0;
+  std::vector<char> buffer_ = std::vector<char>(kBlock);
+  std::size_t begin_ = 0, end_ = 0;  // of what is left in it
+};
+
+/// Names in the order in which they first come.
+class NameTable {
+ public:
+  [[nodiscard]] std::size_t place_of(std::string_view name) {
+    const auto found = places_.find(name);
+    if (found != places_.end()) return found->second;
+    return places_.emplace(std::string(name), places_.size()).first->second;
+  }
+  [[nodiscard]] std::size_t size() const { return places_.size(); }
+
+ private:
+  struct Hash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view text) const {
+      return std::hash<std::string_view>()(text);
+    }
+  };
+  std::unordered_map<std::string, std::size_t, Hash, std::equal_to<>> places_;
+};
+
+// ---- Reading
+
+class RunsReader {
+ public:
+  RunsReader(const std::string& path, const CellFile& cells)
+      : lines_(path), cells_(cells), section_(cells.map.section) {
+    runs_.passages.begin(section_);
+  }
+
+  [[nodiscard]] RecordedRuns read() {
+    while (next_line())
+      if (columns_.count == 0)
+        read_columns();
+      else
+        add_passage();
+    if (columns_.count == 0)
+      throw std::invalid_argument(lines_.name() +
+                                  ": is empty: the first line must name the columns, " +
+                                  with_commas(column_names(cells_, cells_.types.size() > 1)));
+    if (runs_.passages.empty())
+      throw std::invalid_argument(lines_.name() + ": has no passage below the line of its columns");
+    require_each_trial_once();
+    return std::move(runs_);
+  }
+
+ private:
+  /// The next line that is neither blank nor a comment, as fields.
+  bool next_line() {
+    constexpr std::string_view kBlank = " \t";
+    std::string_view line;
+    while (lines_.next(line)) {
+      const std::size_t first = line.find_first_not_of(kBlank);
+      if (first == line.npos || line[first] == '#') continue;
+      split(line);
+      return true;
+    }
+    return false;
+  }
+
+  void split(std::string_view line) {
+    fields_.clear();
+    if (std::memchr(line.data(), '"', line.size())) {
+      auto fields = csv_fields(line);
+      if (!fields) lines_.refuse("a quotation mark is not closed, or not at a field's end");
+      unquoted_ = std::move(*fields);
+      fields_.assign(unquoted_.begin(), unquoted_.end());
+      return;
+    }
+    const char *at = line.data(), *const end = at + line.size();
+    for (;;) {
+      const char* comma = at;
+      while (comma < end && *comma != ',') ++comma;
+      const char *from = at, *to = comma;
+      while (from < to && is_blank(*from)) ++from;
+      while (from < to && is_blank(to[-1])) --to;
+      fields_.emplace_back(from, static_cast<std::size_t>(to - from));
+      if (comma == end) return;
+      at = comma + 1;
+    }
+  }
+  static bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+  void read_columns() {
+    const std::vector<std::string> known = column_names(cells_, true);
+    std::vector<std::string> given;
+    for (const std::string_view field : fields_) {
+      const std::string name(field);
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        const std::string meant = meant_name(name, known);
+        lines_.refuse("unknown column \"" + printable(name) + "\"" +
+                      (meant.empty() ? "" : " (did you mean " + meant + "?)") +
+                      ": the columns must be " + with_commas(known) + ", as " + cells_.source +
+                      " has faces, coordinates and costs");
+      }
+      if (std::find(given.begin(), given.end(), name) != given.end())
+        lines_.refuse("column " + name + " is there twice");
+      given.push_back(name);
+    }
+    const auto place = [&](const std::string& name) {
+      const auto found = std::find(given.begin(), given.end(), name);
+      if (found == given.end())
+        lines_.refuse("column " + name + " is missing: the columns must be " +
+                      with_commas(column_names(cells_, cells_.types.size() > 1)));
+      return static_cast<std::size_t>(found - given.begin());
+    };
+    columns_.body = place("body");
+    columns_.trial = place("trial");
+    columns_.in = place("in");
+    columns_.out = place("out");
+    for (std::size_t c = 0; c < section_.coordinates.size(); ++c) {
+      columns_.in_at[c] = place(section_.coordinates[c].name);
+      columns_.out_at[c] = place("out_" + section_.coordinates[c].name);
+    }
+    for (std::size_t c = 0; c < section_.costs.size(); ++c)
+      columns_.costs[c] = place(section_.costs[c].key);
+    if (cells_.types.size() > 1 || std::find(given.begin(), given.end(), "type") != given.end())
+      columns_.type = place("type");
+    columns_.names = given;
+    columns_.count = given.size();
+  }
+
+  [[noreturn]] void refuse(std::size_t column, const std::string& what) const {
+    lines_.refuse("column " + columns_.names[column] + ": " + what);
+  }
+  [[noreturn]] void refuse_value(std::size_t column, const std::string& allowed) const {
+    const std::string_view given = fields_[column];
+    refuse(column, (given.empty() ? "nothing" : "\"" + printable(given) + "\"") +
+                       " is not permitted: must be " + allowed);
+  }
+
+  [[nodiscard]] double number(std::size_t column, const char* allowed = kNumber) const {
+    const std::string_view text = fields_[column];
+    double value = 0.0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
+      refuse_value(column, allowed);
+    return value;
+  }
+  /// Place of the face; their number for a word that is none.
+  [[nodiscard]] std::size_t face_named(std::string_view name) const {
+    std::size_t f = 0;
+    while (f < section_.faces.size() && section_.faces[f].name != name) ++f;
+    return f;
+  }
+
+  void add_passage() {
+    if (fields_.size() != columns_.count)
+      lines_.refuse("has " + std::to_string(fields_.size()) +
+                    (fields_.size() == 1 ? " field" : " fields") +
+                    ", the line of the columns has " + std::to_string(columns_.count));
+    const Entry entry = entry_in();
+    if (begins_trial())
+      begin_trial(entry);
+    else
+      require_goes_on(entry);
+    const RecordedPassage passage = passage_in();
+    runs_.trapped += passage.fate == Fate::trapped;
+    runs_.lost += passage.fate == Fate::broken;
+    add_to(runs_.passages, passage);
+    ++runs_.trials.back().count;
+    last_ = passage;
+    last_line_ = lines_.number();
+    if (constexpr std::size_t kFirst = 1000; runs_.passages.size() == kFirst && lines_.bytes() > 0)
+      runs_.passages.reserve(
+          static_cast<std::size_t>(1.01 * kFirst * static_cast<double>(lines_.bytes()) /
+                                   static_cast<double>(lines_.bytes_read())));
+  }
+
+  Entry entry_in() const {
+    Entry entry;
+    const std::size_t face = face_named(fields_[columns_.in]);
+    if (face == section_.faces.size())
+      refuse_value(columns_.in,
+                   "a face of " + cells_.source + ", one of " + dynamics::names_of(section_.faces));
+    entry.face = static_cast<int>(face);
+    for (std::size_t c = 0; c < section_.coordinates.size(); ++c)
+      entry.at[c] = number(columns_.in_at[c]);
+    return entry;
+  }
+
+  [[nodiscard]] bool begins_trial() const {
+    return runs_.trials.empty() || fields_[columns_.body] != body_ ||
+           fields_[columns_.trial] != trial_;
+  }
+  void begin_trial(const Entry& entry) {
+    for (const std::size_t column : {columns_.body, columns_.trial})
+      if (fields_[column].empty()) refuse_value(column, "a name or a number");
+    body_ = fields_[columns_.body];
+    trial_ = fields_[columns_.trial];
+    const std::size_t body = bodies_.place_of(body_);
+    if (body == runs_.bodies.size()) runs_.bodies.push_back(body_);
+    runs_.trials.push_back({entry, static_cast<std::int32_t>(body), std::ssize(runs_.passages), 0});
+    seen_.push_back({body, trial_number(), lines_.number()});
+  }
+  /// Different texts, different numbers; those of whole numbers are their own.
+  std::uint64_t trial_number() {
+    constexpr std::uint64_t kText = std::uint64_t{1} << 63;
+    std::uint64_t number = 0;
+    const char* const end = trial_.data() + trial_.size();
+    const auto read = std::from_chars(trial_.data(), end, number);
+    if (read.ec == std::errc() && read.ptr == end && number < kText &&
+        (trial_[0] != '0' || trial_.size() == 1))
+      return number;
+    return kText + texts_.place_of(trial_);
+  }
+
+  void require_goes_on(const Entry& entry) const {
+    const auto line = [&] { return " (line " + std::to_string(last_line_) + ")"; };
+    if (last_.fate != Fate::left)
+      lines_.refuse("trial " + printable(trial_) + " of body " + printable(body_) + " was " +
+                    (last_.fate == Fate::trapped ? "trapped" : "lost") + " in the passage before" +
+                    line() + ": none can follow; a body that is seen again begins another trial");
+    if (entry.face != last_.next.face)
+      refuse_value(columns_.in, section_.faces[static_cast<std::size_t>(last_.next.face)].name +
+                                    ", by which the passage before" + line() + " went on");
+    for (std::size_t c = 0; c < section_.coordinates.size(); ++c)
+      if (entry.at[c] != last_.next.at[c])
+        refuse_value(columns_.in_at[c], shortest(last_.next.at[c]) +
+                                            ", with which the passage before" + line() +
+                                            " went on: the same number");
+  }
+
+  RecordedPassage passage_in() {
+    RecordedPassage passage;
+    if (columns_.type < columns_.count) {
+      const auto type = std::find(cells_.types.begin(), cells_.types.end(), fields_[columns_.type]);
+      if (type == cells_.types.end())
+        refuse_value(columns_.type, "a type of cell of " + cells_.source + ", one of " +
+                                        with_commas(cells_.types));
+      passage.type = static_cast<std::uint8_t>(type - cells_.types.begin());
+    }
+    const std::string_view out = fields_[columns_.out];
+    const std::size_t face = face_named(out);
+    if (face < section_.faces.size()) {
+      passage.fate = Fate::left;
+      passage.next.face = static_cast<int>(face);
+      for (std::size_t c = 0; c < section_.coordinates.size(); ++c)
+        passage.next.at[c] = number(columns_.out_at[c]);
+    } else {
+      if (out != "trapped" && out != "lost")
+        refuse_value(columns_.out,
+                     "trapped, lost, or the face by which the next cell is entered, "
+                     "one of " +
+                         dynamics::names_of(section_.faces));
+      passage.fate = out == "trapped" ? Fate::trapped : Fate::broken;
+      for (std::size_t c = 0; c < section_.coordinates.size(); ++c)
+        if (!fields_[columns_.out_at[c]].empty())
+          refuse_value(columns_.out_at[c],
+                       "blank, as a body that is " + std::string(out) + " enters no cell");
+    }
+    for (std::size_t c = 0; c < section_.costs.size(); ++c) passage.costs[c] = cost_in(c, passage);
+    require_clock(passage);
+    return passage;
+  }
+
+  /// The first one is the time.
+  double cost_in(std::size_t cost, const RecordedPassage& passage) {
+    const std::size_t column = columns_.costs[cost];
+    const bool lost = passage.fate == Fate::broken;
+    if (fields_[column].empty() && (cost > 0 || lost)) {
+      runs_.unknown[cost] += !lost;
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    if (cost > 0) return number(column);
+    const char* const allowed =
+        lost ? "a number of seconds from 0, or blank" : "a number of seconds > 0";
+    const double time = number(column, allowed);
+    if (!(time > 0.0 || (lost && time == 0.0))) refuse_value(column, allowed);
+    return time;
+  }
+
+  /// Who stayed as long as that is trapped, and nobody else.
+  void require_clock(const RecordedPassage& passage) const {
+    if (!cells_.trapped_after) return;
+    const double time = passage.costs[0], limit = *cells_.trapped_after;
+    const std::string named = "cell.trapped_after_s = " + shortest(limit) + " of " + cells_.source;
+    if (passage.fate == Fate::trapped && time < limit * (1.0 - kSameClock))
+      refuse_value(
+          columns_.costs[0],
+          "at least " + named + " where out is trapped; a body that was seen no longer is lost");
+    if (passage.fate != Fate::trapped && time > limit * (1.0 + kSameClock))
+      refuse_value(columns_.costs[0], "at most " + named +
+                                          "; a body that stayed longer is trapped, and its trial "
+                                          "ends there");
+  }
+
+  void require_each_trial_once() {
+    const auto key = [](const SeenTrial& t) { return std::tie(t.body, t.trial, t.line); };
+    const auto before = [&](const SeenTrial& a, const SeenTrial& b) { return key(a) < key(b); };
+    if (!std::is_sorted(seen_.begin(), seen_.end(), before))
+      std::sort(seen_.begin(), seen_.end(), before);
+    const auto twice =
+        std::adjacent_find(seen_.begin(), seen_.end(), [](const SeenTrial& a, const SeenTrial& b) {
+          return a.body == b.body && a.trial == b.trial;
+        });
+    if (twice != seen_.end())
+      lines_.refuse(twice[1].line,
+                    "this trial of body " + printable(runs_.bodies[twice->body]) +
+                        " began in line " + std::to_string(twice->line) +
+                        " already: the passages of a trial must stand one behind the other");
+  }
+
+  struct SeenTrial {
+    std::size_t body;
+    std::uint64_t trial;
+    std::int64_t line;
+  };
+
+  Lines lines_;
+  const CellFile& cells_;
+  const Section& section_;
+  Columns columns_;
+  std::vector<std::string_view> fields_;
+  std::vector<std::string> unquoted_;
+  RecordedRuns runs_;
+  NameTable bodies_, texts_;
+  std::vector<SeenTrial> seen_;
+  std::string body_, trial_;  // of the trial under way
+  RecordedPassage last_;      // of it
+  std::int64_t last_line_ = 0;
+};
+
+/// Calls use(entry) for all entries into cells, in order.
+template <class Use>
+void each_recorded_entry(const RecordedRuns& runs, const Use& use) {
+  for (const RecordedTrial& trial : runs.trials) {
+    use(trial.start);
+    const auto passages = runs.of_trial(trial);
+    for (std::size_t i = 0; i + 1 < passages.size(); ++i) use(passages[i].entry);
+  }
+}
+
+void set_scales(CellFile& cells, const RecordedRuns& runs) {
+  std::array<double, dynamics::kMostCoordinates> mean{}, squares{};
+  const std::size_t coordinates = cells.map.section.coordinates.size();
+  const auto n = static_cast<double>(runs.passages.size());
+  each_recorded_entry(runs, [&](const Entry& entry) {
+    for (std::size_t c = 0; c < coordinates; ++c) mean[c] += entry.at[c] / n;
+  });
+  each_recorded_entry(runs, [&](const Entry& entry) {
+    for (std::size_t c = 0; c < coordinates; ++c)
+      squares[c] += (entry.at[c] - mean[c]) * (entry.at[c] - mean[c]) / n;
+  });
+  for (std::size_t c = 0; c < coordinates; ++c) {
+    if (cells.has_scale[c]) continue;
+    dynamics::Coordinate& coordinate = cells.map.section.coordinates[c];
+    coordinate.scale = squares[c] > 0.0 ? std::sqrt(squares[c]) : 1.0;
+    if (!std::isfinite(coordinate.scale))
+      throw std::invalid_argument(cells.source + ": coordinate " + coordinate.name +
+                                  " was seen so far apart that it needs a scale of its own");
+  }
+}
+
+// ---- Writing
+
+std::string csv_field(const std::string& text) {
+  if (text.empty() || text.find_first_of("\r\n") != text.npos)
+    throw std::invalid_argument("write_runs: a body must have a name without line ends, not \"" +
+                                printable(text) + "\"");
+  const bool plain = text.find_first_of(",\"") == text.npos && text.front() != '#' &&
+                     trimmed(text).size() == text.size();
+  if (plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+class RunsWriter {
+ public:
+  RunsWriter(const CellFile& cells, const markov::WriteBytes& write)
+      : cells_(cells), section_(cells.map.section), write_(write) {
+    text_.reserve(2 * kBlock);
+    text_ = with_commas(column_names(cells, has_types())) + "\n";
+  }
+
+  void add(const std::string& body, std::int64_t trial, const RecordedTrial& of,
+           const PassageTable::Rows& passages) {
+    Entry entry = of.start;
+    for (std::size_t i = 0; i < passages.size(); ++i) {
+      const RecordedPassage passage = passage_of(passages[i]);
+      require(passage, entry, i + 1 == passages.size(), body, trial);
+      text_ += body;
+      text_ += ',';
+      add_digits(trial);
+      if (has_types()) text_ += "," + cells_.types.at(passage.type);
+      text_ += ',';
+      add_entry(entry);
+      text_ += ',';
+      if (passage.fate == Fate::left)
+        add_entry(passage.next);
+      else
+        text_ += (passage.fate == Fate::trapped ? "trapped" : "lost") +
+                 std::string(section_.coordinates.size(), ',');
+      for (std::size_t c = 0; c < section_.costs.size(); ++c) {
+        text_ += ',';
+        if (!std::isnan(passage.costs[c])) add_digits(passage.costs[c]);
+      }
+      text_ += '\n';
+      entry = passage.next;
+      if (text_.size() >= kBlock) flush();
+    }
+  }
+  void flush() {
+    write_(text_);
+    text_.clear();
+  }
+
+ private:
+  [[nodiscard]] bool has_types() const { return cells_.types.size() > 1; }
+  template <class Number>
+  void add_digits(Number x) {
+    std::array<char, 32> digits;
+    text_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr);
+  }
+  void add_entry(const Entry& entry) {
+    text_ += section_.faces.at(static_cast<std::size_t>(entry.face)).name;
+    for (std::size_t c = 0; c < section_.coordinates.size(); ++c) {
+      text_ += ',';
+      add_digits(entry.at[c]);
+    }
+  }
+  void require(const RecordedPassage& passage, const Entry& entry, bool is_last,
+               const std::string& body, std::int64_t trial) const {
+    const double time = passage.costs[0];
+    bool good = passage.fate == Fate::broken ? !(time < 0.0) : time > 0.0;
+    good = good && (is_last || passage.fate == Fate::left);
+    for (std::size_t c = 0; c < section_.coordinates.size(); ++c)
+      good = good && std::isfinite(entry.at[c]) && std::isfinite(passage.next.at[c]);
+    for (std::size_t c = 0; c < section_.costs.size(); ++c)
+      good = good && !std::isinf(passage.costs[c]);
+    if (!good)
+      throw std::invalid_argument("write_runs: a passage of trial " + std::to_string(trial) +
+                                  " of body " + printable(body) +
+                                  " has a time <= 0, a number that is not finite, or others "
+                                  "behind it though it did not leave");
+  }
+
+  const CellFile& cells_;
+  const Section& section_;
+  const markov::WriteBytes& write_;
+  std::string text_;
+};
+
+}  // namespace
+
+RecordedRuns read_runs(const std::string& path, CellFile& cells) {
+  RecordedRuns runs = RunsReader(path, cells).read();
+  set_scales(cells, runs);
+  return runs;
+}
+
+void write_runs(const std::string& path, const CellFile& cells, const RecordedRuns& runs) {
+  std::vector<std::string> names;
+  for (const std::string& body : runs.bodies) names.push_back(csv_field(body));
+  std::vector<std::int64_t> trials(runs.bodies.size());
+  markov::replace_file(path, [&](const markov::WriteBytes& write) {
+    RunsWriter writer(cells, write);
+    for (const RecordedTrial& trial : runs.trials) {
+      const auto body = static_cast<std::size_t>(trial.body);
+      writer.add(names.at(body), ++trials[body], trial, runs.of_trial(trial));
+    }
+    writer.flush();
+  });
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,46 @@
+#pragma once
+/// runs.csv: passages of bodies through cells, recorded or carried out elsewhere, a line each
+/// (README.md beside it has the format); as a table, and back.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lattice/cells/cell_file.h"
+#include "lattice/passage_table.h"
+
+namespace gatewalk::lattice {
+
+/// One way of a body from cell to cell.
+struct RecordedTrial {
+  dynamics::Entry start{};            // into the first cell
+  std::int32_t body = 0;              // of RecordedRuns::bodies
+  std::int64_t first = 0, count = 0;  // which passages are its own
+};
+
+struct RecordedRuns {
+  std::vector<std::string> bodies;     // names, in the order in which they first come
+  std::vector<RecordedTrial> trials;   // in the order of the file
+  PassageTable passages;               // of all trials, one after the other
+  std::int64_t trapped = 0, lost = 0;  // passages that ended so; all others left their cell
+  /// By Section::costs: passages that were not lost and of which it is not known (NaN).
+  std::array<std::int64_t, dynamics::kMostCosts> unknown{};
+
+  [[nodiscard]] PassageTable::Rows of_trial(const RecordedTrial& trial) const {
+    return passages.rows(static_cast<std::size_t>(trial.first),
+                         static_cast<std::size_t>(trial.first + trial.count));
+  }
+};
+
+/// Reads `path` (-: standard input). Coordinates of `cells` without a scale get the standard
+/// deviation of all entries (1 where all are the same). Throws std::invalid_argument naming file,
+/// line, column and what is allowed.
+[[nodiscard]] RecordedRuns read_runs(const std::string& path, CellFile& cells);
+
+/// Writes what reads back the same; trials of a body get numbers from 1. Throws
+/// std::invalid_argument for passages that read_runs would refuse, std::runtime_error when `path`
+/// cannot be written (markov::replace_file).
+void write_runs(const std::string& path, const CellFile& cells, const RecordedRuns& runs);
+
+}  // namespace gatewalk::lattice
