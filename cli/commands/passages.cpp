@@ -9,7 +9,7 @@
 namespace gatewalk::cli {
 namespace {
 
-void declare(Options& options) {
+void declare_all(Options& options) {
   options.positional(
       "tracks", "a table with a line a place (CSV), DeepLabCut's CSV, or movement's NetCDF", true);
   options.input_file("cell", "the cells and what is measured of an entry (cell.toml)");
@@ -85,7 +85,7 @@ int run_passages(const Arguments& arguments) {
                   "gatewalk passages tracks.csv --cell cell.toml -o runs.csv --fastest 2 --fps 120 "
                   "--metres-per-unit 0.001 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,"
                   "y=POSITION_Y");
-  declare(options);
+  declare_all(options);
   if (!options.parse(arguments)) return kFine;
   if (!options.has("cell")) throw UsageError("the cells are not said: --cell CELL.toml");
   const auto cutting = cut_options(options);
@@ -95,7 +95,9 @@ int run_passages(const Arguments& arguments) {
   const auto cut = lattice::cut_tracks(file, cell, cutting);
 
   Json json = to_json(cut, file, cell);
-  json["made_by"] = to_json(options.provenance());
+  Provenance made_by = options.provenance();
+  made_by.scene = lattice::to_toml(cell);
+  json["made_by"] = to_json(made_by);
   const std::string path = options.text("output");
   options.keep_old(path);
   lattice::write_runs(path, cell, lattice::recorded_runs(cut, file, cell));

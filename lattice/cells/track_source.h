@@ -10,7 +10,7 @@
 namespace gatewalk::lattice {
 
 /// A number; NaN for an empty field or one that says so; none for anything else, infinity too.
-[[nodiscard]] std::optional<double> place_in(std::string_view text);
+[[nodiscard]] std::optional<double> coordinate_in(std::string_view text);
 
 /// `"text"`, fit for a message.
 [[nodiscard]] std::string in_quotes(const std::string& text);

@@ -22,7 +22,7 @@ namespace gatewalk::lattice {
 
 std::string in_quotes(const std::string& text) { return '"' + printable(text) + '"'; }
 
-std::optional<double> place_in(std::string_view text) {
+std::optional<double> coordinate_in(std::string_view text) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (text.empty() || text == "nan" || text == "NaN" || text == "NA" || text == "NAN") return kNone;
   if (text.front() == '+') text.remove_prefix(1);
@@ -104,8 +104,6 @@ enum Meaning : std::size_t { kBody, kFrame, kTime, kX, kY, kConfidence, kMeaning
 constexpr std::array<const char*, kMeanings> kMeaningNames{"body", "frame", "time",
                                                            "x",    "y",     "confidence"};
 
-/// The column of each meaning; npos: none.
-using Columns = std::array<std::size_t, kMeanings>;
 constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
 /// The names that --columns gives.
@@ -230,7 +228,7 @@ class LongTable {
   /// TrackMate has three rows of descriptions and units behind the header: all three, or none.
   bool is_unit_row(const std::vector<std::string>& fields) {
     if (!may_be_units_) return false;
-    const bool is_text = !place_in(fields[column_[kX]]) && !place_in(fields[column_[kY]]);
+    const bool is_text = !coordinate_in(fields[column_[kX]]) && !coordinate_in(fields[column_[kY]]);
     if (!is_text) {
       if (!held_.empty()) refuse_held();
       may_be_units_ = false;
@@ -256,7 +254,7 @@ class LongTable {
 
   double number_of(const std::vector<std::string>& fields, Meaning meaning) const {
     const std::string& text = fields[column_[meaning]];
-    const auto value = place_in(text);
+    const auto value = coordinate_in(text);
     if (!value)
       refuse("column " + printable(header_[column_[meaning]]) + ": " + in_quotes(text) +
              " is no number");
@@ -313,7 +311,7 @@ class LongTable {
   TrackFile file_;
   std::size_t line_ = 0;
   std::vector<std::string> header_;
-  Columns column_{};
+  std::array<std::size_t, kMeanings> column_{};  // of each meaning
   bool may_be_units_ = true;
   std::vector<std::size_t> held_;  // lines that may be units
   std::string held_x_;
@@ -332,10 +330,7 @@ void require_sensible(const TrackOptions& options) {
   require(options.confidence, "--confidence", true);
 }
 
-}  // namespace
-
-TrackFile read_tracks(const std::string& path, const TrackOptions& options) {
-  require_sensible(options);
+TrackFile read_by_kind(const std::string& path, const TrackOptions& options) {
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in || std::filesystem::is_directory(path))
@@ -350,6 +345,18 @@ TrackFile read_tracks(const std::string& path, const TrackOptions& options) {
   if (first.starts_with("\xEF\xBB\xBF")) first.remove_prefix(3);
   if (first.starts_with("scorer,")) return read_deeplabcut(path, options);
   return LongTable(path, options).read();
+}
+
+}  // namespace
+
+TrackFile read_tracks(const std::string& path, const TrackOptions& options) {
+  require_sensible(options);
+  TrackFile file = read_by_kind(path, options);
+  file.remarks.push_back("the lattice begins at (" + shortest(options.origin_x) + ", " +
+                         shortest(options.origin_y) + ") of the file, " +
+                         (options.y_down ? "its rows count down along y" : "y grows upwards") +
+                         ", a unit is " + shortest(*options.metres_per_unit) + " m");
+  return file;
 }
 
 }  // namespace gatewalk::lattice

@@ -39,7 +39,7 @@ class WideTable {
     TrackMaker maker(file_, options_);
     double last = -std::numeric_limits<double>::infinity();
     for (std::vector<std::string> row; next(row);) {
-      const auto frame = place_in(row[0]);
+      const auto frame = coordinate_in(row[0]);
       if (!frame || *frame != std::floor(*frame))
         refuse("the frame " + in_quotes(row[0]) + " is no whole number");
       if (*frame <= last)
@@ -144,7 +144,7 @@ class WideTable {
   }
 
   double number(const std::vector<std::string>& row, std::size_t column) const {
-    const auto value = place_in(row[column]);
+    const auto value = coordinate_in(row[column]);
     if (!value)
       refuse("column " + std::to_string(column + 1) + " (" + printable(bodyparts_[column]) + " " +
              coords_[column] + "): " + in_quotes(row[column]) + " is no number");
