@@ -18,7 +18,7 @@ namespace gatewalk::lattice {
 namespace {
 
 constexpr double kFps = 120.0, kSize = 0.1;  // 1/s, m
-constexpr int kUp = 0, kDown = 1, kRight = 2, kLeft = 3;
+constexpr int kFaceS = 0, kFaceN = 1, kFaceW = 2, kFaceE = 3;
 
 /// Squares of kSize with the coordinates s, vx, vy.
 CellFile squares() {
@@ -140,7 +140,7 @@ TEST(CutTracks, AStraightLineIsCutWhereItCrosses) {
   EXPECT_EQ(cut.trials, 1);
   EXPECT_EQ(cut.first_stays, 1);
   const std::vector<double> times{0.25, 0.25, 0.075, 0.175};
-  const std::vector<int> faces{kUp, kUp, kRight, kUp};
+  const std::vector<int> faces{kFaceS, kFaceS, kFaceW, kFaceS};
   for (std::size_t i = 0; i < 4; ++i) {
     const CutPassage& p = cut.passages[i];
     EXPECT_EQ(p.end, CutEnd::left);
@@ -151,7 +151,7 @@ TEST(CutTracks, AStraightLineIsCutWhereItCrosses) {
     EXPECT_NEAR(p.out.at[1], 0.1, 1e-9);
     EXPECT_NEAR(p.out.at[2], 0.4, 1e-9);
   }
-  EXPECT_EQ(cut.passages[0].in.face, kUp);
+  EXPECT_EQ(cut.passages[0].in.face, kFaceS);
   EXPECT_NEAR(cut.passages[0].in.at[0], 0.03 + 0.0125 - 0.05, 1e-9);
   EXPECT_NEAR(cut.passages[3].in.at[0], 0.05 + 0.4 * 0.7 - 0.35, 1e-9);  // sideways: along y
   EXPECT_NEAR(cut.passages[4].in.at[0], 0.03 + 0.0875 - 0.15, 1e-9);     // in the next column
@@ -185,7 +185,7 @@ TEST(CutTracks, ACircleIsCutWhereItCrosses) {
       1.3 * speed * omega * omega * h * h / 10.0 + speed * omega * omega / (8.0 * kFps * kFps);
   const double off_x = radius * std::pow(omega * h, 4) * 3.0 / 280.0 * 2.0;
   for (const CutPassage& p : cut.passages) {
-    const bool upright = p.in.face <= kDown;
+    const bool upright = p.in.face <= kFaceN;
     const double border =
         upright ? std::round(p.from[1] / kSize) * kSize : std::round(p.from[0] / kSize) * kSize;
     EXPECT_NEAR(upright ? p.from[1] : p.from[0], border, 1e-12);
@@ -266,7 +266,7 @@ TEST(CutTracks, WhoDithersOnABorderCrossesItOnce) {
   EXPECT_GT(cut.uncounted, 5);
   EXPECT_GT(cut.hysteresis, 0.002);
   EXPECT_LT(cut.hysteresis, 0.005);
-  EXPECT_EQ(cut.passages[0].in.face, kUp);
+  EXPECT_EQ(cut.passages[0].in.face, kFaceS);
   EXPECT_GT(cut.passages[0].in.at[2], -0.05);  // it went over, there
 }
 
@@ -316,7 +316,8 @@ TEST(CutTracks, SwapsOfIdentityAreLost) {
   EXPECT_EQ(cut.lost(LostBy::jump), 2);
   EXPECT_EQ(cut.trials, 4);
   EXPECT_NEAR(cut.fastest_step, 0.4, 1e-9);
-  for (const CutPassage& p : cut.passages) EXPECT_TRUE(p.end == CutEnd::lost || p.out.face == kUp);
+  for (const CutPassage& p : cut.passages)
+    EXPECT_TRUE(p.end == CutEnd::lost || p.out.face == kFaceS);
 }
 
 // One place far off is a jump away and one back; what lies between is too short for a fit.
@@ -343,7 +344,7 @@ TEST(CutTracks, WhoStaysTooLongIsTrapped) {
   EXPECT_EQ(cut.passages[0].end, CutEnd::trapped);
   EXPECT_EQ(cut.passages[0].time, 1.0);
   EXPECT_EQ(cut.passages[1].trial, 2);  // begins where it is seen to enter the next
-  EXPECT_EQ(cut.passages[1].in.face, kUp);
+  EXPECT_EQ(cut.passages[1].in.face, kFaceS);
   // So is who is still there at the end, and who was longer there before being lost.
   EXPECT_EQ(cut_tracks(file_of({rests}, 200), cell, with_window("5")).count(CutEnd::trapped), 1);
   TrackFile gone = file_of({rests}, 300);
@@ -365,9 +366,9 @@ TEST(CutTracks, ALatticeHasAnEnd) {
   const CutTracks cut = cut_tracks(file_of({loop}, 200), squares(), options);
   ASSERT_EQ(cut.passages.size(), 3U);
   EXPECT_EQ(cut.first_stays, 0);
-  EXPECT_EQ(cut.passages[0].in.face, kUp);
+  EXPECT_EQ(cut.passages[0].in.face, kFaceS);
   EXPECT_EQ(cut.passages[2].end, CutEnd::left);
-  EXPECT_EQ(cut.passages[2].out.face, kUp);
+  EXPECT_EQ(cut.passages[2].out.face, kFaceS);
 }
 
 TEST(CutTracks, TypesAreThoseOfTheMap) {
