@@ -60,6 +60,7 @@ for radius in 0.08 0.05; do
   run landscape three_keys.toml -o landscape --figure ../landscape_radius_$radius.svg
 done
 run chart-field "$field" --trials 50 -o fidelity --figure ../chart_field.svg
+cp "$kept/passages/tracks.svg" ../passages.svg
 for study in chart chart_chain stability; do
   for figure in "$kept/$study"/*.svg; do cp "$figure" "../${study}_$(basename "$figure")"; done
 done

@@ -1,0 +1,109 @@
+#include <cmath>
+#include <cstdio>
+
+#include "cli/command.h"
+#include "cli/render/cut_tracks.h"
+#include "cli/render/json.h"
+#include "lattice/cells/cut_tracks.h"
+
+namespace gatewalk::cli {
+namespace {
+
+void declare_all(Options& options) {
+  options.positional(
+      "tracks", "a table with a line a place (CSV), DeepLabCut's CSV, or movement's NetCDF", true);
+  options.input_file("cell", "the cells and what is measured of an entry (cell.toml)");
+  options.main_output_file("RUNS.csv", "the passages, a line each", Options::Content::binary);
+  options.add_number("fastest", "M/S",
+                     "no body is faster from frame to frame, its noise included: what is, is a "
+                     "jump (must be given)");
+  options.add_text("columns", "MEANING=NAME,...",
+                   "of a table: body=..., frame=... or time=... (s), x=..., y=..., confidence=...");
+  options.add_number("fps", "N", "frames per second");
+  options.add_number("metres-per-unit", "X", "of the file's x and y; 1: metres");
+  options.add_text("key-point", "NAME", "the key point that is the body's place");
+  options.add_number("confidence", "X", "places with less are not seen");
+  options.add_text("origin", "X,Y", "lower left corner of column 0 and row 0, in the file's unit",
+                   "0,0");
+  options.add_flag("y-down", "y grows downwards in the file, as in pictures; upwards without it");
+  options.add_text("lattice", "COLUMNS,ROWS",
+                   "cells that there are, from the origin on (default: the map's, or all there)");
+  options.add_text("window", "N|Xs", "of local fits, frames or seconds (default: least error)");
+  options.add_count("bridge", "N", "frames that may be missing without a gap", "0");
+  options.add_figure("all tracks over the cells, and where they were cut");
+}
+
+/// Two numbers with a comma between.
+std::array<double, 2> pair_of(const Options& options, const std::string& name) {
+  const std::string text = options.text(name);
+  std::array<double, 2> pair{};
+  char behind = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf%c", &pair[0], &pair[1], &behind) != 2 ||
+      !std::isfinite(pair[0]) || !std::isfinite(pair[1]))
+    throw UsageError("--" + name + " " + text + ": must be two numbers with a comma between");
+  return pair;
+}
+
+lattice::TrackOptions track_options(const Options& options) {
+  const auto number = [&](const char* name) {
+    return options.has(name) ? std::optional(options.number(name)) : std::nullopt;
+  };
+  const auto origin = pair_of(options, "origin");
+  return {.columns = options.text("columns"),
+          .fps = number("fps"),
+          .metres_per_unit = number("metres-per-unit"),
+          .confidence = number("confidence"),
+          .key_point = options.text("key-point"),
+          .origin_x = origin[0],
+          .origin_y = origin[1],
+          .y_down = options.has("y-down")};
+}
+
+lattice::CutOptions cut_options(const Options& options) {
+  if (!options.has("fastest"))
+    throw UsageError("how fast bodies can be is not said: --fastest M/S; what is faster is a jump");
+  lattice::CutOptions cut{.fastest = options.number("fastest"),
+                          .window = options.text("window"),
+                          .bridge = static_cast<int>(options.count("bridge", 0, 1000))};
+  if (!options.has("lattice")) return cut;
+  const auto [columns, rows] = pair_of(options, "lattice");
+  if (!(columns >= 1 && columns <= 1e6 && rows >= 1 && rows <= 1e6) ||
+      columns != std::floor(columns) || rows != std::floor(rows))
+    throw UsageError("--lattice " + options.text("lattice") + ": must be two whole numbers from 1");
+  cut.columns = static_cast<int>(columns);
+  cut.rows = static_cast<int>(rows);
+  return cut;
+}
+
+}  // namespace
+
+int run_passages(const Arguments& arguments) {
+  Options options("passages TRACKS --cell CELL.toml -o RUNS.csv [options]",
+                  "Cuts tracks from a lab at the borders of cells into passages, which gatewalk "
+                  "build makes a chain of.\nWhat the file does not say has to be given. Gaps and "
+                  "jumps are no passages: who is in a cell then is lost.",
+                  "gatewalk passages tracks.csv --cell cell.toml -o runs.csv --fastest 2 --fps 120 "
+                  "--metres-per-unit 0.001 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,"
+                  "y=POSITION_Y");
+  declare_all(options);
+  if (!options.parse(arguments)) return kFine;
+  if (!options.has("cell")) throw UsageError("the cells are not said: --cell CELL.toml");
+  const auto cutting = cut_options(options);
+  const auto cell = lattice::read_cell_file(options.text("cell"), options.overrides());
+  lattice::require_measurable(cell);
+  const auto file = lattice::read_tracks(options.text("tracks"), track_options(options));
+  const auto cut = lattice::cut_tracks(file, cell, cutting);
+
+  Json json = to_json(cut, file, cell);
+  Provenance made_by = options.provenance();
+  made_by.scene = lattice::to_toml(cell);
+  json["made_by"] = to_json(made_by);
+  const std::string path = options.text("output");
+  options.keep_old(path);
+  lattice::write_runs(path, cell, lattice::recorded_runs(cut, file, cell));
+  options.give_out(json, table_of(cut, file, cell));
+  options.draw([&] { return figure_of(cut, cell); });
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,49 @@
+#pragma once
+/// Tracks from a lab: where bodies were seen, frame by frame, from a table of any columns,
+/// DeepLabCut's CSV or the NetCDF of movement. What a file does not say is asked for, never
+/// guessed.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gatewalk::lattice {
+
+/// What the user says of a file of tracks.
+struct TrackOptions {
+  /// Of a table with a line a place: "body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y", by the
+  /// names of the file's columns; time= (s) in place of frame=, and confidence=.
+  std::string columns{};
+  std::optional<double> fps{};              // frames per second
+  std::optional<double> metres_per_unit{};  // of the file's x and y
+  std::optional<double> confidence{};       // a place with less is none
+  std::string key_point{};                  // of a body that has several
+  double origin_x = 0.0, origin_y = 0.0;    // of the lattice, in the file's unit
+  bool y_down = false;                      // y grows downwards in the file, as in a picture
+};
+
+/// A body's places, in the frames in which it was seen.
+struct Track {
+  std::string body;
+  std::vector<double> time;  // s, rising
+  std::vector<double> x, y;  // m, from the lattice's origin
+};
+
+struct TrackFile {
+  std::string source, kind;          // the file; "a table", "DeepLabCut", "movement"
+  std::vector<Track> tracks;         // in the order of the file
+  double interval = 0.0;             // s, from frame to frame
+  std::int64_t places = 0;           // lines (or frames) of all bodies, seen there or not
+  std::int64_t no_place = 0;         // of them without a number
+  std::int64_t unsure = 0;           // of them with less confidence than asked for
+  std::int64_t no_body = 0;          // lines of no body, left out
+  std::int64_t unit_rows = 0;        // rows of descriptions and units, left out
+  std::vector<std::string> remarks;  // what was taken for what, in words
+};
+
+/// Reads a file of either kind, which it tells by its first bytes. Throws std::invalid_argument
+/// naming file, line and column, or the option that says what the file does not.
+[[nodiscard]] TrackFile read_tracks(const std::string& path, const TrackOptions& options);
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,489 @@
+// Tracks of known ways, cut at the borders of cells.
+#include "lattice/cells/cut_tracks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "dynamics/base/random.h"
+#include "lattice/cells/local_fit.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+constexpr double kFps = 120.0, kSize = 0.1;  // 1/s, m
+constexpr int kFaceS = 0, kFaceN = 1, kFaceW = 2, kFaceE = 3;
+
+/// Squares of kSize with the coordinates s, vx, vy.
+CellFile squares() {
+  CellFile cell;
+  cell.source = "cell.toml";
+  cell.map.section.faces = {{"S", 0, 1, 0, 0b011, "from below", {}},
+                            {"N", 0, -1, 1, 0b011, "from above", {}},
+                            {"W", 1, 0, 3, 0b010, "from the left", {}},
+                            {"E", -1, 0, 2, 0b010, "from the right", {}}};
+  cell.map.section.coordinates = {{"s", "s_m", "m", "s", 1.0},
+                                  {"vx", "vx_m_per_s", "m/s", "vx", 1.0},
+                                  {"vy", "vy_m_per_s", "m s-1", "vy", 1.0}};
+  cell.map.section.costs = {{"time_s", "s", "duration"}};
+  cell.map.types = {{true}};
+  cell.types = {"cell"};
+  cell.has_scale = {false, false, false};
+  cell.width = cell.length = kSize;
+  return cell;
+}
+
+struct Place {
+  double x, y;
+};
+using Way = std::function<Place(double time)>;
+
+TrackFile file_of(const std::vector<Way>& ways, int frames, double noise = 0.0) {
+  TrackFile file;
+  file.source = "t.csv";
+  file.interval = 1.0 / kFps;
+  for (std::size_t b = 0; b < ways.size(); ++b) {
+    Track track{"b" + std::to_string(b), {}, {}, {}};
+    dynamics::Random random(dynamics::Purpose::row, {7, b, 0});
+    for (int i = 0; i < frames; ++i) {
+      const double t = i / kFps;
+      const Place at = ways[b](t);
+      track.time.push_back(t);
+      track.x.push_back(at.x + noise * random.normal());
+      track.y.push_back(at.y + noise * random.normal());
+    }
+    file.tracks.push_back(track);
+  }
+  return file;
+}
+Way straight(Place from, double vx, double vy) {
+  return [=](double t) { return Place{from.x + vx * t, from.y + vy * t}; };
+}
+Way circle(Place middle, double radius, double speed, double phase = 0.0) {
+  return [=](double t) {
+    const double a = phase + speed / radius * t;
+    return Place{middle.x + radius * std::cos(a), middle.y + radius * std::sin(a)};
+  };
+}
+/// Takes frames first to last - 1 of the first track out.
+void hide(TrackFile& file, int first, int last) {
+  Track& t = file.tracks[0];
+  for (auto* values : {&t.time, &t.x, &t.y})
+    values->erase(values->begin() + first, values->begin() + last);
+}
+CutOptions fast(double fastest = 100.0) { return {.fastest = fastest}; }
+CutOptions with_window(const std::string& window) { return {.fastest = 100.0, .window = window}; }
+
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "nothing refused";
+}
+std::string refusal(const TrackFile& file, const CellFile& cell, const CutOptions& options) {
+  return refusal([&] { (void)cut_tracks(file, cell, options); });
+}
+#define EXPECT_REFUSED(words, ...)                          \
+  do {                                                      \
+    const std::string said = refusal(__VA_ARGS__);          \
+    EXPECT_NE(said.find(words), std::string::npos) << said; \
+  } while (false)
+
+// A parabola is fitted to the last bit or so by any window, at its ends too.
+TEST(LocalFit, ParabolasAreExact) {
+  const TrackFile file = file_of({[](double t) {
+                                   return Place{1.0 + 2.0 * t - 3.0 * t * t, -0.5 + t * t};
+                                 }},
+                                 40);
+  const TrackPiece piece{&file.tracks[0], 0, 40};
+  for (const int window : {5, 9, 31, 101}) {
+    const SmoothPath path = smoothed(piece, window);
+    for (std::size_t i = 0; i < 40; ++i) {
+      const double t = file.tracks[0].time[i];
+      EXPECT_NEAR(path.x[i], file.tracks[0].x[i], 1e-13);
+      EXPECT_NEAR(path.vx[i], 2.0 - 6.0 * t, 1e-11);
+      EXPECT_NEAR(path.vy[i], 2.0 * t, 1e-11);
+    }
+  }
+}
+
+// Savitzky and Golay's weights for places amid 5 frames: -3, 12, 17, 12, -3 by 35; for slopes -2 to
+// 2 by 10.
+TEST(LocalFit, WeightsAreThoseOfSavitzkyAndGolay) {
+  const std::vector<double> place{-3.0, 12.0, 17.0, 12.0, -3.0}, slope{-2.0, -1.0, 0.0, 1.0, 2.0};
+  for (std::size_t k = 0; k < 5; ++k) {
+    TrackFile file = file_of({straight({0.0, 0.0}, 0.0, 0.0)}, 9);
+    file.tracks[0].x[2 + k] = 1.0;
+    const SmoothPath path = smoothed({&file.tracks[0], 0, 9}, 5);
+    EXPECT_NEAR(path.x[4], place[k] / 35.0, 1e-14);
+    EXPECT_NEAR(path.vx[4], slope[k] / 10.0 * kFps, 1e-11);
+    EXPECT_NEAR(path.velocity_gain[4], 0.1 * kFps * kFps, 1e-8);
+  }
+  EXPECT_NEAR(place_gain(5), 17.0 / 35.0, 1e-15);
+  EXPECT_NEAR(place_gain(7), 7.0 / 21.0, 1e-15);
+}
+
+TEST(CutTracks, AStraightLineIsCutWhereItCrosses) {
+  // From (0.03, 0.05) with (0.1, 0.4) m/s: rows at y = 0.1, 0.2, ... after 0.125 s, 0.375 s, ...;
+  // x = 0.1 after 0.7 s.
+  const TrackFile file = file_of({straight({0.03, 0.05}, 0.1, 0.4)}, 121);
+  const CutTracks cut = cut_tracks(file, squares(), fast());
+  ASSERT_EQ(cut.passages.size(), 5U);  // rows entered at .125, .375, .625, .875 s, a column at .7
+  EXPECT_EQ(cut.trials, 1);
+  EXPECT_EQ(cut.first_stays, 1);
+  const std::vector<double> times{0.25, 0.25, 0.075, 0.175};
+  const std::vector<int> faces{kFaceS, kFaceS, kFaceW, kFaceS};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const CutPassage& p = cut.passages[i];
+    EXPECT_EQ(p.end, CutEnd::left);
+    EXPECT_EQ(p.trial, 1);
+    EXPECT_NEAR(p.time, times[i], 1e-9);
+    EXPECT_EQ(p.out.face, faces[i]);
+    EXPECT_TRUE(p.out == cut.passages[i + 1].in);
+    EXPECT_NEAR(p.out.at[1], 0.1, 1e-9);
+    EXPECT_NEAR(p.out.at[2], 0.4, 1e-9);
+  }
+  EXPECT_EQ(cut.passages[0].in.face, kFaceS);
+  EXPECT_NEAR(cut.passages[0].in.at[0], 0.03 + 0.0125 - 0.05, 1e-9);
+  EXPECT_NEAR(cut.passages[3].in.at[0], 0.05 + 0.4 * 0.7 - 0.35, 1e-9);  // sideways: along y
+  EXPECT_NEAR(cut.passages[4].in.at[0], 0.03 + 0.0875 - 0.15, 1e-9);     // in the next column
+  EXPECT_EQ(cut.passages[4].end, CutEnd::lost);
+  EXPECT_EQ(cut.passages[4].lost_by, LostBy::end);
+  EXPECT_NEAR(cut.passages[4].time, 0.125, 1e-9);
+  EXPECT_LT(cut.noise.place, 1e-12);
+}
+
+TEST(CutTracks, OtherCoordinates) {
+  CellFile cell = squares();
+  cell.map.section.coordinates = {{"heading", "heading_rad", "rad", "heading", 1.0},
+                                  {"speed", "speed_m_per_s", "m/s", "speed", 1.0}};
+  for (auto& face : cell.map.section.faces) face.odd = 0b01;
+  const CutTracks cut = cut_tracks(file_of({straight({0.05, 0.05}, 0.3, 0.4)}, 60), cell, fast());
+  EXPECT_NEAR(cut.passages[0].in.at[0], std::atan2(0.3, 0.4), 1e-9);
+  EXPECT_NEAR(cut.passages[0].in.at[1], 0.5, 1e-9);
+  EXPECT_EQ(cut.passages[0].in.at[2], 0.0);
+}
+
+// Places and velocities of a circle where it crosses the lines: the fits of 7 frames are off by no
+// more than theory says, a tenth of the third derivative times the square of half a window for
+// velocities, for places 3/280 of the fourth derivative times its fourth power.
+TEST(CutTracks, ACircleIsCutWhereItCrosses) {
+  const double radius = 0.07, speed = 0.5, omega = speed / radius, h = 3.0 / kFps;
+  const Place middle{0.11, 0.12};
+  const CutTracks cut =
+      cut_tracks(file_of({circle(middle, radius, speed, 0.3)}, 240), squares(), with_window("7"));
+  ASSERT_GT(cut.passages.size(), 6U);
+  const double off_v =
+      1.3 * speed * omega * omega * h * h / 10.0 + speed * omega * omega / (8.0 * kFps * kFps);
+  const double off_x = radius * std::pow(omega * h, 4) * 3.0 / 280.0 * 2.0;
+  for (const CutPassage& p : cut.passages) {
+    const bool upright = p.in.face <= kFaceN;
+    const double border =
+        upright ? std::round(p.from[1] / kSize) * kSize : std::round(p.from[0] / kSize) * kSize;
+    EXPECT_NEAR(upright ? p.from[1] : p.from[0], border, 1e-12);
+    // The place on the circle with that x or y which is on the side where it crossed.
+    const double away = upright ? border - middle.y : border - middle.x;
+    const double along = std::sqrt(radius * radius - away * away);
+    const double other = upright ? p.from[0] - middle.x : p.from[1] - middle.y;
+    const double x = upright ? std::copysign(along, other) : away;
+    const double y = upright ? away : std::copysign(along, other);
+    // Off along a border by as much as the path is off across it, times the slope.
+    const double slope = 1.0 + std::abs(away / along);
+    EXPECT_NEAR(std::abs(other), along, slope * off_x);
+    EXPECT_NEAR(p.in.at[1], -omega * y, off_v + omega * slope * off_x);
+    EXPECT_NEAR(p.in.at[2], omega * x, off_v + omega * slope * off_x);
+    EXPECT_NEAR(p.in.at[0],
+                upright ? middle.x + x - (std::floor(p.from[0] / kSize) + 0.5) * kSize
+                        : middle.y + y - (std::floor(p.from[1] / kSize) + 0.5) * kSize,
+                slope * off_x);
+  }
+  // The whole lap takes what it takes.
+  double lap = 0.0;
+  for (std::size_t i = 1; i <= 4; ++i) lap += cut.passages[i].time;
+  EXPECT_NEAR(lap, 2.0 * std::numbers::pi / omega, 1e-3 / omega);
+}
+
+/// Twenty bodies on circles of their own.
+std::vector<Way> circles() {
+  std::vector<Way> ways;
+  for (int b = 0; b < 20; ++b)
+    ways.push_back(circle({0.013 * b, 0.3 - 0.017 * b}, 0.12 + 0.004 * b, 0.4, 0.3 * b));
+  return ways;
+}
+
+TEST(CutTracks, NoiseIsFoundAndWhatItMakesOfVelocities) {
+  for (const double noise : {0.0002, 0.001}) {
+    const TrackFile file = file_of(circles(), 600, noise);
+    const CutTracks cut = cut_tracks(file, squares(), fast());
+    EXPECT_NEAR(cut.noise.place, noise, 0.1 * noise);
+    EXPECT_EQ(cut.trials, 20);
+    double square = 0.0;
+    for (const CutPassage& p : cut.passages) {
+      // The true velocity is at right angles to the way from the circle's middle.
+      const double b = static_cast<double>(p.track);
+      const double dx = p.from[0] - 0.013 * b, dy = p.from[1] - (0.3 - 0.017 * b);
+      const double omega = 0.4 / (0.12 + 0.004 * b);
+      square += std::pow(p.in.at[1] + omega * dy, 2) + std::pow(p.in.at[2] - omega * dx, 2);
+    }
+    const double found = std::sqrt(square / (2.0 * static_cast<double>(cut.passages.size())));
+    const double said = std::hypot(cut.crossing_velocity_noise, cut.noise.velocity_bias);
+    EXPECT_NEAR(found, said, 0.15 * said) << noise << " window " << cut.noise.window;
+    // The window that was found is at most a little worse than the best of all.
+    double best = HUGE_VAL;
+    for (int w = 5; w <= 61; w += 4) {
+      const CutTracks other = cut_tracks(file, squares(), with_window(std::to_string(w)));
+      best = std::min(best, std::hypot(other.noise.velocity, other.noise.velocity_bias));
+    }
+    EXPECT_LT(std::hypot(cut.noise.velocity, cut.noise.velocity_bias), 1.05 * best);
+  }
+}
+
+// All crossings are found, and no more, with as much noise: those of the circles themselves.
+TEST(CutTracks, NoiseMakesNoCrossings) {
+  const CutTracks clean = cut_tracks(file_of(circles(), 600), squares(), with_window("9"));
+  const CutTracks noisy = cut_tracks(file_of(circles(), 600, 0.001), squares(), fast());
+  EXPECT_GT(clean.passages.size(), 200U);
+  // Where a circle just touches a border noise decides.
+  EXPECT_NEAR(static_cast<double>(noisy.passages.size()),
+              static_cast<double>(clean.passages.size()),
+              0.02 * static_cast<double>(clean.passages.size()));
+}
+
+TEST(CutTracks, WhoDithersOnABorderCrossesItOnce) {
+  // Creeps over y = 0.1 within 100 frames, with noise: 30 s on this side, 30 s on that.
+  const auto creeps = [](double t) { return Place{0.05, 0.1 + 0.002 * (t - 2.0)}; };
+  const TrackFile file = file_of({creeps}, 600, 0.001);
+  const CutTracks cut = cut_tracks(file, squares(), with_window("5"));
+  EXPECT_EQ(cut.passages.size(), 1U);
+  EXPECT_GT(cut.uncounted, 5);
+  EXPECT_GT(cut.hysteresis, 0.002);
+  EXPECT_LT(cut.hysteresis, 0.005);
+  EXPECT_EQ(cut.passages[0].in.face, kFaceS);
+  EXPECT_GT(cut.passages[0].in.at[2], -0.05);  // it went over, there
+}
+
+TEST(CutTracks, ThroughACornerAreTwoCrossings) {
+  const CutTracks cut =
+      cut_tracks(file_of({straight({0.05, 0.05}, 0.3, 0.3)}, 61), squares(), fast());
+  ASSERT_EQ(cut.passages.size(), 2U);
+  EXPECT_LT(cut.passages[0].time, 1e-7);
+  EXPECT_GT(cut.passages[0].time, 0.0);
+  EXPECT_EQ(cut.passages[0].end, CutEnd::left);
+  EXPECT_NEAR(std::abs(cut.passages[1].in.at[0]), 0.05, 1e-9);
+}
+
+TEST(CutTracks, GapsAreLostAndBeginANewTrial) {
+  TrackFile file = file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 121);
+  hide(file, 50, 51);  // at y = 0.2167, in the third row
+  const CutTracks cut = cut_tracks(file, squares(), fast());
+  ASSERT_EQ(cut.passages.size(), 4U);
+  EXPECT_EQ(cut.gaps, 1);
+  EXPECT_EQ(cut.passages[1].end, CutEnd::lost);
+  EXPECT_EQ(cut.passages[1].lost_by, LostBy::gap);
+  EXPECT_NEAR(cut.passages[1].time, 49.0 / kFps - 0.375, 1e-9);
+  // The rest of that row is not a passage: the trial begins with the fourth.
+  EXPECT_EQ(cut.passages[2].trial, 2);
+  EXPECT_NEAR(cut.passages[2].in.at[0], 0.0, 1e-9);
+  EXPECT_NEAR(cut.passages[2].time, 0.25, 1e-9);
+  EXPECT_EQ(cut.lost(LostBy::gap), 1);
+  EXPECT_EQ(cut.lost(LostBy::end), 1);
+  // A frame that may be missing is none.
+  CutOptions bridged = fast();
+  bridged.bridge = 1;
+  const CutTracks whole = cut_tracks(file, squares(), bridged);
+  EXPECT_EQ(whole.gaps, 0);
+  EXPECT_EQ(whole.trials, 1);
+  EXPECT_NEAR(whole.passages[1].time, 0.25, 1e-9);
+}
+
+TEST(CutTracks, SwapsOfIdentityAreLost) {
+  TrackFile file =
+      file_of({straight({0.05, 0.05}, 0.0, 0.4), straight({0.45, 0.05}, 0.0, 0.4)}, 121);
+  for (std::size_t i = 50; i < 121; ++i) {
+    std::swap(file.tracks[0].x[i], file.tracks[1].x[i]);
+    std::swap(file.tracks[0].y[i], file.tracks[1].y[i]);
+  }
+  const CutTracks cut = cut_tracks(file, squares(), fast(2.0));
+  EXPECT_EQ(cut.jumps, 2);
+  EXPECT_EQ(cut.lost(LostBy::jump), 2);
+  EXPECT_EQ(cut.trials, 4);
+  EXPECT_NEAR(cut.fastest_step, 0.4, 1e-9);
+  for (const CutPassage& p : cut.passages)
+    EXPECT_TRUE(p.end == CutEnd::lost || p.out.face == kFaceS);
+}
+
+// One place far off is a jump away and one back; what lies between is too short for a fit.
+TEST(CutTracks, OutliersAreJumps) {
+  TrackFile file = file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 121);
+  file.tracks[0].x[50] = 3.0;
+  const CutTracks cut = cut_tracks(file, squares(), fast(2.0));
+  EXPECT_EQ(cut.jumps, 2);
+  EXPECT_EQ(cut.short_pieces, 1);
+  EXPECT_EQ(cut.short_frames, 1);
+  EXPECT_EQ(cut.lost(LostBy::jump), 1);
+}
+
+TEST(CutTracks, WhoStaysTooLongIsTrapped) {
+  CellFile cell = squares();
+  cell.trapped_after = 1.0;
+  // Enters the second row at 0.125 s, is there until 2.125 s, then goes on.
+  const auto rests = [](double t) {
+    return Place{0.05, t < 0.25 ? 0.05 + 0.4 * t : t < 2.0 ? 0.15 : 0.15 + 0.4 * (t - 2.0)};
+  };
+  const TrackFile file = file_of({rests}, 300);
+  const CutTracks cut = cut_tracks(file, cell, with_window("5"));
+  ASSERT_EQ(cut.passages.size(), 3U);
+  EXPECT_EQ(cut.passages[0].end, CutEnd::trapped);
+  EXPECT_EQ(cut.passages[0].time, 1.0);
+  EXPECT_EQ(cut.passages[1].trial, 2);  // begins where it is seen to enter the next
+  EXPECT_EQ(cut.passages[1].in.face, kFaceS);
+  // So is who is still there at the end, and who was longer there before being lost.
+  EXPECT_EQ(cut_tracks(file_of({rests}, 200), cell, with_window("5")).count(CutEnd::trapped), 1);
+  TrackFile gone = file_of({rests}, 300);
+  hide(gone, 170, 180);
+  const CutTracks lost = cut_tracks(gone, cell, with_window("5"));
+  EXPECT_EQ(lost.count(CutEnd::trapped), 1);
+  hide(gone, 100, 110);
+  EXPECT_EQ(cut_tracks(gone, cell, with_window("5")).passages[0].end, CutEnd::lost);
+}
+
+TEST(CutTracks, ALatticeHasAnEnd) {
+  CutOptions options = fast();
+  options.columns = 1;
+  options.rows = 3;
+  // Comes from below, crosses three rows, leaves, comes back by the side.
+  const auto loop = [](double t) {
+    return t < 1.0 ? Place{0.05, -0.05 + 0.4 * t} : Place{0.05 + 0.4 * (t - 1.0), 0.35};
+  };
+  const CutTracks cut = cut_tracks(file_of({loop}, 200), squares(), options);
+  ASSERT_EQ(cut.passages.size(), 3U);
+  EXPECT_EQ(cut.first_stays, 0);
+  EXPECT_EQ(cut.passages[0].in.face, kFaceS);
+  EXPECT_EQ(cut.passages[2].end, CutEnd::left);
+  EXPECT_EQ(cut.passages[2].out.face, kFaceS);
+}
+
+TEST(CutTracks, TypesAreThoseOfTheMap) {
+  CellFile cell = squares();
+  cell.map.types = {{false}, {false}};
+  cell.types = {"sand", "grass"};
+  cell.map.columns = 2;
+  cell.map.type_of_cell = {0, 1, 1, 0};
+  const TrackFile file = file_of({straight({-0.05, 0.05}, 0.4, 0.05)}, 121);
+  const CutTracks cut = cut_tracks(file, cell, fast());
+  ASSERT_EQ(cut.passages.size(), 2U);
+  EXPECT_EQ(cut.passages[0].type, 0);
+  EXPECT_EQ(cut.passages[1].type, 1);
+  EXPECT_EQ(cut.passages[1].end, CutEnd::left);
+  EXPECT_EQ(recorded_runs(cut, file, cell).passages[1].type, 1);
+  CutOptions options = fast();
+  options.columns = options.rows = 3;
+  EXPECT_REFUSED("--lattice: the map of cell.toml has 2 columns and 2 rows", file, cell, options);
+}
+
+// What is written is what was cut, and keeps the format's rules.
+TEST(CutTracks, RunsReadBack) {
+  CellFile cell = squares();
+  cell.trapped_after = 0.5;
+  std::vector<Way> ways = circles();
+  ways.push_back([](double t) { return Place{0.05, t < 0.5 ? -0.05 + 0.4 * t : 0.15}; });
+  ways.push_back(straight({0.05, 0.05}, 0.3, 0.3));
+  TrackFile file = file_of(ways, 300, 0.0002);
+  file.tracks[3].body = "Ann, \"the\" ant";
+  hide(file, 100, 101);
+  const CutTracks cut = cut_tracks(file, cell, fast());
+  const RecordedRuns runs = recorded_runs(cut, file, cell);
+  EXPECT_GE(runs.trapped, 1);
+  EXPECT_GE(runs.lost, 10);
+  const std::string path = testing::TempDir() + "cut_tracks_runs.csv";
+  write_runs(path, cell, runs);
+  const RecordedRuns again = read_runs(path, cell);
+  EXPECT_EQ(again.bodies, runs.bodies);
+  EXPECT_EQ(again.trapped, runs.trapped);
+  EXPECT_EQ(again.lost, runs.lost);
+  ASSERT_EQ(again.trials.size(), static_cast<std::size_t>(cut.trials));
+  ASSERT_EQ(again.passages.size(), cut.passages.size());
+  for (std::size_t i = 0; i < cut.passages.size(); ++i) {
+    EXPECT_TRUE(again.passages[i].entry == cut.passages[i].out);
+    EXPECT_EQ(again.passages[i].costs[0], cut.passages[i].time);
+  }
+  std::filesystem::remove(path);
+}
+
+TEST(CutTracks, WindowsInFramesAndSeconds) {
+  const TrackFile file = file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 121);
+  EXPECT_EQ(cut_tracks(file, squares(), with_window("11")).noise.window, 11);
+  EXPECT_EQ(cut_tracks(file, squares(), with_window("0.125s")).noise.window, 15);
+  EXPECT_EQ(cut_tracks(file, squares(), with_window("0.13s")).noise.window, 15);
+  EXPECT_REFUSED("--window 10: must be an odd number of frames from 5 on", file, squares(),
+                 with_window("10"));
+  EXPECT_REFUSED("--window 3: must be an odd", file, squares(), with_window("3"));
+  EXPECT_REFUSED("--window 0.01s: is 1 frames: must be an odd", file, squares(),
+                 with_window("0.01s"));
+  EXPECT_REFUSED("--window wide: must be a number of frames (15) or a time (0.125s)", file,
+                 squares(), with_window("wide"));
+}
+
+TEST(CutTracks, CellsThatTracksDoNotHave) {
+  const auto refused = [](const char* words, auto change) {
+    CellFile cell = squares();
+    change(cell.map.section);
+    EXPECT_REFUSED(words, [&] { require_measurable(cell); });
+  };
+  using dynamics::Section;
+  refused("face S with the move (1, 1): tracks are cut into rectangles",
+          [](Section& s) { s.faces[0].di_x = 1; });
+  refused("face N with the move (0, 1): face S has the same",
+          [](Section& s) { s.faces[1].di_y = 1; });
+  refused("coordinate spin cannot be measured of tracks: these can, s (m,",
+          [](Section& s) { s.coordinates[1].name = "spin"; });
+  refused("coordinate vx is in \"mm/s\": of tracks it is measured in m/s",
+          [](Section& s) { s.coordinates[1].unit = "mm/s"; });
+  refused("s of face S changes its sign in the mirror (x to -x): it must be among",
+          [](Section& s) { s.faces[0].odd = 0b010; });
+  refused("s of face W keeps its sign in the mirror (x to -x): it must not be among",
+          [](Section& s) { s.faces[2].odd = 0b011; });
+  CellFile lopsided = squares();
+  lopsided.map.types = {{false}};
+  lopsided.map.section.faces[0].odd = 0;
+  EXPECT_EQ(refusal([&] { require_measurable(lopsided); }), "nothing refused");
+}
+
+TEST(CutTracks, TracksThatMakeNoSense) {
+  const TrackFile up = file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 121);
+  EXPECT_REFUSED("--fastest 0: must be above 0", up, squares(), fast(0.0));
+  EXPECT_REFUSED(
+      "no body was seen in 5 frames in a row, without a gap or a jump (--fastest 0.1 m/s)", up,
+      squares(), fast(0.1));
+  CutOptions options = fast();
+  options.bridge = -1;
+  EXPECT_REFUSED("--bridge: must be 0 or more", up, squares(), options);
+  CellFile no_way = squares();
+  no_way.map.section.faces.erase(no_way.map.section.faces.begin());
+  no_way.map.types = {{false}};
+  EXPECT_REFUSED(
+      "body b0 crosses a border at 0.125 s by a move of (0, 1), at (0.05, 0.1) m: no face "
+      "of cell.toml has that move",
+      up, no_way, fast());
+  EXPECT_REFUSED(
+      "no body is seen to enter a cell: places are x = 0.05 to 0.05 m, y = 0.05 to 0.09 m",
+      file_of({[](double t) {
+                return Place{0.05, 0.05 + 0.04 * t};
+              }},
+              121),
+      squares(), fast());
+  EXPECT_REFUSED("are too small for tracks with a noise of",
+                 file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 121, 0.02), squares(),
+                 with_window("5"));
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice

@@ -1,0 +1,479 @@
+// Files of tracks: read for what they say, refused for what they do not.
+#include "lattice/cells/tracks.h"
+
+#include <gtest/gtest.h>
+#include <netcdf.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace gatewalk::lattice {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class TracksFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string file(const std::string& text, const std::string& name = "t.csv") {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+  TrackFile read(const std::string& text, const TrackOptions& options) {
+    return read_tracks(file(text), options);
+  }
+  std::string refusal_of(const std::string& at, const TrackOptions& options) {
+    try {
+      (void)read_tracks(at, options);
+    } catch (const std::invalid_argument& e) {
+      std::string text = e.what();
+      for (std::size_t i; (i = text.find(folder_.string() + "/")) != text.npos;)
+        text.erase(i, folder_.string().size() + 1);
+      return text;
+    }
+    return "nothing refused";
+  }
+  std::string refusal(const std::string& text, const TrackOptions& options) {
+    return refusal_of(file(text), options);
+  }
+  /// The refusal has these words.
+  void expect_refused(const std::string& text, const TrackOptions& options,
+                      const std::string& words) {
+    EXPECT_NE(refusal(text, options).find(words), std::string::npos) << refusal(text, options);
+  }
+
+  static TrackOptions table_options(const std::string& columns = "body=id,frame=f,x=x,y=y") {
+    TrackOptions options;
+    options.columns = columns;
+    options.fps = 100.0;
+    options.metres_per_unit = 0.001;
+    return options;
+  }
+  static TrackOptions picture_options() {
+    TrackOptions options = table_options("");
+    options.confidence = 0.9;
+    return options;
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(TracksFile, TableOfAnyColumns) {
+  const TrackFile t = read(
+      "f,other,id,y,x\n# a "
+      "comment\n3,z,b,30,10\n1,z,a,2,1\n2,z,b,\"20\",nan\n1,z,b,,5\r\n0,z,a,0,0\n",
+      table_options());
+  ASSERT_EQ(t.tracks.size(), 2U);
+  EXPECT_EQ(t.tracks[0].body, "b");
+  EXPECT_EQ(t.tracks[0].time, std::vector{0.03});
+  EXPECT_EQ(t.tracks[0].x, std::vector{0.01});
+  EXPECT_EQ(t.tracks[1].body, "a");
+  EXPECT_EQ(t.tracks[1].time, (std::vector{0.0, 0.01}));  // sorted, as TrackMate's lines are not
+  EXPECT_EQ(t.tracks[1].y, (std::vector{0.0, 0.002}));
+  EXPECT_EQ(t.places, 5);
+  EXPECT_EQ(t.no_place, 2);
+  EXPECT_DOUBLE_EQ(t.interval, 0.01);
+}
+
+TEST_F(TracksFile, OriginScaleAndWhichWayIsUp) {
+  TrackOptions options = table_options();
+  options.origin_x = 10.0;
+  options.origin_y = 100.0;
+  const std::string text = "id,f,x,y\na,0,15,90\n";
+  EXPECT_DOUBLE_EQ(read(text, options).tracks[0].x[0], 0.005);
+  EXPECT_DOUBLE_EQ(read(text, options).tracks[0].y[0], -0.01);
+  options.y_down = true;
+  EXPECT_DOUBLE_EQ(read(text, options).tracks[0].y[0], 0.01);
+}
+
+TEST_F(TracksFile, TimesOfTheirOwnTellTheInterval) {
+  TrackOptions options = table_options("body=id,time=t,x=x,y=y");
+  options.fps = {};
+  const TrackFile t = read("id,t,x,y\na,0,1,1\na,0.5,1,1\na,0.75,1,1\na,1,1,1\n", options);
+  EXPECT_EQ(t.tracks[0].time, (std::vector{0.0, 0.5, 0.75, 1.0}));
+  EXPECT_DOUBLE_EQ(t.interval, 0.25);
+  EXPECT_NE(t.remarks.at(0).find("a frame every 0.25 s"), std::string::npos);
+  options.fps = 10.0;
+  EXPECT_DOUBLE_EQ(read("id,t,x,y\na,0,1,1\na,0.5,1,1\n", options).interval, 0.1);
+}
+
+TEST_F(TracksFile, TrackMateHasThreeRowsOfUnits) {
+  const std::string text =
+      "LABEL,ID,TRACK_ID,QUALITY,POSITION_X,POSITION_Y,FRAME\n"
+      "Label,Spot ID,Track ID,Quality,X,Y,Frame\n"
+      "Label,Spot ID,Track ID,Quality,X,Y,Frame\n"
+      ",,,(quality),(micron),(micron),\n"
+      "ID7,7,3,1.5,12.5,8,1\n"
+      "ID8,8,,1.5,99,99,1\n"  // a spot of no track
+      "ID6,6,3,1.5,12,7.5,0\n";
+  TrackOptions options =
+      table_options("body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY");
+  options.confidence = 1.0;
+  options.metres_per_unit = 1e-6;
+  const TrackFile t = read(text, options);
+  ASSERT_EQ(t.tracks.size(), 1U);
+  EXPECT_EQ(t.tracks[0].body, "3");
+  EXPECT_DOUBLE_EQ(t.tracks[0].x[1], 12.5e-6);
+  EXPECT_EQ(t.unit_rows, 3);
+  EXPECT_EQ(t.no_body, 1);
+  EXPECT_NE(t.remarks.at(0).find("3 rows of descriptions and units"), std::string::npos);
+  EXPECT_NE(t.remarks.at(0).find("(micron)"), std::string::npos);
+  options.confidence = 2.0;
+  EXPECT_EQ(read(text, options).unsure, 2);
+  // Two such rows are no TrackMate's: the line that is no number is named.
+  EXPECT_EQ(refusal("id,f,x,y\nid,f,x,y\nid,f,x,y\na,0,1,1\n", table_options()),
+            "t.csv:3: column x: \"x\" is no number, nor are there three rows of descriptions and "
+            "units behind the header, as TrackMate writes");
+}
+
+TEST_F(TracksFile, TablesAreRefusedByLineAndColumn) {
+  const TrackOptions good = table_options();
+  const std::string head = "id,f,x,y\n";
+  expect_refused("", good, "t.csv: is empty");
+  expect_refused(head, good, "has no line of any body");
+  expect_refused(head + "a,0,1\n", good, "t.csv:2: has 3 fields, the first line 4");
+  expect_refused(head + "a,0,1,1\na,1,one,1\n", good, "t.csv:3: column x: \"one\" is no number");
+  expect_refused(head + "a,0,1,1\na,1,inf,1\n", good, "t.csv:3: column x: \"inf\" is no number");
+  expect_refused(head + "a,0.5,1,1\n", good, "t.csv:2: column f: \"0.5\" is no whole number");
+  expect_refused(head + "a,,1,1\n", good, "t.csv:2: column f: \"\" is no whole number");
+  expect_refused(head + "a,7,1,1\nb,7,1,1\na,7,2,2\n", good,
+                 "t.csv:4: body \"a\" has a place in frame 7 already (line 2)");
+  expect_refused(head + "\"a,0,1,1\n", good, "t.csv:2: a quotation mark is not closed");
+  expect_refused("id;f;x;y\na;0;1;1\n", good,
+                 "t.csv:1: there is no column \"id\" (body= of --columns): there are id;f;x;y");
+  expect_refused("id,f,x,x,y\na,0,1,1,1\n", good, "t.csv:1: there are two columns \"x\"");
+  EXPECT_NE(refusal_of(path("none.csv"), good).find("cannot be read: No such file"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(folder_.string(), good).find("cannot be read"), std::string::npos);
+}
+
+TEST_F(TracksFile, WhatATableLacksIsAskedFor) {
+  const std::string text = "id,f,x,y,c\na,0,1,1,1\n";
+  const std::string all = refusal(text, {});
+  for (const char* option : {"--columns body=", "--fps N", "--metres-per-unit X"})
+    EXPECT_NE(all.find(option), std::string::npos) << all;
+  TrackOptions options = table_options("body=id,frame=f,x=x,y=y,confidence=c");
+  expect_refused(text, options, "--confidence X");
+  options.confidence = 0.5;
+  EXPECT_EQ(read(text, options).places, 1);
+  options.columns = "body=id,frame=f,x=x,y=y";
+  expect_refused(text, options, "--confidence has no effect");
+  options.confidence = {};
+  options.key_point = "nose";
+  expect_refused(text, options, "--key-point has no effect");
+  options.key_point = {};
+  options.fps = 0.0;
+  expect_refused(text, options, "--fps 0: must be above 0");
+  options = table_options();
+  options.metres_per_unit = -1.0;
+  expect_refused(text, options, "--metres-per-unit -1: must be above 0");
+  options = table_options();
+  options.confidence = -1.0;
+  expect_refused(text, options, "--confidence -1: must be 0 or more");
+}
+
+TEST_F(TracksFile, ColumnsThatMakeNoSense) {
+  const auto refused = [&](const std::string& columns, const std::string& words) {
+    expect_refused("id,f,x,y\na,0,1,1\n", table_options(columns), words);
+  };
+  refused("body=id,frame=f,x=x", "y= is missing");
+  refused("frame=f,x=x,y=y", "body= is missing");
+  refused("body=id,x=x,y=y", "one of frame= and time= is needed");
+  refused("body=id,frame=f,time=f,x=x,y=y", "and only one");
+  refused("body=id,frame=f,x=x,y=y,z=z", "\"z\" is none of body, frame, time, x, y, confidence");
+  refused("body=id,frame=f,x=x,x=y,y=y", "x= is given twice");
+  refused("body,frame=f,x=x,y=y", "\"body\" is no MEANING=COLUMN");
+  refused("\"body=id,frame=f", "a quotation mark is not closed");
+}
+
+constexpr const char* kOneMouse =
+    "scorer,net,net,net,net,net,net\n"
+    "bodyparts,nose,nose,nose,tail,tail,tail\n"
+    "coords,x,y,likelihood,x,y,likelihood\n"
+    "0,10,20,0.99,1,2,1\n"
+    "1,11,21,0.5,1,2,1\n"
+    "2,,,1.0,1,2,1\n"
+    "3,13,23,1,1,2,1\n";
+
+TEST_F(TracksFile, DeepLabCut) {
+  TrackOptions options = picture_options();
+  options.key_point = "nose";
+  const TrackFile t = read_tracks(file(kOneMouse, "mouse4.csv"), options);
+  EXPECT_EQ(t.kind, "DeepLabCut");
+  ASSERT_EQ(t.tracks.size(), 1U);
+  EXPECT_EQ(t.tracks[0].body, "mouse4");
+  EXPECT_EQ(t.tracks[0].time, (std::vector{0.0, 0.03}));
+  EXPECT_EQ(t.no_place, 1);  // with a likelihood of 1
+  EXPECT_EQ(t.unsure, 1);
+  EXPECT_DOUBLE_EQ(t.tracks[0].y[1], 0.023);
+}
+
+TEST_F(TracksFile, DeepLabCutWithIndividuals) {
+  TrackOptions options = picture_options();
+  options.key_point = "nose";
+  const TrackFile t = read(
+      "scorer,n,n,n,n,n,n,n,n,n\n"
+      "individuals,m1,m1,m1,m2,m2,m2,single,single,single\n"
+      "bodyparts,nose,nose,nose,nose,nose,nose,corner,corner,corner\n"
+      "coords,x,y,likelihood,x,y,likelihood,x,y,likelihood\n"
+      "0,1,2,1,3,4,1,5,6,1\n"
+      "1,1,2,1,,,,5,6,1\n",
+      options);
+  ASSERT_EQ(t.tracks.size(), 2U);
+  EXPECT_EQ(t.tracks[1].body, "m2");
+  EXPECT_EQ(t.tracks[1].x, std::vector{0.003});
+  EXPECT_EQ(t.places, 4);
+}
+
+TEST_F(TracksFile, DeepLabCutIsRefused) {
+  TrackOptions options = picture_options();
+  expect_refused(kOneMouse, options, "--key-point NAME, of nose, tail");
+  options.key_point = "paw";
+  expect_refused(kOneMouse, options, "--key-point paw: there are nose, tail");
+  options.key_point = "nose";
+  TrackOptions lacking;
+  lacking.key_point = "nose";
+  for (const char* option : {"--fps N", "--metres-per-unit X", "--confidence X"})
+    expect_refused(kOneMouse, lacking, option);
+  options.columns = "body=id,frame=f,x=x,y=y";
+  expect_refused(kOneMouse, options, "--columns has no effect");
+  options.columns = {};
+  const std::string text = kOneMouse;
+  expect_refused(text + "3,1,1,1,1,1,1\n", options, "t.csv:8: frame 3 comes behind frame 3");
+  expect_refused(text + "4,a,1,1,1,1,1\n", options,
+                 "t.csv:8: column 2 (nose x): \"a\" is no number");
+  expect_refused(text + "4,1,1\n", options, "t.csv:8: has 3 fields, the first line 7");
+  expect_refused(text + "img4.png,1,1,1,1,1,1\n", options, "the frame \"img4.png\" is no whole");
+  expect_refused("scorer,n,n\ncoords,x,y\n", options, "t.csv:2: the row bodyparts is missing");
+  expect_refused("scorer,n,n\nbodyparts,nose,nose\n0,1,2\n", options, "the row coords is missing");
+  expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,z\n0,1,2\n", options,
+                 "coords \"z\" is none of x, y, likelihood");
+  expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,x\n0,1,2\n", options, "twice");
+  expect_refused("scorer,n\nbodyparts,nose\ncoords,x\n0,1\n", options, "there is no y");
+  options.confidence = {};
+  EXPECT_EQ(read("scorer,n,n\nbodyparts,nose,nose\ncoords,x,y\n0,1,2\n", options).places, 1);
+  options.confidence = 0.5;
+  expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,y\n0,1,2\n", options,
+                 "--confidence has no effect");
+  options.confidence = {};
+  expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,y\n", options, "has no frame");
+}
+
+/// A file as movement writes it, three frames of two bodies with two key points; then of what
+/// `change` makes of it.
+struct MovementWriter {
+  std::string individual = "individuals", key_point = "keypoints", time_unit = "seconds";
+  std::vector<std::string> order{"time", "space", "K", "I"};
+  std::vector<double> times{0.0, 0.02, 0.04};
+  std::vector<std::string> spaces{"x", "y"};
+  bool has_fps = true, has_confidence = true, all_nan = false, packed = false;
+  double fill = kNaN;
+
+  void write(const std::string& path) const {
+    int nc = -1;
+    const auto check = [](int rc) { ASSERT_EQ(rc, NC_NOERR) << nc_strerror(rc); };
+    check(nc_create(path.c_str(), NC_NETCDF4 | NC_CLOBBER, &nc));
+    const auto name_of = [&](const std::string& d) {
+      return d == "K" ? key_point : d == "I" ? individual : d;
+    };
+    const auto length_of = [&](const std::string& d) {
+      return d == "time" ? times.size() : d == "space" ? spaces.size() : std::size_t{2};
+    };
+    std::vector<int> dims, sure_dims;
+    for (const std::string& d : order) {
+      int id = -1;
+      check(nc_def_dim(nc, name_of(d).c_str(), length_of(d), &id));
+      dims.push_back(id);
+      if (d != "space") sure_dims.push_back(id);
+      int label = -1;
+      check(
+          nc_def_var(nc, name_of(d).c_str(), d == "time" ? NC_DOUBLE : NC_STRING, 1, &id, &label));
+      if (d == "time") {
+        check(nc_put_var_double(nc, label, times.data()));
+        continue;
+      }
+      std::vector<std::string> words = d == "space" ? spaces
+                                       : d == "K"   ? std::vector<std::string>{"nose", "tail"}
+                                                    : std::vector<std::string>{"m1", "m2"};
+      std::vector<const char*> raw;
+      for (const std::string& word : words) raw.push_back(word.c_str());
+      check(nc_put_var_string(nc, label, raw.data()));
+    }
+    int position = -1, confidence = -1;
+    check(nc_def_var(nc, "position", NC_FLOAT, static_cast<int>(dims.size()), dims.data(),
+                     &position));
+    if (!std::isnan(fill)) {
+      const float value = static_cast<float>(fill);
+      check(nc_put_att_float(nc, position, "_FillValue", NC_FLOAT, 1, &value));
+    }
+    if (packed) check(nc_put_att_double(nc, position, "scale_factor", NC_DOUBLE, 1, &times[1]));
+    // 1000 frame + 100 body + 10 key point + space, so that each place tells whose it is.
+    const auto values = [&](const std::vector<std::string>& by, auto&& value) {
+      std::vector<float> all;
+      std::vector<std::size_t> at(by.size(), 0);
+      std::size_t size = 1;
+      for (const std::string& d : by) size *= length_of(d);
+      for (std::size_t i = 0; i < size; ++i) {
+        std::size_t rest = i, t = 0, s = 0, k = 0, b = 0;
+        for (std::size_t d = by.size(); d-- > 0;) {
+          const std::size_t index = rest % length_of(by[d]);
+          rest /= length_of(by[d]);
+          (by[d] == "time" ? t : by[d] == "space" ? s : by[d] == "K" ? k : b) = index;
+        }
+        all.push_back(static_cast<float>(value(t, s, k, b)));
+      }
+      return all;
+    };
+    const auto places =
+        values(order, [&](std::size_t t, std::size_t s, std::size_t k, std::size_t b) {
+          if (t == 1 && b == 1) return fill;
+          return static_cast<double>(1000 * t + 100 * b + 10 * k + s);
+        });
+    check(nc_put_var_float(nc, position, places.data()));
+    if (has_confidence) {
+      std::vector<std::string> by;
+      for (const std::string& d : order)
+        if (d != "space") by.push_back(d);
+      check(nc_def_var(nc, "confidence", NC_FLOAT, static_cast<int>(by.size()), sure_dims.data(),
+                       &confidence));
+      const auto sure = values(by, [&](std::size_t t, std::size_t, std::size_t k, std::size_t b) {
+        if (all_nan) return kNaN;
+        return t == 2 && b == 0 && k == 1 ? 0.3 : 1.0;
+      });
+      check(nc_put_var_float(nc, confidence, sure.data()));
+    }
+    const double fps = 50.0;
+    if (has_fps) check(nc_put_att_double(nc, NC_GLOBAL, "fps", NC_DOUBLE, 1, &fps));
+    if (!time_unit.empty())
+      check(nc_put_att_text(nc, NC_GLOBAL, "time_unit", time_unit.size(), time_unit.c_str()));
+    check(nc_close(nc));
+  }
+};
+
+class MovementTracks : public TracksFile {
+ protected:
+  TrackFile read(const MovementWriter& w, const TrackOptions& options) {
+    w.write(path("t.nc"));
+    return read_tracks(path("t.nc"), options);
+  }
+  void expect_refused(const MovementWriter& w, const TrackOptions& options,
+                      const std::string& words) {
+    w.write(path("t.nc"));
+    const std::string said = refusal_of(path("t.nc"), options);
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  }
+  static TrackOptions options() {
+    TrackOptions o = picture_options();
+    o.fps = {};
+    o.key_point = "tail";
+    return o;
+  }
+};
+
+TEST_F(MovementTracks, AllOrdersAndNamesOfDimensions) {
+  MovementWriter w;
+  const std::vector<std::vector<std::string>> orders{
+      {"time", "space", "K", "I"}, {"I", "K", "space", "time"}, {"K", "time", "I", "space"}};
+  for (const auto& order : orders)
+    for (const bool singular : {false, true}) {
+      w.order = order;
+      w.individual = singular ? "individual" : "individuals";
+      w.key_point = singular ? "keypoint" : "keypoints";
+      const TrackFile t = read(w, options());
+      ASSERT_EQ(t.tracks.size(), 2U);
+      EXPECT_EQ(t.kind, "movement");
+      EXPECT_EQ(t.tracks[1].body, "m2");
+      EXPECT_EQ(t.tracks[0].time, (std::vector{0.0, 0.02}));  // not sure in the third frame
+      EXPECT_EQ(t.tracks[1].time, (std::vector{0.0, 0.04}));  // no place in the second
+      EXPECT_DOUBLE_EQ(t.tracks[0].x[1], 1.010);
+      EXPECT_DOUBLE_EQ(t.tracks[1].y[1], 2.111);
+      EXPECT_EQ(t.unsure, 1);
+      EXPECT_EQ(t.no_place, 1);
+      EXPECT_DOUBLE_EQ(t.interval, 0.02);
+    }
+}
+
+TEST_F(MovementTracks, FramesNeedAFrameRate) {
+  MovementWriter w;
+  w.time_unit = "frames";
+  w.times = {0.0, 1.0, 2.0};
+  EXPECT_EQ(read(w, options()).tracks[1].time, (std::vector{0.0, 0.04}));
+  w.has_fps = false;
+  expect_refused(w, options(), "frames per second: --fps N");
+  TrackOptions with_fps = options();
+  with_fps.fps = 10.0;
+  EXPECT_DOUBLE_EQ(read(w, with_fps).tracks[1].time[1], 0.2);
+  w.times = {0.0, 1.5, 2.0};
+  expect_refused(w, with_fps, "time[1] = 1.5 is no whole frame");
+}
+
+TEST_F(MovementTracks, WithoutConfidencesOrFrameRate) {
+  MovementWriter w;
+  w.has_confidence = false;
+  TrackOptions o = options();
+  expect_refused(w, o, "--confidence has no effect");
+  o.confidence = {};
+  EXPECT_EQ(read(w, o).tracks[0].time.size(), 3U);
+  w.has_confidence = true;
+  expect_refused(w, o, "--confidence X");
+  w.all_nan = true;
+  EXPECT_EQ(read(w, o).tracks[0].time.size(), 3U);
+  w.has_fps = false;
+  EXPECT_NEAR(read(w, o).interval, 0.02, 1e-12);
+}
+
+TEST_F(MovementTracks, OtherMarksOfNoPlace) {
+  MovementWriter w;
+  w.fill = -99.0;
+  EXPECT_EQ(read(w, options()).no_place, 1);
+}
+
+TEST_F(MovementTracks, AreRefused) {
+  MovementWriter w;
+  TrackOptions o = options();
+  o.key_point = {};
+  expect_refused(w, o, "--key-point NAME, of nose, tail");
+  o = options();
+  o.metres_per_unit = {};
+  expect_refused(w, o, "--metres-per-unit X");
+  o = options();
+  o.fps = 25.0;
+  expect_refused(w, o, "has an fps of 50, not that of --fps, 25");
+  o = options();
+  o.columns = "body=a,frame=b,x=x,y=y";
+  expect_refused(w, o, "--columns has no effect");
+  o = options();
+  w.times = {0.0, 0.04, 0.02};
+  expect_refused(w, o, "time[2] = 0.02: times must rise");
+  w = {};
+  w.time_unit = "";
+  expect_refused(w, o, "time_unit is missing");
+  w.time_unit = "hours";
+  expect_refused(w, o, "time_unit is \"hours\"");
+  w = {};
+  w.packed = true;
+  expect_refused(w, o, "scale_factor");
+  w = {};
+  w.spaces = {"x", "z"};
+  expect_refused(w, o, "space has no y");
+  w = {};
+  w.individual = "views";
+  expect_refused(w, o, "position has no dimension individuals");
+  const std::string damaged = file("\x89HDF\r\n\x1a\nnothing behind", "d.nc");
+  EXPECT_NE(refusal_of(damaged, o).find("cut short or damaged"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice

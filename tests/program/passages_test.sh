@@ -1,0 +1,123 @@
+#!/usr/bin/env bash
+# passages: tracks from a lab become recorded runs.   passages_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+cat >cell.toml <<'END'
+[cell]
+width_m = 0.1
+length_m = 0.1
+symmetric = true
+[[cell.faces]]
+name = "S"
+move = [0, 1]
+odd = ["s", "vx"]
+[[cell.faces]]
+name = "W"
+move = [1, 0]
+odd = ["vx"]
+[[cell.faces]]
+name = "E"
+move = [-1, 0]
+odd = ["vx"]
+[[cell.coordinates]]
+name = "s"
+unit = "m"
+[[cell.coordinates]]
+name = "vx"
+unit = "m/s"
+[[cell.coordinates]]
+name = "vy"
+unit = "m/s"
+[field]
+columns = 3
+rows = 3
+max_gates = 9
+END
+# Two bodies in mm, 100 frames a second: a goes up at 0.5 m/s and to the right at 0.2, b to the left at 0.1; a
+# is not seen in frame 60, b is unsure of in frame 30; they swap in frame 90.
+awk 'BEGIN {
+  for (f = 0; f < 120; f++) for (b = 0; b < 2; b++) {
+    who = f < 90 ? b : 1 - b
+    vx = who == 0 ? 200 : -100
+    x = sprintf("%.4f", 50 + 300 * who + vx * f / 100); y = sprintf("%.4f", 20 + 500 * f / 100)
+    c = b == 1 && f == 30 ? 0.2 : 1
+    if (b == 0 && f == 60) x = y = "nan"
+    print f, b, x, y, c
+  }
+}' >places.txt
+awk 'BEGIN { print "LABEL,TRACK_ID,FRAME,POSITION_X,POSITION_Y,QUALITY"; print "Label,Track ID,Frame,X,Y,Quality"
+  print "Label,Track ID,Frame,X,Y,Quality"; print ",,,(mm),(mm),(quality)" }
+  { a[NR] = "S" NR "," ($2 == 0 ? "a" : "b") "," $1 "," ($3 == "nan" ? "" : $3) "," ($4 == "nan" ? "" : $4) "," $5 }
+  END { for (i = NR; i > 0; i--) print a[i]; print "S0,,3,1,1,1" }' places.txt >spots.csv
+awk 'BEGIN { print "scorer,n,n,n,n,n,n\nindividuals,a,a,a,b,b,b\nbodyparts,nose,nose,nose,nose,nose,nose"
+  print "coords,x,y,likelihood,x,y,likelihood" }
+  $2 == 0 { line = $1 "," $3 "," $4 "," $5 } $2 == 1 { print line "," $3 "," $4 "," $5 }' places.txt >dlc.csv
+awk '{ t = t (NR % 2 ? (NR > 1 ? "," : "") $1 : ""); x[NR] = $3; y[NR] = $4; c = c (NR > 1 ? "," : "") $5 }
+  END {
+    print "netcdf t { dimensions: time = 120 ; space = 2 ; keypoints = 1 ; individuals = 2 ; variables: int64 time(time) ;"
+    print "string space(space) ; string keypoints(keypoints) ; string individuals(individuals) ;"
+    print "double position(time, space, keypoints, individuals) ; double confidence(time, keypoints, individuals) ;"
+    print ":fps = 100. ; :time_unit = \"frames\" ; data: time = " t " ; space = \"x\", \"y\" ; keypoints = \"nose\" ;"
+    print "individuals = \"a\", \"b\" ; confidence = " c " ; position = "
+    for (i = 1; i <= NR; i += 2) printf "%s%s,%s,%s,%s", (i > 1 ? "," : ""), x[i], x[i + 1], y[i], y[i + 1]
+    print " ; }"
+  }' places.txt | sed 's/nan/NaN/g' >t.cdl
+ncgen -4 -o movement.nc t.cdl || fail "ncgen"
+
+scale=(--metres-per-unit 0.001)
+shared=(--cell cell.toml "${scale[@]}" --fastest 1 --confidence 0.9 --quiet)
+table=(spots.csv --fps 100 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY "${shared[@]}")
+"$gatewalk" passages "${table[@]}" -o runs.csv --json runs.json --figure tracks.svg >table.txt 2>err.txt || fail "passages: $(cat err.txt)"
+"$gatewalk" passages dlc.csv --fps 100 "${shared[@]}" -o dlc_runs.csv --json dlc.json || fail "passages: DeepLabCut"
+"$gatewalk" passages movement.nc "${shared[@]}" -o nc_runs.csv --json nc.json || fail "passages: movement"
+# Bodies come in the file's order, which is the other way round here.
+for file in dlc nc; do sort "${file}_runs.csv" | cmp -s - <(sort runs.csv) || fail "passages: $file has other runs"; done
+holds '.endings == {left: 9, trapped: 0, lost: 6} and .lost_by == {gap: 2, jump: 2, end: 2}' runs.json
+holds '.trials == 6 and .passages == 15 and .left_by == {S: 7, W: 1, E: 1}' runs.json
+holds '.tracks.bodies == 2 and .tracks.places == 240 and .tracks.places_without_number == 1 and .tracks.places_unsure == 1' runs.json
+holds '.tracks.unit_rows_left_out == 3 and .tracks.lines_of_no_body == 1 and .gaps == 2 and .jumps == 2' runs.json
+holds '.noise_m < 1e-6 and .hysteresis_m < 1e-5 and (.made_by.scene | test("width_m"))' runs.json
+holds '.tracks.kind == "DeepLabCut" and (.tracks.remarks | any(test("key point, nose")))' dlc.json
+holds '.tracks.kind == "movement" and .tracks.frame_interval_s == 0.01' nc.json
+head -n 1 runs.csv | grep -qx 'body,trial,in,s,vx,vy,out,out_s,out_vx,out_vy,time_s' || fail "passages: $(head -n 1 runs.csv)"
+# a enters the second row after 0.16 s, at x = 0.082: 0.032 m right of the cell's middle.
+awk -F, '$1 == "a" && !seen++ { bad = $3 != "S" || ($4 - 0.032)^2 + ($5 - 0.2)^2 + ($6 - 0.5)^2 > 1e-12 || $7 != "W" || ($11 - 0.09)^2 > 1e-12
+  if (bad) print; exit bad }' runs.csv || fail "passages: where a crosses"
+grep -q '<svg' tracks.svg && grep -q 'lost 6' tracks.svg || fail "passages: no picture"
+"$gatewalk" passages "${table[@]:0:$((${#table[@]} - 1))}" -o runs.csv --force >table.txt 2>err.txt || fail "passages: table"
+for words in '3 rows of descriptions and units' 'y grows upwards' 'fits of' 'noise of places' 'to and fro' 'lost  *6' 'gap 2, jump 2'; do
+  grep -q "$words" table.txt || fail "passages: no '$words' in $(cat table.txt)"
+done
+# Seen from above: the other way is up, and a face for it is missing.
+expect 2 'by a move of (0, -1).*: no face of cell.toml has that move' "$gatewalk" passages "${table[@]}" -o x.csv --y-down
+"$gatewalk" passages "${table[@]}" -o x.csv --lattice 5,9 --origin=0,-30 --window 0.07s --bridge 1 --json x.json || fail "passages: options"
+holds '.window_frames == 7 and .lost_by == {gap: 0, jump: 2, end: 2}' x.json
+[ "$(grep -c , runs.csv)" = 16 ] || fail "passages: $(wc -l <runs.csv) lines"
+
+# What a file does not say, and what makes no sense.
+lacks() { expect 2 "$1" "$gatewalk" passages "${@:2}" -o x.csv --cell cell.toml; }
+lacks 'which column is what: --columns.*frames per second: --fps N.*--metres-per-unit' spots.csv --fastest 1
+lacks '--confidence X' spots.csv --fastest 1 --fps 100 "${scale[@]}" --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY
+lacks 'how fast bodies can be is not said: --fastest' spots.csv
+lacks 'frames per second: --fps N' dlc.csv --fastest 1
+lacks '--metres-per-unit X' movement.nc --fastest 1 --confidence 1
+expect 2 'the cells are not said: --cell CELL.toml' "$gatewalk" passages spots.csv -o x.csv
+expect 2 'missing -o' "$gatewalk" passages spots.csv --cell cell.toml
+expect 2 'missing TRACKS' "$gatewalk" passages --cell cell.toml -o x.csv
+expect 2 'are the same file' "$gatewalk" passages "${table[@]}" -o spots.csv
+expect 2 'are the same file' "$gatewalk" passages "${table[@]}" -o cell.toml
+expect 2 'origin 1: must be two numbers' "$gatewalk" passages "${table[@]}" -o x.csv --origin 1
+for lattice in 0,3 2.5,3 x 3; do expect 2 'lattice .*: must be two' "$gatewalk" passages "${table[@]}" -o x.csv --lattice $lattice; done
+expect 2 'window 4: must be an odd number' "$gatewalk" passages "${table[@]}" -o x.csv --window 4
+expect 2 'fastest -1: must be above 0' "$gatewalk" passages "${table[@]}" -o x.csv --fastest -1
+expect 2 'no body is seen to enter a cell.*are --metres-per-unit and --origin right' "$gatewalk" passages "${table[@]}" -o x.csv --metres-per-unit 1e-6
+sed 's/name = "vx"/name = "spin"/; s/"vx"/"spin"/' cell.toml >spin.toml
+expect 2 'coordinate spin cannot be measured of tracks: these can, s' "$gatewalk" passages "${table[@]}" -o x.csv --cell spin.toml
+sed '0,/odd = \["s", "vx"\]/s//odd = ["vx"]/' cell.toml >even.toml
+expect 2 's of face S changes its sign in the mirror' "$gatewalk" passages "${table[@]}" -o x.csv --cell even.toml
+expect 2 'nosuch.csv' "$gatewalk" passages nosuch.csv "${table[@]:1}" -o x.csv
+: >empty.csv
+expect 2 'empty.csv: is empty' "$gatewalk" passages empty.csv "${table[@]:1}" -o x.csv
+kept tracks.svg
+
+finish
