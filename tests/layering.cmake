@@ -3,7 +3,7 @@ cmake_minimum_required(VERSION 3.25)
 # Who may include whom, folder by folder: a folder's own files, and those of the folders named. Fails naming
 # the file and the line.
 set(libraries dynamics dynamics/base dynamics/cells dynamics/methods dynamics/study markov markov/predict markov/formats lattice lattice/statistics lattice/scene lattice/pool lattice/study)
-set(folders ${libraries} cli/terminal cli/web cli/render cli/film cli/paper cli/commands cli)
+set(folders ${libraries} cli/cells cli/terminal cli/web cli/render cli/film cli/paper cli/commands cli)
 
 set(allowed_dynamics/base)
 set(allowed_dynamics/cells dynamics/base)
@@ -18,6 +18,8 @@ set(allowed_lattice lattice/statistics dynamics dynamics/base dynamics/cells dyn
 set(allowed_lattice/scene dynamics dynamics/base dynamics/cells dynamics/methods dynamics/study lattice lattice/statistics markov/formats)
 set(allowed_lattice/pool dynamics dynamics/base dynamics/cells dynamics/methods markov markov/formats lattice lattice/statistics lattice/scene)
 set(allowed_lattice/study dynamics dynamics/base dynamics/cells dynamics/methods dynamics/study markov lattice lattice/scene lattice/statistics lattice/pool)
+# Beside lattice's own cells only because it reads JSON and starts programs.
+set(allowed_cli/cells dynamics/base dynamics/cells)
 set(allowed_cli/terminal dynamics/base markov/formats cli/render)
 set(allowed_cli/web cli/render)
 set(allowed_cli/render ${libraries})

@@ -100,8 +100,9 @@ class Cell {
     double value = 0.0;
   };
   [[nodiscard]] virtual std::vector<Number> numbers() const { return {}; }
-  /// The cell with another value of that number; null where it is not permitted.
-  [[nodiscard]] virtual std::unique_ptr<Cell> with(std::size_t /*number*/, double /*value*/) const {
+  /// The cell with so many times that number; null where it is not permitted.
+  [[nodiscard]] virtual std::unique_ptr<Cell> with(std::size_t /*number*/,
+                                                   double /*times*/) const {
     return nullptr;
   }
   /// How much room there is about an entry, in a unit of the cell's own; negative: none, a body
