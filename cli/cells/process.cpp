@@ -207,16 +207,17 @@ void Process::fail(const std::string& what) {
                                           : "; its last words on standard error:" + words));
 }
 
+void Process::fail_as_ended(const std::string& else_it) {
+  fail("it " + let_end(kGrace).value_or(else_it) + " while a line was awaited");
+}
+
 void Process::write_some() {
   const NoBrokenPipe guard;
   while (!out_.empty()) {
     const ssize_t n = ::write(in_.get(), out_.data(), out_.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0 && errno == EAGAIN) return;
-    if (n < 0) {
-      const auto how = let_end(kGrace);
-      fail("it " + how.value_or("closed its standard input") + " before it had read what was sent");
-    }
+    if (n < 0) fail_as_ended("closed its standard input");
     out_.erase(0, static_cast<std::size_t>(n));
   }
 }
@@ -248,15 +249,14 @@ void Process::exchange() {
     const double left = std::clamp(timeout_s_ - waited, 0.0, 1e6);
     pollfd files[] = {{output_.get(), POLLIN, 0},
                       {errors_.get(), POLLIN, 0},
-                      {out_.empty() ? -1 : in_.get(), POLLOUT, 0}};
+                      {in_.get(), static_cast<short>(out_.empty() ? 0 : POLLOUT), 0}};
     if (::poll(files, 3, static_cast<int>(std::ceil(1e3 * left))) < 0 && errno != EINTR)
       fail(std::string("it cannot be waited for: ") + std::strerror(errno));
     if (files[1].revents != 0) read_complaints();
+    if ((files[2].revents & POLLERR) != 0) fail_as_ended("closed its standard input");
     if (files[2].revents != 0) write_some();
-    if (files[0].revents != 0 && !read_some(output_, text_)) {
-      const auto how = let_end(kGrace);
-      fail("it " + how.value_or("closed its standard output") + " while a line was awaited");
-    }
+    if (files[0].revents != 0 && !read_some(output_, text_))
+      fail_as_ended("closed its standard output");
     if (left == 0.0 && text_.find('\n') == text_.npos)
       fail("it wrote no line for " + std::to_string(std::lround(waited)) + " s");
     if (files[0].revents != 0 || (had_to_write && out_.empty())) return;

@@ -73,6 +73,8 @@ class Process {
   [[nodiscard]] std::optional<std::string> ended() const;
   /// Reads on until it has ended by itself, but not for longer. As ended().
   std::optional<std::string> let_end(double seconds);
+  /// For one that hung up: says how it ended, if it does.
+  [[noreturn]] void fail_as_ended(const std::string& else_it);
   /// Kills what is left of the group and collects its two shells.
   void kill();
 

@@ -14,7 +14,7 @@ namespace gatewalk::cli {
 
 struct ProgramOptions {
   double timeout_s = 60.0;       // for a line, while one is awaited: the first one too
-  std::int64_t in_flight = 512;  // passages that one process is given before it has answered
+  std::int64_t in_flight = 256;  // passages that one process is given before it has answered
 };
 
 /// One process per thread that uses the cell at the same time, kept until the cell's end. What
