@@ -19,7 +19,7 @@ set(allowed_lattice/scene dynamics dynamics/base dynamics/cells dynamics/methods
 set(allowed_lattice/pool dynamics dynamics/base dynamics/cells dynamics/methods markov markov/formats lattice lattice/statistics lattice/scene)
 set(allowed_lattice/study dynamics dynamics/base dynamics/cells dynamics/methods dynamics/study markov lattice lattice/scene lattice/statistics lattice/pool)
 # Beside lattice's own cells only because it reads JSON and starts programs.
-set(allowed_cli/cells dynamics/base dynamics/cells)
+set(allowed_cli/cells dynamics/base dynamics/cells cli/render)
 set(allowed_cli/terminal dynamics/base markov/formats cli/render)
 set(allowed_cli/web cli/render)
 set(allowed_cli/render ${libraries})

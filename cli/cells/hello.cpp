@@ -8,18 +8,20 @@
 #include <stdexcept>
 #include <string>
 
+#include "cli/render/json_fwd.h"
+
 namespace gatewalk::cli {
 namespace {
 
-using Json = nlohmann::json;
 using Keys = std::initializer_list<std::string_view>;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
 
 /// A table of the line, or of one of its lists: which keys it may have, and what they hold.
-class Table {
+class HelloTable {
  public:
-  Table(const Json& json, std::string where, Keys keys) : json_(json), where_(std::move(where)) {
+  HelloTable(const Json& json, std::string where, Keys keys)
+      : json_(json), where_(std::move(where)) {
     if (!json.is_object()) refuse(where_ + " must be an object { }");
     for (const auto& [key, value] : json.items()) {
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
@@ -114,7 +116,7 @@ std::size_t coordinate_of(const dynamics::Section& section, const Json& name,
 void read_coordinates(const Json& list, dynamics::Section& section) {
   for (const Json& one : list) {
     const std::string where = "coordinate " + std::to_string(section.coordinates.size() + 1);
-    const Table table(one, where, {"name", "key", "unit", "words", "scale"});
+    const HelloTable table(one, where, {"name", "key", "unit", "words", "scale"});
     dynamics::Coordinate c{.name = table.word("name"),
                            .key = "",
                            .unit = table.text("unit", "1"),
@@ -130,7 +132,7 @@ void read_faces(const Json& list, dynamics::Section& section) {
   std::vector<std::string> mirrors;
   for (const Json& one : list) {
     const std::string where = "face " + std::to_string(section.faces.size() + 1);
-    const Table table(one, where, {"name", "move", "mirror", "odd", "origin"});
+    const HelloTable table(one, where, {"name", "move", "mirror", "odd", "origin"});
     dynamics::Face face{.name = table.word("name"), .origin = ""};
     const Json& move = table.list("move");
     const auto is_step = [](const Json& step) {
@@ -159,8 +161,8 @@ void read_faces(const Json& list, dynamics::Section& section) {
 
 void read_costs(const Json& list, dynamics::Section& section) {
   for (const Json& one : list) {
-    const Table table(one, "cost " + std::to_string(section.costs.size() + 1),
-                      {"key", "unit", "words"});
+    const HelloTable table(one, "cost " + std::to_string(section.costs.size() + 1),
+                           {"key", "unit", "words"});
     dynamics::CostInfo cost{table.word("key"), table.text("unit", "1"), ""};
     cost.words = table.text("words", cost.key);
     section.costs.push_back(std::move(cost));
@@ -191,9 +193,9 @@ std::string Hello::Parameter::range() const {
 Hello read_hello(std::string_view line) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) refuse("it is not JSON");
-  const Table table(json, "it",
-                    {"gatewalk", "faces", "coordinates", "costs", "symmetric", "normals",
-                     "uniforms", "parameters"});
+  const HelloTable table(json, "it",
+                         {"gatewalk", "faces", "coordinates", "costs", "symmetric", "normals",
+                          "uniforms", "parameters"});
   if (const Json& version = table.at("gatewalk"); version != kProgramProtocol)
     refuse("'gatewalk' is the protocol, which must be " + std::to_string(kProgramProtocol));
   Hello hello;

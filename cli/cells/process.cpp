@@ -24,7 +24,7 @@ constexpr int kToldComplaints = 12;            // lines
 constexpr double kGrace = 0.5;
 
 [[noreturn]] void refuse_start(const std::string& command, int error) {
-  throw std::runtime_error("cell program '" + quoted(command) +
+  throw std::runtime_error("cell program '" + excerpt(command) +
                            "' cannot be started: " + std::strerror(error));
 }
 
@@ -122,7 +122,7 @@ std::string last_lines(std::string_view text) {
   std::string lines;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    if (end > 0) lines += "\n  " + quoted(text.substr(0, end));
+    if (end > 0) lines += "\n  " + excerpt(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return lines;
@@ -130,7 +130,7 @@ std::string last_lines(std::string_view text) {
 
 }  // namespace
 
-std::string quoted(std::string_view text, std::size_t most) {
+std::string excerpt(std::string_view text, std::size_t most) {
   std::string words(text.substr(0, most));
   for (char& c : words)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = c == '\t' ? ' ' : '?';
@@ -202,7 +202,7 @@ void Process::fail(const std::string& what) {
   read_complaints();
   kill();
   const std::string words = last_lines(complaints_);
-  throw std::runtime_error("cell program '" + quoted(command_) + "': " + what +
+  throw std::runtime_error("cell program '" + excerpt(command_) + "': " + what +
                            (words.empty() ? "; it wrote nothing to standard error"
                                           : "; its last words on standard error:" + words));
 }
@@ -268,7 +268,7 @@ std::optional<std::string_view> Process::line() {
   const std::size_t end = rest.find('\n');
   if (std::min(end, rest.size()) > kMostLine)
     fail("it wrote a line of more than " + std::to_string(kMostLine) + " bytes: '" +
-         quoted(rest, 40) + "'");
+         excerpt(rest, 40) + "'");
   if (end == rest.npos) return {};
   taken_ += end + 1;
   waits_since_ = Clock::now();

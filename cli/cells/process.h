@@ -91,6 +91,6 @@ class Process {
 };
 
 /// Words of others in a message: the first `most` bytes, nothing that a terminal would obey.
-[[nodiscard]] std::string quoted(std::string_view text, std::size_t most = 200);
+[[nodiscard]] std::string excerpt(std::string_view text, std::size_t most = 200);
 
 }  // namespace gatewalk::cli

@@ -114,7 +114,7 @@ struct WrongAnswer {
 double finite(std::string_view word, const std::string& name) {
   double x = 0.0;
   if (!read_number(word, x) || !std::isfinite(x))
-    throw WrongAnswer{name + " '" + quoted(word, 40) + "' is not a finite number"};
+    throw WrongAnswer{name + " '" + excerpt(word, 40) + "' is not a finite number"};
   return x;
 }
 
@@ -162,7 +162,7 @@ Passage read_answer(const Words& words, const Section& section, Body& body) {
   const auto face = std::find_if(section.faces.begin(), section.faces.end(),
                                  [&](const Face& f) { return f.name == words.word[2]; });
   if (face == section.faces.end())
-    throw WrongAnswer{"there is no face '" + quoted(words.word[2], 40) +
+    throw WrongAnswer{"there is no face '" + excerpt(words.word[2], 40) +
                       "' to enter the next cell by, but " + names_of(section.faces)};
   passage.next.face = static_cast<int>(face - section.faces.begin());
   for (std::size_t k = 0; k < coordinates; ++k)
@@ -207,7 +207,7 @@ ProgramCell::ProgramCell(std::string command, const ProgramOptions& options,
     program.hello = read_hello(program.first_line);
   } catch (const std::invalid_argument& e) {
     running->process.fail("its first line says no cell: " + std::string(e.what()) +
-                          "; the line is '" + quoted(program.first_line) + "'");
+                          "; the line is '" + excerpt(program.first_line) + "'");
   }
   for (const Hello::Parameter& p : program.hello.parameters) values_.push_back(p.number.value);
   for (const Number& number : set) values_[parameter_of(program.hello, number)] = number.value;
@@ -262,7 +262,7 @@ std::unique_ptr<ProgramCell::Running> ProgramCell::take() const {
   }
   auto running = std::make_unique<Running>(program_->command, program_->options);
   if (const std::string_view line = running->process.wait_for_line(); line != program_->first_line)
-    running->process.fail("its first line is not the same at each start: '" + quoted(line) + "'");
+    running->process.fail("its first line is not the same at each start: '" + excerpt(line) + "'");
   tell_values(*running);
   return running;
 }
@@ -333,7 +333,7 @@ void ProgramCell::carry_out(const NextPassage& next, Health& health, std::int64_
           --under_way;
       } catch (const WrongAnswer& wrong) {
         process.fail("it wrote a line that is no answer: " + wrong.what + "; the line is '" +
-                     quoted(*line) + "'");
+                     excerpt(*line) + "'");
       }
     }
   }

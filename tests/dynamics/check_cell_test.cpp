@@ -29,10 +29,10 @@ Passage fine(Body& body) {
   body.entry = passage.next;
   return passage;
 }
-const std::vector<Entry> kStarts{{0, {0.25}}, {1, {-0.1}}};
+const std::vector<Entry> kTwoStarts{{0, {0.25}}, {1, {-0.1}}};
 
 Complaints checked(FunctionCell::Pass pass, bool symmetric = false) {
-  return check_cell(FunctionCell(upright(), std::move(pass), symmetric), kStarts);
+  return check_cell(FunctionCell(upright(), std::move(pass), symmetric), kTwoStarts);
 }
 /// A cell whose passages are fine but for this.
 Complaints spoilt(const std::function<void(Body&, Passage&)>& spoil) {
@@ -110,7 +110,7 @@ TEST(CheckCell, FindsASymmetryThatIsNone) {
 TEST(CheckCell, FindsSectionsAndStartsThatAreNone) {
   Section section = upright();
   section.faces[1].mirror = 0;
-  expect_complaint(check_cell(FunctionCell(section, fine), kStarts),
+  expect_complaint(check_cell(FunctionCell(section, fine), kTwoStarts),
                    "it threw: section: face N is not");
   expect_complaint(check_cell(FunctionCell(upright(), fine), {{2, {}}}),
                    "a start is on face number 2, there are 2");
@@ -131,7 +131,7 @@ class Greedy : public FunctionCell {
 };
 
 TEST(CheckCell, FindsBatchesThatAreTooLarge) {
-  const Complaints complaints = check_cell(Greedy(), kStarts);
+  const Complaints complaints = check_cell(Greedy(), kTwoStarts);
   expect_complaint(complaints, "carry_out had 8 bodies at once, allowed were 7");
   expect_complaint(complaints, "carry_out counted 0 passages of");
 }
@@ -154,9 +154,9 @@ class Numbered : public FunctionCell {
 };
 
 TEST(CheckCell, FindsNumbersThatDoNotKeepTheCell) {
-  expect_complaint(check_cell(Numbered(false), kStarts),
+  expect_complaint(check_cell(Numbered(false), kTwoStarts),
                    "it cannot be had with once its own mass_kg");
-  expect_complaint(check_cell(Numbered(true), kStarts),
+  expect_complaint(check_cell(Numbered(true), kTwoStarts),
                    "is another one by a copy with the same mass_kg");
 }
 
