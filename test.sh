@@ -5,6 +5,9 @@ cd "$(dirname "$0")"
 . ./.ci/prepare
 # Results and films as others read them, a browser that shows the pages, the layout of the code.
 packages+=(libgtest-dev jq netcdf-bin ffmpeg chromium clang-format)
+# Cells that other programs simulate: in Chipmunk, in Python.
+packages+=(libchipmunk-dev)
+command -v python3 >/dev/null || packages+=(python3)
 # Some machines bring an npm of their own, which Debian's package would conflict with.
 command -v npm >/dev/null || packages+=(npm)
 build_gatewalk -DBUILD_TESTING=ON

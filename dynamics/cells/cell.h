@@ -101,8 +101,7 @@ class Cell {
   };
   [[nodiscard]] virtual std::vector<Number> numbers() const { return {}; }
   /// The cell with so many times that number; null where it is not permitted.
-  [[nodiscard]] virtual std::unique_ptr<Cell> with(std::size_t /*number*/,
-                                                   double /*times*/) const {
+  [[nodiscard]] virtual std::unique_ptr<Cell> with(std::size_t /*number*/, double /*times*/) const {
     return nullptr;
   }
   /// How much room there is about an entry, in a unit of the cell's own; negative: none, a body

@@ -18,6 +18,16 @@ void Section::validate() const {
   if (costs.size() > kMostCosts)
     refuse(std::to_string(costs.size()) + " costs are not permitted: must be at most " +
            std::to_string(kMostCosts));
+  const auto require_names = [&](const auto& all, auto name, const std::string& what) {
+    for (auto one = all.begin(); one != all.end(); ++one) {
+      if (((*one).*name).empty()) refuse("a " + what + " has no name");
+      for (auto other = all.begin(); other != one; ++other)
+        if ((*one).*name == (*other).*name) refuse("two " + what + "s are named " + (*one).*name);
+    }
+  };
+  require_names(faces, &Face::name, "face");
+  require_names(coordinates, &Coordinate::name, "coordinate");
+  require_names(costs, &CostInfo::key, "cost");
   for (int f = 0; f < std::ssize(faces); ++f) {
     const Face& face = faces[f];
     if (face.di_x == 0 && face.di_y == 0) refuse("face " + face.name + " leads nowhere");
@@ -30,16 +40,6 @@ void Section::validate() const {
         image.di_y != face.di_y)
       refuse("face " + face.name + " is not the mirror image of " + image.name);
   }
-  const auto require_names = [&](const auto& all, auto name, const std::string& what) {
-    for (auto one = all.begin(); one != all.end(); ++one) {
-      if (((*one).*name).empty()) refuse("a " + what + " has no name");
-      for (auto other = all.begin(); other != one; ++other)
-        if ((*one).*name == (*other).*name) refuse("two " + what + "s are named " + (*one).*name);
-    }
-  };
-  require_names(faces, &Face::name, "face");
-  require_names(coordinates, &Coordinate::name, "coordinate");
-  require_names(costs, &CostInfo::key, "cost");
   for (const Coordinate& c : coordinates)
     if (!(std::isfinite(c.scale) && c.scale > 0.0))
       refuse("the scale of coordinate " + c.name + " must be finite and > 0");

@@ -1,0 +1,223 @@
+#include "cli/cells/hello.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "cli/render/json_fwd.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using Keys = std::initializer_list<std::string_view>;
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+
+/// A table of the line, or of one of its lists: which keys it may have, and what they hold.
+class HelloTable {
+ public:
+  HelloTable(const Json& json, std::string where, Keys keys)
+      : json_(json), where_(std::move(where)) {
+    if (!json.is_object()) refuse(where_ + " must be an object { }");
+    for (const auto& [key, value] : json.items()) {
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+      std::string allowed;
+      for (const std::string_view k : keys)
+        allowed += (allowed.empty() ? "" : ", ") + std::string(k);
+      refuse(where_ + " has no key '" + key + "'; it has " + allowed);
+    }
+  }
+  [[nodiscard]] const Json* find(std::string_view key) const {
+    const auto at = json_.find(key);
+    return at == json_.end() ? nullptr : &*at;
+  }
+  [[nodiscard]] const Json& at(std::string_view key) const {
+    const Json* const value = find(key);
+    if (value == nullptr) refuse(where_ + ": '" + std::string(key) + "' is missing");
+    return *value;
+  }
+  [[noreturn]] void refuse_value(std::string_view key, const std::string& must_be) const {
+    refuse(where_ + ": '" + std::string(key) + "' must be " + must_be);
+  }
+
+  /// A word: not empty, without blanks, so that it can stand in a line.
+  [[nodiscard]] std::string word(std::string_view key) const {
+    const Json& value = at(key);
+    const std::string text = value.is_string() ? value.get<std::string>() : "";
+    if (text.empty() ||
+        std::any_of(text.begin(), text.end(), [](unsigned char c) { return c <= ' ' || c == 127; }))
+      refuse_value(key, "a word without blanks");
+    return text;
+  }
+  [[nodiscard]] std::string text(std::string_view key, const std::string& otherwise) const {
+    const Json* const value = find(key);
+    if (value == nullptr) return otherwise;
+    if (!value->is_string()) refuse_value(key, "a text");
+    return value->get<std::string>();
+  }
+  [[nodiscard]] int whole(std::string_view key, int low, int high, int otherwise) const {
+    const Json* const value = find(key);
+    if (value == nullptr) return otherwise;
+    if (!value->is_number_integer() || value->get<double>() < low || value->get<double>() > high)
+      refuse_value(key,
+                   "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    return value->get<int>();
+  }
+  [[nodiscard]] const Json& list(std::string_view key) const {
+    const Json& value = at(key);
+    if (!value.is_array()) refuse_value(key, "a list [ ]");
+    return value;
+  }
+
+ private:
+  const Json& json_;
+  std::string where_;
+};
+
+double number_of(const Json& value, const std::string& where) {
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    refuse(where + " must be a finite number");
+  return value.get<double>();
+}
+
+/// "m s-1" as it stands in a key: "_m_per_s".
+std::string unit_in_key(const std::string& unit) {
+  std::string key;
+  for (std::size_t at = 0; at < unit.size();) {
+    const std::size_t end = std::min(unit.find(' ', at), unit.size());
+    const std::string factor = unit.substr(at, end - at);
+    const std::size_t power = factor.find('-');
+    if (factor != "1" && !factor.empty()) {
+      key += power == factor.npos ? "_" + factor : "_per_" + factor.substr(0, power);
+      if (power != factor.npos && factor.substr(power) != "-1") key += factor.substr(power + 1);
+    }
+    at = end + 1;
+  }
+  return key;
+}
+
+std::string origin_of(int di_x, int di_y) {
+  if (di_x == 0) return di_y > 0 ? "from below" : "from above";
+  if (di_y == 0) return di_x > 0 ? "from the left" : "from the right";
+  return "from " + std::to_string(-di_x) + ", " + std::to_string(-di_y);
+}
+
+std::size_t coordinate_of(const dynamics::Section& section, const Json& name,
+                          const std::string& where) {
+  for (std::size_t k = 0; k < section.coordinates.size(); ++k)
+    if (name == section.coordinates[k].name) return k;
+  refuse(where + ": 'odd' must name coordinates: " + dynamics::names_of(section.coordinates));
+}
+
+void read_coordinates(const Json& list, dynamics::Section& section) {
+  for (const Json& one : list) {
+    const std::string where = "coordinate " + std::to_string(section.coordinates.size() + 1);
+    const HelloTable table(one, where, {"name", "key", "unit", "words", "scale"});
+    dynamics::Coordinate c{.name = table.word("name"),
+                           .key = "",
+                           .unit = table.text("unit", "1"),
+                           .words = "",
+                           .scale = number_of(table.at("scale"), where + ": 'scale'")};
+    c.key = table.text("key", c.name + unit_in_key(c.unit));
+    c.words = table.text("words", c.name);
+    section.coordinates.push_back(std::move(c));
+  }
+}
+
+void read_faces(const Json& list, dynamics::Section& section) {
+  std::vector<std::string> mirrors;
+  for (const Json& one : list) {
+    const std::string where = "face " + std::to_string(section.faces.size() + 1);
+    const HelloTable table(one, where, {"name", "move", "mirror", "odd", "origin"});
+    dynamics::Face face{.name = table.word("name"), .origin = ""};
+    const Json& move = table.list("move");
+    const auto is_step = [](const Json& step) {
+      return step.is_number_integer() && std::abs(step.get<double>()) <= 1.0;
+    };
+    if (move.size() != 2 || !is_step(move[0]) || !is_step(move[1]))
+      table.refuse_value("move", "two of -1, 0, 1: by which move in the lattice it is entered");
+    face.di_x = move[0].get<int>();
+    face.di_y = move[1].get<int>();
+    face.origin = table.text("origin", origin_of(face.di_x, face.di_y));
+    if (table.find("odd") != nullptr)
+      for (const Json& name : table.list("odd"))
+        face.odd |= static_cast<std::uint8_t>(1U << coordinate_of(section, name, where));
+    mirrors.push_back(table.find("mirror") == nullptr ? face.name : table.word("mirror"));
+    section.faces.push_back(std::move(face));
+  }
+  for (std::size_t f = 0; f < section.faces.size(); ++f) {
+    const auto image = std::find_if(section.faces.begin(), section.faces.end(),
+                                    [&](const dynamics::Face& o) { return o.name == mirrors[f]; });
+    if (image == section.faces.end())
+      refuse("face " + std::to_string(f + 1) +
+             ": 'mirror' must name a face: " + dynamics::names_of(section.faces));
+    section.faces[f].mirror = static_cast<int>(image - section.faces.begin());
+  }
+}
+
+void read_costs(const Json& list, dynamics::Section& section) {
+  for (const Json& one : list) {
+    const HelloTable table(one, "cost " + std::to_string(section.costs.size() + 1),
+                           {"key", "unit", "words"});
+    dynamics::CostInfo cost{table.word("key"), table.text("unit", "1"), ""};
+    cost.words = table.text("words", cost.key);
+    section.costs.push_back(std::move(cost));
+  }
+  if (section.costs.empty()) refuse("'costs' must name at least one; the first one is a time");
+}
+
+Hello::Parameter read_parameter(const std::string& key, const Json& value) {
+  const std::string where = "parameter '" + key + "'";
+  if (key.empty() || key.find_first_of(" \t=") != key.npos)
+    refuse(where + " must be a word without blanks and '='");
+  constexpr double kAny = std::numeric_limits<double>::max();
+  if (!value.is_array()) return {{key, number_of(value, where)}, -kAny, kAny};
+  if (value.size() != 3) refuse(where + " must be a number or [number, least, most]");
+  const Hello::Parameter p{
+      {key, number_of(value[0], where)}, number_of(value[1], where), number_of(value[2], where)};
+  if (!p.permits(p.number.value)) refuse(where + " must be " + p.range());
+  return p;
+}
+
+}  // namespace
+
+std::string Hello::Parameter::range() const {
+  const auto digits = [](double x) { return Json(x).dump(); };
+  return "a number from " + digits(low) + " to " + digits(high);
+}
+
+Hello read_hello(std::string_view line) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (json.is_discarded()) refuse("it is not JSON");
+  const HelloTable table(json, "it",
+                         {"gatewalk", "faces", "coordinates", "costs", "symmetric", "normals",
+                          "uniforms", "parameters"});
+  if (const Json& version = table.at("gatewalk"); version != kProgramProtocol)
+    refuse("'gatewalk' is the protocol, which must be " + std::to_string(kProgramProtocol));
+  Hello hello;
+  read_coordinates(table.list("coordinates"), hello.section);
+  if (hello.section.coordinates.size() > dynamics::kMostCoordinates)
+    refuse("'coordinates' must be at most " + std::to_string(dynamics::kMostCoordinates));
+  read_faces(table.list("faces"), hello.section);
+  read_costs(table.list("costs"), hello.section);
+  hello.section.validate();
+  if (const Json* const symmetric = table.find("symmetric")) {
+    if (!symmetric->is_boolean()) table.refuse_value("symmetric", "true or false");
+    hello.symmetric = symmetric->get<bool>();
+  }
+  hello.normals = table.whole("normals", 0, kMostNoise, 0);
+  hello.uniforms = table.whole("uniforms", 0, kMostNoise, 0);
+  if (hello.normals > 0 && hello.uniforms > 0) refuse("it has 'normals' and 'uniforms'; use one");
+  if (const Json* const parameters = table.find("parameters")) {
+    if (!parameters->is_object()) table.refuse_value("parameters", "an object { }");
+    for (const auto& [key, value] : parameters->items())
+      hello.parameters.push_back(read_parameter(key, value));
+  }
+  return hello;
+}
+
+}  // namespace gatewalk::cli
