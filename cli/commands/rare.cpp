@@ -15,7 +15,7 @@ DirectRows direct_rows(const Options& options, const lattice::Scene& scene, int 
   if (!options.has("trials")) return direct;
   direct.trials = options.trials();
   const dynamics::Stopwatch watch;
-  const auto tally = lattice::field_trials(lattice::up_to_row(lattice::problem_of(scene), row),
+  const auto tally = lattice::field_trials(lattice::problem_of(lattice::up_to_row(scene, row)),
                                            direct.trials, options.seed(), options.work());
   direct.seconds = watch.seconds();
   direct.entered.assign(static_cast<std::size_t>(row),
@@ -65,10 +65,11 @@ int run_rare(const Arguments& arguments) {
     throw UsageError("--accuracy: must lie between 0 and 1");
   lattice::Scene scene = options.read_scene();
   how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 2001)) : scene.field.rows;
-  (void)lattice::up_to_row(lattice::problem_of(scene), how.row);  // refuses before any work
+  (void)lattice::up_to_row(scene, how.row);  // refuses before any work
+  require_active(options, scene);
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
-  const lattice::RareEvent event =
-      lattice::rare_event(lattice::problem_of(scene), how, options.work());
+  const lattice::RareEvent event = lattice::rare_event(
+      lattice::problem_of(lattice::up_to_row(scene, how.row)), how, options.work());
   const DirectRows direct = direct_rows(options, scene, how.row);
 
   Json json = to_json(event, direct);

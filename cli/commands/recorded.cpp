@@ -93,7 +93,10 @@ int build_recorded(const Options& options) {
   for (const std::string& text : doubts(pool, problem)) options.warn(text);
   Json states = {{"bins", "tree"},
                  {"entries_per_leaf", dynamics::kEntriesPerLeaf},
-                 {"gate_runs", pool.gate_runs()}};
+                 {"gate_runs", pool.gate_runs()},
+                 {"starts_of_their_own", Json::array()},
+                 {"range", nullptr},
+                 {"states_bias", 0.0}};
   auto matrices = lattice::cell_matrices(problem, pool, dynamics::kEntriesPerLeaf);
   states["states"] = matrices.front().space.size();
   const Json made_by = provenance_of(options, cells);

@@ -37,15 +37,18 @@ void add_to(Json& json, const lattice::StartAnswer& a, const ShownField& shown) 
 
 std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
   const markov::FinalDistribution& f = a.final;
-  std::string table =
-      endings_text(shown_endings(a.endings, f),
-                   "of all bodies, 95 % intervals that count everything") +
-      limits_text(shown) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
-      "departed " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(a.exits, shown) +
-      "error: at most " + fixed(a.error.total_variation, 4) +
-      " in total variation of the final gates, corrcoef at least " + fixed(a.error.corrcoef, 4) +
-      ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
-      " per 100, each 95 times in 100 (sampling, states and memory)\n";
+  const bool known = std::isfinite(a.error.total_variation);
+  std::string table = endings_text(shown_endings(a.endings, f),
+                                   known ? "of all bodies, 95 % intervals that count everything"
+                                         : "of all bodies, without intervals") +
+                      limits_text(shown) + map_of(f.final_cells) +
+                      map_of_trapped(markov::trapped_cells(f)) + "departed " +
+                      percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(a.exits, shown);
+  if (known)
+    table += "error: at most " + fixed(a.error.total_variation, 4) +
+             " in total variation of the final gates, corrcoef at least " +
+             fixed(a.error.corrcoef, 4) + ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
+             " per 100, each 95 times in 100 (sampling, states and memory)\n";
   if (a.from_trials) table += "the trials' own shares: they are more certain here than the chain\n";
   if (!a.from_trials && a.unseen > 0.0)
     table += "the error counts " + percent(a.unseen, 1.0, 2) +

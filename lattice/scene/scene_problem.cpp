@@ -1,5 +1,6 @@
 #include "lattice/scene/scene_problem.h"
 
+#include <stdexcept>
 #include <string>
 
 #include "lattice/scene/settle.h"
@@ -26,6 +27,22 @@ Problem problem_of(const Scene& scene) {
     check_outcomes(scene, RunsFrom::everywhere, seed, trials, health, work);
   };
   return problem;
+}
+
+Scene up_to_row(const Scene& scene, int row) {
+  if (row < 1) throw std::invalid_argument("the row to enter must be 1 or more");
+  Scene deep = scene;
+  deep.field.rows = row;
+  deep.field.max_gates = 0;
+  if (!scene.terrain) return deep;
+  if (row > scene.field.rows)
+    throw std::invalid_argument(
+        scene.source + ": the terrain has " + std::to_string(scene.field.rows) +
+        " rows; the row to enter (--row) must be at most " + std::to_string(scene.field.rows) +
+        (scene.terrain->shares.empty() ? "" : ", or field.rows larger: as many are drawn"));
+  deep.terrain->type_of_cell.resize(static_cast<std::size_t>(deep.field.columns) *
+                                    static_cast<std::size_t>(row));  // the near rows
+  return deep;
 }
 
 }  // namespace gatewalk::lattice

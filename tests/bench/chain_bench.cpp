@@ -125,7 +125,8 @@ int run(int argc, char** argv) {
   if (chain.unsampled_rows() > 0)
     throw std::runtime_error("a row was never sampled: the peers have no word for it");
   const int input =
-      lattice::chain_start(transitions.space, bench::kField, bench::kFieldStart).start.input;
+      lattice::chain_start(transitions.space, bench::kField, dynamics::entry_of(bench::kFieldStart))
+          .start.input;
 
   Entries kernel;
   for (int row = 0; row < chain.inputs(); ++row)

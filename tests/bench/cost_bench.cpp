@@ -61,8 +61,9 @@ struct Case {
 };
 Case read_case(const std::string& matrix) {
   const dynamics::Transitions t = lattice::read_matrix(matrix).transitions;
-  return {lattice::make_chain(t),
-          lattice::chain_start(t.space, bench::kField, bench::kFieldStart).start};
+  return {
+      lattice::make_chain(t),
+      lattice::chain_start(t.space, bench::kField, dynamics::entry_of(bench::kFieldStart)).start};
 }
 
 dynamics::Transitions build(double bins, std::int64_t trials) {
@@ -75,8 +76,7 @@ dynamics::Transitions build(double bins, std::int64_t trials) {
 lattice::FieldTally cross_field(const char* method, std::int64_t trials,
                                 std::uint64_t seed = bench::kSeed) {
   const GateParams p = bench::by(bench::field_gate(), method);
-  return lattice::run_field(p, bench::kField, bench::kFieldStart, dynamics::table3_space(p), seed,
-                            {0, trials});
+  return lattice::run_field(p, bench::kField, bench::kFieldStart, seed, {0, trials});
 }
 
 void size_study(const std::vector<std::string>& a) {
@@ -252,7 +252,9 @@ void budget(const std::string& matrix) {
   const auto one_thread = [](const std::function<void()>& work) { return on_threads(1, work); };
   const double building = one_thread([] { static_cast<void>(build(1.0, bench::kTrialsPerRow)); });
   line("matrix_seconds", building);
-  const auto start = lattice::chain_start(stored.space, bench::kField, bench::kFieldStart).start;
+  const auto start =
+      lattice::chain_start(stored.space, bench::kField, dynamics::entry_of(bench::kFieldStart))
+          .start;
   const Chain chain = lattice::make_chain(stored);
   const markov::Predictor predictor(chain);
   const double prepare = best_seconds(

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "dynamics/cells/check_cell.h"
-#include "dynamics/disc_section.h"
-#include "dynamics/gate.h"
+#include "dynamics/disc/disc_section.h"
+#include "dynamics/disc/gate.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 

@@ -8,6 +8,7 @@
 
 #include "dynamics/disc/row_trials.h"
 #include "lattice/gate_chain.h"
+#include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -208,8 +209,9 @@ TEST(ChainErrorChart, ChartsMatricesOfTheSameTrials) {
   EXPECT_EQ(chart.points[1].trials, 20);
   EXPECT_EQ(chart.points[1].matrices, 1);
   EXPECT_EQ(chart.points[1].runs, 460);
+  const StateSpace fixed = fixed_space(scene);
   const FieldTally truth =
-      run_field(scene.gate, scene.field, kStarts[0].body(), fixed_space(scene), 5, {0, 100});
+      run_field(scene.gate, scene.field, kStarts[0].body(), 5, {0, 100}, nullptr, &fixed);
   EXPECT_TRUE((chart.truths[0].tally.final_gates == truth.final_gates).all());
   // 20 trials in one go: the same matrix as from the pieces that those of 10 trials need.
   Transitions whole(space);

@@ -9,6 +9,7 @@
 #include "lattice/pool/pool_answers.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/study/prediction.h"
+#include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -35,8 +36,7 @@ RunPool pool_of_runs(const Scene& scene, std::int64_t n) {
   RunPool pool;
   StartTrials& s = pool.starts.emplace_back();
   s.start = dynamics::entry_of(scene.start);
-  (void)run_field(scene.gate, scene.field, scene.start, dynamics::table3_space(scene.gate), 9,
-                  {0, n}, &s.full);
+  (void)run_field(scene.gate, scene.field, scene.start, 9, {0, n}, &s.full);
   return pool;
 }
 
@@ -46,16 +46,18 @@ TEST(Exits, PlacesAreTheGatesInMetres) {
   p.beams.joint_x = 25.0;
   p.run.traverse_y = 60.0;
   const FieldParams field{4, 3, 0};
-  EXPECT_EQ(exit_bounds(p, field, kFarSide), (std::vector<double>{-125, -75, -25, 25, 75}));
-  EXPECT_EQ(exit_bounds(p, field, 1), (std::vector<double>{0, 60, 120, 180}));
-  EXPECT_EQ(exit_bounds(p, field, 2), exit_bounds(p, field, 1));
+  EXPECT_EQ(exit_bounds(p.gate_width(), p.gate_length(), field, kFarSide),
+            (std::vector<double>{-125, -75, -25, 25, 75}));
+  EXPECT_EQ(exit_bounds(p.gate_width(), p.gate_length(), field, 1),
+            (std::vector<double>{0, 60, 120, 180}));
+  EXPECT_EQ(exit_bounds(p.gate_width(), p.gate_length(), field, 2),
+            exit_bounds(p.gate_width(), p.gate_length(), field, 1));
 }
 
 TEST(Exits, OfTrialsAreThoseOfTheirLastGates) {
   const Scene scene = leaving_scene();
   FieldTrials each;
-  const FieldTally tally = run_field(scene.gate, scene.field, scene.start,
-                                     dynamics::table3_space(scene.gate), 3, {0, 2000}, &each);
+  const FieldTally tally = run_field(scene.gate, scene.field, scene.start, 3, {0, 2000}, &each);
   ExitCounts counts(scene.field);
   counts.add(each);
   EXPECT_EQ(counts.trials, 2000);
@@ -84,7 +86,7 @@ TEST(Exits, OfPredictionsAddUpToTheEndingsByEitherWay) {
   const RunPool pool = pool_of_runs(scene, 2000);
   const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 8);
   const std::vector<std::int64_t> row =
-      first_row(FieldGates(scene.gate).map(), kernel.space, pool.starts[0]);
+      first_row(kernel, FieldGates(scene.gate).map(), pool, pool.starts[0], 0);
   scene.field.max_gates = 400'000;  // so that exact answers would take long
   const KernelAnswers by_walks =
       answers_of(kernel, FieldGates(scene.gate).map(), {row}, scene.field, 1);

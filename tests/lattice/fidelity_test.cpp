@@ -1,5 +1,6 @@
 // What memory and neighbours change: counts and verdicts by hand, and the trials that are compared.
 #include "lattice/scene/fidelity.h"
+#include "tests/support/disc_fields.h"
 
 #include <gtest/gtest.h>
 
@@ -32,16 +33,21 @@ FidelityRun ending_in(const std::vector<std::int32_t>& gates) {
   return run;
 }
 
+PairedChange change_of(const FidelityRun& after, const FidelityRun& before) {
+  return paired_change({after.final_gates, after.tally.final_gates},
+                       {before.final_gates, before.tally.final_gates}, 1);
+}
+
 TEST(PairedChange, CountsTrialsAndDistributionsApart) {
   // One of four trials ends elsewhere, whichever of the two a draw of the null takes.
-  const PairedChange one = fidelity_change(ending_in({0, 1, 2, 8}), ending_in({0, 1, 2, 3}), 1);
+  const PairedChange one = change_of(ending_in({0, 1, 2, 8}), ending_in({0, 1, 2, 3}));
   EXPECT_EQ(one.changed, 0.25);
   EXPECT_EQ(one.apart.total_variation, 0.25);
   EXPECT_EQ(one.in_pairs.total_variation, 0.25);
   EXPECT_EQ(one.in_pairs.floor_total_variation_95, 0.25);
   EXPECT_EQ(one.uncertainty(), 0.25 + 3.0 / 4);
   // Two trials change places: every trial is another one, the distribution is the same.
-  const PairedChange swapped = fidelity_change(ending_in({1, 0}), ending_in({0, 1}), 1);
+  const PairedChange swapped = change_of(ending_in({1, 0}), ending_in({0, 1}));
   EXPECT_EQ(swapped.changed, 1.0);
   EXPECT_EQ(swapped.apart.total_variation, 0.0);
   EXPECT_EQ(swapped.in_pairs.floor_total_variation_95, 1.0);  // half of the draws
@@ -56,13 +62,13 @@ PairedChange seen(double total_variation) {
 }
 
 TEST(PairedChange, IsJudgedWithItsUncertainty) {
-  EXPECT_EQ(seen(0.0169).active_is(), Sufficiency::enough);
-  EXPECT_EQ(seen(0.0171).active_is(), Sufficiency::cannot_tell);
-  EXPECT_EQ(seen(0.0429).active_is(), Sufficiency::cannot_tell);
-  EXPECT_EQ(seen(0.0431).active_is(), Sufficiency::not_enough);
+  EXPECT_EQ(seen(0.0169).without_is(), Sufficiency::enough);
+  EXPECT_EQ(seen(0.0171).without_is(), Sufficiency::cannot_tell);
+  EXPECT_EQ(seen(0.0429).without_is(), Sufficiency::cannot_tell);
+  EXPECT_EQ(seen(0.0431).without_is(), Sufficiency::not_enough);
   // Where no trial changed, a hundred are the fewest that can tell.
-  EXPECT_EQ(PairedChange{.trials = 100}.active_is(), Sufficiency::enough);
-  EXPECT_EQ(PairedChange{.trials = 99}.active_is(), Sufficiency::cannot_tell);
+  EXPECT_EQ(PairedChange{.trials = 100}.without_is(), Sufficiency::enough);
+  EXPECT_EQ(PairedChange{.trials = 99}.without_is(), Sufficiency::cannot_tell);
 }
 
 TEST(FidelityOfStart, IsWhatTheWorseOfMemoryAndNeighboursSays) {
@@ -95,7 +101,7 @@ TEST(FidelityStudy, RunsTheTrialsOfTheFullDynamics) {
       const Scene& scene = variants[v].scene;
       FieldTrials each;
       const FieldTally plain =
-          run_field(scene.gate, scene.field, s.start.body(), space, 7, {0, 10}, &each);
+          run_field(scene.gate, scene.field, s.start.body(), 7, {0, 10}, &each, &space);
       EXPECT_EQ(s.runs[v].final_gates, each.final_gates);
       EXPECT_EQ(s.runs[v].change.has_value(), v > 0);
       EXPECT_GT(s.runs[v].seconds_per_trial, 0.0);

@@ -15,6 +15,7 @@
 #include "lattice/statistics/matrix_noise.h"
 #include "markov/chain.h"
 #include "markov/predict.h"
+#include "tests/support/disc_fields.h"
 #include "tests/support/numbers.h"
 
 namespace gatewalk::lattice {
@@ -192,18 +193,18 @@ TEST(ChainStart, IsTheStateOfTheBody) {
   const StateSpace space = paper();
   const FieldParams field;
   // Sec. III-C: the origin, 15 m/s forward: the middle of EN, in gate (0, 0).
-  const ChainStart s = chain_start(space, field, {0, 0, 0, 15});
+  const ChainStart s = chain_start(space, field, {0, {0, 0, 15}});
   EXPECT_EQ(s.start.column, 4);
   EXPECT_EQ(s.start.row, 0);
   EXPECT_EQ(s.start.input, 2 * 5 + 2);
   EXPECT_FALSE(s.clamped);
-  EXPECT_EQ(chain_start(space, field, {-20, 0, 10, 12}).start.input, 0 * 5 + 3);
+  EXPECT_EQ(chain_start(space, field, {0, {-20, 10, 12}}).start.input, 0 * 5 + 3);
   const FieldParams narrow{.columns = 5, .rows = 1, .max_gates = 0};
-  EXPECT_EQ(chain_start(space, narrow, {0, 0, 0, 15}).start.column, 2);
+  EXPECT_EQ(chain_start(space, narrow, {0, {0, 0, 15}}).start.column, 2);
 }
 
 TEST(ChainStart, SaysWhenItWasClamped) {
-  const ChainStart s = chain_start(paper(), {}, {0, 0, 0, 5});  // slower than every bin
+  const ChainStart s = chain_start(paper(), {}, {0, {0, 0, 5}});  // slower than every bin
   EXPECT_EQ(s.start.input, 2 * 5 + 2);
   EXPECT_TRUE(s.clamped);
 }
@@ -211,7 +212,7 @@ TEST(ChainStart, SaysWhenItWasClamped) {
 TEST(ChainStart, InsideTheGateIsRefused) {
   for (const double y : {1e-9, 5.0, -1.0}) {
     try {
-      (void)chain_start(paper(), {}, {0, y, 0, 15});
+      (void)PaperStart{.d = 0, .vx = 0, .vy = 15, .y = y}.entry();
       ADD_FAILURE() << y;
     } catch (const std::invalid_argument& e) {
       EXPECT_NE(std::string(e.what()).find("start.y_m"), std::string::npos);
@@ -292,10 +293,10 @@ TEST_F(MatrixOnDisk, KeepsOpenBinsAndSingleEntries) {
   EXPECT_TRUE(back.transitions.space.open());
   EXPECT_EQ(back.transitions.space.points(), points);
   EXPECT_EQ(back.transitions.rows, t.rows);
-  const ChainStart s = chain_start(back.transitions.space, {}, {0, 0, 0, 15});
+  const ChainStart s = chain_start(back.transitions.space, {}, {0, {0, 0, 15}});
   EXPECT_EQ(s.start.input, 87);
   EXPECT_FALSE(s.clamped || s.beyond);
-  const ChainStart far = chain_start(back.transitions.space, {}, {0, 0, 0, 99});
+  const ChainStart far = chain_start(back.transitions.space, {}, {0, {0, 0, 99}});
   EXPECT_TRUE(far.beyond && !far.clamped);
 
   markov::CountsFile file = markov::read_counts(path());
@@ -331,7 +332,7 @@ TEST_F(MatrixOnDisk, CarriesRefinedSpacesToThePrediction) {
     EXPECT_EQ(chain.inputs(), t.space.size());
     EXPECT_EQ(chain.outputs(), t.space.size() + 1);
     EXPECT_EQ(chain.unsampled_rows(), 0);
-    const auto start = chain_start(back.transitions.space, field, {4, 0, 5, 12});
+    const auto start = chain_start(back.transitions.space, field, {0, {4, 5, 12}});
     EXPECT_FALSE(start.clamped);
     const auto f = markov::propagate(chain, cells, start.start, {.max_cells = field.max_gates});
     // markov/predict/reference.h: nothing is normalised, and some 1e-16 a row over 13 steps is what

@@ -11,6 +11,7 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/scene/scene.h"
+#include "tests/support/disc_fields.h"
 #include "tests/support/long.h"
 #include "tests/support/threads.h"
 
@@ -264,7 +265,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   FieldTrials each;
   each.keep_passages = true;
   const FieldTally tally =
-      run_field(scene.gate, scene.field, kStart.body(), space, 1, {0, 50}, &each);
+      run_field(scene.gate, scene.field, kStart.body(), 1, {0, 50}, &each, &space);
   const int first = space.index_of({dynamics::Boundary::enter, {0.0, 0.0, 15.0}}).state;
   StateWalks w = no_walks(space);
   add_walks(w, space, first, each);
@@ -276,7 +277,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   // A run that broke is left out, and what would come after it.
   PassageTable broken(space.section());
   for (CellPassage passage : each.passages.rows()) {
-    if (broken.empty()) passage.ending = dynamics::Ending::broken;
+    if (broken.empty()) passage.fate = dynamics::Fate::broken;
     broken.push_back(passage);
   }
   each.passages = broken;
@@ -295,13 +296,13 @@ TEST(Memory, OfTheForceIsWhatItsHoldDoes) {
   const auto memory_of = [&](const std::string& text) {
     const Scene scene = parse_scene(text, "scene");
     const auto space = dynamics::table3_space(scene.gate);
-    const auto trials = [&](HeldForce held) {
+    const auto trials = [&](Memory held) {
       RunTrials t{FieldTally(scene.field), {}};
       t.tally =
-          run_field(scene.gate, scene.field, kStart.body(), space, 1, {0, 300}, &t.each, held);
+          run_field(scene.gate, scene.field, kStart.body(), 1, {0, 300}, &t.each, &space, held);
       return t;
     };
-    return force_memory(trials(HeldForce::goes_on), trials(HeldForce::drawn_anew), 1);
+    return force_memory(trials(Memory::kept), trials(Memory::dropped), 1);
   };
   const ForceMemory quiet = memory_of("forces.random_N = 0.0");
   EXPECT_EQ(quiet.change.changed, 0.0);

@@ -13,6 +13,7 @@
 
 #include "lattice/scene/csv.h"
 #include "lattice/study/validation.h"
+#include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -237,7 +238,7 @@ dynamics::Transitions all_up(const Scene& scene) {
 ObservedComparison validated(const SeenEndings& seen, int max_gates = 9) {
   const Scene scene = straight_up(max_gates);
   return *validate_chain(
-              scene, {all_up(scene)}, {{0.0, 0.0, 15.0}},
+              problem_of(scene), {all_up(scene)}, {{0, {0.0, 0.0, 15.0}}},
               {.trials = 1000, .walks = {}, .null_draws = 499, .seed = 3, .observed = seen})
               .starts.front()
               .observed;
@@ -297,7 +298,7 @@ TEST(CompareObserved, WithoutALimitOfGatesCuttingOffIsRuledOut) {
 TEST(CompareObserved, BelongsToOneStart) {
   const Scene scene = straight_up();
   EXPECT_THROW(
-      (void)validate_chain(scene, {all_up(scene)}, {{0, 0, 15}, {1, 0, 15}},
+      (void)validate_chain(problem_of(scene), {all_up(scene)}, {{0, {0, 0, 15}}, {0, {1, 0, 15}}},
                            {.trials = 10, .walks = {}, .null_draws = 9, .observed = sixty(60)}),
       std::invalid_argument);
 }

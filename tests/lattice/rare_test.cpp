@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lattice/study/trials.h"
+#include "tests/support/disc_fields.h"
 #include "tests/support/long.h"
 #include "tests/support/threads.h"
 
@@ -63,7 +64,7 @@ double wrong_worth(int column, int row, const Entry& entry) {
 
 /// The share of full trials that enter the row.
 RowChance direct(const Scene& scene, int row, std::int64_t trials) {
-  const FieldTally tally = field_trials(up_to_row(scene, row), trials, 77);
+  const FieldTally tally = field_trials(problem_of(up_to_row(scene, row)), trials, 77);
   const double p =
       static_cast<double>(tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]) /
       static_cast<double>(trials);
@@ -78,7 +79,7 @@ void expect_agree(const RowChance& a, const RowChance& b, double sigmas) {
 
 TEST(Splitting, WithoutValuesIsPlainTrials) {
   const Scene scene = fast_scene();
-  const Splitting s = split(scene, 1.0, equal_worth, {.row = 2, .accuracy = 0.02});
+  const Splitting s = split(problem_of(scene), 1.0, equal_worth, {.row = 2, .accuracy = 0.02});
   for (const RowChance& c : s.rows) {
     const double n = static_cast<double>(s.trials);
     EXPECT_NEAR(c.probability * n, std::round(c.probability * n), 1e-6);  // nobody was split
@@ -89,14 +90,14 @@ TEST(Splitting, WithoutValuesIsPlainTrials) {
 
 TEST(Splitting, IsUnbiasedWhateverTheValues) {
   const Scene scene = fast_scene();
-  const Splitting s = split(scene, 1.0, wrong_worth,
+  const Splitting s = split(problem_of(scene), 1.0, wrong_worth,
                             {.row = 3, .accuracy = 0.04, .most_runs = 3'000'000, .seed = 5});
   expect_agree(s.rows[2], direct(scene, 3, 40'000), 4.0);
 }
 
 TEST(Splitting, IsUnbiasedInAMixedFieldWhateverTheValues) {
   const Scene scene = mixed_scene();
-  const Splitting s = split(scene, 1.0, wrong_worth,
+  const Splitting s = split(problem_of(scene), 1.0, wrong_worth,
                             {.row = 6, .accuracy = 0.15, .most_runs = 1'000'000, .seed = 5});
   expect_agree(s.rows[5], direct(scene, 6, 50'000), 4.0);
 }
@@ -114,8 +115,9 @@ void expect_same(const Splitting& a, const Splitting& b) {
 TEST(Splitting, IsTheSameOnAnyNumberOfThreads) {
   for (const Scene& scene : {fast_scene(), mixed_scene()}) {
     const SplittingOptions few{.row = 3, .accuracy = 0.1};
-    expect_same(test::on_threads(1, [&] { return split(scene, 1.0, wrong_worth, few); }),
-                test::on_threads(4, [&] { return split(scene, 1.0, wrong_worth, few); }));
+    expect_same(
+        test::on_threads(1, [&] { return split(problem_of(scene), 1.0, wrong_worth, few); }),
+        test::on_threads(4, [&] { return split(problem_of(scene), 1.0, wrong_worth, few); }));
   }
 }
 
@@ -127,15 +129,16 @@ TEST(Splitting, IsThatOfThePlainFieldWhereAllGatesAreAlike) {
   typed.terrain->type_of_cell.assign(9 * 9, 0);
   ASSERT_GT(gates_of(typed).types().size(), 1u);
   const SplittingOptions few{.row = 3, .accuracy = 0.1};
-  expect_same(split(scene, 1.0, wrong_worth, few), split(typed, 1.0, wrong_worth, few));
+  expect_same(split(problem_of(scene), 1.0, wrong_worth, few),
+              split(problem_of(typed), 1.0, wrong_worth, few));
 }
 
 TEST(Splitting, RefusesWhatMakesNoSense) {
   const Scene scene = fast_scene();
-  EXPECT_THROW((void)split(scene, 1.0, equal_worth, {.row = 0}), std::invalid_argument);
-  EXPECT_THROW((void)split(scene, 0.0, equal_worth, {.row = 1}), std::invalid_argument);
+  EXPECT_THROW((void)split(problem_of(scene), 1.0, equal_worth, {.row = 0}), std::invalid_argument);
+  EXPECT_THROW((void)split(problem_of(scene), 0.0, equal_worth, {.row = 1}), std::invalid_argument);
   const auto zero = [](int, int, const Entry&) { return 0.0; };
-  EXPECT_THROW((void)split(scene, 1.0, zero, {.row = 2}), std::invalid_argument);
+  EXPECT_THROW((void)split(problem_of(scene), 1.0, zero, {.row = 2}), std::invalid_argument);
 }
 
 // A map has its size; of one that is drawn the scene may ask for more rows.
@@ -146,7 +149,7 @@ TEST(Splitting, EndsWithTheTerrain) {
                              scene.terrain->type_of_cell.begin() + 18));
   const auto refusal = [](const Scene& s) -> std::string {
     try {
-      (void)rare_event(s, {.row = 7});
+      (void)rare_event(problem_of(up_to_row(s, 7)), {.row = 7});
     } catch (const std::invalid_argument& e) {
       return e.what();
     }
@@ -163,7 +166,7 @@ TEST(Splitting, EndsWithTheTerrain) {
 
 TEST(RareEvent, AgreesWithDirectTrials) {
   const Scene scene = fast_scene();
-  const RareEvent e = rare_event(scene, {.row = 5, .accuracy = 0.05});
+  const RareEvent e = rare_event(problem_of(scene), {.row = 5, .accuracy = 0.05});
   const RowChance d = direct(scene, 5, 100'000);
   EXPECT_LT(d.probability, 0.05);
   EXPECT_TRUE(e.splitting.reached);
@@ -173,7 +176,7 @@ TEST(RareEvent, AgreesWithDirectTrials) {
 
 TEST(RareEvent, AgreesWithDirectTrialsInAMixedField) {
   const Scene scene = mixed_scene();
-  const RareEvent e = rare_event(scene, {.row = 6, .accuracy = 0.05});
+  const RareEvent e = rare_event(problem_of(scene), {.row = 6, .accuracy = 0.05});
   const RowChance d = direct(scene, 6, 50'000);
   EXPECT_NEAR(d.probability, 0.018, 0.003);
   EXPECT_TRUE(e.splitting.reached);
@@ -189,7 +192,7 @@ TEST(RareEvent, EndsWhereNobodyGetsThrough) {
   terrain.types[1].keys = {{"beams.stiffness_left_Nm_per_rad", 1e4, ""},
                            {"beams.stiffness_right_Nm_per_rad", 1e4, ""}};
   std::fill(terrain.type_of_cell.begin() + 9, terrain.type_of_cell.begin() + 18, 2);
-  const RareEvent e = rare_event(scene, {.row = 3, .most_runs = 200'000});
+  const RareEvent e = rare_event(problem_of(scene), {.row = 3, .most_runs = 200'000});
   EXPECT_EQ(e.chain[1], 0.0);
   EXPECT_EQ(e.splitting.rows[1].probability, 0.0);
   EXPECT_EQ(e.splitting.rows[2].probability, 0.0);
@@ -203,7 +206,7 @@ TEST(Splitting, SaysHowLikelyItIsAtMostWhereNobodyCame) {
   Scene stuck = fast_scene();
   stuck.gate.forces.propulsion = stuck.gate.forces.random = 0.0;
   stuck.start.vy = 0.0;
-  const Splitting s = split(stuck, 1.0, equal_worth, {.row = 2, .most_in_vain = 3000});
+  const Splitting s = split(problem_of(stuck), 1.0, equal_worth, {.row = 2, .most_in_vain = 3000});
   EXPECT_EQ(s.trials, 3000);
   EXPECT_FALSE(s.reached);
   for (const RowChance& c : s.rows) {
@@ -223,9 +226,9 @@ TEST(Splitting, ABoundWhereNobodyCameHoldsAsOftenAsItSays) {
   int without = 0, below = 0, large = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const auto by_row = [](int, int row, const Entry&) { return std::pow(1.1, row); };
-    const RowChance last =
-        split(scene, 1.0, by_row, {.row = 8, .accuracy = 0.9, .most_runs = 1, .seed = seed})
-            .rows.back();
+    const RowChance last = split(problem_of(scene), 1.0, by_row,
+                                 {.row = 8, .accuracy = 0.9, .most_runs = 1, .seed = seed})
+                               .rows.back();
     if (last.probability > 0.0) continue;
     ++without;
     below += last.at_most < truth.probability;
@@ -239,7 +242,8 @@ TEST(Splitting, ABoundWhereNobodyCameHoldsAsOftenAsItSays) {
 // Few full trials for the chain do where many of them get to the row; all of them where few do.
 TEST(RareEvent, RunsFewTrialsForTheChainOfACommonEvent) {
   const Scene scene = fast_scene();
-  const RareEvent common = rare_event(scene, {.row = 2}), rare = rare_event(scene, {.row = 7});
+  const RareEvent common = rare_event(problem_of(scene), {.row = 2}),
+                  rare = rare_event(problem_of(scene), {.row = 7});
   EXPECT_LT(common.pool_runs, 7500 * 6);
   EXPECT_GT(rare.pool_runs, 60'000);
   expect_agree(common.splitting.rows[1], direct(scene, 2, 40'000), 4.0);
@@ -253,13 +257,13 @@ TEST(Splitting, IntervalsHoldAsOftenAsTheySay) {
   const int row = test::usual_or_full(6, 8);
   const int repeats = test::usual_or_full(40, 1000);
   const RowChance truth =
-      repeats == 40
-          ? direct(scene, row, 200'000)
-          : rare_event(scene, {.row = row, .accuracy = 0.01, .seed = 5000}).splitting.rows.back();
+      repeats == 40 ? direct(scene, row, 200'000)
+                    : rare_event(problem_of(scene), {.row = row, .accuracy = 0.01, .seed = 5000})
+                          .splitting.rows.back();
   int holds = 0, below = 0;
   for (int i = 0; i < repeats; ++i) {
     const Splitting s =
-        split(scene, 1.0, by_row,
+        split(problem_of(scene), 1.0, by_row,
               {.row = row, .accuracy = 0.2, .seed = static_cast<std::uint64_t>(i) + 1});
     const auto [low, high] = s.rows.back().interval_95();
     holds += low <= truth.probability && truth.probability <= high;

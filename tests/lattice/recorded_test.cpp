@@ -106,7 +106,7 @@ void expect_same(const RecordedRuns& a, const RecordedRuns& b) {
   ASSERT_EQ(a.passages.size(), b.passages.size());
   for (std::size_t i = 0; i < a.passages.size(); ++i) {
     const auto x = a.passages[i], y = b.passages[i];
-    ASSERT_TRUE(x.ending == y.ending && x.type == y.type && x.entry.face == y.entry.face) << i;
+    ASSERT_TRUE(x.fate == y.fate && x.type == y.type && x.entry.face == y.entry.face) << i;
     for (std::size_t c = 0; c < x.entry.at.size(); ++c)
       ASSERT_TRUE(equal_or_unknown(x.entry.at[c], y.entry.at[c])) << i;
     for (std::size_t c = 0; c < x.costs.size(); ++c)
@@ -334,8 +334,8 @@ RecordedRuns any_runs(const CellFile& cells, std::int64_t passages, std::int64_t
       passage.costs[1] = -random.uniform() / 3.0;
       const double what = random.uniform();
       passage.fate = what < 0.02   ? dynamics::Fate::trapped
-                       : what < 0.05 ? dynamics::Fate::broken
-                                     : dynamics::Fate::left;
+                     : what < 0.05 ? dynamics::Fate::broken
+                                   : dynamics::Fate::left;
       goes_on = what >= 0.1;  // may leave the field
       if (what >= 0.05) passage.entry = entry();
       if (what < 0.01) passage.costs[1] = std::numeric_limits<double>::quiet_NaN();

@@ -5,8 +5,10 @@
 #include <map>
 #include <numeric>
 
+#include "dynamics/disc/disc_cell.h"
 #include "lattice/gate_chain.h"
 #include "markov/predict.h"
+#include "tests/support/disc_fields.h"
 #include "tests/support/numbers.h"
 #include "tests/support/threads.h"
 
@@ -33,8 +35,7 @@ struct Ran : FieldTally {
 Ran run(const FieldGates& gates, const FieldParams& field, TrialRange range, std::uint64_t seed = 1,
         const BodyState& start = kStart) {
   Ran ran(field);
-  static_cast<FieldTally&>(ran) = run_field(
-      gates, field, start, table3_space(gates.at(field.start_column(), 0)), seed, range, &ran.each);
+  static_cast<FieldTally&>(ran) = run_field(gates, field, start, seed, range, &ran.each);
   return ran;
 }
 
@@ -192,14 +193,13 @@ TEST(RunField, DrawsTheForceAnewWhenAsked) {
     const auto method = make_method(p);
     FieldTrials each;
     each.keep_passages = true;
-    (void)run_field(p, {9, 9, 4}, kStart, table3_space(p), 8, {0, 20}, &each,
-                    HeldForce::drawn_anew);
+    (void)run_field(p, {9, 9, 4}, kStart, 8, {0, 20}, &each, nullptr, Memory::dropped);
     for (std::size_t i = 0; i < 20; ++i) {
       RandomForce force(p.forces, Random(Purpose::field, {8, stream_row(p, kStart), i}));
       BodyState body = kStart;
       for (const CellPassage passage : each.of_trial(i)) {
         const GateRun r = run_gate(p, *method, body, force);
-        ASSERT_EQ(r.ending, passage.ending) << name << ' ' << i;
+        ASSERT_EQ(r.ending == Ending::trapped, passage.fate == Fate::trapped) << name << ' ' << i;
         if (r.ending == Ending::trapped) break;
         const Entry expected = crossing_of(p, r.ending, r.exit);
         EXPECT_EQ(expected.face, passage.entry.face) << name << ' ' << i;
@@ -237,13 +237,13 @@ TEST(RunField, KeepsCrossingsWhenAsked) {
     FieldTrials each{.keep_passages = true};
     FieldTally tally(field);
     for (const TrialRange range : ranges)
-      tally += run_field(p, field, start, space, 1, range, &each);
+      tally += run_field(p, field, start, 1, range, &each, &space);
     return std::pair(tally, each.entries());
   };
   EXPECT_TRUE(run(p, field, {0, 20}).each.entries().empty());
   const auto [split, in_pieces] = kept({{0, 15}, {15, 5}});
   const auto [whole, crossings] = test::on_threads(3, [&] { return kept({{0, 20}}); });
-  std::array<std::int64_t, kBoundaries> entries{}, clamped{};
+  FaceCounts entries{}, clamped{};
   for (const Entry& c : crossings) {
     ++entries[c.face];
     clamped[c.face] += space.index_of(c).clamped;
@@ -261,7 +261,9 @@ TEST(RunField, TalliesAddInAnyOrderAndNoTrialTwice) {
   const GateParams p;
   const FieldParams field;
   const StateSpace space = table3_space(p);
-  const auto part = [&](TrialRange range) { return run_field(p, field, kStart, space, 1, range); };
+  const auto part = [&](TrialRange range) {
+    return run_field(p, field, kStart, 1, range, nullptr, &space);
+  };
   FieldTally tally = part({30, 20});
   tally += part({0, 30});
   EXPECT_EQ(tally.held, TrialSet({0, 50}));
@@ -286,7 +288,7 @@ TEST(RunField, GatesOfSeveralTypes) {
   const FieldGates gates = FieldGates::by_cell({soft, strong, slow}, 5, types);
   const GateParams& first = gates.at(2, 0);
   FieldTrials each{.keep_passages = true};
-  (void)run_field(gates, field, kStart, table3_space(first), 4, {0, 60}, &each);
+  (void)run_field(gates, field, kStart, 4, {0, 60}, &each);
   std::vector<Entry> crossings;
   int upward = 0, sideways = 0;
   for (std::int64_t i = 0; i < 60; ++i) {
@@ -378,7 +380,7 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
     Transitions path(space);
     const auto method = make_method(p);
     RandomForce quiet(p.forces, Random(Purpose::field, {}));
-    const ChainStart first = chain_start(space, field, start);
+    const ChainStart first = chain_start(space, field, entry_of(start));
     int state = first.start.input;
     BodyState body = start;
     bool revisited = false;
@@ -583,7 +585,7 @@ TEST(Fidelity, NeedsMethodMoreau) {
 TEST(RunField, ScenesThatCannotBeRunAreRefused) {
   GateParams p;
   p.run.step = 0.003;
-  EXPECT_THROW((void)run_field(p, {}, kStart, table3_space(p), 1, {0, 1}), InvalidParameter);
+  EXPECT_THROW((void)run_field(p, {}, kStart, 1, {0, 1}), InvalidParameter);
 }
 
 // A traced trial is the one that was counted: final gate, ending, and every crossing on the way.

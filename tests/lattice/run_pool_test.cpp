@@ -13,6 +13,7 @@
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/group_spread.h"
 #include "lattice/statistics/share_95.h"
+#include "tests/support/disc_fields.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::lattice {
@@ -34,7 +35,7 @@ Scene fast_scene() {
 StartTrials some_trials(const Scene& scene, std::int64_t n, BodyState from = kStart) {
   StartTrials s;
   s.start = entry_of(from);
-  (void)run_field(scene.gate, scene.field, from, table3_space(scene.gate), 9, {0, n}, &s.full);
+  (void)run_field(scene.gate, scene.field, from, 9, {0, n}, &s.full);
   return s;
 }
 
@@ -45,7 +46,7 @@ TEST(RunPool, LeavesOfOneRunGiveTheTrialsThemselves) {
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 200));
   const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 1);
-  const auto row = first_row(FieldGates(scene.gate).map(), kernel.space, pool.starts[0]);
+  const auto row = first_row(kernel, FieldGates(scene.gate).map(), pool, pool.starts[0], 0);
   const auto p = markov::predict(chain_of(kernel, FieldGates(scene.gate).map(), scene.field, {row}),
                                  {9, 9}, {{4, 0, kernel.space.size()}}, {.max_cells = 13});
   const auto own = shares_of(pool.starts[0].full, scene.field);
@@ -63,8 +64,14 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
     RunPool pool;
     pool.starts.push_back(some_trials(scene, 150));
     pool.scattered.starts = {{Boundary::enter, {1, 2, 12}}, {Boundary::enter, {-3, 0, 14}}};
-    (void)run_field(scene.gate, scene.field, std::vector<BodyState>{{1, 0, 2, 12}, {-3, 0, 0, 14}},
-                    table3_space(scene.gate), 9, {0, 2}, &pool.scattered.each);
+    const Problem problem = problem_of(scene);
+    (void)run_field(
+        problem.cells, problem.field,
+        [&](std::int64_t i, dynamics::Body& body) {
+          begin_trial(problem.cells.at(problem.field.start_column(), 0),
+                      pool.scattered.starts[static_cast<std::size_t>(i)], 9, i, body);
+        },
+        {0, 2}, &pool.scattered.each);
     for (const TrialGroup group : {TrialGroup{}, TrialGroup{1, 3}}) {
       const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 7, group);
       Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(kernel.space.size(), kernel.space.size() + 1);
@@ -74,7 +81,7 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
           const auto turned = [&](const Entry& c) {
             return image ? mirrored(disc_section(), c) : c;
           };
-          const int column = to.ending == dynamics::Ending::trapped
+          const int column = to.fate == dynamics::Fate::trapped
                                  ? kernel.space.trapped()
                                  : kernel.space.index_of(turned(to.entry)).state;
           wanted(kernel.space.index_of(turned(from)).state, column) += 1.0;
@@ -104,7 +111,7 @@ TEST(RunPool, AStartInTheMiddleHasMirrorImagesInItsRow) {
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 100, {0, 0, 0, 15}));
   const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool);
-  const auto row = first_row(FieldGates(scene.gate).map(), kernel.space, pool.starts[0]);
+  const auto row = first_row(kernel, FieldGates(scene.gate).map(), pool, pool.starts[0], 0);
   EXPECT_EQ(std::accumulate(row.begin(), row.end(), std::int64_t{0}), 200);
   EXPECT_EQ(pool.gate_runs(), std::ssize(pool.starts[0].full.passages));
 }
@@ -247,7 +254,8 @@ TEST(PooledPrediction, IsAsAccurateAsItSaysAndTheSameOnAnyThreads) {
   const Scene scene = fast_scene();
   const auto run = [&] {
     RunPool pool;
-    return predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05, .seed = 4});
+    return predict_pooled(problem_of(scene), pool, {entry_of(kStart)},
+                          {.accuracy = 0.05, .seed = 4});
   };
   const PooledPrediction one = test::on_threads(1, run), three = test::on_threads(3, run);
   EXPECT_TRUE((one.starts[0].final.final_cells == three.starts[0].final.final_cells).all());
@@ -255,8 +263,7 @@ TEST(PooledPrediction, IsAsAccurateAsItSaysAndTheSameOnAnyThreads) {
   EXPECT_EQ(one.gate_runs, three.gate_runs);
   EXPECT_TRUE(one.reached);
   EXPECT_LE(one.starts[0].error.total_variation, 0.05);
-  const FieldTally truth =
-      run_field(scene.gate, scene.field, kStart, table3_space(scene.gate), 77, {0, 20'000});
+  const FieldTally truth = run_field(scene.gate, scene.field, kStart, 77, {0, 20'000});
   EXPECT_LE(total_variation(one.starts[0].final.final_cells, shares(truth.final_gates)), 0.055);
   EXPECT_LT(one.gate_runs, 20'000);
 }
@@ -266,7 +273,7 @@ TEST(PooledPrediction, WhatWasNeverSeenIsInTheBar) {
   Scene scene = fast_scene();
   scene.gate.forces.random = 0.0;
   RunPool pool;
-  const auto p = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.01});
+  const auto p = predict_pooled(problem_of(scene), pool, {entry_of(kStart)}, {.accuracy = 0.01});
   EXPECT_EQ(p.starts[0].final.final_cells.maxCoeff(), 1.0);
   EXPECT_NEAR(p.starts[0].error.total_variation, 3.0 / static_cast<double>(p.starts[0].trials),
               1e-4);
@@ -284,15 +291,15 @@ TEST(PooledPrediction, EntriesWhereNoRunEnteredAreInTheBar) {
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 2000));
   RunPool other = pool;
-  const auto guess = predict_pooled(scene, pool, {fast}, {.accuracy = 0.1, .first_runs = 400});
+  const auto guess = predict_pooled(problem_of(scene), pool, {entry_of(fast)},
+                                    {.accuracy = 0.1, .first_runs = 400});
   EXPECT_GT(guess.starts[0].unseen, 0.3);
   EXPECT_GE(guess.starts[0].error.total_variation, guess.starts[0].unseen);
   EXPECT_FALSE(guess.reached);
-  const auto known = predict_pooled(scene, other, {fast}, {.accuracy = 0.1});
+  const auto known = predict_pooled(problem_of(scene), other, {entry_of(fast)}, {.accuracy = 0.1});
   EXPECT_TRUE(known.reached);
   EXPECT_GT(known.starts[0].trials, 100);
-  const FieldTally truth =
-      run_field(scene.gate, scene.field, fast, table3_space(scene.gate), 77, {0, 5000});
+  const FieldTally truth = run_field(scene.gate, scene.field, fast, 77, {0, 5000});
   EXPECT_LE(total_variation(known.starts[0].final.final_cells, shares(truth.final_gates)), 0.11);
   EXPECT_LE(total_variation(guess.starts[0].final.final_cells, shares(truth.final_gates)),
             guess.starts[0].error.total_variation);
@@ -300,16 +307,16 @@ TEST(PooledPrediction, EntriesWhereNoRunEnteredAreInTheBar) {
 
 TEST(PassageTable, KeepsWhatWasPutThere) {
   const std::vector<CellPassage> passages{
-      {dynamics::Ending::traversed, 0, {Boundary::enter, {1, 2, 3}}, {4, 5, 6, 7, 8}},
-      {dynamics::Ending::exited_left, 255, {Boundary::right_traverse, {-1, 0, 0.5}}, {1}},
-      {dynamics::Ending::trapped, 3, {}, {9}}};
+      {dynamics::Fate::left, 0, {Boundary::enter, {1, 2, 3}}, {4, 5, 6, 7, 8}},
+      {dynamics::Fate::left, 255, {Boundary::right_traverse, {-1, 0, 0.5}}, {1}},
+      {dynamics::Fate::trapped, 3, {}, {9}}};
   PassageTable table(disc_section());
   EXPECT_TRUE(table.empty());
   for (const CellPassage& p : passages) table.push_back(p);
   ASSERT_EQ(table.size(), passages.size());
   std::size_t i = 0;
   for (const CellPassage back : table.rows()) {
-    EXPECT_EQ(back.ending, passages[i].ending);
+    EXPECT_EQ(back.fate, passages[i].fate);
     EXPECT_EQ(back.type, passages[i].type);
     EXPECT_EQ(back.entry, passages[i].entry);
     EXPECT_EQ(back.costs, passages[i].costs);
@@ -327,7 +334,7 @@ TEST(PassageTable, HasAsManyColumnsAsItsSection) {
   two.costs.resize(1);
   PassageTable table(two);
   for (double x : {1.0, 2.0})
-    table.push_back({dynamics::Ending::traversed, 0, {Boundary::enter, {x, -x, 9}}, {x, 9}});
+    table.push_back({dynamics::Fate::left, 0, {Boundary::enter, {x, -x, 9}}, {x, 9}});
   EXPECT_EQ(table[1].entry, (Entry{Boundary::enter, {2, -2, 0}}));
   EXPECT_EQ(table[1].costs, (dynamics::Costs{2}));
   table.begin(disc_section());  // it has passages: stays as it is
@@ -345,13 +352,12 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   one_gate.max_gates = 1;
   StartTrials again;
   again.start = pool.starts[0].start;
-  (void)run_field(scene.gate, one_gate, kStart, table3_space(scene.gate), 10, {0, 1000},
-                  &again.first);
+  (void)run_field(scene.gate, one_gate, kStart, 10, {0, 1000}, &again.first);
   EXPECT_LT(unseen_share(kernel, FieldGates(scene.gate).map(), scene.field, again), 0.01);
   std::int64_t go_on = 0;
   PassageTable elsewhere(disc_section());
   for (CellPassage p : again.first.passages.rows()) {
-    if (p.ending != dynamics::Ending::trapped) {
+    if (p.fate != dynamics::Fate::trapped) {
       p.entry = {Boundary::enter, {1e3, 0.0, 1e3}};
       ++go_on;
     }
@@ -369,7 +375,8 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
 TEST(PooledPrediction, StopsAtTheLimitOfRunsAndSaysSo) {
   const Scene scene = fast_scene();
   RunPool pool;
-  const auto p = predict_pooled(scene, pool, {kStart}, {.accuracy = 1e-4, .most_runs = 3000});
+  const auto p = predict_pooled(problem_of(scene), pool, {entry_of(kStart)},
+                                {.accuracy = 1e-4, .most_runs = 3000});
   EXPECT_FALSE(p.reached);
   EXPECT_GT(p.starts[0].error.total_variation, 1e-4);
   EXPECT_LT(p.gate_runs, 6000);
@@ -379,16 +386,18 @@ TEST(PooledPrediction, StopsAtTheLimitOfRunsAndSaysSo) {
 TEST(PooledPrediction, UsesWhatThePoolHolds) {
   const Scene scene = fast_scene();
   RunPool pool;
-  const auto first = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05});
-  const auto again = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05});
+  const auto first =
+      predict_pooled(problem_of(scene), pool, {entry_of(kStart)}, {.accuracy = 0.05});
+  const auto again =
+      predict_pooled(problem_of(scene), pool, {entry_of(kStart)}, {.accuracy = 0.05});
   EXPECT_GT(first.gate_runs, 0);
   EXPECT_EQ(again.gate_runs, 0);
   EXPECT_TRUE((first.starts[0].final.final_cells == again.starts[0].final.final_cells).all());
 }
 
-std::vector<BodyState> many_starts() {
-  std::vector<BodyState> starts;
-  for (int k = 0; k < 24; ++k) starts.push_back({-20.0 + k, 0.0, 8.0 - 0.5 * k, 11.0 + 0.3 * k});
+std::vector<Entry> many_starts() {
+  std::vector<Entry> starts;
+  for (int k = 0; k < 24; ++k) starts.push_back({0, {-20.0 + k, 8.0 - 0.5 * k, 11.0 + 0.3 * k}});
   return starts;
 }
 
@@ -396,17 +405,22 @@ TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
   const Scene scene = fast_scene();
   RunPool pool;
   std::vector<std::size_t> all, few{3, 17};
-  for (const BodyState& b : many_starts()) {
+  for (const Entry& start : many_starts()) {
     all.push_back(pool.starts.size());
-    pool.starts.push_back(some_trials(scene, 64, b));
+    pool.starts.push_back(some_trials(scene, 64, entry_state(scene.gate, start)));
   }
+  const auto asked = [&](const std::vector<std::size_t>& places) {
+    std::vector<PoolStart> starts;
+    for (const std::size_t place : places) starts.emplace_back(pool.starts[place]);
+    return starts;
+  };
   PoolChains chains(FieldGates(scene.gate).map(), scene.field, 5, all.size(), 1);
   ASSERT_TRUE(chains.by_adjoint(pool, all.size()));
   ASSERT_FALSE(chains.by_adjoint(pool, few.size()));
-  const PoolAnswers many = chains.ask(pool, all);
+  const PoolAnswers many = chains.ask(pool, asked(all));
   // Few starts are asked one by one; many have leaves of twice the size.
-  const PoolAnswers two =
-      PoolChains(FieldGates(scene.gate).map(), scene.field, 10, few.size(), 1).ask(pool, few);
+  const PoolAnswers two = PoolChains(FieldGates(scene.gate).map(), scene.field, 10, few.size(), 1)
+                              .ask(pool, asked(few));
   EXPECT_EQ(many.states, two.states);
   for (std::size_t i = 0; i < few.size(); ++i) {
     const auto near = [&](const markov::FinalDistribution& a, const markov::FinalDistribution& b) {
@@ -426,7 +440,7 @@ TEST(PooledPrediction, OfManyStartsSharesTheirRuns) {
   const Scene scene = fast_scene();
   const auto run = [&] {
     RunPool pool;
-    return predict_pooled(scene, pool, many_starts(), {.accuracy = 0.2, .seed = 2});
+    return predict_pooled(problem_of(scene), pool, many_starts(), {.accuracy = 0.2, .seed = 2});
   };
   const PooledPrediction one = test::on_threads(1, run), three = test::on_threads(3, run);
   EXPECT_TRUE(one.reached);
@@ -438,7 +452,8 @@ TEST(PooledPrediction, OfManyStartsSharesTheirRuns) {
     if (k % 6 != 0) continue;
     RunPool pool;
     alone +=
-        predict_pooled(scene, pool, {many_starts()[k]}, {.accuracy = 0.2, .seed = 2}).gate_runs;
+        predict_pooled(problem_of(scene), pool, {many_starts()[k]}, {.accuracy = 0.2, .seed = 2})
+            .gate_runs;
   }
   EXPECT_LT(one.gate_runs, 6 * alone);  // of four starts: together they take less
 }
@@ -447,10 +462,16 @@ TEST(PooledPrediction, RefusesNonsense) {
   const Scene scene = fast_scene();
   RunPool pool;
   for (const double accuracy : {0.0, 1.0, -1.0, std::nan("")})
-    EXPECT_THROW((void)predict_pooled(scene, pool, {kStart}, {.accuracy = accuracy}),
-                 std::invalid_argument);
-  EXPECT_THROW((void)predict_pooled(scene, pool, {{0, 1, 0, 15}}, {}), std::invalid_argument);
-  EXPECT_THROW((void)pool_range(scene, pool, {{1, 0}, {0, 0}, {10, 20}}, {}),
+    EXPECT_THROW(
+        (void)predict_pooled(problem_of(scene), pool, {entry_of(kStart)}, {.accuracy = accuracy}),
+        std::invalid_argument);
+  EXPECT_THROW((void)problem_of([&] {
+                 Scene inside = scene;
+                 inside.start = {0, 1, 0, 15};
+                 return inside;
+               }()),
+               std::invalid_argument);
+  EXPECT_THROW((void)pool_range(problem_of(scene), pool, {0, {{{1, 0}, {0, 0}, {10, 20}}}}, {}),
                std::invalid_argument);
 }
 
@@ -458,8 +479,9 @@ TEST(PooledPrediction, RefusesNonsense) {
 
 TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
   const Scene scene = fast_scene();
-  const TreeChain chain =
-      make_tree_chain(scene, {.accuracy = {.accuracy = 0.05}, .starts = {kStart, {0, 0, 0, 15}}});
+  const TreeChain chain = make_tree_chain(
+      problem_of(scene),
+      {.accuracy = {.accuracy = 0.05}, .starts = {entry_of(kStart), entry_of({0, 0, 0, 15})}});
   const std::string path = testing::TempDir() + "tree_chain.nc";
   write_matrix(path, {chain.transitions.front(),
                       {{"scene", to_toml(scene)}},
@@ -468,13 +490,14 @@ TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
   EXPECT_EQ(file.transitions.space, chain.transitions.front().space);
   EXPECT_EQ(file.transitions.rows, chain.transitions.front().rows);
   ASSERT_TRUE(has_runs(file));
-  RunPool pool = pool_of(file, scene, path);
+  RunPool pool = pool_of(file, problem_of(scene), path);
   EXPECT_EQ(pool.gate_runs(), chain.pool.gate_runs());
   // Extending a pool from a file is extending the one in memory.
   RunPool here = chain.pool;
-  const auto more = predict_pooled(scene, here, {kStart}, {.accuracy = 0.03});
+  const auto more = predict_pooled(problem_of(scene), here, {entry_of(kStart)}, {.accuracy = 0.03});
   RunPool there = pool;
-  const auto also = predict_pooled(scene, there, {kStart}, {.accuracy = 0.03});
+  const auto also =
+      predict_pooled(problem_of(scene), there, {entry_of(kStart)}, {.accuracy = 0.03});
   EXPECT_GT(more.gate_runs, 0);
   EXPECT_EQ(more.gate_runs, also.gate_runs);
   EXPECT_TRUE((more.starts[0].final.final_cells == also.starts[0].final.final_cells).all());
@@ -483,50 +506,57 @@ TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
   EXPECT_EQ(pool.starts[0].full.endings, chain.pool.starts[0].full.endings);
   Scene wider = scene;
   wider.field.max_gates = 0;
-  EXPECT_FALSE(pool_of(file, wider, path).starts[0].knows_endings);
-  EXPECT_EQ(matrices_of(scene, pool, {kStart, {0, 0, 0, 15}}, chain.per_leaf).front().rows,
+  EXPECT_FALSE(pool_of(file, problem_of(wider), path).starts[0].knows_endings);
+  EXPECT_EQ(matrices_of(problem_of(scene), pool, {entry_of(kStart), entry_of({0, 0, 0, 15})},
+                        chain.per_leaf)
+                .front()
+                .rows,
             chain.transitions.front().rows);
-  const auto answer = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.05});
+  const auto answer =
+      predict_pooled(problem_of(scene), pool, {entry_of(kStart)}, {.accuracy = 0.05});
   EXPECT_EQ(answer.gate_runs, 0);
   EXPECT_LT(total_variation(answer.starts[0].final.final_cells,
                             chain.prediction->starts[0].final.final_cells),
             1e-12);
   // A start that the file does not know gets runs of its own.
-  const auto other = predict_pooled(scene, pool, {{-17, 0, 13, 12}}, {.accuracy = 0.06});
+  const auto other =
+      predict_pooled(problem_of(scene), pool, {{0, {-17, 13, 12}}}, {.accuracy = 0.06});
   EXPECT_GT(other.gate_runs, 0);
   EXPECT_TRUE(other.reached);
 }
 
 TEST(TreeChain, LimitOfStatesSaysWhatItCosts) {
   const Scene scene = fast_scene();
-  const TreeChain all =
-      make_tree_chain(scene, {.accuracy = {.accuracy = 0.05}, .starts = {kStart}});
+  const TreeChain all = make_tree_chain(
+      problem_of(scene), {.accuracy = {.accuracy = 0.05}, .starts = {entry_of(kStart)}});
   const TreeChain few = make_tree_chain(
-      scene, {.accuracy = {.accuracy = 0.05}, .starts = {kStart}, .most_states = 60});
+      problem_of(scene),
+      {.accuracy = {.accuracy = 0.05}, .starts = {entry_of(kStart)}, .most_states = 60});
   EXPECT_GT(all.kernel.space.size(), 200);
   EXPECT_LE(few.kernel.space.size(), 60);
   EXPECT_EQ(all.states_bias, 0.0);
   EXPECT_GT(few.states_bias, 0.0);
-  EXPECT_THROW((void)make_tree_chain(scene, {.starts = {kStart}, .most_states = 4}),
-               std::invalid_argument);
-  EXPECT_THROW((void)make_tree_chain(scene, {}), std::invalid_argument);
+  EXPECT_THROW(
+      (void)make_tree_chain(problem_of(scene), {.starts = {entry_of(kStart)}, .most_states = 4}),
+      std::invalid_argument);
+  EXPECT_THROW((void)make_tree_chain(problem_of(scene), {}), std::invalid_argument);
 }
 
 TEST(TreeChain, DamagedRunsAreRefused) {
   const Scene scene = fast_scene();
-  const TreeChain chain =
-      make_tree_chain(scene, {.accuracy = {.accuracy = 0.2}, .starts = {kStart}});
+  const TreeChain chain = make_tree_chain(
+      problem_of(scene), {.accuracy = {.accuracy = 0.2}, .starts = {entry_of(kStart)}});
   MatrixFile file{chain.transitions.front(), {}, arrays_of(chain.pool, dynamics::disc_section())};
-  EXPECT_NO_THROW((void)pool_of(file, scene, "x.nc"));
+  EXPECT_NO_THROW((void)pool_of(file, problem_of(scene), "x.nc"));
   for (markov::NamedArray& array : file.arrays) {
     MatrixFile bad = file;
     for (markov::NamedArray& other : bad.arrays)
       if (other.name == array.name) other.values.pop_back();
-    EXPECT_THROW((void)pool_of(bad, scene, "x.nc"), markov::BadFile) << array.name;
+    EXPECT_THROW((void)pool_of(bad, problem_of(scene), "x.nc"), markov::BadFile) << array.name;
   }
   for (markov::NamedArray& array : file.arrays)
     if (array.name == "run_boundary") array.values[0] = 7.0;
-  EXPECT_THROW((void)pool_of(file, scene, "x.nc"), markov::BadFile);
+  EXPECT_THROW((void)pool_of(file, problem_of(scene), "x.nc"), markov::BadFile);
 }
 
 }  // namespace

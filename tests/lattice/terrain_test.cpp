@@ -18,6 +18,7 @@
 #include "lattice/study/prediction.h"
 #include "lattice/study/trials.h"
 #include "lattice/study/validation.h"
+#include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -366,8 +367,10 @@ TEST(Terrain, TypesThatAreAlikeGiveTheBitsOfOne) {
   EXPECT_TRUE((a.final_gates == b.final_gates).all());
   EXPECT_EQ(a.endings, b.endings);
   RunPool here, there;
-  const auto p = predict_pooled(several, here, {kStart}, {.accuracy = 0.08}),
-             q = predict_pooled(one, there, {kStart}, {.accuracy = 0.08});
+  const auto p = predict_pooled(problem_of(several), here, {dynamics::entry_of(kStart)},
+                                {.accuracy = 0.08}),
+             q = predict_pooled(problem_of(one), there, {dynamics::entry_of(kStart)},
+                                {.accuracy = 0.08});
   EXPECT_TRUE((p.starts[0].final.final_cells == q.starts[0].final.final_cells).all());
   EXPECT_EQ(p.starts[0].error.total_variation, q.starts[0].error.total_variation);
 }
@@ -382,8 +385,10 @@ TEST(Terrain, AMapOfOneTypeIsThePlainScene) {
   const FieldTally a = field_trials(other, 300, 3), b = field_trials(one, 300, 3);
   EXPECT_TRUE((a.final_gates == b.final_gates).all());
   RunPool here, there;
-  const auto p = predict_pooled(other, here, {kStart}, {.accuracy = 0.08}),
-             q = predict_pooled(one, there, {kStart}, {.accuracy = 0.08});
+  const auto p = predict_pooled(problem_of(other), here, {dynamics::entry_of(kStart)},
+                                {.accuracy = 0.08}),
+             q = predict_pooled(problem_of(one), there, {dynamics::entry_of(kStart)},
+                                {.accuracy = 0.08});
   EXPECT_TRUE((p.starts[0].final.final_cells == q.starts[0].final.final_cells).all());
   EXPECT_EQ(p.starts[0].error.total_variation, q.starts[0].error.total_variation);
 }
@@ -395,7 +400,7 @@ TEST(Terrain, KernelsCountTheRunsOfEachType) {
   const FieldGates gates = gates_of(scene);
   StartTrials s;
   s.start = dynamics::entry_of(kStart);
-  (void)run_field(gates, scene.field, kStart, table3_space(scene.gate), 9, {0, 400}, &s.full);
+  (void)run_field(gates, scene.field, kStart, 9, {0, 400}, &s.full);
   RunPool pool;
   pool.starts.push_back(std::move(s));
   constexpr int kPerLeaf = 7;
@@ -441,10 +446,10 @@ TEST(Terrain, KernelsCountTheRunsOfEachType) {
 TEST(Terrain, TheChainIsThatOfItsOwnDynamics) {
   const Scene scene = mixed();
   RunPool pool;
-  const auto p = predict_pooled(scene, pool, {kStart}, {.accuracy = 0.03});
+  const auto p =
+      predict_pooled(problem_of(scene), pool, {dynamics::entry_of(kStart)}, {.accuracy = 0.03});
   ASSERT_TRUE(p.reached);
-  const FieldTally truth =
-      run_field(gates_of(scene), scene.field, kStart, table3_space(scene.gate), 77, {0, 20'000});
+  const FieldTally truth = run_field(gates_of(scene), scene.field, kStart, 77, {0, 20'000});
   const double tv = total_variation(p.starts[0].final.final_cells, shares(truth.final_gates));
   const double floor = expected_total_variation(p.starts[0].final.final_cells, truth.trials);
   EXPECT_LT(tv, floor + p.starts[0].error.total_variation);
@@ -456,8 +461,8 @@ TEST(Terrain, TheChainIsThatOfItsOwnDynamics) {
 
 TEST(Terrain, AFileHoldsAMatrixForEachType) {
   const Scene scene = mixed();
-  const TreeChain chain =
-      make_tree_chain(scene, {.accuracy = {.accuracy = 0.08}, .starts = {kStart}});
+  const TreeChain chain = make_tree_chain(
+      problem_of(scene), {.accuracy = {.accuracy = 0.08}, .starts = {dynamics::entry_of(kStart)}});
   ASSERT_EQ(chain.transitions.size(), 3U);
   const std::string path = testing::TempDir() + "terrain.nc";
   MatrixFile file{chain.transitions.front(),
@@ -471,16 +476,18 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   const auto matrices = matrices_of(m.file, m.scene);
   for (std::size_t type = 0; type < 3; ++type)
     EXPECT_EQ(matrices[type].rows, chain.transitions[type].rows) << type;
-  RunPool pool = pool_of(m.file, m.scene, path);
+  RunPool pool = pool_of(m.file, problem_of(m.scene), path);
   EXPECT_TRUE(pool.starts[0].knows_endings);
   EXPECT_EQ(pool.starts[0].full.final_gates, chain.pool.starts[0].full.final_gates);
-  const auto p = predict_pooled(m.scene, pool, {kStart}, {.accuracy = 0.08});
+  const auto p =
+      predict_pooled(problem_of(m.scene), pool, {dynamics::entry_of(kStart)}, {.accuracy = 0.08});
   EXPECT_EQ(p.gate_runs, 0);
   EXPECT_LT(
       total_variation(p.starts[0].final.final_cells, chain.prediction->starts[0].final.final_cells),
       1e-12);
   // Walks with the matrices end as the prediction from them says.
-  const ChainStart start = chain_start(matrices[0].space, m.scene.field, kStart);
+  const ChainStart start =
+      chain_start(matrices[0].space, m.scene.field, dynamics::entry_of(kStart));
   const auto walked =
       walks(make_chain(gates_of(m.scene).map(), matrices), m.scene.field, start, 100'000, 4);
   const auto exact = predict(field_of(m, path, {}), m.scene.field, {start}, {}, 1);
@@ -492,7 +499,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   // In a field where another gate stands at the start, its own first runs are none.
   Scene moved = m.scene;
   moved.terrain->type_of_cell[2] = 1;
-  RunPool others = pool_of(m.file, moved, path);
+  RunPool others = pool_of(m.file, problem_of(moved), path);
   EXPECT_TRUE(others.starts.empty());
   EXPECT_EQ(others.gate_runs(), chain.pool.gate_runs());
 
@@ -528,12 +535,13 @@ TEST(Terrain, BinsHaveAMatrixForEachType) {
     EXPECT_EQ(build_matrices(own, states, 20, 1).front().rows, matrices[type + 1].rows);
   }
   const PaperStart start{kStart.x, kStart.vx, kStart.vy, {}, {}};
-  const Validation v =
-      validate_chain(scene, matrices, {start}, {.trials = 200, .walks = {}, .null_draws = 19});
+  const Validation v = validate_chain(problem_of(scene), matrices, {start.entry()},
+                                      {.trials = 200, .walks = {}, .null_draws = 19});
   EXPECT_EQ(v.starts[0].dynamics.trials, 200);
   EXPECT_TRUE(v.memory.ahead.steps.empty());
   EXPECT_GT(v.memory.runs, 200);
-  EXPECT_THROW((void)validate_chain(scene, {matrices[0]}, {start}, {}), std::invalid_argument);
+  EXPECT_THROW((void)validate_chain(problem_of(scene), {matrices[0]}, {start.entry()}, {}),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lattice/scene/bins.h"
+#include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -10,8 +11,9 @@ namespace {
 TEST(FieldTrials, AreThoseOfRunFieldAndChecked) {
   const Scene scene = parse_scene("field = { columns = 3, rows = 3 }", "scene");
   const FieldTally tally = field_trials(scene, 150, 4);
+  const dynamics::StateSpace fixed = fixed_space(scene);
   const FieldTally plain =
-      run_field(scene.gate, scene.field, scene.start, fixed_space(scene), 4, {0, 150});
+      run_field(scene.gate, scene.field, scene.start, 4, {0, 150}, nullptr, &fixed);
   EXPECT_TRUE((tally.final_gates == plain.final_gates).all());
   EXPECT_EQ(tally.entries, plain.entries);
   EXPECT_EQ(tally.held, plain.held);
@@ -25,7 +27,7 @@ TEST(Walks, AreThoseOfTheWalker) {
   for (auto& row : t.rows) row = {{0, 1}, {t.space.trapped(), 1}};
   for (auto& n : t.trials) n = 2;
   const FieldParams field{.columns = 3, .rows = 3, .max_gates = 9};
-  const ChainStart start = chain_start(t.space, field, {0.0, 0.0, 0.0, 15.0});
+  const ChainStart start = chain_start(t.space, field, {0, {0.0, 0.0, 15.0}});
   const markov::WalkTally tally = walks(make_chain(t), field, start, 1000, 2);
   const markov::WalkTally plain =
       markov::Walker(make_chain(t)).walk({3, 3}, start.start, 9, 2, {0, 1000});

@@ -9,8 +9,8 @@
 
 #include "lattice/scene/digits.h"
 #include "lattice/scene/scene.h"
-#include "lattice/scene/terrain.h"
 #include "lattice/scene/sweep.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::lattice {
 namespace {

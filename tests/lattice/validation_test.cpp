@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "lattice/gate_chain.h"
+#include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -62,7 +63,7 @@ const PaperStart kStart{0.0, 0.0, 15.0};
 
 TEST(ValidateChain, ARightChainIsWithinChance) {
   const Scene scene = straight_up();
-  const Validation v = validate_chain(scene, {all_up(scene, 1000)}, {kStart},
+  const Validation v = validate_chain(problem_of(scene), {all_up(scene, 1000)}, {kStart.entry()},
                                       {.trials = 250, .null_draws = 99, .seed = 3});
   ASSERT_EQ(v.starts.size(), 1u);
   const StartValidation& s = v.starts.front();
@@ -74,15 +75,18 @@ TEST(ValidateChain, ARightChainIsWithinChance) {
   EXPECT_EQ(s.paper_sized.exact_rmse.n, 2);  // whole blocks of 100
   EXPECT_NEAR(s.paper_sized.exact_rmse.mean(), 0.0, 1e-12);
   EXPECT_EQ(v.entries, 2 * 250);
-  EXPECT_EQ(v.traverse_sides, 0);
+  EXPECT_EQ(v.entries_by[dynamics::Boundary::right_traverse] +
+                v.entries_by[dynamics::Boundary::left_traverse],
+            0);
   EXPECT_EQ(v.walks, 250);
   EXPECT_EQ(v.health.runs, 3 * 250);
 }
 
 TEST(ValidateChain, AWrongChainHasAnErrorOfItsOwn) {
   const Scene scene = straight_up();
-  const Validation v = validate_chain(scene, {all_trapped(scene, 1000)}, {kStart},
-                                      {.trials = 100, .walks = 40, .null_draws = 99, .seed = 3});
+  const Validation v =
+      validate_chain(problem_of(scene), {all_trapped(scene, 1000)}, {kStart.entry()},
+                     {.trials = 100, .walks = 40, .null_draws = 99, .seed = 3});
   const StartValidation& s = v.starts.front();
   EXPECT_EQ(s.exact_against.total_variation, 1.0);  // start gate against last row
   EXPECT_EQ(s.finding(), Finding::own_error);
@@ -103,7 +107,8 @@ TEST(ValidateChain, CountsTheSamplingOfTheMatrix) {
       row.begin()->second -= runs * 2 / 100;
       row[t.space.trapped()] += runs * 2 / 100;
     }
-    return validate_chain(scene, {t}, {kStart}, {.trials = 1000, .null_draws = 199, .seed = 1})
+    return validate_chain(problem_of(scene), {t}, {kStart.entry()},
+                          {.trials = 1000, .null_draws = 199, .seed = 1})
         .starts.front();
   };
   const StartValidation few = seldom_trapped(50), many = seldom_trapped(100'000);
@@ -117,10 +122,11 @@ TEST(ValidateChain, IsTheSameForAnyPieces) {
   const Scene scene = parse_scene("field = { columns = 3, rows = 3 }", "scene");
   const dynamics::Transitions matrix = all_up(scene, 10);
   const ValidationOptions options{.trials = 120, .walks = 130, .null_draws = 19, .seed = 5};
-  const StartValidation s = validate_chain(scene, {matrix}, {kStart}, options).starts.front();
+  const StartValidation s =
+      validate_chain(problem_of(scene), {matrix}, {kStart.entry()}, options).starts.front();
   FieldTrials each;
   const FieldTally dynamics =
-      run_field(scene.gate, scene.field, kStart.body(), matrix.space, 5, {0, 120}, &each);
+      run_field(scene.gate, scene.field, kStart.body(), 5, {0, 120}, &each, &matrix.space);
   EXPECT_TRUE((s.dynamics.final_gates == dynamics.final_gates).all());
   EXPECT_EQ(s.dynamics.endings, dynamics.endings);
   markov::CellCounts first = markov::CellCounts::Zero(3, 3);
@@ -131,7 +137,7 @@ TEST(ValidateChain, IsTheSameForAnyPieces) {
 
 TEST(ValidateChain, RefusesFieldsTooLargeToKeep) {
   const Scene scene = parse_scene("field = { columns = 1001, rows = 100 }", "scene");
-  EXPECT_THROW((void)validate_chain(scene, {all_up(scene, 1)}, {kStart}, {}),
+  EXPECT_THROW((void)validate_chain(problem_of(scene), {all_up(scene, 1)}, {kStart.entry()}, {}),
                std::invalid_argument);
 }
 
