@@ -15,7 +15,7 @@ namespace gatewalk::dynamics {
 
 enum Side : int { kLeft = 0, kRight = 1 };
 
-struct Body {
+struct Disc {
   double mass = 1.0;     // kg
   double radius = 10.0;  // m
 };
@@ -62,7 +62,7 @@ struct RunParams {
 };
 
 struct GateParams {
-  Body body;
+  Disc body;
   Beams beams;
   Forces forces;
   ContactParams contact;
