@@ -44,9 +44,9 @@ test::Estimate of_groups(const lattice::PooledDiffusion& d, Of of) {
 
 /// A line a gap: D by all routes, and how well the chain keeps what is known exactly.
 void all_routes(std::ostream& out) {
-  out << "gap,no_memory,back,back_error,one_step,one_step_error,direct,direct_error,chain,chain_"
-         "low,"
-         "chain_high,chain_error,states,stay,stay_error,stay_exact,off_invariant,off_by_sampling\n";
+  out << "gap,no_memory,back,back_error,one_step,one_step_error,direct,direct_error,"
+         "chain,chain_low,chain_high,chain_error,states,stay,stay_error,stay_exact,"
+         "off_invariant,off_by_sampling,apart,apart_by_sampling\n";
   for (const double gap : kGaps) {
     const Gas gas(gap);
     const test::Estimate back = test::triangle(gap, kTrianglePassages, 1).back;
@@ -58,13 +58,19 @@ void all_routes(std::ostream& out) {
     const auto spread = of_groups(chain, [](const auto& g) { return g.walk.coefficient(); });
     const auto stay = of_groups(chain, [](const auto& g) { return g.walk.mean_time; });
     const auto off = of_groups(chain, [&](const auto& g) { return test::off_invariant(g, gap); });
+    // From direct simulation, in standard errors of the difference.
+    const double bar = (chain.coefficient.interval[1] - chain.coefficient.interval[0]) / 2.0 / 1.96;
+    const auto apart = [&](double error) {
+      return (chain.coefficient.mean - direct.mean) / std::hypot(error, direct.error);
+    };
     out << gap << ',' << test::machta_zwanzig(gap) << ',' << back.mean << ',' << back.error << ','
         << one << ',' << one_error << ',' << direct.mean << ',' << direct.error << ','
         << chain.coefficient.mean << ',' << chain.coefficient.interval[0] << ','
         << chain.coefficient.interval[1] << ',' << spread.error << ',' << chain.whole.space.size()
         << ',' << chain.whole.walk.mean_time << ',' << stay.error << ','
         << test::mean_stay_in_cell(gap) << ',' << test::off_invariant(chain.whole, gap) << ','
-        << off.mean / std::sqrt(8.0) << std::endl;
+        << off.mean / std::sqrt(8.0) << ',' << apart(bar) << ',' << apart(spread.error)
+        << std::endl;
   }
 }
 
