@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "dynamics/cells/check_cell.h"
 #include "tests/support/lorentz.h"
 #include "tests/support/threads.h"
 
@@ -52,13 +51,6 @@ TEST(Lorentz, GapsWithoutDiffusionAreRefusedWithTheReason) {
       EXPECT_NE(std::string(e.what()).find("there is no diffusion coefficient"), std::string::npos);
     }
   EXPECT_NO_THROW(LorentzCell(0.3094));
-}
-
-TEST(Lorentz, TheCellKeepsWhatCellsPromise) {
-  dynamics::Random random(dynamics::Purpose::gate, {5, 0, 0});
-  std::vector<dynamics::Entry> starts;
-  for (int i = 0; i < 200; ++i) starts.push_back(cell().anywhere(random));
-  EXPECT_NO_THROW(dynamics::check_cell(cell(), starts));
 }
 
 // Backwards a point goes the same way: what left with (s, v) at a side enters there with (s, -v).
