@@ -1,11 +1,14 @@
 // What must a chain remember? The diffusion coefficient of the periodic Lorentz gas by chains of
 // trees, beside direct simulation, hops without memory, and hops with one step of it.
 //   lorentz DIR     writes lorentz.csv and leaves.csv; see results/lorentz/README.md
-#include <cstdio>
-#include <cstdlib>
+#include <algorithm>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "tests/support/lorentz.h"
 
@@ -96,8 +99,8 @@ void leaves(std::ostream& out) {
         << mean.mean << ',' << mean.error << ',' << half << std::endl;
   };
   for (const double gap : kGaps) {
-    for (const std::int64_t trials : {312, 1250, 5000, 20'000})
-      line(gap, trials, dynamics::kEntriesPerLeaf, static_cast<int>(80'000 / trials));
+    for (const std::int64_t trials : {312, 1250, 5000, 20'000, 100'000})
+      line(gap, trials, dynamics::kEntriesPerLeaf, std::max(4, static_cast<int>(80'000 / trials)));
     for (const int per_leaf : {28, 112, 448, 1792, 7168, 28'672, 100'000})
       line(gap, 20'000, per_leaf, 4);
   }
