@@ -11,7 +11,8 @@
 ///              rows: the visits of a row by elimination or sums, then the next row. Plain references:
 ///              forward propagation (propagate) and one sparse solve (solve_absorption)
 ///   Chain -> the chance of an ending from everywhere (committor.h), times and works of walks (totals.h),
-///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h)
+///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h),
+///              how walks spread over an endless lattice (diffusion.h)
 ///   Small fields exactly, in any kind of number (absorbing.h, field_states.h), blocks of cells as
 ///              cells (blocks.h), states taken together (lumping.h)
 /// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
@@ -22,6 +23,7 @@
 #include "markov/blocks.h"
 #include "markov/chain.h"
 #include "markov/committor.h"
+#include "markov/diffusion.h"
 #include "markov/field_states.h"
 #include "markov/formats/counts.h"
 #include "markov/lumping.h"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A project of its own finds the installed libraries and compiles the READMEs' examples with nothing added.
+# A project of its own finds the installed libraries and compiles the READMEs' examples with nothing added, and
+# cells that are not ours (tests/library).
 #   library_test.sh BUILD ROOT CXX
 set -euo pipefail
 build=$1 root=$(realpath "$2") compiler=$3
@@ -22,18 +23,24 @@ program "$root/README.md" 'std::abs(exact.final_cells.sum() - 1.0) < 1e-9 && exa
   >"$work/project/example.cpp"
 program "$root/lattice/README.md" 'v.starts[0].dynamics.final_gates.sum() == 1000 && v.starts[0].judgement.p > 0.0 && v.starts[0].judgement.p <= 1.0 && (v.starts[0].exact_against.total_variation < 0.2 || wrong)' \
   >"$work/project/study.cpp"
+cp "$root"/tests/library/* "$work/project"
 cat >"$work/project/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(elsewhere LANGUAGES CXX)
 find_package(gatewalk REQUIRED)
-foreach(name example study)
+foreach(name example study lorentz)
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE gatewalk::lattice)
 endforeach()
 END
 cmake -S "$work/project" -B "$work/project/build" -DCMAKE_PREFIX_PATH="$work/prefix" \
-  -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
+  -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build "$work/project/build" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 cd "$root"  # the example names scenes/field.toml
 "$work/project/build/example"
 "$work/project/build/study"
+# D of the Lorentz gas by direct simulation (results/lorentz) lies in the chain's error bar.
+"$work/project/build/lorentz" 0.2 | tee "$work/d"
+awk -F '[][ ,]+' -v direct=0.1698 '{ exit !($2 <= direct && direct <= $3) }' "$work/d"
+if "$work/project/build/lorentz" 0.31 2>"$work/refused"; then exit 1; fi
+grep -q 'there is no diffusion coefficient' "$work/refused"

@@ -1,0 +1,154 @@
+#pragma once
+/// What is known of the periodic Lorentz gas (tests/library/lorentz_cell.h), and its direct
+/// simulation by code of its own.
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "dynamics/base/random.h"
+#include "tests/library/lorentz_cell.h"
+
+namespace gatewalk::test {
+
+/// Mean stay in a polygon of this free area whose gaps are `open` wide together: pi A / P
+/// (Santalo).
+inline double mean_stay(double area, double open) { return std::numbers::pi * area / open; }
+/// Of the triangle between three discs, and of two of them, which are a cell.
+inline double area_of_triangle(double gap) {
+  return std::sqrt(3.0) / 4.0 * (2.0 + gap) * (2.0 + gap) - std::numbers::pi / 2.0;
+}
+inline double mean_stay_in_triangle(double gap) {
+  return mean_stay(area_of_triangle(gap), 3.0 * gap);
+}
+inline double mean_stay_in_cell(double gap) {
+  return mean_stay(2.0 * area_of_triangle(gap), 4.0 * gap);
+}
+
+/// D of hops between triangles that forget everything (Machta and Zwanzig, PRL 50:1959, 1983).
+inline double machta_zwanzig(double gap) {
+  const double a = 2.0 + gap;
+  return gap * a * a / (std::numbers::pi * (std::sqrt(3.0) * a * a - 2.0 * std::numbers::pi));
+}
+/// The same with one step of memory, for this chance to hop straight back.
+inline double one_step(double gap, double back) {
+  return machta_zwanzig(gap) * 3.0 * (1.0 - back) / (1.0 + 3.0 * back);
+}
+
+struct Estimate {
+  double mean = 0.0, error = 0.0;  // standard error
+};
+inline Estimate estimate(const std::vector<double>& samples) {
+  const auto n = static_cast<double>(samples.size());
+  double mean = 0.0, squares = 0.0;
+  for (const double x : samples) mean += x / n;
+  for (const double x : samples) squares += (x - mean) * (x - mean);
+  return {mean, std::sqrt(squares / (n * (n - 1.0)))};
+}
+
+/// Passages through the triangle from entries in the long run: how often they leave where they came
+/// in, and how long they stay.
+struct Triangle {
+  Estimate back, stay;
+};
+inline Triangle triangle(double gap, std::int64_t passages, std::uint64_t seed) {
+  const double a = 2.0 + gap;
+  const std::array<lorentz::Point, 3> corners{lorentz::Point(0, 0), lorentz::Point(a, 0),
+                                              lorentz::Point(a / 2.0, std::sqrt(3.0) / 2.0 * a)};
+  std::vector<double> back(static_cast<std::size_t>(passages)), stay(back.size());
+  tbb::parallel_for(std::size_t{0}, back.size(), [&](std::size_t i) {
+    dynamics::Random random(dynamics::Purpose::gate, {seed, 0, i});
+    dynamics::Entry at{0, {gap * (random.uniform() - 0.5), 2.0 * random.uniform() - 1.0}};
+    stay[i] = lorentz::cross(corners, at);
+    back[i] = at.face == 0;
+  });
+  return {estimate(back), estimate(stay)};
+}
+
+/// D by trajectories in the plane, from anywhere into any direction, of `steps` times `step` each.
+/// With r(t) the way gone in time t: (<r(2 step)^2> - <r(step)^2>) / (4 step), from all steps that
+/// follow each other; what there is of memory after a step is left out.
+inline Estimate direct_diffusion(double gap, std::int64_t trajectories, int steps, double step,
+                                 std::uint64_t seed) {
+  const double a = 2.0 + gap;
+  const lorentz::Point a1(a, 0.0), a2(a / 2.0, std::sqrt(3.0) / 2.0 * a);
+  std::vector<lorentz::Point> discs;  // near the one hit last, which is at the origin; it first
+  for (int i = -4; i <= 4; ++i)
+    for (int j = -4; j <= 4; ++j)
+      if (const lorentz::Point centre = i * a1 + j * a2; centre.norm() < 3.7 * a)
+        discs.push_back(centre);
+  std::vector<double> d(static_cast<std::size_t>(trajectories));
+  tbb::parallel_for(std::size_t{0}, d.size(), [&](std::size_t trajectory) {
+    dynamics::Random random(dynamics::Purpose::gate, {seed, 1, trajectory});
+    lorentz::Point x;  // from the disc hit last
+    const auto is_free = [&] {
+      return std::all_of(discs.begin(), discs.end(),
+                         [&](const lorentz::Point& c) { return (x - c).squaredNorm() >= 1.0; });
+    };
+    do {
+      x = random.uniform() * a1;
+      x += random.uniform() * a2;
+    } while (!is_free());
+    const double angle = 2.0 * std::numbers::pi * random.uniform();
+    lorentz::Point u(std::cos(angle), std::sin(angle)), origin(0.0, 0.0), last = x, before;
+    double left = step, squares = 0.0, products = 0.0;
+    for (int done = 0; done < steps;) {
+      double soonest = INFINITY;
+      lorentz::Point hit(0.0, 0.0);
+      for (const lorentz::Point& c : discs) {
+        const lorentz::Point from = x - c;
+        const double b = from.dot(u), root = b * b - from.squaredNorm() + 1.0;
+        if (b >= 0.0 || root <= 0.0) continue;
+        if (const double t = -b - std::sqrt(root); t < soonest) soonest = t, hit = c;
+      }
+      for (; soonest >= left && done < steps; left = step) {
+        x += left * u;
+        soonest -= left;
+        const lorentz::Point gone = origin + x - last;
+        squares += gone.squaredNorm() / steps;
+        if (done > 0) products += gone.dot(before) / (steps - 1);
+        before = gone;
+        last = origin + x;
+        ++done;
+      }
+      left -= soonest;
+      x += soonest * u - hit;
+      origin += hit;
+      u -= 2.0 * u.dot(x.normalized()) * x.normalized();
+    }
+    d[trajectory] = (squares + 2.0 * products) / (4.0 * step);
+  });
+  return estimate(d);
+}
+
+/// Shares of draws in 4 x 4 boxes of every face, in which an exact chain would make 1/64 of them
+/// each: half the sum of all differences.
+inline double off_invariant(const lattice::TreeDiffusion& chain, double gap) {
+  constexpr int kBoxes = 4;
+  std::vector<double> boxes(4 * kBoxes * kBoxes, 0.0);
+  for (int state = 0; state < chain.space.size(); ++state) {
+    const dynamics::StateRange range = chain.space.range(state);
+    // The part of a range from `from` to `to`, both as parts of the whole axis, that is in box k.
+    const auto part = [](double from, double to, int k) {
+      const double low = std::max(from, static_cast<double>(k) / kBoxes),
+                   high = std::min(to, static_cast<double>(k + 1) / kBoxes);
+      return std::max(0.0, high - low) / (to - from);
+    };
+    for (int i = 0; i < kBoxes; ++i)
+      for (int j = 0; j < kBoxes; ++j)
+        boxes[static_cast<std::size_t>((range.face * kBoxes + i) * kBoxes + j)] +=
+            chain.walk.states[static_cast<std::size_t>(state)] *
+            part(range.at[0][0] / gap + 0.5, range.at[0][1] / gap + 0.5, i) *
+            part((range.at[1][0] + 1.0) / 2.0, (range.at[1][1] + 1.0) / 2.0, j);
+  }
+  double distance = 0.0;
+  for (const double share : boxes)
+    distance += 0.5 * std::abs(share - 1.0 / static_cast<double>(boxes.size()));
+  return distance;
+}
+
+}  // namespace gatewalk::test
