@@ -10,17 +10,8 @@
 #include "lattice/gate_chain.h"
 
 namespace gatewalk::lattice {
-namespace {
 
 using namespace dynamics;
-
-Ending ending_of(Fate fate) {
-  return fate == Fate::left      ? Ending::traversed
-         : fate == Fate::trapped ? Ending::trapped
-                                 : Ending::broken;
-}
-
-}  // namespace
 
 ScatteredTrials endless_trials(const Cell& cell, const std::function<Entry(Random&)>& start,
                                std::int64_t trials, int passages, std::uint64_t seed,
@@ -30,7 +21,7 @@ ScatteredTrials endless_trials(const Cell& cell, const std::function<Entry(Rando
                                 std::to_string(trials) + " and " + std::to_string(passages));
   ScatteredTrials all;
   all.starts.resize(static_cast<std::size_t>(trials));
-  std::vector<std::vector<GatePassage>> runs(all.starts.size());
+  std::vector<std::vector<CellPassage>> runs(all.starts.size());
   carry_out_trials(
       cell, trials,
       [&](Body& body) {
@@ -41,13 +32,13 @@ ScatteredTrials endless_trials(const Cell& cell, const std::function<Entry(Rando
       },
       [&](Body& body, const Passage& passage) {
         auto& own = runs[static_cast<std::size_t>(body.trial)];
-        own.push_back({ending_of(passage.fate), 0, passage.next, passage.costs});
+        own.push_back({passage.fate, 0, passage.next, passage.costs});
         return passage.fate == Fate::left && std::ssize(own) < passages;
       },
       health);
   all.each.passages.begin(cell.section());
   for (const auto& own : runs) {
-    for (const GatePassage& run : own) all.each.passages.push_back(run);
+    for (const CellPassage& run : own) all.each.passages.push_back(run);
     all.each.passed.push_back(std::ssize(all.each.passages));
     all.each.final_gates.push_back(0);  // there is no field: their number counts
   }

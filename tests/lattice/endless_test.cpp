@@ -46,7 +46,7 @@ TEST(Endless, TrialsGoOnFromCellToCell) {
     Body body{.entry = {}, .random = {Purpose::field, {3, 0, i}}};
     body.entry = anywhere(body.random);
     EXPECT_EQ(body.entry, trials.starts[i]);
-    for (const GatePassage passage : trials.each.of_trial(i))
+    for (const CellPassage passage : trials.each.of_trial(i))
       EXPECT_EQ(cell.pass(body).next, passage.entry);
   }
   EXPECT_THROW((void)endless_trials(cell, anywhere, 0, 6, 3, health), std::invalid_argument);
