@@ -19,9 +19,9 @@
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
-#include "lattice/scene/edit_distance.h"
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
+#include "lattice/text/edit_distance.h"
 
 namespace gatewalk::cli {
 

@@ -8,8 +8,8 @@
 #include "cli/commands.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
-#include "lattice/scene/edit_distance.h"
 #include "lattice/scene/scene.h"
+#include "lattice/text/edit_distance.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {

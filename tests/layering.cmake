@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # Who may include whom, folder by folder: a folder's own files, and those of the folders named. Fails naming
 # the file and the line.
-set(libraries dynamics dynamics/base dynamics/cells dynamics/disc dynamics/disc/methods dynamics/disc/study markov markov/predict markov/formats lattice lattice/statistics lattice/scene lattice/pool lattice/cells lattice/study)
+set(libraries dynamics dynamics/base dynamics/cells dynamics/disc dynamics/disc/methods dynamics/disc/study markov markov/predict markov/formats lattice lattice/text lattice/statistics lattice/pool lattice/study lattice/scene lattice/cells)
 set(folders ${libraries} cli/cells cli/terminal cli/web cli/render cli/film cli/paper cli/commands cli)
 
 set(allowed_dynamics)
@@ -14,12 +14,16 @@ set(allowed_dynamics/disc/study dynamics/base dynamics/cells dynamics/disc dynam
 set(allowed_markov)
 set(allowed_markov/predict markov)
 set(allowed_markov/formats markov)
+# Trials, pools, chains and studies know no disc: only scenes do.
+set(cells dynamics/base dynamics/cells markov markov/formats)
+set(disc dynamics/disc dynamics/disc/methods dynamics/disc/study)
+set(allowed_lattice/text)
 set(allowed_lattice/statistics dynamics/base markov)
-set(allowed_lattice lattice/statistics dynamics/disc dynamics/base dynamics/cells dynamics/disc/methods markov markov/formats)
-set(allowed_lattice/scene dynamics/disc dynamics/base dynamics/cells dynamics/disc/methods dynamics/disc/study lattice lattice/statistics markov/formats)
-set(allowed_lattice/pool dynamics/disc dynamics/base dynamics/cells dynamics/disc/methods markov markov/formats lattice lattice/statistics lattice/scene)
-set(allowed_lattice/cells dynamics/base dynamics/cells markov markov/formats lattice lattice/scene lattice/pool lattice/statistics)
-set(allowed_lattice/study dynamics/disc dynamics/base dynamics/cells dynamics/disc/methods dynamics/disc/study markov lattice lattice/scene lattice/statistics lattice/pool)
+set(allowed_lattice lattice/statistics ${cells})
+set(allowed_lattice/pool lattice lattice/statistics ${cells})
+set(allowed_lattice/study lattice lattice/text lattice/statistics lattice/pool ${cells})
+set(allowed_lattice/scene lattice lattice/text lattice/statistics lattice/pool lattice/study ${cells} ${disc})
+set(allowed_lattice/cells lattice lattice/text lattice/statistics lattice/pool lattice/scene ${cells})
 # Beside lattice's own cells only because it reads JSON and starts programs.
 set(allowed_cli/cells dynamics/base dynamics/cells cli/render)
 set(allowed_cli/terminal dynamics/base markov/formats cli/render)

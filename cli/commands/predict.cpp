@@ -178,6 +178,7 @@ int run_predict(const Arguments& arguments) {
                    "klu: one sparse solve; auto: march without limit, else propagate",
                    "auto");
   options.add_strict();
+  add_cell_program(options);
   options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where bodies end, and how; of up to " + std::to_string(kMostPictures) +
                      " starts");
@@ -190,6 +191,7 @@ int run_predict(const Arguments& arguments) {
       options.has("figure") && starts.size() > kMostPictures)
     throw UsageError("--figure: shows at most " + std::to_string(kMostPictures) +
                      " starts, these are " + std::to_string(starts.size()));
+  if (options.has("cell-program")) return predict_program(options);
   if (!is_matrix(options.text("matrix"))) return predict_scene(options);
   if (lattice::is_of_cells(options.text("matrix"))) return predict_recorded(options);
   const std::string solver = options.text("solver"), path = options.text("matrix");

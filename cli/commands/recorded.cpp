@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/arguments.h"
+#include "cli/cells/program.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
@@ -70,6 +71,16 @@ Json provenance_of(const Options& options, const lattice::CellFile& cells) {
   Json json = to_json(options.provenance());
   json["cell"] = lattice::to_toml(cells);
   return json;
+}
+
+std::vector<FieldPicture> pictures_of(const lattice::PooledPrediction& prediction,
+                                      const lattice::CellFile& cells) {
+  std::vector<FieldPicture> pictures;
+  for (const lattice::StartAnswer& a : prediction.starts)
+    pictures.emplace_back("prediction, " + std::to_string(cells.field.columns) + " x " +
+                              std::to_string(cells.field.rows) + " cells",
+                          a.final, a.endings, a.exits);
+  return pictures;
 }
 
 }  // namespace
@@ -158,14 +169,61 @@ int predict_recorded(const Options& options) {
     options.warn("the accuracy asked for, " + digits(wanted) +
                  ", was not reached: the error bar is " + fixed(worst, 4) +
                  ", and recorded runs cannot be added to");
-  options.draw([&] {
-    std::vector<FieldPicture> pictures;
-    for (const lattice::StartAnswer& a : prediction.starts)
-      pictures.emplace_back("prediction, " + std::to_string(m.cells.field.columns) + " x " +
-                                std::to_string(m.cells.field.rows) + " cells",
-                            a.final, a.endings, a.exits);
-    return figure_of(pictures, shown);
-  });
+  options.draw([&] { return figure_of(pictures_of(prediction, m.cells), shown); });
+  return kFine;
+}
+
+void add_cell_program(Options& options) {
+  options.add_text("cell-program", "COMMAND",
+                   "SCENE is a cell file (cell.toml), and this command carries bodies through its "
+                   "cells (cli/cells/PROGRAM.md)");
+  options.add_number("cell-timeout", "S",
+                     "seconds that the program may be silent while an answer is awaited "
+                     "(default: 60)");
+}
+
+int predict_program(const Options& options) {
+  const std::string path = options.text("matrix");
+  for (const char* other : {"first-runs", "row", "scene", "netcdf"})
+    if (options.has(other))
+      throw UsageError(std::string("--") + other + " has no meaning beside --cell-program");
+  const lattice::CellFile cells = lattice::read_cell_file(path, options.overrides());
+  ProgramOptions how;
+  if (options.has("cell-timeout")) how.timeout_s = options.number("cell-timeout");
+  const auto cell = std::make_shared<ProgramCell>(options.text("cell-program"), how);
+  const dynamics::Section& section = cells.map.section;
+  if (names_of(cell->section().faces) != names_of(section.faces) ||
+      names_of(cell->section().coordinates) != names_of(section.coordinates) ||
+      cells.map.types.size() > 1)
+    throw UsageError("--cell-program: its cell has faces " + names_of(cell->section().faces) +
+                     " and coordinates " + names_of(cell->section().coordinates) + ", " + path +
+                     " has " + names_of(section.faces) + " and " + names_of(section.coordinates) +
+                     " (and must have one type)");
+  const Starts starts = starts_of(options, cells);
+  lattice::Problem problem = lattice::problem_of(cells, {});
+  problem.cells.map.section = cell->section();
+  for (std::size_t f = 0; f < section.faces.size(); ++f)
+    problem.cells.map.section.faces[f].usual =
+        lattice::problem_of(cells, {}).map().section.faces[f].usual;
+  problem.cells.map.types.front().symmetric = cell->is_symmetric();
+  problem.cells.cells = {cell};
+  std::vector<dynamics::Entry> entries;
+  for (const auto& start : starts) {
+    if (!start)
+      throw UsageError(path + ": has no [start], and --start does not say where trials start");
+    entries.push_back(*start);
+  }
+  const lattice::AccuracyOptions wanted = accuracy_of(options);
+  lattice::RunPool pool;
+  const auto prediction = lattice::predict_pooled(problem, pool, entries, wanted, options.work());
+  const ShownField shown(cells);
+  const bool given = options.has("start");
+  Json json = to_json(prediction, shown, wanted.accuracy, given);
+  json["made_by"] = provenance_of(options, cells);
+  options.give_out(json, table_of(prediction, shown, given));
+  options.warn(too_few_gates(shown));
+  cli::warn_of(options, prediction, wanted.accuracy);
+  options.draw([&] { return figure_of(pictures_of(prediction, cells), shown); });
   return kFine;
 }
 

@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "lattice/scene/edit_distance.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/scene_terrain.h"
 #include "lattice/scene/toml_settings.h"
-#include "lattice/scene/toml_text.h"
 #include "lattice/scene/units.h"
+#include "lattice/text/edit_distance.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

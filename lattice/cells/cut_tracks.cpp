@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "lattice/scene/toml_text.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -17,10 +17,10 @@
 #include <utility>
 
 #include "dynamics/cells/cell.h"
-#include "lattice/scene/csv.h"
-#include "lattice/scene/digits.h"
-#include "lattice/scene/edit_distance.h"
-#include "lattice/scene/toml_text.h"
+#include "lattice/text/csv.h"
+#include "lattice/text/digits.h"
+#include "lattice/text/edit_distance.h"
+#include "lattice/text/toml_text.h"
 #include "markov/formats/file.h"
 
 namespace gatewalk::lattice {

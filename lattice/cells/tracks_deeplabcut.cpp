@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "lattice/cells/track_source.h"
-#include "lattice/scene/csv.h"
-#include "lattice/scene/digits.h"
-#include "lattice/scene/toml_text.h"
+#include "lattice/text/csv.h"
+#include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

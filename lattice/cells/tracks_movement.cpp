@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "lattice/cells/track_source.h"
-#include "lattice/scene/digits.h"
-#include "lattice/scene/toml_text.h"
+#include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
 #include "markov/formats/netcdf.h"
 
 namespace gatewalk::lattice {

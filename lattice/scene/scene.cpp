@@ -18,14 +18,14 @@
 #include <variant>
 
 #include "dynamics/disc/methods/method.h"
-#include "lattice/scene/digits.h"
-#include "lattice/scene/edit_distance.h"
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene_bins.h"
 #include "lattice/scene/scene_terrain.h"
 #include "lattice/scene/toml_settings.h"
-#include "lattice/scene/toml_text.h"
 #include "lattice/scene/units.h"
+#include "lattice/text/digits.h"
+#include "lattice/text/edit_distance.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

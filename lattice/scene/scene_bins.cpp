@@ -6,9 +6,9 @@
 #include <map>
 #include <utility>
 
-#include "lattice/scene/digits.h"
-#include "lattice/scene/toml_text.h"
 #include "lattice/scene/units.h"
+#include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

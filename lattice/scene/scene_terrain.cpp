@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "lattice/scene/csv.h"
 #include "lattice/scene/grey_picture.h"
 #include "lattice/scene/scene.h"
-#include "lattice/scene/toml_text.h"
 #include "lattice/scene/units.h"
+#include "lattice/text/csv.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "lattice/scene/bins.h"
-#include "lattice/scene/digits.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::lattice {
 namespace {

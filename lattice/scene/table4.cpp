@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "lattice/scene/bins.h"
-#include "lattice/scene/digits.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::lattice {
 namespace {

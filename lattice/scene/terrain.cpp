@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "dynamics/base/random.h"
-#include "lattice/scene/digits.h"
 #include "lattice/scene/scene.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <optional>
 
-#include "lattice/scene/toml_text.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

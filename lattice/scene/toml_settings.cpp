@@ -4,8 +4,8 @@
 
 #include "lattice/scene/scene.h"
 #include "lattice/scene/toml_mistake.h"
-#include "lattice/scene/toml_text.h"
 #include "lattice/scene/units.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "lattice/scene/digits.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::lattice {
 namespace {

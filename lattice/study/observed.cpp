@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "lattice/scene/csv.h"
-#include "lattice/scene/toml_text.h"
+#include "lattice/text/csv.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {

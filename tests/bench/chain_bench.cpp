@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/scene/matrix.h"
 #include "markov/markov.h"
 #include "scenes.h"
 

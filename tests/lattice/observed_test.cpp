@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "lattice/scene/csv.h"
 #include "lattice/study/validation.h"
+#include "lattice/text/csv.h"
 #include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {

@@ -158,7 +158,7 @@ TEST(RunField, TrialsCanBeReplayedAlone) {
   const FieldParams field;
   const auto method = make_method(p);
   const Ran t = run(p, field, {100, 60}, 8);
-  std::array<std::int64_t, kBoundaries> entries{};
+  FaceCounts entries{};
   for (int i = 0; i < 60; ++i) {
     RandomForce force(p.forces, Random(Purpose::field, {8, stream_row(p, kStart),
                                                         static_cast<std::uint64_t>(100 + i)}));

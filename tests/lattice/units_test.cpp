@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "lattice/scene/digits.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/sweep.h"
 #include "lattice/scene/terrain.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -1,4 +1,4 @@
-#include "lattice/scene/csv.h"
+#include "lattice/text/csv.h"
 
 #include <algorithm>
 #include <cerrno>

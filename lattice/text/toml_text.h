@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "lattice/scene/digits.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::lattice {
 
