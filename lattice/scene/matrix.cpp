@@ -10,7 +10,13 @@
 namespace gatewalk::lattice {
 
 MatrixFile read_matrix(const std::string& path) {
-  return read_matrix(path, [](const auto&) { return dynamics::disc_section(); });
+  return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
+    if (text.contains("cell"))
+      throw markov::BadFile(path +
+                            ": is a chain of recorded runs, which only gatewalk predict "
+                            "and show read");
+    return dynamics::disc_section();
+  });
 }
 
 void require_unbroken(const dynamics::Transitions& t) {

@@ -35,7 +35,8 @@ struct Ran : FieldTally {
 Ran run(const FieldGates& gates, const FieldParams& field, TrialRange range, std::uint64_t seed = 1,
         const BodyState& start = kStart) {
   Ran ran(field);
-  static_cast<FieldTally&>(ran) = run_field(gates, field, start, seed, range, &ran.each);
+  const StateSpace space = table3_space(gates.at(field.start_column(), 0));
+  static_cast<FieldTally&>(ran) = run_field(gates, field, start, seed, range, &ran.each, &space);
   return ran;
 }
 

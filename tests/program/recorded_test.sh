@@ -16,6 +16,10 @@ expect 2 'has no meaning for recorded runs' "$gatewalk" build "$tracks/runs.csv"
 expect 2 'whose runs were recorded' "$gatewalk" predict few.nc --first-runs 100
 expect 2 'must be seen, or' "$gatewalk" predict few.nc --start Q:0,0,1
 
+for command in walk analyze; do
+  expect 2 "recorded runs" "$gatewalk" $command few.nc
+done
+
 # Many bodies that are alike: each goes up with chance 3/4 or is trapped, so 0.75^2 cross two rows.
 cat >coin.toml <<'END'
 [cell]
