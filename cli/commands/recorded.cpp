@@ -143,8 +143,8 @@ int predict_recorded(const Options& options) {
   const double wanted = options.has("accuracy") ? accuracy_of(options).accuracy : 1.0;
   double worst = 0.0;
   for (const lattice::StartAnswer& a : prediction.starts)
-    worst = std::max(worst, a.error.total_variation);
-  prediction.reached = worst <= wanted;
+    if (!(worst >= a.error.total_variation)) worst = a.error.total_variation;  // or not a number
+  prediction.reached = !(worst > wanted);
   Json json = to_json(prediction, shown, wanted, given);
   std::string table = table_of(prediction, shown, given);
   json["recorded"] = to_json(m.pool);

@@ -64,7 +64,8 @@ std::string title_of(const dynamics::Section& section, const lattice::StartAnswe
 
 double worst_error(const lattice::PooledPrediction& p) {
   double worst = 0.0;
-  for (const lattice::StartAnswer& a : p.starts) worst = std::max(worst, a.error.total_variation);
+  for (const lattice::StartAnswer& a : p.starts)
+    if (!(worst >= a.error.total_variation)) worst = a.error.total_variation;  // or not a number
   return worst;
 }
 

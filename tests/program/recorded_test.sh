@@ -10,7 +10,7 @@ holds '.recorded.bodies == 12 and .recorded.lost == 2 and .inputs == 9' build.js
 expect 0 'no error bars: they need 16 bodies' "$gatewalk" predict few.nc --json few.json
 holds '.error_95 == null and (.endings | add) > 0.999 and (.endings | add) < 1.001' few.json
 holds '.recorded.lost_bounds.if_trapped.trapped >= .recorded.lost_bounds.if_left.trapped' few.json
-expect 0 '9 x 10 matrix' "$gatewalk" show few.nc --rows
+expect 0 '9 inputs x 10 outputs' "$gatewalk" show few.nc --rows
 expect 0 'SVG\|^' "$gatewalk" predict few.nc --figure few.svg
 expect 2 'has no meaning for recorded runs' "$gatewalk" build "$tracks/runs.csv" --cell "$tracks/cell.toml" -o x.nc --accuracy 0.1
 expect 2 'whose runs were recorded' "$gatewalk" predict few.nc --first-runs 100
