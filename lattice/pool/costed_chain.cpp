@@ -89,6 +89,9 @@ std::vector<Entry> first_entries(const Kernel& kernel, const RunPool& pool, cons
 
 AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const PoolStart& start,
                              int per_leaf) {
+  if (start.own != nullptr ? start.own->first_runs() == 0
+                           : !start.entry && pool.scattered.starts.empty())
+    throw std::invalid_argument("analysis: the start has no runs of its own");
   const CellMap& map = problem.map();
   const auto chain_of_group = [&](TrialGroup group) -> AnalysedChain {
     Kernel kernel = kernel_of(map, pool, per_leaf, group);
