@@ -1,141 +1,77 @@
-#include <array>
-#include <charconv>
-
 #include "cli/arguments.h"
 #include "cli/render/analysis.h"
 #include "cli/render/choice.h"
-#include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
-#include "cli/render/prediction.h"
-#include "cli/render/scene.h"
-#include "lattice/scene/scene_trials.h"
+#include "cli/subject.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/prediction.h"
+#include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
 namespace {
 
-/// By the names of JSON. Throws UsageError for any other.
-markov::Ending target_of(const Options& options) {
-  const std::string name = options.text("target");
-  if (const auto ending = lattice::ending_named(name)) return *ending;
-  std::string names;
-  for (const EndingName& e : kEndingNames)
-    names += (names.empty() ? "" : ", ") + std::string(e.key);
-  throw UsageError("--target " + name + ": must be one of " + names);
-}
-
-/// "3,1,2". Throws UsageError for anything else.
-lattice::LumpingParts lumping_of(const Options& options) {
-  constexpr int kMost = 1000;
-  lattice::LumpingParts parts(3);
-  const std::string text = options.text("lump");
-  const char *at = text.data(), *const end = at + text.size();
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto [next, error] = std::from_chars(at, end, parts[i]);
-    const bool ends_well = i + 1 < parts.size() ? next != end && *next == ',' : next == end;
-    if (error != std::errc() || !ends_well || parts[i] < 1 || parts[i] > kMost)
-      throw UsageError("--lump " + text + ": must be three whole numbers from 1 to " +
-                       std::to_string(kMost) + ": parts of d, of vx and of vy, as in 3,1,2");
-    at = next + 1;
-  }
-  return parts;
-}
-
-/// What is analysed, and what is said of how it ends.
-struct Subject {
-  lattice::Scene scene;
+/// A chain, and what is said of how its walks end.
+struct Chain {
   std::optional<lattice::AnalysedChain> chain;
-  std::optional<lattice::RunPool> pool{};  // none of bins
   lattice::EndingShares endings;
-  Json status, settled;
+  Json status, method;
   bool clean = true, from_trials = false, reached = true;
   std::int64_t gate_runs = 0;
-  int per_leaf = 0;            // of the pool's trees, and ...
-  std::int64_t most_runs = 0;  // ... how many gate runs may still be added to it
   int states = 0;
   double seconds = 0.0;
 };
 
 /// From gate runs, to which more are added until the error bar says enough.
-Subject from_runs(const Options& options, lattice::Scene scene, lattice::RunPool pool,
-                  const lattice::AccuracyOptions& how,
-                  const std::optional<lattice::Settled>& settled) {
-  const lattice::Problem problem = lattice::problem_of(scene);
-  auto prediction = lattice::predict_pooled(problem, pool, {problem.start}, how, options.work());
-  warn_of(options, prediction, how.accuracy);
-  auto chain = lattice::analysed_chain(problem, pool, pool.starts[pool.place_of(problem.start)],
-                                       how.per_leaf);
-  return {.scene = std::move(scene),
-          .chain = std::move(chain),
-          .pool = std::move(pool),
-          .endings = prediction.starts.front().endings,
+Chain chain_of_runs(const Options& options, Subject& s) {
+  const auto prediction = predict(options, s);
+  const lattice::StartAnswer& answer = prediction.starts.front();
+  return {.chain = lattice::analysed_chain(s.problem, *s.pool, s.pool->begin(s.starts.front()),
+                                           s.how.per_leaf),
+          .endings = answer.endings,
           .status = to_json(prediction.health),
-          .settled = settled ? to_json(*settled) : Json(),
+          .method = s.settled ? to_json(*s.settled) : Json(),
           .clean = status_of(options, prediction.health) == kFine,
-          .from_trials = prediction.starts.front().from_trials,
+          .from_trials = answer.from_trials,
           .reached = prediction.reached,
           .gate_runs = prediction.gate_runs,
-          .per_leaf = how.per_leaf,
-          .most_runs = how.most_runs - prediction.gate_runs,
           .states = prediction.states,
           .seconds = prediction.seconds};
 }
 
 /// From a matrix of bins.
-Subject from_bins(const Options& options, const lattice::SceneMatrix& m,
-                  const std::vector<lattice::PaperStart>& given) {
-  const std::string path = options.text("matrix");
-  for (const char* other : {"accuracy", "gate-runs"})
-    if (options.has(other))
-      throw UsageError(std::string("--") + other + ": " + path +
-                       " has bins and keeps no gate runs that could be added to");
-  const auto start = ready_start(options, m, lattice::own_start(m.scene).entry(),
-                                 given.empty() ? "the start" : title_of(given.front()));
-  const auto prediction = lattice::predict(lattice::field_of(m, path, {}), m.scene.field, {start},
+Chain chain_of_bins(const Options& options, const Subject& s) {
+  refuse(options, {"accuracy", "gate-runs"},
+         s.path + ": it has bins, and keeps no gate runs that could be added to");
+  const lattice::SceneMatrix m = s.matrix();
+  const auto start = ready_start(options, m, *s.starts.front(), s.name_of(0));
+  const auto prediction = lattice::predict(lattice::field_of(m, s.path, {}), m.scene.field, {start},
                                            {}, options.seed(), options.work());
   const Json status = recorded_status(m.file);
-  return {.scene = m.scene,
-          .chain = lattice::analysed_chain(lattice::problem_of(m.scene),
-                                           lattice::matrices_of(m.file, m.scene), start.start),
+  return {.chain = lattice::analysed_chain(s.problem, lattice::matrices_of(m.file, m.scene),
+                                           start.start),
           .endings = prediction.starts.front().shares,
           .status = status,
-          .settled = recorded(m.file, path, "method"),
+          .method = recorded(m.file, s.path, "method"),
           .clean = faults_recorded(status).empty(),
           .states = m.file.transitions.space.size(),
           .seconds = prediction.seconds};
 }
 
-Subject subject_of(const Options& options, const std::vector<lattice::PaperStart>& given) {
-  const std::string path = options.text("matrix");
-  lattice::AccuracyOptions how = accuracy_of(options);
-  const auto with_start = [&](lattice::Scene& scene) {
-    lattice::require_inside(given, scene);
-    if (!given.empty()) {
-      (void)given.front().entry();  // refuses a start inside the gate
-      scene.start = given.front().body();
-    }
-  };
-  if (!is_matrix(path)) {
-    if (options.has("scene"))
-      throw UsageError(path + ": is no matrix, so it is read as a scene; a second one, \"" +
-                       options.text("scene") + "\", has no meaning beside it");
-    lattice::Scene scene = lattice::read_scene(path, options.overrides());
-    with_start(scene);
-    require_active(options, scene);
-    const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
-    return from_runs(options, std::move(scene), {}, how, settled);
+/// What the numbers of the cells change; nothing where the chain cannot tell.
+lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subject& s,
+                                     const Chain& c, const lattice::Analysis& analysis,
+                                     const dynamics::Work& work) {
+  if (how.runs == 0 || s.is_recorded()) return {};
+  if (analysis.is_certain()) {
+    lattice::ParameterEffects none;
+    none.chance = analysis.target_chance;
+    return none;
   }
-  lattice::SceneMatrix m = read_matrix(options);
-  require_active(options, m.scene);
-  with_start(m.scene);
-  if (!lattice::has_runs(m.file)) return from_bins(options, m, given);
-  if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
-  how.per_leaf = entries_per_leaf(m.file, path);
-  lattice::RunPool pool = lattice::pool_of(m.file, lattice::problem_of(m.scene), path);
-  return from_runs(options, std::move(m.scene), std::move(pool), how, {});
+  if (!s.pool) return lattice::parameter_effects(s.problem, *c.chain, analysis.target, how, work);
+  return lattice::parameter_effects(s.problem, *s.pool, analysis.target, how, s.how.per_leaf,
+                                    s.how.most_runs - c.gate_runs, work);
 }
 
 }  // namespace
@@ -170,73 +106,57 @@ int run_analyze(const Arguments& arguments) {
   options.add_number("step", "PART", "how much more and less, as a part of it (default: 0.02)");
   options.add_text(
       "lump", "D,VX,VY",
-      "into how many parts the states of each boundary are cut by d, vx and vy, to see "
-      "what so few\nstates would cost",
-      "1,1,1");
+      "into how many parts the states of each boundary are cut by d, vx and vy (or what other "
+      "cells have), to\nsee what so few states would cost (default: 1 each)");
   options.add_count("paths", "N", "the most frequent ways through the field", "5");
   options.add_count("trials", "N", "also run N trials of the full dynamics, to compare");
   options.add_seed();
   options.add_strict();
+  add_cell_program(options);
   options.add_figure("visits and paths, durations, starts and influences");
   if (!options.parse(arguments)) return kFine;
-  const lattice::AnalysisOptions how{
-      .target = target_of(options),
-      .paths = static_cast<std::size_t>(options.count("paths", 0, 1000)),
-      .lumping = lumping_of(options),
-      .seed = options.seed()};
+  if (options.texts("start").size() > 1) throw UsageError("--start: an analysis is of one start");
   const lattice::ParameterOptions parameters{
       .runs = options.count("runs", 0, 1'000'000),
-      .relative_step = options.has("step") ? options.number("step") : 0.02,
+      .relative_step = number_within(options, "step", 0.02, 1e-6, 0.5),
       .seed = options.seed()};
   if (parameters.runs > 0 && parameters.runs < 100)
     throw UsageError("--runs: must be 0, or 100 or more");
-  if (!(parameters.relative_step > 0.0 && parameters.relative_step < 0.5))
-    throw UsageError("--step: must lie between 0 and 0.5");
-  const std::vector<lattice::PaperStart> given = given_starts(options);
-  if (given.size() > 1) throw UsageError("--start: an analysis is of one start");
-  Subject s = subject_of(options, given);
+  lattice::AnalysisOptions how{.target = target_of(options),
+                               .paths = static_cast<std::size_t>(options.count("paths", 0, 1000)),
+                               .seed = options.seed()};
+  Subject s = open_subject(options, "matrix");
+  if (s.is_recorded()) refuse(options, {"trials", "step"}, s.path + ", whose runs were recorded");
+  how.lumping = lumping_of(options, s.problem.map().section);
+  s.settle(options);
+  Chain c = s.pool ? chain_of_runs(options, s) : chain_of_bins(options, s);
   const dynamics::Work work = options.work();
-  const lattice::Problem problem = lattice::problem_of(s.scene);
-  const auto analysis = lattice::analyze(problem, *s.chain, how, work);
-  if (s.pool) s.chain.reset();  // that for parameters is larger
-  lattice::ParameterEffects effects;
-  if (parameters.runs > 0 && analysis.is_certain())
-    effects.chance = analysis.target_chance;
-  else if (parameters.runs > 0 && s.pool)
-    effects = lattice::parameter_effects(problem, *s.pool, how.target, parameters, s.per_leaf,
-                                         s.most_runs, work);
-  else if (parameters.runs > 0)
-    effects = lattice::parameter_effects(problem, *s.chain, how.target, parameters, work);
+  const auto analysis = lattice::analyze(s.problem, *c.chain, how, work);
+  if (s.pool) c.chain.reset();  // that for parameters is larger
+  const auto effects = effects_of(parameters, s, c, analysis, work);
   std::optional<DirectTrials> direct;
   if (options.has("trials")) {
-    lattice::FieldCosts costs(lattice::bin_of_durations(s.scene.gate));
-    auto tally = lattice::field_trials(s.scene, options.trials(), options.seed(), work, &costs);
+    lattice::FieldCosts costs(s.bin_of_durations(options));
+    auto tally = lattice::field_trials(s.problem, options.trials(), options.seed(), work, &costs);
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }
 
-  const AnalysedField shown{s.scene,
-                            s.endings,
-                            analysis,
-                            effects,
-                            direct,
-                            s.from_trials,
-                            s.reached,
-                            s.gate_runs,
-                            s.states,
-                            s.seconds,
-                            parameters.relative_step};
+  const ShownField field = s.shown();
+  const AnalysedField shown{field,       s.starts.front(), c.endings,     analysis,
+                            effects,     direct,           c.from_trials, c.reached,
+                            c.gate_runs, c.states,         c.seconds,     parameters.relative_step};
   Json json = to_json(shown);
-  json["status"] = s.status;
+  json["status"] = c.status;
   json["sensitivities"]["status"] = to_json(effects.health);
-  if (!s.settled.is_null()) json["method"] = s.settled;
-  json["made_by"] = to_json(options.provenance(s.scene));
+  if (!c.method.is_null()) json["method"] = c.method;
+  json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(shown));
   const bool clean_effects =
       status_of(options, effects.health, "in gates with changed numbers ") == kFine;
   const bool clean =
       clean_effects && (!direct || status_of(options, direct->tally.health) == kFine);
   options.draw([&] { return figure_of(shown); });
-  return exit_status(options, s.clean && clean);
+  return exit_status(options, c.clean && clean);
 }
 
 }  // namespace gatewalk::cli

@@ -6,6 +6,7 @@
 #include "cli/render/prediction.h"
 #include "cli/render/states.h"
 #include "cli/render/text.h"
+#include "cli/subject.h"
 #include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
@@ -31,10 +32,8 @@ int give_out(const Options& options, const lattice::Scene& scene, const MadeMatr
 
 int build_bins(const Options& options, const lattice::Scene& scene,
                const lattice::BinsChoice& choice, const Settled& settled) {
-  for (const char* other : {"accuracy", "gate-runs", "starts", "start", "states"})
-    if (options.has(other))
-      throw UsageError(std::string("--") + other +
-                       " has no meaning for bins: it is for --bins tree");
+  refuse(options, {"accuracy", "gate-runs", "starts", "start", "states"},
+         "bins: it is for --bins tree");
   const std::int64_t trials = options.has("trials") ? options.count("trials") : 100;
   const dynamics::Stopwatch watch;
   const lattice::States states = states_of(options, scene, choice, {scene.start});
@@ -95,6 +94,7 @@ int run_build(const Arguments& arguments) {
                            Options::Content::binary);
   add_bins(options);
   add_cell(options);
+  add_cell_program(options);
   add_starts(options,
              "the scene's start; gatewalk validate takes those of Table IV in the paper's field; "
              "tree only: each is a state of its own");
@@ -103,6 +103,7 @@ int run_build(const Arguments& arguments) {
                    "entries from below span, in the scene's own units");
   options.add_count("states", "S", "tree: at most S states beside the starts");
   if (!options.parse(arguments)) return kFine;
+  if (options.has("cell-program")) return build_program(options);
   if (options.has("cell")) return build_recorded(options);
   lattice::Scene scene = options.read_scene();
   if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)

@@ -5,25 +5,11 @@
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/subject.h"
 #include "lattice/scene/map_file.h"
 
 namespace gatewalk::cli {
 namespace {
-
-void require_chain(const Options& options, const lattice::Scene& scene) {
-  (void)lattice::entries_at({lattice::own_start(scene)});
-  require_active(options, scene);
-}
-
-double number_within(const Options& options, const char* name, double usual, double low,
-                     double high) {
-  if (!options.has(name)) return usual;
-  const double value = options.number(name);
-  if (!(value >= low && value <= high))
-    throw UsageError(std::string("--") + name + " " + digits(value) + ": must lie in [" +
-                     digits(low) + ", " + digits(high) + "]");
-  return value;
-}
 
 /// The scene with --versus on top of --set.
 lattice::Scene read_other(const Options& options) {
@@ -41,42 +27,28 @@ lattice::Scene read_other(const Options& options) {
   }
 }
 
-/// None without --versus.
-std::optional<lattice::Scene> other_scene(const Options& options, const lattice::Scene& scene) {
+/// The scene of --versus, as a subject of its own; none without it.
+std::optional<Subject> other_subject(const Options& options, const Subject& s) {
   if (!options.has("versus")) return {};
-  lattice::Scene other = read_other(options);
-  require_chain(options, other);
-  if (other.field.columns != scene.field.columns || other.field.rows != scene.field.rows)
+  if (!s.scene || s.file) throw UsageError("--versus is of a scene, which " + s.path + " is not");
+  Subject other = s;
+  other.scene = read_other(options);
+  require_active(options, *other.scene);
+  const lattice::FieldParams &now = s.scene->field, then = other.scene->field;
+  if (then.columns != now.columns || then.rows != now.rows)
     throw UsageError(
         "--versus: field.columns and field.rows must stay: final gates of fields of different "
         "sizes cannot be compared");
+  other.problem = lattice::problem_of(*other.scene);
+  other.starts = {other.problem.start};
   return other;
-}
-
-struct Predicted {
-  std::optional<lattice::Settled> settled;
-  lattice::PooledPrediction prediction;
-};
-
-/// As gatewalk predict does. What is to be said of a scene's keys is said of the `first` one.
-Predicted predicted(const Options& options, lattice::Scene& scene, bool first) {
-  const lattice::AccuracyOptions how = accuracy_of(options);
-  constexpr auto kFrom = lattice::RunsFrom::everywhere;
-  Predicted p{first ? settle_method(options, scene, kFrom)
-                    : lattice::settle_method(scene, kFrom, options.seed(), options.work()),
-              {}};
-  const lattice::Problem problem = lattice::problem_of(scene);
-  lattice::RunPool pool;
-  p.prediction = lattice::predict_pooled(problem, pool, {problem.start}, how, options.work());
-  warn_of(options, p.prediction, how.accuracy);
-  return p;
 }
 
 }  // namespace
 
 int run_power(const Arguments& arguments) {
   Options options(
-      "power SCENE [options]",
+      "power SCENE|MATRIX.nc [options]",
       "How many trials an experiment needs: to see that an ending is more or less often than the "
       "scene\n"
       "predicts (exact binomial test), or that the final gates differ by a total variation\n"
@@ -96,6 +68,7 @@ int run_power(const Arguments& arguments) {
   add_accuracy(options);
   options.add_seed();
   options.add_strict();
+  add_cell_program(options);
   if (!options.parse(arguments)) return kFine;
   lattice::ExperimentOptions how{
       .goal = {.power = number_within(options, "power", 0.8, 0.5, 0.99),
@@ -103,34 +76,40 @@ int run_power(const Arguments& arguments) {
       .trials = {},
       .seed = options.seed()};
   if (options.has("trials")) how.trials = options.count("trials", 1, lattice::kMostPlanned);
-  lattice::Scene scene = options.read_scene();
-  require_chain(options, scene);
-  auto other = other_scene(options, scene);
-  (void)accuracy_of(options);
-
-  const Predicted first = predicted(options, scene, true);
-  const auto second = other ? std::optional(predicted(options, *other, false)) : std::nullopt;
-  const lattice::StartAnswer& answer = first.prediction.starts.front();
+  Subject s = open_subject(options, "scene");
+  if (!s.pool || (s.is_recorded() && s.pool->bodies() < lattice::kLeastBodies))
+    throw UsageError(s.path + ": has no error bars, which plans are made with: power needs a " +
+                     "chain of trees" + (s.pool ? ", of 16 bodies or more" : ""));
+  auto other = other_subject(options, s);
+  s.settle(options);
+  if (other) {  // what is to be said of a scene's keys has been said
+    other->settled = lattice::settle_method(*other->scene, lattice::RunsFrom::everywhere,
+                                            options.seed(), options.work());
+    other->problem = lattice::problem_of(*other->scene);
+  }
+  const auto first = predict(options, s);
+  const auto second = other ? std::optional(predict(options, *other)) : std::nullopt;
+  const lattice::StartAnswer& answer = first.starts.front();
   const dynamics::Work work = options.work();
   work.tell("power of experiments", 0, 1);
   const lattice::ExperimentPlan plan = lattice::plan_experiment(answer, how);
   PlannedExperiment planned{how, answer, plan};
-  dynamics::Health health = first.prediction.health;
+  dynamics::Health health = first.health;
   if (second) {
     planned.versus = options.texts("versus");
-    planned.other_scene = other;
-    planned.other = second->prediction.starts.front();
+    planned.other_scene = other->scene;
+    planned.other = second->starts.front();
     planned.apart = lattice::tell_apart(answer, *planned.other, how);
-    health += second->prediction.health;
+    health += second->health;
   }
   work.tell("power of experiments", 1, 1);
 
   Json json = to_json(planned);
   json["status"] = to_json(health);
-  if (first.settled) json["method"] = to_json(*first.settled);
-  json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, table_of(planned) + method_line(first.settled));
-  options.warn(too_few_gates(scene));
+  if (s.settled) json["method"] = to_json(*s.settled);
+  json["made_by"] = s.made_by(options);
+  options.give_out(json, table_of(planned) + method_line(s.settled));
+  options.warn(too_few_gates(s.shown()));
   return status_of(options, health);
 }
 

@@ -1,7 +1,4 @@
-#include <charconv>
-
 #include "cli/arguments.h"
-#include "cli/commands/recorded.h"
 #include "cli/render/choice.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
@@ -10,141 +7,92 @@
 #include "cli/render/matrix.h"
 #include "cli/render/pooled_prediction.h"
 #include "cli/render/prediction.h"
+#include "cli/render/recorded.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/subject.h"
 #include "cli/terminal/output.h"
-#include "lattice/cells/cell_matrix.h"
+#include "lattice/cells/recorded_pool.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
 namespace {
 
-/// "4-6=other.nc": rows whose gates are those of another matrix.
-lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
-  const auto wrong = [&] {
-    return UsageError("--row " + text +
-                      ": must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc");
-  };
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals + 1 == text.size()) throw wrong();
-  const char *at = text.data(), *const end = text.data() + equals;
-  int first = 0, last = 0;
-  const auto number = [&](int& value) {
-    const auto read = std::from_chars(at, end, value);
-    if (read.ec != std::errc() || value < 0) throw wrong();
-    at = read.ptr;
-  };
-  number(first);
-  last = first;
-  if (at != end) {
-    if (*at++ != '-') throw wrong();
-    number(last);
-  }
-  if (at != end) throw wrong();
-  const std::string path = text.substr(equals + 1);
-  return {first, last, path, read_matrix(options, path, "", {})};
-}
-
-std::vector<lattice::RowMatrix> other_rows(const Options& options) {
-  std::vector<lattice::RowMatrix> rows;
-  for (const std::string& text : options.texts("row")) rows.push_back(parse_rows(options, text));
-  return rows;
-}
-
-/// By the names of --solver. Throws UsageError for any other.
-markov::PredictOptions::Solver solver_of(const std::string& name) {
-  using Solver = markov::PredictOptions::Solver;
-  if (name == "auto") return Solver::automatic;
-  if (name == "propagate") return Solver::steps;
-  if (name == "march") return Solver::rows;
-  if (name == "klu") return Solver::klu;
-  throw UsageError("--solver " + name + ": must be auto, propagate, march or klu");
-}
-
-/// Starts given, else the scene's.
-std::vector<dynamics::Entry> entries_of(const std::vector<lattice::PaperStart>& given,
-                                        const lattice::Scene& scene) {
-  lattice::require_inside(given, scene);
-  return lattice::entries_at(given.empty() ? std::vector{lattice::own_start(scene)} : given);
-}
-
-/// A map for each start.
+/// The file of --netcdf and the figure, if they are asked for: a map for each start.
 template <class Answer>
-Figure figure_of(const std::vector<lattice::PaperStart>& given, const std::vector<Answer>& answers,
-                 lattice::EndingShares Answer::*shares, const lattice::Scene& scene) {
+void show(const Options& options, const Subject& s, const std::vector<Answer>& answers,
+          lattice::EndingShares Answer::*shares,
+          std::array<markov::CellProbabilities, 2> Answer::*gates_95 = nullptr) {
+  const ShownField shown = s.shown();
   std::vector<FieldPicture> pictures;
-  for (std::size_t i = 0; i < answers.size(); ++i)
-    pictures.emplace_back("prediction, " + std::to_string(answers[i].final.final_cells.cols()) +
-                              " x " + std::to_string(answers[i].final.final_cells.rows()) +
-                              " gates" + (given.empty() ? "" : ", " + title_of(given[i])),
-                          answers[i].final, answers[i].*shares, answers[i].exits);
-  return cli::figure_of(pictures, scene);
+  std::vector<FieldArrays> arrays;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    pictures.emplace_back(
+        "prediction, " + std::to_string(shown.field.columns) + " x " +
+            std::to_string(shown.field.rows) + (s.scene ? " gates" : " cells") +
+            (s.given ? ", " + title_of(s.problem.map().section, s.starts[i]) : ""),
+        answers[i].final, answers[i].*shares, answers[i].exits);
+    arrays.push_back({pictures.back(), s.starts[i]});
+    if (gates_95 != nullptr) arrays.back().gates_95 = answers[i].*gates_95;
+  }
+  if (options.has("netcdf"))
+    options.write(options.text("netcdf"),
+                  netcdf_of(arrays, s.problem.map().section, s.made_by(options)));
+  options.draw([&] { return figure_of(pictures, shown); });
 }
 
-/// The file of --netcdf, if it is asked for; `field_of` says what is known of an answer.
-template <class Answer, class FieldOf>
-void write_netcdf(const Options& options, const lattice::Scene& scene,
-                  const std::vector<Answer>& answers, const FieldOf& field_of) {
-  if (!options.has("netcdf")) return;
-  std::vector<FieldArrays> fields;
-  for (const Answer& answer : answers) fields.push_back(field_of(answer));
-  options.write(options.text("netcdf"), netcdf_of(fields, to_json(options.provenance(scene))));
-}
-
-/// Until the error bar says enough, with the runs that a pool has already.
-int predict_accurately(const Options& options, const lattice::Scene& scene,
-                       const std::optional<lattice::Settled>& settled, lattice::RunPool pool,
-                       const lattice::AccuracyOptions& how) {
-  const std::vector<lattice::PaperStart> given = given_starts(options);
-  const auto starts = entries_of(given, scene);
-  const auto prediction =
-      lattice::predict_pooled(lattice::problem_of(scene), pool, starts, how, options.work());
-  Json json = to_json(prediction, scene, how.accuracy, !given.empty());
-  if (settled) json["method"] = to_json(*settled);
-  say_left_out(json, scene.field.columns, scene.field.rows);
-  json["made_by"] = to_json(options.provenance(scene));
-  write_netcdf(options, scene, prediction.starts, [](const lattice::StartAnswer& a) {
-    return FieldArrays{FieldPicture("", a.final, a.endings, a.exits), lattice::start_at(a.start),
-                       a.gates_95};
-  });
-  options.give_out(json, table_of(prediction, scene, !given.empty()) + method_line(settled));
-  options.warn(too_few_gates(scene));
-  warn_of(options, prediction, how.accuracy);
+/// Until the error bar says enough, with the runs that there are already; of recorded runs with
+/// these alone.
+int predict_from_runs(const Options& options, Subject& s) {
+  const lattice::PooledPrediction prediction = predict(options, s);
+  const ShownField shown = s.shown();
+  Json json = to_json(prediction, shown, s.how.accuracy, s.given);
+  std::string table = table_of(prediction, shown, s.given) + method_line(s.settled);
+  if (s.settled) json["method"] = to_json(*s.settled);
+  if (s.is_recorded()) {
+    const lattice::LostBounds bounds =
+        lattice::lost_bounds(s.problem, *s.pool, s.starts.front(), s.how.per_leaf, options.seed());
+    json["recorded"] = to_json(*s.pool);
+    if (bounds.lost > 0.0) json["recorded"]["lost_bounds"] = to_json(bounds);
+    table += table_of(*s.pool) + table_of(bounds);
+  }
+  say_left_out(json, shown.field.columns, shown.field.rows);
+  json["made_by"] = s.made_by(options);
+  options.give_out(json, table);
+  options.warn(too_few_gates(shown));
   const int exit = status_of(options, prediction.health);
-  options.draw(
-      [&] { return figure_of(given, prediction.starts, &lattice::StartAnswer::endings, scene); });
+  show(options, s, prediction.starts, &lattice::StartAnswer::endings,
+       &lattice::StartAnswer::gates_95);
   return exit;
 }
 
-int predict_scene(const Options& options) {
-  const std::string path = options.text("matrix");
-  for (const char* other : {"scene", "row", "first-runs"})
-    if (options.has(other))
-      throw UsageError(path + ": is no matrix, so it is read as a scene; " +
-                       (std::string_view(other) == "scene"
-                            ? "a second one, \"" + options.text(other) + "\","
-                            : std::string("--") + other) +
-                       " has no meaning beside it");
-  if (options.text("solver") != "auto")
-    throw UsageError("--solver has no meaning for a scene: it is for a matrix");
-  lattice::Scene scene = lattice::read_scene(path, options.overrides());
-  const lattice::AccuracyOptions how = accuracy_of(options);
-  (void)entries_of(given_starts(options), scene);
-  require_active(options, scene);
-  const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
-  return predict_accurately(options, scene, settled, {}, how);
-}
-
-/// From the gate runs that a matrix file keeps, with first runs of starts that it does not know.
-int predict_from_runs(const Options& options, const lattice::SceneMatrix& m) {
-  lattice::AccuracyOptions how = accuracy_of(options);
-  const std::string path = options.text("matrix");
-  if (!options.has("accuracy")) how.accuracy = accuracy_of(m.file, path);
-  how.per_leaf = entries_per_leaf(m.file, path);
-  if (options.has("first-runs"))
-    how.first_runs = options.count("first-runs", lattice::PoolRunner::kLeastTrials);
-  return predict_accurately(options, m.scene, {},
-                            lattice::pool_of(m.file, lattice::problem_of(m.scene), path), how);
+/// What infinitely many walks with the matrix as it is would give.
+int predict_from_matrix(const Options& options, const Subject& s,
+                        const std::vector<lattice::RowMatrix>& others) {
+  const lattice::SceneMatrix m = s.matrix();
+  const std::string solver = options.text("solver");
+  const lattice::CountedField gates = lattice::field_of(m, s.path, others);
+  std::vector<lattice::ChainStart> starts;
+  for (std::size_t k = 0; k < s.starts.size(); ++k)
+    starts.push_back(ready_start(options, m, *s.starts[k], s.name_of(k)));
+  if ((solver == "klu" || solver == "march") && m.scene.field.max_gates != 0)
+    throw UsageError("--solver " + solver + " needs field.max_gates = 0 (no limit), it is " +
+                     std::to_string(m.scene.field.max_gates));
+  const auto prediction = lattice::predict(
+      gates, m.scene.field, starts, {.solver = solver_of(options)}, options.seed(), options.work());
+  if (prediction.failed)
+    options.warn("no interval counts the sampling of the matrix: a resampled one fails: " +
+                 *prediction.failed);
+  const PredictedField shown{m, s.given ? s.starts : std::vector<Start>(), others};
+  Json json = to_json(prediction, shown, solver);
+  say_left_out(json, m.scene.field.columns, m.scene.field.rows);
+  json["made_by"] = s.made_by(options);
+  options.give_out(json, table_of(prediction, shown));
+  options.warn(too_few_gates(m.scene));
+  options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
+  const int exit = exit_status(options, faults_recorded(recorded_status(m.file)).empty());
+  show(options, s, prediction.starts, &lattice::StartPrediction::shares);
+  return exit;
 }
 
 }  // namespace
@@ -191,60 +139,28 @@ int run_predict(const Arguments& arguments) {
       options.has("figure") && starts.size() > kMostPictures)
     throw UsageError("--figure: shows at most " + std::to_string(kMostPictures) +
                      " starts, these are " + std::to_string(starts.size()));
-  if (options.has("cell-program")) return predict_program(options);
-  if (!is_matrix(options.text("matrix"))) return predict_scene(options);
-  if (lattice::is_of_cells(options.text("matrix"))) return predict_recorded(options);
-  const std::string solver = options.text("solver"), path = options.text("matrix");
-  const markov::PredictOptions how{.solver = solver_of(solver)};
-  const std::vector<lattice::PaperStart> given = given_starts(options);
-  const std::vector<lattice::RowMatrix> others = other_rows(options);
-  const lattice::SceneMatrix m = read_matrix(options);
-  require_active(options, m.scene);
-  lattice::require_inside(given, m.scene);
-  warn_of_range(options, m.file, path, entries_of(given, m.scene));
-  const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0;
-  if (lattice::has_runs(m.file) && others.empty() && solver == "auto" && !no_runs)
-    return predict_from_runs(options, m);
-  for (const char* other : {"accuracy", "gate-runs", "first-runs"})
-    if (options.has(other) && !(no_runs && std::string_view(other) == "first-runs"))
-      throw UsageError(std::string("--") + other + ": " + path +
-                       " keeps no gate runs that could be added to (or --row, --solver, "
-                       "--first-runs 0 asks for the matrix as it is)");
-  const lattice::CountedField gates = lattice::field_of(m, path, others);
-  std::vector<lattice::ChainStart> starts;
-  for (const lattice::PaperStart& s : given)
-    starts.push_back(ready_start(options, m, s.entry(), title_of(s)));
-  if (given.empty())
-    starts.push_back(ready_start(options, m, lattice::own_start(m.scene).entry(), "the start"));
-  if ((solver == "klu" || solver == "march") && m.scene.field.max_gates != 0)
-    throw UsageError("--solver " + solver + " needs field.max_gates = 0 (no limit), it is " +
-                     std::to_string(m.scene.field.max_gates));
-
-  const auto prediction =
-      lattice::predict(gates, m.scene.field, starts, how, options.seed(), options.work());
-  if (prediction.failed)
-    options.warn("no interval counts the sampling of the matrix: a resampled one fails: " +
-                 *prediction.failed);
-
-  const Json status = recorded_status(m.file);
-  const PredictedField shown{m, given, others};
-  Json json = to_json(prediction, shown, solver);
-  say_left_out(json, m.scene.field.columns, m.scene.field.rows);
-  json["made_by"] = to_json(options.provenance(m.scene));
-  std::vector<lattice::PaperStart> begun = given;
-  if (begun.empty()) begun.push_back(lattice::own_start(m.scene));
-  write_netcdf(options, m.scene, prediction.starts, [&](const lattice::StartPrediction& s) {
-    const auto k = static_cast<std::size_t>(&s - prediction.starts.data());
-    return FieldArrays{FieldPicture("", s.final, s.shares, s.exits), begun[k]};
-  });
-  options.give_out(json, table_of(prediction, shown));
-  options.warn(too_few_gates(m.scene));
-  options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
-  const int exit = exit_status(options, faults_recorded(status).empty());
-  options.draw([&] {
-    return figure_of(given, prediction.starts, &lattice::StartPrediction::shares, m.scene);
-  });
-  return exit;
+  (void)solver_of(options);
+  Subject s = open_subject(options, "matrix");
+  const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0,
+             by_solver = options.text("solver") != "auto",
+             as_it_is = !s.pool || by_solver || no_runs || options.has("row");
+  if (!s.file || !s.scene) {
+    refuse(options, {"row", "first-runs"}, s.path + ": it is for a matrix of a scene");
+    if (by_solver)
+      throw UsageError("--solver has no meaning for " + s.path + ": it is for a matrix of a scene");
+  }
+  if (s.file && s.scene) warn_of_range(options, *s.file, s.path, s.entries());
+  if (s.file && s.scene && as_it_is) {
+    const std::string why = s.path + ", which keeps no gate runs that could be added to (or " +
+                            "--row, --solver, --first-runs 0 asks for the matrix as it is)";
+    refuse(options, {"accuracy", "gate-runs"}, why);
+    if (!no_runs) refuse(options, {"first-runs"}, why);
+    return predict_from_matrix(options, s, other_rows(options));
+  }
+  if (options.has("first-runs"))
+    s.how.first_runs = options.count("first-runs", lattice::PoolRunner::kLeastTrials);
+  s.settle(options);
+  return predict_from_runs(options, s);
 }
 
 }  // namespace gatewalk::cli

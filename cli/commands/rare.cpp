@@ -4,19 +4,19 @@
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "cli/subject.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
 namespace {
 
 /// How many of so many trials enter the rows; none without --trials.
-DirectRows direct_rows(const Options& options, const lattice::Scene& scene, int row) {
+DirectRows direct_rows(const Options& options, const lattice::Problem& deep, int row) {
   DirectRows direct;
   if (!options.has("trials")) return direct;
   direct.trials = options.trials();
   const dynamics::Stopwatch watch;
-  const auto tally = lattice::field_trials(lattice::problem_of(lattice::up_to_row(scene, row)),
-                                           direct.trials, options.seed(), options.work());
+  const auto tally = lattice::field_trials(deep, direct.trials, options.seed(), options.work());
   direct.seconds = watch.seconds();
   direct.entered.assign(static_cast<std::size_t>(row),
                         tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
@@ -26,6 +26,12 @@ DirectRows direct_rows(const Options& options, const lattice::Scene& scene, int 
     direct.entered[static_cast<std::size_t>(r) - 1] = behind;
   }
   return direct;
+}
+
+/// The problem with so many rows, and no limit of gates.
+lattice::Problem up_to_row(const Subject& s, int row) {
+  return s.scene ? lattice::problem_of(lattice::up_to_row(*s.scene, row))
+                 : lattice::up_to_row(s.problem, row);
 }
 
 }  // namespace
@@ -52,6 +58,7 @@ int run_rare(const Arguments& arguments) {
   options.add_count("trials", "N", "also run N trials directly, to compare");
   options.add_seed();
   options.add_strict();
+  add_cell_program(options);
   options.add_figure("the chance of every row up to N");
   if (!options.parse(arguments)) return kFine;
   lattice::SplittingOptions how{
@@ -63,19 +70,22 @@ int run_rare(const Arguments& arguments) {
   }
   if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
     throw UsageError("--accuracy: must lie between 0 and 1");
-  lattice::Scene scene = options.read_scene();
-  how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 2001)) : scene.field.rows;
-  (void)lattice::up_to_row(scene, how.row);  // refuses before any work
-  require_active(options, scene);
-  const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
-  const lattice::RareEvent event = lattice::rare_event(
-      lattice::problem_of(lattice::up_to_row(scene, how.row)), how, options.work());
-  const DirectRows direct = direct_rows(options, scene, how.row);
+  Subject subject = open_subject(options, "scene");
+  if (subject.file)
+    throw UsageError(subject.path + ": is a matrix, and new bodies are to be run: give a scene");
+  how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 2001))
+                               : subject.problem.field.rows;
+  (void)up_to_row(subject, how.row);  // refuses before any work
+  subject.settle(options);
+  const lattice::Problem deep = up_to_row(subject, how.row);
+  const lattice::RareEvent event = lattice::rare_event(deep, how, options.work());
+  const DirectRows direct = direct_rows(options, deep, how.row);
 
   Json json = to_json(event, direct);
-  if (settled) json["method"] = to_json(*settled);
-  json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, table_of(event, direct, scene.field) + method_line(settled));
+  if (subject.settled) json["method"] = to_json(*subject.settled);
+  json["made_by"] = subject.made_by(options);
+  options.give_out(json,
+                   table_of(event, direct, subject.problem.field) + method_line(subject.settled));
   if (const lattice::Splitting& s = event.splitting; !(s.rows.back().probability > 0.0))
     options.warn("none of " + std::to_string(s.trials) + " trials entered row " +
                  std::to_string(how.row) + "; --gate-runs N goes on for so many gate runs");

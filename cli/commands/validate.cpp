@@ -8,6 +8,7 @@
 #include "cli/render/observed.h"
 #include "cli/render/states.h"
 #include "cli/render/validation.h"
+#include "cli/subject.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -16,18 +17,30 @@ namespace {
 /// own. And at least so many.
 constexpr std::int64_t kTrialsPerObserved = 20, kLeastBesideObserved = 10'000;
 
-/// A matrix to validate, and what its file or its making says of it.
+/// Matrices to validate, by type of cell, and what their file or their making says of them.
 struct Validated {
-  lattice::SceneMatrix matrix;
-  std::vector<lattice::PaperStart> starts;
-  std::optional<lattice::Observed> observed;
-  Json status, settled, states;
+  lattice::Problem problem;
+  std::vector<dynamics::Transitions> matrices{};
+  std::vector<dynamics::Entry> starts{};
+  std::optional<lattice::Observed> observed{};
+  Json status{}, settled{}, states{};
+  std::optional<lattice::Scene> scene{};      // of gates, and ...
+  std::vector<lattice::PaperStart> papers{};  // ... the starts with what the paper prints of them
+  std::optional<ShownField> shown{};
+  Json made_by{};
 };
 
-lattice::SceneMatrix matrix_of(lattice::Scene scene, std::vector<dynamics::Transitions> matrices) {
-  lattice::SceneMatrix m{{dynamics::Transitions(matrices.front().space), {}}, std::move(scene)};
-  lattice::put_matrices(m.file, m.scene, std::move(matrices));
-  return m;
+Validated of_scene(const Options& options, lattice::Scene scene,
+                   std::vector<lattice::PaperStart> papers,
+                   std::vector<dynamics::Transitions> matrices) {
+  Validated v{.problem = lattice::problem_of(scene),
+              .matrices = std::move(matrices),
+              .starts = lattice::entries_at(papers),
+              .papers = std::move(papers),
+              .shown = ShownField(scene),
+              .made_by = to_json(options.provenance(scene))};
+  v.scene = std::move(scene);
+  return v;
 }
 
 /// An experiment is of the scene's start, or of the one that is given.
@@ -53,9 +66,9 @@ void warn_of_trials(const Options& options, const lattice::Observed& observed) {
 }
 
 std::optional<lattice::Observed> experiment_of(const Options& options,
-                                               const lattice::Scene& scene) {
+                                               const lattice::FieldParams& field) {
   if (!options.has("observed")) return {};
-  auto observed = lattice::read_observed(options.texts("observed"), scene.field);
+  auto observed = lattice::read_observed(options.texts("observed"), field);
   warn_of_trials(options, observed);
   return observed;
 }
@@ -63,60 +76,75 @@ std::optional<lattice::Observed> experiment_of(const Options& options,
 Validated read_subject(const Options& options) {
   const std::string path = options.text("matrix");
   lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
-  auto starts = starts_for(options, m.scene);
-  lattice::require_inside(starts, m.scene);
-  (void)lattice::entries_at(starts);
-  auto observed = experiment_of(options, m.scene);
-  add_starts_to(m, path, options, lattice::entries_at(starts));
-  require_inside_bins(options, starts, m.scene, m.file.transitions.space);
-  Json status = recorded_status(m.file), settled = recorded(m.file, path, "method"),
-       states = recorded(m.file, path, "state_space");
-  return {std::move(m),      std::move(starts),  std::move(observed),
-          std::move(status), std::move(settled), std::move(states)};
+  auto papers = starts_for(options, m.scene);
+  lattice::require_inside(papers, m.scene);
+  const auto starts = lattice::entries_at(papers);
+  auto observed = experiment_of(options, m.scene.field);
+  add_starts_to(m, path, options, starts);
+  require_inside_bins(options, papers, m.scene, m.file.transitions.space);
+  Validated v =
+      of_scene(options, m.scene, std::move(papers), lattice::matrices_of(m.file, m.scene));
+  v.observed = std::move(observed);
+  v.status = recorded_status(m.file);
+  v.settled = recorded(m.file, path, "method");
+  v.states = recorded(m.file, path, "state_space");
+  return v;
+}
+
+/// A chain of trees, grown for this.
+void put_tree(Validated& v, const Options& options) {
+  const lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = v.starts};
+  lattice::TreeChain chain = lattice::make_tree_chain(v.problem, how, options.work());
+  warn_of(options, *chain.prediction, how.accuracy.accuracy);
+  v.status = to_json(chain.transitions.front().health);
+  v.states = to_json(chain, how.accuracy.accuracy);
+  v.matrices = std::move(chain.transitions);
 }
 
 Validated build_subject(const Options& options) {
   const std::int64_t trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
   lattice::Scene scene = options.read_scene();
   const lattice::BinsChoice choice = bins_choice(options, scene, options.has("matrix-trials"));
-  auto starts = starts_for(options, scene);
-  lattice::require_inside(starts, scene);
-  const auto entries = lattice::entries_at(starts);
-  auto observed = experiment_of(options, scene);
+  auto papers = starts_for(options, scene);
+  lattice::require_inside(papers, scene);
+  const auto bodies = lattice::bodies_at(papers);
+  (void)lattice::entries_at(papers);
+  auto observed = experiment_of(options, scene.field);
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   if (tree && options.has("matrix-trials"))
     throw UsageError("--matrix-trials is of runs per state of bins: --bins tree takes --accuracy");
-  for (const char* other : {"accuracy", "gate-runs"})
-    if (!tree && options.has(other))
-      throw UsageError(std::string("--") + other +
-                       " has no meaning for bins: it is for --bins tree");
+  if (!tree) refuse(options, {"accuracy", "gate-runs"}, "bins: it is for --bins tree");
   if (!tree && choice.kind != lattice::BinsChoice::Kind::automatic)
-    require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
+    require_inside_bins(options, papers, scene, lattice::fixed_space(scene));
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  Validated v = of_scene(options, std::move(scene), std::move(papers), {});
+  v.observed = std::move(observed);
+  v.settled = settled ? to_json(*settled) : Json();
   if (tree) {
-    lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = entries};
-    lattice::TreeChain chain =
-        lattice::make_tree_chain(lattice::problem_of(scene), how, options.work());
-    warn_of(options, *chain.prediction, how.accuracy.accuracy);
-    Json status = to_json(chain.transitions.front().health),
-         states = to_json(chain, how.accuracy.accuracy);
-    return {matrix_of(std::move(scene), std::move(chain.transitions)),
-            std::move(starts),
-            std::move(observed),
-            std::move(status),
-            settled ? to_json(*settled) : Json(),
-            std::move(states)};
+    put_tree(v, options);
+    return v;
   }
-  const lattice::States states = states_of(options, scene, choice, lattice::bodies_at(starts));
+  const lattice::States states = states_of(options, *v.scene, choice, bodies);
   for (const std::string& text : complaints(states)) options.warn(text);
-  auto built = lattice::build_matrices(scene, states, trials, options.seed(), options.work());
-  Json status = to_json(built.front().health);
-  return {matrix_of(std::move(scene), std::move(built)),
-          std::move(starts),
-          std::move(observed),
-          std::move(status),
-          settled ? to_json(*settled) : Json(),
-          to_json(states)};
+  v.matrices = lattice::build_matrices(*v.scene, states, trials, options.seed(), options.work());
+  v.status = to_json(v.matrices.front().health);
+  v.states = to_json(states);
+  return v;
+}
+
+/// Cells that another program carries out.
+Validated program_subject(const Options& options) {
+  refuse(options, {"bins", "matrix", "matrix-trials"}, "cells that another program carries out");
+  Subject s = open_program(options, options.text("scene"));
+  Validated v{.problem = s.problem,
+              .starts = s.entries(),
+              .shown = s.shown(),
+              .made_by = s.made_by(options)};
+  if (options.has("observed") && v.starts.size() > 1)
+    throw UsageError("--observed: the counts belong to one start");
+  v.observed = experiment_of(options, v.problem.field);
+  put_tree(v, options);
+  return v;
 }
 
 }  // namespace
@@ -162,6 +190,7 @@ int run_validate(const Arguments& arguments) {
                    "also run the trials with the random force drawn anew at every crossing");
   add_starts(options);
   add_bins(options);
+  add_cell_program(options);
   options.add_figure("final gates of dynamics and chain, and their difference");
   if (!options.parse(arguments)) return kFine;
   constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
@@ -173,10 +202,10 @@ int run_validate(const Arguments& arguments) {
                                  .observed = {}};
   if (options.has("walks")) how.walks = options.count("walks");
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
-  if (const auto starts = given_starts(options);
-      options.has("figure") && starts.size() > kMostValidated)
+  if (const auto starts = options.texts("start").size();
+      options.has("figure") && starts > kMostValidated)
     throw UsageError("--figure: shows at most " + std::to_string(kMostValidated) +
-                     " starts, these are " + std::to_string(starts.size()));
+                     " starts, these are " + std::to_string(starts));
   if (options.has("matrix"))
     for (const char* other : {"bins", "matrix-trials", "accuracy", "gate-runs"})
       if (options.has(other))
@@ -184,34 +213,37 @@ int run_validate(const Arguments& arguments) {
             std::string("--") + other + " has no meaning beside --matrix: that one " +
             (std::string_view(other) == "bins" ? "has its states already" : "is built already"));
   const dynamics::Stopwatch watch;
-  const Validated subject = options.has("matrix") ? read_subject(options) : build_subject(options);
+  const Validated subject = options.has("cell-program") ? program_subject(options)
+                            : options.has("matrix")     ? read_subject(options)
+                                                        : build_subject(options);
   if (const auto& observed = subject.observed) {
     how.observed = observed->seen;
     if (!options.has("trials"))
       how.trials = std::max(kLeastBesideObserved, kTrialsPerObserved * observed->seen.trials());
   }
-  const lattice::Scene& scene = subject.matrix.scene;
-  const auto matrices = lattice::matrices_of(subject.matrix.file, scene);
-  const ValidatedMatrix matrix{matrices,        subject.starts, options.text("matrix"),
-                               watch.seconds(), subject.status, subject.settled,
+  const ValidatedMatrix matrix{subject.matrices,
+                               subject.papers,
+                               subject.scene && lattice::like_table4(*subject.scene),
+                               options.text("matrix"),
+                               watch.seconds(),
+                               subject.status,
+                               subject.settled,
                                subject.states};
+  const auto result = lattice::validate_chain(subject.problem, subject.matrices, subject.starts,
+                                              how, options.work());
 
-  const auto result =
-      lattice::validate_chain(lattice::problem_of(scene), matrices,
-                              lattice::entries_at(subject.starts), how, options.work());
-
-  Json json = to_json(result, scene, matrix);
-  std::string table = table_of(result, scene, matrix);
+  Json json = to_json(result, *subject.shown, matrix);
+  std::string table = table_of(result, *subject.shown, matrix);
   if (const auto& experiment = result.starts.front().observed) {
     json["observed"] = to_json(*experiment, result.starts.front(), options.texts("observed"));
     json["observed"]["went_back"] = subject.observed->went_back;
     table = table_of(*experiment, result.starts.front());
   }
-  json["made_by"] = to_json(options.provenance(scene));
+  json["made_by"] = subject.made_by;
   options.give_out(json, table);
   if (subject.observed) options.warn(endings_not_listed(*subject.observed, result.starts.front()));
   const int exit = status_of(options, result.health);
-  options.draw([&] { return figure_of(result, scene); });
+  options.draw([&] { return figure_of(result, *subject.shown); });
   return exit;
 }
 

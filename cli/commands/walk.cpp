@@ -6,10 +6,43 @@
 #include "cli/render/matrix.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/subject.h"
 #include "cli/terminal/output.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
+namespace {
+
+struct Walked {
+  markov::FieldChain chain;
+  markov::Start start;
+  Json start_state;
+  std::string start_text;
+  bool clean = true;  // the runs behind it
+};
+
+Walked walked_chain(const Options& options, Subject& s) {
+  if (s.is_recorded()) {
+    const auto kernel = lattice::kernel_of(s.problem.map(), *s.pool, s.how.per_leaf);
+    const int row = kernel.space.size();  // of the start, behind those of the kernel
+    return {lattice::chain_of(
+                kernel, s.problem.map(), s.problem.field,
+                {lattice::first_row(kernel, s.problem.map(), *s.pool,
+                                    s.pool->begin(s.starts.front()), s.problem.start_type())}),
+            {s.problem.field.start_column(), 0, row},
+            to_json(s.problem.map().section, s.starts.front()),
+            title_of(s.problem.map().section, s.starts.front())};
+  }
+  lattice::SceneMatrix m = s.matrix();
+  add_starts_to(m, s.path, options, s.entries());
+  const dynamics::Transitions& t = m.file.transitions;
+  const lattice::ChainStart start = ready_start(options, m, s.entries().front(), "the start");
+  return {lattice::make_chain(s.problem.map(), lattice::matrices_of(m.file, m.scene)), start.start,
+          to_json(start, t.space), text_of(t.space.section(), t.space.range(start.start.input)),
+          t.health.clean()};
+}
+
+}  // namespace
 
 int run_walk(const Arguments& arguments) {
   Options options(
@@ -26,36 +59,31 @@ int run_walk(const Arguments& arguments) {
   options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where walks end, and how");
   if (!options.parse(arguments)) return kFine;
-  lattice::SceneMatrix m = read_matrix(options);
-  require_active(options, m.scene);
-  const dynamics::Entry own = lattice::own_start(m.scene).entry();
-  add_starts_to(m, options.text("matrix"), options, {own});
-  const dynamics::Transitions& t = m.file.transitions;
-  const lattice::ChainStart start = ready_start(options, m, own, "the start");
+  Subject s = open_subject(options, "matrix");
+  if (!s.file) throw UsageError(s.path + ": is no matrix file written by gatewalk build");
+  const Walked walked = walked_chain(options, s);
   const std::int64_t walks = options.count("walks");
-
-  const markov::FieldChain chain =
-      lattice::make_chain(lattice::gates_of(m.scene).map(), lattice::matrices_of(m.file, m.scene));
+  const ShownField shown = s.shown();
   const dynamics::Stopwatch watch;
-  const auto tally =
-      lattice::walks(chain, m.scene.field, start, walks, options.seed(), options.work());
+  const auto tally = lattice::walks(walked.chain, shown.field, walked.start, walks, options.seed(),
+                                    options.work());
   const double seconds = watch.seconds();
 
-  const Json status = recorded_status(m.file);
-  Json json = to_json(tally, start, t.space, m.scene);
+  const Json status = recorded_status(*s.file);
+  const ShownWalks told{tally, walked.start_state, walked.start_text};
+  Json json = to_json(told, shown);
   json["matrix_status"] = status;
-  json["made_by"] = to_json(options.provenance(m.scene));
+  json["made_by"] = s.made_by(options);
   if (options.has("netcdf"))
-    options.write(
-        options.text("netcdf"),
-        netcdf_of({{FieldPicture("", tally), lattice::own_start(m.scene)}}, json["made_by"]));
-  options.give_out(json, table_of(tally, start, t.space, m.scene));
-  options.warn(too_few_gates(m.scene));
+    options.write(options.text("netcdf"), netcdf_of({{FieldPicture("", tally), s.starts.front()}},
+                                                    s.problem.map().section, json["made_by"]));
+  options.give_out(json, table_of(told, shown));
+  options.warn(too_few_gates(shown));
   options.remark(fixed(seconds, 3) + " s, " + fixed(static_cast<double>(walks) / seconds / 1e6, 2) +
                  " million walks a second");
-  const int exit = exit_status(options, faults_recorded(status).empty() && t.health.clean());
+  const int exit = exit_status(options, faults_recorded(status).empty() && walked.clean);
   options.draw([&] {
-    return figure_of({{"chain, " + std::to_string(walks) + " walks", tally}}, m.scene);
+    return figure_of({{"chain, " + std::to_string(walks) + " walks", tally}}, shown);
   });
   return exit;
 }

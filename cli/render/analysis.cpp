@@ -8,14 +8,15 @@
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
+#include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "cli/render/type_marks.h"
+#include "dynamics/disc/gate.h"
 
 namespace gatewalk::cli {
 namespace {
 
 using dynamics::Cost;
-using dynamics::kCosts;
+using dynamics::kMostCosts;
 using lattice::FieldCosts;
 using lattice::Mean95;
 
@@ -25,10 +26,8 @@ constexpr double kLevels[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 Json interval(const std::array<double, 2>& i) { return std::isfinite(i[0]) ? Json(i) : Json(); }
 
-/// Work of both forces per mass and way forward: J / (kg m).
-double cost_of_transport(const dynamics::GateParams& p, double forward, double work,
-                         double random_work) {
-  return forward > 0.0 ? (work + random_work) / (p.body.mass * forward) : std::nan("");
+const std::vector<dynamics::CostInfo>& costs_of(const ShownField& shown) {
+  return shown.map.section.costs;
 }
 
 /// Durations of walks with these endings, ascending; none where they are too few to say much.
@@ -56,17 +55,19 @@ Json quantiles_json(const std::function<double(double)>& quantile) {
 /// Means and standard deviations of one ending, or of all.
 struct Spent {
   double share = 0.0;
-  std::array<double, kCosts> mean{}, sd{};
+  dynamics::Costs mean{}, sd{};  // by Section::costs
   [[nodiscard]] double of(Cost c) const { return mean[static_cast<std::size_t>(c)]; }
-  [[nodiscard]] double cost_of_transport(const dynamics::GateParams& p) const {
-    return cli::cost_of_transport(p, of(Cost::forward), of(Cost::propulsion_work),
-                                  of(Cost::random_work));
+  /// Of a disc: work of both forces per mass and way forward, J / (kg m).
+  [[nodiscard]] double cost_of_transport(double mass) const {
+    return of(Cost::forward) > 0.0
+               ? (of(Cost::propulsion_work) + of(Cost::random_work)) / (mass * of(Cost::forward))
+               : std::nan("");
   }
 };
 
 Spent spent(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
   Spent s;
-  for (std::size_t c = 0; c < kCosts; ++c) {
+  for (std::size_t c = 0; c < a.totals.totals.size(); ++c) {
     const auto& by_ending = a.totals.totals[c];
     const markov::Moments m =
         ending ? by_ending[static_cast<std::size_t>(*ending)] : markov::WalkTotals::all(by_ending);
@@ -81,40 +82,54 @@ Spent spent(const FieldCosts& costs, std::optional<markov::Ending> ending) {
   const FieldCosts::Sums sums = ending ? costs.of(*ending) : costs.all();
   Spent s;
   s.share = static_cast<double>(sums.trials) / static_cast<double>(costs.all().trials);
-  for (std::size_t c = 0; c < kCosts; ++c) {
+  for (std::size_t c = 0; c < kMostCosts; ++c) {
     s.mean[c] = sums.mean(c);
     s.sd[c] = sums.sd(c);
   }
   return s;
 }
 
-Json spent_json(const Spent& s, const dynamics::GateParams& p,
+Json spent_json(const Spent& s, const ShownField& shown,
                 const std::function<double(double)>& quantile) {
   Json json;
-  for (std::size_t c = 0; c < kCosts; ++c) {
-    const std::string key(dynamics::kCostNames[c].key);
+  for (std::size_t c = 0; c < costs_of(shown).size(); ++c) {
+    const std::string& key = costs_of(shown)[c].key;
     json["mean_" + key] = or_null(s.mean[c]);
     json["sd_" + key] = or_null(s.sd[c]);
   }
   json["quantiles_time_s"] = quantiles_json(quantile);
-  json["cost_of_transport_J_per_kg_m"] = or_null(s.cost_of_transport(p));
+  if (shown.mass) json["cost_of_transport_J_per_kg_m"] = or_null(s.cost_of_transport(*shown.mass));
   return json;
 }
 
-/// "crossed      25.1   18 to 33    1490      35    1400    8.1"
-std::string line_of(const std::string& name, const Spent& s, const dynamics::GateParams& p,
+/// "crossed      25.1   18 to 33    1490      35    1400    8.1"; of other cells than a disc's,
+/// time and each further cost.
+std::string line_of(const std::string& name, const Spent& s, const ShownField& shown,
                     const std::function<double(double)>& quantile) {
   const auto number = [](double x) {
-    return padded(fixed(x, std::abs(x) < 10 ? 3 : std::abs(x) < 1000 ? 1 : 0), 11);
+    return padded(std::isfinite(x) ? fixed(x, std::abs(x) < 10     ? 3
+                                              : std::abs(x) < 1000 ? 1
+                                                                   : 0)
+                                   : "-",
+                  11);
   };
   const double low = quantile(0.05), high = quantile(0.95);
-  return padded(name, -11) + number(s.of(Cost::seconds)) +
-         padded(std::isfinite(low) ? fixed(low, 2) + " to " + fixed(high, 2) : "-", 18) +
-         number(s.of(Cost::propulsion_work)) + number(s.of(Cost::random_work)) +
-         number(s.of(Cost::lost)) + number(s.cost_of_transport(p)) + "\n";
+  std::string line = padded(name, -11) + number(s.mean.front()) +
+                     padded(std::isfinite(low) ? fixed(low, 2) + " to " + fixed(high, 2) : "-", 18);
+  if (shown.mass)
+    line += number(s.of(Cost::propulsion_work)) + number(s.of(Cost::random_work)) +
+            number(s.of(Cost::lost)) + number(s.cost_of_transport(*shown.mass));
+  else
+    for (std::size_t c = 1; c < costs_of(shown).size(); ++c) line += " " + number(s.mean[c]);
+  return line + "\n";
 }
-constexpr char kHeader[] =
-    "            mean time/s     5 to 95 %/s   work/J of: push     noise   lost/J   J/(kg m)\n";
+std::string header_of(const ShownField& shown) {
+  std::string header = "            mean time/s     5 to 95 %/s";
+  if (shown.mass) return header + "   work/J of: push     noise   lost/J   J/(kg m)\n";
+  for (std::size_t c = 1; c < costs_of(shown).size(); ++c)
+    header += " " + padded(costs_of(shown)[c].key, 11);
+  return header + "\n";
+}
 
 std::string with_interval(const Mean95& m, int decimals) {
   if (std::isnan(m.interval[0])) return fixed(m.mean, decimals);
@@ -123,12 +138,12 @@ std::string with_interval(const Mean95& m, int decimals) {
 }
 
 const char* target_word(markov::Ending ending) {
-  return std::find_if(kEndingNames.begin(), kEndingNames.end(),
+  return std::find_if(kAllEndingNames.begin(), kAllEndingNames.end(),
                       [&](const EndingName& e) { return e.ending == ending; })
       ->name;
 }
 const char* key_of(markov::Ending ending) {
-  return std::find_if(kEndingNames.begin(), kEndingNames.end(),
+  return std::find_if(kAllEndingNames.begin(), kAllEndingNames.end(),
                       [&](const EndingName& e) { return e.ending == ending; })
       ->key;
 }
@@ -205,55 +220,59 @@ KolmogorovDistance duration_distance(const lattice::Analysis& a, const FieldCost
   return {distance, kSmirnov95 * std::sqrt(1.0 / n + 1.0 / m)};
 }
 
-Json to_json(const FieldCosts& costs, const dynamics::GateParams& p) {
+Json to_json(const FieldCosts& costs, const ShownField& shown) {
   Json json;
   const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
     const auto sums = ending ? costs.of(*ending) : costs.all();
     if (sums.trials == 0) return;
     const auto steps = ending ? costs.durations(*ending) : costs.durations();
-    json[key] = spent_json(spent(costs, ending), p,
+    json[key] = spent_json(spent(costs, ending), shown,
                            [&](double level) { return lattice::quantile(steps, level); });
     json[key]["trials"] = sums.trials;
   };
   add("all", {});
-  for (const EndingName& e : kEndingNames) add(e.key, e.ending);
+  for (const EndingName& e : kAllEndingNames) add(e.key, e.ending);
   return json;
 }
 
-std::string table_of(const FieldCosts& costs, const dynamics::GateParams& p) {
-  std::string table = kHeader;
+std::string table_of(const FieldCosts& costs, const ShownField& shown) {
+  std::string table = header_of(shown);
   const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
     if ((ending ? costs.of(*ending) : costs.all()).trials == 0) return;
     const auto steps = ending ? costs.durations(*ending) : costs.durations();
-    table += line_of(name, spent(costs, ending), p,
+    table += line_of(name, spent(costs, ending), shown,
                      [&](double level) { return lattice::quantile(steps, level); });
   };
   add("all", {});
-  for (const EndingName& e : kEndingNames) add(e.name, e.ending);
+  for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
   return table;
 }
 
 Json to_json(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
-  const dynamics::GateParams& p = f.scene.gate;
   Json json;
-  for (const EndingName& e : kEndingNames) {
+  for (const EndingName& e : kAllEndingNames) {
     const auto at = static_cast<std::size_t>(e.ending);
+    if (e.ending == lattice::kWentBack.ending && f.endings.rules_out(e.ending)) continue;
     json["endings"][e.key] = {{"probability", f.endings.share[at]},
                               {"interval_95", interval(f.endings.interval[at])}};
   }
   json["expected_gates"] = a.gates.mean;
   json["expected_gates_95"] = interval(a.gates.interval);
-  const auto expected = [&](const std::string& key, Cost cost) {
-    const Mean95& m = a.costs[static_cast<std::size_t>(cost)];
+  const auto expected = [&](const std::string& key, std::size_t cost) {
+    const Mean95& m = a.costs[cost];
     json["expected_" + key] = or_null(m.mean);
     json["expected_" + key + "_95"] = interval(m.interval);
   };
-  expected("seconds", Cost::seconds);
-  expected("work_J", Cost::propulsion_work);
-  expected("random_work_J", Cost::random_work);
-  expected("lost_J", Cost::lost);
-  json["cost_of_transport_J_per_kg_m"] = or_null(spent(a, {}).cost_of_transport(p));
+  if (f.shown.mass) {
+    expected("seconds", static_cast<std::size_t>(Cost::seconds));
+    expected("work_J", static_cast<std::size_t>(Cost::propulsion_work));
+    expected("random_work_J", static_cast<std::size_t>(Cost::random_work));
+    expected("lost_J", static_cast<std::size_t>(Cost::lost));
+    json["cost_of_transport_J_per_kg_m"] = or_null(spent(a, {}).cost_of_transport(*f.shown.mass));
+  } else {
+    for (std::size_t c = 0; c < a.costs.size(); ++c) expected(costs_of(f.shown)[c].key, c);
+  }
   json["expected_visits"] = grid(a.totals.visits);
   json["still_walking"] = a.totals.remainder;
   json["drawn_walks"] = a.totals.drawn_walks;
@@ -261,10 +280,11 @@ Json to_json(const AnalysedField& f) {
     const Spent s = spent(a, ending);
     if (!(s.share > 0.0)) return;
     const auto walks = durations_of(a, ending);
-    json["by_ending"][key] = spent_json(s, p, [&](double level) { return quantile(walks, level); });
+    json["by_ending"][key] =
+        spent_json(s, f.shown, [&](double level) { return quantile(walks, level); });
     json["by_ending"][key]["probability"] = s.share;
-    for (std::size_t c = 0; c < kCosts && ending; ++c)
-      json["by_ending"][key]["mean_" + std::string(dynamics::kCostNames[c].key) + "_95"] =
+    for (std::size_t c = 0; c < costs_of(f.shown).size() && ending; ++c)
+      json["by_ending"][key]["mean_" + costs_of(f.shown)[c].key + "_95"] =
           interval(a.costs_of[static_cast<std::size_t>(*ending)][c].interval);
     if (!f.direct) return;
     const KolmogorovDistance d = duration_distance(a, f.direct->costs, ending);
@@ -272,7 +292,7 @@ Json to_json(const AnalysedField& f) {
     json["by_ending"][key]["kolmogorov_chance_95"] = or_null(d.chance_95);
   };
   add("all", {});
-  for (const EndingName& e : kEndingNames) add(e.key, e.ending);
+  for (const EndingName& e : kAllEndingNames) add(e.key, e.ending);
 
   json["quasi_stationary"] = Json();
   if (!a.endless) json["why_not_quasi_stationary"] = a.why_not_endless;
@@ -302,16 +322,16 @@ Json to_json(const AnalysedField& f) {
   json["target"] = key_of(a.target);
   json["target_probability"] = a.target_chance;
   json["starts"] = Json::array();
-  for (const lattice::StartChance& s : a.starts)
-    json["starts"].push_back({{"d_m", s.range.at[dynamics::kEntryD]},
-                              {"vx_m_per_s", s.range.at[dynamics::kEntryVx]},
-                              {"vy_m_per_s", s.range.at[dynamics::kEntryVy]},
-                              {"probability", or_null(s.chance.mean)},
-                              {"interval_95", interval(s.chance.interval)}});
+  for (const lattice::StartChance& s : a.starts) {
+    Json one = to_json(a.space.section(), s.range);
+    one["probability"] = or_null(s.chance.mean);
+    one["interval_95"] = interval(s.chance.interval);
+    json["starts"].push_back(std::move(one));
+  }
   json["paths"] = Json::array();
   for (const markov::CellPath& path : a.paths.paths) {
     Json gates = Json::array();
-    for (const std::int64_t cell : path.cells) gates.push_back(gate_json(cell, f.scene.field));
+    for (const std::int64_t cell : path.cells) gates.push_back(gate_json(cell, f.shown.field));
     json["paths"].push_back({{"probability", path.share}, {"gates", std::move(gates)}});
   }
   json["paths_complete"] = !a.paths.gave_up;
@@ -320,7 +340,7 @@ Json to_json(const AnalysedField& f) {
   s["passed_gates"] = grid(a.passed);
   s["less_trapping"] = a.trapping.size() > 0 ? grid(a.trapping) : Json();
   s["less_trapping_by_state"] = a.state_trapping.empty() ? Json() : Json(a.state_trapping);
-  const std::vector<std::string> types = type_names(f.scene);
+  const std::vector<std::string>& types = f.shown.types;
   s["less_trapping_by_type"] = Json();
   for (std::size_t t = 0; t < types.size() && !a.type_trapping.empty(); ++t)
     s["less_trapping_by_type"][types[t]] = a.type_trapping[t];
@@ -358,7 +378,7 @@ Json to_json(const AnalysedField& f) {
   if (f.direct) {
     json["direct"] = {{"trials", f.direct->tally.trials},
                       {"endings", endings(f.direct->tally.endings)},
-                      {"costs", to_json(f.direct->costs, p)}};
+                      {"costs", to_json(f.direct->costs, f.shown)}};
   }
   json["states"] = f.states;
   json["gate_runs"] = f.gate_runs + f.parameters.health.runs;
@@ -369,28 +389,29 @@ Json to_json(const AnalysedField& f) {
 
 std::string table_of(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
-  const lattice::FieldParams& field = f.scene.field;
-  const dynamics::GateParams& p = f.scene.gate;
+  const lattice::FieldParams& field = f.shown.field;
   std::string table =
       endings_text(f.endings,
                    f.analysis.by_groups
                        ? "of all bodies, 95 % intervals that count everything"
                        : "of all bodies; 95 % intervals that count the sampling of the matrix") +
-      limits_text(f.scene) + "\ngates visited  " + with_interval(a.gates, 3) +
+      limits_text(f.shown) + "\ngates visited  " + with_interval(a.gates, 3) +
       (a.by_groups && std::isnan(a.gates.interval[0])
            ? " (no interval: it is the same in all eight groups of trials)"
            : "") +
-      "\n\nby the chain\n" + kHeader;
+      "\n\nby the chain\n" + header_of(f.shown);
   const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
     if (!(s.share > 0.0)) return;
     const auto walks = durations_of(a, ending);
-    table += line_of(name, s, p, [&](double level) { return quantile(walks, level); });
+    table += line_of(name, s, f.shown, [&](double level) { return quantile(walks, level); });
   };
   add("all", {});
-  for (const EndingName& e : kEndingNames) add(e.name, e.ending);
+  for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
   if (!std::isfinite(a.costs.front().mean))
-    table += "(the file is of an older version, which kept no durations: build it again)\n";
+    table += f.shown.mass
+                 ? "(the file is of an older version, which kept no durations: build it again)\n"
+                 : "(the durations of some passages are not known)\n";
   if (a.totals.drawn_walks > 0)
     table += "(a large field: times and work by ending are those of " +
              std::to_string(a.totals.drawn_walks) +
@@ -398,15 +419,17 @@ std::string table_of(const AnalysedField& f) {
   if (f.direct) {
     const KolmogorovDistance d = duration_distance(a, f.direct->costs, {});
     table += "by " + std::to_string(f.direct->tally.trials) + " trials of the full dynamics\n" +
-             table_of(f.direct->costs, p) +
+             table_of(f.direct->costs, f.shown) +
              "largest difference of the two distributions of time: " + fixed(d.distance, 4) +
              " (chance: " + fixed(d.chance_95, 4) + ", 95 %)\n";
   }
-  table +=
-      "work: of the propulsion and of the random force; lost: to hits, dampers and drag, and left "
-      "in the beams;\nJ/(kg m): cost of transport, work of both forces per mass and way "
-      "forward\n\n" +
-      map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
+  if (f.shown.mass)
+    table +=
+        "work: of the propulsion and of the random force; lost: to hits, dampers and drag, and "
+        "left "
+        "in the beams;\nJ/(kg m): cost of transport, work of both forces per mass and way "
+        "forward\n";
+  table += "\n" + map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
   if (a.endless)
     table += "\nbodies that go on for ever: " + percent(a.endless->survival, 1.0) +
              " of them get through or out of each further gate; " +
@@ -414,7 +437,7 @@ std::string table_of(const AnalysedField& f) {
              percent(a.endless->second / a.endless->survival, 1.0) +
              " is left of what tells where they started\n";
   const std::string target = std::string("\"") + target_word(a.target) + "\"";
-  const std::vector<std::string> types = type_names(f.scene);
+  const std::vector<std::string>& types = f.shown.types;
   if (f.from_trials)
     table +=
         "\nthe endings above are the trials' own shares, which are more certain here; the chain's "

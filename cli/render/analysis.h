@@ -6,8 +6,8 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/shown_field.h"
 #include "lattice/field_costs.h"
-#include "lattice/scene/scene.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/parameter_effects.h"
@@ -21,7 +21,8 @@ struct DirectTrials {
 };
 
 struct AnalysedField {
-  const lattice::Scene& scene;
+  const ShownField& shown;
+  const std::optional<dynamics::Entry>& start;  // none: as bodies were seen to enter first
   const lattice::EndingShares& endings;
   const lattice::Analysis& analysis;
   const lattice::ParameterEffects& parameters;
@@ -45,8 +46,8 @@ struct KolmogorovDistance {
                                                    std::optional<markov::Ending> ending);
 
 /// What trials took, by how they ended: means, standard deviations, quantiles of the duration.
-[[nodiscard]] Json to_json(const lattice::FieldCosts& costs, const dynamics::GateParams& p);
-[[nodiscard]] std::string table_of(const lattice::FieldCosts& costs, const dynamics::GateParams& p);
+[[nodiscard]] Json to_json(const lattice::FieldCosts& costs, const ShownField& shown);
+[[nodiscard]] std::string table_of(const lattice::FieldCosts& costs, const ShownField& shown);
 
 /// The target in words.
 [[nodiscard]] const char* target_name(const AnalysedField& field);

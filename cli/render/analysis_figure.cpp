@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPanelLeft = 78;
 constexpr const char* kCurveColours[] = {kFirstColour, kSecondColour, kThirdColour, kFourthColour,
-                                         kFifthColour};
+                                         kFifthColour, "#666666"};
 
 /// What the panels add to the script, and where the next one begins.
 struct Script {
@@ -43,14 +43,14 @@ void add_visits(Script& out, const AnalysedField& f) {
     // A little aside each, so that they do not hide each other.
     const double aside = 0.09 * (static_cast<double>(k) - 0.5 * static_cast<double>(most - 1));
     for (const std::int64_t cell_of_path : f.analysis.paths.paths[k].cells) {
-      const std::int64_t column = cell_of_path % f.scene.field.columns,
-                         row = cell_of_path / f.scene.field.columns;
+      const std::int64_t column = cell_of_path % f.shown.field.columns,
+                         row = cell_of_path / f.shown.field.columns;
       paths += digits(static_cast<double>(column - map.columns.first) + aside) + " " +
                digits(static_cast<double>(row - map.rows.first) + aside) + "\n";
     }
     paths += "\n";
   }
-  const TypeMarks types(f.scene);
+  const TypeMarks types(f.shown);
   const TypeMarks::Drawn marks =
       types.on(map, (box.right - box.left) / columns, (box.bottom - box.top) / lines, "visits");
   out.text += types.legend(out.sheet, box.bottom + 52, !marks.data.empty()) + marks.data +
@@ -80,7 +80,7 @@ void add_durations(Script& out, const AnalysedField& f) {
   std::string data, plots;
   double longest = 0.0;
   std::size_t colour = 0;
-  for (const EndingName& e : kEndingNames) {
+  for (const EndingName& e : kAllEndingNames) {
     const DurationCurve curve = duration_curve(f.analysis, e.ending);
     const char* const ink = kCurveColours[colour++];
     if (curve.seconds.empty()) continue;
@@ -116,23 +116,30 @@ void add_durations(Script& out, const AnalysedField& f) {
   out.top = box.bottom + 62;
 }
 
-/// The chance of the target from other starts with the start's own vx.
+/// The chance of the target from other starts, by the first and the last coordinate; one between
+/// them is the start's own.
 void add_starts(Script& out, const AnalysedField& f) {
-  const auto& seen = f.analysis.space.trees().front().seen;
-  const double vx = f.scene.start.vx, most = 100.0 * most_of_starts(f.analysis);
-  if (!(seen[0][1] > seen[0][0] && seen[2][1] > seen[2][0] && most > 0.0)) return;
+  const auto& coordinates = f.shown.map.section.coordinates;
+  if (!f.start || coordinates.size() < 2) return;
+  const std::size_t across = 0, up = coordinates.size() - 1;
+  const auto& seen = f.analysis.space.trees()[static_cast<std::size_t>(f.start->face)].seen;
+  const double most = 100.0 * most_of_starts(f.analysis);
+  if (!(seen[across][1] > seen[across][0] && seen[up][1] > seen[up][0] && most > 0.0)) return;
   std::string rows;
   const auto within = [](const std::array<double, 2>& range, const std::array<double, 2>& frame) {
     return std::array<double, 2>{std::max(range[0], frame[0]), std::min(range[1], frame[1])};
   };
+  const auto holds_the_others = [&](const dynamics::StateRange& range) {
+    for (std::size_t k = across + 1; k < up; ++k)
+      if (f.start->at[k] < range.at[k][0] || f.start->at[k] >= range.at[k][1]) return false;
+    return true;
+  };
   for (const lattice::StartChance& s : f.analysis.starts) {
-    const auto& of_vx = s.range.at[dynamics::kEntryVx];
-    if (vx < of_vx[0] || vx >= of_vx[1] || std::isnan(s.chance.mean)) continue;
-    const auto d = within(s.range.at[dynamics::kEntryD], seen[dynamics::kEntryD]),
-               vy = within(s.range.at[dynamics::kEntryVy], seen[dynamics::kEntryVy]);
-    if (!(d[1] > d[0] && vy[1] > vy[0])) continue;
-    rows += digits(0.5 * (d[0] + d[1])) + " " + digits(0.5 * (vy[0] + vy[1])) + " " +
-            digits(0.5 * (d[1] - d[0])) + " " + digits(0.5 * (vy[1] - vy[0])) + " " +
+    if (std::isnan(s.chance.mean) || !holds_the_others(s.range)) continue;
+    const auto x = within(s.range.at[across], seen[across]), y = within(s.range.at[up], seen[up]);
+    if (!(x[1] > x[0] && y[1] > y[0])) continue;
+    rows += digits(0.5 * (x[0] + x[1])) + " " + digits(0.5 * (y[0] + y[1])) + " " +
+            digits(0.5 * (x[1] - x[0])) + " " + digits(0.5 * (y[1] - y[0])) + " " +
             digits(std::sqrt(100.0 * s.chance.mean)) + "\n";
   }
   if (rows.empty()) return;
@@ -141,14 +148,20 @@ void add_starts(Script& out, const AnalysedField& f) {
   const auto range = [](const std::array<double, 2>& r) {
     return "[" + digits(r[0]) + ":" + digits(r[1]) + "]";
   };
+  const auto axis = [&](std::size_t k) {  // "start vy, m/s"
+    const std::string unit = dynamics::behind_number(coordinates[k].unit);
+    return "'start " + coordinates[k].name + (unit.empty() ? "" : "," + unit) + "'";
+  };
+  std::string title = "\"" + std::string(target_name(f)) + "\" by start, %";
+  for (std::size_t k = across + 1; k < up; ++k)
+    title += "; " + coordinates[k].name + " " + digits(f.start->at[k]) +
+             dynamics::behind_number(coordinates[k].unit);
   out.text += data_block("$starts", rows) + kFrame + out.sheet.margins(box) + kSequential +
-              "set cbrange " + scale.range() + "\nset xrange " + range(seen[0]) + "\nset yrange " +
-              range(seen[2]) + "\nset xtics " + digits(tic_step(seen[0][1] - seen[0][0], 5)) +
-              "\nset ytics " + digits(tic_step(seen[2][1] - seen[2][0], 5)) + "\n" +
-              Sheet::axes("'start d, m'", "'start vy, m/s'") +
-              out.sheet.text(
-                  "\"" + std::string(target_name(f)) + "\" by start, %; vx " + digits(vx) + " m/s",
-                  8, out.top + 18) +
+              "set cbrange " + scale.range() + "\nset xrange " + range(seen[across]) +
+              "\nset yrange " + range(seen[up]) + "\nset xtics " +
+              digits(tic_step(seen[across][1] - seen[across][0], 5)) + "\nset ytics " +
+              digits(tic_step(seen[up][1] - seen[up][0], 5)) + "\n" +
+              Sheet::axes(axis(across), axis(up)) + out.sheet.text(title, 8, out.top + 18) +
               scale.colours(out.sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
               "plot $starts using 1:2:3:4:5 with boxxyerror fillcolor palette fillstyle solid 1.0 "
               "noborder\nunset label\nunset colorbox\n";

@@ -102,7 +102,7 @@ Json start_json(const ChainErrorChart& chart, std::size_t s) {
   const FieldTruth& t = chart.truths[s];
   const auto n = static_cast<double>(t.tally.trials);
   Json j;
-  j["start"] = to_json(t.start);
+  j["start"] = to_json(dynamics::disc_section(), t.start.entry());
   j["truth"] = {{"trials", t.tally.trials},
                 {"one_thread_s_per_trial", t.seconds_per_trial},
                 {"floor", json_of(t.floor)},

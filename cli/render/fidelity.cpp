@@ -73,7 +73,8 @@ std::string line_of(const FidelityOfStart& s, const FidelityVariant& v, const Fi
   const auto shown = [&](std::int64_t n, int width) {
     return padded(percent(static_cast<double>(n), static_cast<double>(run.tally.trials), 2), width);
   };
-  std::string line = start_text(s.start) + "  | " + padded(v.name(), -18) +
+  std::string line = start_text(dynamics::disc_section(), dynamics::entry_of(s.start.body())) +
+                     "  | " + padded(v.name(), -18) +
                      padded(fixed(1e3 * run.seconds_per_trial, 2), 7) +
                      shown(run.tally.trapped, 9) + shown(run.tally.left_field, 10) +
                      shown(run.tally.cut_off, 9) + " |";
@@ -97,7 +98,7 @@ Json to_json(const FidelityStudy& study) {
   j["starts"] = Json::array();
   for (const FidelityOfStart& s : study.starts) {
     Json one;
-    one["start"] = to_json(s.start);
+    one["start"] = to_json(dynamics::disc_section(), dynamics::entry_of(s.start.body()));
     const Sufficiency active = s.active_is();
     one["active_is_enough"] =
         active == Sufficiency::cannot_tell ? Json() : Json(active == Sufficiency::enough);

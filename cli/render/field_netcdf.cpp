@@ -1,6 +1,7 @@
 #include "cli/render/field_netcdf.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "cli/render/json.h"
@@ -40,7 +41,8 @@ std::vector<std::int32_t> numbers_from(int first, Eigen::Index count) {
 
 }  // namespace
 
-std::string netcdf_of(const std::vector<FieldArrays>& fields, const Json& made_by) {
+std::string netcdf_of(const std::vector<FieldArrays>& fields, const dynamics::Section& section,
+                      const Json& made_by) {
   const Eigen::Index rows = fields.front().shares.final_gates.rows(),
                      columns = fields.front().shares.final_gates.cols();
   using namespace markov::netcdf;
@@ -61,9 +63,15 @@ std::string netcdf_of(const std::vector<FieldArrays>& fields, const Json& made_b
     for (const FieldArrays& f : fields) values.push_back(value(f));
     put_variable(nc, name, start, values, unit, meaning);
   };
-  of_starts("start_d", "m", "where it began: x", [](const auto& f) { return f.start.d; });
-  of_starts("start_vx", "m s-1", "with this velocity", [](const auto& f) { return f.start.vx; });
-  of_starts("start_vy", "m s-1", "with this velocity", [](const auto& f) { return f.start.vy; });
+  if (std::any_of(fields.begin(), fields.end(),
+                  [](const auto& f) { return f.start && f.start->face != 0; }))
+    of_starts("start_face", "1", "face by which it entered: " + numbers_of(section.faces),
+              [](const auto& f) { return f.start ? f.start->face : std::nan(""); });
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+    const dynamics::Coordinate& c = section.coordinates[axis];
+    of_starts("start_" + c.name, c.unit.c_str(), "where it began: " + c.words,
+              [axis](const auto& f) { return f.start ? f.start->at[axis] : std::nan(""); });
+  }
   for (const EndingName& e : kEndingNames)
     of_starts(e.key, "1", std::string("share of all: ") + e.name, [&](const FieldArrays& f) {
       return f.shares.endings.share[static_cast<std::size_t>(e.ending)];

@@ -8,7 +8,7 @@
 
 #include "cli/render/field_figure.h"
 #include "cli/render/json_fwd.h"
-#include "lattice/scene/table4.h"
+#include "cli/render/start.h"
 
 namespace gatewalk::cli {
 
@@ -19,12 +19,14 @@ inline constexpr const char* kNetcdfHelp =
 /// Shares of all that began in one way, and low and high of the final gates where they are known.
 struct FieldArrays {
   FieldPicture shares;
-  lattice::PaperStart start;  // of the picture
+  Start start;  // of the picture
   std::optional<std::array<markov::CellProbabilities, 2>> gates_95 = std::nullopt;
 };
 
 /// The bytes of a file with final_gates, trapped_gates and departed_gates (start x i_y x i_x),
-/// final_gates_low and _high where all have them, the endings, and `made_by` as attributes.
-[[nodiscard]] std::string netcdf_of(const std::vector<FieldArrays>& fields, const Json& made_by);
+/// final_gates_low and _high where all have them, the endings, the starts (NaN: as bodies were seen
+/// to enter first), and `made_by` as attributes.
+[[nodiscard]] std::string netcdf_of(const std::vector<FieldArrays>& fields,
+                                    const dynamics::Section& section, const Json& made_by);
 
 }  // namespace gatewalk::cli

@@ -13,16 +13,16 @@ namespace gatewalk::cli {
 
 using dynamics::share_interval;
 
-Json to_json(const lattice::FieldTally& tally, const lattice::Scene& scene,
-             const std::optional<lattice::Settled>& settled) {
+Json to_json(const lattice::FieldTally& tally, const ShownField& shown,
+             const std::optional<RunScene>& run) {
   Json json;
   json["endings"] = endings(tally.endings);
   json["endings_95"] = endings_95(
-      lattice::EndingShares(tally.endings, tally.trials).with_limit(scene.field.max_gates));
+      lattice::EndingShares(tally.endings, tally.trials).with_limit(shown.field.max_gates));
   json["final_gates"] = small_grid(tally.final_gates);
   json["trapped_gates"] = small_grid(tally.trapped_gates);
   json["departed_gates"] = small_grid(tally.departed_gates);
-  say_left_out(json, scene.field.columns, scene.field.rows);
+  say_left_out(json, shown.field.columns, shown.field.rows);
   json["trials"] = tally.trials;
   json["trapped"] = tally.trapped;
   json["departed"] = tally.left_field;
@@ -32,38 +32,41 @@ Json to_json(const lattice::FieldTally& tally, const lattice::Scene& scene,
                           {"departed", share_interval(tally.left_field, tally.trials)},
                           {"cut_off", share_interval(tally.cut_off, tally.trials)}};
   Json entries;
-  for (int b = 0; b < dynamics::kBoundaries; ++b)
-    entries[dynamics::disc_section().faces[b].name] = {{"count", tally.entries[b]},
-                                                       {"outside_bins", tally.clamped[b]}};
+  const auto& faces = shown.map.section.faces;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    entries[faces[f].name]["count"] = tally.entries[f];
+    if (run) entries[faces[f].name]["outside_bins"] = tally.clamped[f];
+  }
   json["entries_between_gates"] = std::move(entries);
-  json["bins"] = scene.bins ? "scene" : "paper";  // what outside_bins counts by
-  if (settled) json["method"] = to_json(*settled);
+  if (run) json["bins"] = run->scene.bins ? "scene" : "paper";  // what outside_bins counts by
+  if (run && run->settled) json["method"] = to_json(*run->settled);
   json["status"] = to_json(tally.health);
   return json;
 }
 
-std::string table_of(const lattice::FieldTally& tally, const lattice::Scene& scene,
-                     const std::optional<lattice::Settled>& settled) {
+std::string table_of(const lattice::FieldTally& tally, const ShownField& shown,
+                     const std::optional<RunScene>& run) {
   const auto n = static_cast<double>(tally.trials);
   std::string table =
       endings_text(
-          lattice::EndingShares(tally.endings, tally.trials).with_limit(scene.field.max_gates),
+          lattice::EndingShares(tally.endings, tally.trials).with_limit(shown.field.max_gates),
           "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
-      limits_text(scene) + scene_line(scene) + map_of(tally.final_gates.cast<double>() / n) +
+      limits_text(shown) + (run ? scene_line(run->scene) : "") +
+      map_of(tally.final_gates.cast<double>() / n) +
       map_of_trapped(tally.trapped_gates.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) + "\n";
   if (tally.broken > 0)
     table +=
         "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
-  return table + method_line(settled);
+  return table + (run ? method_line(run->settled) : "");
 }
 
-Json to_json(const markov::WalkTally& tally, const lattice::ChainStart& start,
-             const dynamics::StateSpace& space, const lattice::Scene& scene) {
+Json to_json(const ShownWalks& walks, const ShownField& shown) {
+  const markov::WalkTally& tally = walks.tally;
   Json json;
   json["endings"] = endings(tally.endings);
   json["endings_95"] = endings_95(
-      lattice::EndingShares(tally.endings, tally.walks).with_limit(scene.field.max_gates));
+      lattice::EndingShares(tally.endings, tally.walks).with_limit(shown.field.max_gates));
   json["final_gates"] = small_grid(tally.final_cells);
   json["trapped_gates"] = small_grid(tally.trapped_cells);
   json["departed_gates"] = small_grid(tally.departed_cells);
@@ -75,21 +78,20 @@ Json to_json(const markov::WalkTally& tally, const lattice::ChainStart& start,
   json["cut_off"] = tally.cut_off;
   json["never_sampled"] = tally.unsampled;
   json["gates_visited"] = tally.steps;
-  json["start_state"] = to_json(start, space);
+  json["start_state"] = walks.start_state;
   return json;
 }
 
-std::string table_of(const markov::WalkTally& tally, const lattice::ChainStart& start,
-                     const dynamics::StateSpace& space, const lattice::Scene& scene) {
+std::string table_of(const ShownWalks& walks, const ShownField& shown) {
+  const markov::WalkTally& tally = walks.tally;
   const auto n = static_cast<double>(tally.walks);
   std::string table =
       endings_text(
-          lattice::EndingShares(tally.endings, tally.walks).with_limit(scene.field.max_gates),
+          lattice::EndingShares(tally.endings, tally.walks).with_limit(shown.field.max_gates),
           "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
-      limits_text(scene) + map_of(tally.final_cells.cast<double>() / n) +
+      limits_text(shown) + map_of(tally.final_cells.cast<double>() / n) +
       map_of_trapped(tally.trapped_cells.cast<double>() / n) + "departed " +
-      percent(static_cast<double>(tally.left_field), n, 2) +
-      "\nstart: " + text_of(space.section(), space.range(start.start.input)) +
+      percent(static_cast<double>(tally.left_field), n, 2) + "\nstart: " + walks.start +
       "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has, "
       "the chain's own error (bins, memory) gatewalk validate measures.\n";
   if (tally.unsampled > 0)

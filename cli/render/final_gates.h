@@ -72,6 +72,7 @@ struct FieldMap {
 [[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares);
 
 using lattice::EndingName;
+using lattice::kAllEndingNames;
 using lattice::kEndingNames;
 /// {"crossed": ..., "left_side": ..., ...}: counts, shares, or [low, high] (null: no interval).
 [[nodiscard]] Json endings(const std::array<std::int64_t, markov::kEndings>& counts);

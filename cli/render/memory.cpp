@@ -9,7 +9,6 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
-#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -27,15 +26,13 @@ std::string p_words(double p) {
   return p < 0.001 ? "p < 0.001" : "p = " + fixed(p, p < 0.1 ? 3 : 2);
 }
 
-std::string outcome_name(int outcome) {
-  return outcome == dynamics::kBoundaries ? "trapped"
-                                          : dynamics::disc_section().faces[outcome].name;
+const std::string& outcome_name(const MemoryStudy& study, int outcome) {
+  return study.outcomes[static_cast<std::size_t>(outcome)];
 }
 
 /// What a label means.
-std::string label_name(Question q, int label) {
-  if (q == Question::gate_before)
-    return lattice::origins_of(dynamics::disc_section())[static_cast<std::size_t>(label)];
+std::string label_name(const MemoryStudy& study, Question q, int label) {
+  if (q == Question::gate_before) return study.origins[static_cast<std::size_t>(label)];
   if (q == Question::visit)
     return "gate number " + std::to_string(label + 1) +
            (label + 1 == lattice::kVisits ? " or later" : "");
@@ -52,7 +49,8 @@ std::string power_words(const Independence& i) {
 }
 
 /// "a memory of total variation 0.031 [0.025, 0.038]; most of all ..."
-std::string size_words(Question q, const Independence& i) {
+std::string size_words(const MemoryStudy& study, Question q) {
+  const Independence& i = study.independence(q);
   std::string text;
   if (i.memory_low > 0.0)
     text = "a memory of total variation " + fixed(i.memory, 3) + " [" + fixed(i.memory_low, 3) +
@@ -60,9 +58,9 @@ std::string size_words(Question q, const Independence& i) {
   else
     text = "not the same way in all states";
   if (i.label >= 0)
-    text += "; most of all " + label_name(q, i.label) + ": " + outcome_name(i.outcome) + " by " +
-            fixed(100.0 * std::abs(i.more), 1) + " % of its runs more " +
-            (i.more > 0.0 ? "often" : "seldom");
+    text += "; most of all " + label_name(study, q, i.label) + ": " +
+            outcome_name(study, i.outcome) + " by " + fixed(100.0 * std::abs(i.more), 1) +
+            " % of its runs more " + (i.more > 0.0 ? "often" : "seldom");
   return text;
 }
 
@@ -70,7 +68,7 @@ std::string sentence(const MemoryStudy& study, Question q) {
   const Independence& i = study.independence(q);
   const std::string asked(kAsked[static_cast<std::size_t>(q)]), p = p_words(study.p_adjusted(q));
   return study.remembers(q)
-             ? asked + " tells more than the state (" + p + "): " + size_words(q, i)
+             ? asked + " tells more than the state (" + p + "): " + size_words(study, q)
              : asked + " tells nothing more than the state (" + p + "; " + power_words(i) + ")";
 }
 
@@ -91,8 +89,8 @@ Json to_json(const MemoryStudy& study, Question q) {
   j["statistics"]["pooled"]["degrees"] = i.degrees;
   j["statistics"]["pooled"]["p_chi_squared"] = i.p_chi_squared;
   if (i.label >= 0) {
-    j["statistics"]["strongest"]["label"] = label_name(q, i.label);
-    j["statistics"]["strongest"]["outcome"] = outcome_name(i.outcome);
+    j["statistics"]["strongest"]["label"] = label_name(study, q, i.label);
+    j["statistics"]["strongest"]["outcome"] = outcome_name(study, i.outcome);
     j["statistics"]["strongest"]["excess"] = i.more;
   }
   j["total_variation"] = i.memory;
@@ -124,12 +122,12 @@ std::string sentence_ahead(const MemoryStudy& study) {
 
 /// By the way now and the way then: {"EN": {"EN": ..., "trapped": ...}, ...}
 template <class Value>
-Json by_ways(const std::vector<Value>& values) {
+Json by_ways(const MemoryStudy& study, const std::vector<Value>& values) {
   Json j;
   std::size_t at = 0;
-  for (int from = 0; from < dynamics::kBoundaries; ++from)
-    for (int to = 0; to <= dynamics::kBoundaries; ++to)
-      j[outcome_name(from)][outcome_name(to)] = values[at++];
+  const std::vector<std::string>& names = study.outcomes;  // the last one: trapped
+  for (std::size_t from = 0; from + 1 < names.size(); ++from)
+    for (const std::string& to : names) j[names[from]][to] = values[at++];
   return j;
 }
 
@@ -145,9 +143,9 @@ Json to_json(const MemoryStudy& study, const GatesAhead& ahead) {
         {{"gates", s.gates},
          {"total_variation", to_json(s.total_variation)},
          {"total_variation_by_chance", {{"mean", s.chance}, {"at_95", s.chance_95}}},
-         {"seen", by_ways(s.seen)},
-         {"predicted", by_ways(s.predicted)},
-         {"excess_95", by_ways(s.excess_95)}});
+         {"seen", by_ways(study, s.seen)},
+         {"predicted", by_ways(study, s.predicted)},
+         {"excess_95", by_ways(study, s.excess_95)}});
   j["sentence"] = sentence_ahead(study);
   return j;
 }

@@ -7,7 +7,6 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
-#include "cli/render/prediction.h"
 #include "cli/render/scene.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
@@ -58,9 +57,7 @@ std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
   return table;
 }
 
-std::string title_of(const dynamics::Section& section, const lattice::StartAnswer& a) {
-  return a.as_seen ? "start: all entries that were seen first" : cli::title_of(section, a.start);
-}
+Start start_of(const lattice::StartAnswer& a) { return a.as_seen ? Start() : Start(a.start); }
 
 double worst_error(const lattice::PooledPrediction& p) {
   double worst = 0.0;
@@ -83,8 +80,7 @@ Json to_json(const lattice::PooledPrediction& p, const ShownField& shown, double
   if (!given) add_to(json, p.starts.front(), shown);
   for (std::size_t k = 0; given && k < p.starts.size(); ++k) {
     Json one;
-    one["start"] =
-        p.starts[k].as_seen ? Json("as seen") : to_json(shown.map.section, p.starts[k].start);
+    one["start"] = to_json(shown.map.section, start_of(p.starts[k]));
     add_to(one, p.starts[k], shown);
     json["starts"].push_back(std::move(one));
   }
@@ -104,7 +100,8 @@ Json to_json(const lattice::PooledPrediction& p, const ShownField& shown, double
 std::string table_of(const lattice::PooledPrediction& p, const ShownField& shown, bool given) {
   std::string table;
   for (std::size_t k = 0; k < p.starts.size(); ++k)
-    table += (k > 0 ? "\n" : "") + (given ? title_of(shown.map.section, p.starts[k]) + "\n" : "") +
+    table += (k > 0 ? "\n" : "") +
+             (given ? title_of(shown.map.section, start_of(p.starts[k])) + "\n" : "") +
              table_of(p.starts[k], shown);
   const Json direct = direct_seconds(p);
   table += std::to_string(p.gate_runs) + " gate runs, " + std::to_string(p.states) + " states, " +

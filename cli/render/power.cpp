@@ -57,7 +57,7 @@ constexpr int kName = -12, kShare = 10, kCell = 20;
 
 std::string share_text(const lattice::StartAnswer& a, std::size_t e) {
   const lattice::EndingShares shown = shown_endings(a.endings, a.final);
-  return padded(percents(shown.share[place(kEndingNames[e])]), kShare);
+  return padded(percents(shown.share[place(kAllEndingNames[e])]), kShare);
 }
 
 std::string sureness(const ExperimentOptions& options) {
@@ -99,7 +99,7 @@ std::string needed_table(const PlannedExperiment& p) {
     text += padded(digits(100.0 * d) + " points ", kCell);
   std::string rows = "\n";
   for (const std::size_t e : looked_at(p)) {
-    rows += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
+    rows += padded(kAllEndingNames[e].name, kName) + share_text(p.prediction, e);
     for (const Effect& effect : p.plan.endings[e].effects)
       rows += padded(effect_text(effect), kCell);
     rows += "\n";
@@ -129,7 +129,7 @@ std::string power_table(const PlannedExperiment& p) {
   std::string rows = "\n";
   for (const std::size_t e : looked_at(p)) {
     const lattice::EndingPlan& plan = p.plan.endings[e];
-    rows += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e);
+    rows += padded(kAllEndingNames[e].name, kName) + share_text(p.prediction, e);
     for (const Effect& effect : plan.effects) rows += padded(power_text(effect), 11);
     rows += padded(text_of(plan.least), 16) + "  (" + text_of(plan.least_of_all) + ")\n";
   }
@@ -161,7 +161,7 @@ std::string versus_table(const PlannedExperiment& p) {
   std::string rows = "\n";
   for (const std::size_t e : looked_at_apart(p)) {
     const Effect& effect = p.apart->endings[e];
-    rows += padded(kEndingNames[e].name, kName) + share_text(p.prediction, e) +
+    rows += padded(kAllEndingNames[e].name, kName) + share_text(p.prediction, e) +
             share_text(*p.other, e) + padded(effect_text(effect), kCell) + power(effect) + "\n";
   }
   const Effect& gates = p.apart->final_gates;
@@ -219,7 +219,7 @@ std::string told_apart(const PlannedExperiment& p) {
   for (const std::size_t e : looked_at_apart(p))
     if (const auto& n = p.apart->endings[e].trials_of_all; n && (!by_ending || *n < *by_ending)) {
       by_ending = n;
-      name = kEndingNames[e].name;
+      name = kAllEndingNames[e].name;
     }
   std::string keys;
   for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
@@ -278,15 +278,15 @@ Json to_json(const PlannedExperiment& p) {
   Json& off = json["from_prediction"];
   for (const std::size_t e : looked_at(p))
     for (const Effect& effect : p.plan.endings[e].effects)
-      off["endings"][kEndingNames[e].key].push_back(to_json(effect, p.options, true));
+      off["endings"][kAllEndingNames[e].key].push_back(to_json(effect, p.options, true));
   for (const Effect& effect : p.plan.final_gates)
     off["final_gates"].push_back(to_json(effect, p.options, false));
   if (p.options.trials) {
     Json& least = json["smallest_difference"];
     for (const std::size_t e : looked_at(p)) {
       const lattice::EndingPlan& plan = p.plan.endings[e];
-      least["endings_percentage_points"][kEndingNames[e].key] = to_json(plan.least);
-      least["endings_percentage_points_if_all_are_looked_at"][kEndingNames[e].key] =
+      least["endings_percentage_points"][kAllEndingNames[e].key] = to_json(plan.least);
+      least["endings_percentage_points_if_all_are_looked_at"][kAllEndingNames[e].key] =
           to_json(plan.least_of_all);
     }
     least["final_gates_total_variation"] = or_null(p.plan.least_total_variation);
@@ -296,7 +296,8 @@ Json to_json(const PlannedExperiment& p) {
   versus["set"] = p.versus;
   versus.update(to_json(*p.other));
   for (const std::size_t e : looked_at_apart(p))
-    versus["apart"]["endings"][kEndingNames[e].key] = to_json(p.apart->endings[e], p.options, true);
+    versus["apart"]["endings"][kAllEndingNames[e].key] =
+        to_json(p.apart->endings[e], p.options, true);
   versus["apart"]["final_gates"] = to_json(p.apart->final_gates, p.options, false);
   versus["scene"] = lattice::to_toml(*p.other_scene);
   return json;

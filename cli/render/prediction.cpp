@@ -63,21 +63,14 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
 
 }  // namespace
 
-std::string title_of(const lattice::PaperStart& s) {
-  std::ostringstream title;
-  title << "start d " << s.d << " m, vx " << s.vx << " m/s, vy " << s.vy << " m/s";
-  return title.str();
-}
-
 Json to_json(const lattice::Prediction& prediction, const PredictedField& of,
              const std::string& solver) {
   const dynamics::StateSpace& space = of.matrix.file.transitions.space;
   Json json;
   if (of.starts.empty()) add_to(json, prediction.starts.front(), of.matrix.scene);
   for (std::size_t k = 0; k < of.starts.size(); ++k) {
-    const lattice::PaperStart& s = of.starts[k];
     Json one;
-    one["start"] = {{"d_m", s.d}, {"vx_m_per_s", s.vx}, {"vy_m_per_s", s.vy}};
+    one["start"] = to_json(space.section(), of.starts[k]);
     add_to(one, prediction.starts[k], of.matrix.scene);
     one["start_state"] = to_json(prediction.starts[k].start, space);
     json["starts"].push_back(std::move(one));
@@ -98,8 +91,9 @@ std::string table_of(const lattice::Prediction& prediction, const PredictedField
   std::string table;
   if (of.starts.empty()) table = table_of(prediction.starts.front(), of);
   for (std::size_t k = 0; k < of.starts.size(); ++k)
-    table +=
-        (k > 0 ? "\n" : "") + title_of(of.starts[k]) + "\n" + table_of(prediction.starts[k], of);
+    table += (k > 0 ? "\n" : "") +
+             title_of(of.matrix.file.transitions.space.section(), of.starts[k]) + "\n" +
+             table_of(prediction.starts[k], of);
   for (const lattice::RowMatrix& o : of.other_rows)
     table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " +
              o.path + "\n";

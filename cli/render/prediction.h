@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/render/json_fwd.h"
+#include "cli/render/start.h"
 #include "lattice/scene/row_matrices.h"
-#include "lattice/scene/table4.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
@@ -15,12 +15,9 @@ namespace gatewalk::cli {
 /// of other matrices.
 struct PredictedField {
   const lattice::SceneMatrix& matrix;
-  const std::vector<lattice::PaperStart>& starts;
+  const std::vector<Start>& starts;
   const std::vector<lattice::RowMatrix>& other_rows;
 };
-
-/// "start d 4 m, vx 5 m/s, vy 10 m/s"
-[[nodiscard]] std::string title_of(const lattice::PaperStart& start);
 
 /// Without "made_by".
 [[nodiscard]] Json to_json(const lattice::Prediction& prediction, const PredictedField& of,

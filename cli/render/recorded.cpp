@@ -14,12 +14,18 @@ struct Fates {
 
 Fates fates_of(const lattice::RunPool& pool) {
   Fates fates;
-  const lattice::PassageTable& passages = pool.scattered.each.passages;
-  for (std::size_t i = 0; i < passages.size(); ++i) {
-    const dynamics::Fate fate = passages[i].fate;
-    ++(fate == dynamics::Fate::left      ? fates.left
-       : fate == dynamics::Fate::trapped ? fates.trapped
-                                         : fates.lost);
+  const auto add = [&](const lattice::PassageTable& passages) {
+    for (std::size_t i = 0; i < passages.size(); ++i) {
+      const dynamics::Fate fate = passages[i].fate;
+      ++(fate == dynamics::Fate::left      ? fates.left
+         : fate == dynamics::Fate::trapped ? fates.trapped
+                                           : fates.lost);
+    }
+  };
+  add(pool.scattered.each.passages);
+  for (const lattice::StartTrials& s : pool.starts) {
+    add(s.full.passages);
+    add(s.first.passages);
   }
   return fates;
 }
@@ -55,13 +61,13 @@ std::vector<std::string> doubts(const lattice::RunPool& pool, const lattice::Pro
   return said;
 }
 
-Json to_json(const LostBounds& bounds) {
+Json to_json(const lattice::LostBounds& bounds) {
   return {{"lost_share", bounds.lost},
           {"if_trapped", endings(bounds.final[0].endings)},
           {"if_left", endings(bounds.final[1].endings)}};
 }
 
-std::string table_of(const LostBounds& bounds) {
+std::string table_of(const lattice::LostBounds& bounds) {
   if (!(bounds.lost > 0.0)) return "";
   std::string text = percent(bounds.lost, 1.0, 2) +
                      " of the passages were lost from sight and are left out. If "

@@ -11,6 +11,7 @@ ShownField::ShownField(const lattice::Scene& scene)
       width(scene.gate.gate_width()),
       length(scene.gate.gate_length()),
       time_limit(scene.gate.run.time_limit),
+      mass(scene.gate.body.mass),
       types(type_names(scene)),
       map(lattice::gates_of(scene).map()) {}
 

@@ -1,6 +1,7 @@
 #pragma once
 /// What results are shown of: the field, its cells' size and types, how entries are told.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct ShownField {
   lattice::FieldParams field;
   double width = 0.0, length = 0.0;  // m, of a cell
   double time_limit = 0.0;           // s, until a body is trapped; NaN: somebody said so
+  std::optional<double> mass;        // kg, of a disc; other bodies' are not known
   std::vector<std::string> types;    // names by type, "s/t" where two are alike; none where all are
   dynamics::CellMap map;             // section, which type stands where
 

@@ -9,52 +9,68 @@
 
 namespace gatewalk::cli {
 
-Json to_json(const lattice::PaperStart& start) {
-  return {{"d_m", start.d}, {"vx_m_per_s", start.vx}, {"vy_m_per_s", start.vy}};
-}
+namespace {
 
-Json to_json(const dynamics::Section& section, const dynamics::Entry& entry) {
+/// Names of faces but the first go without saying.
+Json with_face(const dynamics::Section& section, int face) {
   Json json = Json::object();
-  if (entry.face != 0) json["face"] = section.faces[static_cast<std::size_t>(entry.face)].name;
-  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-    json[section.coordinates[axis].key] = entry.at[axis];
+  if (face != 0) json["face"] = section.faces[static_cast<std::size_t>(face)].name;
   return json;
 }
 
-std::string title_of(const dynamics::Section& section, const dynamics::Entry& entry) {
+}  // namespace
+
+Json to_json(const dynamics::Section& section, const Start& start) {
+  if (!start) return "as seen";
+  Json json = with_face(section, start->face);
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    json[section.coordinates[axis].key] = start->at[axis];
+  return json;
+}
+
+Json to_json(const dynamics::Section& section, const dynamics::StateRange& range) {
+  Json json = with_face(section, range.face);
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    json[section.coordinates[axis].key] = range.at[axis];
+  return json;
+}
+
+std::string title_of(const dynamics::Section& section, const Start& start) {
+  if (!start) return "start: all entries that were seen first";
   std::ostringstream title;
   title << "start";
-  if (entry.face != 0) title << " " << section.faces[static_cast<std::size_t>(entry.face)].name;
+  if (start->face != 0) title << " " << section.faces[static_cast<std::size_t>(start->face)].name;
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
     const dynamics::Coordinate& c = section.coordinates[axis];
-    title << (axis > 0 ? ", " : " ") << c.name << " " << entry.at[axis]
+    title << (axis > 0 ? ", " : " ") << c.name << " " << start->at[axis]
           << dynamics::behind_number(c.unit);
   }
   return title.str();
 }
 
-StartTexts::StartTexts(const std::vector<lattice::PaperStart>& starts) : texts(starts.size()) {
-  struct TextColumn {
-    const char* name;
-    double lattice::PaperStart::*value;
-    int width;  // at least
+StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynamics::Entry>& starts)
+    : texts(starts.size()) {
+  const auto add = [&](const std::string& name, std::size_t least, std::size_t gap,
+                       const auto& text_of_start) {
+    std::size_t width = std::max(least, name.size() + gap);
+    for (const dynamics::Entry& s : starts) width = std::max(width, text_of_start(s).size() + gap);
+    header += padded(name, static_cast<int>(width));
+    for (std::size_t k = 0; k < starts.size(); ++k)
+      texts[k] += padded(text_of_start(starts[k]), static_cast<int>(width));
   };
-  for (const auto& [name, value, least] :
-       {TextColumn{"d", &lattice::PaperStart::d, 4}, TextColumn{"vx", &lattice::PaperStart::vx, 5},
-        TextColumn{"vy", &lattice::PaperStart::vy, 5}}) {
-    std::vector<std::string> numbers;
-    int width = least;
-    for (const lattice::PaperStart& s : starts) {
-      char digits[32];
-      const auto end =
-          std::to_chars(digits, digits + sizeof digits, s.*value + 0.0).ptr;  // -0 is 0
-      numbers.emplace_back(digits, end);
-      const int gap = least > 4 ? 2 : 1;
-      width = std::max(width, static_cast<int>(numbers.back().size()) + gap);
-    }
-    header += padded(name, width);
-    for (std::size_t k = 0; k < starts.size(); ++k) texts[k] += padded(numbers[k], width);
-  }
+  const auto face_of = [&](const dynamics::Entry& s) {
+    return section.faces[static_cast<std::size_t>(s.face)].name;
+  };
+  if (std::any_of(starts.begin(), starts.end(), [](const auto& s) { return s.face != 0; }))
+    add("face", 4, 1, face_of);
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    add(section.coordinates[axis].name, axis == 0 ? 4 : 5, axis == 0 ? 1 : 2,
+        [&](const dynamics::Entry& s) {
+          char digits[32];
+          const auto end =
+              std::to_chars(digits, digits + sizeof digits, s.at[axis] + 0.0).ptr;  // -0 is 0
+          return std::string(digits, end);
+        });
 }
 
 Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space) {
@@ -64,6 +80,8 @@ Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space
           {"clamped", start.clamped}};
 }
 
-std::string start_text(const lattice::PaperStart& s) { return StartTexts({s}).texts.front(); }
+std::string start_text(const dynamics::Section& section, const dynamics::Entry& start) {
+  return StartTexts(section, {start}).texts.front();
+}
 
 }  // namespace gatewalk::cli

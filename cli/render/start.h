@@ -1,30 +1,33 @@
 #pragma once
 /// Starts of trials and of chains, as JSON and in words.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/render/json_fwd.h"
 #include "lattice/gate_chain.h"
-#include "lattice/scene/table4.h"
 
 namespace gatewalk::cli {
 
-/// {"d_m", "vx_m_per_s", "vy_m_per_s"}
-[[nodiscard]] Json to_json(const lattice::PaperStart& start);
+/// Where bodies start that are asked about: an entry, or (none) as bodies were seen to enter first.
+using Start = std::optional<dynamics::Entry>;
 
-/// By the coordinates' keys; with "face" where it is not the first one.
-[[nodiscard]] Json to_json(const dynamics::Section& section, const dynamics::Entry& entry);
+/// {"d_m", "vx_m_per_s", "vy_m_per_s"}: by the coordinates' keys; with "face" where it is not the
+/// first one. Of a range [from, to] each. "as seen" where there is no entry.
+[[nodiscard]] Json to_json(const dynamics::Section& section, const Start& start);
+[[nodiscard]] Json to_json(const dynamics::Section& section, const dynamics::StateRange& range);
 /// "start d 4 m, vx 5 m/s, vy 10 m/s"; with the face's name where it is not the first one.
-[[nodiscard]] std::string title_of(const dynamics::Section& section, const dynamics::Entry& entry);
+[[nodiscard]] std::string title_of(const dynamics::Section& section, const Start& start);
 
 /// "  23  -11   16": columns as wide as the numbers of all starts need, every digit of them.
 struct StartTexts {
   std::string header;              // "   d   vx   vy"
   std::vector<std::string> texts;  // (starts)
-  explicit StartTexts(const std::vector<lattice::PaperStart>& starts);
+  StartTexts(const dynamics::Section& section, const std::vector<dynamics::Entry>& starts);
 };
-[[nodiscard]] std::string start_text(const lattice::PaperStart& start);
+[[nodiscard]] std::string start_text(const dynamics::Section& section,
+                                     const dynamics::Entry& start);
 /// {"input": from 1, "bin": its edges in words, "clamped"}
 [[nodiscard]] Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space);
 

@@ -4,18 +4,13 @@
 
 #include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/start.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
 
 using namespace dynamics;
-
-Json to_json(const Entry& entry) {
-  return {{"d_m", entry.at[kEntryD]},
-          {"vx_m_per_s", entry.at[kEntryVx]},
-          {"vy_m_per_s", entry.at[kEntryVy]}};
-}
 
 }  // namespace
 
@@ -35,7 +30,8 @@ Json to_json(const lattice::States& s) {
         std::count_if(s.entries.begin(), bins, [](const auto& e) { return e.empty(); });
   }
   j["starts_of_their_own"] = Json::array();
-  for (const Entry& c : s.space.points()) j["starts_of_their_own"].push_back(to_json(c));
+  for (const Entry& c : s.space.points())
+    j["starts_of_their_own"].push_back(to_json(s.space.section(), c));
   j["pilot"] = {
       {"trials", s.pilot.trials}, {"entries", r.entries}, {"status", to_json(s.pilot.health)}};
   j["resolution"] = {{"clamped_share", static_cast<double>(r.clamped) / n},
@@ -55,15 +51,21 @@ std::string text_of_range(const Json& r) {
   return dynamics::text_of(std::array<double, 2>{r.at(0).get<double>(), r.at(1).get<double>()});
 }
 
-/// ", for the starts 0,0,15; 4,5,10", as --start gives them.
+/// "4,5,10", "W:0.1,0": as --start gives it. Numbers stand in the order of the coordinates.
+std::string text_of_start(const Json& start) {
+  std::string text;
+  for (const auto& [key, value] : start.items())
+    if (value.is_number()) text += (text.empty() ? "" : ",") + digits(value.get<double>());
+  return (start.contains("face") ? start.at("face").get<std::string>() + ":" : "") + text;
+}
+
+/// ", for the starts 0,0,15; 4,5,10".
 std::string starts_in(const Json& starts) {
   if (starts.empty()) return "";
   std::string text = starts.size() == 1 ? ", for the start" : ", for the starts";
   constexpr std::size_t kMost = 4;
   for (std::size_t i = 0; i < std::min(kMost, starts.size()); ++i)
-    text += std::string(i > 0 ? ";" : "") + " " + digits(starts[i].at("d_m").get<double>()) + "," +
-            digits(starts[i].at("vx_m_per_s").get<double>()) + "," +
-            digits(starts[i].at("vy_m_per_s").get<double>());
+    text += std::string(i > 0 ? ";" : "") + " " + text_of_start(starts[i]);
   if (starts.size() > kMost) text += "; ... " + std::to_string(starts.size()) + " in all";
   return text;
 }
@@ -96,7 +98,7 @@ Json to_json(const lattice::TreeChain& c, double accuracy) {
   j["accuracy"] = accuracy;
   j["starts_of_their_own"] = Json::array();
   for (const Entry& s : c.transitions.front().space.points())
-    j["starts_of_their_own"].push_back(to_json(s));
+    j["starts_of_their_own"].push_back(to_json(c.transitions.front().space.section(), s));
   if (c.prediction) {
     j["error_95"] = Json::array();
     for (const lattice::StartAnswer& a : c.prediction->starts)

@@ -51,17 +51,16 @@ namespace {
 
 Json to_json(const lattice::MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; }
 
-Json to_json(const lattice::StartValidation& r, const lattice::PaperStart& start,
-             const lattice::Scene& scene) {
+Json to_json(const lattice::StartValidation& r, const lattice::PaperStart* paper,
+             const ShownField& shown) {
   Json j;
   j["verdict"] = verdict(r);
   j["trials_and_matrix"] = cli::to_json(r.judgement);
   j["trials_and_matrix"]["resampled_matrices"] = r.resampled;
-  j["start"] = {{"d_m", start.d},
-                {"vx_m_per_s", start.vx},
-                {"vy_m_per_s", start.vy},
-                {"clamped", r.chain_start.clamped}};
-  if (start.corrcoef) j["paper"] = {{"corrcoef", *start.corrcoef}, {"rmse_per_100", *start.rmse}};
+  j["start"] = cli::to_json(shown.map.section, r.start);
+  j["start"]["clamped"] = r.chain_start.clamped;
+  if (paper && paper->corrcoef)
+    j["paper"] = {{"corrcoef", *paper->corrcoef}, {"rmse_per_100", *paper->rmse}};
   j["exact"] = cli::to_json(r.exact_against);
   j["exact"]["total_variation_of_matrix_sampling"] = {{"mean", r.matrix_noise_mean},
                                                       {"sd", r.matrix_noise_sd}};
@@ -106,7 +105,7 @@ Json to_json(const lattice::StartValidation& r, const lattice::PaperStart& start
   j["departed_gates"] = {{"dynamics", grid(r.dynamics.departed_gates)},
                          {"walks", grid(r.walks.departed_cells)},
                          {"exact", grid(markov::departed_cells(r.exact))}};
-  j["exits"] = cli::to_json(r.dynamics_exits, r.exact_exits, scene);
+  j["exits"] = cli::to_json(r.dynamics_exits, r.exact_exits, shown);
   j["never_sampled"] = r.exact.unsampled;
   if (r.force) j["force_memory"] = cli::to_json(*r.force);
   return j;
@@ -120,7 +119,13 @@ std::string with_sd(const lattice::MeanAndSd& m) {
 std::string endings_table(const lattice::Validation& v, const StartTexts& labels) {
   std::ostringstream out;
   // Each column as wide as its widest cell: "17.61 [16.87, 18.37]*".
-  std::array<std::size_t, kEndingNames.size()> width{};
+  std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
+  for (const lattice::StartValidation& r : v.starts)
+    if (names.size() == kEndingNames.size() &&
+        !(r.dynamics_endings.rules_out(lattice::kWentBack.ending) &&
+          r.exact_endings.rules_out(lattice::kWentBack.ending)))
+      names.push_back(lattice::kWentBack);
+  std::vector<std::size_t> width(names.size());
   const auto cell = [](const lattice::StartValidation& r, const lattice::EndingShares& shares,
                        const EndingName& e) {
     const auto at = static_cast<std::size_t>(e.ending);
@@ -129,12 +134,12 @@ std::string endings_table(const lattice::Validation& v, const StartTexts& labels
   };
   for (const lattice::StartValidation& r : v.starts)
     for (std::size_t e = 0; e < width.size(); ++e)
-      width[e] = std::max({width[e], cell(r, r.dynamics_endings, kEndingNames[e]).size(),
-                           cell(r, r.exact_endings, kEndingNames[e]).size()});
+      width[e] = std::max({width[e], cell(r, r.dynamics_endings, names[e]).size(),
+                           cell(r, r.exact_endings, names[e]).size()});
   const auto line = [&](const auto& text_of) {
     std::string text;
     for (std::size_t e = 0; e < width.size(); ++e)
-      text += "  " + padded(text_of(kEndingNames[e]), static_cast<int>(width[e]));
+      text += "  " + padded(text_of(names[e]), static_cast<int>(width[e]));
     return text;
   };
   out << "Endings, % of " << v.trials
@@ -161,7 +166,7 @@ std::string endings_table(const lattice::Validation& v, const StartTexts& labels
 /// Beside what the paper prints, where these are its starts.
 std::string table4_table(const lattice::Validation& v,
                          const std::vector<lattice::PaperStart>& starts, const StartTexts& labels,
-                         bool papers) {
+                         bool like_table4) {
   std::ostringstream out;
   const std::string blank(labels.header.size(), ' ');
   out << "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean "
@@ -173,14 +178,15 @@ std::string table4_table(const lattice::Validation& v,
   for (std::size_t k = 0; k < v.starts.size(); ++k) {
     const lattice::StartValidation& r = v.starts[k];
     const lattice::PaperSized& p = r.paper_sized;
-    const auto printed = [&](const std::optional<double>& x) {
-      return padded(papers && x ? fixed(*x, 3) : "-", 6);
+    const auto printed = [&](std::optional<double> lattice::PaperStart::*x) {
+      return padded(like_table4 && starts[k].*x ? fixed(*(starts[k].*x), 3) : "-", 6);
     };
-    out << labels.texts[k] << "  |" << printed(starts[k].corrcoef) << "  "
+    out << labels.texts[k] << "  |" << printed(&lattice::PaperStart::corrcoef) << "  "
         << padded(with_sd(p.exact_corrcoef), -15) << padded(fixed(r.floor_100_exact.corrcoef, 3), 5)
-        << "  " << padded(with_sd(p.walks_corrcoef), -15) << "|" << printed(starts[k].rmse) << "  "
-        << padded(with_sd(p.exact_rmse), -15) << padded(fixed(r.floor_100_exact.rmse_per_100, 3), 5)
-        << "  " << with_sd(p.walks_rmse) << "\n";
+        << "  " << padded(with_sd(p.walks_corrcoef), -15) << "|"
+        << printed(&lattice::PaperStart::rmse) << "  " << padded(with_sd(p.exact_rmse), -15)
+        << padded(fixed(r.floor_100_exact.rmse_per_100, 3), 5) << "  " << with_sd(p.walks_rmse)
+        << "\n";
   }
   return out.str();
 }
@@ -253,25 +259,39 @@ dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix) {
   return total;
 }
 
-/// Crossings through the sides above the joints.
+/// Of a disc: crossings through the sides above the joints.
 std::int64_t traverse_sides(const lattice::Validation& v) {
   return v.entries_by[dynamics::Boundary::right_traverse] +
          v.entries_by[dynamics::Boundary::left_traverse];
 }
 
+/// By which faces bodies went on: "S 61.2 %, W 19.4 %".
+std::string by_face(const lattice::Validation& v, const dynamics::Section& section) {
+  std::string text;
+  for (std::size_t f = 0; f < section.faces.size(); ++f)
+    text += (f > 0 ? ", " : "") + section.faces[f].name + " " +
+            percent(static_cast<double>(v.entries_by[f]), static_cast<double>(v.entries));
+  return text;
+}
+
 }  // namespace
 
-Json to_json(const lattice::Validation& v, const lattice::Scene& scene,
-             const ValidatedMatrix& matrix) {
+Json to_json(const lattice::Validation& v, const ShownField& shown, const ValidatedMatrix& matrix) {
   Json json;
   json["trials"] = v.trials;
   json["walks"] = v.walks;
   json["starts"] = Json::array();
   for (std::size_t k = 0; k < v.starts.size(); ++k)
-    json["starts"].push_back(to_json(v.starts[k], matrix.starts[k], scene));
-  json["crossings"] = {{"between_gates", v.entries},
-                       {"RT_and_LT_share", share(traverse_sides(v), v.entries)},
-                       {"clamped_share", share(v.clamped, v.entries)}};
+    json["starts"].push_back(
+        to_json(v.starts[k], matrix.papers.empty() ? nullptr : &matrix.papers[k], shown));
+  const auto& faces = shown.map.section.faces;
+  Json& crossings = json["crossings"] = {{"between_gates", v.entries}};
+  if (shown.mass)
+    crossings["RT_and_LT_share"] = share(traverse_sides(v), v.entries);
+  else
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      crossings["by_face"][faces[f].name] = v.entries_by[f];
+  crossings["clamped_share"] = share(v.clamped, v.entries);
   const auto total = totals_of(matrix);
   json["matrix"] = {{"gate_runs", total.runs},
                     {"clamped_share", total.clamped_share()},
@@ -286,21 +306,25 @@ Json to_json(const lattice::Validation& v, const lattice::Scene& scene,
   return json;
 }
 
-std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
+std::string table_of(const lattice::Validation& v, const ShownField& shown,
                      const ValidatedMatrix& matrix) {
-  const bool papers = lattice::like_table4(scene);
-  const StartTexts labels(matrix.starts);
+  std::vector<dynamics::Entry> starts;
+  for (const lattice::StartValidation& r : v.starts) starts.push_back(r.start);
+  const StartTexts labels(shown.map.section, starts);
   const auto crossings = static_cast<double>(v.entries);
-  std::string table = endings_table(v, labels) + table4_table(v, matrix.starts, labels, papers) +
-                      final_gates_table(v, labels) + exits_table(v, labels) +
-                      seconds_table(v, labels);
-  table += "\nMatrix: " + std::to_string(totals_of(matrix).runs) + " gate runs, " +
-           (matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path) +
-           ". Crossings between gates in the dynamics: " +
-           percent(static_cast<double>(traverse_sides(v)), crossings) + " through RT or LT" +
-           (papers ? " (paper: fewer than 4 %), " : ", ") +
-           percent(static_cast<double>(v.clamped), crossings) + " outside the bins.\n" +
-           states_line(matrix.states);
+  std::string table =
+      endings_table(v, labels) +
+      (matrix.papers.empty() ? "" : table4_table(v, matrix.papers, labels, matrix.like_table4)) +
+      final_gates_table(v, labels) + exits_table(v, labels) + seconds_table(v, labels);
+  table +=
+      "\nMatrix: " + std::to_string(totals_of(matrix).runs) + " gate runs, " +
+      (matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path) +
+      ". Crossings between gates in the dynamics: " +
+      (shown.mass ? percent(static_cast<double>(traverse_sides(v)), crossings) +
+                        " through RT or LT" + (matrix.like_table4 ? " (paper: fewer than 4 %)" : "")
+                  : by_face(v, shown.map.section)) +
+      ", " + percent(static_cast<double>(v.clamped), crossings) + " outside the bins.\n" +
+      states_line(matrix.states);
   table += text_of(v.memory);
   for (std::size_t k = 0; k < v.starts.size(); ++k)
     if (v.starts[k].force) table += labels.texts[k] + "  | " + text_of(*v.starts[k].force) + "\n";

@@ -5,8 +5,8 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/shown_field.h"
 #include "dynamics/cells/transitions.h"
-#include "lattice/scene/scene.h"
 #include "lattice/scene/table4.h"
 #include "lattice/study/validation.h"
 
@@ -16,24 +16,26 @@ namespace gatewalk::cli {
 /// making says of it.
 struct ValidatedMatrix {
   const std::vector<dynamics::Transitions>& matrices;
-  const std::vector<lattice::PaperStart>& starts;  // as the validation's
-  std::string path;                                // empty: it was built for this
-  double seconds = 0.0;                            // to build or read it
-  const Json &status, &settled, &states;           // null where there is none
+  /// The validation's starts with what the paper prints of them; none of other cells than its gate.
+  const std::vector<lattice::PaperStart>& papers;
+  bool like_table4 = false;  // the scene is the paper's: its figures belong beside ours
+  std::string path;          // empty: it was built for this
+  double seconds = 0.0;      // to build or read it
+  const Json &status, &settled, &states;  // null where there is none
 };
 
 /// One sentence: whether the chain agrees with the dynamics from one start.
 [[nodiscard]] std::string verdict(const lattice::StartValidation& r);
 
 /// Without "made_by".
-[[nodiscard]] Json to_json(const lattice::Validation& v, const lattice::Scene& scene,
+[[nodiscard]] Json to_json(const lattice::Validation& v, const ShownField& shown,
                            const ValidatedMatrix& matrix);
-[[nodiscard]] std::string table_of(const lattice::Validation& v, const lattice::Scene& scene,
+[[nodiscard]] std::string table_of(const lattice::Validation& v, const ShownField& shown,
                                    const ValidatedMatrix& matrix);
 
 /// Maps of the final gates: dynamics, chain, and their difference, a row per start. Throws
 /// std::invalid_argument for more than kMostValidated.
 inline constexpr std::size_t kMostValidated = 8;
-[[nodiscard]] Figure figure_of(const lattice::Validation& v, const lattice::Scene& scene);
+[[nodiscard]] Figure figure_of(const lattice::Validation& v, const ShownField& shown);
 
 }  // namespace gatewalk::cli

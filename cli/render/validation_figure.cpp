@@ -5,7 +5,7 @@
 #include "cli/render/field_figure.h"
 #include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/prediction.h"
+#include "cli/render/start.h"
 #include "cli/render/text.h"
 #include "cli/render/type_marks.h"
 #include "cli/render/validation.h"
@@ -29,15 +29,15 @@ std::string rows_of(const CellProbabilities& blocks, bool roots) {
   return out;
 }
 
-std::string summary(const StartValidation& v) {
-  return title_of(lattice::start_at(v.start)) + ": total variation " +
+std::string summary(const StartValidation& v, const ShownField& shown) {
+  return title_of(shown.map.section, v.start) + ": total variation " +
          fixed(v.exact_against.total_variation, 3) +
          " (chance: " + fixed(v.exact_against.floor_total_variation, 3) + ")";
 }
 
 }  // namespace
 
-Figure figure_of(const lattice::Validation& v, const lattice::Scene& scene) {
+Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
   if (v.starts.empty() || v.starts.size() > kMostValidated)
     throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostValidated) +
                                 " starts, these are " + std::to_string(v.starts.size()));
@@ -62,7 +62,7 @@ Figure figure_of(const lattice::Validation& v, const lattice::Scene& scene) {
   }
   if (largest == 0.0) largest = 1e-4;
   end += 26;  // the name of the last row's axis
-  const TypeMarks types(scene);
+  const TypeMarks types(shown);
   const Sheet sheet{static_cast<int>(end + 62 + types.legend_height())};
   bool marked = false;
   const RootScale scale(100.0 * most);
@@ -75,7 +75,7 @@ Figure figure_of(const lattice::Validation& v, const lattice::Scene& scene) {
     const Row& row = rows[k];
     const bool last = k + 1 == rows.size();
     const std::string tag = std::to_string(k);
-    out += sheet.text(summary(v.starts[k]), 8, row.top - 10, kSmallFont) + kFrame +
+    out += sheet.text(summary(v.starts[k], shown), 8, row.top - 10, kSmallFont) + kFrame +
            "set border 15\nset xrange " + range_of(row.map.columns) + "\nset yrange " +
            range_of(row.map.rows) + "\nset xtics " +
            tics_of(row.map.columns, row.map.middle_column, kMapWidth, 34) + "\nset ytics " +

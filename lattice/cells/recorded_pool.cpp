@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 
 namespace gatewalk::lattice {
@@ -21,6 +22,33 @@ RunPool pool_of(const RecordedRuns& runs) {
     each.costs.push_back({});
   }
   return pool;
+}
+
+void add_trials(RecordedRuns& runs, const FieldTrials& each, const Entry& start) {
+  for (std::size_t i = 0; i < each.passed.size(); ++i) {
+    const PassageTable::Rows passages = each.of_trial(i);
+    const auto body = static_cast<std::int32_t>(runs.bodies.size());
+    runs.bodies.push_back(std::to_string(body + 1));
+    runs.trials.push_back(
+        {start, body, std::ssize(runs.passages), static_cast<std::int64_t>(passages.size())});
+    for (const CellPassage& passage : passages) {
+      runs.passages.push_back(passage);
+      runs.trapped += passage.fate == Fate::trapped;
+      runs.lost += passage.fate == Fate::broken;
+    }
+  }
+}
+
+CellFile cells_of(const Problem& problem) {
+  CellFile cells;
+  cells.source = problem.source;
+  cells.map = problem.map();
+  cells.types = problem.types;
+  cells.has_scale.assign(problem.map().section.coordinates.size(), true);
+  cells.width = problem.width;
+  cells.length = problem.length;
+  cells.field = problem.field;
+  return cells;
 }
 
 Problem problem_of(const CellFile& cells, const RunPool& pool) {
@@ -106,6 +134,18 @@ RunPool with_lost(const RunPool& pool, const Problem& problem, LostFate fate, in
   });
   told.scattered.each.passages = std::move(passages);
   return told;
+}
+
+LostBounds lost_bounds(const Problem& problem, const RunPool& pool,
+                       const std::optional<Entry>& start, int per_leaf, std::uint64_t seed) {
+  LostBounds bounds{lost_share(pool), {}};
+  if (bounds.lost > 0.0)
+    for (const auto fate : {LostFate::trapped, LostFate::left})
+      bounds.final[static_cast<std::size_t>(fate)] =
+          predict_whole(problem, with_lost(pool, problem, fate, per_leaf, seed), {start}, per_leaf,
+                        seed)
+              .front();
+  return bounds;
 }
 
 }  // namespace gatewalk::lattice

@@ -1,9 +1,12 @@
 #pragma once
 /// Recorded runs as what chains are made of.
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
 #include "lattice/cells/recorded.h"
+#include "lattice/pool/pooled_prediction.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/problem.h"
 
@@ -11,6 +14,12 @@ namespace gatewalk::lattice {
 
 /// All runs of all trials; those of one body go together when trials are taken in groups.
 [[nodiscard]] RunPool pool_of(const RecordedRuns& runs);
+
+/// The other way round: simulated trials from a start, each of a body of its own, added to `runs`;
+/// and the cells that they ran through, as a cell file. Who was trapped is so by the table: the
+/// file has no time limit. `runs.passages` must be of the section.
+void add_trials(RecordedRuns& runs, const FieldTrials& each, const dynamics::Entry& start);
+[[nodiscard]] CellFile cells_of(const Problem& problem);
 
 /// The field of the cells; there are none to run. Faces without a usual range get that of the
 /// entries seen, or one scale about 0 where there was none: nothing leads to such a state.
@@ -24,5 +33,15 @@ enum class LostFate { trapped, left };
                                 int per_leaf, std::uint64_t seed);
 /// The share of all passages that were lost.
 [[nodiscard]] double lost_share(const RunPool& pool);
+
+/// Predictions from a start (none: as bodies were seen to enter first) if all lost bodies had been
+/// trapped, and if all had left; without any when nobody was lost.
+struct LostBounds {
+  double lost = 0.0;  // share of all passages
+  std::array<markov::FinalDistribution, 2> final{};
+};
+[[nodiscard]] LostBounds lost_bounds(const Problem& problem, const RunPool& pool,
+                                     const std::optional<dynamics::Entry>& start, int per_leaf,
+                                     std::uint64_t seed);
 
 }  // namespace gatewalk::lattice

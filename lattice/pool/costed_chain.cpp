@@ -111,11 +111,12 @@ AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const 
                 },
             .runs = std::move(runs)};
   };
+  AnalysedChain whole = chain_of_group({});
+  if (problem.is_recorded() && pool.bodies() < kLeastBodies) return whole;
   std::array<std::optional<AnalysedChain>, kTrialGroups> parts;
   tbb::parallel_for(0, kTrialGroups, [&](int g) {
     parts[static_cast<std::size_t>(g)] = chain_of_group({g, kTrialGroups});
   });
-  AnalysedChain whole = chain_of_group({});
   for (auto& part : parts) whole.groups.push_back(std::move(*part));
   return whole;
 }

@@ -36,7 +36,8 @@ struct AnalysedChain {
   std::vector<AnalysedChain> groups{};  // kTrialGroups, of groups of the trials; or none
   std::vector<std::int64_t> runs{};     // of trees: by state, in gates of the start's type
 };
-/// Of trees, from the pool's runs; with error bars. Throws std::invalid_argument when there are no
+/// Of trees, from the pool's runs; with error bars, but for recorded runs of fewer than
+/// kLeastBodies bodies. Throws std::invalid_argument when there are no
 /// runs of `start`.
 [[nodiscard]] AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool,
                                            const PoolStart& start,

@@ -376,18 +376,20 @@ std::vector<FinalDistribution> predict_whole(const Problem& problem, const RunPo
                                              int per_leaf, std::uint64_t seed) {
   const Kernel kernel = kernel_of(problem.map(), pool, per_leaf);
   std::vector<PoolStart> asked;
-  for (const auto& start : starts) asked.emplace_back(start);
+  for (const auto& start : starts) asked.push_back(pool.begin(start));
   return whole_answers(kernel, problem, pool, asked, seed).final;
 }
 
 PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
-                                  const std::vector<std::optional<Entry>>& starts, int per_leaf,
-                                  std::uint64_t seed) {
+                                  const std::vector<std::optional<Entry>>& starts,
+                                  const AccuracyOptions& options) {
   const Stopwatch watch;
   const CellMap& map = problem.map();
+  const int per_leaf = options.per_leaf;
+  const std::uint64_t seed = options.seed;
   const std::int64_t bodies = pool.bodies();
   std::vector<PoolStart> asked;
-  for (const auto& start : starts) asked.emplace_back(start);
+  for (const auto& start : starts) asked.push_back(pool.begin(start));
   PooledPrediction result;
   PoolAnswers said;
   if (bodies >= kLeastBodies) {
@@ -421,6 +423,7 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
     a.start = starts[i].value_or(Entry{});
     a.as_seen = !starts[i];
     a.direct_seconds = std::nan("");
+    result.reached = result.reached && !(a.error.total_variation > options.accuracy);
   }
   result.seconds = watch.seconds();
   return result;

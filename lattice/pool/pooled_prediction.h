@@ -68,11 +68,10 @@ struct PooledPrediction {
 
 /// From the runs that a pool has, to which none can be added: for each start, or (none) for all
 /// first entries of its scattered trials. A start of no runs of its own has those of its leaf. With
-/// fewer than kLeastBodies bodies there are no intervals (NaN).
-inline constexpr std::int64_t kLeastBodies = 2 * kTrialGroups;
+/// fewer than kLeastBodies bodies there are no intervals (NaN), and any accuracy counts as reached.
 [[nodiscard]] PooledPrediction predict_recorded(
     const Problem& problem, const RunPool& pool,
-    const std::vector<std::optional<dynamics::Entry>>& starts, int per_leaf, std::uint64_t seed);
+    const std::vector<std::optional<dynamics::Entry>>& starts, const AccuracyOptions& options);
 
 /// The same answers without error bars.
 [[nodiscard]] std::vector<markov::FinalDistribution> predict_whole(

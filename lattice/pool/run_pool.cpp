@@ -171,6 +171,11 @@ std::int64_t RunPool::trials() const {
   return trials;
 }
 
+PoolStart RunPool::begin(const std::optional<Entry>& start) const {
+  const std::size_t own = start ? place_of(*start) : starts.size();
+  return own < starts.size() ? PoolStart(starts[own]) : PoolStart(start);
+}
+
 std::int64_t RunPool::bodies() const {
   const std::vector<std::int32_t>& made = scattered.each.bodies;
   if (made.empty()) return trials();

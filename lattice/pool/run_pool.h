@@ -40,12 +40,25 @@ struct ScatteredTrials {
   FieldTrials each{.final_gates = {}, .keep_passages = true};
 };
 
+/// What a chain begins with.
+struct PoolStart {
+  const StartTrials* own = nullptr;        // first runs of a start's own; else ...
+  std::optional<dynamics::Entry> entry{};  // ... the runs of its leaf; or, without an entry, ...
+                                           // ... the first runs of all scattered trials
+
+  PoolStart(const StartTrials& start)
+      : own(&start), entry(start.start) {}  // NOLINT: the usual case
+  explicit PoolStart(std::optional<dynamics::Entry> by = {}) : entry(by) {}
+};
+
 struct RunPool {
   std::vector<StartTrials> starts;
   ScatteredTrials scattered;
 
   /// Place of a start among `starts`; their number if it is none.
   [[nodiscard]] std::size_t place_of(const dynamics::Entry& start) const;
+  /// The start's own runs if it has any, else those of its leaf; without an entry all first ones.
+  [[nodiscard]] PoolStart begin(const std::optional<dynamics::Entry>& start) const;
   [[nodiscard]] std::int64_t gate_runs() const;
   /// Those that ran through the field.
   [[nodiscard]] std::int64_t trials() const;
@@ -61,17 +74,6 @@ struct TrialGroup {
     return (trials.bodies.empty() ? trial : trials.bodies[static_cast<std::size_t>(trial)]) % of ==
            group;
   }
-};
-
-/// What a chain begins with.
-struct PoolStart {
-  const StartTrials* own = nullptr;        // first runs of a start's own; else ...
-  std::optional<dynamics::Entry> entry{};  // ... the runs of its leaf; or, without an entry, ...
-                                           // ... the first runs of all scattered trials
-
-  PoolStart(const StartTrials& start)
-      : own(&start), entry(start.start) {}  // NOLINT: the usual case
-  explicit PoolStart(std::optional<dynamics::Entry> by = {}) : entry(by) {}
 };
 
 /// Calls use(entry, type of the gate) for all runs of the group's trials but the starts' own first

@@ -8,7 +8,7 @@
 namespace gatewalk::lattice {
 
 std::optional<markov::Ending> ending_named(std::string_view name) {
-  for (const EndingName& e : kEndingNames)
+  for (const EndingName& e : kAllEndingNames)
     if (name == e.key || name == e.name) return e.ending;
   return {};
 }
@@ -49,7 +49,8 @@ EndingShares EndingShares::with_limit(int max_gates) const {
 }
 
 bool EndingShares::rules_out(markov::Ending ending) const {
-  return interval[static_cast<std::size_t>(ending)] == std::array{0.0, 0.0};
+  const auto at = static_cast<std::size_t>(ending);
+  return ending == kWentBack.ending ? share[at] == 0.0 : interval[at] == std::array{0.0, 0.0};
 }
 
 }  // namespace gatewalk::lattice

@@ -26,6 +26,8 @@ inline constexpr std::array<EndingName, 5> kEndingNames{
 
 /// Where cells let bodies move back: those who leave over the side that they came in by.
 inline constexpr EndingName kWentBack{markov::Ending::near_edge, "went_back", "went back"};
+inline constexpr std::array<EndingName, 6> kAllEndingNames{
+    kEndingNames[0], kEndingNames[1], kEndingNames[2], kEndingNames[3], kEndingNames[4], kWentBack};
 
 /// By either of its names; none for any other.
 [[nodiscard]] std::optional<markov::Ending> ending_named(std::string_view name);
@@ -45,7 +47,7 @@ struct EndingShares {
 
   /// Without a limit of gates (max_gates 0) nothing is cut off, and that is certain.
   [[nodiscard]] EndingShares with_limit(int max_gates) const;
-  /// Whether nobody can end so, as its interval says.
+  /// Whether nobody can end so, as its interval says; of those who went back, whether none did.
   [[nodiscard]] bool rules_out(markov::Ending ending) const;
 };
 

@@ -17,6 +17,8 @@
 namespace gatewalk::lattice {
 
 inline constexpr int kTrialGroups = 8;
+/// Fewer bodies than this make no intervals: groups of one would stand for all.
+inline constexpr std::int64_t kLeastBodies = 2 * kTrialGroups;
 
 /// 95 % of predictions like this one are no further from the truth.
 struct Error95 {

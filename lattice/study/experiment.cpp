@@ -59,9 +59,9 @@ Effect effect_on(double share, double difference, double error, const PowerGoal&
 
 std::vector<std::size_t> endings_to_look_at(const StartAnswer& a, const StartAnswer& b) {
   std::vector<std::size_t> places;
-  for (std::size_t e = 0; e < kEndingNames.size(); ++e)
-    if (!a.endings.rules_out(kEndingNames[e].ending) ||
-        !b.endings.rules_out(kEndingNames[e].ending))
+  for (std::size_t e = 0; e < kAllEndingNames.size(); ++e)
+    if (!a.endings.rules_out(kAllEndingNames[e].ending) ||
+        !b.endings.rules_out(kAllEndingNames[e].ending))
       places.push_back(e);
   return places;
 }
@@ -70,11 +70,11 @@ ExperimentPlan plan_experiment(const StartAnswer& prediction, const ExperimentOp
   ExperimentPlan plan;
   const PowerGoal all = of_all(options.goal, endings_to_look_at(prediction, prediction).size());
   tbb::parallel_for(std::size_t{0}, plan.endings.size(), [&](std::size_t e) {
-    const double share = share_of(prediction, kEndingNames[e]);
+    const double share = share_of(prediction, kAllEndingNames[e]);
     EndingPlan& of_ending = plan.endings[e];
     for (std::size_t k = 0; k < kShareDifferences.size(); ++k)
       of_ending.effects[k] = effect_on(share, kShareDifferences[k],
-                                       error_of(prediction, kEndingNames[e]), all, options);
+                                       error_of(prediction, kAllEndingNames[e]), all, options);
     if (!options.trials) return;
     of_ending.least = smallest_difference(*options.trials, share, options.goal);
     of_ending.least_of_all = smallest_difference(*options.trials, share, all);
@@ -106,7 +106,7 @@ TwoScenesPlan tell_apart(const StartAnswer& first, const StartAnswer& second,
       plan.final_gates.difference;
   const PowerGoal all = of_all(options.goal, endings_to_look_at(first, second).size());
   tbb::parallel_for(std::size_t{0}, plan.endings.size(), [&](std::size_t e) {
-    const EndingName& name = kEndingNames[e];
+    const EndingName& name = kAllEndingNames[e];
     const double p = share_of(first, name), q = share_of(second, name);
     Effect& effect = plan.endings[e];
     effect.difference = q - p;

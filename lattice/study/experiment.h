@@ -37,13 +37,13 @@ struct EndingPlan {
   SmallestDifference least{}, least_of_all{};  // that the options' trials show
 };
 
-/// Places in kEndingNames of the endings that one of the two predictions does not rule out.
+/// Places in kAllEndingNames of the endings that one of the two predictions does not rule out.
 [[nodiscard]] std::vector<std::size_t> endings_to_look_at(const StartAnswer& a,
                                                           const StartAnswer& b);
 
 /// One experiment against a prediction.
 struct ExperimentPlan {
-  std::array<EndingPlan, kEndingNames.size()> endings;      // as kEndingNames
+  std::array<EndingPlan, kAllEndingNames.size()> endings;   // as kAllEndingNames
   std::array<Effect, kTotalVariations.size()> final_gates;  // hardest_to_see
   std::optional<double> least_total_variation{};            // that the options' trials show
 };
@@ -52,7 +52,7 @@ struct ExperimentPlan {
 
 /// Two experiments against each other, with so many trials each.
 struct TwoScenesPlan {
-  std::array<Effect, kEndingNames.size()> endings;  // second less first; as kEndingNames
+  std::array<Effect, kAllEndingNames.size()> endings;  // second less first; as kAllEndingNames
   Effect final_gates;
 };
 /// Throws std::invalid_argument for fields of different sizes.

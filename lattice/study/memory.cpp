@@ -142,7 +142,11 @@ MemoryStudy study_memory(const StateWalks& walks, const StateSpace& space,
                                  : GatesAhead{.steps = {}, .null_draws = draws},
                     .gate_before = independence(Question::gate_before, runs_with.gate_before),
                     .visit = independence(Question::visit, runs_with.visit),
-                    .row = independence(Question::row, runs_with.row)};
+                    .row = independence(Question::row, runs_with.row),
+                    .origins = origins_of(space.section()),
+                    .outcomes = {}};
+  for (const dynamics::Face& face : space.section().faces) study.outcomes.push_back(face.name);
+  study.outcomes.emplace_back("trapped");
   work.tell("memory", kQuestions, kQuestions);
   return study;
 }

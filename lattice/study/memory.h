@@ -58,6 +58,7 @@ struct MemoryStudy {
   /// Labels: origins_of; the visit, and the row of the field, from 0. Outcomes: boundary of the
   /// next entry, or trapped (behind the faces).
   Independence gate_before, visit, row;
+  std::vector<std::string> origins, outcomes;  // names: of the gate before, and of all outcomes
 
   [[nodiscard]] const Independence& independence(Question q) const {
     return q == Question::gate_before ? gate_before : q == Question::visit ? visit : row;

@@ -15,11 +15,16 @@ FieldTally field_trials(const FieldParams& field, std::int64_t trials, const Run
 }
 
 FieldTally field_trials(const Problem& problem, std::int64_t trials, std::uint64_t seed,
-                        const dynamics::Work& work, FieldCosts* costs, ExitCounts* exits) {
+                        const dynamics::Work& work, FieldCosts* costs, ExitCounts* exits,
+                        const TakeTrials& take) {
   FieldTally tally = field_trials(
       problem.field, trials,
       [&](dynamics::TrialRange range, FieldTrials& each) {
-        return run_field(problem.cells, problem.field, problem.start, seed, range, &each);
+        each.keep_passages = static_cast<bool>(take);
+        FieldTally part =
+            run_field(problem.cells, problem.field, problem.start, seed, range, &each);
+        if (take) take(each);
+        return part;
       },
       work, costs, exits);
   if (problem.check) problem.check(trials, seed, tally.health, work);
@@ -27,12 +32,12 @@ FieldTally field_trials(const Problem& problem, std::int64_t trials, std::uint64
 }
 
 markov::WalkTally walks(const markov::FieldChain& chain, const FieldParams& field,
-                        const ChainStart& start, std::int64_t count, std::uint64_t seed,
+                        const markov::Start& start, std::int64_t count, std::uint64_t seed,
                         const dynamics::Work& work) {
   const markov::Walker walker(chain);
   markov::WalkTally tally;
   work.in_pieces("walks", count, [&](dynamics::TrialRange range) {
-    tally += walker.walk({field.columns, field.rows}, start.start, field.max_gates, seed,
+    tally += walker.walk({field.columns, field.rows}, start, field.max_gates, seed,
                          {range.first, range.count});
   });
   return tally;

@@ -20,14 +20,17 @@ using RunTrialRange = std::function<FieldTally(dynamics::TrialRange range, Field
 [[nodiscard]] FieldTally field_trials(const FieldParams& field, std::int64_t trials,
                                       const RunTrialRange& run, const dynamics::Work& work = {},
                                       FieldCosts* costs = nullptr, ExitCounts* exits = nullptr);
+/// Takes trials with their passages, a piece at a time.
+using TakeTrials = std::function<void(const FieldTrials& each)>;
 /// Of a problem's cells, from its start; a sample is run again by a better method, if there is one.
 [[nodiscard]] FieldTally field_trials(const Problem& problem, std::int64_t trials,
                                       std::uint64_t seed, const dynamics::Work& work = {},
-                                      FieldCosts* costs = nullptr, ExitCounts* exits = nullptr);
+                                      FieldCosts* costs = nullptr, ExitCounts* exits = nullptr,
+                                      const TakeTrials& take = {});
 
 /// Walks 0, 1, ... of the chain. Throws as markov::Walker::walk.
 [[nodiscard]] markov::WalkTally walks(const markov::FieldChain& chain, const FieldParams& field,
-                                      const ChainStart& start, std::int64_t count,
+                                      const markov::Start& start, std::int64_t count,
                                       std::uint64_t seed, const dynamics::Work& work = {});
 
 }  // namespace gatewalk::lattice

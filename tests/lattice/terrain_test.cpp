@@ -489,7 +489,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   const ChainStart start =
       chain_start(matrices[0].space, m.scene.field, dynamics::entry_of(kStart));
   const auto walked =
-      walks(make_chain(gates_of(m.scene).map(), matrices), m.scene.field, start, 100'000, 4);
+      walks(make_chain(gates_of(m.scene).map(), matrices), m.scene.field, start.start, 100'000, 4);
   const auto exact = predict(field_of(m, path, {}), m.scene.field, {start}, {}, 1);
   const auto& final = exact.starts[0].final.final_cells;
   EXPECT_LT(total_variation(shares(walked.final_cells), final),

@@ -28,7 +28,7 @@ TEST(Walks, AreThoseOfTheWalker) {
   for (auto& n : t.trials) n = 2;
   const FieldParams field{.columns = 3, .rows = 3, .max_gates = 9};
   const ChainStart start = chain_start(t.space, field, {0, {0.0, 0.0, 15.0}});
-  const markov::WalkTally tally = walks(make_chain(t), field, start, 1000, 2);
+  const markov::WalkTally tally = walks(make_chain(t), field, start.start, 1000, 2);
   const markov::WalkTally plain =
       markov::Walker(make_chain(t)).walk({3, 3}, start.start, 9, 2, {0, 1000});
   EXPECT_EQ(tally.endings, plain.endings);

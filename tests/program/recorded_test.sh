@@ -13,12 +13,17 @@ holds '.recorded.lost_bounds.if_trapped.trapped >= .recorded.lost_bounds.if_left
 expect 0 '9 inputs x 10 outputs' "$gatewalk" show few.nc --rows
 expect 0 'SVG\|^' "$gatewalk" predict few.nc --figure few.svg
 expect 2 'has no meaning for recorded runs' "$gatewalk" build "$tracks/runs.csv" --cell "$tracks/cell.toml" -o x.nc --accuracy 0.1
-expect 2 'whose runs were recorded' "$gatewalk" predict few.nc --first-runs 100
+expect 2 'whose runs were recorded' "$gatewalk" predict few.nc --gate-runs 100
+expect 2 'is for a matrix of a scene' "$gatewalk" predict few.nc --first-runs 100
 expect 2 'must be seen, or' "$gatewalk" predict few.nc --start Q:0,0,1
 
-for command in walk analyze; do
-  expect 2 "recorded runs" "$gatewalk" $command few.nc
-done
+expect 0 'all entries that were seen first' "$gatewalk" walk few.nc --walks 100 --json walk.json
+holds '.start_state == "as seen" and .walks == 100' walk.json
+expect 0 'by the chain' "$gatewalk" analyze few.nc --json analyze.json
+holds '.expected_time_s > 0 and .expected_time_s_95 == null and .sensitivities.parameters == []' analyze.json
+expect 2 '16 bodies or more' "$gatewalk" power few.nc
+expect 2 'whose runs were recorded' "$gatewalk" analyze few.nc --trials 100
+expect 2 'is a matrix' "$gatewalk" rare few.nc
 
 # Many bodies that are alike: each goes up with chance 3/4 or is trapped, so 0.75^2 cross two rows.
 cat >coin.toml <<'END'
@@ -49,6 +54,27 @@ holds '.endings_95.crossed[1] - .endings_95.crossed[0] < 0.15' coin.json
 "$gatewalk" predict coin.nc --json again.json --quiet --threads 1 >/dev/null
 [ "$(jq -c '[.endings, .endings_95, .error_95]' coin.json)" = "$(jq -c '[.endings, .endings_95, .error_95]' again.json)" ] ||
   fail "another number of threads, another answer"
+
+# Known answers: 1 + 3/4 cells of a second each.
+"$gatewalk" analyze coin.nc --json coins.json --quiet >/dev/null || fail "analyze of coin.nc"
+holds '.expected_gates_95[0] < 1.75 and .expected_gates_95[1] > 1.75 and ((.expected_time_s - .expected_gates) | fabs) < 1e-9' coins.json
+"$gatewalk" walk coin.nc --walks 100000 --json walks.json --quiet >/dev/null || fail "walk of coin.nc"
+[ "$(jq -n --slurpfile w walks.json --slurpfile p coin.json \
+  '($w[0].endings.crossed / 1e5 - $p[0].endings.crossed) | fabs < 0.008')" = true ] || fail "walks of coin.nc"
+expect 0 'trials needed' "$gatewalk" power coin.nc --json power.json
+holds '.from_prediction.endings.crossed[2].trials > 10' power.json
+
+# Simulated trials as recorded ones: the table reads back, and its chain is the trials' own.
+expect 0 'crossed' "$gatewalk" lattice "$scenes/field.toml" --set field.rows=2 --set forces.propulsion_N=9 --trials 2000 \
+  --passages runs.csv --cell-file gates.toml --json lattice.json
+"$gatewalk" lattice "$scenes/field.toml" --set field.rows=2 --set forces.propulsion_N=9 --trials 2000 --json plain.json --quiet >/dev/null
+[ "$(jq -c '[.endings, .final_gates, .costs]' lattice.json)" = "$(jq -c '[.endings, .final_gates, .costs]' plain.json)" ] ||
+  fail "--passages changes the trials"
+expect 0 '2000 bodies, 2000 trials' "$gatewalk" build runs.csv --cell gates.toml -o gates.nc
+"$gatewalk" predict gates.nc --json gates.json --quiet >/dev/null || fail "predict of gates.nc"
+jq -n --slurpfile l lattice.json --slurpfile p gates.json '[$l[0].endings | to_entries[] |
+  select($p[0].endings_95[.key][0] - 0.02 > .value / 2000 or $p[0].endings_95[.key][1] + 0.02 < .value / 2000)] | length == 0' |
+  grep -q true || fail "the chain of passages is not the trials'"
 
 # Another program's cells.
 if command -v python3 >/dev/null; then
@@ -95,5 +121,23 @@ END
     --json one.json --threads 1 --quiet >/dev/null
   [ "$(jq -c .final_gates pillars.json)" = "$(jq -c .final_gates one.json)" ] || fail "threads change bits"
   expect 1 'exit' "$gatewalk" predict pillars.toml --cell-program 'exit 3'
+  pillars="python3 $scenes/programs/pillars.py"
+  expect 0 '^went back' "$gatewalk" lattice pillars.toml --cell-program "$pillars" --trials 500 --json lattice.json
+  holds '.trials == 500 and .endings.went_back > 400 and .costs.all.mean_time_s > 0' lattice.json
+  expect 0 'turning_rad_per_sqrt_s' "$gatewalk" analyze pillars.toml --cell-program "$pillars" --accuracy 0.1 --runs 300 \
+    --trials 200 --json analyze.json
+  holds '.direct.trials == 200 and (.sensitivities.parameters | length) == 2' analyze.json
+  expect 0 'p = ' "$gatewalk" validate pillars.toml --cell-program "$pillars" --accuracy 0.1 \
+    --trials 500 --null-draws 199 --json validate.json
+  holds '.starts[0].endings.dynamics.went_back > 400 and .crossings.by_face.N > 0' validate.json
+  expect 0 'trials needed' "$gatewalk" power pillars.toml --cell-program "$pillars" --accuracy 0.1 --set parameters.radius_m=0.2
+  expect 2 'may move back' "$gatewalk" rare pillars.toml --cell-program "$pillars" --row 2
+  expect 2 "no parameter 'radius'" "$gatewalk" predict pillars.toml --cell-program "$pillars" --set parameters.radius=0.2
+  expect 0 'bodies' "$gatewalk" build pillars.toml --cell-program "$pillars" --accuracy 0.1 -o pillars.nc
+  expect 0 '^went back' "$gatewalk" predict pillars.nc --json kept.json
+  # The same runs, whether they are in a file or not; other starts add some.
+  [ "$(jq -c .final_gates pillars.json)" = "$(jq -c .final_gates kept.json)" ] || fail "the file's runs are others"
+  expect 0 '^start W' "$gatewalk" predict pillars.nc --cell-program "$pillars" --start W:0.1,0.2 --json west.json
+  holds '.reached and .gate_runs > 0' west.json
 fi
 finish

@@ -1,0 +1,261 @@
+#include "cli/subject.h"
+
+#include <cmath>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include "cli/arguments.h"
+#include "cli/cells/program.h"
+#include "cli/render/json.h"
+#include "cli/render/recorded.h"
+#include "cli/render/text.h"
+#include "dynamics/disc/disc_section.h"
+#include "lattice/cells/cell_matrix.h"
+#include "lattice/scene/scene_trials.h"
+#include "lattice/study/trials.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr std::string_view kParameters = "parameters.";  // --set parameters.KEY=VALUE
+
+/// The starts that are given, else `own`.
+void put_starts(Subject& s, const Options& options, const Start& own, bool as_seen) {
+  s.given = options.has("start");
+  for (const std::string& text : options.texts("start"))
+    s.starts.push_back(parse_start(text, s.problem.map().section, as_seen));
+  if (s.starts.empty()) s.starts.push_back(own);
+}
+
+/// Behind a matrix its scene may be given; empty without one.
+std::string second_scene(const Options& options, const std::string& name) {
+  return name == "scene" ? "" : options.text("scene");
+}
+
+/// Of a scene, also of a matrix's: it has its path and scene.
+void put_problem(Subject& s, const Options& options) {
+  require_active(options, *s.scene);
+  s.problem = lattice::problem_of(*s.scene);
+  put_starts(s, options, s.problem.start, false);
+  if (s.given) lattice::require_inside(given_starts(options), *s.scene);
+  s.problem.start = *s.starts.front();
+}
+
+Subject open_scene(const Options& options, const std::string& path) {
+  Subject s{.path = path, .scene = lattice::read_scene(path, options.overrides())};
+  s.pool.emplace();
+  s.how = accuracy_of(options);
+  put_problem(s, options);
+  return s;
+}
+
+Subject open_matrix(const Options& options, const std::string& name, const std::string& path) {
+  lattice::SceneMatrix m =
+      read_matrix(options, path, second_scene(options, name), options.overrides());
+  Subject s{.path = path, .scene = std::move(m.scene), .file = std::move(m.file)};
+  put_problem(s, options);
+  s.how = accuracy_of(options);
+  if (!lattice::has_runs(*s.file)) return s;
+  if (!options.has("accuracy")) s.how.accuracy = accuracy_of(*s.file, path);
+  s.how.per_leaf = entries_per_leaf(*s.file, path);
+  s.pool = lattice::pool_of(*s.file, s.problem, path);
+  return s;
+}
+
+/// Those of the program, and those of the cell file.
+std::vector<std::string> overrides_of(const Options& options, bool of_program) {
+  std::vector<std::string> chosen;
+  for (const std::string& text : options.overrides())
+    if (text.starts_with(kParameters) == of_program)
+      chosen.push_back(of_program ? text.substr(kParameters.size()) : text);
+  return chosen;
+}
+
+std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
+  std::vector<dynamics::Cell::Number> set;
+  for (const std::string& text : overrides_of(options, true)) {
+    const std::size_t equals = text.find('=');
+    std::istringstream in(equals == std::string::npos ? "" : text.substr(equals + 1));
+    double value = 0.0;
+    if (!(in >> value) || in.peek() != std::char_traits<char>::eof() || !std::isfinite(value))
+      throw UsageError("--set " + std::string(kParameters) + text + ": must be KEY=NUMBER");
+    set.push_back({text.substr(0, equals), value});
+  }
+  return set;
+}
+
+}  // namespace
+
+Subject open_program(const Options& options, const std::string& path) {
+  Subject s{.path = path};
+  const std::vector<std::string> overrides = overrides_of(options, false);
+  s.how = accuracy_of(options);
+  if (is_matrix(path)) {
+    lattice::CellMatrix m = lattice::read_cell_matrix(path, overrides);
+    s.cells = std::move(m.cells);
+    s.file = std::move(m.file);
+    s.pool = std::move(m.pool);
+    s.how.per_leaf = entries_per_leaf(*s.file, path);
+    if (!options.has("accuracy")) s.how.accuracy = accuracy_of(*s.file, path);
+  } else {
+    s.cells = lattice::read_cell_file(path, overrides);
+    s.pool.emplace();
+  }
+  ProgramOptions how;
+  if (options.has("cell-timeout")) how.timeout_s = options.number("cell-timeout");
+  const auto cell =
+      std::make_shared<ProgramCell>(options.text("cell-program"), how, parameters_of(options));
+  const dynamics::Section& section = s.cells->map.section;
+  if (names_of(cell->section().faces) != names_of(section.faces) ||
+      names_of(cell->section().coordinates) != names_of(section.coordinates) ||
+      s.cells->map.types.size() > 1)
+    throw UsageError("--cell-program: its cell has faces " + names_of(cell->section().faces) +
+                     " and coordinates " + names_of(cell->section().coordinates) + ", " + path +
+                     " has " + names_of(section.faces) + " and " + names_of(section.coordinates) +
+                     " (and must have one type)");
+  s.problem = lattice::problem_of(*s.cells, *s.pool);
+  dynamics::CellMap& map = s.problem.cells.map;
+  const std::vector<dynamics::Face> faces = std::exchange(map.section, cell->section()).faces;
+  for (std::size_t f = 0; f < faces.size(); ++f) map.section.faces[f].usual = faces[f].usual;
+  map.types.front().symmetric = cell->is_symmetric();
+  s.cells->map = map;
+  s.problem.cells.cells = {cell};
+  put_starts(s, options, s.cells->start, false);
+  s.problem.start = s.entries().front();
+  return s;
+}
+
+namespace {
+
+Subject open_recorded(const Options& options, const std::string& path) {
+  refuse(options, {"gate-runs"}, path + ", whose runs were recorded");
+  lattice::CellMatrix m = lattice::read_cell_matrix(path, options.overrides());
+  Subject s{.path = path,
+            .cells = std::move(m.cells),
+            .file = std::move(m.file),
+            .pool = std::move(m.pool),
+            .problem = std::move(m.problem)};
+  s.how = accuracy_of(options);
+  if (!options.has("accuracy")) s.how.accuracy = 1.0;  // whatever its runs give
+  s.how.per_leaf = entries_per_leaf(*s.file, path);
+  put_starts(s, options, s.cells->start, true);
+  s.problem.start = s.starts.front().value_or(s.problem.start);
+  for (const std::string& text : doubts(*s.pool, s.problem)) options.warn(text);
+  for (const Start& start : s.starts)
+    if (start && s.file->transitions.space.index_of(*start).beyond)
+      options.warn(title_of(s.problem.map().section, start) +
+                   " lies beyond all entries that were seen: its prediction is that of the "
+                   "nearest state");
+  return s;
+}
+
+}  // namespace
+
+Start parse_start(const std::string& text, const dynamics::Section& section, bool as_seen) {
+  if (as_seen && text == "seen") return {};
+  const auto wrong = [&] {
+    std::string units;
+    for (const dynamics::Coordinate& c : section.coordinates)
+      units += (units.empty() ? "" : ", ") + (c.unit == "m s-1" ? "m/s" : c.unit);
+    return UsageError("--start " + text + ": must be " + (as_seen ? "seen, or " : "") +
+                      std::to_string(section.coordinates.size()) + " numbers " +
+                      names_of(section.coordinates, ",") + " (" + units + "), behind a face " +
+                      names_of(section.faces, " or ") + " and a colon unless it is the first");
+  };
+  dynamics::Entry entry;
+  const std::size_t colon = text.find(':');
+  if (colon != std::string::npos) {
+    while (entry.face < std::ssize(section.faces) &&
+           section.faces[static_cast<std::size_t>(entry.face)].name != text.substr(0, colon))
+      ++entry.face;
+    if (entry.face == std::ssize(section.faces)) throw wrong();
+  }
+  std::istringstream in(colon == std::string::npos ? text : text.substr(colon + 1));
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+    char comma = ',';
+    if ((axis > 0 && !(in >> comma)) || comma != ',' || !(in >> entry.at[axis]) ||
+        !std::isfinite(entry.at[axis]))
+      throw wrong();
+  }
+  if (in.peek() != std::char_traits<char>::eof()) throw wrong();
+  return entry;
+}
+
+std::vector<dynamics::Entry> Subject::entries() const {
+  std::vector<dynamics::Entry> entries;
+  for (const Start& start : starts) {
+    if (!start)
+      throw UsageError(path + ": has no [start], and --start does not say where trials start");
+    entries.push_back(*start);
+  }
+  return entries;
+}
+
+std::string Subject::name_of(std::size_t start) const {
+  return given ? title_of(problem.map().section, starts[start]) : "the start";
+}
+
+double Subject::bin_of_durations(const Options& options) const {
+  if (scene) return lattice::bin_of_durations(scene->gate);
+  if (cells->trapped_after) return *cells->trapped_after / 1000.0;
+  constexpr std::int64_t kSome = 100;
+  lattice::FieldCosts some(1.0);
+  (void)lattice::field_trials(problem, kSome, options.seed(), {}, &some);
+  const double mean = some.all().mean(0);
+  return mean > 0.0 ? mean / 1000.0 : 1.0;
+}
+
+void Subject::settle(const Options& options) {
+  if (!scene || file) return;
+  settled = settle_method(options, *scene, lattice::RunsFrom::everywhere);
+  problem = lattice::problem_of(*scene);
+  problem.start = *starts.front();
+}
+
+Json Subject::made_by(const Options& options) const {
+  if (scene) return to_json(options.provenance(*scene));
+  Json json = to_json(options.provenance());
+  json["cell"] = lattice::to_toml(*cells);
+  return json;
+}
+
+Subject open_subject(const Options& options, const std::string& name) {
+  const std::string path = options.text(name);
+  const bool program = options.has("cell-program"), matrix = !program && is_matrix(path),
+             of_cells = program || (matrix && lattice::is_of_cells(path));
+  if (const std::string second = second_scene(options, name);
+      !second.empty() && (!matrix || of_cells))
+    throw UsageError(path + ": is no matrix of a scene; a second one, \"" + second +
+                     "\", has no meaning beside it");
+  if (program) return open_program(options, path);
+  if (!matrix) return open_scene(options, path);
+  return of_cells ? open_recorded(options, path) : open_matrix(options, name, path);
+}
+
+lattice::PooledPrediction predict(const Options& options, Subject& s) {
+  auto prediction = s.is_recorded() ? lattice::predict_recorded(s.problem, *s.pool, s.starts, s.how)
+                                    : lattice::predict_pooled(s.problem, *s.pool, s.entries(),
+                                                              s.how, options.work());
+  warn_of(options, prediction, s.how.accuracy);
+  return prediction;
+}
+
+void refuse(const Options& options, std::initializer_list<const char*> names,
+            const std::string& where) {
+  for (const char* name : names)
+    if (options.has(name))
+      throw UsageError(std::string("--") + name + " has no meaning for " + where);
+}
+
+void add_cell_program(Options& options) {
+  options.add_text("cell-program", "COMMAND",
+                   "SCENE is a cell file (cell.toml), and this command carries bodies through its "
+                   "cells (cli/cells/PROGRAM.md); --set parameters.KEY=VALUE changes a parameter "
+                   "of it");
+  options.add_number("cell-timeout", "S",
+                     "seconds that the program may be silent while an answer is awaited "
+                     "(default: 60)");
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,76 @@
+#pragma once
+/// What a command is asked about, wherever it comes from: a scene, a matrix of one, cells that
+/// another program carries out, or recorded runs.
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/render/json_fwd.h"
+#include "cli/render/shown_field.h"
+#include "cli/render/start.h"
+#include "lattice/cells/cell_file.h"
+#include "lattice/pool/pooled_prediction.h"
+#include "lattice/problem.h"
+#include "lattice/scene/matrix.h"
+#include "lattice/scene/settle.h"
+
+namespace gatewalk::cli {
+
+struct Subject {
+  std::string path;
+  std::optional<lattice::Scene> scene{};      // of gates; else ...
+  std::optional<lattice::CellFile> cells{};   // ... of cells that are not ours
+  std::optional<lattice::MatrixFile> file{};  // it was read from
+  /// Of trees: the runs that there are, none yet of a scene or a program. Without: of bins.
+  std::optional<lattice::RunPool> pool{};
+  lattice::Problem problem{};
+  lattice::AccuracyOptions how{};             // of trees: as asked for, else as the file was made
+  std::vector<Start> starts{};                // those given, else its own
+  bool given = false;                         // --start was
+  std::optional<lattice::Settled> settled{};  // the method chosen for the scene
+  [[nodiscard]] bool is_recorded() const { return problem.is_recorded(); }
+  [[nodiscard]] ShownField shown() const { return scene ? ShownField(*scene) : ShownField(*cells); }
+  /// Throws UsageError where one is "as seen", which is no place to start new trials at.
+  [[nodiscard]] std::vector<dynamics::Entry> entries() const;
+  /// "start d 4 m, ..." of a start that was given, else "the start".
+  [[nodiscard]] std::string name_of(std::size_t start) const;
+  /// Of bins.
+  [[nodiscard]] lattice::SceneMatrix matrix() const { return {*file, *scene}; }
+
+  /// So finely (s) durations of trials are kept: to a thousandth of the time after which a body is
+  /// trapped, or else of the mean duration of some trials.
+  [[nodiscard]] double bin_of_durations(const Options& options) const;
+
+  /// Chooses the method that the scene leaves to a pilot, and says what the scene leaves out. To be
+  /// called when all options have been looked at.
+  void settle(const Options& options);
+  /// Where the result comes from.
+  [[nodiscard]] Json made_by(const Options& options) const;
+};
+
+/// Opens what the positional argument of this name says, with --cell-program, --start and --set,
+/// and warns of what its file or its runs cannot tell. Throws UsageError and as what reads it.
+[[nodiscard]] Subject open_subject(const Options& options, const std::string& name);
+
+/// A cell file, or a matrix of such cells, and the program of --cell-program. As open_subject.
+[[nodiscard]] Subject open_program(const Options& options, const std::string& path);
+
+/// Refuses these options, if they are given: they have no meaning `where`.
+void refuse(const Options& options, std::initializer_list<const char*> names,
+            const std::string& where);
+
+/// The prediction of its chain of trees, from runs that are added until the accuracy is kept;
+/// recorded runs as they are. Warns where it was not reached.
+[[nodiscard]] lattice::PooledPrediction predict(const Options& options, Subject& s);
+
+/// Declares --cell-program and --cell-timeout.
+void add_cell_program(Options& options);
+
+/// "0.01,0,0.2", "W:0.01,0,0.2" or, where `as_seen` is permitted, "seen". Throws UsageError.
+[[nodiscard]] Start parse_start(const std::string& text, const dynamics::Section& section,
+                                bool as_seen);
+
+}  // namespace gatewalk::cli
