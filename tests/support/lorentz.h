@@ -34,7 +34,8 @@ inline double machta_zwanzig(double gap) {
   const double a = 2.0 + gap;
   return gap * a * a / (std::numbers::pi * (std::sqrt(3.0) * a * a - 2.0 * std::numbers::pi));
 }
-/// The same with one step of memory, for this chance to hop straight back.
+/// The same with one step of memory, for this chance to hop straight back (Klages and Dellago, J.
+/// Stat. Phys. 101:145, 2000; Gilbert and Sanders, PRE 80:041121, 2009).
 inline double one_step(double gap, double back) {
   return machta_zwanzig(gap) * 3.0 * (1.0 - back) / (1.0 + 3.0 * back);
 }
