@@ -1,5 +1,6 @@
 #pragma once
-/// How walks spread over an endless lattice of cells of one type, where nobody is trapped.
+/// How walks spread over an endless lattice of cells of one type, where nobody is trapped. Lengths
+/// are in the unit of the lattice, times in that of the draws (without times: draws).
 
 #include <Eigen/Core>
 #include <vector>
@@ -11,19 +12,23 @@ namespace gatewalk::markov {
 
 /// After a long time t a walk has gone drift t in the mean, with covariance 2 tensor t.
 struct Diffusion {
-  std::vector<double> states;       // (inputs) the share of all draws made in each, in the long run
-  double mean_time = 1.0;           // of a draw, in the long run
-  Eigen::Vector2d drift{0.0, 0.0};  // length / time
+  std::vector<double>
+      states;              // (inputs) the share of all draws made in each, in the long run; sum 1
+  double mean_time = 1.0;  // of a draw, in the long run
+  Eigen::Vector2d drift{0.0, 0.0};                  // length / time
   Eigen::Matrix2d tensor{Eigen::Matrix2d::Zero()};  // length^2 / time
   /// <r^2> = 4 D t, without drift.
   [[nodiscard]] double coefficient() const { return 0.5 * tensor.trace(); }
 };
 
-/// `lattice`: where the moves (1, 0) and (0, 1) lead, as columns. `time`: what draws take, for each
-/// nonzero of the chain's matrix; without it each takes 1.
+/// `lattice`: where the moves (1, 0) and (0, 1) lead, as columns. `time`: what draws take, mean and
+/// mean square for each nonzero of the chain's matrix, in their order; without it each takes 1.
 ///
-/// It is the Green-Kubo sum of a walk whose draws take different times. With a draw's move l and
-/// time T in the long run, f = l - drift T, drift = <l> / <T>:
+/// It is the Green-Kubo sum over moves (Klages and Korabel, J. Phys. A 35:4823, 2002; by steps of
+/// memory Gilbert and Sanders, Phys. Rev. E 80:041121, 2009) of a walk whose draws take different
+/// times. Its first term alone is a walk without memory (Machta and Zwanzig, Phys. Rev. Lett.
+/// 50:1959, 1983). With a draw's move l and time T in the long run, f = l - drift T,
+/// drift = <l> / <T>:
 ///   tensor = (<f_0 f_0'> + sum over k > 0 of <f_0 f_k'> + <f_k f_0'>) / (2 <T>)
 /// The sum is one linear solve for two right-hand sides: with (I - P) h = E[f | state], Poisson's
 /// equation, m = f + h(next) - h(state) knows nothing of later draws, and the sum is <m m'>. So the

@@ -1,5 +1,5 @@
 # gnuplot -c plot.gp lorentz.csv leaves.csv lorentz.svg
-call system("dirname ".ARG0)."/../look.gp" 500
+call system("dirname ".ARG0)."/../look.gp" 524
 set output ARG3
 set datafile separator ","
 set multiplot
@@ -7,9 +7,10 @@ set grid lt -1 lw 0.2
 set pointsize 0.5
 set errorbars 0.5
 unset mytics
-eval text("diffusion, as a multiple of that of hops without memory", 8, 16)
-eval panel(64, 494, 32, 222)
-eval key_at(70, 36)
+eval text("What must a chain remember?", 8, 16)
+eval text("diffusion, as a multiple of that of hops without memory", 8, 40)
+eval panel(64, 494, 56, 246)
+eval key_at(70, 60)
 set xrange [0.03:0.32]
 set xtics 0.05
 set yrange [0.75:1.5]
@@ -20,11 +21,11 @@ plot ARG1 every ::1 using 1:(1) with lines lw 2 lc rgb fourth title "no memory (
      "" every ::1 using 1:($7/$2):(2*$8/$2) with yerrorbars pt 4 ps 0.9 lc rgb third title "direct simulation, 95 %", \
      "" every ::1 using 1:($9/$2):($10/$2):($11/$2) with yerrorbars pt 7 lc rgb first title "chain of trees, 95 %"
 unset label
-eval text("the chain less direct simulation, per cent, 2 standard errors", 8, 292)
-eval panel(64, 494, 308, 450)
-eval key_at(380, 372)
+eval text("the chain less direct simulation, per cent, 2 standard errors", 8, 316)
+eval panel(64, 494, 332, 474)
+eval key_at(380, 396)
 set logscale x 2
-set xrange [3:50000]
+set xrange [2.2:50000]
 set xtics (4, 32, 256, "2048" 2048, "16 384" 16384)
 set yrange [-13:3]
 set ytics 4

@@ -1,13 +1,15 @@
 // What must a chain remember? The diffusion coefficient of the periodic Lorentz gas by chains of
 // trees, beside direct simulation, hops without memory, and hops with one step of it.
-//   lorentz DIR     writes lorentz.csv and leaves.csv; see results/lorentz/README.md
+//   lorentz DIR     writes lorentz.csv, leaves.csv and seconds.csv; see results/lorentz/README.md
 #include <algorithm>
+#include <ctime>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/lorentz.h"
@@ -17,6 +19,7 @@ using namespace gatewalk;
 namespace {
 
 constexpr double kGaps[] = {0.05, 0.10, 0.15, 0.20, 0.25, 0.30};
+constexpr double kGapsOfLeaves[] = {0.05, 0.20, 0.30};
 constexpr int kPassages = 20;  // of a trial
 constexpr std::int64_t kTrials = 100'000, kTrajectories = 400'000, kTrianglePassages = 10'000'000;
 constexpr int kSteps = 10;  // of a trajectory
@@ -45,19 +48,33 @@ test::Estimate of_groups(const lattice::PooledDiffusion& d, Of of) {
   return test::estimate(all);
 }
 
-/// A line a gap: D by all routes, and how well the chain keeps what is known exactly.
-void all_routes(std::ostream& out) {
+/// Seconds of CPU, of all threads together, since the last call.
+double lap() {
+  static std::clock_t last = 0;
+  const std::clock_t now = std::clock();
+  return static_cast<double>(now - std::exchange(last, now)) / CLOCKS_PER_SEC;
+}
+
+/// A line a gap: D by all routes, and how well the chain keeps what is known exactly; what that
+/// took, in seconds of CPU.
+void all_routes(std::ostream& out, std::ostream& seconds) {
+  seconds << "gap,triangle,direct,trials,chain\n";
   out << "gap,no_memory,back,back_error,one_step,one_step_error,direct,direct_error,"
          "chain,chain_low,chain_high,chain_error,states,stay,stay_error,stay_exact,"
          "off_invariant,off_by_sampling,apart,apart_by_sampling\n";
   for (const double gap : kGaps) {
     const Gas gas(gap);
+    lap();
     const test::Estimate back = test::triangle(gap, kTrianglePassages, 1).back;
+    seconds << gap << ',' << lap();
     const double one = test::one_step(gap, back.mean);
     const double one_error = std::abs(test::one_step(gap, back.mean + back.error) - one);
     const test::Estimate direct = test::direct_diffusion(gap, kTrajectories, kSteps, kStep, 1);
-    const auto chain =
-        lattice::pooled_diffusion(gas.map(), gas.pool(kTrials, 1), gas.cell->lattice);
+    seconds << ',' << lap();
+    const lattice::RunPool pool = gas.pool(kTrials, 1);
+    seconds << ',' << lap();
+    const auto chain = lattice::pooled_diffusion(gas.map(), pool, gas.cell->lattice);
+    seconds << ',' << lap() << std::endl;
     const auto spread = of_groups(chain, [](const auto& g) { return g.walk.coefficient(); });
     const auto stay = of_groups(chain, [](const auto& g) { return g.walk.mean_time; });
     const auto off = of_groups(chain, [&](const auto& g) { return test::off_invariant(g, gap); });
@@ -77,8 +94,9 @@ void all_routes(std::ostream& out) {
   }
 }
 
-/// What leaves of finite size cost: the mean over some seeds for more and more trials with the
-/// usual leaves, and for larger and larger leaves of the same trials.
+/// What leaves of finite size cost: the mean over some seeds, not those of lorentz.csv, for more
+/// and more trials with the usual leaves, and for larger and larger leaves of the same trials. At
+/// all gaps for the trials of lorentz.csv.
 void leaves(std::ostream& out) {
   out << "gap,trials,per_leaf,states,seeds,chain,error,half_width\n";
   const auto line = [&](double gap, std::int64_t trials, int per_leaf, int seeds) {
@@ -98,9 +116,10 @@ void leaves(std::ostream& out) {
     out << gap << ',' << trials << ',' << per_leaf << ',' << states << ',' << seeds << ','
         << mean.mean << ',' << mean.error << ',' << half << std::endl;
   };
-  for (const double gap : kGaps) {
-    for (const std::int64_t trials : {312, 1250, 5000, 20'000, 100'000})
-      line(gap, trials, dynamics::kEntriesPerLeaf, std::max(4, static_cast<int>(80'000 / trials)));
+  for (const double gap : kGaps) line(gap, kTrials, dynamics::kEntriesPerLeaf, 4);
+  for (const double gap : kGapsOfLeaves) {
+    for (const std::int64_t trials : {312, 1250, 5000, 20'000})
+      line(gap, trials, dynamics::kEntriesPerLeaf, static_cast<int>(80'000 / trials));
     for (const int per_leaf : {28, 112, 448, 1792, 7168, 28'672, 100'000})
       line(gap, 20'000, per_leaf, 4);
   }
@@ -110,14 +129,13 @@ void leaves(std::ostream& out) {
 
 int main(int count, char** words) try {
   if (count != 2) throw std::invalid_argument("usage: lorentz DIR");
-  const auto write = [&](const char* name, auto make) {
-    std::ofstream out(std::string(words[1]) + "/" + name);
-    out << std::setprecision(7);
-    make(out);
-    if (!out) throw std::runtime_error(std::string("cannot write ") + name);
-  };
-  write("lorentz.csv", all_routes);
-  write("leaves.csv", leaves);
+  std::vector<std::ofstream> files;
+  for (const char* name : {"lorentz.csv", "seconds.csv", "leaves.csv"})
+    files.emplace_back(std::string(words[1]) + "/" + name) << std::setprecision(7);
+  all_routes(files[0], files[1]);
+  leaves(files[2]);
+  for (std::ofstream& file : files)
+    if (!file.flush()) throw std::runtime_error(std::string("cannot write into ") + words[1]);
 } catch (const std::exception& e) {
   std::cerr << "lorentz: " << e.what() << '\n';
   return 1;

@@ -1,8 +1,14 @@
 // A cell that is not ours: the periodic Lorentz gas.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
+#include "dynamics/cells/check_cell.h"
 #include "tests/support/lorentz.h"
 #include "tests/support/threads.h"
 
@@ -51,6 +57,17 @@ TEST(Lorentz, GapsWithoutDiffusionAreRefusedWithTheReason) {
       EXPECT_NE(std::string(e.what()).find("there is no diffusion coefficient"), std::string::npos);
     }
   EXPECT_NO_THROW(LorentzCell(0.3094));
+}
+
+TEST(Lorentz, TheCellKeepsWhatCellsPromise) {
+  std::vector<dynamics::Entry> starts;
+  for (int face = 0; face < 4; ++face) {
+    starts.push_back({face, {0.01, 0.1}});
+    starts.push_back({face, {-0.09, 0.9}});
+  }
+  EXPECT_EQ(dynamics::check_cell(cell(), starts), std::vector<std::string>{});
+  dynamics::Body body{.entry = {0, {std::nan(""), 0.0}}, .random = {dynamics::Purpose::gate, {}}};
+  EXPECT_EQ(cell().pass(body).fate, dynamics::Fate::broken);
 }
 
 // Backwards a point goes the same way: what left with (s, v) at a side enters there with (s, -v).
@@ -106,6 +123,43 @@ TEST(Lorentz, MeanStaysAreThoseOfTheFreeArea) {
   // Hops of a / sqrt(3) between triangles.
   EXPECT_NEAR(test::machta_zwanzig(kGap),
               (2.0 + kGap) * (2.0 + kGap) / 3.0 / 4.0 / test::mean_stay_in_triangle(kGap), 1e-14);
+}
+
+// Whatever the start, in the long run bodies enter by each gap alike, anywhere in it, at angles
+// with density cos / 2.
+TEST(Lorentz, EntriesInTheLongRunAreThoseOfTheInvariantMeasure) {
+  static constexpr int kBoxes = 5;
+  constexpr std::int64_t kMany = 20'000;
+  const auto chi_squared_after = [&](int passages) {
+    dynamics::Health health;
+    const ScatteredTrials trials = endless_trials(
+        cell(),
+        [](dynamics::Random& random) {
+          return dynamics::Entry{0, {kGap * 0.2 * random.uniform(), 0.2 * random.uniform()}};
+        },
+        kMany, passages, 5, health);
+    std::array<std::array<std::array<double, kBoxes>, kBoxes>, 4> seen{};  // by gap, place, angle
+    const auto box_of = [](double part) {
+      return std::clamp(static_cast<int>(kBoxes * part), 0, kBoxes - 1);
+    };
+    for (std::size_t i = 0; i < static_cast<std::size_t>(kMany); ++i) {
+      const dynamics::Entry last = trials.each.of_trial(i).back().entry;
+      const double angle = std::asin(std::clamp(last.at[1], -1.0, 1.0));
+      ++seen[last.face][box_of(last.at[0] / kGap + 0.5)][box_of(angle / std::numbers::pi + 0.5)];
+    }
+    const auto sine = [](int k) { return std::sin(std::numbers::pi * (1.0 * k / kBoxes - 0.5)); };
+    double chi_squared = 0.0;
+    for (const auto& face : seen)
+      for (const auto& place : face)
+        for (int k = 0; k < kBoxes; ++k) {
+          const double expected = kMany / (4.0 * kBoxes) * (sine(k + 1) - sine(k)) / 2.0;
+          chi_squared += (place[k] - expected) * (place[k] - expected) / expected;
+        }
+    return chi_squared;
+  };
+  // 99 degrees of freedom: more than 161 once in 10 000 times.
+  EXPECT_LE(chi_squared_after(kPassages), 161.0);
+  EXPECT_GT(chi_squared_after(1), 1000.0);
 }
 
 // The chain keeps the invariant measure: it is off by what sampling makes, which is larger in a

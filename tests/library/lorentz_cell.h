@@ -1,9 +1,14 @@
 #pragma once
-/// The periodic Lorentz gas: a point of unit speed among hard discs of radius 1 on a triangular
-/// lattice, with gaps between neighbours. A cell has a disc in each corner, its faces are the gaps.
+/// A cell that is not ours, as an example: the periodic Lorentz gas. A point of speed 1 flies among
+/// hard discs of radius 1 on a triangular lattice, with gaps between neighbours. A cell is a
+/// rhombus with a disc in each corner; its faces are the four gaps between them.
+///
+/// A class of one's own says what an entry is (section) and carries a body from an entry to the
+/// next (pass). Lengths here are in radii, times in radii by speed.
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "lattice/pool/endless.h"
 
@@ -13,7 +18,9 @@ using namespace gatewalk;
 using Point = Eigen::Vector2d;
 
 /// Moves a point from one side of a polygon with discs in its corners (counter-clockwise) to where
-/// it leaves, and says how long that takes. Place and velocity are along the side, from its middle.
+/// it leaves, and says how long that takes; NaN where its numbers are not finite. They are its
+/// place along the side, from the middle, and its velocity along it: the sine of the angle it
+/// enters at.
 template <std::size_t n>
 double cross(const std::array<Point, n>& corners, dynamics::Entry& at) {
   const auto middle = [&](int i) -> Point { return (corners[i] + corners[(i + 1) % n]) / 2.0; };
@@ -33,6 +40,7 @@ double cross(const std::array<Point, n>& corners, dynamics::Entry& at) {
       if (const double t = from.dot(inward(i)) / out; out > 0.0 && t < soonest)
         soonest = t, disc = -1, side = i;
     }
+    if (side < 0 && disc < 0) return NAN;
     x += soonest * u;
     time += soonest;
     if (side >= 0) {
@@ -65,10 +73,11 @@ struct LorentzCell : dynamics::Cell {
   dynamics::Passage pass(dynamics::Body& body) const override {
     dynamics::Entry& at = body.entry;
     const double time = cross(corners_, at);
+    if (std::isnan(time)) return {};                   // broken
     at = {(at.face + 2) % 4, {-at.at[0], -at.at[1]}};  // seen from the neighbour
     return {dynamics::Fate::left, at, {time}};
   }
-  /// In the long run: any gap, any place in it, any velocity along it.
+  /// As bodies enter in the long run: any gap, any place in it, any velocity along it.
   dynamics::Entry anywhere(dynamics::Random& r) const {
     return {static_cast<int>(r.below(4)), {gap_ * (r.uniform() - 0.5), 2.0 * r.uniform() - 1.0}};
   }

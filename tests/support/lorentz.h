@@ -34,7 +34,8 @@ inline double machta_zwanzig(double gap) {
   const double a = 2.0 + gap;
   return gap * a * a / (std::numbers::pi * (std::sqrt(3.0) * a * a - 2.0 * std::numbers::pi));
 }
-/// The same with one step of memory, for this chance to hop straight back.
+/// The same with one step of memory, for this chance to hop straight back (Klages and Dellago, J.
+/// Stat. Phys. 101:145, 2000; Gilbert and Sanders, PRE 80:041121, 2009).
 inline double one_step(double gap, double back) {
   return machta_zwanzig(gap) * 3.0 * (1.0 - back) / (1.0 + 3.0 * back);
 }
@@ -76,11 +77,15 @@ inline Estimate direct_diffusion(double gap, std::int64_t trajectories, int step
                                  std::uint64_t seed) {
   const double a = 2.0 + gap;
   const lorentz::Point a1(a, 0.0), a2(a / 2.0, std::sqrt(3.0) / 2.0 * a);
-  std::vector<lorentz::Point> discs;  // near the one hit last, which is at the origin; it first
+  std::vector<lorentz::Point> discs;  // about the one hit last, which is at the origin; near to far
   for (int i = -4; i <= 4; ++i)
     for (int j = -4; j <= 4; ++j)
       if (const lorentz::Point centre = i * a1 + j * a2; centre.norm() < 3.7 * a)
         discs.push_back(centre);
+  std::stable_sort(discs.begin(), discs.end(),
+                   [](const auto& c, const auto& d) { return c.squaredNorm() < d.squaredNorm(); });
+  std::vector<double> far;
+  for (const lorentz::Point& centre : discs) far.push_back(centre.norm());
   std::vector<double> d(static_cast<std::size_t>(trajectories));
   tbb::parallel_for(std::size_t{0}, d.size(), [&](std::size_t trajectory) {
     dynamics::Random random(dynamics::Purpose::gate, {seed, 1, trajectory});
@@ -99,7 +104,9 @@ inline Estimate direct_diffusion(double gap, std::int64_t trajectories, int step
     for (int done = 0; done < steps;) {
       double soonest = INFINITY;
       lorentz::Point hit(0.0, 0.0);
-      for (const lorentz::Point& c : discs) {
+      const double reach = x.norm() + 1.0;  // to a disc it takes no less than far - reach
+      for (std::size_t i = 0; i < discs.size() && far[i] - reach < soonest; ++i) {
+        const lorentz::Point& c = discs[i];
         const lorentz::Point from = x - c;
         const double b = from.dot(u), root = b * b - from.squaredNorm() + 1.0;
         if (b >= 0.0 || root <= 0.0) continue;
