@@ -28,12 +28,9 @@ void add_starts(Options& options, const std::string& by_default) {
 
 std::vector<lattice::PaperStart> given_starts(const Options& options) {
   std::vector<lattice::PaperStart> starts;
-  for (const std::string& text : options.texts("start")) {
-    const Start start = parse_start(text, dynamics::disc_section(), false);
-    if (start->face != dynamics::Boundary::enter)
-      throw UsageError("--start " + text + ": bodies start in a gate's lower opening, by face EN");
-    starts.push_back(lattice::start_at(*start));
-  }
+  for (const std::string& text : options.texts("start"))
+    starts.push_back(
+        lattice::start_at(*parse_start(text, dynamics::disc_section(), StartsFrom::first_face)));
   return starts;
 }
 
@@ -130,6 +127,20 @@ std::optional<lattice::StartRange> range_of(const Options& options, const lattic
     throw UsageError("--starts " + text + ": d must lie inside the gate, [" + digits(-side) + ", " +
                      digits(side) + "]");
   return range;
+}
+
+lattice::TreeOptions tree_options(const Options& options, const lattice::Scene& scene) {
+  lattice::TreeOptions how{.accuracy = accuracy_of(options)};
+  how.range = range_of(options, scene);
+  if (options.has("states"))
+    how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
+  for (const lattice::PaperStart& s : given_starts(options)) how.starts.push_back(s.entry());
+  lattice::require_inside(given_starts(options), scene);
+  if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene).entry()};
+  if (scene.field.fidelity != lattice::Fidelity::active)
+    options.warn("field.fidelity = \"" + std::string(lattice::name_of(scene.field.fidelity)) +
+                 "\" is of the full dynamics: a chain always has \"active\"");
+  return how;
 }
 
 double accuracy_of(const lattice::MatrixFile& file, const std::string& path) {
@@ -309,89 +320,6 @@ lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatr
     options.remark(name + " lies on an edge of its bin, " + text_of(space.section(), range) +
                    "; its prediction is that of the whole bin");
   return start;
-}
-
-namespace {
-
-/// "4-6=other.nc": rows whose gates are those of another matrix.
-lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
-  const auto wrong = [&] {
-    return UsageError("--row " + text +
-                      ": must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc");
-  };
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals + 1 == text.size()) throw wrong();
-  const char *at = text.data(), *const end = text.data() + equals;
-  int first = 0, last = 0;
-  const auto number = [&](int& value) {
-    const auto read = std::from_chars(at, end, value);
-    if (read.ec != std::errc() || value < 0) throw wrong();
-    at = read.ptr;
-  };
-  number(first);
-  last = first;
-  if (at != end) {
-    if (*at++ != '-') throw wrong();
-    number(last);
-  }
-  if (at != end) throw wrong();
-  const std::string path = text.substr(equals + 1);
-  return {first, last, path, read_matrix(options, path, "", {})};
-}
-
-}  // namespace
-
-std::vector<lattice::RowMatrix> other_rows(const Options& options) {
-  std::vector<lattice::RowMatrix> rows;
-  for (const std::string& text : options.texts("row")) rows.push_back(parse_rows(options, text));
-  return rows;
-}
-
-markov::PredictOptions::Solver solver_of(const Options& options) {
-  using Solver = markov::PredictOptions::Solver;
-  const std::string name = options.text("solver");
-  if (name == "auto") return Solver::automatic;
-  if (name == "propagate") return Solver::steps;
-  if (name == "march") return Solver::rows;
-  if (name == "klu") return Solver::klu;
-  throw UsageError("--solver " + name + ": must be auto, propagate, march or klu");
-}
-
-markov::Ending target_of(const Options& options) {
-  const std::string name = options.text("target");
-  if (const auto ending = lattice::ending_named(name)) return *ending;
-  std::string names;
-  for (const lattice::EndingName& e : lattice::kEndingNames)
-    names += (names.empty() ? "" : ", ") + std::string(e.key);
-  throw UsageError("--target " + name + ": must be one of " + names);
-}
-
-lattice::LumpingParts lumping_of(const Options& options, const dynamics::Section& section) {
-  constexpr int kMost = 1000;
-  lattice::LumpingParts parts(section.coordinates.size(), 1);
-  if (!options.has("lump")) return parts;
-  const std::string text = options.text("lump");
-  const char *at = text.data(), *const end = at + text.size();
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto [next, error] = std::from_chars(at, end, parts[i]);
-    const bool ends_well = i + 1 < parts.size() ? next != end && *next == ',' : next == end;
-    if (error != std::errc() || !ends_well || parts[i] < 1 || parts[i] > kMost)
-      throw UsageError("--lump " + text + ": must be " + std::to_string(parts.size()) +
-                       " whole numbers from 1 to " + std::to_string(kMost) + ": parts of " +
-                       names_of(section.coordinates, ","));
-    at = next + 1;
-  }
-  return parts;
-}
-
-double number_within(const Options& options, const char* name, double usual, double low,
-                     double high) {
-  if (!options.has(name)) return usual;
-  const double value = options.number(name);
-  if (!(value >= low && value <= high))
-    throw UsageError(std::string("--") + name + " " + digits(value) + ": must lie in [" +
-                     digits(low) + ", " + digits(high) + "]");
-  return value;
 }
 
 int status_of(const Options& options, const dynamics::Health& health, const std::string& where) {

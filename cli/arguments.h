@@ -6,15 +6,12 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "lattice/pool/lumped_chain.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/bins.h"
 #include "lattice/scene/matrix.h"
-#include "lattice/scene/row_matrices.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
-#include "markov/predict.h"
 
 namespace gatewalk::cli {
 
@@ -47,6 +44,11 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
 /// --starts: a range of starts; none without it. Throws UsageError for a malformed one.
 [[nodiscard]] std::optional<lattice::StartRange> range_of(const Options& options,
                                                           const lattice::Scene& scene);
+
+/// The chain of trees that is to be built: --accuracy, --start, --starts, --states. Throws
+/// UsageError.
+[[nodiscard]] lattice::TreeOptions tree_options(const Options& options,
+                                                const lattice::Scene& scene);
 
 /// Says so where starts that a matrix does not know lie outside the range that it was built for.
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
@@ -97,19 +99,6 @@ void require_inside_bins(const Options& options, const std::vector<lattice::Pape
 [[nodiscard]] lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatrix& m,
                                               const dynamics::Entry& entry,
                                               const std::string& name);
-/// Those of --row: rows whose gates are those of another matrix. Throws UsageError.
-[[nodiscard]] std::vector<lattice::RowMatrix> other_rows(const Options& options);
-/// By the names of --solver. Throws UsageError for any other.
-[[nodiscard]] markov::PredictOptions::Solver solver_of(const Options& options);
-/// By the names of JSON. Throws UsageError for any other.
-[[nodiscard]] markov::Ending target_of(const Options& options);
-/// --lump: parts of each coordinate; 1 each without it. Throws UsageError.
-[[nodiscard]] lattice::LumpingParts lumping_of(const Options& options,
-                                               const dynamics::Section& section);
-/// Of this option, or the usual one. Throws UsageError for one outside [low, high].
-[[nodiscard]] double number_within(const Options& options, const char* name, double usual,
-                                   double low, double high);
-
 /// exit_status of a result with this health; warns of the faults seen, `where` first.
 [[nodiscard]] int status_of(const Options& options, const dynamics::Health& health,
                             const std::string& where = "");

@@ -21,10 +21,10 @@ namespace {
 constexpr std::string_view kParameters = "parameters.";  // --set parameters.KEY=VALUE
 
 /// The starts that are given, else `own`.
-void put_starts(Subject& s, const Options& options, const Start& own, bool as_seen) {
+void put_starts(Subject& s, const Options& options, const Start& own, StartsFrom from) {
   s.given = options.has("start");
   for (const std::string& text : options.texts("start"))
-    s.starts.push_back(parse_start(text, s.problem.map().section, as_seen));
+    s.starts.push_back(parse_start(text, s.problem.map().section, from));
   if (s.starts.empty()) s.starts.push_back(own);
 }
 
@@ -37,7 +37,7 @@ std::string second_scene(const Options& options, const std::string& name) {
 void put_problem(Subject& s, const Options& options) {
   require_active(options, *s.scene);
   s.problem = lattice::problem_of(*s.scene);
-  put_starts(s, options, s.problem.start, false);
+  put_starts(s, options, s.problem.start, StartsFrom::first_face);
   if (s.given) lattice::require_inside(given_starts(options), *s.scene);
   s.problem.start = *s.starts.front();
 }
@@ -121,7 +121,7 @@ Subject open_program(const Options& options, const std::string& path) {
   map.types.front().symmetric = cell->is_symmetric();
   s.cells->map = map;
   s.problem.cells.cells = {cell};
-  put_starts(s, options, s.cells->start, false);
+  put_starts(s, options, s.cells->start, StartsFrom::any_face);
   s.problem.start = s.entries().front();
   return s;
 }
@@ -129,7 +129,7 @@ Subject open_program(const Options& options, const std::string& path) {
 namespace {
 
 Subject open_recorded(const Options& options, const std::string& path) {
-  refuse(options, {"gate-runs"}, path + ", whose runs were recorded");
+  refuse(options, {"gate-runs"}, "for " + path + ", whose runs were recorded");
   lattice::CellMatrix m = lattice::read_cell_matrix(path, options.overrides());
   Subject s{.path = path,
             .cells = std::move(m.cells),
@@ -139,7 +139,7 @@ Subject open_recorded(const Options& options, const std::string& path) {
   s.how = accuracy_of(options);
   if (!options.has("accuracy")) s.how.accuracy = 1.0;  // whatever its runs give
   s.how.per_leaf = entries_per_leaf(*s.file, path);
-  put_starts(s, options, s.cells->start, true);
+  put_starts(s, options, s.cells->start, StartsFrom::any_face_or_seen);
   s.problem.start = s.starts.front().value_or(s.problem.start);
   for (const std::string& text : doubts(*s.pool, s.problem)) options.warn(text);
   for (const Start& start : s.starts)
@@ -152,19 +152,58 @@ Subject open_recorded(const Options& options, const std::string& path) {
 
 }  // namespace
 
-Start parse_start(const std::string& text, const dynamics::Section& section, bool as_seen) {
-  if (as_seen && text == "seen") return {};
+namespace {
+
+/// The scene with --versus on top of --set.
+lattice::Scene read_other(const Options& options) {
+  std::vector<std::string> overrides = options.overrides();
+  const std::vector<std::string> versus = options.texts("versus");
+  overrides.insert(overrides.end(), versus.begin(), versus.end());
+  try {
+    return lattice::read_scene(options.text("scene"), overrides);
+  } catch (const lattice::SceneError& e) {  // it names overrides as --set gives them
+    const std::string what = e.what();
+    for (const std::string& key : versus)
+      if (what.starts_with("--set " + key))
+        throw UsageError("--versus" + what.substr(what.find(' ')));
+    throw;
+  }
+}
+
+}  // namespace
+
+std::optional<Subject> versus(const Options& options, const Subject& s) {
+  if (!options.has("versus")) return {};
+  if (!s.scene || s.file) throw UsageError("--versus is of a scene, which " + s.path + " is not");
+  Subject other = s;
+  other.scene = read_other(options);
+  require_active(options, *other.scene);
+  const lattice::FieldParams &now = s.scene->field, then = other.scene->field;
+  if (then.columns != now.columns || then.rows != now.rows)
+    throw UsageError(
+        "--versus: field.columns and field.rows must stay: final gates of fields of different "
+        "sizes cannot be compared");
+  other.problem = lattice::problem_of(*other.scene);
+  other.starts = {other.problem.start};
+  return other;
+}
+
+Start parse_start(const std::string& text, const dynamics::Section& section, StartsFrom from) {
+  const bool seen = from == StartsFrom::any_face_or_seen, faces = from != StartsFrom::first_face;
+  if (seen && text == "seen") return {};
   const auto wrong = [&] {
     std::string units;
     for (const dynamics::Coordinate& c : section.coordinates)
       units += (units.empty() ? "" : ", ") + (c.unit == "m s-1" ? "m/s" : c.unit);
-    return UsageError("--start " + text + ": must be " + (as_seen ? "seen, or " : "") +
+    return UsageError("--start " + text + ": must be " + (seen ? "seen, or " : "") +
                       std::to_string(section.coordinates.size()) + " numbers " +
-                      names_of(section.coordinates, ",") + " (" + units + "), behind a face " +
-                      names_of(section.faces, " or ") + " and a colon unless it is the first");
+                      names_of(section.coordinates, ",") + " (" + units + ")" +
+                      (faces ? ", behind a face " + names_of(section.faces, " or ") +
+                                   " and a colon unless it is the first"
+                             : ""));
   };
   dynamics::Entry entry;
-  const std::size_t colon = text.find(':');
+  const std::size_t colon = faces ? text.find(':') : std::string::npos;
   if (colon != std::string::npos) {
     while (entry.face < std::ssize(section.faces) &&
            section.faces[static_cast<std::size_t>(entry.face)].name != text.substr(0, colon))
@@ -244,8 +283,7 @@ lattice::PooledPrediction predict(const Options& options, Subject& s) {
 void refuse(const Options& options, std::initializer_list<const char*> names,
             const std::string& where) {
   for (const char* name : names)
-    if (options.has(name))
-      throw UsageError(std::string("--") + name + " has no meaning for " + where);
+    if (options.has(name)) throw UsageError(std::string("--") + name + " has no meaning " + where);
 }
 
 void add_cell_program(Options& options) {

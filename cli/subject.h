@@ -58,7 +58,10 @@ struct Subject {
 /// A cell file, or a matrix of such cells, and the program of --cell-program. As open_subject.
 [[nodiscard]] Subject open_program(const Options& options, const std::string& path);
 
-/// Refuses these options, if they are given: they have no meaning `where`.
+/// The scene of power --versus, as a subject of its own; none without it. Throws UsageError.
+[[nodiscard]] std::optional<Subject> versus(const Options& options, const Subject& s);
+
+/// Refuses these options, if they are given: they have no meaning `where` ("for bins: ...").
 void refuse(const Options& options, std::initializer_list<const char*> names,
             const std::string& where);
 
@@ -69,8 +72,10 @@ void refuse(const Options& options, std::initializer_list<const char*> names,
 /// Declares --cell-program and --cell-timeout.
 void add_cell_program(Options& options);
 
-/// "0.01,0,0.2", "W:0.01,0,0.2" or, where `as_seen` is permitted, "seen". Throws UsageError.
+/// "0.01,0,0.2"; "W:0.01,0,0.2" where starts by any face are permitted, "seen" where runs were
+/// recorded. Throws UsageError.
+enum class StartsFrom { first_face, any_face, any_face_or_seen };
 [[nodiscard]] Start parse_start(const std::string& text, const dynamics::Section& section,
-                                bool as_seen);
+                                StartsFrom from);
 
 }  // namespace gatewalk::cli

@@ -1,80 +1,14 @@
+#include "cli/analysed.h"
 #include "cli/arguments.h"
+#include "cli/parsers.h"
 #include "cli/render/analysis.h"
-#include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
-#include "cli/render/matrix.h"
 #include "cli/subject.h"
 #include "lattice/study/analysis.h"
-#include "lattice/study/prediction.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
-namespace {
-
-/// A chain, and what is said of how its walks end.
-struct Chain {
-  std::optional<lattice::AnalysedChain> chain;
-  lattice::EndingShares endings;
-  Json status, method;
-  bool clean = true, from_trials = false, reached = true;
-  std::int64_t gate_runs = 0;
-  int states = 0;
-  double seconds = 0.0;
-};
-
-/// From gate runs, to which more are added until the error bar says enough.
-Chain chain_of_runs(const Options& options, Subject& s) {
-  const auto prediction = predict(options, s);
-  const lattice::StartAnswer& answer = prediction.starts.front();
-  return {.chain = lattice::analysed_chain(s.problem, *s.pool, s.pool->begin(s.starts.front()),
-                                           s.how.per_leaf),
-          .endings = answer.endings,
-          .status = to_json(prediction.health),
-          .method = s.settled ? to_json(*s.settled) : Json(),
-          .clean = status_of(options, prediction.health) == kFine,
-          .from_trials = answer.from_trials,
-          .reached = prediction.reached,
-          .gate_runs = prediction.gate_runs,
-          .states = prediction.states,
-          .seconds = prediction.seconds};
-}
-
-/// From a matrix of bins.
-Chain chain_of_bins(const Options& options, const Subject& s) {
-  refuse(options, {"accuracy", "gate-runs"},
-         s.path + ": it has bins, and keeps no gate runs that could be added to");
-  const lattice::SceneMatrix m = s.matrix();
-  const auto start = ready_start(options, m, *s.starts.front(), s.name_of(0));
-  const auto prediction = lattice::predict(lattice::field_of(m, s.path, {}), m.scene.field, {start},
-                                           {}, options.seed(), options.work());
-  const Json status = recorded_status(m.file);
-  return {.chain = lattice::analysed_chain(s.problem, lattice::matrices_of(m.file, m.scene),
-                                           start.start),
-          .endings = prediction.starts.front().shares,
-          .status = status,
-          .method = recorded(m.file, s.path, "method"),
-          .clean = faults_recorded(status).empty(),
-          .states = m.file.transitions.space.size(),
-          .seconds = prediction.seconds};
-}
-
-/// What the numbers of the cells change; nothing where the chain cannot tell.
-lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subject& s,
-                                     const Chain& c, const lattice::Analysis& analysis,
-                                     const dynamics::Work& work) {
-  if (how.runs == 0 || s.is_recorded()) return {};
-  if (analysis.is_certain()) {
-    lattice::ParameterEffects none;
-    none.chance = analysis.target_chance;
-    return none;
-  }
-  if (!s.pool) return lattice::parameter_effects(s.problem, *c.chain, analysis.target, how, work);
-  return lattice::parameter_effects(s.problem, *s.pool, analysis.target, how, s.how.per_leaf,
-                                    s.how.most_runs - c.gate_runs, work);
-}
-
-}  // namespace
 
 int run_analyze(const Arguments& arguments) {
   Options options(
@@ -126,10 +60,11 @@ int run_analyze(const Arguments& arguments) {
                                .paths = static_cast<std::size_t>(options.count("paths", 0, 1000)),
                                .seed = options.seed()};
   Subject s = open_subject(options, "matrix");
-  if (s.is_recorded()) refuse(options, {"trials", "step"}, s.path + ", whose runs were recorded");
+  if (s.is_recorded())
+    refuse(options, {"trials", "step"}, "for " + s.path + ", whose runs were recorded");
   how.lumping = lumping_of(options, s.problem.map().section);
   s.settle(options);
-  Chain c = s.pool ? chain_of_runs(options, s) : chain_of_bins(options, s);
+  AnalysedSubject c = analysed(options, s);
   const dynamics::Work work = options.work();
   const auto analysis = lattice::analyze(s.problem, *c.chain, how, work);
   if (s.pool) c.chain.reset();  // that for parameters is larger

@@ -33,7 +33,7 @@ int give_out(const Options& options, const lattice::Scene& scene, const MadeMatr
 int build_bins(const Options& options, const lattice::Scene& scene,
                const lattice::BinsChoice& choice, const Settled& settled) {
   refuse(options, {"accuracy", "gate-runs", "starts", "start", "states"},
-         "bins: it is for --bins tree");
+         "for bins: it is for --bins tree");
   const std::int64_t trials = options.has("trials") ? options.count("trials") : 100;
   const dynamics::Stopwatch watch;
   const lattice::States states = states_of(options, scene, choice, {scene.start});
@@ -51,16 +51,7 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
     throw UsageError(
         "--trials is of runs per state, and a tree grows from full trials: take "
         "--accuracy, or other --bins");
-  lattice::TreeOptions how{.accuracy = accuracy_of(options)};
-  how.range = range_of(options, scene);
-  if (options.has("states"))
-    how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
-  for (const lattice::PaperStart& s : given_starts(options)) how.starts.push_back(s.entry());
-  lattice::require_inside(given_starts(options), scene);
-  if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene).entry()};
-  if (scene.field.fidelity != lattice::Fidelity::active)
-    options.warn("field.fidelity = \"" + std::string(lattice::name_of(scene.field.fidelity)) +
-                 "\" is of the full dynamics: a chain always has \"active\"");
+  const lattice::TreeOptions how = tree_options(options, scene);
   const dynamics::Stopwatch watch;
   const lattice::TreeChain chain =
       lattice::make_tree_chain(lattice::problem_of(scene), how, options.work());

@@ -1,9 +1,8 @@
-#include <algorithm>
 #include <filesystem>
 #include <set>
-#include <sstream>
 
 #include "cli/command.h"
+#include "cli/parsers.h"
 #include "cli/render/json.h"
 #include "cli/render/work_precision.h"
 #include "cli/terminal/interrupt.h"
@@ -16,30 +15,6 @@ namespace {
 
 constexpr std::int64_t kMostTrials =
     10'000'000;  // the ends of four settings at a time are in memory: 2 GB
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  std::stringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-  return parts;
-}
-
-std::vector<std::string> chosen_methods(const Options& options) {
-  const auto known = dynamics::chart_methods();
-  if (!options.has("methods")) return {known.begin(), known.end()};
-  std::vector<std::string> methods = split(options.text("methods"));
-  std::string names;
-  for (const auto name : known) names += (names.empty() ? "" : ", ") + std::string(name);
-  if (methods.empty()) throw UsageError("--methods needs at least one of " + names);
-  for (std::size_t i = 0; i < methods.size(); ++i) {
-    if (std::find(known.begin(), known.end(), methods[i]) == known.end())
-      throw UsageError("--methods: no method '" + methods[i] + "'; there are " + names);
-    if (std::find(methods.begin(), methods.begin() + static_cast<std::ptrdiff_t>(i), methods[i]) !=
-        methods.begin() + static_cast<std::ptrdiff_t>(i))
-      throw UsageError("--methods: " + methods[i] + " stands there twice");
-  }
-  return methods;
-}
 
 std::string label_of(const std::string& path) {
   return std::filesystem::path(path).stem().string();

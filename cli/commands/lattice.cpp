@@ -1,80 +1,16 @@
 #include "cli/arguments.h"
+#include "cli/field_run.h"
 #include "cli/render/analysis.h"
 #include "cli/render/exits.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
-#include "cli/render/field_runs.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "cli/subject.h"
-#include "cli/terminal/output.h"
-#include "lattice/cells/recorded_pool.h"
-#include "lattice/scene/scene_trials.h"
-#include "lattice/study/trials.h"
+#include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
-namespace {
-
-/// Trials through the field, and what they are of.
-struct Run {
-  ShownField shown;
-  dynamics::Entry start;
-  Json made_by;
-  lattice::FieldCosts costs;
-  lattice::ExitCounts exits;
-  std::optional<RunScene> scene{};  // of gates
-  lattice::FieldTally tally;
-};
-
-Run run_scene(const Options& options) {
-  RunScene scene{options.read_scene()};
-  scene.settled = settle_method(options, scene.scene, lattice::RunsFrom::everywhere);
-  const lattice::FieldParams& field = scene.scene.field;
-  Run run{ShownField(scene.scene),
-          dynamics::entry_of(scene.scene.start),
-          to_json(options.provenance(scene.scene)),
-          lattice::FieldCosts(lattice::bin_of_durations(scene.scene.gate)),
-          lattice::ExitCounts(field),
-          scene,
-          lattice::FieldTally(field)};
-  run.tally = lattice::field_trials(scene.scene, options.trials(), options.seed(), options.work(),
-                                    &run.costs, &run.exits);
-  return run;
-}
-
-/// Of any cells; writes the tables of --passages and --cell-file.
-Run run_cells(const Options& options) {
-  Subject s = open_subject(options, "scene");
-  if (s.file) throw UsageError(s.path + ": is a matrix, and bodies are to be run: give a scene");
-  s.settle(options);
-  const lattice::FieldParams& field = s.problem.field;
-  Run run{s.shown(),
-          s.problem.start,
-          s.made_by(options),
-          lattice::FieldCosts(s.bin_of_durations(options)),
-          lattice::ExitCounts(field),
-          s.scene ? std::optional(RunScene{*s.scene, s.settled}) : std::nullopt,
-          lattice::FieldTally(field)};
-  lattice::RecordedRuns runs;
-  runs.passages.begin(s.problem.map().section);
-  const auto take = [&](const lattice::FieldTrials& each) {
-    lattice::add_trials(runs, each, s.problem.start);
-  };
-  const bool keep = options.has("passages");
-  run.tally =
-      lattice::field_trials(s.problem, options.trials(), options.seed(), options.work(), &run.costs,
-                            &run.exits, keep ? lattice::TakeTrials(take) : lattice::TakeTrials());
-  const lattice::CellFile cells = lattice::cells_of(s.problem);
-  if (keep) {
-    options.keep_old(options.text("passages"));
-    lattice::write_runs(options.text("passages"), cells, runs);
-  }
-  if (options.has("cell-file")) options.write(options.text("cell-file"), lattice::to_toml(cells));
-  return run;
-}
-
-}  // namespace
 
 int run_lattice(const Arguments& arguments) {
   Options options(
@@ -93,9 +29,7 @@ int run_lattice(const Arguments& arguments) {
   options.add_figure("where bodies end, and how");
   if (!options.parse(arguments)) return kFine;
   const dynamics::Stopwatch watch;
-  const bool any_cells =
-      options.has("cell-program") || options.has("passages") || options.has("cell-file");
-  const Run run = any_cells ? run_cells(options) : run_scene(options);
+  const FieldRun run = field_run(options);
   const double seconds = watch.seconds();
   const lattice::FieldExits exits = lattice::exits_of(run.exits);
 

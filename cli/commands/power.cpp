@@ -1,5 +1,6 @@
 #include "cli/render/power.h"
 #include "cli/arguments.h"
+#include "cli/parsers.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
@@ -9,42 +10,6 @@
 #include "lattice/scene/map_file.h"
 
 namespace gatewalk::cli {
-namespace {
-
-/// The scene with --versus on top of --set.
-lattice::Scene read_other(const Options& options) {
-  std::vector<std::string> overrides = options.overrides();
-  const std::vector<std::string> versus = options.texts("versus");
-  overrides.insert(overrides.end(), versus.begin(), versus.end());
-  try {
-    return lattice::read_scene(options.text("scene"), overrides);
-  } catch (const lattice::SceneError& e) {  // it names overrides as --set gives them
-    const std::string what = e.what();
-    for (const std::string& key : versus)
-      if (what.starts_with("--set " + key))
-        throw UsageError("--versus" + what.substr(what.find(' ')));
-    throw;
-  }
-}
-
-/// The scene of --versus, as a subject of its own; none without it.
-std::optional<Subject> other_subject(const Options& options, const Subject& s) {
-  if (!options.has("versus")) return {};
-  if (!s.scene || s.file) throw UsageError("--versus is of a scene, which " + s.path + " is not");
-  Subject other = s;
-  other.scene = read_other(options);
-  require_active(options, *other.scene);
-  const lattice::FieldParams &now = s.scene->field, then = other.scene->field;
-  if (then.columns != now.columns || then.rows != now.rows)
-    throw UsageError(
-        "--versus: field.columns and field.rows must stay: final gates of fields of different "
-        "sizes cannot be compared");
-  other.problem = lattice::problem_of(*other.scene);
-  other.starts = {other.problem.start};
-  return other;
-}
-
-}  // namespace
 
 int run_power(const Arguments& arguments) {
   Options options(
@@ -80,7 +45,7 @@ int run_power(const Arguments& arguments) {
   if (!s.pool || (s.is_recorded() && s.pool->bodies() < lattice::kLeastBodies))
     throw UsageError(s.path + ": has no error bars, which plans are made with: power needs a " +
                      "chain of trees" + (s.pool ? ", of 16 bodies or more" : ""));
-  auto other = other_subject(options, s);
+  auto other = versus(options, s);
   s.settle(options);
   if (other) {  // what is to be said of a scene's keys has been said
     other->settled = lattice::settle_method(*other->scene, lattice::RunsFrom::everywhere,

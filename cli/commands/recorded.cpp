@@ -54,7 +54,7 @@ void give_out(const Options& options, std::vector<dynamics::Transitions> matrice
 int build_recorded(const Options& options) {
   refuse(options,
          {"accuracy", "gate-runs", "starts", "start", "states", "trials", "bins", "strict"},
-         "recorded runs");
+         "for recorded runs");
   lattice::CellFile cells = lattice::read_cell_file(options.text("cell"), options.overrides());
   const lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
   const lattice::RunPool pool = lattice::pool_of(runs);
@@ -74,7 +74,8 @@ int build_recorded(const Options& options) {
 }
 
 int build_program(const Options& options) {
-  refuse(options, {"cell", "trials", "bins", "starts"}, "cells that another program carries out");
+  refuse(options, {"cell", "trials", "bins", "starts"},
+         "for cells that another program carries out");
   const Subject s = open_program(options, options.text("scene"));
   if (s.file) throw UsageError(s.path + ": is a matrix already");
   lattice::TreeOptions how{.accuracy = s.how, .starts = s.entries()};

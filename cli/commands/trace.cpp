@@ -3,6 +3,7 @@
 #include "cli/arguments.h"
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
+#include "cli/parsers.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
@@ -32,32 +33,6 @@ void declare(Options& options) {
   options.add_number(
       "video-speed", "X",
       "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
-}
-
-/// What `check` refuses is wrong with the option of that name.
-template <class Check>
-void check_option(const Options& options, const char* name, Check check) try {
-  if (options.has(name)) check(options.text(name));
-} catch (const std::invalid_argument& e) {
-  throw UsageError(std::string("--") + name + " " + e.what());
-}
-
-/// Throws UsageError for words that no scene makes sense of.
-lattice::RecordingOptions recording_options(const Options& options) {
-  const lattice::RecordingOptions wanted{.seed = options.seed(),
-                                         .first = options.count("trial", 0),
-                                         .trials = options.trials(),
-                                         .across_field = options.has("field"),
-                                         .only = options.text("only")};
-  check_option(options, "only", [&](const std::string& only) {
-    lattice::require_ending(only, wanted.across_field);
-  });
-  if (!options.has("only") && wanted.trials > lattice::kMostRecordings)
-    throw UsageError("--trials " + std::to_string(wanted.trials) + ": at most " +
-                     std::to_string(lattice::kMostRecordings) +
-                     " runs are recorded; pick some with --only");
-  check_option(options, "video", [](const std::string& path) { (void)video_format(path); });
-  return wanted;
 }
 
 std::optional<double> video_speed(const Options& options, const lattice::Scene& scene) {

@@ -59,8 +59,9 @@ int run_walk(const Arguments& arguments) {
   options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where walks end, and how");
   if (!options.parse(arguments)) return kFine;
+  const std::string path = options.text("matrix");
+  if (!is_matrix(path)) (void)read_matrix(options);  // says what it is instead
   Subject s = open_subject(options, "matrix");
-  if (!s.file) throw UsageError(s.path + ": is no matrix file written by gatewalk build");
   const Walked walked = walked_chain(options, s);
   const std::int64_t walks = options.count("walks");
   const ShownField shown = s.shown();

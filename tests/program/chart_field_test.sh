@@ -7,7 +7,7 @@ echo text >m.nc  # a file where a folder was asked for
 expect 2 'field.fidelity = "all" is not permitted with run.method = "stable"' "$gatewalk" lattice "$scenes/field.toml" --set field.fidelity=all
 expect 2 'one of "active", "remember", "all"' "$gatewalk" lattice "$scenes/field.toml" --set field.fidelity=most
 expect 2 'missing -o' "$gatewalk" chart-field "$scenes/field.toml"
-expect 2 'three numbers' "$gatewalk" chart-field "$scenes/field.toml" -o chart --start 1,2
+expect 2 '3 numbers d,vx,vy (m, m/s, m/s)' "$gatewalk" chart-field "$scenes/field.toml" -o chart --start 1,2
 expect 2 'cannot be made' "$gatewalk" chart-field "$scenes/field.toml" -o m.nc/chart
 "$gatewalk" lattice "$scenes/field.toml" --set run.method=moreau --set field.fidelity=all --trials 50 --json all.json --quiet 2>/dev/null
 holds '([.final_gates[][]] | add) == 50 and .trapped + .departed + .cut_off + .not_finite == 50' all.json

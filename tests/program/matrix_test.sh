@@ -47,7 +47,7 @@ for solver in march klu propagate; do
   jq -s '[[.[0].starts[].final_gates[][]], [.[1].starts[].final_gates[][]]] | transpose | (length == 162) and (map(.[0] - .[1] | fabs) | max < 1e-10)' \
     starts-$solver.json starts-march.json | grep -q true || fail "predict: march and $solver disagree"
 done
-expect 2 'three numbers' "$gatewalk" predict m.nc --start 1,2
+expect 2 '3 numbers d,vx,vy (m, m/s, m/s)' "$gatewalk" predict m.nc --start 1,2
 expect 2 'inside the gate' "$gatewalk" predict m.nc --start 25,0,15
 
 # Damaged files.

@@ -30,7 +30,7 @@ expect 2 "'-1' is not a seed" "$gatewalk" gate "$scenes/field.toml" --seed -1
 expect 2 'json needs' "$gatewalk" gate "$scenes/field.toml" --json ''
 expect 2 'must lie in' "$gatewalk" gate "$scenes/field.toml" --set forces.random_N=-1
 expect 2 'nosuch.toml' "$gatewalk" gate nosuch.toml
-expect 2 'three numbers' "$gatewalk" validate "$scenes/field.toml" --start 1,2
+expect 2 '3 numbers d,vx,vy (m, m/s, m/s)' "$gatewalk" validate "$scenes/field.toml" --start 1,2
 
 # Help of a command, and the command that was meant.
 "$gatewalk" build --help >help.txt

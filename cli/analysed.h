@@ -1,0 +1,35 @@
+#pragma once
+/// What gatewalk analyze looks at: the chain of a subject, and what its cells' numbers change.
+
+#include <cstdint>
+#include <optional>
+
+#include "cli/render/json.h"
+#include "cli/subject.h"
+#include "lattice/pool/costed_chain.h"
+#include "lattice/study/analysis.h"
+#include "lattice/study/parameter_effects.h"
+
+namespace gatewalk::cli {
+
+/// The chain of a subject, and what is said of how its walks end.
+struct AnalysedSubject {
+  std::optional<lattice::AnalysedChain> chain;
+  lattice::EndingShares endings;
+  Json status, method;
+  bool clean = true, from_trials = false, reached = true;
+  std::int64_t gate_runs = 0;
+  int states = 0;
+  double seconds = 0.0;
+};
+
+/// From gate runs, to which more are added until the error bar says enough; from a matrix of bins.
+[[nodiscard]] AnalysedSubject analysed(const Options& options, Subject& s);
+
+/// What the numbers of the cells change; nothing where the chain cannot tell.
+[[nodiscard]] lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subject& s,
+                                                   const AnalysedSubject& c,
+                                                   const lattice::Analysis& analysis,
+                                                   const dynamics::Work& work);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,68 @@
+#include "cli/field_run.h"
+
+#include "cli/arguments.h"
+#include "cli/render/json.h"
+#include "cli/subject.h"
+#include "lattice/cells/recorded_pool.h"
+#include "lattice/scene/scene_trials.h"
+#include "lattice/study/trials.h"
+
+namespace gatewalk::cli {
+namespace {
+
+FieldRun run_scene(const Options& options) {
+  RunScene scene{options.read_scene()};
+  scene.settled = settle_method(options, scene.scene, lattice::RunsFrom::everywhere);
+  const lattice::FieldParams& field = scene.scene.field;
+  FieldRun run{ShownField(scene.scene),
+               dynamics::entry_of(scene.scene.start),
+               to_json(options.provenance(scene.scene)),
+               lattice::FieldCosts(lattice::bin_of_durations(scene.scene.gate)),
+               lattice::ExitCounts(field),
+               scene,
+               lattice::FieldTally(field)};
+  run.tally = lattice::field_trials(scene.scene, options.trials(), options.seed(), options.work(),
+                                    &run.costs, &run.exits);
+  return run;
+}
+
+/// Of any cells; writes the tables of --passages and --cell-file.
+FieldRun run_cells(const Options& options) {
+  Subject s = open_subject(options, "scene");
+  if (s.file) throw UsageError(s.path + ": is a matrix, and bodies are to be run: give a scene");
+  s.settle(options);
+  const lattice::FieldParams& field = s.problem.field;
+  FieldRun run{s.shown(),
+               s.problem.start,
+               s.made_by(options),
+               lattice::FieldCosts(s.bin_of_durations(options)),
+               lattice::ExitCounts(field),
+               s.scene ? std::optional(RunScene{*s.scene, s.settled}) : std::nullopt,
+               lattice::FieldTally(field)};
+  lattice::RecordedRuns runs;
+  runs.passages.begin(s.problem.map().section);
+  const auto take = [&](const lattice::FieldTrials& each) {
+    lattice::add_trials(runs, each, s.problem.start);
+  };
+  const bool keep = options.has("passages");
+  run.tally =
+      lattice::field_trials(s.problem, options.trials(), options.seed(), options.work(), &run.costs,
+                            &run.exits, keep ? lattice::TakeTrials(take) : lattice::TakeTrials());
+  const lattice::CellFile cells = lattice::cells_of(s.problem);
+  if (keep) {
+    options.keep_old(options.text("passages"));
+    lattice::write_runs(options.text("passages"), cells, runs);
+  }
+  if (options.has("cell-file")) options.write(options.text("cell-file"), lattice::to_toml(cells));
+  return run;
+}
+
+}  // namespace
+
+FieldRun field_run(const Options& options) {
+  const bool any_cells =
+      options.has("cell-program") || options.has("passages") || options.has("cell-file");
+  return any_cells ? run_cells(options) : run_scene(options);
+}
+
+}  // namespace gatewalk::cli

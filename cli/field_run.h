@@ -1,0 +1,27 @@
+#pragma once
+/// Trials of the full dynamics through a field, of a scene or of cells that another program carries
+/// out.
+
+#include <optional>
+
+#include "cli/command.h"
+#include "cli/render/field_runs.h"
+#include "lattice/exits.h"
+#include "lattice/field_costs.h"
+
+namespace gatewalk::cli {
+
+/// Trials through the field, and what they are of.
+struct FieldRun {
+  ShownField shown;
+  dynamics::Entry start;
+  Json made_by;
+  lattice::FieldCosts costs;
+  lattice::ExitCounts exits;
+  std::optional<RunScene> scene{};  // of gates
+  lattice::FieldTally tally;
+};
+/// As --trials says; writes the tables of --passages and --cell-file.
+[[nodiscard]] FieldRun field_run(const Options& options);
+
+}  // namespace gatewalk::cli

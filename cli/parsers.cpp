@@ -1,0 +1,147 @@
+#include "cli/parsers.h"
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <stdexcept>
+
+#include "cli/arguments.h"
+#include "cli/film/video.h"
+#include "cli/render/text.h"
+#include "dynamics/disc/study/work_precision.h"
+#include "lattice/statistics/ending_shares.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// "4-6=other.nc": rows whose gates are those of another matrix.
+lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
+  const auto wrong = [&] {
+    return UsageError("--row " + text +
+                      ": must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc");
+  };
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals + 1 == text.size()) throw wrong();
+  const char *at = text.data(), *const end = text.data() + equals;
+  int first = 0, last = 0;
+  const auto number = [&](int& value) {
+    const auto read = std::from_chars(at, end, value);
+    if (read.ec != std::errc() || value < 0) throw wrong();
+    at = read.ptr;
+  };
+  number(first);
+  last = first;
+  if (at != end) {
+    if (*at++ != '-') throw wrong();
+    number(last);
+  }
+  if (at != end) throw wrong();
+  const std::string path = text.substr(equals + 1);
+  return {first, last, path, read_matrix(options, path, "", {})};
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+/// What `check` refuses is wrong with the option of that name.
+template <class Check>
+void check_option(const Options& options, const char* name, Check check) try {
+  if (options.has(name)) check(options.text(name));
+} catch (const std::invalid_argument& e) {
+  throw UsageError(std::string("--") + name + " " + e.what());
+}
+
+}  // namespace
+
+std::vector<lattice::RowMatrix> other_rows(const Options& options) {
+  std::vector<lattice::RowMatrix> rows;
+  for (const std::string& text : options.texts("row")) rows.push_back(parse_rows(options, text));
+  return rows;
+}
+
+markov::PredictOptions::Solver solver_of(const Options& options) {
+  using Solver = markov::PredictOptions::Solver;
+  const std::string name = options.text("solver");
+  if (name == "auto") return Solver::automatic;
+  if (name == "propagate") return Solver::steps;
+  if (name == "march") return Solver::rows;
+  if (name == "klu") return Solver::klu;
+  throw UsageError("--solver " + name + ": must be auto, propagate, march or klu");
+}
+
+markov::Ending target_of(const Options& options) {
+  const std::string name = options.text("target");
+  if (const auto ending = lattice::ending_named(name)) return *ending;
+  std::string names;
+  for (const lattice::EndingName& e : lattice::kEndingNames)
+    names += (names.empty() ? "" : ", ") + std::string(e.key);
+  throw UsageError("--target " + name + ": must be one of " + names);
+}
+
+lattice::LumpingParts lumping_of(const Options& options, const dynamics::Section& section) {
+  constexpr int kMost = 1000;
+  lattice::LumpingParts parts(section.coordinates.size(), 1);
+  if (!options.has("lump")) return parts;
+  const std::string text = options.text("lump");
+  const char *at = text.data(), *const end = at + text.size();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto [next, error] = std::from_chars(at, end, parts[i]);
+    const bool ends_well = i + 1 < parts.size() ? next != end && *next == ',' : next == end;
+    if (error != std::errc() || !ends_well || parts[i] < 1 || parts[i] > kMost)
+      throw UsageError("--lump " + text + ": must be " + std::to_string(parts.size()) +
+                       " whole numbers from 1 to " + std::to_string(kMost) + ": parts of " +
+                       names_of(section.coordinates, ","));
+    at = next + 1;
+  }
+  return parts;
+}
+
+double number_within(const Options& options, const char* name, double usual, double low,
+                     double high) {
+  if (!options.has(name)) return usual;
+  const double value = options.number(name);
+  if (!(value >= low && value <= high))
+    throw UsageError(std::string("--") + name + " " + digits(value) + ": must lie in [" +
+                     digits(low) + ", " + digits(high) + "]");
+  return value;
+}
+
+std::vector<std::string> chosen_methods(const Options& options) {
+  const auto known = dynamics::chart_methods();
+  if (!options.has("methods")) return {known.begin(), known.end()};
+  std::vector<std::string> methods = split(options.text("methods"));
+  std::string names;
+  for (const auto name : known) names += (names.empty() ? "" : ", ") + std::string(name);
+  if (methods.empty()) throw UsageError("--methods needs at least one of " + names);
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    if (std::find(known.begin(), known.end(), methods[i]) == known.end())
+      throw UsageError("--methods: no method '" + methods[i] + "'; there are " + names);
+    if (std::find(methods.begin(), methods.begin() + static_cast<std::ptrdiff_t>(i), methods[i]) !=
+        methods.begin() + static_cast<std::ptrdiff_t>(i))
+      throw UsageError("--methods: " + methods[i] + " stands there twice");
+  }
+  return methods;
+}
+
+lattice::RecordingOptions recording_options(const Options& options) {
+  const lattice::RecordingOptions wanted{.seed = options.seed(),
+                                         .first = options.count("trial", 0),
+                                         .trials = options.trials(),
+                                         .across_field = options.has("field"),
+                                         .only = options.text("only")};
+  check_option(options, "only", [&](const std::string& only) {
+    lattice::require_ending(only, wanted.across_field);
+  });
+  if (!options.has("only") && wanted.trials > lattice::kMostRecordings)
+    throw UsageError("--trials " + std::to_string(wanted.trials) + ": at most " +
+                     std::to_string(lattice::kMostRecordings) +
+                     " runs are recorded; pick some with --only");
+  check_option(options, "video", [](const std::string& path) { (void)video_format(path); });
+  return wanted;
+}
+
+}  // namespace gatewalk::cli

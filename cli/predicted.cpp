@@ -1,0 +1,101 @@
+#include "cli/predicted.h"
+
+#include <array>
+#include <string>
+
+#include "cli/arguments.h"
+#include "cli/parsers.h"
+#include "cli/render/choice.h"
+#include "cli/render/field_figure.h"
+#include "cli/render/field_netcdf.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/json.h"
+#include "cli/render/matrix.h"
+#include "cli/render/pooled_prediction.h"
+#include "cli/render/prediction.h"
+#include "cli/render/recorded.h"
+#include "cli/render/scene.h"
+#include "cli/render/text.h"
+#include "lattice/cells/recorded_pool.h"
+#include "lattice/study/prediction.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// The file of --netcdf and the figure, if they are asked for: a map for each start.
+template <class Answer>
+void show(const Options& options, const Subject& s, const std::vector<Answer>& answers,
+          lattice::EndingShares Answer::*shares,
+          std::array<markov::CellProbabilities, 2> Answer::*gates_95 = nullptr) {
+  const ShownField shown = s.shown();
+  std::vector<FieldPicture> pictures;
+  std::vector<FieldArrays> arrays;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    pictures.emplace_back(
+        "prediction, " + std::to_string(shown.field.columns) + " x " +
+            std::to_string(shown.field.rows) + (s.scene ? " gates" : " cells") +
+            (s.given ? ", " + title_of(s.problem.map().section, s.starts[i]) : ""),
+        answers[i].final, answers[i].*shares, answers[i].exits);
+    arrays.push_back({pictures.back(), s.starts[i]});
+    if (gates_95 != nullptr) arrays.back().gates_95 = answers[i].*gates_95;
+  }
+  if (options.has("netcdf"))
+    options.write(options.text("netcdf"),
+                  netcdf_of(arrays, s.problem.map().section, s.made_by(options)));
+  options.draw([&] { return figure_of(pictures, shown); });
+}
+
+}  // namespace
+
+int predict_from_runs(const Options& options, Subject& s) {
+  const lattice::PooledPrediction prediction = predict(options, s);
+  const ShownField shown = s.shown();
+  Json json = to_json(prediction, shown, s.how.accuracy, s.given);
+  std::string table = table_of(prediction, shown, s.given) + method_line(s.settled);
+  if (s.settled) json["method"] = to_json(*s.settled);
+  if (s.is_recorded()) {
+    const lattice::LostBounds bounds =
+        lattice::lost_bounds(s.problem, *s.pool, s.starts.front(), s.how.per_leaf, options.seed());
+    json["recorded"] = to_json(*s.pool);
+    if (bounds.lost > 0.0) json["recorded"]["lost_bounds"] = to_json(bounds);
+    table += table_of(*s.pool) + table_of(bounds);
+  }
+  say_left_out(json, shown.field.columns, shown.field.rows);
+  json["made_by"] = s.made_by(options);
+  options.give_out(json, table);
+  options.warn(too_few_gates(shown));
+  const int exit = status_of(options, prediction.health);
+  show(options, s, prediction.starts, &lattice::StartAnswer::endings,
+       &lattice::StartAnswer::gates_95);
+  return exit;
+}
+
+int predict_from_matrix(const Options& options, const Subject& s,
+                        const std::vector<lattice::RowMatrix>& others) {
+  const lattice::SceneMatrix m = s.matrix();
+  const std::string solver = options.text("solver");
+  const lattice::CountedField gates = lattice::field_of(m, s.path, others);
+  std::vector<lattice::ChainStart> starts;
+  for (std::size_t k = 0; k < s.starts.size(); ++k)
+    starts.push_back(ready_start(options, m, *s.starts[k], s.name_of(k)));
+  if ((solver == "klu" || solver == "march") && m.scene.field.max_gates != 0)
+    throw UsageError("--solver " + solver + " needs field.max_gates = 0 (no limit), it is " +
+                     std::to_string(m.scene.field.max_gates));
+  const auto prediction = lattice::predict(
+      gates, m.scene.field, starts, {.solver = solver_of(options)}, options.seed(), options.work());
+  if (prediction.failed)
+    options.warn("no interval counts the sampling of the matrix: a resampled one fails: " +
+                 *prediction.failed);
+  const PredictedField shown{m, s.given ? s.starts : std::vector<Start>(), others};
+  Json json = to_json(prediction, shown, solver);
+  say_left_out(json, m.scene.field.columns, m.scene.field.rows);
+  json["made_by"] = s.made_by(options);
+  options.give_out(json, table_of(prediction, shown));
+  options.warn(too_few_gates(m.scene));
+  options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
+  const int exit = exit_status(options, faults_recorded(recorded_status(m.file)).empty());
+  show(options, s, prediction.starts, &lattice::StartPrediction::shares);
+  return exit;
+}
+
+}  // namespace gatewalk::cli
