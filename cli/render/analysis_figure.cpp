@@ -11,8 +11,8 @@ namespace gatewalk::cli {
 namespace {
 
 constexpr double kPanelLeft = 78;
-constexpr const char* kCurveColours[] = {kFirstColour, kSecondColour, kThirdColour, kFourthColour,
-                                         kFifthColour, "#666666"};
+constexpr const char* kCurveColours[] = {kFirstColour,  kSecondColour, kThirdColour,
+                                         kFourthColour, kFifthColour,  "#666666"};
 
 /// What the panels add to the script, and where the next one begins.
 struct Script {
