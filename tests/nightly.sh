@@ -6,7 +6,8 @@
 #        sources are an error of the compiler; the linker compares the batches.
 # alone  every source and every public header compiles without what others include before it: g++ without
 #        batches reads and checks them, and writes no code, which takes half the time.
-# debug  g++ with the checks of the standard library, of Eigen and of TBB: unit tests.
+# debug  g++ with the checks of the standard library, of Eigen and of TBB: unit tests. -Og, with which those
+#        of the dynamics take three to four times as long as in a Release build.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
 # What a step prints is in nightly-STEP.log; of one that fails the end is shown.
 set -euo pipefail
