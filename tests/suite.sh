@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tests of one suite, in one process: starting one for each would take a tenth of the time of all tests. A test
+# The tests of one suite, in one process: to start one for each test took some 10 ms times 1350. A test
 # that ends the process, or takes too long, hides no other: those that it left undone run in a process of their own.
 #   tests/suite.sh PROGRAM SUITE [SECONDS]
 # Exit status: 0 all passed, 1 not all, 77 all that ran passed and some were skipped.
