@@ -32,7 +32,7 @@ run lattice "$field" --trials 1000 --figure ../lattice.svg
 run lattice "$scenes/robot.toml" --trials 1000 --figure ../lattice_robot.svg
 "$gatewalk" show paper.nc --figure ../show_paper.svg >/dev/null
 "$gatewalk" show tree.nc --figure ../show_tree.svg >/dev/null
-run validate "$field" --bins paper --matrix-trials 20 --trials 500 --figure ../validate.svg
+run validate "$field" --bins paper --matrix-trials 20 --trials 200 --figure ../validate.svg
 run analyze "$field" --set run.method=moreau --accuracy 0.05 --runs 300 --trials 2000 --target left_side --figure ../analyze.svg
 run analyze "$field" --set run.method=moreau --set field.columns=61 --set field.rows=40 --set field.max_gates=30 --accuracy 0.1 --runs 0 --figure ../analyze_large.svg
 # Which gate is of which type.
@@ -59,7 +59,7 @@ for radius in 0.08 0.05; do
   printf 'body.radius_m = %s\nbody.mass_kg = 0.25\nforces.propulsion_N = 0.8\n' $radius >three_keys.toml
   run landscape three_keys.toml -o landscape --figure ../landscape_radius_$radius.svg
 done
-run chart-field "$field" --trials 50 -o fidelity --figure ../chart_field.svg
+run chart-field "$field" --trials 20 -o fidelity --figure ../chart_field.svg
 cp "$kept/passages/tracks.svg" ../passages.svg
 for study in chart chart_chain stability; do
   for figure in "$kept/$study"/*.svg; do cp "$figure" "../${study}_$(basename "$figure")"; done

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -228,7 +229,9 @@ void expect_convergence(const std::string& method, double damping, double total_
   constexpr int kTrials = 4000;
   GateParams p = test::study(damping);
   p.run.step = 0.004;
-  const auto reference = endings(p, kTrials);
+  static std::map<double, std::vector<Ending>> references;  // by damping: of all methods
+  std::vector<Ending>& reference = references[damping];
+  if (reference.empty()) reference = endings(p, kTrials);
   p.run.method = method;
   const Difference coarse = difference(reference, endings(p, kTrials));
   p.run.step = 0.002;

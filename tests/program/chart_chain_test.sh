@@ -29,7 +29,7 @@ holds '.starts[0].summary | .cheapest_near_best.seconds <= .best.seconds' charts
 [ "$(grep -c ',exact,' charts/a/chain.csv)" = 12 ] || fail "chart-chain: not one line per matrix and start in chain.csv"
 # Trees as far as 20000 runs go; they keep what they say but for the truth's noise.
 "$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 2000 --runs-limit 2e4 --bins 0.5 --start 0,0,15 \
-  --set run.method=moreau -o charts/t --quiet >charts/t.txt 2>/dev/null
+  --set run.method=moreau --set run.step_s=0.02 -o charts/t --quiet >charts/t.txt 2>/dev/null
 holds '.starts[0] | .truth.floor.total_variation as $noise | .trees | length >= 2 and (map(.total_variation < .error_95 + 2 * $noise and .gate_runs > 0 and .seconds > 0) | all)' charts/t/chain.json
 [ "$(grep -c ',tree,' charts/t/chain.csv)" = "$(jq '.starts[0].trees | length' charts/t/chain.json)" ] || fail "chart-chain: not one line per tree in chain.csv"
 grep -q 'Trees (predict --accuracy): TV ' charts/t.txt || fail "chart-chain: no word on trees"

@@ -23,10 +23,11 @@ done
 grep -q '^crossed .*+[0-9.]* / none' power.txt && grep -q '^none: no difference is found so often' power.txt || fail "power: none is not explained"
 grep -q '[0-9])?' power.txt && grep -q '^?: the prediction may itself be as far off' power.txt || fail "power: ? is not explained"
 grep -q '^>100000' power.txt && fail "power: a mark is explained that does not stand there"
-"$gatewalk" "${power[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --versus beams.stiffness_right_Nm_per_rad=200 --json again.json --threads 1 --quiet
-cmp -s power.json again.json || fail "power: another number of threads gave another file"
+small=("${power[@]}" --set field.columns=3 --set field.rows=2)
+for threads in 1 2; do "$gatewalk" "${small[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --json $threads.json --threads $threads --quiet; done
+cmp -s 1.json 2.json || fail "power: another number of threads gave another file"
 # Without a limit of gates nothing can be cut off: no trials are needed to see that.
-"$gatewalk" "${power[@]}" --set field.max_gates=0 --trials 20 --json free.json >free.txt 2>err.txt || fail "power: $(cat err.txt)"
+"$gatewalk" "${small[@]}" --set field.max_gates=0 --trials 20 --json free.json >free.txt 2>err.txt || fail "power: $(cat err.txt)"
 holds '.endings_95.cut_off == [0, 0] and (.from_prediction.endings | length == 4 and (has("cut_off") | not)) and (.smallest_difference.endings_percentage_points | has("cut_off") | not)' free.json
 [ "$(grep -c '^trapped' free.txt)" = 3 ] && [ "$(grep -c '^cut off' free.txt)" = 1 ] || fail "power: rows of who cannot be cut off"
 # The same prediction as predict's.
