@@ -74,8 +74,10 @@ std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynami
     chains.push_back(std::move(of_type.chain));
   }
   try {
-    const auto error = markov::lumping_error(c.chain, field_chain(map, std::move(chains)), group,
-                                             cells, c.start, {.max_cells = field.max_gates});
+    constexpr double kTolerance = 1e-6;  // of a difference of which some digits matter
+    const auto error =
+        markov::lumping_error(c.chain, field_chain(map, std::move(chains)), group, cells, c.start,
+                              {.max_cells = field.max_gates, .tolerance = kTolerance});
     lumped.endings = error.endings;
     lumped.final_gates = error.final_cells;
     return lumped;

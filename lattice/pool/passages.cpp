@@ -10,8 +10,8 @@
 namespace gatewalk::lattice {
 
 Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
-                   bool with_costs)
-    : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates),
+                   const Parts& parts)
+    : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates, parts.tolerance),
       at_start_(
           chance_(1, std::int64_t{c.start.row} * field.columns + c.start.column, c.start.input)),
       limited_(field.max_gates > 0),
@@ -20,16 +20,17 @@ Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Endin
       state_visits_(static_cast<std::size_t>(c.chain.inputs()), 0.0) {
   totals_ = markov::walk_totals(
       c.chain, {field.columns, field.rows}, c.start, field.max_gates,
-      with_costs ? c.rewards : markov::Rewards{},
+      parts.costs ? c.rewards : markov::Rewards{},
       [&](int draw, std::int64_t cell, int input, double share) {
         to_target_ += share * chance_(draw, cell, input);
         state_visits_[static_cast<std::size_t>(input)] += share;
+        if (!parts.places) return;
         const std::size_t at = index(draw, cell, input);
         if (at >= shares_.size())
           shares_.resize(index(draw, cells_ - 1, 0) + static_cast<std::size_t>(inputs_), 0.0);
         shares_[at] += share;
       },
-      {.chance = &chance_});
+      {.chance = &chance_, .of_row = parts.tolerance});
 }
 
 Passages::Draws::Draws(const Passages& passages) : passages_(passages) {
@@ -55,7 +56,8 @@ Passages::Place Passages::place(std::size_t i) const {
 }
 
 AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
-                         markov::Ending target, bool with_costs, std::string_view what,
+                         markov::Ending target, const Passages::Parts& of_whole,
+                         const Passages::Parts& of_groups, std::string_view what,
                          const dynamics::Work& work) {
   std::vector<const CostedChain*> chains{&chain.chain};
   for (const AnalysedChain& group : chain.groups) chains.push_back(&group.chain);
@@ -64,7 +66,7 @@ AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
   std::int64_t done = 0;
   work.tell(what, 0, std::ssize(chains));
   tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t k) {
-    parts[k].emplace(*chains[k], field, target, with_costs);
+    parts[k].emplace(*chains[k], field, target, k == 0 ? of_whole : of_groups);
     const std::lock_guard lock(telling);
     work.tell(what, ++done, std::ssize(chains));
   });

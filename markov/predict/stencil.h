@@ -85,6 +85,36 @@ struct GatherPass {
 void gather(const GatherPass& pass, const std::vector<Range>& ranges,
             const std::vector<GatherReward>& rewards, const double* from, double* to);
 
+/// p times the number `offset` on.
+struct StripTerm {
+  double p;
+  std::ptrdiff_t offset;
+};
+
+/// A row in strips, one for each of kLanes numbers side by side: of each place along the strips all
+/// states.
+struct StripPass {
+  const StripTerm* terms;
+  const int* ends;     // of each state's terms, the first state's begin before it (states + 1)
+  const double* mask;  // (length x kLanes) 1 for a cell of the field, else 0
+  int length;
+  std::ptrdiff_t stride;  // from a place along the strips to the next
+  double tolerance;
+};
+
+struct StripChange {
+  double largest = 0.0, largest_number = 0.0;
+  double excess = 0.0;  // over `tolerance` times the number
+};
+
+/// x = mask * (b + sum of p * x), in place, states [first, last), one place along the strips after
+/// the other, from the first or from the last one on.
+void sweep_strips(const StripPass& pass, int first, int last, bool upwards, const double* b,
+                  double* x, StripChange& change);
+
+/// to[i] = from[i + by], each kLanes numbers for themselves, 0 from outside; by is 1 or -1.
+void shift_lanes(const double* from, double* to, std::ptrdiff_t count, int by);
+
 /// to += from, in `count` planes from the first on.
 void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,
                 std::ptrdiff_t first, std::ptrdiff_t last);

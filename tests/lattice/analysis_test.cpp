@@ -394,13 +394,14 @@ TEST(Analysis, TellsOfEachChainThatItHasWalked) {
     EXPECT_EQ(total, kTrialGroups + 1);
     told.push_back(done);
   }};
-  const auto all = all_passages(chain, scene.field, Ending::far_edge, false, "chains", work);
+  const auto all = all_passages(chain, scene.field, Ending::far_edge, {.costs = false},
+                                {.costs = false}, "chains", work);
   ASSERT_EQ(std::ssize(told), kTrialGroups + 2);
   for (std::int64_t i = 0; i < std::ssize(told); ++i)
     EXPECT_EQ(told[static_cast<std::size_t>(i)], i);
   EXPECT_EQ(std::ssize(all.groups), kTrialGroups);
   EXPECT_EQ(all.whole.at_start(),
-            Passages(chain.chain, scene.field, Ending::far_edge, false).at_start());
+            Passages(chain.chain, scene.field, Ending::far_edge, {.costs = false}).at_start());
 }
 
 TEST(Analysis, DrawnPlacesStandForAllThatArePassed) {
