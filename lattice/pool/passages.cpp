@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -73,6 +74,56 @@ AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
   AllPassages all{std::move(*parts.front()), {}};
   for (std::size_t k = 1; k < parts.size(); ++k) all.groups.push_back(std::move(*parts[k]));
   return all;
+}
+
+markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
+                                      const Passages& passages) {
+  const markov::FieldChain& chain = c.chain;
+  const markov::Field cells{field.columns, field.rows};
+  markov::CellProbabilities ends = markov::CellProbabilities::Zero(field.rows, field.columns);
+  const auto is_sampled = [&](std::int64_t column, std::int64_t row, int input) {
+    return chain.at(column, row).is_sampled(input);
+  };
+  if (!is_sampled(c.start.column, c.start.row, c.start.input))
+    ends(c.start.row, c.start.column) = 1.0;
+  // By type and state: what is trapped, and how far moves lead: most cells are far from all edges.
+  std::vector<std::vector<double>> trapped;
+  std::int64_t far = 0;
+  bool all_sampled = true;
+  for (const markov::Chain& one : chain.chains()) {
+    auto& of_type = trapped.emplace_back(static_cast<std::size_t>(one.inputs()), 0.0);
+    for (int input = 0; input < one.inputs(); ++input) {
+      all_sampled = all_sampled && one.is_sampled(input);
+      for (markov::Probabilities::InnerIterator it(one.matrix(), input); it; ++it) {
+        const markov::Exit& exit = one.exits()[static_cast<std::size_t>(it.col())];
+        if (exit.next_input == markov::Exit::kTrapped)
+          of_type[static_cast<std::size_t>(input)] += it.value();
+        else
+          far = std::max<std::int64_t>({far, std::abs(exit.di_x), std::abs(exit.di_y)});
+      }
+    }
+  }
+  passages.each([&](const Passages::Place& place, double share) {
+    const std::int64_t column = place.cell % field.columns, row = place.cell / field.columns;
+    double& here = ends.data()[place.cell];
+    const bool is_last = place.draw == field.max_gates;
+    if (all_sampled && !is_last && std::min(column, row) >= far && column + far < field.columns &&
+        row + far < field.rows) {
+      here += share * trapped[static_cast<std::size_t>(chain.type_of(column, row))]
+                             [static_cast<std::size_t>(place.input)];
+      return;
+    }
+    const markov::Chain& draws = chain.at(column, row);
+    for (markov::Probabilities::InnerIterator it(draws.matrix(), place.input); it; ++it) {
+      const markov::Exit& exit = draws.exits()[static_cast<std::size_t>(it.col())];
+      std::int64_t to_column = column, to_row = row;
+      if (markov::follow(cells, exit, is_last, to_column, to_row))
+        here += share * it.value();
+      else if (!is_sampled(to_column, to_row, exit.next_input))
+        ends(to_row, to_column) += share * it.value();
+    }
+  });
+  return ends;
 }
 
 }  // namespace gatewalk::lattice

@@ -101,4 +101,8 @@ struct AllPassages {
                                        const Passages::Parts& of_groups, std::string_view what,
                                        const dynamics::Work& work);
 
+/// (rows x columns) Where walks end, of their places.
+[[nodiscard]] markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
+                                                    const Passages& passages);
+
 }  // namespace gatewalk::lattice

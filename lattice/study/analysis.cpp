@@ -165,7 +165,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
         paths = markov::most_frequent_paths(c.chain, cells, c.start, field.max_gates,
                                             passages.chance(), options.paths);
       },
-      [&] { lumped = lumped_chain(chain, map, field, passages.state_visits(), options.lumping); });
+      [&] { lumped = lumped_chain(chain, map, field, passages, options.lumping); });
 
   Analysis out{.target = options.target,
                .target_chance = passages.at_start(),

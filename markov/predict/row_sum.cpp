@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
+#include <map>
 #include <numeric>
 
 #include "markov/staying.h"
@@ -56,13 +58,22 @@ RowSum::RowSum(const std::vector<Move>& moves, Sums sums, int columns, int input
   std::stable_sort(sorted.begin(), sorted.end(), [&](const Move& a, const Move& b) {
     return place[target(a)] < place[target(b)];
   });
-  ends_.assign(states + 1, 0);
+  for (Terms* terms : {&first_, &further_}) terms->ends.assign(states + 1, 0);
+  std::map<double, int> numbers;
   for (const Move& m : sorted) {
-    const int di_x = sums == Sums::brought ? -m.di_x : m.di_x;
-    terms_.push_back({m.p, di_x * stride_ + place[source(m)] * kLanes});
-    ++ends_[static_cast<std::size_t>(place[target(m)]) + 1];
+    const int di_x = sums == Sums::brought ? -m.di_x : m.di_x, at = place[target(m)];
+    const bool is_first = at < last_ && !depends[source(m)];
+    Terms& terms = is_first ? first_ : further_;
+    const auto [number, is_new] = numbers.try_emplace(m.p, std::ssize(shares_));
+    if (is_new) shares_.push_back(m.p);
+    terms.terms.push_back(
+        {number->second, static_cast<std::int32_t>(di_x * stride_ + place[source(m)] * kLanes)});
+    ++terms.ends[static_cast<std::size_t>(at) + 1];
   }
-  std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+  for (Terms* terms : {&first_, &further_}) {
+    std::partial_sum(terms->ends.begin(), terms->ends.end(), terms->ends.begin());
+    terms->terms.resize(terms->terms.size() + kTermsAhead);
+  }
 
   buffer_.reset((2 * length_ + 2 * widest_) * inputs + length_ + 1, kLanes);
   (void)buffer_.take(1);  // before the first number
@@ -75,7 +86,9 @@ RowSum::RowSum(const std::vector<Move>& moves, Sums sums, int columns, int input
 
 bool RowSum::suits() const {
   constexpr double kStayLong = 0.95;
-  return stays_ <= kStayLong && widest_ < columns_;
+  const double farthest = static_cast<double>(widest_ + 1) * inputs_ * static_cast<double>(kLanes);
+  return stays_ <= kStayLong && widest_ < columns_ &&
+         farthest < std::numeric_limits<std::int32_t>::max();
 }
 
 template <class Use>
@@ -87,30 +100,39 @@ void RowSum::each(Use use) const {
         use(at, column * inputs_ + states_[static_cast<std::size_t>(place)]);
 }
 
-void RowSum::tell_neighbours() {
+void RowSum::tell_neighbours(int first, int last) {
   double* const x = x_.data() + widest_ * stride_;
-  shift_lanes(x + (length_ - widest_) * stride_, x - widest_ * stride_, widest_ * stride_, -1);
-  shift_lanes(x, x + length_ * stride_, widest_ * stride_, 1);
+  const std::ptrdiff_t behind = length_ * stride_, count = std::ptrdiff_t{last - first} * kLanes;
+  for (std::ptrdiff_t at = first * kLanes; at < widest_ * stride_; at += stride_) {
+    shift_lanes(x + behind - widest_ * stride_ + at, x - widest_ * stride_ + at, count, -1);
+    shift_lanes(x + at, x + behind + at, count, 1);
+  }
 }
 
 void RowSum::solve(double* values, Of of, double tolerance) {
   double* const x = x_.data() + widest_ * stride_;
+  const auto sweep = [&](const Terms& terms, int first, int last, bool upwards, const double* b,
+                         StripChange& change) {
+    sweep_strips({shares_.data(), terms.terms.data(), terms.ends.data(), mask_.data(), length_,
+                  stride_, tolerance * (1.0 - stays_)},
+                 first, last, upwards, b, x, change);
+  };
+  StripChange unasked;
   each([&](std::ptrdiff_t at, std::ptrdiff_t cell) { x[at] = values[cell]; });
+  tell_neighbours(0, right_);
+  sweep(first_, right_, last_, true, x, unasked);
   std::copy_n(x, b_.size(), b_.data());
-  const StripPass pass{terms_.data(), ends_.data(), mask_.data(),
-                       length_,       stride_,      tolerance * (1.0 - stays_)};
   for (bool settled = right_ == last_; !settled;) {
     StripChange change;
-    tell_neighbours();
-    sweep_strips(pass, right_, left_, right_first_up_, b_.data(), x, change);
-    tell_neighbours();
-    sweep_strips(pass, left_, last_, !right_first_up_, b_.data(), x, change);
+    tell_neighbours(right_, last_);
+    sweep(further_, right_, left_, right_first_up_, b_.data(), change);
+    tell_neighbours(right_, last_);
+    sweep(further_, left_, last_, !right_first_up_, b_.data(), change);
     settled = of == Of::each ? change.excess <= 0.0
-                             : change.largest <= pass.tolerance * change.largest_number;
+                             : change.largest <= tolerance * (1.0 - stays_) * change.largest_number;
   }
-  tell_neighbours();
-  StripChange change;
-  sweep_strips(pass, last_, inputs_, true, b_.data(), x, change);
+  tell_neighbours(0, last_);
+  sweep(further_, last_, inputs_, true, x, unasked);
   each([&](std::ptrdiff_t at, std::ptrdiff_t cell) { values[cell] = x[at]; });
 }
 

@@ -41,8 +41,8 @@ class RowSum {
   /// For every number of the row its places in the strips and in the cells.
   template <class Use>
   void each(Use use) const;
-  /// What a strip has to know of its neighbours.
-  void tell_neighbours();
+  /// What a strip has to know of its neighbours: of states [first, last).
+  void tell_neighbours(int first, int last);
 
   int columns_, inputs_, widest_ = 0;
   int length_ = 0;  // of a strip
@@ -52,8 +52,12 @@ class RowSum {
   std::vector<int> states_;
   int right_ = 0, left_ = 0, last_ = 0;  // where they begin
   bool right_first_up_ = true;           // those to the right from the first column on
-  std::vector<StripTerm> terms_;         // by place
-  std::vector<int> ends_;
+  struct Terms {
+    std::vector<StripTerm> terms;  // by place
+    std::vector<int> ends;
+  };
+  Terms first_, further_;  // first: what states that depend on no other add once and for all
+  std::vector<double> shares_;
   std::ptrdiff_t stride_ = 0;  // from a column to the next
   PlaneBuffer buffer_;
   Planes mask_, b_, x_;

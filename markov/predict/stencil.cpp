@@ -5,6 +5,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "markov/predict/stencil.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -154,7 +155,8 @@ void sweep_in_registers(const StripPass& pass, int first, int last, bool upwards
         s[i] = hn::LoadU(d, b + k * pass.stride + state * kLanes + i * n);
       const StripTerm* const end = pass.terms + pass.ends[state + 1];
       for (const StripTerm* t = pass.terms + pass.ends[state]; t != end; ++t) {
-        const auto p = hn::Set(d, t->p);
+        hwy::Prefetch(base + t[kTermsAhead].offset);
+        const auto p = hn::Set(d, pass.shares[t->share]);
         for (int i = 0; i < kRegisters; ++i)
           s[i] = hn::Add(s[i], hn::Mul(p, hn::LoadU(d, base + t->offset + i * n)));
       }

@@ -6,6 +6,7 @@
 /// plane; the next plane begins `stride` numbers on.
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace gatewalk::markov {
@@ -85,15 +86,18 @@ struct GatherPass {
 void gather(const GatherPass& pass, const std::vector<Range>& ranges,
             const std::vector<GatherReward>& rewards, const double* from, double* to);
 
-/// p times the number `offset` on.
+/// A share (its number) times the number `offset` on. Small, as large chains are read from beyond
+/// the caches that are near.
 struct StripTerm {
-  double p;
-  std::ptrdiff_t offset;
+  std::int32_t share, offset;
 };
+/// So many terms are looked at ahead; as many more must follow the last.
+inline constexpr int kTermsAhead = 48;
 
 /// A row in strips, one for each of kLanes numbers side by side: of each place along the strips all
 /// states.
 struct StripPass {
+  const double* shares;
   const StripTerm* terms;
   const int* ends;     // of each state's terms, the first state's begin before it (states + 1)
   const double* mask;  // (length x kLanes) 1 for a cell of the field, else 0
@@ -107,8 +111,8 @@ struct StripChange {
   double excess = 0.0;  // over `tolerance` times the number
 };
 
-/// x = mask * (b + sum of p * x), in place, states [first, last), one place along the strips after
-/// the other, from the first or from the last one on.
+/// x = mask * (b + sum of share * x), in place, states [first, last), one place along the strips
+/// after the other, from the first or from the last one on.
 void sweep_strips(const StripPass& pass, int first, int last, bool upwards, const double* b,
                   double* x, StripChange& change);
 
