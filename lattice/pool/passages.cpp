@@ -76,6 +76,18 @@ AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
   return all;
 }
 
+std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field) {
+  std::vector<std::vector<double>> shares;
+  for (const markov::Chain& chain : field.chains()) {
+    auto& of_type = shares.emplace_back(static_cast<std::size_t>(chain.inputs()), 0.0);
+    for (int input = 0; input < chain.inputs(); ++input)
+      for (markov::Probabilities::InnerIterator it(chain.matrix(), input); it; ++it)
+        if (chain.exits()[static_cast<std::size_t>(it.col())].next_input == markov::Exit::kTrapped)
+          of_type[static_cast<std::size_t>(input)] += it.value();
+  }
+  return shares;
+}
+
 markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
                                       const Passages& passages) {
   const markov::FieldChain& chain = c.chain;
@@ -86,22 +98,14 @@ markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& f
   };
   if (!is_sampled(c.start.column, c.start.row, c.start.input))
     ends(c.start.row, c.start.column) = 1.0;
-  // By type and state: what is trapped, and how far moves lead: most cells are far from all edges.
-  std::vector<std::vector<double>> trapped;
-  std::int64_t far = 0;
+  const auto trapped = trapped_shares(chain);
+  std::int64_t far = 0;  // how far moves lead: most cells are farther from all edges
   bool all_sampled = true;
   for (const markov::Chain& one : chain.chains()) {
-    auto& of_type = trapped.emplace_back(static_cast<std::size_t>(one.inputs()), 0.0);
-    for (int input = 0; input < one.inputs(); ++input) {
+    for (const markov::Exit& exit : one.exits())
+      far = std::max<std::int64_t>({far, std::abs(exit.di_x), std::abs(exit.di_y)});
+    for (int input = 0; input < one.inputs(); ++input)
       all_sampled = all_sampled && one.is_sampled(input);
-      for (markov::Probabilities::InnerIterator it(one.matrix(), input); it; ++it) {
-        const markov::Exit& exit = one.exits()[static_cast<std::size_t>(it.col())];
-        if (exit.next_input == markov::Exit::kTrapped)
-          of_type[static_cast<std::size_t>(input)] += it.value();
-        else
-          far = std::max<std::int64_t>({far, std::abs(exit.di_x), std::abs(exit.di_y)});
-      }
-    }
   }
   passages.each([&](const Passages::Place& place, double share) {
     const std::int64_t column = place.cell % field.columns, row = place.cell / field.columns;

@@ -101,6 +101,9 @@ struct AllPassages {
                                        const Passages::Parts& of_groups, std::string_view what,
                                        const dynamics::Work& work);
 
+/// Share of a state's draws that are trapped, by type of cell and state.
+[[nodiscard]] std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field);
+
 /// (rows x columns) Where walks end, of their places.
 [[nodiscard]] markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
                                                     const Passages& passages);

@@ -20,19 +20,6 @@ namespace {
 
 using namespace dynamics;
 
-/// Share of a state's draws that are trapped, by type of cell and state.
-std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field) {
-  std::vector<std::vector<double>> shares;
-  for (const markov::Chain& chain : field.chains()) {
-    auto& of_type = shares.emplace_back(static_cast<std::size_t>(chain.inputs()), 0.0);
-    for (int input = 0; input < chain.inputs(); ++input)
-      for (markov::Probabilities::InnerIterator it(chain.matrix(), input); it; ++it)
-        if (chain.exits()[static_cast<std::size_t>(it.col())].next_input == markov::Exit::kTrapped)
-          of_type[static_cast<std::size_t>(input)] += it.value();
-  }
-  return shares;
-}
-
 /// Throws where the states of all cells take too much memory: chances and passages, with a limit by
 /// draw and beside some waves of shares and totals; as much again for all groups.
 void require_memory(const CostedChain& c, const FieldParams& field, bool with_groups) {
