@@ -20,21 +20,27 @@ struct Committor {
   }
 };
 
+/// What rows of a field are solved to.
+inline constexpr double kRowTolerance = 1e-12;
+
 /// Row by row from the far edge; within a row by sweeps to both sides until no value changes by
-/// more than 1e-12 of it, or, in a row of cells of one type that walks soon leave, by the sum over
-/// more and more moves, to 1e-12 of each value. Relative accuracy is that of sums of
+/// more than `tolerance` of it (in a row of cells of one type that walks soon leave in registers,
+/// to that tolerance of each value). Relative accuracy is that of sums of
 /// positive numbers, however small the values: nothing is subtracted. A row never sampled ends as
 /// `unsampled`. Throws std::invalid_argument for moves to a row below and fields of another size
 /// than the chain's, std::runtime_error when 10^5 sweeps do not do.
 [[nodiscard]] Committor committor(const FieldChain& chain, const Field& field,
-                                  Ending ending = Ending::far_edge);
+                                  Ending ending = Ending::far_edge,
+                                  double tolerance = kRowTolerance);
 
 /// The same of walks that may visit so many cells.
 class EndingChance {
  public:
-  /// max_cells 0: no limit, as committor(). Memory: max_cells x rows x columns x inputs numbers;
-  /// throws std::invalid_argument above 4 GiB. On all threads of the current TBB arena.
-  EndingChance(const FieldChain& chain, const Field& field, Ending ending, int max_cells);
+  /// max_cells 0: no limit, as committor(), to `tolerance`. Memory: max_cells x rows x columns x
+  /// inputs numbers; throws std::invalid_argument above 4 GiB. On all threads of the current TBB
+  /// arena.
+  EndingChance(const FieldChain& chain, const Field& field, Ending ending, int max_cells,
+               double tolerance = kRowTolerance);
 
   /// From a cell (row * columns + column) in which the walk is to make its `draw`-th draw, counted
   /// from 1; behind the last one it is cut off. Without limit the number says nothing.

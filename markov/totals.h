@@ -55,6 +55,8 @@ struct WalkTolerance {
   double all = 1e-12;                    // that share of all walks ...
   const EndingChance* chance = nullptr;  // ... but of those that end so ...
   double of_target = 1e-9;               // ... only that share of them
+  /// In large fields, of the visits in a row.
+  double of_row = kRowTolerance;
   /// Fields with so many cells, times nonzeros of a cell's chain, are large: a second or two.
   double large = 1e7;
 };
@@ -64,11 +66,11 @@ struct WalkTolerance {
 /// apart (`each` is told of draw 1), and a row is left after 10^5 sweeps at the latest. Where moves
 /// lead to a row below, step by step until no more than `tolerance.all` of the walks are on their
 /// way, or 10^5 steps are done. In large fields without limit, whose rows are of one type each,
-/// visits, endings and the means of all walks are exact to 1e-12 of each row, the other moments
-/// those of walks drawn with `seed`: 2^16 of all, and, where `tolerance.chance` is of fewer than
-/// 2^12 of these, so many of those that end so. Without rewards no walks are drawn, and the moments
-/// of `draws` are not a number. Throws
-/// std::invalid_argument when rewards do not belong to the chain, and as validate().
+/// visits, endings and the means of all walks are exact to `tolerance.of_row` of each row, the
+/// other moments those of walks drawn with `seed`: 2^16 of all, and, where `tolerance.chance` is of
+/// fewer than 2^12 of these, so many of those that end so. Without rewards no walks are drawn, and
+/// the moments of `draws` are not a number. Throws std::invalid_argument when rewards do not belong
+/// to the chain, and as validate().
 [[nodiscard]] WalkTotals walk_totals(const FieldChain& chain, const Field& field,
                                      const Start& start, int max_cells, const Rewards& rewards = {},
                                      const EachState& each = {},

@@ -1,6 +1,7 @@
 #include "lattice/pool/lumped_chain.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <span>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "markov/lumping.h"
+#include "markov/predict.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -39,10 +41,11 @@ void cut(std::span<int> states, std::size_t axis, int parts, const std::vector<E
 }  // namespace
 
 std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynamics::CellMap& map,
-                                        const FieldParams& field, const std::vector<double>& visits,
+                                        const FieldParams& field, const Passages& passages,
                                         const LumpingParts& parts) {
   const CostedChain& c = chain.chain;
   const markov::Field cells{field.columns, field.rows};
+  const std::vector<double>& visits = passages.state_visits();
   std::vector<Entry> places;
   std::vector<std::vector<int>> keys(static_cast<std::size_t>(c.chain.inputs()));
   std::vector<int> states;
@@ -74,10 +77,17 @@ std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynami
     chains.push_back(std::move(of_type.chain));
   }
   try {
-    const auto error = markov::lumping_error(c.chain, field_chain(map, std::move(chains)), group,
-                                             cells, c.start, {.max_cells = field.max_gates});
-    lumped.endings = error.endings;
-    lumped.final_gates = error.final_cells;
+    constexpr double kTolerance = 1e-6;  // of differences that are told to four digits
+    if (passages.totals().remainder > kTolerance) return {};
+    const auto coarse = markov::predict(
+        field_chain(map, std::move(chains)), cells,
+        {{c.start.column, c.start.row, group[static_cast<std::size_t>(c.start.input)]}},
+        {.max_cells = field.max_gates, .tolerance = kTolerance});
+    const auto& of_lumped = coarse.front();
+    for (std::size_t e = 0; e < markov::kEndings; ++e)
+      lumped.endings += 0.5 * std::abs(passages.totals().endings[e] - of_lumped.endings[e]);
+    lumped.final_gates =
+        0.5 * (final_cells(c, field, passages) - of_lumped.final_cells).abs().sum();
     return lumped;
   } catch (const std::runtime_error&) {  // walks without end
     return {};

@@ -7,6 +7,7 @@
 #include "lattice/field.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/costed_chain.h"
+#include "lattice/pool/passages.h"
 
 namespace gatewalk::lattice {
 
@@ -23,12 +24,12 @@ struct LumpedChain {
   double endings = 0.0, final_gates = 0.0;  // total variation to the chain's
 };
 
-/// `visits`: of each of the chain's states, in gates of all types, by which rows of a part count.
-/// None where walks of either chain do not end.
+/// `passages`: of the chain; rows of a part count by the visits of their states, in gates of all
+/// types. None where walks of either chain do not end.
 [[nodiscard]] std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain,
                                                       const dynamics::CellMap& map,
                                                       const FieldParams& field,
-                                                      const std::vector<double>& visits,
+                                                      const Passages& passages,
                                                       const LumpingParts& parts);
 
 }  // namespace gatewalk::lattice

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -10,8 +11,8 @@
 namespace gatewalk::lattice {
 
 Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
-                   bool with_costs)
-    : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates),
+                   const Parts& parts)
+    : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates, parts.tolerance),
       at_start_(
           chance_(1, std::int64_t{c.start.row} * field.columns + c.start.column, c.start.input)),
       limited_(field.max_gates > 0),
@@ -20,16 +21,17 @@ Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Endin
       state_visits_(static_cast<std::size_t>(c.chain.inputs()), 0.0) {
   totals_ = markov::walk_totals(
       c.chain, {field.columns, field.rows}, c.start, field.max_gates,
-      with_costs ? c.rewards : markov::Rewards{},
+      parts.costs ? c.rewards : markov::Rewards{},
       [&](int draw, std::int64_t cell, int input, double share) {
         to_target_ += share * chance_(draw, cell, input);
         state_visits_[static_cast<std::size_t>(input)] += share;
+        if (!parts.places) return;
         const std::size_t at = index(draw, cell, input);
         if (at >= shares_.size())
           shares_.resize(index(draw, cells_ - 1, 0) + static_cast<std::size_t>(inputs_), 0.0);
         shares_[at] += share;
       },
-      {.chance = &chance_});
+      {.chance = &chance_, .of_row = parts.tolerance});
 }
 
 Passages::Draws::Draws(const Passages& passages) : passages_(passages) {
@@ -55,7 +57,8 @@ Passages::Place Passages::place(std::size_t i) const {
 }
 
 AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
-                         markov::Ending target, bool with_costs, std::string_view what,
+                         markov::Ending target, const Passages::Parts& of_whole,
+                         const Passages::Parts& of_groups, std::string_view what,
                          const dynamics::Work& work) {
   std::vector<const CostedChain*> chains{&chain.chain};
   for (const AnalysedChain& group : chain.groups) chains.push_back(&group.chain);
@@ -64,13 +67,67 @@ AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
   std::int64_t done = 0;
   work.tell(what, 0, std::ssize(chains));
   tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t k) {
-    parts[k].emplace(*chains[k], field, target, with_costs);
+    parts[k].emplace(*chains[k], field, target, k == 0 ? of_whole : of_groups);
     const std::lock_guard lock(telling);
     work.tell(what, ++done, std::ssize(chains));
   });
   AllPassages all{std::move(*parts.front()), {}};
   for (std::size_t k = 1; k < parts.size(); ++k) all.groups.push_back(std::move(*parts[k]));
   return all;
+}
+
+std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field) {
+  std::vector<std::vector<double>> shares;
+  for (const markov::Chain& chain : field.chains()) {
+    auto& of_type = shares.emplace_back(static_cast<std::size_t>(chain.inputs()), 0.0);
+    for (int input = 0; input < chain.inputs(); ++input)
+      for (markov::Probabilities::InnerIterator it(chain.matrix(), input); it; ++it)
+        if (chain.exits()[static_cast<std::size_t>(it.col())].next_input == markov::Exit::kTrapped)
+          of_type[static_cast<std::size_t>(input)] += it.value();
+  }
+  return shares;
+}
+
+markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
+                                      const Passages& passages) {
+  const markov::FieldChain& chain = c.chain;
+  const markov::Field cells{field.columns, field.rows};
+  markov::CellProbabilities ends = markov::CellProbabilities::Zero(field.rows, field.columns);
+  const auto is_sampled = [&](std::int64_t column, std::int64_t row, int input) {
+    return chain.at(column, row).is_sampled(input);
+  };
+  if (!is_sampled(c.start.column, c.start.row, c.start.input))
+    ends(c.start.row, c.start.column) = 1.0;
+  const auto trapped = trapped_shares(chain);
+  std::int64_t far = 0;  // how far moves lead: most cells are farther from all edges
+  bool all_sampled = true;
+  for (const markov::Chain& one : chain.chains()) {
+    for (const markov::Exit& exit : one.exits())
+      far = std::max<std::int64_t>({far, std::abs(exit.di_x), std::abs(exit.di_y)});
+    for (int input = 0; input < one.inputs(); ++input)
+      all_sampled = all_sampled && one.is_sampled(input);
+  }
+  passages.each([&](const Passages::Place& place, double share) {
+    const std::int64_t column = place.cell % field.columns, row = place.cell / field.columns;
+    double& here = ends.data()[place.cell];
+    const bool is_last = place.draw == field.max_gates;
+    if (all_sampled && !is_last && std::min(column, row) >= far && column + far < field.columns &&
+        row + far < field.rows) {
+      here += share * trapped[static_cast<std::size_t>(chain.type_of(column, row))]
+                             [static_cast<std::size_t>(place.input)];
+      return;
+    }
+    const markov::Chain& draws = chain.at(column, row);
+    for (markov::Probabilities::InnerIterator it(draws.matrix(), place.input); it; ++it) {
+      const markov::Exit& exit = draws.exits()[static_cast<std::size_t>(it.col())];
+      std::int64_t to_column = column, to_row = row;
+      if (markov::follow(cells, exit, is_last, to_column, to_row))
+        here += share * it.value();
+      else if (!is_sampled(to_column, to_row, exit.next_input))
+        ends(to_row, to_column) += share * it.value();
+    }
+  });
+  return ends;
 }
 
 }  // namespace gatewalk::lattice

@@ -17,10 +17,15 @@ namespace gatewalk::lattice {
 /// and the chance of the target from there.
 class Passages {
  public:
+  struct Parts {
+    bool costs = true;   // else totals() has no quantities, which are most of the time
+    bool places = true;  // else each() and Draws have none
+    double tolerance = markov::kRowTolerance;  // of the rows of a field without limit
+  };
   /// Without limit of gates walks are followed until those left are few beside the ones that end in
-  /// the target. Without costs totals() has no quantities, which are most of the time. Throws as
-  /// markov::EndingChance and walk_totals.
-  Passages(const CostedChain& c, const FieldParams& field, markov::Ending target, bool with_costs);
+  /// the target. Throws as markov::EndingChance and walk_totals.
+  Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
+           const Parts& parts);
 
   struct Place {
     int draw = 1;
@@ -41,8 +46,11 @@ class Passages {
   /// Calls use(place, share of the walks there) for all places that are passed.
   template <class Use>
   void each(Use use) const {
-    for (std::size_t i = 0; i < shares_.size(); ++i)
-      if (shares_[i] > 0.0) use(place(i), shares_[i]);
+    auto share = shares_.begin();
+    for (Place at; share != shares_.end(); ++at.draw)
+      for (at.cell = 0; at.cell < cells_; ++at.cell)
+        for (at.input = 0; at.input < inputs_; ++at.input, ++share)
+          if (*share > 0.0) use(at, *share);
   }
 
   /// Places drawn in proportion to how often they are passed, by all walks and by those that end in
@@ -78,6 +86,9 @@ class Passages {
   markov::WalkTotals totals_;
 };
 
+/// Groups of trials make intervals, which are known to two or three digits.
+inline constexpr double kGroupTolerance = 1e-6;
+
 struct AllPassages {
   Passages whole;
   std::vector<Passages> groups;
@@ -86,7 +97,15 @@ struct AllPassages {
 /// Of the chain and of its groups, on all threads. `work` is told of each that is done, as `what`,
 /// by any thread, but one at a time.
 [[nodiscard]] AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
-                                       markov::Ending target, bool with_costs,
-                                       std::string_view what, const dynamics::Work& work);
+                                       markov::Ending target, const Passages::Parts& of_whole,
+                                       const Passages::Parts& of_groups, std::string_view what,
+                                       const dynamics::Work& work);
+
+/// Share of a state's draws that are trapped, by type of cell and state.
+[[nodiscard]] std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field);
+
+/// (rows x columns) Where walks end, of their places.
+[[nodiscard]] markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
+                                                    const Passages& passages);
 
 }  // namespace gatewalk::lattice

@@ -20,15 +20,6 @@ namespace {
 
 using namespace dynamics;
 
-/// Share of a row's draws that are trapped.
-double trapped_share(const markov::Chain& chain, int input) {
-  double share = 0.0;
-  for (markov::Probabilities::InnerIterator it(chain.matrix(), input); it; ++it)
-    if (chain.exits()[static_cast<std::size_t>(it.col())].next_input == markov::Exit::kTrapped)
-      share += it.value();
-  return share;
-}
-
 /// Throws where the states of all cells take too much memory: chances and passages, with a limit by
 /// draw and beside some waves of shares and totals; as much again for all groups.
 void require_memory(const CostedChain& c, const FieldParams& field, bool with_groups) {
@@ -152,7 +143,8 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
 
   require_memory(c, field, !chain.groups.empty());
   const auto [passages, groups] =
-      all_passages(chain, field, options.target, true, "analysis", work);
+      all_passages(chain, field, options.target, {},
+                   {.places = false, .tolerance = kGroupTolerance}, "analysis", work);
   markov::FrequentPaths paths;
   std::optional<LumpedChain> lumped;
   tbb::parallel_invoke(
@@ -160,7 +152,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
         paths = markov::most_frequent_paths(c.chain, cells, c.start, field.max_gates,
                                             passages.chance(), options.paths);
       },
-      [&] { lumped = lumped_chain(chain, map, field, passages.state_visits(), options.lumping); });
+      [&] { lumped = lumped_chain(chain, map, field, passages, options.lumping); });
 
   Analysis out{.target = options.target,
                .target_chance = passages.at_start(),
@@ -219,35 +211,31 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
   out.starts = chances_of_starts(chain, map, field, problem.start.face, passages, groups);
 
   out.types.resize(map.types.size());
-  passages.each([&](const Passages::Place& place, double visits) {
-    const auto column = static_cast<int>(place.cell % field.columns),
-               row = static_cast<int>(place.cell / field.columns);
-    Analysis::Type& type = out.types[static_cast<std::size_t>(map.type_of(column, row))];
-    type.visits += visits;
-    type.trapped += visits * trapped_share(c.chain.at(column, row), place.input);
-  });
-
-  if (out.target_chance > 0.0) {
-    const bool of_trapped = options.target == markov::Ending::trapped;
-    if (!of_trapped) {
-      out.trapping = out.passed;
-      out.state_trapping.resize(static_cast<std::size_t>(space.size()));
-      out.type_trapping.resize(map.types.size());
-    }
-    passages.each([&](const Passages::Place& place, double visits) {
-      const double part = visits * passages.chance(place) / out.target_chance;
-      const auto column = static_cast<int>(place.cell % field.columns),
-                 row = static_cast<int>(place.cell / field.columns);
-      out.passed.data()[place.cell] += part;
-      const double trapped = trapped_share(c.chain.at(column, row), place.input);
-      if (of_trapped || trapped >= 1.0) return;  // nobody goes on from there
-      const double effect = part * trapped / (1.0 - trapped);
-      out.trapping.data()[place.cell] += effect;
-      out.type_trapping[static_cast<std::size_t>(map.type_of(column, row))] += effect;
-      if (place.input < space.size())
-        out.state_trapping[static_cast<std::size_t>(place.input)] += effect;
-    });
+  const auto trapped_shares_of = trapped_shares(c.chain);
+  const bool is_reached = out.target_chance > 0.0,
+             of_trapped = options.target == markov::Ending::trapped;
+  if (is_reached && !of_trapped) {
+    out.trapping = out.passed;
+    out.state_trapping.resize(static_cast<std::size_t>(space.size()));
+    out.type_trapping.resize(map.types.size());
   }
+  passages.each([&](const Passages::Place& place, double visits) {
+    const auto type =
+        static_cast<std::size_t>(map.type_of(static_cast<int>(place.cell % field.columns),
+                                             static_cast<int>(place.cell / field.columns)));
+    const double trapped = trapped_shares_of[type][static_cast<std::size_t>(place.input)];
+    out.types[type].visits += visits;
+    out.types[type].trapped += visits * trapped;
+    if (!is_reached) return;
+    const double part = visits * passages.chance(place) / out.target_chance;
+    out.passed.data()[place.cell] += part;
+    if (of_trapped || trapped >= 1.0) return;  // nobody goes on from there
+    const double effect = part * trapped / (1.0 - trapped);
+    out.trapping.data()[place.cell] += effect;
+    out.type_trapping[type] += effect;
+    if (place.input < space.size())
+      out.state_trapping[static_cast<std::size_t>(place.input)] += effect;
+  });
   out.seconds = watch.seconds();
   return out;
 }

@@ -260,7 +260,8 @@ ParameterEffects parameter_effects(const Problem& problem, const AnalysedChain& 
     throw std::invalid_argument("parameters: runs were recorded, there is no cell to change");
   const std::size_t numbers = problem.cells.cells.front()->numbers().size();
   const auto [passages, groups] =
-      all_passages(chain, problem.field, target, false, "chain for parameters", work);
+      all_passages(chain, problem.field, target, {.costs = false},
+                   {.costs = false, .tolerance = kGroupTolerance}, "chain for parameters", work);
   ParameterEffects out{.chance = passages.at_start(), .effects = {}, .health = {}};
   if (passages.at_start() > 0.0) {
     Parameters parameters(problem, chain, passages, groups, options);

@@ -10,46 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "markov/predict/moves.h"
 #include "markov/predict/row_sum.h"
 
 namespace gatewalk::markov {
 namespace {
 
-constexpr double kSweepTolerance = 1e-12;
 constexpr int kMostSweeps = 100'000;
-
-/// A chain's entries by row, those that stay within a row of the field apart from those that leave
-/// it upwards.
-struct Moves {
-  struct Entry {
-    double p;
-    int di_x, di_y, next;
-  };
-  std::vector<Entry> entries;
-  std::vector<double> ends;  // (inputs) chance of the ending at once, wherever the cell is
-  std::vector<std::size_t> up,
-      side;        // (inputs + 1): where those of an input begin; side: behind up
-  int widest = 0;  // |di_x| within a row
-
-  Moves(const Chain& chain, Ending ending) {
-    for (int input = 0; input < chain.inputs(); ++input) {
-      ends.push_back(ending == Ending::unsampled && !chain.is_sampled(input) ? 1.0 : 0.0);
-      for (const bool upwards : {true, false}) {
-        (upwards ? up : side).push_back(entries.size());
-        for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
-          const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-          if (exit.next_input == Exit::kTrapped) {
-            if (ending == Ending::trapped && upwards) ends.back() += it.value();
-          } else if ((exit.di_y > 0) == upwards) {
-            entries.push_back({it.value(), exit.di_x, exit.di_y, exit.next_input});
-            if (!upwards) widest = std::max(widest, std::abs(exit.di_x));
-          }
-        }
-      }
-    }
-    up.push_back(entries.size());
-  }
-};
 
 std::vector<Moves> moves_by_type(const FieldChain& chain, Ending ending) {
   std::vector<Moves> moves;
@@ -67,28 +34,21 @@ std::vector<Moves> moves_by_type(const FieldChain& chain, Ending ending) {
                            " sweeps: walks circle in it");
 }
 
-/// x of a state, of those in its row that it moves to.
-RowSum row_sum_of(const Moves& moves, int columns, int inputs) {
-  std::vector<RowSum::Term> terms;
-  for (int input = 0; input < inputs; ++input)
-    for (std::size_t i = moves.side[input]; i < moves.up[input + 1]; ++i)
-      terms.push_back({input, moves.entries[i].next, moves.entries[i].di_x, moves.entries[i].p});
-  return {terms, columns, inputs};
-}
-
 class CommittorRows {
  public:
-  CommittorRows(const FieldChain& chain, const Field& field, Ending ending)
+  CommittorRows(const FieldChain& chain, const Field& field, Ending ending, double tolerance)
       : chain_(chain),
         field_(field),
         ending_(ending),
+        tolerance_(tolerance),
         moves_(moves_by_type(chain, ending)),
         all_{field.columns, field.rows, chain.inputs(), {}},
         from_above_(static_cast<std::size_t>(field.columns) *
                     static_cast<std::size_t>(chain.inputs())) {
     all_.values.resize(from_above_.size() * static_cast<std::size_t>(field.rows));
     if (chain.has_uniform_rows())
-      for (const Moves& m : moves_) sums_.push_back(row_sum_of(m, field.columns, chain.inputs()));
+      for (const Moves& m : moves_)
+        sums_.emplace_back(m.within_row(), RowSum::Sums::led_to, field.columns, chain.inputs());
   }
 
   Committor solve() && {
@@ -168,7 +128,7 @@ class CommittorRows {
         for (std::size_t i = m.side[input]; i < m.up[input + 1]; ++i)
           if (const auto& [p, di_x, di_y, next] = m.entries[i]; !within(column + di_x))
             cell(column, row)[input] += p * ends_beyond(column + di_x, row);
-    sums_[type_of(0, row)].solve(cell(0, row), RowSum::Of::each);
+    sums_[type_of(0, row)].solve(cell(0, row), RowSum::Of::each, tolerance_);
   }
   [[nodiscard]] bool ends_at_a_side(const Moves& m, int column) const {
     return !within(column - m.widest) || !within(column + m.widest);
@@ -179,7 +139,7 @@ class CommittorRows {
       double change = 0.0;
       for (int i = 0; i < field_.columns; ++i)
         change = std::max(change, renew(sweep % 2 == 0 ? i : field_.columns - 1 - i, row));
-      if (change <= kSweepTolerance) return;
+      if (change <= tolerance_) return;
     }
     refuse_circles(row);
   }
@@ -187,6 +147,7 @@ class CommittorRows {
   const FieldChain& chain_;
   const Field field_;
   const Ending ending_;
+  const double tolerance_;
   std::vector<Moves> moves_;  // by type
   std::vector<RowSum> sums_;  // by type; none where rows are of several
   Committor all_;
@@ -195,13 +156,13 @@ class CommittorRows {
 
 }  // namespace
 
-Committor committor(const FieldChain& chain, const Field& field, Ending ending) {
+Committor committor(const FieldChain& chain, const Field& field, Ending ending, double tolerance) {
   validate(chain, field, {}, 0);
-  return CommittorRows(chain, field, ending).solve();
+  return CommittorRows(chain, field, ending, tolerance).solve();
 }
 
 EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending ending,
-                           int max_cells)
+                           int max_cells, double tolerance)
     : ending_(ending),
       max_cells_(max_cells),
       cells_(std::int64_t{field.columns} * field.rows),
@@ -209,7 +170,7 @@ EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending e
       layers_(max_cells == 0 ? 1 : max_cells) {
   validate(chain, field, {}, max_cells);
   if (max_cells == 0) {
-    values_ = committor(chain, field, ending).values;
+    values_ = committor(chain, field, ending, tolerance).values;
     return;
   }
   constexpr double kMostNumbers = 4.0 * (1 << 30) / sizeof(double);
@@ -276,7 +237,7 @@ std::vector<double> row_chances(const FieldChain& chain, const Field& field, con
       }
     };
     double left = 1.0;
-    for (int sweep = 0; left > kSweepTolerance * up; ++sweep) {
+    for (int sweep = 0; left > kRowTolerance * up; ++sweep) {
       if (sweep == kMostSweeps) refuse_circles(row);
       for (int i = 0; i < field.columns; ++i) pass_on(sweep % 2 == 0 ? i : field.columns - 1 - i);
       left = std::accumulate(waiting.begin(), waiting.end(), 0.0);

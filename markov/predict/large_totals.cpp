@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "markov/committor.h"
+#include "markov/predict/moves.h"
 #include "markov/predict/row_sum.h"
 
 namespace gatewalk::markov {
@@ -36,15 +37,9 @@ class VisitsByRows {
  public:
   VisitsByRows(const FieldChain& chain, const Field& field) : chain_(chain), field_(field) {
     for (const Chain& c : chain.chains()) {
-      std::vector<RowSum::Term> terms;
-      for (int input = 0; input < c.inputs(); ++input)
-        for (Probabilities::InnerIterator it(c.matrix(), input); it; ++it) {
-          const Exit& exit = c.exits()[static_cast<std::size_t>(it.col())];
-          highest_ = std::max(highest_, exit.di_y);
-          if (exit.next_input != Exit::kTrapped && exit.di_y == 0)
-            terms.push_back({exit.next_input, input, -exit.di_x, it.value()});
-        }
-      sums_.emplace_back(terms, field.columns, c.inputs());
+      const Moves& m = moves_.emplace_back(c, Ending::trapped);
+      for (const Moves::Entry& e : m.entries) highest_ = std::max(highest_, e.di_y);
+      sums_.emplace_back(m.within_row(), RowSum::Sums::brought, field.columns, c.inputs());
     }
   }
 
@@ -58,54 +53,77 @@ class VisitsByRows {
   /// quantity.
   template <class Little>
   std::vector<double> run(const Start& start, const Rewards& rewards, const EachState& each,
-                          const Little& is_little, WalkTotals& out) {
-    std::vector<double> means(1 + quantities_of(chain_, rewards), 0.0);
+                          const Little& is_little, double tolerance, WalkTotals& out) {
     const std::int64_t inputs = chain_.inputs(), states = inputs * field_.columns;
+    std::vector<std::vector<double>> of_states(  // visits by type and state, in all cells
+        sums_.size(), std::vector<double>(static_cast<std::size_t>(inputs), 0.0));
     std::vector<std::vector<double>> entering(static_cast<std::size_t>(highest_) + 1);
     for (auto& row : entering) row.assign(static_cast<std::size_t>(states), 0.0);
     entering.front()[static_cast<std::size_t>(start.column * inputs + start.input)] = 1.0;
     for (int row = start.row; row < field_.rows; ++row) {
       const auto type = static_cast<std::size_t>(chain_.type_of(0, row));
-      const Chain& here = chain_.chains()[type];
+      const Moves& moves = moves_[type];
       std::vector<double>& visits = entering.front();
-      sums_[type].solve(visits.data(), RowSum::Of::largest);
-      for (std::int64_t column = 0; column < field_.columns; ++column)
+      sums_[type].solve(visits.data(), RowSum::Of::largest, tolerance);
+      for (int column = 0; column < field_.columns; ++column) {
+        const bool at_a_side = column < moves.widest || column + moves.widest >= field_.columns;
+        const std::int64_t cell = std::int64_t{row} * field_.columns + column;
         for (int input = 0; input < inputs; ++input) {
           const double share = visits[static_cast<std::size_t>(column * inputs + input)];
           if (share == 0.0) continue;
-          const std::int64_t cell = std::int64_t{row} * field_.columns + column;
-          if (!here.is_sampled(input)) {
-            out.endings[static_cast<std::size_t>(Ending::unsampled)] += share;
-            continue;
-          }
+          of_states[type][static_cast<std::size_t>(input)] += share;
+          if (!chain_.chains()[type].is_sampled(input)) continue;
           out.visits.data()[cell] += share;
-          means[0] += share;
           if (each && !is_little(share, cell, input)) each(1, cell, input, share);
-          auto nonzero = static_cast<std::size_t>(here.matrix().outerIndexPtr()[input]);
-          for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it, ++nonzero) {
-            const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
-            std::int64_t to_column = column, to_row = row;
-            const double p = share * it.value();
-            for (std::size_t q = 1; q < means.size(); ++q)
-              means[q] += p * rewards[type][q - 1].mean[nonzero];
-            if (const auto ending = follow(field_, exit, false, to_column, to_row))
-              out.endings[static_cast<std::size_t>(*ending)] += p;
-            else if (exit.di_y > 0)
-              entering[static_cast<std::size_t>(exit.di_y)]
-                      [static_cast<std::size_t>(to_column * inputs + exit.next_input)] += p;
+          for (std::size_t i = moves.up[input];
+               i < (at_a_side ? moves.up[input + 1] : moves.side[input]); ++i) {
+            const auto& [p, di_x, di_y, next] = moves.entries[i];
+            const int to = column + di_x;
+            if (to < 0 || to >= field_.columns || row + di_y >= field_.rows)
+              out.endings[static_cast<std::size_t>(edge_before(field_, to, row + di_y))] +=
+                  share * p;
+            else if (di_y > 0)
+              entering[static_cast<std::size_t>(di_y)]
+                      [static_cast<std::size_t>(to * inputs + next)] += share * p;
           }
         }
+      }
       std::fill(visits.begin(), visits.end(), 0.0);
       std::rotate(entering.begin(), entering.begin() + 1, entering.end());
+    }
+    return add_up(of_states, rewards, out);
+  }
+
+ private:
+  /// Of what does not depend on the cell.
+  std::vector<double> add_up(const std::vector<std::vector<double>>& of_states,
+                             const Rewards& rewards, WalkTotals& out) const {
+    std::vector<double> means(1 + quantities_of(chain_, rewards), 0.0);
+    for (std::size_t type = 0; type < of_states.size(); ++type) {
+      const Chain& here = chain_.chains()[type];
+      std::size_t nonzero = 0;
+      for (int input = 0; input < here.inputs(); ++input) {
+        const auto i = static_cast<std::size_t>(input);
+        const double share = of_states[type][i];
+        if (!here.is_sampled(input)) {
+          out.endings[static_cast<std::size_t>(Ending::unsampled)] += share;
+          continue;
+        }
+        means[0] += share;
+        out.endings[static_cast<std::size_t>(Ending::trapped)] += share * moves_[type].ends[i];
+        for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it, ++nonzero)
+          for (std::size_t q = 1; q < means.size(); ++q)
+            means[q] += share * it.value() * rewards[type][q - 1].mean[nonzero];
+      }
     }
     return means;
   }
 
- private:
   const FieldChain& chain_;
   const Field field_;
   int highest_ = 0;           // di_y
-  std::vector<RowSum> sums_;  // by type
+  std::vector<Moves> moves_;  // by type
+  std::vector<RowSum> sums_;
 };
 
 /// "mom", version 1: the second key word of these walks' streams.
@@ -228,7 +246,7 @@ std::optional<WalkTotals> totals_of_large(const FieldChain& chain, const Field& 
                (!chance ||
                 share * (*chance)(1, cell, input) * states <= tolerance.of_target * at_start);
       },
-      out);
+      tolerance.of_row, out);
   const double ended = std::accumulate(out.endings.begin(), out.endings.end(), 0.0);
   out.remainder = std::max(0.0, 1.0 - ended);
   if (quantities == 0) {  // nobody asks for more

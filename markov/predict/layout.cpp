@@ -1,6 +1,22 @@
 #include "markov/predict/layout.h"
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace gatewalk::markov {
+
+void ask_for_large_pages([[maybe_unused]] double* first, [[maybe_unused]] std::ptrdiff_t count) {
+#ifdef __linux__
+  constexpr std::uintptr_t kLargePage = 1 << 21;
+  const auto begin = reinterpret_cast<std::uintptr_t>(first),
+             end = begin + static_cast<std::uintptr_t>(count) * sizeof(double);
+  const std::uintptr_t from = (begin + kLargePage - 1) / kLargePage * kLargePage,
+                       to = end / kLargePage * kLargePage;
+  // Where there are none the small ones do.
+  if (from < to) (void)madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);
+#endif
+}
 
 Stencil::Stencil(const std::vector<Entry>& entries) {
   // Counting sort by target and move; entries of the same target and move keep their order.

@@ -2,114 +2,138 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <utility>
+#include <limits>
+#include <map>
+#include <numeric>
 
 #include "markov/staying.h"
 
 namespace gatewalk::markov {
 
-RowSum::RowSum(const std::vector<Term>& terms, int columns, int inputs)
+RowSum::RowSum(const std::vector<Move>& moves, Sums sums, int columns, int inputs)
     : columns_(columns), inputs_(inputs) {
-  std::vector<bool> depends(static_cast<std::size_t>(inputs)), is_used(depends);
-  for (const Term& t : terms) {
-    depends[static_cast<std::size_t>(t.target)] = is_used[static_cast<std::size_t>(t.source)] =
-        true;
-    widest_ = std::max(widest_, std::abs(t.di_x));
+  const auto target = [&](const Move& m) {
+    return static_cast<std::size_t>(sums == Sums::brought ? m.to : m.from);
+  };
+  const auto source = [&](const Move& m) {
+    return static_cast<std::size_t>(sums == Sums::brought ? m.from : m.to);
+  };
+  const auto states = static_cast<std::size_t>(inputs);
+  std::vector<char> depends(states), is_used(states);
+  std::vector<double> heading(states);
+  for (const Move& m : moves) {
+    depends[target(m)] = is_used[source(m)] = 1;
+    heading[static_cast<std::size_t>(m.to)] += m.p * m.di_x;
+    widest_ = std::max(widest_, std::abs(m.di_x));
   }
-  std::vector<int> place(depends.size(), -1);  // in the circle
-  for (int input = 0; input < inputs; ++input) {
+  const auto kind = [&](int input) {
     const auto i = static_cast<std::size_t>(input);
-    if (!depends[i] || !is_used[i]) continue;
-    place[i] = static_cast<int>(circle_.size());
-    circle_.push_back(input);
-  }
-  std::vector<Term> round;
-  for (const Term& t : terms) {
-    const int target = place[static_cast<std::size_t>(t.target)],
-              source = place[static_cast<std::size_t>(t.source)];
-    if (target < 0)
-      last_.push_back(t);
-    else if (source < 0)
-      first_.push_back(t);
-    else
-      round.push_back({target, source, t.di_x, t.p});
-  }
-  std::stable_sort(round.begin(), round.end(),
-                   [](const Term& a, const Term& b) { return a.target < b.target; });
-  ends_.assign(circle_.size() + 1, 0);
-  for (const Term& t : round) {
-    const auto known = std::find_if(shifts_.begin(), shifts_.end(),
-                                    [&](const Shift& s) { return s.offset == t.di_x; });
-    terms_.push_back({t.p, t.source, static_cast<int>(known - shifts_.begin())});
-    if (known == shifts_.end()) shifts_.push_back({t.di_x, nullptr});
-    ++ends_[static_cast<std::size_t>(t.target) + 1];
-  }
-  for (std::size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
-  stays_ =
-      circle_.empty() ? 0.0 : staying_per_move(static_cast<int>(circle_.size()), [&](auto use) {
-        for (const Term& t : round) use(t.target, t.source, t.p);
-      });
+    if (!depends[i]) return 0;
+    if (!is_used[i]) return 3;
+    return heading[i] >= 0.0 ? 1 : 2;
+  };
+  states_.resize(states);
+  std::iota(states_.begin(), states_.end(), 0);
+  std::stable_sort(states_.begin(), states_.end(), [&](int a, int b) { return kind(a) < kind(b); });
+  const auto begin_of = [&](int k) {
+    return static_cast<int>(
+        std::find_if(states_.begin(), states_.end(), [&](int s) { return kind(s) >= k; }) -
+        states_.begin());
+  };
+  right_ = begin_of(1), left_ = begin_of(2), last_ = begin_of(3);
+  right_first_up_ = sums == Sums::brought;
+  std::vector<int> place(states);
+  for (std::size_t i = 0; i < states; ++i) place[static_cast<std::size_t>(states_[i])] = int(i);
+
+  stays_ = right_ == last_ ? 0.0 : staying_per_move(inputs, [&](auto use) {
+    for (const Move& m : moves)
+      if (is_used[target(m)] && depends[source(m)])
+        use(static_cast<int>(target(m)), static_cast<int>(source(m)), m.p);
+  });
+  length_ = std::max((columns + static_cast<int>(kLanes) - 1) / static_cast<int>(kLanes), widest_);
   if (!suits()) return;
-  origin_ = lanes_up(widest_);
-  range_ = {{origin_, lanes_up(origin_ + columns)}};
-  stride_ = lanes_up(range_.front().last + widest_);
-  const std::ptrdiff_t planes = std::ssize(circle_);
-  buffer_.reset(3 * planes + 1, stride_);
-  mask_ = buffer_.take(1);
-  std::fill_n(mask_.data() + origin_, columns, 1.0);
-  sum_ = buffer_.take(planes), now_ = buffer_.take(planes), next_ = buffer_.take(planes);
+  stride_ = std::ptrdiff_t{inputs} * kLanes;
+
+  std::vector<Move> sorted = moves;
+  std::stable_sort(sorted.begin(), sorted.end(), [&](const Move& a, const Move& b) {
+    return place[target(a)] < place[target(b)];
+  });
+  for (Terms* terms : {&first_, &further_}) terms->ends.assign(states + 1, 0);
+  std::map<double, int> numbers;
+  for (const Move& m : sorted) {
+    const int di_x = sums == Sums::brought ? -m.di_x : m.di_x, at = place[target(m)];
+    const bool is_first = at < last_ && !depends[source(m)];
+    Terms& terms = is_first ? first_ : further_;
+    const auto [number, is_new] = numbers.try_emplace(m.p, std::ssize(shares_));
+    if (is_new) shares_.push_back(m.p);
+    terms.terms.push_back(
+        {number->second, static_cast<std::int32_t>(di_x * stride_ + place[source(m)] * kLanes)});
+    ++terms.ends[static_cast<std::size_t>(at) + 1];
+  }
+  for (Terms* terms : {&first_, &further_}) {
+    std::partial_sum(terms->ends.begin(), terms->ends.end(), terms->ends.begin());
+    terms->terms.resize(terms->terms.size() + kTermsAhead);
+  }
+
+  buffer_.reset((2 * length_ + 2 * widest_) * inputs + length_ + 1, kLanes);
+  (void)buffer_.take(1);  // before the first number
+  mask_ = buffer_.take(length_);
+  b_ = buffer_.take(std::ptrdiff_t{length_} * inputs);
+  x_ = buffer_.take(std::ptrdiff_t{length_ + 2 * widest_} * inputs);
+  for (std::ptrdiff_t column = 0; column < columns; ++column)
+    mask_.data()[column % length_ * kLanes + column / length_] = 1.0;
 }
 
 bool RowSum::suits() const {
   constexpr double kStayLong = 0.95;
-  return stays_ <= kStayLong && widest_ < columns_;
-}
-
-void RowSum::add(const std::vector<Term>& terms, double* values) const {
-  for (int column = 0; column < columns_; ++column)
-    for (const Term& t : terms)
-      if (const int from = column + t.di_x; from >= 0 && from < columns_)
-        values[std::ptrdiff_t{column} * inputs_ + t.target] +=
-            t.p * values[std::ptrdiff_t{from} * inputs_ + t.source];
+  const double farthest = static_cast<double>(widest_ + 1) * inputs_ * static_cast<double>(kLanes);
+  return stays_ <= kStayLong && widest_ < columns_ &&
+         farthest < std::numeric_limits<std::int32_t>::max();
 }
 
 template <class Use>
 void RowSum::each(Use use) const {
-  for (std::ptrdiff_t column = 0; column < columns_; ++column)
-    for (std::ptrdiff_t k = 0; k < std::ssize(circle_); ++k)
-      use(k * stride_ + origin_ + column, column * inputs_ + circle_[static_cast<std::size_t>(k)]);
+  for (std::ptrdiff_t k = 0; k < length_; ++k)
+    for (std::ptrdiff_t place = 0; place < inputs_; ++place)
+      for (std::ptrdiff_t column = k, at = k * stride_ + place * kLanes; column < columns_;
+           column += length_, ++at)
+        use(at, column * inputs_ + states_[static_cast<std::size_t>(place)]);
 }
 
-void RowSum::solve(double* values, Of of) {
-  constexpr double kTolerance = 1e-12;
-  constexpr int kAtOnce = 8;  // to look at all numbers takes as long as to sum some
-  add(first_, values);
-  each([&](std::ptrdiff_t plane, std::ptrdiff_t cell) {
-    sum_.data()[plane] = now_.data()[plane] = values[cell];
-  });
-  const auto planes = static_cast<int>(circle_.size());
-  const double tolerance = kTolerance * (1.0 - stays_);
-  const auto largest_of = [](Planes p) { return *std::max_element(p.data(), p.data() + p.size()); };
-  // Of each: with the last two terms, as moves of one column lead to every other column only; a
-  // number that was reached just now is all of its sum.
-  const auto is_settled = [&] {
-    if (of == Of::largest) return largest_of(now_) <= tolerance * largest_of(sum_);
-    for (std::ptrdiff_t i = 0; i < sum_.size(); ++i)
-      if (now_.data()[i] + next_.data()[i] > tolerance * sum_.data()[i]) return false;
-    return true;
+void RowSum::tell_neighbours(int first, int last) {
+  double* const x = x_.data() + widest_ * stride_;
+  const std::ptrdiff_t behind = length_ * stride_, count = std::ptrdiff_t{last - first} * kLanes;
+  for (std::ptrdiff_t at = first * kLanes; at < widest_ * stride_; at += stride_) {
+    shift_lanes(x + behind - widest_ * stride_ + at, x - widest_ * stride_ + at, count, -1);
+    shift_lanes(x + at, x + behind + at, count, 1);
+  }
+}
+
+void RowSum::solve(double* values, Of of, double tolerance) {
+  double* const x = x_.data() + widest_ * stride_;
+  const auto sweep = [&](const Terms& terms, int first, int last, bool upwards, const double* b,
+                         StripChange& change) {
+    sweep_strips({shares_.data(), terms.terms.data(), terms.ends.data(), mask_.data(), length_,
+                  stride_, tolerance * (1.0 - stays_)},
+                 first, last, upwards, b, x, change);
   };
-  do {
-    for (int k = 0; k < kAtOnce && planes > 0; ++k) {
-      gather(
-          {terms_.data(), ends_.data(), planes, shifts_.data(), stride_, mask_.data(), nullptr, 0},
-          range_, {}, now_.data(), next_.data());
-      accumulate(next_.data(), sum_.data(), planes, stride_, range_.front().first,
-                 range_.front().last);
-      std::swap(now_, next_);
-    }
-  } while (planes > 0 && !is_settled());
-  each([&](std::ptrdiff_t plane, std::ptrdiff_t cell) { values[cell] = sum_.data()[plane]; });
-  add(last_, values);
+  StripChange unasked;
+  each([&](std::ptrdiff_t at, std::ptrdiff_t cell) { x[at] = values[cell]; });
+  tell_neighbours(0, right_);
+  sweep(first_, right_, last_, true, x, unasked);
+  std::copy_n(x, b_.size(), b_.data());
+  for (bool settled = right_ == last_; !settled;) {
+    StripChange change;
+    tell_neighbours(right_, last_);
+    sweep(further_, right_, left_, right_first_up_, b_.data(), change);
+    tell_neighbours(right_, last_);
+    sweep(further_, left_, last_, !right_first_up_, b_.data(), change);
+    settled = of == Of::each ? change.excess <= 0.0
+                             : change.largest <= tolerance * (1.0 - stays_) * change.largest_number;
+  }
+  tell_neighbours(0, last_);
+  sweep(further_, last_, inputs_, true, x, unasked);
+  each([&](std::ptrdiff_t at, std::ptrdiff_t cell) { values[cell] = x[at]; });
 }
 
 }  // namespace gatewalk::markov

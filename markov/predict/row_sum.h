@@ -1,52 +1,66 @@
 #pragma once
-/// Linear equations of one row of equal cells, all columns side by side in vector registers.
+/// Linear equations of one row of equal cells, several columns side by side in vector registers.
 
 #include <cstddef>
 #include <vector>
 
 #include "markov/predict/layout.h"
+#include "markov/predict/stencil.h"
 
 namespace gatewalk::markov {
 
-/// x = b + Q x in a row of cells of one type, Q the moves within it (or their transpose), as the
-/// sum of b, Q b, Q Q b, ...: to 1e-12. Numbers that are not negative stay so, and
-/// nothing is subtracted. Many times as fast as sweeps over the cells, unless walks stay in the row
-/// for long.
+/// x = b + Q x in a row of cells of one type, Q the moves within it or their transpose, by sweeps
+/// along the row, one to either side: states that are entered by moves to the right in the order in
+/// which such moves are made, then those to the left, so that only turns are left to the next
+/// sweeps. From x = b on, numbers only grow: what is not negative stays so, and nothing is
+/// subtracted.
+///
+/// The row is cut into strips of equal length, one for each number in a register: a sweep takes the
+/// first columns of all strips together, then the second ones, ... and a strip hears of its
+/// neighbours once a sweep.
 class RowSum {
  public:
-  /// Q adds p times the number of state `source`, `di_x` columns on, to that of `target`.
-  struct Term {
-    int target, source, di_x;
+  /// With chance p from a state to another, `di_x` columns on.
+  struct Move {
+    int from, to, di_x;
     double p;
   };
-  RowSum(const std::vector<Term>& terms, int columns, int inputs);
+  /// Sums of what moves bring (visits), or of what they lead to (chances: Q x of a state is the sum
+  /// of p times the number of the state that the move leads to).
+  enum class Sums { brought, led_to };
+  RowSum(const std::vector<Move>& moves, Sums sums, int columns, int inputs);
 
   /// Whether it is worth while: walks leave the row soon enough.
   [[nodiscard]] bool suits() const;
-  /// `values` (columns x inputs): b, and then x, to 1e-12 of the largest or of each number, however
-  /// small.
+  /// `values` (columns x inputs): b, and then x, to `tolerance` of the largest or of each number,
+  /// however small.
   enum class Of { largest, each };
-  void solve(double* values, Of of);
+  void solve(double* values, Of of, double tolerance = 1e-12);
 
  private:
-  void add(const std::vector<Term>& terms, double* values) const;
-  /// For every number of the circle its places in the planes and in the cells.
+  /// For every number of the row its places in the strips and in the cells.
   template <class Use>
   void each(Use use) const;
+  /// What a strip has to know of its neighbours: of states [first, last).
+  void tell_neighbours(int first, int last);
 
   int columns_, inputs_, widest_ = 0;
-  // States that depend on no other come first, those that no other depends on last; only what lies
-  // between goes round in a circle.
-  std::vector<Term> first_, last_;
-  std::vector<int> circle_;        // states
-  std::vector<GatherTerm> terms_;  // of the circle, by target
-  std::vector<int> ends_;
-  std::vector<Shift> shifts_;
+  int length_ = 0;  // of a strip
   double stays_ = 1.0;
-  std::ptrdiff_t origin_ = 0, stride_ = 0;
-  std::vector<Range> range_;
+  // Places of states: those that depend on no other, those entered by moves to the right and to the
+  // left of which others depend, and those that no other depends on.
+  std::vector<int> states_;
+  int right_ = 0, left_ = 0, last_ = 0;  // where they begin
+  bool right_first_up_ = true;           // those to the right from the first column on
+  struct Terms {
+    std::vector<StripTerm> terms;  // by place
+    std::vector<int> ends;
+  };
+  Terms first_, further_;  // first: what states that depend on no other add once and for all
+  std::vector<double> shares_;
+  std::ptrdiff_t stride_ = 0;  // from a column to the next
   PlaneBuffer buffer_;
-  Planes mask_, sum_, now_, next_;
+  Planes mask_, b_, x_;
 };
 
 }  // namespace gatewalk::markov

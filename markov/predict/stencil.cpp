@@ -1,9 +1,11 @@
 #include "markov/predict/stencil.h"
 
+#include <algorithm>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "markov/predict/stencil.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -134,6 +136,56 @@ void accumulate_in_registers(const double* HWY_RESTRICT from, double* HWY_RESTRI
       hn::StoreU(hn::Add(hn::LoadU(d, to + c), hn::LoadU(d, from + c)), d, to + c);
 }
 
+void sweep_in_registers(const StripPass& pass, int first, int last, bool upwards,
+                        const double* HWY_RESTRICT b, double* x, StripChange& change) {
+  const D d;
+  constexpr int kRegisters = kLanes / hn::MaxLanes(D());
+  const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  auto largest = hn::Zero(d), number = hn::Zero(d), excess = hn::Zero(d);
+  const auto tolerance = hn::Set(d, pass.tolerance);
+  for (int step = 0; step < pass.length; ++step) {
+    const int k = upwards ? step : pass.length - 1 - step;
+    hn::Vec<D> mask[kRegisters];
+    for (int i = 0; i < kRegisters; ++i) mask[i] = hn::LoadU(d, pass.mask + k * kLanes + i * n);
+    for (int state = first; state < last; ++state) {
+      double* const base = x + k * pass.stride;
+      double* const out = base + state * kLanes;
+      hn::Vec<D> s[kRegisters];
+      for (int i = 0; i < kRegisters; ++i)
+        s[i] = hn::LoadU(d, b + k * pass.stride + state * kLanes + i * n);
+      const StripTerm* const end = pass.terms + pass.ends[state + 1];
+      for (const StripTerm* t = pass.terms + pass.ends[state]; t != end; ++t) {
+        hwy::Prefetch(base + t[kTermsAhead].offset);
+        const auto p = hn::Set(d, pass.shares[t->share]);
+        for (int i = 0; i < kRegisters; ++i)
+          s[i] = hn::Add(s[i], hn::Mul(p, hn::LoadU(d, base + t->offset + i * n)));
+      }
+      for (int i = 0; i < kRegisters; ++i) {
+        s[i] = hn::Mul(s[i], mask[i]);
+        const auto by = hn::Sub(s[i], hn::LoadU(d, out + i * n));
+        largest = hn::Max(largest, by);
+        number = hn::Max(number, s[i]);
+        excess = hn::Max(excess, hn::Sub(by, hn::Mul(tolerance, s[i])));
+        hn::StoreU(s[i], d, out + i * n);
+      }
+    }
+  }
+  change.largest = std::max(change.largest, hn::GetLane(hn::MaxOfLanes(d, largest)));
+  change.largest_number = std::max(change.largest_number, hn::GetLane(hn::MaxOfLanes(d, number)));
+  change.excess = std::max(change.excess, hn::GetLane(hn::MaxOfLanes(d, excess)));
+}
+
+void shift_in_registers(const double* HWY_RESTRICT from, double* HWY_RESTRICT to,
+                        std::ptrdiff_t count, int by) {
+  const D d;
+  const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  constexpr double kInside[] = {0, 1, 1, 1, 1, 1, 1, 1, 1, 0};
+  const double* const inside = kInside + (by > 0 ? 2 : 0);
+  for (std::ptrdiff_t c = 0; c < count; c += kLanes)
+    for (std::ptrdiff_t i = 0; i < kLanes; i += n)
+      hn::StoreU(hn::Mul(hn::LoadU(d, from + c + i + by), hn::LoadU(d, inside + i)), d, to + c + i);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace gatewalk::markov
 HWY_AFTER_NAMESPACE();
@@ -143,6 +195,8 @@ namespace gatewalk::markov {
 HWY_EXPORT(apply_in_registers);
 HWY_EXPORT(accumulate_in_registers);
 HWY_EXPORT(gather_in_registers);
+HWY_EXPORT(sweep_in_registers);
+HWY_EXPORT(shift_in_registers);
 
 void apply_pass(const StencilPass& pass, const double* from, double* to, std::ptrdiff_t first,
                 std::ptrdiff_t last, bool add) {
@@ -152,6 +206,15 @@ void apply_pass(const StencilPass& pass, const double* from, double* to, std::pt
 void gather(const GatherPass& pass, const std::vector<Range>& ranges,
             const std::vector<GatherReward>& rewards, const double* from, double* to) {
   HWY_DYNAMIC_DISPATCH(gather_in_registers)(pass, ranges, rewards, from, to);
+}
+
+void sweep_strips(const StripPass& pass, int first, int last, bool upwards, const double* b,
+                  double* x, StripChange& change) {
+  HWY_DYNAMIC_DISPATCH(sweep_in_registers)(pass, first, last, upwards, b, x, change);
+}
+
+void shift_lanes(const double* from, double* to, std::ptrdiff_t count, int by) {
+  HWY_DYNAMIC_DISPATCH(shift_in_registers)(from, to, count, by);
 }
 
 void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,

@@ -6,6 +6,7 @@
 /// plane; the next plane begins `stride` numbers on.
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace gatewalk::markov {
@@ -84,6 +85,39 @@ struct GatherPass {
 /// to[plane][c] = mask[c] * sum of p * from[source][c + offset], then the rewards.
 void gather(const GatherPass& pass, const std::vector<Range>& ranges,
             const std::vector<GatherReward>& rewards, const double* from, double* to);
+
+/// A share (its number) times the number `offset` on. Small, as large chains are read from beyond
+/// the caches that are near.
+struct StripTerm {
+  std::int32_t share, offset;
+};
+/// So many terms are looked at ahead; as many more must follow the last.
+inline constexpr int kTermsAhead = 48;
+
+/// A row in strips, one for each of kLanes numbers side by side: of each place along the strips all
+/// states.
+struct StripPass {
+  const double* shares;
+  const StripTerm* terms;
+  const int* ends;     // of each state's terms, the first state's begin before it (states + 1)
+  const double* mask;  // (length x kLanes) 1 for a cell of the field, else 0
+  int length;
+  std::ptrdiff_t stride;  // from a place along the strips to the next
+  double tolerance;
+};
+
+struct StripChange {
+  double largest = 0.0, largest_number = 0.0;
+  double excess = 0.0;  // over `tolerance` times the number
+};
+
+/// x = mask * (b + sum of share * x), in place, states [first, last), one place along the strips
+/// after the other, from the first or from the last one on.
+void sweep_strips(const StripPass& pass, int first, int last, bool upwards, const double* b,
+                  double* x, StripChange& change);
+
+/// to[i] = from[i + by], each kLanes numbers for themselves, 0 from outside; by is 1 or -1.
+void shift_lanes(const double* from, double* to, std::ptrdiff_t count, int by);
 
 /// to += from, in `count` planes from the first on.
 void accumulate(const double* from, double* to, int count, std::ptrdiff_t stride,

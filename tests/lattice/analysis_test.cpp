@@ -402,20 +402,21 @@ TEST(Analysis, TellsOfEachChainThatItHasWalked) {
     EXPECT_EQ(total, kTrialGroups + 1);
     told.push_back(done);
   }};
-  const auto all = all_passages(chain, scene.field, Ending::far_edge, false, "chains", work);
+  const auto all = all_passages(chain, scene.field, Ending::far_edge, {.costs = false},
+                                {.costs = false}, "chains", work);
   ASSERT_EQ(std::ssize(told), kTrialGroups + 2);
   for (std::int64_t i = 0; i < std::ssize(told); ++i)
     EXPECT_EQ(told[static_cast<std::size_t>(i)], i);
   EXPECT_EQ(std::ssize(all.groups), kTrialGroups);
   EXPECT_EQ(all.whole.at_start(),
-            Passages(chain.chain, scene.field, Ending::far_edge, false).at_start());
+            Passages(chain.chain, scene.field, Ending::far_edge, {.costs = false}).at_start());
 }
 
 TEST(Analysis, DrawnPlacesStandForAllThatArePassed) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
   const AnalysedChain chain = analysed_chain(problem_of(scene), pool, pool.starts.front());
-  const Passages passages(chain.chain, scene.field, Ending::far_edge, true);
+  const Passages passages(chain.chain, scene.field, Ending::far_edge, {});
   double draws = 0.0, to_target = 0.0;
   passages.each([&](const Passages::Place& place, double share) {
     draws += share;
@@ -434,15 +435,27 @@ TEST(Analysis, DrawnPlacesStandForAllThatArePassed) {
   EXPECT_NEAR(of_target / to_target, 1.0, 0.02);
 }
 
+TEST(Analysis, PlacesTellWhereWalksEnd) {
+  Scene scene = open_scene();
+  const RunPool pool = pool_of_trials(scene, 2000);
+  for (const int max_gates : {0, 4}) {
+    scene.field.max_gates = max_gates;
+    const CostedChain c = analysed_chain(problem_of(scene), pool, pool.starts.front()).chain;
+    const auto ends = final_cells(c, scene.field, {c, scene.field, Ending::far_edge, {}});
+    const auto exact = markov::predict(c.chain, {scene.field.columns, scene.field.rows}, {c.start},
+                                       {.max_cells = max_gates});
+    EXPECT_LT((ends - exact.front().final_cells).abs().maxCoeff(), 1e-11);
+  }
+}
+
 // Down to a part for each state, about, which loses nothing.
 TEST(Analysis, MorePartsLoseLess) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
   const AnalysedChain chain = analysed_chain(problem_of(scene), pool, pool.starts.front());
-  const Passages passages(chain.chain, scene.field, Ending::far_edge, true);
+  const Passages passages(chain.chain, scene.field, Ending::far_edge, {});
   const auto lumped = [&](const LumpingParts& parts) {
-    return lumped_chain(chain, gates_of(scene).map(), scene.field, passages.state_visits(), parts)
-        .value();
+    return lumped_chain(chain, gates_of(scene).map(), scene.field, passages, parts).value();
   };
   const LumpedChain boundaries = lumped({}), some = lumped({2, 1, 3}), all = lumped({99, 99, 99});
   EXPECT_EQ(boundaries.states, kBoundaries + 1);

@@ -47,8 +47,8 @@ TEST(Committor, TakesCellsOfSeveralTypes) {
   EXPECT_DOUBLE_EQ(committor(rows, {2, 3})(0, 0, 0), 0.5 * 0.25 * 0.25);
 }
 
-// Rows of one type are solved by sums in registers, rows of several by sweeps: of cells that are
-// all alike the same, also where walks stay long in a row, and leave by a side.
+// Rows of one type are solved in registers, by strips, rows of several cell by cell: of cells that
+// are all alike the same, also where walks stay long in a row, and leave by a side.
 TEST(Committor, IsTheSameByEitherRoute) {
   for (const int far : {1, 3})
     for (const double stays : {0.3, 0.95}) {
