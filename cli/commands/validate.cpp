@@ -1,10 +1,12 @@
 #include "cli/arguments.h"
+#include "cli/commands/recorded.h"
 #include "cli/render/json.h"
 #include "cli/render/observed.h"
 #include "cli/render/validation.h"
 #include "cli/subject.h"
 #include "cli/validated.h"
 #include "dynamics/base/work.h"
+#include "lattice/cells/cell_matrix.h"
 
 namespace gatewalk::cli {
 
@@ -23,7 +25,10 @@ int run_validate(const Arguments& arguments) {
       "state.\n"
       "With --observed, counts of an experiment are held against both, and the smallest "
       "differences\n"
-      "are said that so many trials could have shown.",
+      "are said that so many trials could have shown. Of a matrix of recorded runs (in SCENE's "
+      "place): "
+      "does\n"
+      "one half of the bodies predict the other?",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.scene();
   options.add_count("trials", "N",
@@ -52,6 +57,8 @@ int run_validate(const Arguments& arguments) {
   add_cell_program(options);
   options.add_figure("final gates of dynamics and chain, and their difference");
   if (!options.parse(arguments)) return kFine;
+  if (!options.has("cell-program") && lattice::is_of_cells(options.text("scene")))
+    return validate_recorded(options);
   constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
   lattice::ValidationOptions how{.trials = options.has("trials") ? options.trials() : 100,
                                  .walks = {},

@@ -22,10 +22,6 @@ constexpr std::array<std::string_view, lattice::kQuestions> kAsked{"gates ahead"
                                                                    "which gate of the walk it is",
                                                                    "which row of the field it is"};
 
-std::string p_words(double p) {
-  return p < 0.001 ? "p < 0.001" : "p = " + fixed(p, p < 0.1 ? 3 : 2);
-}
-
 const std::string& outcome_name(const MemoryStudy& study, int outcome) {
   return study.outcomes[static_cast<std::size_t>(outcome)];
 }
@@ -72,10 +68,6 @@ std::string sentence(const MemoryStudy& study, Question q) {
              : asked + " tells nothing more than the state (" + p + "; " + power_words(i) + ")";
 }
 
-Json to_json(const lattice::LookedAt::Test& test) {
-  return {{"value", test.seen}, {"p", test.p}, {"p_adjusted", test.p_adjusted}};
-}
-
 Json to_json(const MemoryStudy& study, Question q) {
   const Independence& i = study.independence(q);
   Json j;
@@ -83,9 +75,9 @@ Json to_json(const MemoryStudy& study, Question q) {
   j["p_adjusted"] = study.p_adjusted(q);
   j["runs"] = i.runs;
   j["states"] = i.states;
-  j["statistics"] = {{"pooled", to_json(i.pooled)},
-                     {"strongest", to_json(i.strongest)},
-                     {"state_by_state", to_json(i.state_by_state)}};
+  j["statistics"] = {{"pooled", cli::to_json(i.pooled)},
+                     {"strongest", cli::to_json(i.strongest)},
+                     {"state_by_state", cli::to_json(i.state_by_state)}};
   j["statistics"]["pooled"]["degrees"] = i.degrees;
   j["statistics"]["pooled"]["p_chi_squared"] = i.p_chi_squared;
   if (i.label >= 0) {
@@ -141,7 +133,7 @@ Json to_json(const MemoryStudy& study, const GatesAhead& ahead) {
   for (const GatesAhead::Step& s : ahead.steps)
     j["steps"].push_back(
         {{"gates", s.gates},
-         {"total_variation", to_json(s.total_variation)},
+         {"total_variation", cli::to_json(s.total_variation)},
          {"total_variation_by_chance", {{"mean", s.chance}, {"at_95", s.chance_95}}},
          {"seen", by_ways(study, s.seen)},
          {"predicted", by_ways(study, s.predicted)},
@@ -166,6 +158,10 @@ std::string verdict(const MemoryStudy& study) {
 }
 
 }  // namespace
+
+Json to_json(const lattice::LookedAt::Test& test) {
+  return {{"value", test.seen}, {"p", test.p}, {"p_adjusted", test.p_adjusted}};
+}
 
 Json to_json(const MemoryStudy& study) {
   Json j;

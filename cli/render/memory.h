@@ -8,6 +8,9 @@
 
 namespace gatewalk::cli {
 
+/// One of several statistics that were looked at together.
+[[nodiscard]] Json to_json(const lattice::LookedAt::Test& test);
+
 /// Every question with its p-values, statistics, size and power; the "verdict" of all.
 [[nodiscard]] Json to_json(const lattice::MemoryStudy& study);
 [[nodiscard]] Json to_json(const lattice::ForceMemory& memory);

@@ -23,6 +23,10 @@ std::string percent(double part, double whole, int digits) {
 
 std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
 
+std::string p_words(double p) {
+  return p < 0.001 ? "p < 0.001" : "p = " + fixed(p, p < 0.1 ? 3 : 2);
+}
+
 std::string digits(double x) {
   std::array<char, 32> buffer;
   std::snprintf(buffer.data(), buffer.size(), "%.7g", x);

@@ -12,6 +12,8 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string percent(double part, double whole, int digits = 1);
 /// A p-value with 3 decimals, or "<0.001".
 [[nodiscard]] std::string p_text(double p);
+/// "p = 0.034", "p = 0.34", "p < 0.001"
+[[nodiscard]] std::string p_words(double p);
 /// Seven digits: for files and figures.
 [[nodiscard]] std::string digits(double x);
 /// Text padded on the left or (negative width) on the right.

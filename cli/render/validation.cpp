@@ -54,7 +54,7 @@ Json to_json(const lattice::MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m
 Json to_json(const lattice::StartValidation& r, const lattice::PaperStart* paper,
              const ShownField& shown) {
   Json j;
-  j["verdict"] = verdict(r);
+  j["verdict"] = cli::verdict(r);
   j["trials_and_matrix"] = cli::to_json(r.judgement);
   j["trials_and_matrix"]["resampled_matrices"] = r.resampled;
   j["start"] = cli::to_json(shown.map.section, r.start);
@@ -159,7 +159,7 @@ std::string endings_table(const lattice::Validation& v, const StartTexts& labels
   }
   out << "\n";
   for (std::size_t k = 0; k < v.starts.size(); ++k)
-    out << labels.texts[k] << "  | " << verdict(v.starts[k]) << "\n";
+    out << labels.texts[k] << "  | " << cli::verdict(v.starts[k]) << "\n";
   return out.str();
 }
 

@@ -2,6 +2,7 @@
 /// The chain against the full dynamics, as JSON and as tables.
 
 #include <string>
+#include <vector>
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
@@ -37,5 +38,14 @@ struct ValidatedMatrix {
 /// std::invalid_argument for more than kMostValidated.
 inline constexpr std::size_t kMostValidated = 8;
 [[nodiscard]] Figure figure_of(const lattice::Validation& v, const ShownField& shown);
+
+/// Final gates as they were seen and by a chain, of the same field.
+struct ComparedGates {
+  std::string summary;  // a line
+  markov::CellProbabilities seen, chain;
+};
+/// The maps of both and their difference, a row each.
+[[nodiscard]] Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,
+                               const std::string& seen_head, const ShownField& shown);
 
 }  // namespace gatewalk::cli

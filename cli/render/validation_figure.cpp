@@ -41,23 +41,32 @@ Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
   if (v.starts.empty() || v.starts.size() > kMostValidated)
     throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostValidated) +
                                 " starts, these are " + std::to_string(v.starts.size()));
+  std::vector<ComparedGates> compared;
+  for (const StartValidation& s : v.starts)
+    compared.push_back(
+        {summary(s, shown), lattice::shares(s.dynamics.final_gates), s.exact.final_cells});
+  return figure_of(compared, "final gates, " + std::to_string(v.trials) + " trials", "dynamics, %",
+                   shown);
+}
+
+Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,
+                 const std::string& seen_head, const ShownField& shown) {
   struct Row {
     FieldMap map;  // of what either of them reaches
-    CellProbabilities dynamics, chain;
+    CellProbabilities seen, chain;
     double top, height;
   };
   std::vector<Row> rows;
   double most = 0.0, largest = 0.0, end = kHead;
-  for (const StartValidation& s : v.starts) {
-    const CellProbabilities seen = lattice::shares(s.dynamics.final_gates);
-    const FieldMap map(0.5 * (seen + s.exact.final_cells), 60, 60);
-    Row row{map, map.blocks_of(seen), map.blocks_of(s.exact.final_cells), end + 24, 0.0};
+  for (const ComparedGates& c : compared) {
+    const FieldMap map(0.5 * (c.seen + c.chain), 60, 60);
+    Row row{map, map.blocks_of(c.seen), map.blocks_of(c.chain), end + 24, 0.0};
     row.height = std::clamp(
         kMapWidth * static_cast<double>(row.chain.rows()) / static_cast<double>(row.chain.cols()),
         60.0, 240.0);
     end = row.top + row.height + 40;
-    most = std::max({most, row.dynamics.maxCoeff(), row.chain.maxCoeff()});
-    largest = std::max(largest, (row.dynamics - row.chain).abs().maxCoeff());
+    most = std::max({most, row.seen.maxCoeff(), row.chain.maxCoeff()});
+    largest = std::max(largest, (row.seen - row.chain).abs().maxCoeff());
     rows.push_back(std::move(row));
   }
   if (largest == 0.0) largest = 1e-4;
@@ -67,15 +76,15 @@ Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
   bool marked = false;
   const RootScale scale(100.0 * most);
   const auto left_of = [](int i) { return kLeft + i * (kMapWidth + kGap); };
-  std::string out = std::string("set multiplot\n") + kFrame + "set border 15\n" +
-                    sheet.text("final gates, " + std::to_string(v.trials) + " trials", 8, 16);
-  const char* const heads[] = {"dynamics, %", "chain, %", "difference, points"};
+  std::string out =
+      std::string("set multiplot\n") + kFrame + "set border 15\n" + sheet.text(title, 8, 16);
+  const std::string heads[] = {seen_head, "chain, %", "difference, points"};
   for (int i = 0; i < 3; ++i) out += sheet.text(heads[i], left_of(i), kHead - 4, kSmallFont);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Row& row = rows[k];
     const bool last = k + 1 == rows.size();
     const std::string tag = std::to_string(k);
-    out += sheet.text(summary(v.starts[k], shown), 8, row.top - 10, kSmallFont) + kFrame +
+    out += sheet.text(compared[k].summary, 8, row.top - 10, kSmallFont) + kFrame +
            "set border 15\nset xrange " + range_of(row.map.columns) + "\nset yrange " +
            range_of(row.map.rows) + "\nset xtics " +
            tics_of(row.map.columns, row.map.middle_column, kMapWidth, 34) + "\nset ytics " +
@@ -95,7 +104,7 @@ Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
     };
     out += kSequential;
     out += "set cbrange " + scale.range() + "\nunset colorbox\n";
-    panel(0, "$dynamics", rows_of(row.dynamics, true));
+    panel(0, "$seen", rows_of(row.seen, true));
     if (last)
       out += "set cbtics (" + scale.tics() + ") scale 0.5 offset 0,0.4\n" +
              bar_below(sheet, left_of(0), left_of(1) + kMapWidth, end + 8) +
@@ -110,7 +119,7 @@ Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
              ") scale 0.5 offset 0,0.4\n" +
              bar_below(sheet, left_of(2), left_of(2) + kMapWidth, end + 8);
     }
-    panel(2, "$difference", rows_of(row.dynamics - row.chain, false));
+    panel(2, "$difference", rows_of(row.seen - row.chain, false));
   }
   return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
 }

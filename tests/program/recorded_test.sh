@@ -76,6 +76,26 @@ jq -n --slurpfile l lattice.json --slurpfile p gates.json '[$l[0].endings | to_e
   select($p[0].endings_95[.key][0] - 0.02 > .value / 2000 or $p[0].endings_95[.key][1] + 0.02 < .value / 2000)] | length == 0' |
   grep -q true || fail "the chain of passages is not the trials'"
 
+# One half of the bodies against the other.
+expect 0 'One half of the bodies predicts the other' "$gatewalk" validate coin.nc --json halves.json
+holds '.differs == false and .p > 0.05 and (.halves | length == 2) and ([.halves[] | .bodies == 200 and .trials.compared == 200 and .trials.seen_to_their_end == 200] | all)' halves.json
+holds '[.halves[] | ((.seen.endings | add) - 1 | fabs) < 1e-9 and ((.chain.endings | add) - 1 | fabs) < 1e-9] | all' halves.json
+holds '.memory.runs == 0 and (.memory.verdict | test("cannot be asked"))' halves.json
+"$gatewalk" validate coin.nc --json again.json --quiet --threads 1 >/dev/null
+[ "$(jq -c '[.halves, .p, .memory]' halves.json)" = "$(jq -c '[.halves, .p, .memory]' again.json)" ] ||
+  fail "validate: another number of threads, another answer"
+# Half of the bodies mostly go up, the others mostly do not: what no chain of states predicts.
+awk 'BEGIN { srand(4); print "body,trial,in,s,out,out_s,time_s"
+  for (b = 0; b < 400; ++b) { s = int(1000 * rand()) / 1e4
+    for (k = 0; k < 6; ++k) {
+      if (rand() < (b % 2 ? 0.05 : 0.6)) { print b ",1,S," s ",trapped,,1"; break }
+      next_s = int(1000 * rand()) / 1e4; print b ",1,S," s ",S," next_s ",1"; s = next_s } } }' >unlike.csv
+"$gatewalk" build unlike.csv --cell coin.toml -o unlike.nc --quiet >/dev/null || fail "build of unlike.csv"
+expect 0 'does not predict the other.*crossed' "$gatewalk" validate unlike.nc --figure halves.svg --json unlike.json
+holds '.differs and .p < 0.05' unlike.json
+expect 2 'two halves need 32 bodies at least, these are 12' "$gatewalk" validate few.nc
+expect 2 'has no meaning for' "$gatewalk" validate coin.nc --trials 100
+
 # Another program's cells.
 if command -v python3 >/dev/null; then
   cat >pillars.toml <<'END'

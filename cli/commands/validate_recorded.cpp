@@ -1,0 +1,36 @@
+#include "cli/arguments.h"
+#include "cli/commands/recorded.h"
+#include "cli/render/halves.h"
+#include "cli/render/json.h"
+#include "cli/render/recorded.h"
+#include "cli/subject.h"
+
+namespace gatewalk::cli {
+
+int validate_recorded(const Options& options) {
+  const std::string path = options.text("scene");
+  refuse(options,
+         {"matrix", "matrix-trials", "observed", "trials", "walks", "accuracy", "gate-runs",
+          "start", "bins", "memory", "strict"},
+         path + ", of whose bodies one half is held against the other");
+  const Subject s = open_subject(options, "scene");
+  if (s.pool->scattered.each.bodies.empty())
+    throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
+  lattice::HalvesOptions how{.null_draws = {}, .seed = options.seed(), .per_leaf = s.how.per_leaf};
+  if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, 100'000);
+  const auto halves = lattice::validate_halves(s.problem, *s.pool, how, options.work());
+  const auto memory = lattice::body_memory(s.problem, *s.pool, how.per_leaf,
+                                           how.null_draws.value_or(999), how.seed);
+  const ShownField shown = s.shown();
+  const dynamics::Section& section = shown.map.section;
+  Json json = to_json(halves);
+  json["memory"] = to_json(memory, section);
+  json["recorded"] = to_json(*s.pool);
+  json["made_by"] = s.made_by(options);
+  options.give_out(
+      json, table_of(halves) + "Memory: " + verdict(memory, section) + ".\n" + table_of(*s.pool));
+  options.draw([&] { return figure_of(halves, shown); });
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,219 @@
+// One half of the bodies against the other: no finding where nothing is amiss, however trials are
+// watched; planted differences and memories are found.
+#include "lattice/study/halves.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <vector>
+
+#include "dynamics/base/random.h"
+#include "lattice/cells/recorded_pool.h"
+#include "lattice/study/body_memory.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+const CellFile& cells() {
+  static const CellFile file = parse_cell_file(R"(
+cell = { width_m = 0.1, length_m = 0.1, symmetric = false, faces = [
+  { name = "S", move = [0, 1] }, { name = "N", move = [0, -1] },
+  { name = "W", move = [1, 0] }, { name = "E", move = [-1, 0] }
+], coordinates = [{ name = "s", unit = "m", scale = 0.1 }] }
+field = { columns = 5, rows = 4, max_gates = 8 }
+)",
+                                               "cell.toml");
+  return file;
+}
+constexpr int kS = 0, kN = 1, kW = 2, kE = 3;
+
+/// What a body that entered so does next: the face by which it leaves, or -1: trapped.
+struct Walker {
+  std::int32_t body;
+  Entry at;
+  int came_by;  // the face of the entry before; -1: none
+};
+using Rule = std::function<int(const Walker&, Random&)>;
+
+int plainly(const Walker& w, Random& random) {
+  const double u = random.uniform();
+  if (u < 0.08) return -1;
+  const double ahead = w.at.face == kS ? 0.45 : 0.35, right = w.at.at[0] > 0.0 ? 0.25 : 0.12;
+  if (u < 0.08 + ahead) return kS;
+  if (u < 0.08 + ahead + right) return kW;
+  return u < 0.9 ? kE : kN;
+}
+
+/// Trials that are watched within a view of so many columns and rows and lost in 3 of 100 cells, as
+/// many of each body as its number says: 1 to 4.
+RecordedRuns walked(int bodies, std::uint64_t seed, const Rule& rule, int columns = 3,
+                    int rows = 3) {
+  RecordedRuns runs;
+  runs.passages.begin(cells().map.section);
+  for (std::int32_t body = 0; body < bodies; ++body) {
+    Random random(Purpose::field, {seed, 1, static_cast<std::uint64_t>(body)});
+    const auto entry = [&](int face) { return Entry{face, {random.uniform() - 0.5, 0.0, 0.0}}; };
+    runs.bodies.push_back(std::to_string(body));
+    for (int trial = 0; trial <= body % 4; ++trial) {
+      Walker w{body, entry(kS), -1};
+      RecordedTrial made{w.at, body, std::ssize(runs.passages), 0};
+      int column = columns / 2, row = 0;
+      while (column >= 0 && column < columns && row >= 0 && row < rows) {
+        ++made.count;
+        if (random.uniform() < 0.03) {
+          runs.passages.push_back({.fate = Fate::broken});
+          break;
+        }
+        const int next = rule(w, random);
+        if (next < 0) {
+          runs.passages.push_back({.fate = Fate::trapped});
+          break;
+        }
+        const int from = w.at.face;
+        w = {body, entry(next), from};
+        runs.passages.push_back({.fate = Fate::left, .entry = w.at, .costs = {1.0}});
+        column += cells().map.section.faces[static_cast<std::size_t>(next)].di_x;
+        row += cells().map.section.faces[static_cast<std::size_t>(next)].di_y;
+      }
+      runs.trials.push_back(made);
+    }
+  }
+  return runs;
+}
+
+/// By which half of the bodies a walker turns left, the other half right.
+int left_or_right_handed(const Walker& w, Random& random) {
+  const double u = random.uniform();
+  if (u < 0.4) return u < 0.06 ? -1 : kS;
+  return (u < 0.92) == (w.body / 4 % 2 == 0) ? kW : kE;
+}
+
+/// On as it came, more often than not.
+int straight_on(const Walker& w, Random& random) {
+  const double u = random.uniform();
+  if (u < 0.06) return -1;
+  if (u < 0.5 && w.came_by >= 0) return w.came_by;
+  return u < 0.7 ? kS : u < 0.85 ? kW : kE;
+}
+
+struct Found {
+  HalvesValidation halves;
+  BodyMemory memory;
+};
+Found found_in(const RecordedRuns& runs, std::uint64_t seed) {
+  const RunPool pool = pool_of(runs);
+  const Problem problem = problem_of(cells(), pool);
+  return {validate_halves(problem, pool, {.null_draws = 999, .seed = seed}),
+          body_memory(problem, pool, kEntriesPerLeaf, 499, seed)};
+}
+
+/// The least and the most that 99.9 % of counts of so many have.
+std::array<int, 2> expected_999(int of, double share) {
+  const double mean = of * share, half = 3.29 * std::sqrt(mean * (1.0 - share));
+  return {static_cast<int>(std::floor(mean - half)), static_cast<int>(std::ceil(mean + half))};
+}
+
+// However trials are watched: most of these leave the view, or are lost, before they end.
+TEST(Halves, ChanceIsFoundAsOftenAsItIsAskedFor) {
+  constexpr int kSeeds = 300;
+  std::array<int, 4> halves{}, memory{};  // p in each quarter
+  int differ = 0, remember = 0, held = 0, seen_to_end = 0, trials = 0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Found f = found_in(walked(80, seed, plainly), seed);
+    ++halves[static_cast<std::size_t>(std::min(3.0, 4.0 * f.halves.p))];
+    ++memory[static_cast<std::size_t>(std::min(3.0, 4.0 * f.memory.p))];
+    differ += f.halves.differs();
+    remember += f.memory.remembers();
+    for (const HalfAgainstHalf& way : f.halves.ways) {
+      seen_to_end += static_cast<int>(way.seen_so_far.to_end);
+      trials += static_cast<int>(way.seen_so_far.trials);
+      held += way.total_variation.seen <= way.chance_total_variation_95;
+    }
+  }
+  EXPECT_LT(seen_to_end, trials / 2);
+  for (const int count : {differ, remember}) {
+    const auto [least, most] = expected_999(kSeeds, 0.05);
+    EXPECT_TRUE(least <= count && count <= most) << count;
+  }
+  for (std::size_t quarter = 0; quarter < 4; ++quarter)
+    for (const int count : {halves[quarter], memory[quarter]}) {
+      const auto [least, most] = expected_999(kSeeds, 0.25);
+      EXPECT_TRUE(least <= count && count <= most) << quarter << ": " << count;
+    }
+  EXPECT_GE(held, 2 * kSeeds * 93 / 100);
+  EXPECT_LE(held, 2 * kSeeds * 97 / 100);
+}
+
+TEST(Halves, ADifferenceBetweenBodiesIsFound) {
+  int differ = 0, remember = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Found f = found_in(walked(200, seed, left_or_right_handed, 5, 4), seed);
+    differ += f.halves.differs();
+    remember += f.memory.remembers();
+  }
+  EXPECT_GE(differ, 16);
+  EXPECT_GE(remember, 18);
+}
+
+TEST(Halves, AMemoryIsFound) {
+  int remember = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const RunPool pool = pool_of(walked(200, seed, straight_on, 5, 4));
+    const BodyMemory memory =
+        body_memory(problem_of(cells(), pool), pool, kEntriesPerLeaf, 499, seed);
+    remember += memory.remembers() && memory.more > 0.05 && memory.face == memory.outcome;
+  }
+  EXPECT_GE(remember, 19);
+}
+
+// Nothing is guessed of what was not seen: trials of which no passage ends cannot differ.
+TEST(Halves, WhatWasNotSeenDoesNotDiffer) {
+  RecordedRuns runs;
+  runs.passages.begin(cells().map.section);
+  for (std::int32_t body = 0; body < 40; ++body) {
+    runs.bodies.push_back(std::to_string(body));
+    const auto begin = std::ssize(runs.passages);
+    // One passage each, all alike, and where it leads nobody looked.
+    runs.passages.push_back({.fate = Fate::left, .entry = {kS, {0.01 * body, 0.0, 0.0}}});
+    runs.trials.push_back({{kS, {0.01 * body, 0.0, 0.0}}, body, begin, 1});
+    runs.passages.push_back({.fate = Fate::broken});
+    runs.trials.push_back({{kS, {0.1, 0.0, 0.0}}, body, begin + 1, 1});
+  }
+  const Found f = found_in(runs, 1);
+  EXPECT_EQ(f.halves.p, 1.0);
+  for (const HalfAgainstHalf& way : f.halves.ways) {
+    EXPECT_EQ(way.bodies, 20);
+    EXPECT_EQ(way.seen_so_far.trials, 20);
+    EXPECT_EQ(way.seen_so_far.left_out, 20);
+    EXPECT_EQ(way.seen_so_far.unwatched, 20);
+    EXPECT_EQ(way.total_variation.seen, 0.0);
+    EXPECT_NEAR(way.chain.endings[static_cast<std::size_t>(markov::Ending::far_edge)], 1.0, 1e-12);
+  }
+  EXPECT_EQ(f.memory.face, -1);
+  EXPECT_EQ(f.memory.p, 1.0);
+}
+
+TEST(Halves, AreThoseOfTheSeed) {
+  const RecordedRuns runs = walked(60, 5, plainly);
+  const HalvesValidation a = found_in(runs, 3).halves, b = found_in(runs, 3).halves,
+                         c = found_in(runs, 4).halves;
+  EXPECT_EQ(a.p, b.p);
+  EXPECT_EQ(a.ways[0].total_variation.seen, b.ways[0].total_variation.seen);
+  EXPECT_NE(a.ways[0].total_variation.seen, c.ways[0].total_variation.seen);
+  EXPECT_NEAR(a.ways[1].seen_gates.sum(), 1.0, 1e-12);
+  EXPECT_NEAR(a.ways[1].chain.final_cells.sum(), 1.0, 1e-12);
+}
+
+TEST(Halves, TooFewBodiesAreRefused) {
+  const RunPool pool = pool_of(walked(31, 1, plainly));
+  EXPECT_THROW((void)validate_halves(problem_of(cells(), pool), pool, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
