@@ -27,7 +27,7 @@ Validated of_scene(const Options& options, lattice::Scene scene,
               .starts = lattice::entries_at(papers),
               .papers = std::move(papers),
               .shown = ShownField(scene),
-              .made_by = to_json(options.provenance(scene))};
+              .made_by = cli::to_json(options.provenance(scene))};
   v.scene = std::move(scene);
   return v;
 }
@@ -85,8 +85,8 @@ void put_tree(Validated& v, const Options& options) {
   const lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = v.starts};
   lattice::TreeChain chain = lattice::make_tree_chain(v.problem, how, options.work());
   warn_of(options, *chain.prediction, how.accuracy.accuracy);
-  v.status = to_json(chain.transitions.front().health);
-  v.states = to_json(chain, how.accuracy.accuracy);
+  v.status = cli::to_json(chain.transitions.front().health);
+  v.states = cli::to_json(chain, how.accuracy.accuracy);
   v.matrices = std::move(chain.transitions);
 }
 
@@ -108,7 +108,7 @@ Validated build_subject(const Options& options) {
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   Validated v = of_scene(options, std::move(scene), std::move(papers), {});
   v.observed = std::move(observed);
-  v.settled = settled ? to_json(*settled) : Json();
+  v.settled = settled ? cli::to_json(*settled) : Json();
   if (tree) {
     put_tree(v, options);
     return v;
@@ -116,8 +116,8 @@ Validated build_subject(const Options& options) {
   const lattice::States states = states_of(options, *v.scene, choice, bodies);
   for (const std::string& text : complaints(states)) options.warn(text);
   v.matrices = lattice::build_matrices(*v.scene, states, trials, options.seed(), options.work());
-  v.status = to_json(v.matrices.front().health);
-  v.states = to_json(states);
+  v.status = cli::to_json(v.matrices.front().health);
+  v.states = cli::to_json(states);
   return v;
 }
 

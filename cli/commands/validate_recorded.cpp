@@ -12,7 +12,7 @@ int validate_recorded(const Options& options) {
   refuse(options,
          {"matrix", "matrix-trials", "observed", "trials", "walks", "accuracy", "gate-runs",
           "start", "bins", "memory", "strict"},
-         path + ", of whose bodies one half is held against the other");
+         "for " + path + ", of whose bodies one half is held against the other");
   const Subject s = open_subject(options, "scene");
   if (s.pool->scattered.each.bodies.empty())
     throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
