@@ -10,6 +10,7 @@
 #include "cli/render/start.h"
 #include "cli/render/text.h"
 #include "dynamics/base/share.h"
+#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -72,13 +73,18 @@ TEST(Endings, AreNamedWithTheirIntervals) {
 }
 
 TEST(Endings, LabelsOfStartsKeepTheirDigits) {
-  const StartTexts paper({{0, 0, 15, {}, {}}, {23, -11, 16, {}, {}}});
+  const dynamics::Section& disc = dynamics::disc_section();
+  const StartTexts paper(disc, {{0, {0, 0, 15}}, {0, {23, -11, 16}}});
   EXPECT_EQ(paper.header, "   d   vx   vy");
   EXPECT_EQ(paper.texts[1], "  23  -11   16");
-  const StartTexts own({{4.3, 5.1, 10.2, {}, {}}, {-0.00125, 0, 15, {}, {}}});
+  const StartTexts own(disc, {{0, {4.3, 5.1, 10.2}}, {0, {-0.00125, 0, 15}}});
   EXPECT_EQ(own.header, "        d   vx    vy");
   EXPECT_EQ(own.texts[0], "      4.3  5.1  10.2");
   EXPECT_EQ(own.texts[1], " -0.00125    0    15");
+  // Another face is told.
+  const StartTexts sides(disc, {{0, {1, 2, 3}}, {dynamics::left_deflect, {4, 5, 6}}});
+  EXPECT_EQ(sides.header, " face   d   vx   vy");
+  EXPECT_EQ(sides.texts[1], "   LD   4    5    6");
 }
 
 TEST(MapOf, SmallFieldsAreShownWhole) {
