@@ -1,5 +1,5 @@
 #pragma once
-/// Passages through cells, many of them, in columns: as small as the section allows.
+/// Passages through cells, many of them: as small as the section allows.
 
 #include <algorithm>
 #include <cstddef>
@@ -31,29 +31,34 @@ class PassageTable {
     costs_ = section.costs.size();
   }
 
-  [[nodiscard]] std::size_t size() const { return fates_.size(); }
-  [[nodiscard]] bool empty() const { return fates_.empty(); }
+  [[nodiscard]] std::size_t size() const { return kinds_.size(); }
+  [[nodiscard]] bool empty() const { return kinds_.empty(); }
   void push_back(const CellPassage& passage) {
     if (coordinates_ == 0) throw std::logic_error("passages of no section");
-    fates_.push_back(passage.fate);
-    types_.push_back(passage.type);
-    faces_.push_back(static_cast<std::uint8_t>(passage.entry.face));
-    at_.insert(at_.end(), passage.entry.at.begin(), passage.entry.at.begin() + coordinates_);
-    took_.insert(took_.end(), passage.costs.begin(), passage.costs.begin() + costs_);
+    kinds_.push_back({passage.fate, passage.type, static_cast<std::uint8_t>(passage.entry.face)});
+    const double *const at = passage.entry.at.data(), *const costs = passage.costs.data();
+    numbers_.insert(numbers_.end(), at, at + coordinates_);
+    numbers_.insert(numbers_.end(), costs, costs + costs_);
+  }
+  /// All those of another table of the same section.
+  void append(const PassageTable& other) {
+    if (other.empty()) return;
+    if (coordinates_ != other.coordinates_ || costs_ != other.costs_)
+      throw std::logic_error("passages of another section");
+    kinds_.insert(kinds_.end(), other.kinds_.begin(), other.kinds_.end());
+    numbers_.insert(numbers_.end(), other.numbers_.begin(), other.numbers_.end());
   }
   [[nodiscard]] CellPassage operator[](std::size_t i) const {
-    CellPassage passage{fates_[i], types_[i], {faces_[i]}, {}};
-    std::copy_n(at_.data() + i * coordinates_, coordinates_, passage.entry.at.begin());
-    std::copy_n(took_.data() + i * costs_, costs_, passage.costs.begin());
+    CellPassage passage{kinds_[i].fate, kinds_[i].type, {kinds_[i].face}, {}};
+    const double* const numbers = numbers_.data() + i * (coordinates_ + costs_);
+    std::copy_n(numbers, coordinates_, passage.entry.at.begin());
+    std::copy_n(numbers + coordinates_, costs_, passage.costs.begin());
     return passage;
   }
   /// Makes room for so many passages.
   void reserve(std::size_t passages) {
-    fates_.reserve(passages);
-    types_.reserve(passages);
-    faces_.reserve(passages);
-    at_.reserve(passages * coordinates_);
-    took_.reserve(passages * costs_);
+    kinds_.reserve(passages);
+    numbers_.reserve(passages * (coordinates_ + costs_));
   }
 
   /// Some rows, one after the other, which are made as they are read.
@@ -87,10 +92,12 @@ class PassageTable {
 
  private:
   std::size_t coordinates_ = 0, costs_ = 0;
-  std::vector<dynamics::Fate> fates_;
-  std::vector<std::uint8_t> types_, faces_;
-  std::vector<double> at_;    // (passages x coordinates)
-  std::vector<double> took_;  // (passages x costs)
+  struct Kind {
+    dynamics::Fate fate;
+    std::uint8_t type, face;
+  };
+  std::vector<Kind> kinds_;
+  std::vector<double> numbers_;  // (passages x (coordinates, then costs))
 };
 
 }  // namespace gatewalk::lattice

@@ -42,9 +42,11 @@ std::optional<Entry> RunningTrial::follow(const CellMap& map, const FieldParams&
                                           const Passage& passage, bool keep_passages) {
   ++cells_;
   for (std::size_t c = 0; c < map.section.costs.size(); ++c) costs_[c] += passage.costs[c];
-  if (keep_passages)
+  if (keep_passages) {
+    passages_.begin(map.section);
     passages_.push_back({passage.fate, static_cast<std::uint8_t>(map.type_of(column_, row_)),
                          passage.next, passage.costs});
+  }
   if (passage.fate == Fate::trapped) ending_ = markov::Ending::trapped;
   if (passage.fate != Fate::left) return {};
   const Face& move = map.section.faces[passage.next.face];
@@ -81,7 +83,7 @@ void RunningTrial::add_to(FieldTrials& each, const FieldParams& field) const {
   each.endings.push_back(ending_);
   each.costs.push_back(costs_);
   if (!each.keep_passages) return;
-  for (const CellPassage& passage : passages_) each.passages.push_back(passage);
+  each.passages.append(passages_);
   each.passed.push_back(std::ssize(each.passages));
 }
 

@@ -121,7 +121,7 @@ class RunningTrial {
   std::int32_t column_, row_ = 0;
   int cells_ = 0;  // visited
   dynamics::Costs costs_{};
-  std::vector<CellPassage> passages_;
+  PassageTable passages_;
 };
 
 /// The tally of trials that have ended, and `each` of them.

@@ -108,9 +108,9 @@ Resolution resolution_of(const StateSpace& space, const std::vector<Entry>& seen
     std::int64_t n = 0;
     std::array<double, kMostCoordinates> mean{},
         squares{};  // squares: of the deviations from the mean (Welford)
-    void add(const Entry& c) {
+    void add(const Entry& c, std::size_t coordinates) {
       ++n;
-      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      for (std::size_t axis = 0; axis < coordinates; ++axis) {
         const double x = c.at[axis], before = x - mean[axis];
         mean[axis] += before / static_cast<double>(n);
         squares[axis] += before * (x - mean[axis]);
@@ -118,12 +118,13 @@ Resolution resolution_of(const StateSpace& space, const std::vector<Entry>& seen
     }
   };
   Resolution r;
+  const std::size_t coordinates = space.section().coordinates.size();
   std::vector<Group> of_state(space.size()), of_face(space.section().faces.size());
   for (const Entry& c : seen) {
     const StateSpace::Index index = space.index_of(c);
     r.clamped += index.clamped;
-    of_state[index.state].add(c);
-    of_face[static_cast<std::size_t>(c.face)].add(c);
+    of_state[index.state].add(c, coordinates);
+    of_face[static_cast<std::size_t>(c.face)].add(c, coordinates);
   }
   r.entries = static_cast<std::int64_t>(seen.size());
   std::sort(of_state.begin(), of_state.end(),
@@ -135,7 +136,7 @@ Resolution resolution_of(const StateSpace& space, const std::vector<Entry>& seen
     held += g.n;
     ++r.states_entered;
   }
-  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+  for (std::size_t axis = 0; axis < coordinates; ++axis) {
     double within = 0.0, all = 0.0;
     for (const Group& g : of_state) within += g.squares[axis];
     for (const Group& g : of_face) all += g.squares[axis];

@@ -6,33 +6,31 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace gatewalk::dynamics {
 namespace {
 
-/// An entry with its place among all.
-struct Seen {
-  std::array<double, kMostCoordinates> at;
-  int place;
-};
-using Entries = std::span<Seen>;
-
-auto less_along(std::size_t axis) {
-  return [axis](const Seen& a, const Seen& b) { return a.at[axis] < b.at[axis]; };
-}
-
-/// Grows trees, in preorder.
+/// Grows trees of entries with N coordinates, in preorder.
+template <std::size_t N>
 class Grower {
  public:
+  /// An entry with its place among all; many are moved about: no larger than they must be.
+  struct Seen {
+    std::array<double, N> at;
+    int place;
+  };
+  using Entries = std::span<Seen>;
+
   Grower(const Section& section, std::size_t per_leaf, std::vector<int>& state_of)
       : section_(section), per_leaf_(per_leaf), state_of_(state_of) {
-    for (std::size_t axis = 0; axis < axes(); ++axis)
+    for (std::size_t axis = 0; axis < N; ++axis)
       per_unit_[axis] = 1.0 / section.coordinates[axis].scale;
   }
 
   [[nodiscard]] Tree grow(Entries entries) {
     tree_ = {.nodes = {}, .seen = {}};
-    for (std::size_t axis = 0; axis < axes(); ++axis) {
+    for (std::size_t axis = 0; axis < N; ++axis) {
       const auto [low, high] =
           std::minmax_element(entries.begin(), entries.end(), less_along(axis));
       tree_.seen[axis][0] = low->at[axis];
@@ -48,24 +46,26 @@ class Grower {
   }
 
  private:
-  [[nodiscard]] std::size_t axes() const { return section_.coordinates.size(); }
+  static auto less_along(std::size_t axis) {
+    return [axis](const Seen& a, const Seen& b) { return a.at[axis] < b.at[axis]; };
+  }
 
   /// Axes by how far the entries spread along them, on their scales, the most first.
-  [[nodiscard]] std::array<std::size_t, kMostCoordinates> axes_by_spread(Entries entries) const {
+  [[nodiscard]] std::array<std::size_t, N> axes_by_spread(Entries entries) const {
     const auto n = static_cast<double>(entries.size());
-    const std::array<double, kMostCoordinates> origin = entries.front().at;
-    std::array<double, kMostCoordinates> sum{}, squares{};
+    const std::array<double, N> origin = entries.front().at;
+    std::array<double, N> sum{}, squares{};
     for (const Seen& e : entries)
-      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      for (std::size_t axis = 0; axis < N; ++axis) {
         const double x = e.at[axis] - origin[axis];
         sum[axis] += x;
         squares[axis] += x * x;
       }
-    std::array<double, kMostCoordinates> variance{};
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+    std::array<double, N> variance{};
+    for (std::size_t axis = 0; axis < N; ++axis)
       variance[axis] =
           (squares[axis] - sum[axis] * sum[axis] / n) * per_unit_[axis] * per_unit_[axis];
-    std::array<std::size_t, kMostCoordinates> axes;
+    std::array<std::size_t, N> axes;
     std::iota(axes.begin(), axes.end(), std::size_t{0});
     std::stable_sort(axes.begin(), axes.end(),
                      [&](std::size_t a, std::size_t b) { return variance[a] > variance[b]; });
@@ -98,7 +98,7 @@ class Grower {
   void add(Entries entries) {
     if (entries.size() >= 2 * per_leaf_)
       for (const std::size_t axis : axes_by_spread(entries)) {
-        const std::size_t below = axis < axes() ? halve(entries, axis) : 0;
+        const std::size_t below = halve(entries, axis);
         if (below == 0) continue;
         const Entries low = entries.first(below), high = entries.subspan(below);
         const double from = std::max_element(low.begin(), low.end(), less_along(axis))->at[axis],
@@ -116,28 +116,51 @@ class Grower {
   }
 
   const Section& section_;
-  std::array<double, kMostCoordinates> per_unit_{};  // 0 behind the last
+  std::array<double, N> per_unit_{};
   std::size_t per_leaf_;
   std::vector<int>& state_of_;
   int states_ = 0;  // leaves so far, of all trees
   Tree tree_;
 };
 
+/// By face. The state of each entry is put into `states`.
+template <std::size_t N>
+std::vector<Tree> trees_of(const Section& section, const EntryTable& seen, std::size_t per_leaf,
+                           std::vector<int>& states) {
+  std::vector<std::size_t> count(section.faces.size());
+  for (std::size_t i = 0; i < seen.size(); ++i) ++count[static_cast<std::size_t>(seen.face(i))];
+  std::vector<std::vector<typename Grower<N>::Seen>> at(section.faces.size());
+  for (std::size_t f = 0; f < at.size(); ++f) at[f].reserve(count[f]);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    auto& here = at[static_cast<std::size_t>(seen.face(i))].emplace_back();
+    std::copy_n(seen.at(i), N, here.at.begin());
+    here.place = static_cast<int>(i);
+  }
+  Grower<N> grower(section, per_leaf, states);
+  std::vector<Tree> trees;
+  for (std::size_t f = 0; f < at.size(); ++f)
+    trees.push_back(at[f].empty() ? grower.unseen(section.faces[f]) : grower.grow(at[f]));
+  return trees;
+}
+
+/// trees_of for 1, 2, ... coordinates.
+template <std::size_t... I>
+constexpr auto trees_of_each(std::index_sequence<I...>) {
+  return std::array{&trees_of<I + 1>...};
+}
+
 }  // namespace
 
-StateSpace tree_space(const Section& section, const std::vector<Entry>& seen, int per_leaf,
+StateSpace tree_space(const Section& section, const EntryTable& seen, int per_leaf,
                       std::vector<Entry> points, std::vector<int>* state_of) {
   if (per_leaf < 1)
     throw std::invalid_argument("tree: " + std::to_string(per_leaf) +
                                 " entries per leaf are not permitted: must be 1 or more");
-  std::vector<std::vector<Seen>> at(section.faces.size());
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    at[static_cast<std::size_t>(seen[i].face)].push_back({seen[i].at, static_cast<int>(i)});
+  section.validate();
+  static constexpr auto kTreesOf = trees_of_each(std::make_index_sequence<kMostCoordinates>());
   std::vector<int> states(seen.size());
-  Grower grower(section, static_cast<std::size_t>(per_leaf), states);
-  std::vector<Tree> trees;
-  for (std::size_t f = 0; f < at.size(); ++f)
-    trees.push_back(at[f].empty() ? grower.unseen(section.faces[f]) : grower.grow(at[f]));
+  std::vector<Tree> trees = kTreesOf[section.coordinates.size() - 1](
+      section, seen, static_cast<std::size_t>(per_leaf), states);
   if (state_of != nullptr) *state_of = std::move(states);
   return {section, std::move(trees), std::move(points)};
 }

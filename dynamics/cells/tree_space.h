@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "dynamics/cells/entry_table.h"
 #include "dynamics/cells/state_space.h"
 
 namespace gatewalk::dynamics {
@@ -18,9 +19,10 @@ inline constexpr int kEntriesPerLeaf = 7;
 /// Open; and `points`. Per face the entries are halved at the median of the coordinate along which
 /// they spread most (largest standard deviation, in Coordinate::scale) until a half would have
 /// fewer than `per_leaf`; equal values stay together. A face where nothing was seen is one state,
-/// of what is usual there. Throws std::invalid_argument unless per_leaf >= 1, and for more than
-/// kMostStates leaves. `state_of`, if given: the state of each entry, as index_of says it.
-[[nodiscard]] StateSpace tree_space(const Section& section, const std::vector<Entry>& seen,
+/// of what is usual there. Throws std::invalid_argument unless per_leaf >= 1 and the section is
+/// valid, and for more than kMostStates leaves. `state_of`, if given: the state of each entry, as
+/// index_of says it.
+[[nodiscard]] StateSpace tree_space(const Section& section, const EntryTable& seen,
                                     int per_leaf = kEntriesPerLeaf, std::vector<Entry> points = {},
                                     std::vector<int>* state_of = nullptr);
 

@@ -21,7 +21,7 @@ ScatteredTrials endless_trials(const Cell& cell, const std::function<Entry(Rando
                                 std::to_string(trials) + " and " + std::to_string(passages));
   ScatteredTrials all;
   all.starts.resize(static_cast<std::size_t>(trials));
-  std::vector<std::vector<CellPassage>> runs(all.starts.size());
+  std::vector<PassageTable> runs(all.starts.size(), PassageTable(cell.section()));
   carry_out_trials(
       cell, trials,
       [&](Body& body) {
@@ -33,12 +33,12 @@ ScatteredTrials endless_trials(const Cell& cell, const std::function<Entry(Rando
       [&](Body& body, const Passage& passage) {
         auto& own = runs[static_cast<std::size_t>(body.trial)];
         own.push_back({passage.fate, 0, passage.next, passage.costs});
-        return passage.fate == Fate::left && std::ssize(own) < passages;
+        return passage.fate == Fate::left && static_cast<int>(own.size()) < passages;
       },
       health);
   all.each.passages.begin(cell.section());
   for (const auto& own : runs) {
-    for (const CellPassage& run : own) all.each.passages.push_back(run);
+    all.each.passages.append(own);
     all.each.passed.push_back(std::ssize(all.each.passages));
     all.each.final_gates.push_back(0);  // there is no field: their number counts
   }

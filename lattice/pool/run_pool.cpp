@@ -22,12 +22,15 @@ void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, 
   for (std::int64_t i = 0; i < std::ssize(trials.final_gates); ++i) {
     if (!group.holds(trials, i)) continue;
     const auto passages = trials.of_trial(static_cast<std::size_t>(i));
+    if (passages.size() <= skipped) continue;
+    Entry entry = skipped == 0 ? start_of(i) : passages[skipped - 1].entry;
+    CellPassage passage = passages[skipped];
     for (std::size_t k = skipped; k < passages.size(); ++k) {
-      const CellPassage passage = passages[k];
-      if (passage.fate == Fate::broken) continue;
       const CellPassage next = k + 1 < passages.size() ? passages[k + 1] : kNone;
-      use(k == 0 ? start_of(i) : passages[k - 1].entry, passage,
-          next.fate == Fate::broken ? nullptr : &next);
+      if (passage.fate != Fate::broken)
+        use(entry, passage, next.fate == Fate::broken ? nullptr : &next);
+      entry = passage.entry;
+      passage = next;
     }
   }
 }
@@ -185,7 +188,7 @@ std::int64_t RunPool::bodies() const {
 Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGroup group) {
   const std::vector<std::size_t> images = images_of(map);
   const Section& section = map.section;
-  std::vector<Entry> entries;
+  EntryTable entries(section);
   std::vector<std::uint8_t> types;
   each_kernel_run(pool, group, [&](const Entry& entry, const CellPassage& run, const auto*) {
     entries.push_back(entry);
@@ -193,7 +196,7 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
     types.resize(entries.size(), run.type);
   });
   std::vector<int> row, column;
-  const std::int64_t fits = 2 * std::ssize(entries) / kMostStates;
+  const std::int64_t fits = 2 * static_cast<std::int64_t>(entries.size()) / kMostStates;
   per_leaf = static_cast<int>(std::max<std::int64_t>(per_leaf, fits));
   StateSpace space = tree_space(section, entries, per_leaf, {}, &row);
   column.reserve(row.size());
@@ -206,7 +209,7 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
               : output_of(space, run, image == 0 ? run.entry : mirrored(section, run.entry)));
   });
   Kernel kernel{std::move(space), {}};
-  const auto seen_in = [&](const std::vector<Entry>& there, const std::vector<int>& states) {
+  const auto seen_in = [&](const EntryTable& there, const std::vector<int>& states) {
     if (group.of == 1) kernel.seen.emplace_back(kernel.space, there, states);
   };
   if (map.types.size() == 1) {
@@ -215,7 +218,7 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
     return kernel;
   }
   for (std::size_t type = 0; type < map.types.size(); ++type) {
-    std::vector<Entry> there;
+    EntryTable there(section);
     std::vector<int> from, to;
     for (std::size_t i = 0; i < types.size(); ++i) {
       if (types[i] != type) continue;
@@ -230,19 +233,20 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
   return kernel;
 }
 
-SeenEntries::SeenEntries(const StateSpace& space, const std::vector<Entry>& entries,
-                         const std::vector<int>& state) {
+SeenEntries::SeenEntries(const StateSpace& space, const EntryTable& entries,
+                         const std::vector<int>& state)
+    : coordinates(entries.coordinates()) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   Box none;
-  none.low.fill(kNone);
-  none.high.fill(-kNone);
+  std::fill_n(none.low.begin(), coordinates, kNone);
+  std::fill_n(none.high.begin(), coordinates, -kNone);
   boxes.assign(
       static_cast<std::size_t>(space.size() / kStatesOfBox + std::ssize(space.trees()) + 1), none);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     Box& b = boxes[place_of(space, state[i])];
     ++b.entries;
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
-      const double x = entries[i].at[axis];
+    for (std::size_t axis = 0; axis < coordinates; ++axis) {
+      const double x = entries.at(i)[axis];
       b.low[axis] = std::min(b.low[axis], x);
       b.high[axis] = std::max(b.high[axis], x);
     }
@@ -254,10 +258,11 @@ std::size_t SeenEntries::place_of(const StateSpace& space, int state) {
   return static_cast<std::size_t>(first / kStatesOfBox + face + (state - first) / kStatesOfBox);
 }
 
-bool SeenEntries::Box::holds(const Entry& entry) const {
-  for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+bool SeenEntries::holds(std::size_t box, const Entry& entry) const {
+  const Box& b = boxes[box];
+  for (std::size_t axis = 0; axis < coordinates; ++axis) {
     const double x = entry.at[axis];
-    if (x < low[axis] || x > high[axis]) return false;
+    if (x < b.low[axis] || x > b.high[axis]) return false;
   }
   return true;
 }
@@ -282,7 +287,7 @@ double unseen_share(const Kernel& kernel, const CellMap& map, const FieldParams&
       const std::size_t at =
           SeenEntries::place_of(kernel.space, kernel.space.index_of(passage.entry).state);
       ++here[type][at];
-      if (!kernel.seen[type].boxes[at].holds(passage.entry)) ++outside;
+      if (!kernel.seen[type].holds(at, passage.entry)) ++outside;
     }
   // Of n entries the next one of the same kind lies beyond one of the sides of their box with
   // sides / (n + 1), about; how many of several do is the less certain the more there are of one

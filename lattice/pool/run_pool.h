@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "dynamics/cells/entry_table.h"
 #include "dynamics/cells/state_space.h"
 #include "dynamics/cells/tree_space.h"
 #include "lattice/gate_chain.h"
@@ -85,16 +86,17 @@ void each_entry(const RunPool& pool, TrialGroup group,
 /// A box may hold places between its leaves where none was.
 struct SeenEntries {
   struct Box {
-    std::array<double, dynamics::kMostCoordinates> low, high;
+    std::array<double, dynamics::kMostCoordinates> low{}, high{};  // 0 behind the last
     std::int64_t entries = 0;
-    [[nodiscard]] bool holds(const dynamics::Entry& entry) const;
   };
   std::vector<Box> boxes{};
+  std::size_t coordinates = 0;
 
   SeenEntries() = default;
   /// `state[i]` is that of entries[i].
-  SeenEntries(const dynamics::StateSpace& space, const std::vector<dynamics::Entry>& entries,
+  SeenEntries(const dynamics::StateSpace& space, const dynamics::EntryTable& entries,
               const std::vector<int>& state);
+  [[nodiscard]] bool holds(std::size_t box, const dynamics::Entry& entry) const;
   /// Place among `boxes`.
   [[nodiscard]] static std::size_t place_of(const dynamics::StateSpace& space, int state);
 };

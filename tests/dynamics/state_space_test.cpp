@@ -132,7 +132,7 @@ TEST(Section, OfTwoCoordinatesGrowsTreesAndBins) {
   std::vector<Entry> seen;  // what lies behind the last coordinate is nobody's
   for (int i = 0; i < 400; ++i)
     seen.push_back({i % 2, {-1.0 + 0.005 * i, std::sin(i), static_cast<double>(i)}});
-  const StateSpace trees = tree_space(squares(), seen, 10);
+  const StateSpace trees = tree_space(squares(), {squares(), seen}, 10);
   EXPECT_GT(trees.size(), 30);
   for (const Tree& tree : trees.trees())
     for (const Tree::Node& node : tree.nodes) EXPECT_LT(node.axis, 2);
@@ -141,7 +141,7 @@ TEST(Section, OfTwoCoordinatesGrowsTreesAndBins) {
   EXPECT_EQ(bins.size(), 9);  // 2 x 2 for either half of them, and one where nothing was seen
   Section lacking = squares();
   lacking.faces[2].usual = {};
-  EXPECT_THROW((void)tree_space(lacking, seen, 10), std::invalid_argument);
+  EXPECT_THROW((void)tree_space(lacking, {lacking, seen}, 10), std::invalid_argument);
   EXPECT_THROW((void)quantile_space(lacking, seen, 8, {}), std::invalid_argument);
 }
 

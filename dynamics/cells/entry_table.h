@@ -1,0 +1,42 @@
+#pragma once
+/// Entries, many of them, in columns: as small as the section allows.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "dynamics/cells/section.h"
+
+namespace gatewalk::dynamics {
+
+class EntryTable {
+ public:
+  EntryTable(const Section& section, const std::vector<Entry>& entries = {})  // NOLINT: of what
+      : coordinates_(section.coordinates.size()) {
+    for (const Entry& entry : entries) push_back(entry);
+  }
+
+  [[nodiscard]] std::size_t size() const { return faces_.size(); }
+  [[nodiscard]] std::size_t coordinates() const { return coordinates_; }
+  void push_back(const Entry& entry) {
+    faces_.push_back(static_cast<std::uint8_t>(entry.face));
+    at_.insert(at_.end(), entry.at.data(), entry.at.data() + coordinates_);
+  }
+  [[nodiscard]] int face(std::size_t i) const { return faces_[i]; }
+  /// The entry's coordinates, as many as there are.
+  [[nodiscard]] const double* at(std::size_t i) const { return at_.data() + i * coordinates_; }
+  [[nodiscard]] Entry operator[](std::size_t i) const {
+    Entry entry{face(i)};
+    std::copy_n(at(i), coordinates_, entry.at.begin());
+    return entry;
+  }
+
+ private:
+  std::size_t coordinates_;
+  std::vector<std::uint8_t> faces_;
+  std::vector<double> at_;  // (entries x coordinates)
+};
+
+}  // namespace gatewalk::dynamics
