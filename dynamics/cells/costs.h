@@ -7,6 +7,7 @@
 
 namespace gatewalk::dynamics {
 
+/// No more than are needed: a chain keeps two sums of each for every count (CostSums).
 inline constexpr std::size_t kMostCosts = 5;
 
 /// What a passage takes: its name in files, with the unit, and in words.

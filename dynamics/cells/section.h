@@ -12,7 +12,7 @@
 
 namespace gatewalk::dynamics {
 
-inline constexpr std::size_t kMostFaces = 64, kMostCoordinates = 3;
+inline constexpr std::size_t kMostFaces = 64, kMostCoordinates = 8;
 
 /// A body enters: through which face, and where and how fast.
 struct Entry {

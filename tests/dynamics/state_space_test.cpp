@@ -105,6 +105,40 @@ TEST(Section, OfADiscIsOneForAllGates) {
   EXPECT_NE(squares(), disc_section());
 }
 
+TEST(Section, OfEightCoordinatesMakesSpaces) {
+  Section section = squares();
+  section.coordinates.resize(2);
+  while (section.coordinates.size() < 8) {
+    section.coordinates.push_back(section.coordinates[1]);
+    section.coordinates.back().name = "c" + std::to_string(section.coordinates.size());
+  }
+  section.faces[0].odd = 0b1000'0001;  // the first and the last
+  section.validate();
+  EXPECT_EQ(mirrored(section, Entry{0, {1, 2, 3, 4, 5, 6, 7, 8}}),
+            (Entry{0, {-1, 2, 3, 4, 5, 6, 7, -8}}));
+  // Two bins along each but the last, which has three: the last one counts fastest.
+  Bins bins;
+  for (std::size_t axis = 0; axis < 8; ++axis) bins.edges[axis] = {-1, 0, 1};
+  bins.edges[7] = {-1, 0, 1, 2};
+  const StateSpace binned(section, {bins, bins, bins});
+  EXPECT_EQ(binned.size(), 3 * 128 * 3);
+  EXPECT_EQ(binned.index_of({1, {1, -1, -1, -1, -1, -1, 1, 2}}).state, 384 + (64 + 1) * 3 + 2);
+  Random random(Purpose::row, {1, 2, 3});
+  for (int state = 0; state < binned.size(); ++state)
+    ASSERT_EQ(binned.index_of(binned.sample(state, random)).state, state);
+  Tree cut{.nodes = {{7, 0.5}, {0, 0.0}, {}, {}, {}}, .seen = {}};
+  for (auto& seen : cut.seen) seen = {-1, 1};
+  const StateSpace trees(section, {cut, cut, cut}, {{2, {0, 0, 0, 0, 0, 0, 0, 0.25}}});
+  EXPECT_EQ(trees.size(), 3 * 3 + 1);
+  EXPECT_EQ(trees.index_of({1, {0, 0, 0, 0, 0, 0, 0, 0.75}}).state, 5);
+  EXPECT_EQ(trees.index_of({1, {0.5, 0, 0, 0, 0, 0, 0, 0.5}}).state, 4);
+  EXPECT_EQ(trees.index_of({2, {0, 0, 0, 0, 0, 0, 0, 0.25}}).state, 9);
+  EXPECT_EQ(trees.range(4).at[7], (std::array<double, 2>{-1, 0.5}));
+  EXPECT_EQ(trees.range(4).at[6], (std::array<double, 2>{-1, 1}));
+  cut.nodes[0].axis = 8;
+  EXPECT_THROW((void)StateSpace(section, {cut, cut, cut}), std::invalid_argument);
+}
+
 TEST(Section, OfTwoCoordinatesMakesSpaces) {
   const Bins two_by_three{{Edges{-1, 0, 1}, Edges{-2, -1, 1, 2}}};
   const StateSpace bins(squares(), {two_by_three, two_by_three, two_by_three});
@@ -164,7 +198,7 @@ TEST(StateSpace, HasTheEdgesOfTableIII) {
   const StateSpace space = paper();
   const auto& bins = space.bins();
   const auto of = [&](Boundary b) { return bins[b].edges; };
-  using AllEdges = std::array<Edges, kMostCoordinates>;
+  using AllEdges = decltype(Bins::edges);
   const Edges fives{-25, -15, -5, 5, 15, 25}, sideways{-20, -10, 0, 10, 20, 30};
   EXPECT_EQ(of(Boundary::enter), (AllEdges{fives, fives, Edges{10, 20}}));
   EXPECT_EQ(of(Boundary::right_deflect), (AllEdges{{{10, 20, 30}, {-30, -20, -10, 0}, sideways}}));
@@ -251,7 +285,8 @@ TEST(StateSpace, RangesTileTheBoundary) {
   for (int state = 0; state < s.size(); ++state) {
     const auto [face, at] = s.range(state);
     double here = 1.0;
-    for (const auto& [from, to] : at) {
+    for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis) {
+      const auto [from, to] = at[axis];
       EXPECT_LT(from, to);
       here *= to - from;
     }
@@ -298,7 +333,7 @@ TEST(Refined, FactorOneIsTheSameSpaceBitForBit) {
   for (const GateParams& p : {GateParams{}, odd}) {
     const StateSpace s = table3_space(p), same = refined(s, 1.0);
     for (int b = 0; b < kBoundaries; ++b)
-      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis) {
         const Edges &before = s.bins()[b].edges[axis], &after = same.bins()[b].edges[axis];
         ASSERT_EQ(after.size(), before.size());
         for (std::size_t i = 0; i < after.size(); ++i)
@@ -341,7 +376,7 @@ TEST(Refined, HasEqualBinsOverTheSameRange) {
   for (const double factor : {0.1, 0.3, 0.7, 1.9, 3.0, 7.7}) {
     const StateSpace before = paper(), s = refined(before, factor);
     for (int b = 0; b < kBoundaries; ++b)
-      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis) {
         const Edges &now = s.bins()[b].edges[axis], &was = before.bins()[b].edges[axis];
         EXPECT_EQ(now.front(), was.front());  // what was clamped stays clamped, and nothing else
         EXPECT_EQ(now.back(), was.back());
@@ -375,9 +410,10 @@ TEST(Refined, FinerBinsAreNested) {
   for (int state = 0; state < fine.size(); ++state) {
     const StateRange range = fine.range(state);
     Entry corner{range.face};
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) corner.at[axis] = range.at[axis][0];
+    for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis)
+      corner.at[axis] = range.at[axis][0];
     const StateRange around = coarse.range(coarse.index_of(corner).state);
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+    for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis)
       EXPECT_TRUE(inside(range.at[axis], around.at[axis])) << state << ' ' << axis;
   }
 }
@@ -416,7 +452,8 @@ TEST(StateSpace, MiddleAndLowerCornerBelongToTheRange) {
     const StateRange range = s.range(state);
     EXPECT_EQ(s.index_of(range.middle()).state, state);
     Entry low{range.face};
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) low.at[axis] = range.at[axis][0];
+    for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis)
+      low.at[axis] = range.at[axis][0];
     const auto corner = s.index_of(low);
     EXPECT_EQ(corner.state, state);
     EXPECT_FALSE(corner.clamped);
@@ -454,7 +491,7 @@ TEST(StateSpace, EveryBoundaryClampsEverySide) {
   for (int b = 0; b < kBoundaries; ++b) {
     Entry low{b}, high{b};
     int states = 1;
-    for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+    for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis) {
       const Edges& edges = s.bins()[b].edges[axis];
       low.at[axis] = edges.front();
       high.at[axis] = edges.back();
@@ -464,7 +501,7 @@ TEST(StateSpace, EveryBoundaryClampsEverySide) {
     for (const auto& [corner, state, away] : {std::tuple{low, first, -1.0}, {high, last, 1.0}}) {
       EXPECT_EQ(s.index_of(corner).state, state);
       EXPECT_FALSE(s.index_of(corner).clamped);
-      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis) {
         Entry beyond = corner;
         beyond.at[axis] += away;
         EXPECT_EQ(s.index_of(beyond).state, state);
@@ -481,7 +518,7 @@ TEST(StateSpace, RefusesEdgesThatMakeNoBins) {
        {Edges{}, Edges{1}, Edges{1, 1}, Edges{2, 1}, Edges{0, 1, 1, 2},
         Edges{0, std::numeric_limits<double>::quiet_NaN(), 2}, Edges{0, kInf}, Edges{-kInf, 0}}) {
     for (int b = 0; b < kBoundaries; ++b) {
-      for (std::size_t axis = 0; axis < kMostCoordinates; ++axis) {
+      for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis) {
         auto bins = good;
         bins[b].edges[axis] = bad;
         try {

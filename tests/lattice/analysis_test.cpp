@@ -296,7 +296,8 @@ TEST(Analysis, ChancesOfStartsAreThoseOfTheMirror) {
       const auto turned = [&](std::size_t axis) {
         return std::array{-s.range.at[axis][1], -s.range.at[axis][0]};
       };
-      return other.range.at == std::array{turned(kEntryD), turned(kEntryVx), s.range.at[kEntryVy]};
+      return other.range.at ==
+             decltype(other.range.at){turned(kEntryD), turned(kEntryVx), s.range.at[kEntryVy]};
     });
   };
   ASSERT_GT(crossed.size(), 20U);

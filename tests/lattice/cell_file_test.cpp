@@ -82,6 +82,20 @@ std::string with(const std::string& from, const std::string& to, std::string tex
   return text.replace(at, from.size(), to);
 }
 
+std::string more_coordinates(int count) {
+  std::string text;
+  for (int c = 0; c < count; ++c)
+    text += "[[cell.coordinates]]\nname = \"w" + std::to_string(c) + "\"\nunit = \"1\"\n";
+  return text;
+}
+
+TEST(CellFile, MayHaveEightCoordinates) {
+  const CellFile file = parse(with("[field]", more_coordinates(5) + "[field]"));
+  ASSERT_EQ(file.map.section.coordinates.size(), 8u);
+  EXPECT_EQ(file.map.section.coordinates[7].name, "w4");
+  EXPECT_EQ(to_toml(parse(to_toml(file))), to_toml(file));
+}
+
 TEST(CellFile, TellsFacesCoordinatesAndField) {
   const CellFile file = parse(kTracks + kStart);
   EXPECT_EQ(file.source, "x.toml");
@@ -356,8 +370,8 @@ TEST(CellFile, RefusesByFileLineAndKey) {
       {"unit = \"m\"\n", "",
        "x.toml:23: [[cell.coordinates]] has no key unit: it must be a unit, such as \"m\", \"m "
        "s-1\", \"m/s\", or \"1\" for none"},
-      {"[field]", "[[cell.coordinates]]\nname = \"w\"\nunit = \"1\"\n[field]",
-       "x.toml:34: [[cell.coordinates]]: more than 3 are not permitted"},
+      {"[field]", more_coordinates(6) + "[field]",  // beside three
+       "x.toml:49: [[cell.coordinates]]: more than 8 are not permitted"},
       {"[field]", "[[cell.costs]]\nkey = \"work\"\nunit = \"J\"\n[field]",
        "x.toml:35: cell.costs.key = \"work\" is not permitted: must end in its unit, _J"},
       {"[field]", "[[cell.costs]]\nkey = \"time_s\"\nunit = \"s\"\n[field]",

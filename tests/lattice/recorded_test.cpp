@@ -376,6 +376,21 @@ TEST_F(Recorded, WhatIsWrittenReadsBackToTheLastBit) {
   expect_same(read_runs(path("few.csv"), own), few);
 }
 
+TEST_F(Recorded, EightCoordinatesReadBackToTheLastBit) {
+  CellFile wide = two_types();
+  std::vector<dynamics::Coordinate>& coordinates = wide.map.section.coordinates;
+  while (coordinates.size() < 8) {
+    const std::string name = "c" + std::to_string(coordinates.size());
+    coordinates.push_back({name, name, "1", name});
+  }
+  wide.has_scale.assign(8, true);
+  const RecordedRuns runs = any_runs(wide, 5000, 100);
+  write_runs(path(), wide, runs);
+  const RecordedRuns back = read_runs(path(), wide);
+  expect_same(back, runs);
+  EXPECT_NE(back.passages[0].entry.at[7], 0.0);
+}
+
 TEST_F(Recorded, WhatCouldNotBeReadIsNotWritten) {
   const auto refused = [&](auto change) {
     RecordedRuns runs = read(kRuns);

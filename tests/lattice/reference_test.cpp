@@ -204,7 +204,7 @@ TEST(RunField, DrawsTheForceAnewWhenAsked) {
         if (r.ending == Ending::trapped) break;
         const Entry expected = crossing_of(p, r.ending, r.exit);
         EXPECT_EQ(expected.face, passage.entry.face) << name << ' ' << i;
-        for (std::size_t axis = 0; axis < kMostCoordinates; ++axis)
+        for (std::size_t axis = 0; axis < expected.at.size(); ++axis)
           EXPECT_NEAR(expected.at[axis], passage.entry.at[axis],
                       p.run.method == "moreau" ? 1e-6 : 0.0);
         body = shifted_into_next(p, r.ending, r.exit);

@@ -26,7 +26,7 @@ double cross(const std::array<Point, n>& corners, dynamics::Entry& at) {
   const auto middle = [&](int i) -> Point { return (corners[i] + corners[(i + 1) % n]) / 2.0; };
   const auto along = [&](int i) -> Point { return (middle(i) - corners[i]).normalized(); };
   const auto inward = [&](int i) { return Point(-along(i).y(), along(i).x()); };
-  const auto [s, v, none] = at.at;
+  const double s = at.at[0], v = at.at[1];
   Point x = middle(at.face) + s * along(at.face);
   Point u = v * along(at.face) + std::sqrt(std::fmax(0.0, 1.0 - v * v)) * inward(at.face);
   for (double time = 0.0, soonest = INFINITY;; soonest = INFINITY) {

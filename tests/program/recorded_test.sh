@@ -64,6 +64,34 @@ holds '.expected_gates_95[0] < 1.75 and .expected_gates_95[1] > 1.75 and ((.expe
 expect 0 'trials needed' "$gatewalk" power coin.nc --json power.json
 holds '.from_prediction.endings.crossed[2].trials > 10' power.json
 
+# Five coordinates, of which a and b matter: a body goes on with chance 0.9 where they have the same sign, else 0.3, and
+# each of the two keeps its sign with chance 0.8. So 0.2619 cross three rows; without a and b it would be 0.6^3.
+{
+  sed 's/^rows = 2/rows = 3/' coin.toml | sed '/^\[\[cell.coordinates/,/^scale/d'
+  for name in a b c d e; do printf '[[cell.coordinates]]\nname = "%s"\nunit = "1"\n' $name; done
+} >five.toml
+awk 'function draw() { x = x * 16807 % 2147483647; return x / 2147483647 }
+  function size() { return 0.01 + int(1000 * draw()) / 1000 }
+  function keep(v) { return (v > 0) == (draw() < 0.8) ? size() : -size() }
+  function entry() { return a "," b "," (draw() - 0.5) "," (draw() - 0.5) "," (draw() - 0.5) }
+  BEGIN { x = 5; print "body,trial,in,a,b,c,d,e,out,out_a,out_b,out_c,out_d,out_e,time_s"
+    for (body = 0; body < 3000; ++body) { a = keep(draw() - 0.5); b = keep(draw() - 0.5); now = entry()
+      for (k = 0; k < 6; ++k) {
+        if (draw() > (a * b > 0 ? 0.9 : 0.3)) { print body ",1,S," now ",trapped,,,,,,1"; break }
+        a = keep(a); b = keep(b); after = entry(); print body ",1,S," now ",S," after ",1"; now = after } } }' >five.csv
+"$gatewalk" build five.csv --cell five.toml -o five.nc --quiet >/dev/null || fail "build of five.csv"
+"$gatewalk" predict five.nc --json five.json --quiet >/dev/null || fail "predict of five.nc"
+holds '.endings_95.crossed[0] < 0.26188 and .endings_95.crossed[1] > 0.26188' five.json
+holds '.endings_95.crossed[0] > 0.6 * 0.6 * 0.6 and .endings_95.crossed[1] - .endings_95.crossed[0] < 0.08' five.json
+expect 0 'd \[' "$gatewalk" show five.nc --row 3
+expect 0 'start a 0.3' "$gatewalk" predict five.nc --start S:0.3,0.3,0,0,0
+expect 2 'must be' "$gatewalk" predict five.nc --start S:0.3,0.3,0
+{
+  cat five.toml
+  for name in f g h i; do printf '[[cell.coordinates]]\nname = "%s"\nunit = "1"\n' $name; done
+} >nine.toml
+expect 2 'more than 8 are not permitted' "$gatewalk" build five.csv --cell nine.toml -o x.nc
+
 # Simulated trials as recorded ones: the table reads back, and its chain is the trials' own.
 expect 0 'crossed' "$gatewalk" lattice "$scenes/field.toml" --set field.rows=2 --set forces.propulsion_N=9 --trials 2000 \
   --passages runs.csv --cell-file gates.toml --json lattice.json
