@@ -144,8 +144,12 @@ int run_predict(const Arguments& arguments) {
   const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0,
              by_solver = options.text("solver") != "auto",
              as_it_is = !s.pool || by_solver || no_runs || options.has("row");
+  // First runs that are added to those of a file, by the scene's dynamics or by a program.
+  if (!s.file || s.is_recorded())
+    refuse(options, {"first-runs"}, s.path + ": it is for a matrix of a scene or a cell program");
   if (!s.file || !s.scene) {
-    refuse(options, {"row", "first-runs"}, s.path + ": it is for a matrix of a scene");
+    if (no_runs) refuse(options, {"first-runs"}, s.path + ": 0 is for a matrix of a scene");
+    refuse(options, {"row"}, s.path + ": it is for a matrix of a scene");
     if (by_solver)
       throw UsageError("--solver has no meaning for " + s.path + ": it is for a matrix of a scene");
   }
