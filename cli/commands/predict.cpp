@@ -54,8 +54,12 @@ int run_predict(const Arguments& arguments) {
   const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0,
              by_solver = options.text("solver") != "auto",
              as_it_is = !s.pool || by_solver || no_runs || options.has("row");
+  // First runs are added to those of a file, by the scene's dynamics or by a program.
+  if (!s.file || s.is_recorded() || (s.cells && no_runs))
+    refuse(options, {"first-runs"},
+           "for " + s.path + ": it is for a matrix of a scene, or (above 0) of a cell program");
   if (!s.file || !s.scene) {
-    refuse(options, {"row", "first-runs"}, "for " + s.path + ": it is for a matrix of a scene");
+    refuse(options, {"row"}, "for " + s.path + ": it is for a matrix of a scene");
     if (by_solver)
       throw UsageError("--solver has no meaning for " + s.path + ": it is for a matrix of a scene");
   }

@@ -187,5 +187,12 @@ END
   [ "$(jq -c .final_gates pillars.json)" = "$(jq -c .final_gates kept.json)" ] || fail "the file's runs are others"
   expect 0 '^start W' "$gatewalk" predict pillars.nc --cell-program "$pillars" --start W:0.1,0.2 --json west.json
   holds '.reached and .gate_runs > 0' west.json
+  # So many first runs and no other trials, for the starts that the file does not know.
+  "$gatewalk" predict pillars.nc --cell-program "$pillars" --start W:0.1,0.2 --start S:0.3,0 --first-runs 40 \
+    --json first.json --quiet >/dev/null || fail "predict of pillars.nc with 40 first runs"
+  holds '.gate_runs == 80 and ([.starts[].first_runs] == [40, 40])' first.json
+  expect 2 'it is for a matrix of a scene' "$gatewalk" predict pillars.nc --cell-program "$pillars" --first-runs 0
+  expect 2 'it is for a matrix of a scene, or (above 0) of a cell program' "$gatewalk" predict pillars.nc --first-runs 40
+  expect 2 'it is for a matrix of a scene, or (above 0) of a cell program' "$gatewalk" predict pillars.toml --cell-program "$pillars" --first-runs 40
 fi
 finish
