@@ -11,6 +11,7 @@ build=$(realpath "${1:-$root/build}")
 gatewalk=$build/gatewalk
 program=$build/tests/chipmunk_gate
 . "$root/results/manifest.sh"
+export PYTHONDONTWRITEBYTECODE=1
 python3 "$here/engines.py" "$gatewalk" "$program" "$here" "$root/scenes/programs/chipmunk_gate.cpp"
 python3 "$here/chains.py" "$gatewalk" "$program" "$here"
 python3 "$here/trials.py" "$gatewalk" "$program" "$here" 2

@@ -41,3 +41,5 @@ def run(job):
 
 with ThreadPoolExecutor(2) as pool:
     list(pool.map(run, [(layer, k) for layer in range(1, layers + 1) for k in range(len(STARTS))]))
+lines = table.read_text().splitlines()
+table.write_text("\n".join([lines[0], *sorted(lines[1:], key=lambda line: int(line.split(",")[1]))]) + "\n")
