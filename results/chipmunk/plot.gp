@@ -16,8 +16,8 @@ plot for [k=0:3] ARG2 using (int($0) / 4 == k ? int($0) % 4 + 0.12 * (k - 1.5) :
      with yerrorbars pt (k % 2 == 0 ? 7 : 4) lc rgb (k < 2 ? first : second) \
      title word("Chipmunk ours", 1 + k / 2).(k % 2 == 0 ? ", direct trials" : ", chain")
 unset label
-eval text("Do bars hold? trapped, 300 starts, three pools of trials", 8, 256)
-eval panel(64, 494, 268, 450)
+eval text("Do bars hold? trapped, 300 starts, three pools of trials", 8, 250)
+eval panel(64, 494, 276, 450)
 eval key_at(390, 366)
 set xrange [0:1]
 set yrange [0:1]
@@ -26,7 +26,7 @@ set ytics 0.2
 set xlabel "where direct trials lie in what the chain says (probability)"
 set ylabel "starts below"
 colours = first." ".second." ".third
-plot x with lines lw 1 lc rgb "#888888" title "right bars", \
+plot x with lines lw 1 lc rgb "#404040" dt 2 title "right bars", \
      for [k=1:3] ARG1 using (column("trapped_integral")):(strcol(1) eq "pool" && column("seed") == k ? 1 : NaN) \
      smooth cnorm with lines lw 1.5 lc rgb word(colours, k) title "pool ".k
 unset multiplot
