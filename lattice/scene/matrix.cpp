@@ -12,9 +12,9 @@ namespace gatewalk::lattice {
 MatrixFile read_matrix(const std::string& path) {
   return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
     if (text.contains("cell"))
-      throw markov::BadFile(path +
-                            ": is a chain of recorded runs, which only gatewalk predict "
-                            "and show read");
+      throw markov::BadFile(
+          path +
+          ": is a chain of recorded runs, or of another program's cells, and not of a scene");
     return dynamics::disc_section();
   });
 }
