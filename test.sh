@@ -17,4 +17,5 @@ if ! cmp -s $web/package-lock.json $web/node_modules/.installed-lock; then
   npm ci --prefix $web --ignore-scripts --no-audit --no-fund --loglevel=error
   cp $web/package-lock.json $web/node_modules/.installed-lock
 fi
-ctest --test-dir build --output-on-failure -j "$(nproc)" "$@"
+# One more than there are processors: some tests wait, for a page or a signal.
+ctest --test-dir build --output-on-failure -j $(($(nproc) + 1)) "$@"

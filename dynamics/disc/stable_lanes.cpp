@@ -524,7 +524,12 @@ class Rounds {
   }
 
   /// One batch of the queues that have `least` entries; false when none has.
-  bool work_off(int least) { return work_off<0>(least) | work_off<1>(least) | work_off<2>(least); }
+  bool work_off(int least) {
+    bool worked = work_off<0>(least);
+    worked |= work_off<1>(least);
+    worked |= work_off<2>(least);
+    return worked;
+  }
   template <int N>
   bool work_off(int least) {
     const bool search = runs_.hits[N].size >= least;

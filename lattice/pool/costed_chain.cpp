@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamics/cells/entry_table.h"
 #include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {
@@ -57,9 +58,10 @@ CostedChain costed_chain(const Kernel& kernel, const CellMap& map, const FieldPa
 namespace {
 
 /// Entries of the pool's runs by leaf, mirror images too.
-std::vector<std::vector<Entry>> entries_of_leaves(const Kernel& kernel, const CellMap& map,
-                                                  const RunPool& pool, TrialGroup group) {
-  std::vector<std::vector<Entry>> entries(static_cast<std::size_t>(kernel.space.size()));
+std::vector<EntryTable> entries_of_leaves(const Kernel& kernel, const CellMap& map,
+                                          const RunPool& pool, TrialGroup group) {
+  std::vector<EntryTable> entries(static_cast<std::size_t>(kernel.space.size()),
+                                  EntryTable(map.section));
   each_entry(pool, group, [&](const Entry& entry, int type) {
     const auto put = [&](const Entry& c) {
       entries[static_cast<std::size_t>(kernel.space.index_of(c).state)].push_back(c);
@@ -72,13 +74,13 @@ std::vector<std::vector<Entry>> entries_of_leaves(const Kernel& kernel, const Ce
 }
 
 /// Entries of the start's row: the one, or those seen.
-std::vector<Entry> first_entries(const Kernel& kernel, const RunPool& pool, const PoolStart& start,
-                                 TrialGroup group,
-                                 const std::vector<std::vector<Entry>>& of_leaves) {
-  if (start.own != nullptr) return {*start.entry};
+EntryTable first_entries(const Kernel& kernel, const CellMap& map, const RunPool& pool,
+                         const PoolStart& start, TrialGroup group,
+                         const std::vector<EntryTable>& of_leaves) {
+  if (start.own != nullptr) return {map.section, {*start.entry}};
   if (start.entry)
     return of_leaves[static_cast<std::size_t>(kernel.space.index_of(*start.entry).state)];
-  std::vector<Entry> entries;
+  EntryTable entries(map.section);
   for (std::int64_t i = 0; i < std::ssize(pool.scattered.starts); ++i)
     if (group.holds(pool.scattered.each, i))
       entries.push_back(pool.scattered.starts[static_cast<std::size_t>(i)]);
@@ -97,7 +99,7 @@ AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const 
     Kernel kernel = kernel_of(map, pool, per_leaf, group);
     CostedChain chain = costed_chain(kernel, map, problem.field, pool, start, group);
     auto entries = entries_of_leaves(kernel, map, pool, group);
-    entries.push_back(first_entries(kernel, pool, start, group, entries));
+    entries.push_back(first_entries(kernel, map, pool, start, group, entries));
     const auto type = static_cast<std::size_t>(problem.start_type());
     std::vector<std::int64_t> runs;
     for (int state = 0; state < kernel.space.size(); ++state)
@@ -107,7 +109,8 @@ AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const 
             .entry =
                 [entries = std::move(entries)](int state, Random& random) {
                   const auto& there = entries[static_cast<std::size_t>(state)];
-                  return there[static_cast<std::size_t>(random.below(std::ssize(there)))];
+                  return there[static_cast<std::size_t>(
+                      random.below(static_cast<std::int64_t>(there.size())))];
                 },
             .runs = std::move(runs)};
   };

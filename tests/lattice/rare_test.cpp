@@ -191,7 +191,7 @@ TEST(Splitting, RareEventAgreesWithDirectTrials) {
 
 TEST(Splitting, RareEventAgreesWithDirectTrialsInAMixedField) {
   const Scene scene = mixed_scene();
-  const RareEvent e = rare_event(problem_of(scene), {.row = 6, .accuracy = 0.05});
+  const RareEvent e = rare_event(problem_of(scene), {.row = 6, .accuracy = 0.1});
   const RowChance d = mixed_truth(6);
   EXPECT_NEAR(d.probability, 0.018, 0.003);
   EXPECT_TRUE(e.splitting.reached);
