@@ -257,18 +257,18 @@ Section crossings(const Findings& f) {
                           {"20 N", "", f.field_random.at(20)},
                           {"40 N", "", f.field_random.at(40)},
                           {"50 N", " (scenes/field.toml)", f.field.crossings}};
-  constexpr double kPaper = 4.0;  // %
+  constexpr double kPaperSays = 4.0;  // %
   bool all_above = true;
   Csv csv(
       "scene,RT_and_LT_share,RT_and_LT_low,RT_and_LT_high,outside_bins_share,outside_bins_low,"
       "outside_bins_high,crossings,bodies");
-  RateGroup above{"through RT or LT", {}, kPaper, "paper: fewer than 4 %"},
+  RateGroup above{"through RT or LT", {}, kPaperSays, "paper: fewer than 4 %"},
       outside{"outside Table III's bins", {}, std::nan(""), ""};
   for (const auto& [force, more, c] : scenes) {
     const Share sides = c.rt_and_lt_share(), clamped = c.clamped_share();
     csv.row("7 N, Rm " + force + more, sides.value, sides.low, sides.high, clamped.value,
             clamped.low, clamped.high, c.between_gates, c.bodies);
-    all_above = all_above && sides.low > 0.01 * kPaper;
+    all_above = all_above && sides.low > 0.01 * kPaperSays;
     const std::string label = "Rm = " + force + ", n = " + std::to_string(sides.whole);
     above.rows.push_back({label, {sides}});
     outside.rows.push_back({label, {clamped}});

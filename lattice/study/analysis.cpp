@@ -142,9 +142,10 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
   const markov::Field cells{field.columns, field.rows};
 
   require_memory(c, field, !chain.groups.empty());
-  const auto [passages, groups] =
-      all_passages(chain, field, options.target, {},
-                   {.places = false, .tolerance = kGroupTolerance}, "analysis", work);
+  const auto all = all_passages(chain, field, options.target, {},
+                                {.places = false, .tolerance = kGroupTolerance}, "analysis", work);
+  const Passages& passages = all.whole;
+  const auto& groups = all.groups;
   markov::FrequentPaths paths;
   std::optional<LumpedChain> lumped;
   tbb::parallel_invoke(
