@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 
+#include "cli/kept/kept_options.h"
 #include "cli/render/json.h"
 #include "cli/terminal/backup.h"
 #include "cli/terminal/gnuplot.h"
@@ -46,7 +47,9 @@ std::string memory_advice;
 /// Options that cannot change a result, left out of the recorded command.
 bool shapes_nothing(const std::string& name) {
   return name == "threads" || name == "quiet" || name == "json" || name == "output" ||
-         name == "strict" || name == "figure" || name == "netcdf" || name == "force";
+         name == "strict" || name == "figure" || name == "netcdf" || name == "force" ||
+         name == "checkpoint" || name == "resume" || name == "max-time" || name == "shard" ||
+         name == "part";
 }
 
 /// An option as users write it.
@@ -231,6 +234,11 @@ struct Options::State {
   std::optional<dynamics::Work> work;
   std::function<void(const std::string&)> warned;
 
+  std::optional<std::set<std::string>> divided;  // stages; none: nothing is kept
+  CommandWords words;
+  std::unique_ptr<KeptRun> kept;
+  int thrown_before = std::uncaught_exceptions();
+
   struct Output {
     std::string name;
     Content content = Content::text;
@@ -262,7 +270,10 @@ Options::Options(std::string synopsis, std::string about, std::string example)
 }
 
 Options::~Options() {
+  // The result is there, unless something was thrown.
+  const bool is_done = std::uncaught_exceptions() == state_->thrown_before;
   try {
+    if (state_->kept && is_done) state_->kept->done();
     std::string kept;
     for (auto& [path, backup] : state_->backups)
       if (const std::string name = backup.settle(); !name.empty())
@@ -337,6 +348,15 @@ void Options::add_trials_and_seed(const std::string& trials_help) {
 void Options::add_strict() {
   add_flag("strict",
            "exit status 1 when the result's status is not clean; it is written all the same");
+}
+
+void Options::add_kept(std::set<std::string> divided) {
+  declare_kept(*this, !divided.empty());
+  state_->divided = std::move(divided);
+}
+
+void Options::add_first_trial() {
+  add_count("first-trial", "I", "number of the first trial: others than those of another run", "0");
 }
 
 void Options::input_file(const std::string& name, const std::string& help) {
@@ -520,6 +540,7 @@ void Options::check_files() {
 bool Options::parse(const Arguments& arguments) {
   state_->work = arguments.work;
   state_->warned = arguments.warned;
+  state_->words.parts = arguments.parts;
   (state_->no_scene.empty() ? state_->own : state_->hidden)
       .add_options()("set", po::value<Strings>()->composing()->value_name("KEY=VALUE"),
                      "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what "
@@ -580,9 +601,25 @@ bool Options::parse(const Arguments& arguments) {
   }
 
   memory_advice = advice(offered);
+  if (state_->divided) check_kept(*this);
 
+  state_->words.command = state_->synopsis.substr(0, state_->synopsis.find(' '));
+  state_->words.main_output = state_->needs_output.empty() ? "json" : "output";
+  state_->words.output_is_folder = state_->needs_output == "DIR";
   state_->canonical = "gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' '));
   for (const auto& option : parsed.options) {
+    const bool is_output =
+        std::any_of(state_->output_files.begin(), state_->output_files.end(),
+                    [&](const State::Output& o) { return o.name == option.string_key; }) ||
+        (option.string_key == "output" && !state_->needs_output.empty());
+    Strings& words = is_output ? state_->words.outputs : state_->words.shaping;
+    if (option.position_key >= 0) {
+      words.push_back(option.value.front());
+    } else if (!shapes_nothing(option.string_key) || is_output) {
+      if (option.value.empty()) words.push_back("--" + option.string_key);
+      for (const auto& value : option.value)
+        words.push_back("--" + option.string_key + "=" + value);
+    }
     if (option.position_key >= 0) {
       state_->canonical += " " + shell_quoted(option.value.front());
     } else if (!shapes_nothing(option.string_key)) {
@@ -632,7 +669,11 @@ lattice::Scene Options::read_scene() const {
 std::string Options::canonical() const { return state_->canonical; }
 
 Provenance Options::provenance() const {
-  Provenance p{.command = canonical(), .seed = {}, .scene = {}, .derived = {}};
+  Provenance p{.command = canonical(),
+               .seed = {},
+               .scene = {},
+               .derived = {},
+               .parts = part_names(state_->words.parts)};
   if (has("seed")) p.seed = seed();
   return p;
 }
@@ -644,10 +685,29 @@ Provenance Options::provenance(const lattice::Scene& scene) const {
   return p;
 }
 
+dynamics::TrialRange Options::trial_range() const {
+  const std::int64_t first = count("first-trial", 0);
+  return {first, count("trials", 1, kMostCount - first)};
+}
+
 dynamics::Work Options::work() const {
-  if (!state_->work) state_->work = watched_work(talk());
+  if (!state_->work) {
+    state_->work = watched_work(talk());
+    if (state_->divided) {
+      state_->kept = kept_run(*this, *state_->divided);
+      state_->work = kept_work(*this, *state_->work, *state_->kept);
+    }
+  }
   return *state_->work;
 }
+
+std::vector<std::string> Options::files_read() const {
+  Strings paths;
+  for (const NamedFile& file : inputs()) paths.push_back(file.path);
+  return paths;
+}
+
+const CommandWords& Options::words() const { return state_->words; }
 
 void Options::warn(const std::string& text) const {
   if (text.empty()) return;

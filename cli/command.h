@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -32,10 +33,20 @@ struct Arguments {
   std::vector<std::string> words;
   std::optional<dynamics::Work> work = std::nullopt;
   std::function<void(const std::string&)> warned = nullptr;
+  std::vector<std::string> parts{};  // files that hold all its work (merge)
+};
+
+/// A command by its words, for another run of it.
+struct CommandWords {
+  std::string command;
+  std::vector<std::string> shaping, outputs;  // what shapes the result; what it is written to
+  std::string main_output;                    // output (-o) or json
+  bool output_is_folder = false;
+  std::vector<std::string> parts{};  // Arguments::parts
 };
 
 /// Exit statuses, a contract for scripts.
-enum ExitCode : int { kFine = 0, kFailure = 1, kWrongUse = 2, kStopped = 130 };
+enum ExitCode : int { kFine = 0, kFailure = 1, kWrongUse = 2, kResumable = 75, kStopped = 130 };
 
 /// The command line itself is wrong.
 class UsageError : public std::runtime_error {
@@ -84,6 +95,12 @@ class Options {
   void add_trials_and_seed(const std::string& trials_help);
   void add_strict();
 
+  /// Declare that the command's pieces are kept (kept/kept_run.h): --checkpoint, --resume,
+  /// --max-time; and, with the names of stages that may be divided, --shard and --part.
+  void add_kept(std::set<std::string> divided = {});
+  /// --first-trial, beside --trials.
+  void add_first_trial();
+
   /// Declares --name, a file that is read.
   void input_file(const std::string& name, const std::string& help);
   /// A value of the declared option --name makes the command read the file `file_in(value)`.
@@ -117,6 +134,8 @@ class Options {
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;
   [[nodiscard]] std::int64_t trials() const { return count("trials"); }
+  /// Those of --first-trial and --trials.
+  [[nodiscard]] dynamics::TrialRange trial_range() const;
   [[nodiscard]] std::uint64_t seed() const;
   /// Those of --set.
   [[nodiscard]] std::vector<std::string> overrides() const { return texts("set"); }
@@ -125,8 +144,13 @@ class Options {
 
   /// Progress lines and remarks are wanted.
   [[nodiscard]] bool talk() const { return !has("quiet"); }
-  /// Long work of this command: shown unless --quiet, stopped by a signal; or as the arguments say.
+  /// Long work of this command: shown unless --quiet, stopped by a signal or --max-time, its pieces
+  /// kept if that was declared; or as the arguments say. Throws UsageError as KeptRun.
   [[nodiscard]] dynamics::Work work() const;
+  /// Its words without what only says how it runs.
+  [[nodiscard]] const CommandWords& words() const;
+  /// All files that it reads, also those that a scene names.
+  [[nodiscard]] std::vector<std::string> files_read() const;
   /// A warning, always: the result cannot be taken at face value. Nothing for an empty text.
   void warn(const std::string& text) const;
   /// A remark, if wanted and if somebody is there to read it (a terminal).

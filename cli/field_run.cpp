@@ -21,8 +21,9 @@ FieldRun run_scene(const Options& options) {
                lattice::ExitCounts(field),
                scene,
                lattice::FieldTally(field)};
-  run.tally = lattice::field_trials(scene.scene, options.trials(), options.seed(), options.work(),
-                                    &run.costs, &run.exits);
+  run.tally = lattice::field_trials(scene.scene, options.trial_range(), options.seed(),
+                                    options.work(), lattice::added_to(run.costs, run.exits));
+  options.work().end_part();
   return run;
 }
 
@@ -41,13 +42,16 @@ FieldRun run_cells(const Options& options) {
                lattice::FieldTally(field)};
   lattice::RecordedRuns runs;
   runs.passages.begin(s.problem.map().section);
-  const auto take = [&](const lattice::FieldTrials& each) {
-    lattice::add_trials(runs, each, s.problem.start);
-  };
   const bool keep = options.has("passages");
-  run.tally =
-      lattice::field_trials(s.problem, options.trials(), options.seed(), options.work(), &run.costs,
-                            &run.exits, keep ? lattice::TakeTrials(take) : lattice::TakeTrials());
+  const lattice::TakeTrials add = lattice::added_to(run.costs, run.exits);
+  run.tally = lattice::field_trials(
+      s.problem, options.trial_range(), options.seed(), options.work(),
+      [&](const lattice::FieldTrials& each) {
+        add(each);
+        if (keep) lattice::add_trials(runs, each, s.problem.start);
+      },
+      keep);
+  options.work().end_part();
   const lattice::CellFile cells = lattice::cells_of(s.problem);
   if (keep) {
     options.keep_old(options.text("passages"));

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "cli/commands.h"
+#include "cli/kept/kept_run.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"
@@ -14,16 +15,6 @@
 
 namespace gatewalk::cli {
 namespace {
-
-struct Command {
-  const char *name, *summary;
-  int (*run)(const Arguments& arguments);
-};
-constexpr Command kCommands[] = {
-#define COMMAND(name, run, summary) {name, summary, run},
-#include "cli/commands.def"
-#undef COMMAND
-};
 
 void print_help(std::ostream& out) {
   out << "gatewalk " << kVersion
@@ -34,14 +25,13 @@ void print_help(std::ostream& out) {
   out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an "
          "example.\n"
          "exit status: 0 fine, 1 failure (with --strict also a result whose status is not clean),\n"
-         "2 wrong use or input, 130 stopped by ctrl-C, SIGTERM or SIGHUP\n";
+         "2 wrong use or input, 130 stopped by ctrl-C, SIGTERM, SIGHUP or SIGUSR1, 75 stopped and\n"
+         "--resume goes on\n";
 }
 
 /// The command of that name; without one says so, and which may be meant.
 const Command* find_command(const std::string& name) {
-  const auto named = std::find_if(std::begin(kCommands), std::end(kCommands),
-                                  [&](const Command& c) { return name == c.name; });
-  if (named != std::end(kCommands)) return &*named;
+  if (const Command* const named = command_named(name)) return named;
   std::cerr << "gatewalk: no command '" << name << "'";
   std::vector<std::string> names;
   for (const Command& c : kCommands) names.emplace_back(c.name);
@@ -81,13 +71,17 @@ int main(int argc, char** argv) {
   cli::install_interrupt_handler();
   const auto fail = [](cli::ExitCode code, const std::exception& e) {
     std::cerr << "gatewalk: " << e.what() << "\n";
+    if (cli::stopped_status() != cli::kStopped) std::cerr << cli::stopped_text();
     return static_cast<int>(code);
   };
   try {
     return cli::run({argv + 1, argv + argc});
   } catch (const cli::Interrupted&) {
-    std::cerr << cli::kStoppedText;
-    return cli::kStopped;
+    std::cerr << cli::stopped_text();
+    return cli::stopped_status();
+  } catch (const cli::PartDone& part) {
+    std::cerr << "gatewalk: " << part.file << " is done; gatewalk merge makes one run of all parts\n";
+    return cli::kFine;
   } catch (const cli::UsageError& e) {
     return fail(cli::kWrongUse, e);
   } catch (const gatewalk::lattice::SceneError& e) {

@@ -240,7 +240,8 @@ double Subject::bin_of_durations(const Options& options) const {
   if (cells->trapped_after) return *cells->trapped_after / 1000.0;
   constexpr std::int64_t kSome = 100;
   lattice::FieldCosts some(1.0);
-  (void)lattice::field_trials(problem, kSome, options.seed(), {}, &some);
+  (void)lattice::field_trials(problem, {0, kSome}, options.seed(), {},
+                              [&](const lattice::FieldTrials& each) { some.add(each); });
   const double mean = some.all().mean(0);
   return mean > 0.0 ? mean / 1000.0 : 1.0;
 }

@@ -115,7 +115,8 @@ Validated build_subject(const Options& options) {
   }
   const lattice::States states = states_of(options, *v.scene, choice, bodies);
   for (const std::string& text : complaints(states)) options.warn(text);
-  v.matrices = lattice::build_matrices(*v.scene, states, trials, options.seed(), options.work());
+  v.matrices =
+      lattice::build_matrices(*v.scene, states, {0, trials}, options.seed(), options.work());
   v.status = cli::to_json(v.matrices.front().health);
   v.states = cli::to_json(states);
   return v;

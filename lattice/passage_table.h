@@ -43,6 +43,10 @@ class PassageTable {
   /// All those of another table of the same section.
   void append(const PassageTable& other) {
     if (other.empty()) return;
+    if (empty()) {
+      coordinates_ = other.coordinates_;
+      costs_ = other.costs_;
+    }
     if (coordinates_ != other.coordinates_ || costs_ != other.costs_)
       throw std::logic_error("passages of another section");
     kinds_.insert(kinds_.end(), other.kinds_.begin(), other.kinds_.end());
@@ -87,6 +91,12 @@ class PassageTable {
     const PassageTable* table_;
     std::size_t begin_, end_;
   };
+  /// As a piece is kept (dynamics/base/bytes.h).
+  template <class Archive>
+  friend void each_part(Archive& archive, PassageTable& table) {
+    archive(table.coordinates_, table.costs_, table.kinds_, table.numbers_);
+  }
+
   [[nodiscard]] Rows rows() const { return {*this, 0, size()}; }
   [[nodiscard]] Rows rows(std::size_t begin, std::size_t end) const { return {*this, begin, end}; }
 

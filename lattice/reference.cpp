@@ -19,6 +19,34 @@ std::vector<Entry> FieldTrials::entries() const {
   return all;
 }
 
+void FieldTrials::append(const FieldTrials& more) {
+  const auto add = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  add(final_gates, more.final_gates);
+  add(endings, more.endings);
+  add(costs, more.costs);
+  add(bodies, more.bodies);
+  if (!keep_passages) return;
+  const std::int64_t before = std::ssize(passages);
+  for (const std::int64_t end : more.passed) passed.push_back(before + end);
+  passages.append(more.passages);
+}
+
+void FieldTally::count(Eigen::Index gate, std::optional<markov::Ending> ending) {
+  const bool is_trapped = ending == markov::Ending::trapped,
+             is_cut_off = ending == markov::Ending::cut_off;
+  const bool departed = ending && !is_trapped && !is_cut_off;
+  ++final_gates.data()[gate];
+  trapped_gates.data()[gate] += is_trapped;
+  departed_gates.data()[gate] += departed;
+  if (ending) ++endings[static_cast<std::size_t>(*ending)];
+  trapped += is_trapped;
+  left_field += departed;
+  cut_off += is_cut_off;
+  broken += !ending;
+}
+
 FieldTally& FieldTally::operator+=(const FieldTally& o) {
   held.add(o.held);
   final_gates += o.final_gates;
@@ -65,17 +93,7 @@ std::optional<Entry> RunningTrial::follow(const CellMap& map, const FieldParams&
 }
 
 void RunningTrial::add_to(FieldTally& tally) const {
-  ++tally.final_gates(row_, column_);
-  const bool trapped = ending_ == markov::Ending::trapped,
-             cut_off = ending_ == markov::Ending::cut_off;
-  const bool departed = ending_ && !trapped && !cut_off;
-  tally.trapped_gates(row_, column_) += trapped;
-  tally.departed_gates(row_, column_) += departed;
-  if (ending_) ++tally.endings[static_cast<std::size_t>(*ending_)];
-  tally.trapped += trapped;
-  tally.left_field += departed;
-  tally.cut_off += cut_off;
-  tally.broken += !ending_;
+  tally.count(row_ * tally.final_gates.cols() + column_, ending_);
 }
 
 void RunningTrial::add_to(FieldTrials& each, const FieldParams& field) const {

@@ -41,6 +41,8 @@ struct FieldTally {
       : final_gates(markov::CellCounts::Zero(f.rows, f.columns)),
         trapped_gates(final_gates),
         departed_gates(final_gates) {}
+  /// Counts a trial that ended in this gate; without an ending it broke.
+  void count(Eigen::Index gate, std::optional<markov::Ending> ending);
   /// Throws std::invalid_argument, and changes nothing, when a trial would be counted twice.
   FieldTally& operator+=(const FieldTally& other);
 };
@@ -64,7 +66,34 @@ struct FieldTrials {
   }
   /// Those into cells that trials then ran through, in their order.
   [[nodiscard]] std::vector<dynamics::Entry> entries() const;
+  /// All those of others, with their passages if these keep any.
+  void append(const FieldTrials& more);
 };
+
+/// Trials, and what each did.
+struct RunTrials {
+  FieldTally tally;
+  FieldTrials each;
+};
+/// As a piece is kept (dynamics/base/bytes.h).
+template <class Archive>
+void each_part(Archive& archive, RunTrials& piece) {
+  auto& [tally, each] = piece;
+  constexpr std::uint8_t kBroken = 255;
+  std::vector<std::uint8_t> endings;
+  for (const auto& ending : each.endings)
+    endings.push_back(ending ? static_cast<std::uint8_t>(*ending) : kBroken);
+  archive(each.final_gates, endings, each.costs, each.passages, each.passed, tally.held,
+          tally.entries, tally.clamped, tally.health);
+  if constexpr (Archive::reads) {
+    tally.trials = tally.held.count();
+    for (std::size_t i = 0; i < endings.size(); ++i) {
+      auto& ending = each.endings.emplace_back();
+      if (endings[i] != kBroken) ending = static_cast<markov::Ending>(endings[i]);
+      tally.count(each.final_gates[i], ending);
+    }
+  }
+}
 
 /// What becomes of what a body carries when it enters the next cell (dynamics::Carried): it is
 /// kept, as in the model, or dropped: bodies without memory from cell to cell.

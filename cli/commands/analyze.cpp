@@ -45,6 +45,7 @@ int run_analyze(const Arguments& arguments) {
   options.add_count("paths", "N", "the most frequent ways through the field", "5");
   options.add_count("trials", "N", "also run N trials of the full dynamics, to compare");
   options.add_seed();
+  options.add_kept();
   options.add_strict();
   add_cell_program(options);
   options.add_figure("visits and paths, durations, starts and influences");
@@ -72,7 +73,8 @@ int run_analyze(const Arguments& arguments) {
   std::optional<DirectTrials> direct;
   if (options.has("trials")) {
     lattice::FieldCosts costs(s.bin_of_durations(options));
-    auto tally = lattice::field_trials(s.problem, options.trials(), options.seed(), work, &costs);
+    auto tally = lattice::field_trials(s.problem, {0, options.trials()}, options.seed(), work,
+                                       [&](const lattice::FieldTrials& each) { costs.add(each); });
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }
 

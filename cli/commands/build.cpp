@@ -35,10 +35,11 @@ int build_bins(const Options& options, const lattice::Scene& scene,
   refuse(options, {"accuracy", "gate-runs", "starts", "start", "states"},
          "for bins: it is for --bins tree");
   const std::int64_t trials = options.has("trials") ? options.count("trials") : 100;
+  const std::int64_t first = options.count("first-trial", 0);
   const dynamics::Stopwatch watch;
   const lattice::States states = states_of(options, scene, choice, {scene.start});
   const auto matrices =
-      lattice::build_matrices(scene, states, trials, options.seed(), options.work());
+      lattice::build_matrices(scene, states, {first, trials}, options.seed(), options.work());
   const Json bins = bins_json(states.choice), space = to_json(states);
   const int status = give_out(options, scene, {matrices, bins, space, settled, trials}, {});
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
@@ -79,7 +80,9 @@ int run_build(const Arguments& arguments) {
   options.scene();
   add_accuracy(options);
   options.add_count("trials", "N", "bins: runs per input state (default: 100)");
+  options.add_first_trial();
   options.add_seed();
+  options.add_kept({"building matrix", "full trials"});
   options.add_strict();
   options.main_output_file("MATRIX.nc", "matrix file to write (NetCDF-4)",
                            Options::Content::binary);

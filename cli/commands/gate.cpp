@@ -15,15 +15,18 @@ int run_gate(const Arguments& arguments) {
                   "--trials 1000 --json -");
   options.scene();
   options.add_trials_and_seed("runs of the gate");
+  options.add_first_trial();
+  options.add_kept({"gate runs"});
   options.add_strict();
   options.add_figure("a bar per outcome");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
-  const std::int64_t trials = options.trials();
   const auto settled = settle_method(options, scene, lattice::RunsFrom::start);
 
   const auto tally =
-      dynamics::run_checked_trials(scene.gate, scene.start, options.seed(), trials, options.work());
+      dynamics::run_checked_trials(scene.gate, scene.start, options.seed(),
+                                   {"gate runs", options.trial_range()}, options.work());
+  options.work().end_part();
 
   Json json = to_json(tally);
   if (settled) json["method"] = to_json(*settled);

@@ -64,8 +64,8 @@ int run_landscape(const Arguments& arguments) {
   dynamics::Health health;
   if (trials > 0) {
     const auto settled = settle_method(options, scene, lattice::RunsFrom::start);
-    const auto tally = dynamics::run_checked_trials(scene.gate, scene.start, options.seed(), trials,
-                                                    options.work());
+    const auto tally = dynamics::run_checked_trials(scene.gate, scene.start, options.seed(),
+                                                    {"gate runs", {0, trials}}, options.work());
     json["measured"] = to_json(tally);
     if (settled) json["measured"]["method"] = to_json(*settled);
     json["measured"]["status"] = to_json(tally.health);

@@ -19,6 +19,8 @@ int run_lattice(const Arguments& arguments) {
       "gatewalk lattice scenes/field.toml --trials 10000 --seed 1 --json lattice.json");
   options.scene();
   options.add_trials_and_seed("trials through the field");
+  options.add_first_trial();
+  options.add_kept({"field trials"});
   options.add_strict();
   add_cell_program(options);
   options.output_file("passages", "FILE.csv",

@@ -35,6 +35,7 @@ int run_predict(const Arguments& arguments) {
                    "propagate: step by step; for field.max_gates = 0 also march: row by row, and "
                    "klu: one sparse solve; auto: march without limit, else propagate",
                    "auto");
+  options.add_kept();
   options.add_strict();
   add_cell_program(options);
   options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);

@@ -16,7 +16,8 @@ DirectRows direct_rows(const Options& options, const lattice::Problem& deep, int
   if (!options.has("trials")) return direct;
   direct.trials = options.trials();
   const dynamics::Stopwatch watch;
-  const auto tally = lattice::field_trials(deep, direct.trials, options.seed(), options.work());
+  const auto tally =
+      lattice::field_trials(deep, {0, direct.trials}, options.seed(), options.work());
   direct.seconds = watch.seconds();
   direct.entered.assign(static_cast<std::size_t>(row),
                         tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
@@ -56,7 +57,10 @@ int run_rare(const Arguments& arguments) {
                     "at most so many gate runs, about (default: 2e7, and 100 000 trials as long as "
                     "nobody gets there)");
   options.add_count("trials", "N", "also run N trials directly, to compare");
+  options.add_count("split-trials", "N",
+                    "exactly N split trials, whatever the accuracy (parts need it)");
   options.add_seed();
+  options.add_kept({"split trials", "field trials"});
   options.add_strict();
   add_cell_program(options);
   options.add_figure("the chance of every row up to N");
@@ -64,6 +68,9 @@ int run_rare(const Arguments& arguments) {
   lattice::SplittingOptions how{
       .accuracy = options.has("accuracy") ? options.number("accuracy") : 0.05,
       .seed = options.seed()};
+  if (options.has("split-trials")) how.trials = options.count("split-trials", 2);
+  if (options.has("shard") && !how.trials)
+    throw UsageError("--shard needs --split-trials N: a part must know how many there are in all");
   if (options.has("gate-runs")) {
     how.most_runs = options.count("gate-runs", 1000);
     how.most_in_vain = how.most_runs;
@@ -80,6 +87,7 @@ int run_rare(const Arguments& arguments) {
   const lattice::Problem deep = up_to_row(subject, how.row);
   const lattice::RareEvent event = lattice::rare_event(deep, how, options.work());
   const DirectRows direct = direct_rows(options, deep, how.row);
+  options.work().end_part();
 
   Json json = to_json(event, direct);
   if (subject.settled) json["method"] = to_json(*subject.settled);

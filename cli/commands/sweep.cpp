@@ -50,6 +50,8 @@ int run_sweep(const Arguments& arguments) {
       "--vary forces.random_N=0,10,20 --trials 1000 --csv sweep.csv");
   options.scene();
   options.add_trials_and_seed("runs of the gate at each point");
+  options.add_first_trial();
+  options.add_kept({"gate runs"});
   options.add_strict();
   options.add_texts("vary", "KEY=VALUES",
                     "a key and its values, e.g. forces.random_N=0:10:40 or run.method=stable,paper "
@@ -58,7 +60,7 @@ int run_sweep(const Arguments& arguments) {
   options.add_figure("shares over one key, a map over two");
   if (!options.parse(arguments)) return kFine;
   const std::string csv = options.text("csv");
-  const std::int64_t trials = options.trials();
+  const dynamics::TrialRange trials = options.trial_range();
   const std::string source = options.text("scene"), text = lattice::scene_text(source);
   const lattice::Scene scene = lattice::parse_scene(text, source, options.overrides());
   const auto axes = lattice::sweep_axes(scene.sweep, options.texts("vary"));
@@ -71,6 +73,7 @@ int run_sweep(const Arguments& arguments) {
 
   lattice::run_sweep(points, trials, options.seed(), options.work(),
                      [&](const auto& p) { options.warn(complaint(*p.settled)); });
+  options.work().end_part();
 
   Json json = to_json(axes, points);
   json["made_by"] = to_json(options.provenance(scene));

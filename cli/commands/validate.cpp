@@ -35,6 +35,7 @@ int run_validate(const Arguments& arguments) {
                     "trials of the full dynamics per start (default: 100; with --observed 10000, "
                     "or 20 times as many as were observed)");
   options.add_seed();
+  options.add_kept({"full dynamics", "force drawn anew"});
   options.add_strict();
   options.add_texts("observed", "FILE.csv",
                     "an experiment from this start, to hold against both: a line per trial, "

@@ -17,6 +17,7 @@ Json to_json(const Provenance& p) {
   if (p.seed) m["seed"] = *p.seed;
   if (p.scene) m["scene"] = *p.scene;
   if (!p.derived.empty()) m["derived"] = p.derived;
+  for (const auto& [file, name] : p.parts) m["parts"].push_back({{"file", file}, {"holds", name}});
   return m;
 }
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/render/json_fwd.h"
 
@@ -16,6 +18,8 @@ struct Provenance {
   std::optional<std::uint64_t> seed;
   std::optional<std::string> scene;            // the whole scene as TOML
   std::set<std::string, std::less<>> derived;  // keys that the scene left out
+  /// The files of a run's parts, with which part each is; none of a run in one.
+  std::vector<std::pair<std::string, std::string>> parts{};
 };
 
 /// {"program", "version", "commit", "command", ...}

@@ -2,8 +2,11 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
 
 #include "markov/formats/file.h"
 
@@ -13,10 +16,14 @@ namespace {
 std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "touched from a signal handler");
 
+// Written before it is pointed to: a signal handler reads it.
+std::array<char, 4608> kept_text{};
+std::atomic<bool> is_kept{false};
+
 void on_signal(int) {
   if (asked_to_stop.exchange(true)) {
     markov::remove_unfinished_file();
-    ::_exit(130);
+    ::_exit(stopped_status());
   }
   ::alarm(1);  // work that does not come in batches is given a second
 }
@@ -24,9 +31,9 @@ void on_signal(int) {
 void on_alarm(int) {
   // Only async-signal-safe calls here.
   markov::remove_unfinished_file();
-  [[maybe_unused]] const auto written =
-      ::write(STDERR_FILENO, kCutShortText, sizeof kCutShortText - 1);
-  ::_exit(130);
+  const char* const text = is_kept ? kept_text.data() : kCutShortText;
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
+  ::_exit(stopped_status());
 }
 
 }  // namespace
@@ -39,13 +46,27 @@ void install_interrupt_handler() {
   struct sigaction alarm_action = action;
   alarm_action.sa_handler = on_alarm;
   ::sigaction(SIGALRM, &alarm_action, nullptr);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
     // What was ignored by whoever started us stays so: nohup, jobs in the background of a script.
     struct sigaction inherited = {};
     ::sigaction(signal, nullptr, &inherited);
     if (inherited.sa_handler != SIG_IGN) ::sigaction(signal, &action, nullptr);
   }
 }
+
+void set_kept_file(const std::string& file) {
+  is_kept = false;
+  if (file.empty()) return;
+  std::snprintf(kept_text.data(), kept_text.size(),
+                "gatewalk: stopped before the end; what is done is kept in %s: the same command "
+                "with --resume goes on\n",
+                file.c_str());
+  is_kept = true;
+}
+
+const char* stopped_text() noexcept { return is_kept ? kept_text.data() : kStoppedText; }
+
+int stopped_status() noexcept { return is_kept ? 75 : 130; }
 
 bool interrupted() { return asked_to_stop.load(); }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <vector>
 
 namespace gatewalk::dynamics {
 
@@ -27,6 +28,16 @@ class TrialSet {
   [[nodiscard]] std::int64_t count() const;
   [[nodiscard]] const std::map<std::int64_t, std::int64_t>& ranges() const { return ends_; }
   friend bool operator==(const TrialSet&, const TrialSet&) = default;
+
+  /// As a piece is kept (base/bytes.h).
+  template <class Archive>
+  friend void each_part(Archive& archive, TrialSet& set) {
+    std::vector<TrialRange> ranges;
+    for (const auto& [first, end] : set.ends_) ranges.push_back({first, end - first});
+    archive(ranges);
+    if constexpr (Archive::reads)
+      for (const TrialRange& range : ranges) set.add(range);
+  }
 
  private:
   std::map<std::int64_t, std::int64_t> ends_;  // first -> one past the last

@@ -4,9 +4,13 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
+#include "dynamics/base/bytes.h"
 #include "dynamics/base/trial_set.h"
 
 namespace gatewalk::dynamics {
@@ -22,16 +26,83 @@ class PieceSize {
   std::int64_t size_ = 1;
 };
 
-/// Whoever starts long work says here who is told how far it is. Nobody by default.
+/// Items of work that are done in one go, or in pieces: trials, by their numbers. Several stages
+/// that are divided as one have so many items `before` this one, `of` all of them.
+struct Stage {
+  std::string_view what;
+  TrialRange items;
+  std::int64_t before = 0, of = items.count;
+};
+
+/// Finished pieces that are kept: a run that was stopped goes on where it was, and runs on several
+/// machines make one. Every run of a command has the same stages in the same order.
+class KeptPieces {
+ public:
+  virtual ~KeptPieces() = default;
+  /// From now on pieces are of this stage.
+  virtual void begin(const Stage& stage) = 0;
+  /// What comes first from item `at` on: a piece that is kept, with its bytes; or items that are to
+  /// be done. None: what is left is not for this run. May throw where an item is missing.
+  struct Next {
+    TrialRange items;
+    std::optional<std::string> bytes;
+  };
+  [[nodiscard]] virtual std::optional<Next> next(std::int64_t at) = 0;
+  virtual void keep(TrialRange items, std::string bytes) = 0;
+  /// This run does a part of each stage only.
+  [[nodiscard]] virtual bool is_part() const = 0;
+  /// Whether any item of the stage is for this run; asked before the stage begins.
+  [[nodiscard]] virtual bool has_share(const Stage& stage) const = 0;
+  /// From here on all pieces are needed: a part ends. Throws what ends it.
+  virtual void end_part() = 0;
+};
+
+/// Whoever starts long work says here who is told how far it is, and who keeps what is done. Nobody
+/// by default.
 struct Work {
   /// Told before each piece, and when all is done: `done` of `total` of what. May throw to stop.
   std::function<void(std::string_view what, std::int64_t done, std::int64_t total)> told;
+  KeptPieces* kept = nullptr;
 
   /// Calls run(range) for consecutive ranges that cover [0, total) exactly once, as long as
   /// PieceSize says. The ranges depend on the machine's speed, so results must not depend
   /// on how [0, total) is cut.
   void in_pieces(std::string_view what, std::int64_t total,
                  const std::function<void(TrialRange)>& run) const;
+
+  /// The same of work whose pieces can be kept: what run(range) returns goes to take(T), in the
+  /// order of the ranges, and so do the pieces that are kept already. `none`: a T of no items. A
+  /// part of a run takes its own items only, and may take none.
+  template <class T>
+  void in_kept_pieces(const Stage& stage, const T& none,
+                      const std::type_identity_t<std::function<T(TrialRange)>>& run,
+                      const std::type_identity_t<std::function<void(T)>>& take) const {
+    if (!kept) {
+      in_pieces(stage.what, stage.items.count, [&](TrialRange range) {
+        take(run({stage.items.first + range.first, range.count}));
+      });
+      return;
+    }
+    in_pieces_of(
+        stage,
+        [&](TrialRange range) {
+          T done = run(range);
+          kept->keep(range, bytes_of(done));
+          take(std::move(done));
+        },
+        [&](std::string_view bytes) {
+          T done = none;
+          read_bytes(bytes, done);
+          take(std::move(done));
+        });
+  }
+  /// A part of a run knows some of its trials only, and has no result.
+  [[nodiscard]] bool is_part() const { return kept && kept->is_part(); }
+  [[nodiscard]] bool has_share(const Stage& stage) const { return !kept || kept->has_share(stage); }
+  /// Where all trials are needed from here on: ends a part.
+  void end_part() const {
+    if (kept) kept->end_part();
+  }
 
   /// Part number `index` of `count` of equal size, all under one name: what is told of it is told
   /// as that share of the whole.
@@ -43,6 +114,10 @@ struct Work {
   void tell(std::string_view what, std::int64_t done, std::int64_t total) const {
     if (told) told(what, done, total);
   }
+
+ private:
+  void in_pieces_of(const Stage& stage, const std::function<void(TrialRange)>& run,
+                    const std::function<void(std::string_view)>& take_kept) const;
 };
 
 /// Seconds since construction.

@@ -41,6 +41,11 @@ struct GateTally {
   /// Throws std::invalid_argument, and changes nothing, when a trial would be counted twice.
   GateTally& operator+=(const GateTally& other);
 };
+/// As a piece is kept (base/bytes.h).
+template <class Archive>
+void each_part(Archive& archive, GateTally& tally) {
+  archive(tally.trials, tally.held, tally.counts, tally.health);
+}
 
 /// Runs `range` from one start, on all threads of the current TBB arena. Throws InvalidParameter
 /// for a scene that cannot be run.

@@ -10,36 +10,33 @@
 
 namespace gatewalk::dynamics {
 
-void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,
-                const Entries& entries) {
-  if (!entries.empty() && entries.size() != t.rows.size())
-    throw std::invalid_argument("add_trials: entries are not those of the state space");
+RowTrials row_trials(const StateSpace& space, const GateParams& p, std::uint64_t seed,
+                     TrialRange range, const Entries& entries) {
+  if (!entries.empty() && std::ssize(entries) != space.size())
+    throw std::invalid_argument("row_trials: entries are not those of the state space");
   const auto start_of = [&](int row, Random& random) {
-    if (entries.empty() || entries[row].empty()) return t.space.sample(row, random);
+    if (entries.empty() || entries[row].empty()) return space.sample(row, random);
     return entries[row][random.below(static_cast<std::int64_t>(entries[row].size()))];
   };
   const auto method = make_method(p);
-  struct Arrival {
-    int column = -1;
-    bool clamped = false;
-    Costs costs{};
-  };
   std::vector<std::int64_t> first_run{0};  // of each row, among all of these
-  for (int row = 0; row < t.space.size(); ++row)
-    first_run.push_back(first_run.back() + range.count * runs_per_trial(t.space, row));
+  for (int row = 0; row < space.size(); ++row)
+    first_run.push_back(first_run.back() + range.count * runs_per_trial(space, row));
   const auto row_of = [&](std::int64_t run) {
     return static_cast<int>(std::upper_bound(first_run.begin(), first_run.end(), run) -
                             first_run.begin()) -
            1;
   };
-  std::vector<Arrival> outcomes(static_cast<std::size_t>(first_run.back()));
+  RowTrials all{.trials = range.count,
+                .arrivals = std::vector<Arrival>(static_cast<std::size_t>(first_run.back())),
+                .health = {}};
   tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do
   carry_out_trials(
-      p, *method, static_cast<std::int64_t>(outcomes.size()),
+      p, *method, std::ssize(all.arrivals),
       [&](RunSlot& slot) {
         const int row = row_of(slot.trial);
         const std::int64_t run =
-            range.first * runs_per_trial(t.space, row) + slot.trial - first_run[row];
+            range.first * runs_per_trial(space, row) + slot.trial - first_run[row];
         const Stream stream{seed, static_cast<std::uint64_t>(row), static_cast<std::uint64_t>(run)};
         Random random(Purpose::row, stream);
         slot.start = entry_state(p, start_of(row, random));
@@ -47,11 +44,11 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
       },
       [&](RunSlot& slot, const GateRun& run) {
         add_run(health.local(), p, run);
-        Arrival& out = outcomes[static_cast<std::size_t>(slot.trial)];
+        Arrival& out = all.arrivals[static_cast<std::size_t>(slot.trial)];
         if (run.ending == Ending::trapped) {
-          out.column = t.space.trapped();
+          out.column = space.trapped();
         } else if (run.ending != Ending::broken) {
-          const auto index = t.space.index_of(crossing_of(p, run.ending, run.exit));
+          const auto index = space.index_of(crossing_of(p, run.ending, run.exit));
           out.column = index.state;
           out.clamped = index.clamped;
         }
@@ -59,17 +56,28 @@ void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRa
         return false;
       });
 
-  for (const Health& part : health) t.health += part;
+  for (const Health& part : health) all.health += part;
+  return all;
+}
+
+void add(Transitions& t, const RowTrials& trials) {
+  t.health += trials.health;
+  auto next = trials.arrivals.begin();
   for (int row = 0; row < t.space.size(); ++row) {
-    for (std::int64_t i = first_run[row]; i < first_run[row + 1]; ++i) {
-      const Arrival& out = outcomes[static_cast<std::size_t>(i)];
-      if (out.column < 0) continue;
-      ++t.rows[row][out.column];
-      t.costs[row][out.column].add(out.costs);
+    const auto end = next + trials.trials * runs_per_trial(t.space, row);
+    for (; next != end; ++next) {
+      if (next->column < 0) continue;
+      ++t.rows[row][next->column];
+      t.costs[row][next->column].add(next->costs);
       ++t.trials[row];
-      t.clamped[row] += out.clamped;
+      t.clamped[row] += next->clamped;
     }
   }
+}
+
+void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,
+                const Entries& entries) {
+  add(t, row_trials(t.space, p, seed, range, entries));
 }
 
 }  // namespace gatewalk::dynamics

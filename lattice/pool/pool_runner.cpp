@@ -21,9 +21,9 @@ PoolRunner::PoolRunner(const Problem& problem, std::uint64_t seed, std::int64_t 
 
 void PoolRunner::run_full(StartTrials& s, std::int64_t count) {
   const std::int64_t done = std::ssize(s.full.final_gates);
-  run("full trials", count, true, [&](TrialRange range) {
+  run("full trials", count, true, s.full, [&](TrialRange range, FieldTrials& each) {
     return run_field(problem_.cells, problem_.field, s.start, seed_,
-                     {kFullOwn + done + range.first, range.count}, &s.full);
+                     {kFullOwn + done + range.first, range.count}, &each);
   });
 }
 
@@ -31,26 +31,26 @@ void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
   FieldParams one_gate = problem_.field;
   one_gate.max_gates = 1;
   const std::int64_t done = std::ssize(s.first.final_gates);
-  run("first runs", count, false, [&](TrialRange range) {
+  run("first runs", count, false, s.first, [&](TrialRange range, FieldTrials& each) {
     return run_field(problem_.cells, one_gate, s.start, seed_,
-                     {kFirstOwn + done + range.first, range.count}, &s.first);
+                     {kFirstOwn + done + range.first, range.count}, &each);
   });
 }
 
 void PoolRunner::run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count) {
   const std::int64_t done = std::ssize(s.starts);
-  run("scattered trials", count, true, [&](TrialRange range) {
+  run("scattered trials", count, true, s.each, [&](TrialRange range, FieldTrials& each) {
     const std::int64_t first = done + range.first;
-    for (std::int64_t i = 0; i < range.count; ++i) s.starts.push_back(drawn(starts, first + i));
     const Cell& cell = problem_.cells.at(problem_.field.start_column(), 0);
     return run_field(
         problem_.cells, problem_.field,
         [&](std::int64_t i, Body& body) {
-          begin_trial(cell, s.starts[static_cast<std::size_t>(first + i)], seed_,
-                      kScatteredOwn + first + i, body);
+          begin_trial(cell, drawn(starts, first + i), seed_, kScatteredOwn + first + i, body);
         },
-        {kScatteredOwn + first, range.count}, &s.each);
+        {kScatteredOwn + first, range.count}, &each);
   });
+  for (std::int64_t i = done; i < std::ssize(s.each.final_gates); ++i)
+    s.starts.push_back(drawn(starts, i));
 }
 
 Entry PoolRunner::drawn(const StartRange& starts, std::int64_t i) const {
@@ -69,22 +69,31 @@ void PoolRunner::finish() {
     problem_.check(std::max(trials_, gate_runs / 10), seed_, health, work_);
 }
 
-void PoolRunner::run(const char* what, std::int64_t count, bool through_field,
-                     const std::function<FieldTally(TrialRange)>& carry_out) {
+void PoolRunner::run(const char* what, std::int64_t count, bool through_field, FieldTrials& all,
+                     const std::function<FieldTally(TrialRange, FieldTrials&)>& carry_out) {
   const Stopwatch watch;
   const auto most = static_cast<double>(most_runs_ - gate_runs);
   count = std::max<std::int64_t>(
       kLeastTrials,
       static_cast<std::int64_t>(std::min(static_cast<double>(count),
                                          most / (through_field ? gates_per_trial() : 1.0) + 1.0)));
-  work_.in_pieces(what, count, [&](TrialRange range) {
-    const FieldTally tally = carry_out(range);
-    health += tally.health;
-    gate_runs += tally.health.runs;
-    if (!through_field) return;
-    trials_ += tally.trials;
-    trial_runs_ += tally.health.runs;
-  });
+  work_.in_kept_pieces(
+      {what, {0, count}},
+      RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},
+      [&](TrialRange range) {
+        FieldTrials each{.final_gates = {}, .keep_passages = true};
+        FieldTally tally = carry_out(range, each);
+        return RunTrials{std::move(tally), std::move(each)};
+      },
+      [&](const RunTrials& piece) {
+        all.append(piece.each);
+        const Health& of = piece.tally.health;
+        health += of;
+        gate_runs += of.runs;
+        if (!through_field) return;
+        trials_ += piece.tally.trials;
+        trial_runs_ += of.runs;
+      });
   seconds += watch.seconds();
   if (health.broken > 0)
     throw std::runtime_error("prediction: " + std::to_string(health.broken) +

@@ -50,8 +50,8 @@ class PoolRunner {
   dynamics::Health health;
 
  private:
-  void run(const char* what, std::int64_t count, bool through_field,
-           const std::function<FieldTally(dynamics::TrialRange)>& carry_out);
+  void run(const char* what, std::int64_t count, bool through_field, FieldTrials& all,
+           const std::function<FieldTally(dynamics::TrialRange, FieldTrials&)>& carry_out);
 
   const Problem& problem_;
   std::uint64_t seed_;

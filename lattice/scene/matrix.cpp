@@ -27,18 +27,25 @@ void require_unbroken(const dynamics::Transitions& t) {
 }
 
 std::vector<dynamics::Transitions> build_matrices(const Scene& scene, const States& states,
-                                                  std::int64_t trials, std::uint64_t seed,
+                                                  dynamics::TrialRange trials, std::uint64_t seed,
                                                   const dynamics::Work& work) {
   std::vector<dynamics::Transitions> matrices;
   const FieldGates gates = gates_of(scene);
   for (const dynamics::GateParams& gate : gates.types()) {
     dynamics::Transitions& t = matrices.emplace_back(states.space);
-    work.in_pieces("building matrix", trials, [&](dynamics::TrialRange range) {
-      dynamics::add_trials(t, gate, seed, range, states.entries);
-    });
+    const dynamics::Stage stage{"building matrix", trials,
+                                std::ssize(matrices) * trials.count - trials.count,
+                                std::ssize(gates.types()) * trials.count};
+    work.in_kept_pieces(
+        stage, dynamics::RowTrials{},
+        [&](dynamics::TrialRange range) {
+          return dynamics::row_trials(t.space, gate, seed, range, states.entries);
+        },
+        [&](const dynamics::RowTrials& piece) { dynamics::add(t, piece); });
     require_unbroken(t);
     if (matrices.size() > 1) matrices.front().health += std::exchange(t.health, dynamics::Health{});
   }
+  work.end_part();
   dynamics::Transitions& first = matrices.front();
   check_outcomes(scene, RunsFrom::everywhere, seed, first.totals().runs, first.health, work);
   return matrices;

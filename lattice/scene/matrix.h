@@ -16,13 +16,13 @@ namespace gatewalk::lattice {
 /// Throws std::runtime_error when a run of the matrix broke.
 void require_unbroken(const dynamics::Transitions& t);
 
-/// A matrix of these states for each of gates_of(scene).types(), `trials` runs per row
+/// A matrix of these states for each of gates_of(scene).types(), these trials of each row: runs
 /// (dynamics::runs_per_trial as many for a single entry's). A sample is run again by a better
 /// method (check_outcomes): the first one has the health of all. Throws std::runtime_error when a
 /// run broke.
 [[nodiscard]] std::vector<dynamics::Transitions> build_matrices(const Scene& scene,
                                                                 const States& states,
-                                                                std::int64_t trials,
+                                                                dynamics::TrialRange trials,
                                                                 std::uint64_t seed,
                                                                 const dynamics::Work& work = {});
 

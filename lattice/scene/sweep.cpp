@@ -122,14 +122,17 @@ std::vector<SweepPoint> sweep_points(const SweepPlan& plan) {
   return points;
 }
 
-void run_sweep(std::vector<SweepPoint>& points, std::int64_t trials, std::uint64_t seed,
+void run_sweep(std::vector<SweepPoint>& points, dynamics::TrialRange trials, std::uint64_t seed,
                const dynamics::Work& work, const std::function<void(const SweepPoint&)>& settled) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const dynamics::Work part = work.part("sweep", i, points.size());
+    const auto before = static_cast<std::int64_t>(i) * trials.count;
+    const dynamics::Stage stage{"gate runs", trials, before, std::ssize(points) * trials.count};
+    if (!part.has_share(stage)) continue;
     points[i].settled = settle_method(points[i].scene, RunsFrom::start, seed, part);
     if (points[i].settled && settled) settled(points[i]);
     const Scene& scene = points[i].scene;
-    points[i].tally = dynamics::run_checked_trials(scene.gate, scene.start, seed, trials, part);
+    points[i].tally = dynamics::run_checked_trials(scene.gate, scene.start, seed, stage, part);
   }
 }
 

@@ -45,7 +45,7 @@ struct SweepPlan {
 
 /// Runs the gate at each point, under the same noise. `settled` is told of each point whose method
 /// has been chosen, before it is run.
-void run_sweep(std::vector<SweepPoint>& points, std::int64_t trials, std::uint64_t seed,
+void run_sweep(std::vector<SweepPoint>& points, dynamics::TrialRange trials, std::uint64_t seed,
                const dynamics::Work& work = {},
                const std::function<void(const SweepPoint&)>& settled = {});
 

@@ -160,11 +160,6 @@ PairedDifference paired_difference(std::int64_t only_first, std::int64_t only_se
   return {more / static_cast<double>(trials), more / n - half, more / n + half};
 }
 
-void keep_endings(FieldTrials& all, const FieldTrials& more) {
-  all.final_gates.insert(all.final_gates.end(), more.final_gates.begin(), more.final_gates.end());
-  all.endings.insert(all.endings.end(), more.endings.begin(), more.endings.end());
-}
-
 ForceMemory force_memory(const RunTrials& held, const RunTrials& anew, std::uint64_t seed) {
   const std::size_t trials = held.each.endings.size();
   if (trials == 0 || anew.each.endings.size() != trials)

@@ -94,14 +94,6 @@ struct PairedDifference {
 [[nodiscard]] PairedDifference paired_difference(std::int64_t only_first, std::int64_t only_second,
                                                  std::int64_t trials);
 
-/// Trials, and what each did.
-struct RunTrials {
-  FieldTally tally;
-  FieldTrials each;
-};
-/// Appends where trials ended and how, without their passages.
-void keep_endings(FieldTrials& all, const FieldTrials& more);
-
 /// The same trials with the random force held over crossings, as the model has it, and drawn anew.
 struct ForceMemory {
   PairedChange change;                                     // of the final gates

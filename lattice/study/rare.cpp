@@ -99,6 +99,16 @@ class SplitTrial {
 };
 
 /// Sums over trials, in their order.
+/// What becomes of some trials, one behind the other.
+struct SplitPiece {
+  std::vector<double> entered{};  // (trials x rows) weight that entered rows 1, 2, ...
+  Health health{};
+};
+template <class Archive>
+void each_part(Archive& archive, SplitPiece& piece) {
+  archive(piece.entered, piece.health);
+}
+
 struct Sums {
   std::vector<double> sum, squares;
   std::int64_t trials = 0;
@@ -189,7 +199,7 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
   const Aim aim{cells,        deep.field.columns,         options.row, start_value, value,
                 options.seed, first.stream_of(deep.start)};
   /// Each body's passage through its cell; those in cells of one type together.
-  const auto run_all = [&](std::vector<Weighted>& bodies) {
+  const auto run_all = [&](std::vector<Weighted>& bodies, Health& health) {
     std::vector<Passage> passages(bodies.size());
     std::vector<std::vector<std::size_t>> of_type(cells.cells.size());
     for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -211,13 +221,14 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
             bodies[i].body = body;
             return false;
           },
-          result.health);
+          health);
     }
     return passages;
   };
-  std::int64_t wanted_in_all = 0;
+  Stage stage{"split trials", {}};
   // Gate by gate: all bodies of a block run through one gate, so that many are in flight at a time.
   const auto run_block = [&](TrialRange range) {
+    SplitPiece piece;
     std::vector<SplitTrial> trials;
     std::vector<Weighted> bodies, next;
     for (std::int64_t i = 0; i < range.count; ++i) {
@@ -227,24 +238,31 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
       bodies.push_back({i, deep.field.start_column(), 0, 1.0, body});
     }
     while (!bodies.empty()) {
-      work.tell("split trials", range.first, wanted_in_all);
-      const std::vector<Passage> passages = run_all(bodies);
+      work.tell(stage.what, range.first - stage.items.first, stage.items.count);
+      const std::vector<Passage> passages = run_all(bodies, piece.health);
       for (std::size_t i = 0; i < bodies.size(); ++i)
         trials[static_cast<std::size_t>(bodies[i].trial)].take(bodies[i], passages[i], next);
       bodies = std::exchange(next, {});
     }
-    for (const SplitTrial& t : trials) sums.add(t.entered());
+    for (const SplitTrial& t : trials)
+      piece.entered.insert(piece.entered.end(), t.entered().begin(), t.entered().end());
+    return piece;
+  };
+  const auto rows = static_cast<std::size_t>(options.row);
+  const auto take = [&](const SplitPiece& piece) {
+    result.health += piece.health;
+    for (auto at = piece.entered.begin(); at != piece.entered.end();
+         at += static_cast<std::ptrdiff_t>(rows))
+      sums.add({at, at + static_cast<std::ptrdiff_t>(rows)});
   };
   // Rounds: each as many trials as the last ones say are wanted, at most eight times those so far.
   constexpr std::int64_t kFirst = 1000;
-  for (std::int64_t more = kFirst; more > 0;) {
-    constexpr std::int64_t kBlock = 4096;
-    wanted_in_all = sums.trials + more;
-    while (sums.trials < wanted_in_all)
-      run_block({sums.trials, std::min(kBlock, wanted_in_all - sums.trials)});
-    const double error = sums.chance(sums.sum.size() - 1).relative_standard_error;
-    result.reached = error <= options.accuracy;
-    if (result.reached) break;
+  for (std::int64_t more = options.trials.value_or(kFirst); more > 0;) {
+    stage = {"split trials", {sums.trials, more}, 0, more};
+    work.in_kept_pieces(stage, SplitPiece{}, run_block, take);
+    if (options.trials) break;
+    const double error = sums.chance(rows - 1).relative_standard_error;
+    if (error <= options.accuracy) break;
     const auto n = static_cast<double>(sums.trials);
     const double wanted =
         std::isfinite(error) ? 1.1 * n * std::pow(error / options.accuracy, 2.0) - n : 8.0 * n;
@@ -256,6 +274,7 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
         std::min({std::max(wanted, 0.1 * n), 8.0 * n, affordable, in_vain}));
   }
   result.trials = sums.trials;
+  result.reached = sums.chance(rows - 1).relative_standard_error <= options.accuracy;
   result.gate_runs = result.health.runs;
   for (std::size_t r = 0; r < sums.sum.size(); ++r) result.rows.push_back(sums.chance(r));
   if (result.health.broken > 0)

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "dynamics/base/work.h"
@@ -20,10 +21,11 @@ namespace gatewalk::lattice {
 using EntryValue = std::function<double(int column, int row, const dynamics::Entry& entry)>;
 
 struct SplittingOptions {
-  int row = 0;                          // the target: entering it, rows counted from 0
-  double accuracy = 0.05;               // relative standard error that ends it
-  std::int64_t most_runs = 20'000'000;  // gate runs, about
-  std::int64_t most_in_vain = 100'000;  // trials while no body has come to the target
+  int row = 0;                           // the target: entering it, rows counted from 0
+  double accuracy = 0.05;                // relative standard error that ends it
+  std::optional<std::int64_t> trials{};  // exactly so many, whatever the accuracy
+  std::int64_t most_runs = 20'000'000;   // gate runs, about
+  std::int64_t most_in_vain = 100'000;   // trials while no body has come to the target
   std::uint64_t seed = 1;
 };
 

@@ -1,33 +1,44 @@
 #include "lattice/study/trials.h"
 
+#include <utility>
+
 namespace gatewalk::lattice {
 
-FieldTally field_trials(const FieldParams& field, std::int64_t trials, const RunTrialRange& run,
-                        const dynamics::Work& work, FieldCosts* costs, ExitCounts* exits) {
+FieldTally field_trials(const FieldParams& field, dynamics::TrialRange trials,
+                        const RunTrialRange& run, const dynamics::Work& work,
+                        const TakeTrials& take) {
   FieldTally tally(field);
-  work.in_pieces("field trials", trials, [&](dynamics::TrialRange range) {
-    FieldTrials each;
-    tally += run(range, each);
-    if (costs != nullptr) costs->add(each);
-    if (exits != nullptr) exits->add(each);
-  });
+  work.in_kept_pieces(
+      {"field trials", trials}, RunTrials{FieldTally(field), {}},
+      [&](dynamics::TrialRange range) {
+        FieldTrials each;
+        FieldTally part = run(range, each);
+        return RunTrials{std::move(part), std::move(each)};
+      },
+      [&](const RunTrials& piece) {
+        tally += piece.tally;
+        if (take) take(piece.each);
+      });
   return tally;
 }
 
-FieldTally field_trials(const Problem& problem, std::int64_t trials, std::uint64_t seed,
-                        const dynamics::Work& work, FieldCosts* costs, ExitCounts* exits,
-                        const TakeTrials& take) {
+TakeTrials added_to(FieldCosts& costs, ExitCounts& exits) {
+  return [&](const FieldTrials& each) {
+    costs.add(each);
+    exits.add(each);
+  };
+}
+
+FieldTally field_trials(const Problem& problem, dynamics::TrialRange trials, std::uint64_t seed,
+                        const dynamics::Work& work, const TakeTrials& take, bool keep_passages) {
   FieldTally tally = field_trials(
       problem.field, trials,
       [&](dynamics::TrialRange range, FieldTrials& each) {
-        each.keep_passages = static_cast<bool>(take);
-        FieldTally part =
-            run_field(problem.cells, problem.field, problem.start, seed, range, &each);
-        if (take) take(each);
-        return part;
+        each.keep_passages = keep_passages;
+        return run_field(problem.cells, problem.field, problem.start, seed, range, &each);
       },
-      work, costs, exits);
-  if (problem.check) problem.check(trials, seed, tally.health, work);
+      work, take);
+  if (problem.check) problem.check(trials.count, seed, tally.health, work);
   return tally;
 }
 

@@ -15,18 +15,20 @@ namespace gatewalk::lattice {
 
 /// Carries out a range of trials through the field, and says what each did.
 using RunTrialRange = std::function<FieldTally(dynamics::TrialRange range, FieldTrials& each)>;
-/// Trials 0, 1, ... What they took is added to `costs`, and where they left the field to `exits`,
-/// if given. Throws as `run`.
-[[nodiscard]] FieldTally field_trials(const FieldParams& field, std::int64_t trials,
-                                      const RunTrialRange& run, const dynamics::Work& work = {},
-                                      FieldCosts* costs = nullptr, ExitCounts* exits = nullptr);
-/// Takes trials with their passages, a piece at a time.
+/// Takes trials in the order of their numbers, a piece at a time.
 using TakeTrials = std::function<void(const FieldTrials& each)>;
-/// Of a problem's cells, from its start; a sample is run again by a better method, if there is one.
-[[nodiscard]] FieldTally field_trials(const Problem& problem, std::int64_t trials,
-                                      std::uint64_t seed, const dynamics::Work& work = {},
-                                      FieldCosts* costs = nullptr, ExitCounts* exits = nullptr,
+/// Adds what they took to `costs`, and where they left the field to `exits`, which outlive it.
+[[nodiscard]] TakeTrials added_to(FieldCosts& costs, ExitCounts& exits);
+
+/// Trials through the field, each of which `take` is handed, if given. Pieces can be kept. Throws
+/// as `run`.
+[[nodiscard]] FieldTally field_trials(const FieldParams& field, dynamics::TrialRange trials,
+                                      const RunTrialRange& run, const dynamics::Work& work = {},
                                       const TakeTrials& take = {});
+/// Of a problem's cells, from its start; a sample is run again by a better method, if there is one.
+[[nodiscard]] FieldTally field_trials(const Problem& problem, dynamics::TrialRange trials,
+                                      std::uint64_t seed, const dynamics::Work& work = {},
+                                      const TakeTrials& take = {}, bool keep_passages = false);
 
 /// Walks 0, 1, ... of the chain. Throws as markov::Walker::walk.
 [[nodiscard]] markov::WalkTally walks(const markov::FieldChain& chain, const FieldParams& field,

@@ -136,20 +136,29 @@ TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const m
                             {first, n}, &cells);
     return cells;
   });
-  setup.work.in_pieces("full dynamics", setup.options.trials, [&](TrialRange range) {
-    const Stopwatch watch;
-    FieldTrials each;
-    each.keep_passages = range.first < kMostRemembered;
-    seen.trials.tally += run_field(setup.problem.cells, setup.problem.field, start,
-                                   setup.options.seed, range, &each, &setup.space);
-    seen.seconds += watch.seconds();
-    blocks.add(each.final_gates);
-    seen.exits.add(each);
-    each.passed.resize(
-        std::clamp<std::int64_t>(kMostRemembered - range.first, 0, std::ssize(each.passed)));
-    add_walks(remembered, setup.space, place.input, each, setup.same);
-    if (setup.options.force_memory) keep_endings(seen.trials.each, each);
-  });
+  std::int64_t taken = 0;
+  setup.work.in_kept_pieces(
+      {"full dynamics", {0, setup.options.trials}}, RunTrials{FieldTally(setup.problem.field), {}},
+      [&](TrialRange range) {
+        const Stopwatch watch;
+        FieldTrials each;
+        each.keep_passages = range.first < kMostRemembered;
+        FieldTally tally = run_field(setup.problem.cells, setup.problem.field, start,
+                                     setup.options.seed, range, &each, &setup.space);
+        seen.seconds += watch.seconds();
+        return RunTrials{std::move(tally), std::move(each)};
+      },
+      [&](RunTrials piece) {
+        FieldTrials& each = piece.each;
+        seen.trials.tally += piece.tally;
+        blocks.add(each.final_gates);
+        seen.exits.add(each);
+        if (setup.options.force_memory) seen.trials.each.append(each);
+        each.passed.resize(
+            std::clamp<std::int64_t>(kMostRemembered - taken, 0, std::ssize(each.passed)));
+        taken += std::ssize(each.final_gates);
+        add_walks(remembered, setup.space, place.input, each, setup.same);
+      });
   seen.paper_sized = blocks.result();
   return seen;
 }
@@ -157,10 +166,20 @@ TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const m
 /// The same trials with the force drawn anew at crossings, against these.
 ForceMemory run_anew(const Setup& setup, const dynamics::Entry& start, const RunTrials& held) {
   RunTrials anew{FieldTally(setup.problem.field), {}};
-  setup.work.in_pieces("force drawn anew", setup.options.trials, [&](TrialRange range) {
-    anew.tally += run_field(setup.problem.cells, setup.problem.field, start, setup.options.seed,
-                            range, &anew.each, &setup.space, Memory::dropped);
-  });
+  setup.work.in_kept_pieces(
+      {"force drawn anew", {0, setup.options.trials}}, anew,
+      [&](TrialRange range) {
+        FieldTrials each;
+        FieldTally tally =
+            run_field(setup.problem.cells, setup.problem.field, start, setup.options.seed, range,
+                      &each, &setup.space, Memory::dropped);
+        return RunTrials{std::move(tally), std::move(each)};
+      },
+      [&](const RunTrials& piece) {
+        anew.tally += piece.tally;
+        anew.each.append(piece.each);
+      });
+  if (setup.work.is_part()) return {};
   return force_memory(held, anew, setup.options.seed);
 }
 
@@ -171,6 +190,19 @@ std::int64_t null_draws_for(const Setup& setup) {
   const std::int64_t gates = std::min<std::int64_t>(cells, kMostEnergyGates);
   return setup.options.null_draws.value_or(std::clamp<std::int64_t>(
       100'000'000 / (setup.options.trials + setup.walks + gates * gates / 8), 999, 9999));
+}
+
+/// The trials of a part of a run, and no more.
+void run_part(const Setup& setup, const std::vector<dynamics::Entry>& starts,
+              StateWalks& remembered) {
+  for (const dynamics::Entry& start : starts) {
+    const markov::Start place = chain_start(setup.space, setup.problem.field, start).start;
+    const markov::FinalDistribution exact =
+        setup.predictor.predict(setup.field(), place, {.max_cells = setup.problem.field.max_gates});
+    const TimedTrials seen = run_trials(setup, start, place, exact, remembered);
+    if (setup.options.force_memory) (void)run_anew(setup, start, seen.trials);
+  }
+  setup.work.end_part();
 }
 
 StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
@@ -278,11 +310,11 @@ Validation validate_chain(const Problem& problem,
   std::vector<markov::Start> places;
   for (const dynamics::Entry& start : starts)
     places.push_back(chain_start(space, problem.field, start).start);
-  const auto resampled = resampled_predictions(setup, places);
-
   Validation v{.trials = options.trials, .walks = setup.walks, .starts = {}, .health = {}};
   for (const dynamics::Transitions& t : matrices) v.health += t.health;
   StateWalks remembered = no_walks(space, matrices.size());
+  if (work.is_part()) run_part(setup, starts, remembered);
+  const auto resampled = resampled_predictions(setup, places);
   for (std::size_t k = 0; k < starts.size(); ++k) {
     v.starts.push_back(validate_start(setup, starts[k], resampled[k], remembered));
     const FieldTally& d = v.starts.back().dynamics;

@@ -64,7 +64,7 @@ double wrong_worth(int column, int row, const Entry& entry) {
 
 /// The shares of full trials that enter rows 1, 2, ..., `rows`; nobody moves back.
 std::vector<RowChance> direct(const Scene& scene, int rows, std::int64_t trials) {
-  const FieldTally tally = field_trials(problem_of(up_to_row(scene, rows)), trials, 77);
+  const FieldTally tally = field_trials(problem_of(up_to_row(scene, rows)), {0, trials}, 77);
   const auto share = [&](std::int64_t entered) {
     const double p = static_cast<double>(entered) / static_cast<double>(trials);
     return RowChance{p, std::sqrt((1.0 - p) / p / static_cast<double>(trials))};

@@ -363,7 +363,7 @@ constexpr dynamics::BodyState kStart{4, 0, 5, 10};
 TEST(Terrain, TypesThatAreAlikeGiveTheBitsOfOne) {
   const Scene several = alike(), one = plain();
   EXPECT_EQ(gates_of(several).types().size(), 1U);
-  const FieldTally a = field_trials(several, 300, 3), b = field_trials(one, 300, 3);
+  const FieldTally a = field_trials(several, {0, 300}, 3), b = field_trials(one, {0, 300}, 3);
   EXPECT_TRUE((a.final_gates == b.final_gates).all());
   EXPECT_EQ(a.endings, b.endings);
   RunPool here, there;
@@ -382,7 +382,7 @@ TEST(Terrain, AMapOfOneTypeIsThePlainScene) {
   other.gate = one.gate;
   other.terrain->type_of_cell.assign(25, 0);
   ASSERT_EQ(gates_of(other).types().size(), 3U);
-  const FieldTally a = field_trials(other, 300, 3), b = field_trials(one, 300, 3);
+  const FieldTally a = field_trials(other, {0, 300}, 3), b = field_trials(one, {0, 300}, 3);
   EXPECT_TRUE((a.final_gates == b.final_gates).all());
   RunPool here, there;
   const auto p = predict_pooled(problem_of(other), here, {dynamics::entry_of(kStart)},
@@ -454,7 +454,7 @@ TEST(Terrain, TheChainIsThatOfItsOwnDynamics) {
   const double floor = expected_total_variation(p.starts[0].final.final_cells, truth.trials);
   EXPECT_LT(tv, floor + p.starts[0].error.total_variation);
   // The plain scene's field is another one.
-  EXPECT_GT(total_variation(shares(field_trials(plain(), 5000, 1).final_gates),
+  EXPECT_GT(total_variation(shares(field_trials(plain(), {0, 5000}, 1).final_gates),
                             shares(truth.final_gates)),
             0.1);
 }
@@ -525,14 +525,14 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
 TEST(Terrain, BinsHaveAMatrixForEachType) {
   const Scene scene = mixed();
   const States states = states_of(scene, {BinsChoice::Kind::paper}, {kStart}, 1);
-  const auto matrices = build_matrices(scene, states, 20, 1);
+  const auto matrices = build_matrices(scene, states, {0, 20}, 1);
   ASSERT_EQ(matrices.size(), 3U);
   // Each is that of a scene whose own gate is of the type.
   for (std::size_t type = 0; type < 2; ++type) {
     Scene own = scene;
     own.gate = gate_of(scene, scene.terrain->types[type]);
     own.terrain.reset();
-    EXPECT_EQ(build_matrices(own, states, 20, 1).front().rows, matrices[type + 1].rows);
+    EXPECT_EQ(build_matrices(own, states, {0, 20}, 1).front().rows, matrices[type + 1].rows);
   }
   const PaperStart start{kStart.x, kStart.vx, kStart.vy, {}, {}};
   const Validation v = validate_chain(problem_of(scene), matrices, {start.entry()},

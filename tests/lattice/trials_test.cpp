@@ -10,7 +10,7 @@ namespace {
 
 TEST(FieldTrials, AreThoseOfRunFieldAndChecked) {
   const Scene scene = parse_scene("field = { columns = 3, rows = 3 }", "scene");
-  const FieldTally tally = field_trials(scene, 150, 4);
+  const FieldTally tally = field_trials(scene, {0, 150}, 4);
   const dynamics::StateSpace fixed = fixed_space(scene);
   const FieldTally plain =
       run_field(scene.gate, scene.field, scene.start, 4, {0, 150}, nullptr, &fixed);

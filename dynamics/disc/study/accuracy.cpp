@@ -222,6 +222,7 @@ double uncertainty_of(const WeakError& e, std::int64_t trials) {
 
 void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
                     std::uint64_t seed, std::int64_t trials, const Work& work) {
+  if (work.is_part()) return;  // who has all trials looks
   const GateParams better = checking_setting(p);
   TrialEnds here, there;
   std::vector<TrialRange> parts;
@@ -239,11 +240,12 @@ void check_outcomes(Health& health, const GateParams& p, std::span<const BodySta
 }
 
 GateTally run_checked_trials(const GateParams& p, const BodyState& start, std::uint64_t seed,
-                             std::int64_t trials, const Work& work) {
+                             const Stage& stage, const Work& work) {
   GateTally tally;
-  work.in_pieces("gate runs", trials,
-                 [&](TrialRange range) { tally += run_gate_trials(p, start, seed, range); });
-  check_outcomes(tally.health, p, {&start, 1}, seed, check_sample(trials), work);
+  work.in_kept_pieces(
+      stage, GateTally{}, [&](TrialRange range) { return run_gate_trials(p, start, seed, range); },
+      [&](const GateTally& piece) { tally += piece; });
+  check_outcomes(tally.health, p, {&start, 1}, seed, check_sample(stage.items.count), work);
   return tally;
 }
 

@@ -151,14 +151,14 @@ struct StrongError {
 /// chance does not explain: total variation less two standard errors of it. Nothing that a run can
 /// show of itself (overlap, energy) sees that a method is wrong for an elastic or undamped scene,
 /// and half the step may be as wrong. On all threads of the current TBB arena, the same for any
-/// number of them. Throws InvalidParameter.
+/// number of them; not by a part of a run. Throws InvalidParameter.
 void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
                     std::uint64_t seed, std::int64_t trials, const Work& work = {});
 
-/// `trials` runs from one start, a sample of them (check_sample) checked so. Throws
+/// The trials of a stage from one start, a sample of them (check_sample) checked so. Throws
 /// InvalidParameter.
 [[nodiscard]] GateTally run_checked_trials(const GateParams& p, const BodyState& start,
-                                           std::uint64_t seed, std::int64_t trials,
+                                           std::uint64_t seed, const Stage& stage,
                                            const Work& work = {});
 
 /// The trials of start i among `trials` that are shared out evenly.

@@ -1,0 +1,85 @@
+#include <algorithm>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/kept/kept_run.h"
+#include "cli/render/json.h"
+#include "markov/formats/counts.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// Trials that parts have by their numbers: of the one run that they make.
+dynamics::TrialRange trials_of(const std::vector<Json>& heads) {
+  std::int64_t first = kMostCount, end = 0;
+  for (const Json& head : heads) {
+    const auto from = head.at("first_trial").get<std::int64_t>();
+    first = std::min(first, from);
+    end = std::max(end, from + head.at("trials").get<std::int64_t>());
+  }
+  return {first, end - first};
+}
+
+/// The words of the one run.
+std::vector<std::string> words_of(const std::vector<Json>& heads, const std::string& output) {
+  const Json& head = heads.front();
+  std::vector<std::string> words;
+  const auto add_all = [&](const Json& from) {
+    for (const std::string word : from) words.push_back(word);
+  };
+  add_all(head.at("words"));
+  if (head.contains("first_trial")) {
+    for (const Json& other : heads)
+      if (!other.contains("first_trial"))
+        throw UsageError("some parts are by --shard, others by --first-trial");
+    const dynamics::TrialRange trials = trials_of(heads);
+    std::erase_if(words, [](const std::string& w) {
+      return w.starts_with("--trials=") || w.starts_with("--first-trial=");
+    });
+    words.push_back("--trials=" + std::to_string(trials.count));
+    words.push_back("--first-trial=" + std::to_string(trials.first));
+  }
+  std::erase(words, "--passages");
+  add_all(head.at("outputs"));
+  if (output.empty()) return words;
+  std::string name = head.at("main_output");
+  if (head.at("command") == "sweep" && output.ends_with(".csv")) name = "csv";
+  std::erase_if(words, [&](const std::string& w) { return w.starts_with("--" + name + "="); });
+  words.push_back("--" + name + "=" + output);
+  return words;
+}
+
+}  // namespace
+
+int run_merge(const Arguments& arguments) {
+  Options options(
+      "merge PART... [-o FILE] [options] [-- options of the parts' command]",
+      "Makes one run of parts that were done on several machines (--shard I/N --part FILE, or\n"
+      "--first-trial I --part FILE): the same bits as if one machine had done all. What the parts\n"
+      "were told to write (--json, -o, --figure ...) is written now; -o names the main output\n"
+      "anew: the matrix of build, the CSV of sweep, the JSON of others. Parts that overlap or are\n"
+      "missing are named.",
+      "gatewalk merge part1 part2 part3 -o all.json");
+  options.positional_list("part", "files that --part wrote");
+  options.output_file("output", "FILE", "the main output", Options::Content::binary);
+  options.without_scene("the parts have their scene");
+  const auto own_end = std::find(arguments.words.begin(), arguments.words.end(), "--");
+  if (!options.parse(std::vector(arguments.words.begin(), own_end))) return kFine;
+
+  const std::vector<std::string> parts = options.texts("part");
+  std::vector<Json> heads;
+  for (const std::string& part : parts) heads.push_back(Json::parse(PieceFile(part).head()));
+  const std::string name = heads.front().at("command");
+  const Command* const command = command_named(name);
+  if (!command) throw markov::BadFile(parts.front() + ": is of a command " + name + ", unknown here");
+  Arguments all(words_of(heads, options.text("output")));
+  for (const char* flag : {"quiet", "force"})
+    if (options.has(flag)) all.words.push_back("--" + std::string(flag));
+  if (options.has("json")) all.words.push_back("--json=" + options.text("json"));
+  if (own_end != arguments.words.end())
+    all.words.insert(all.words.end(), own_end + 1, arguments.words.end());
+  all.parts = parts;
+  return command->run(all);
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,157 @@
+#include "cli/kept/kept_options.h"
+
+#include <zlib.h>
+
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+#include <vector>
+
+#include "cli/render/version.h"
+#include "cli/terminal/interrupt.h"
+#include "lattice/scene/scene.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// "90s", "45min", "3h", "2d". Throws UsageError.
+double seconds_of(const std::string& text) {
+  double number = 0.0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  const std::string_view unit(read.ptr, text.data() + text.size());
+  constexpr std::array<std::pair<const char*, double>, 4> kUnits{
+      {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}}};
+  for (const auto& [name, seconds] : kUnits)
+    if (read.ec == std::errc() && unit == name && number > 0.0) return number * seconds;
+  throw UsageError("--max-time " + text + ": must be a time, such as 90s, 45min, 3h or 2d");
+}
+
+/// What a file held.
+Json fingerprint(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::vector<char> buffer(std::size_t{1} << 16);
+  std::uint64_t bytes = 0;
+  uLong check = ::crc32_z(0, nullptr, 0);
+  while (in.read(buffer.data(), std::ssize(buffer)), in.gcount() > 0) {
+    const auto n = static_cast<std::size_t>(in.gcount());
+    check = ::crc32_z(check, reinterpret_cast<const Bytef*>(buffer.data()), n);
+    bytes += n;
+  }
+  return {{"file", path}, {"bytes", bytes}, {"crc32", check}};
+}
+
+bool is_by_trials(const Options& options) { return options.has("part") && !options.has("shard"); }
+
+Json head_of(const Options& options) {
+  const CommandWords& words = options.words();
+  Json head{{"version", kVersion},           {"commit", kCommit},
+            {"command", words.command},      {"words", words.shaping},
+            {"outputs", words.outputs},      {"main_output", words.main_output},
+            {"scene", nullptr},              {"inputs", Json::array()}};
+  if (options.has("passages")) head["words"].push_back("--passages");  // what is kept has them
+  if (options.has("scene")) {
+    try {
+      head["scene"] = lattice::to_toml(options.read_scene());
+    } catch (const lattice::SceneError&) {  // a matrix, or recorded runs
+    }
+  }
+  for (const std::string& path : options.files_read()) head["inputs"].push_back(fingerprint(path));
+  if (options.has("shard")) {
+    const Shard shard = shard_of(options.text("shard"));
+    head["shard"] = {shard.number, shard.of};
+  }
+  if (is_by_trials(options)) {
+    const dynamics::TrialRange trials = options.trial_range();
+    head["first_trial"] = trials.first;
+    head["trials"] = trials.count;
+  }
+  return head;
+}
+
+/// Where pieces are kept without being asked: beside the result. Empty where that is no file.
+std::string file_beside_result(const Options& options) {
+  const CommandWords& words = options.words();
+  if (words.output_is_folder) return "";  // whose studies are not kept
+  for (const char* name : {"output", "csv", "json"})
+    if (options.has(name) && options.text(name) != "-") {
+      const std::string path = options.text(name);
+      std::error_code error;
+      const auto kind = std::filesystem::status(path, error).type();
+      const bool is_file = kind == std::filesystem::file_type::regular ||
+                           kind == std::filesystem::file_type::not_found;
+      return is_file ? path + ".unfinished" : "";
+    }
+  return "";
+}
+
+}  // namespace
+
+void declare_kept(Options& options, bool can_be_divided) {
+  options.output_file("checkpoint", "FILE",
+                      "keep what is done in FILE until the result is there (without it: beside the "
+                      "output, once it is the work of a minute)",
+                      Options::Content::binary);
+  options.add_flag("resume", "go on with what was kept; from the beginning if nothing was");
+  options.add_text("max-time", "T",
+                   "stop after T, such as 90s, 45min, 3h, 2d, with exit status 75; --resume goes "
+                   "on");
+  if (!can_be_divided) return;
+  options.add_text("shard", "I/N",
+                   "do part I of N only, I from 1; gatewalk merge makes one run of the parts");
+  options.output_file("part", "FILE", "where the part goes; merge writes all other outputs",
+                      Options::Content::binary);
+}
+
+void check_kept(const Options& options) {
+  if (options.has("max-time")) (void)seconds_of(options.text("max-time"));
+  if (options.has("shard")) {
+    (void)shard_of(options.text("shard"));
+    if (!options.has("part")) throw UsageError("--shard needs --part FILE, where the part goes");
+    if (options.has("first-trial") && options.count("first-trial", 0) > 0)
+      throw UsageError("--shard and --first-trial both say which part: give one");
+  }
+  if (is_by_trials(options) && !options.has("first-trial"))
+    throw UsageError("--part needs --shard I/N: which part");
+  if (options.has("part") && options.has("checkpoint"))
+    throw UsageError("--checkpoint has no meaning beside --part, which keeps what is done");
+}
+
+std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::string>& divided) {
+  KeptPlan plan{.head = head_of(options),
+                .file = options.text(options.has("part") ? "part" : "checkpoint"),
+                .goes_on = options.has("resume"),
+                .is_part = options.has("part"),
+                .divided = divided,
+                .parts = options.words().parts,
+                .warn = [&options](const std::string& text) { options.warn(text); }};
+  if (options.has("shard")) plan.shard = shard_of(options.text("shard"));
+  if (plan.file.empty() && plan.parts.empty()) {
+    plan.file = file_beside_result(options);
+    plan.at_once = options.has("max-time");
+    if (plan.file.empty() && (options.has("max-time") || plan.goes_on))
+      throw UsageError("--" + std::string(plan.goes_on ? "resume" : "max-time") +
+                       " needs an output file, or --checkpoint FILE");
+  }
+  if (!plan.goes_on && PieceFile::is_one(plan.file) && !options.has("force"))
+    throw UsageError(plan.file +
+                     ": holds what an earlier run has done: --resume goes on with it, --force "
+                     "begins anew");
+  return std::make_unique<KeptRun>(std::move(plan));
+}
+
+dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun& kept) {
+  work.kept = &kept;
+  if (!options.has("max-time")) return work;
+  work.told = [told = work.told, most = seconds_of(options.text("max-time")),
+               since = dynamics::Stopwatch()](std::string_view what, std::int64_t done,
+                                              std::int64_t total) {
+    if (done < total && since.seconds() >= most) throw Interrupted{};
+    told(what, done, total);
+  };
+  return work;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,23 @@
+#pragma once
+/// The options of commands whose finished pieces are kept.
+
+#include <memory>
+#include <set>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/kept/kept_run.h"
+
+namespace gatewalk::cli {
+
+/// --checkpoint, --resume, --max-time; --shard and --part.
+void declare_kept(Options& options, bool can_be_divided);
+/// Throws UsageError where they do not go together.
+void check_kept(const Options& options);
+/// `divided`: names of the stages that parts divide.
+[[nodiscard]] std::unique_ptr<KeptRun> kept_run(const Options& options,
+                                                const std::set<std::string>& divided);
+/// `work` with its pieces kept, stopped by --max-time.
+[[nodiscard]] dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun& kept);
+
+}  // namespace gatewalk::cli

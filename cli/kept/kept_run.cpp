@@ -1,0 +1,298 @@
+#include "cli/kept/kept_run.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "cli/command.h"
+#include "cli/terminal/interrupt.h"
+#include "lattice/scene/scene.h"
+#include "markov/formats/counts.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using dynamics::TrialRange;
+
+std::int64_t end_of(TrialRange items) { return items.first + items.count; }
+
+std::string shown(TrialRange items) {
+  return "items " + std::to_string(items.first) + " to " + std::to_string(end_of(items) - 1);
+}
+
+/// "1 of 8"; or which trials.
+std::string name_of_part(const Json& head) {
+  if (head.contains("shard"))
+    return "part " + std::to_string(head["shard"][0].get<std::int64_t>()) + " of " +
+           std::to_string(head["shard"][1].get<std::int64_t>());
+  if (head.contains("first_trial")) {
+    const auto first = head["first_trial"].get<std::int64_t>();
+    return "trials " + std::to_string(first) + " to " +
+           std::to_string(first + head["trials"].get<std::int64_t>() - 1);
+  }
+  return "a run";
+}
+
+/// Which keys differ between two scenes as TOML.
+std::string scene_difference(const std::string& there, const std::string& here) {
+  try {
+    const auto differences = lattice::physics_differences(
+        lattice::parse_scene(here, "here"), lattice::parse_scene(there, "there"));
+    std::string text;
+    for (const std::string& line : differences) text += "\n  " + line;
+    return text;
+  } catch (const lattice::SceneError&) {
+    return "";
+  }
+}
+
+/// What of two heads differs; empty where they are of one command.
+std::string difference(const Json& there, const Json& here) {
+  for (const char* key : {"version", "commit", "command"})
+    if (there.at(key) != here.at(key))
+      return std::string(key) + ": " + there.at(key).get<std::string>() + " there, " +
+             here.at(key).get<std::string>() + " here";
+  if (there.at("scene") != here.at("scene")) {
+    const std::string keys = there.at("scene").is_string() && here.at("scene").is_string()
+                                 ? scene_difference(there.at("scene"), here.at("scene"))
+                                 : "";
+    return "the scene" + (keys.empty() ? " is another one" : ":" + keys);
+  }
+  // Parts by the numbers of their trials differ in these.
+  const bool by_trials = there.contains("first_trial");
+  const auto words = [&](const Json& head) {
+    std::string all;
+    for (const std::string word : head.at("words"))
+      if (!by_trials || !(word.starts_with("--trials=") || word.starts_with("--first-trial=")))
+        all += " " + word;
+    return all;
+  };
+  if (words(there) != words(here)) return "there:" + words(there) + "; here:" + words(here);
+  for (const Json& input : here.at("inputs"))
+    if (std::find(there.at("inputs").begin(), there.at("inputs").end(), input) ==
+        there.at("inputs").end())
+      return input.at("file").get<std::string>() + " has changed";
+  return there.at("inputs").size() == here.at("inputs").size() ? "" : "other input files";
+}
+
+}  // namespace
+
+Shard shard_of(const std::string& text) {
+  Shard shard;
+  const auto slash = text.find('/');
+  const auto number = [&](std::string_view digits, std::int64_t& n) {
+    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), n);
+    return read.ec == std::errc() && read.ptr == digits.data() + digits.size();
+  };
+  constexpr std::int64_t kMost = 1'000'000;
+  const std::string_view all = text;
+  if (slash == text.npos || !number(all.substr(0, slash), shard.number) ||
+      !number(all.substr(slash + 1), shard.of) || shard.number < 1 || shard.of < shard.number ||
+      shard.of > kMost)
+    throw UsageError("--shard " + text +
+                     ": must be I/N, part I of N, such as 3/8: I from 1 to N, N at most 1e6");
+  return shard;
+}
+
+KeptRun::KeptRun(KeptPlan plan) : plan_(std::move(plan)) {
+  if (!plan_.parts.empty()) {
+    for (const std::string& part : plan_.parts) read(part);
+    check_parts();
+    return;
+  }
+  if (plan_.file.empty()) return;
+  if (std::filesystem::exists(plan_.file) && plan_.goes_on) {
+    read(plan_.file);
+    writer_.emplace(files_.front());
+    set_kept_file(plan_.file);
+  } else if (plan_.at_once) {
+    open();
+  }
+}
+
+void KeptRun::read(const std::string& path) {
+  files_.emplace_back(path);
+  const PieceFile& file = files_.back();
+  const Json head = Json::parse(file.head());
+  const bool goes_on = plan_.parts.empty();
+  const std::string differs = difference(head, plan_.head);
+  if (!differs.empty())
+    throw UsageError(path + ": is of another run" + (goes_on ? "" : " than " + plan_.parts.front()) +
+                     ", " + differs + (goes_on ? ". Without --resume this run begins anew" : ""));
+  const auto part_of = [](const Json& h) {
+    return std::array{h.value("shard", Json()), h.value("first_trial", Json()),
+                      h.value("trials", Json())};
+  };
+  if (goes_on && part_of(head) != part_of(plan_.head))
+    throw UsageError(path + ": holds " + name_of_part(head) + ", and this is " +
+                     name_of_part(plan_.head));
+  for (const PieceRecord& record : file.records()) {
+    if (record.stage == kEndStage) continue;
+    if (is_name(record)) {
+      const std::string name = file.bytes_of(record);
+      const auto [known, is_new] = names_.emplace(record.stage, name);
+      if (!is_new && known->second != name)
+        throw UsageError(path + ": its stage " + std::to_string(record.stage) + " is " + name +
+                         ", that of other parts " + known->second);
+      continue;
+    }
+    auto& pieces = found_[record.stage];
+    const auto after = pieces.upper_bound(record.items.first);
+    const auto overlaps = [&](const Found& other) {
+      return other.record.items.first < end_of(record.items) &&
+             record.items.first < end_of(other.record.items);
+    };
+    for (const auto& other : {after == pieces.begin() ? after : std::prev(after), after})
+      if (other != pieces.end() && overlaps(other->second))
+        throw UsageError(path + " and " + files_[other->second.file].path() + " both have " +
+                         shown(other->second.record.items) + " of " + names_[record.stage]);
+    pieces.emplace(record.items.first, Found{files_.size() - 1, record});
+  }
+}
+
+void KeptRun::check_parts() const {
+  std::string unfinished;
+  std::set<std::int64_t> missing;
+  for (const PieceFile& file : files_) {
+    const Json head = Json::parse(file.head());
+    if (head.contains("shard") && missing.empty() && &file == &files_.front())
+      for (std::int64_t i = 1; i <= head["shard"][1].get<std::int64_t>(); ++i) missing.insert(i);
+    if (head.contains("shard")) {
+      const Json first = Json::parse(files_.front().head());
+      if (!first.contains("shard") || first["shard"][1] != head["shard"][1])
+        throw UsageError(file.path() + ": is " + name_of_part(head) + ", and " +
+                         files_.front().path() + " is " + name_of_part(first));
+      if (missing.erase(head["shard"][0].get<std::int64_t>()) == 0)
+        throw UsageError(file.path() + ": " + name_of_part(head) + " is given twice");
+    }
+    if (!file.is_finished())
+      unfinished += (unfinished.empty() ? "" : ", ") + file.path() + " (" + name_of_part(head) + ")";
+  }
+  if (!unfinished.empty())
+    throw UsageError("not finished: " + unfinished +
+                     "; its command with --resume does what is left");
+  if (missing.empty()) return;
+  constexpr std::size_t kNamed = 20;
+  std::string all;
+  for (const std::int64_t i : missing) {
+    if (i != *missing.begin()) all += ",";
+    all += std::to_string(i);
+    if (static_cast<std::size_t>(std::count(all.begin(), all.end(), ',')) == kNamed) {
+      all += " and more";
+      break;
+    }
+  }
+  throw UsageError("missing: part" + std::string(missing.size() > 1 ? "s " : " ") + all + " of " +
+                   std::to_string(Json::parse(files_.front().head())["shard"][1].get<std::int64_t>()));
+}
+
+TrialRange KeptRun::own_share(const dynamics::Stage& stage) const {
+  if (!divides(stage)) return stage.items;
+  // Parts are stretches of all items of the stages that are divided as one.
+  const auto bound = [&](std::int64_t i) {
+    const auto [n, of] = std::pair(static_cast<__int128>(stage.of), plan_.shard->of);
+    return std::clamp<std::int64_t>(static_cast<std::int64_t>(n * i / of) - stage.before, 0,
+                                    stage.items.count);
+  };
+  const std::int64_t from = bound(plan_.shard->number - 1), to = bound(plan_.shard->number);
+  return {stage.items.first + from, to - from};
+}
+
+bool KeptRun::has_share(const dynamics::Stage& stage) const { return own_share(stage).count > 0; }
+
+void KeptRun::begin(const dynamics::Stage& stage) {
+  ++stage_;
+  what_ = stage.what;
+  own_ = own_share(stage);
+  // What every part does, the first one keeps for all.
+  keeps_ = !plan_.shard || divides(stage) || plan_.shard->number == 1;
+  if (const auto known = names_.find(stage_); known == names_.end()) {
+    if (keeps_) write(stage_, {own_.first, 0}, what_);
+  } else if (known->second != what_) {
+    throw markov::BadFile((files_.empty() ? plan_.file : files_.front().path()) + ": its stage " +
+                          std::to_string(stage_) + " is " + known->second + ", and here " + what_ +
+                          " comes next");
+  }
+}
+
+std::optional<dynamics::KeptPieces::Next> KeptRun::next(std::int64_t at) {
+  at = std::max(at, own_.first);
+  if (at >= end_of(own_)) return {};
+  const auto& pieces = found_[stage_];
+  const auto there = pieces.lower_bound(at);
+  if (there != pieces.end() && there->first == at) {
+    const Found& found = there->second;
+    return Next{found.record.items, files_[found.file].bytes_of(found.record)};
+  }
+  const std::int64_t end = there == pieces.end() ? end_of(own_) : std::min(end_of(own_), there->first);
+  const TrialRange gap{at, end - at};
+  if (!plan_.parts.empty())
+    throw UsageError("missing: " + shown(gap) + " of " + what_ + ", which no part has");
+  return Next{gap, {}};
+}
+
+void KeptRun::keep(TrialRange items, std::string bytes) {
+  if (keeps_) write(stage_, items, bytes);
+}
+
+void KeptRun::write(std::uint32_t stage, TrialRange items, std::string_view bytes) {
+  if (plan_.file.empty()) return;
+  try {
+    if (!writer_) {
+      constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
+      constexpr double kMinute = 60.0;  // s
+      waiting_.push_back({stage, items, std::string(bytes)});
+      waiting_bytes_ += bytes.size();
+      if (since_start_.seconds() >= kMinute || waiting_bytes_ > kMostWaiting) open();
+      return;
+    }
+    writer_->add(stage, items, bytes);
+  } catch (const std::runtime_error& e) {
+    give_up(e);
+  }
+}
+
+void KeptRun::open() {
+  writer_.emplace(plan_.file, plan_.head.dump(-1, ' ', false, Json::error_handler_t::replace));
+  set_kept_file(plan_.file);
+  for (const Waiting& w : waiting_) writer_->add(w.stage, w.items, w.bytes);
+  writer_->sync();
+  waiting_.clear();
+}
+
+void KeptRun::give_up(const std::exception& e) {
+  // A file that was asked for must be right; of one that is our idea the run goes on without it.
+  if (plan_.at_once || plan_.goes_on) throw;
+  plan_.warn(std::string(e.what()) + "; the run goes on, and could not be resumed");
+  done();
+  plan_.file.clear();
+  waiting_.clear();
+}
+
+void KeptRun::end_part() {
+  if (!plan_.is_part) return;
+  writer_->add(kEndStage, {}, "");
+  writer_->sync();
+  writer_.reset();
+  throw PartDone{plan_.file};
+}
+
+void KeptRun::done() {
+  set_kept_file("");
+  if (!writer_) return;
+  writer_.reset();
+  std::error_code error;
+  std::filesystem::remove(plan_.file, error);
+}
+
+std::vector<std::pair<std::string, std::string>> part_names(const std::vector<std::string>& parts) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const std::string& part : parts)
+    names.emplace_back(part, name_of_part(Json::parse(PieceFile(part).head())));
+  return names;
+}
+
+}  // namespace gatewalk::cli

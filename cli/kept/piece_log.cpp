@@ -1,0 +1,156 @@
+#include "cli/kept/piece_log.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "markov/formats/counts.h"
+#include "markov/formats/file.h"
+
+namespace gatewalk::cli {
+namespace {
+
+// A file begins with two lines: this name with the length and CRC-32 of the second one, which is
+// the head. Then records: a head of numbers as they are in memory, and the bytes.
+constexpr char kFirstLine[] = "gatewalk pieces 1 ";
+constexpr char kByteOrder = std::endian::native == std::endian::little ? 'l' : 'b';
+
+struct RecordHead {
+  std::uint32_t mark, stage;
+  std::int64_t first, count;
+  std::uint64_t bytes;
+  std::uint32_t check, own_check;  // CRC-32 of the bytes; of the numbers before it
+};
+static_assert(sizeof(RecordHead) == 40);
+constexpr std::uint32_t kMark = 0x43454950;
+
+std::uint32_t crc_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+std::string_view checked_part(const RecordHead& head) {
+  return {reinterpret_cast<const char*>(&head), offsetof(RecordHead, own_check)};
+}
+
+std::string first_line(std::string_view head) {
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), "%s%c %zu %08x\n", kFirstLine, kByteOrder, head.size(),
+                crc_of(head));
+  return text.data();
+}
+
+[[noreturn]] void fail(const std::string& path) {
+  throw std::runtime_error(path + ": cannot be written: " + std::strerror(errno));
+}
+
+}  // namespace
+
+bool PieceFile::is_one(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string start(sizeof kFirstLine - 1, '\0');
+  return in.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kFirstLine;
+}
+
+PieceFile::PieceFile(const std::string& path) : path_(path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw markov::BadFile(path + ": cannot be read: " + std::strerror(errno));
+  std::string first;
+  if (!std::getline(in, first) || !first.starts_with(kFirstLine))
+    throw markov::BadFile(path + ": holds no pieces of a run (--part and --checkpoint write such files)");
+  std::getline(in, head_);
+  if (first + "\n" != first_line(head_))
+    throw markov::BadFile(path + ": its first lines are damaged, or of another kind of machine");
+  end_ = first.size() + head_.size() + 2;
+  in.seekg(0, std::ios::end);
+  const auto size = static_cast<std::uint64_t>(in.tellg());
+  for (RecordHead head{};;) {
+    in.clear();
+    in.seekg(static_cast<std::streamoff>(end_));
+    if (!in.read(reinterpret_cast<char*>(&head), sizeof head)) break;
+    if (head.mark != kMark || head.own_check != crc_of(checked_part(head))) break;
+    const std::uint64_t at = end_ + sizeof head;
+    if (head.bytes > size - at) break;
+    records_.push_back({head.stage, {head.first, head.count}, at, head.bytes, head.check});
+    end_ = at + head.bytes;
+  }
+  // What was written last may be there in part, as zeros, after the power failed.
+  while (!records_.empty()) {
+    try {
+      (void)bytes_of(records_.back());
+      break;
+    } catch (const markov::BadFile&) {
+      end_ = records_.back().at - sizeof(RecordHead);
+      records_.pop_back();
+    }
+  }
+}
+
+bool PieceFile::is_finished() const {
+  return !records_.empty() && records_.back().stage == kEndStage;
+}
+
+std::string PieceFile::bytes_of(const PieceRecord& record) const {
+  std::ifstream in(path_, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(record.at));
+  std::string bytes(record.bytes, '\0');
+  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) ||
+      crc_of(bytes) != record.check)
+    throw markov::BadFile(path_ + ": is damaged at byte " + std::to_string(record.at));
+  return bytes;
+}
+
+PieceWriter::PieceWriter(const std::string& path, std::string_view head) : path_(path) {
+  // As a whole: there is no file without its head.
+  markov::replace_file(path, first_line(head) + std::string(head) + "\n");
+  open();
+}
+
+PieceWriter::PieceWriter(const PieceFile& file) : path_(file.path()) {
+  open();
+  if (::ftruncate(file_, static_cast<off_t>(file.end())) != 0) fail(path_);
+}
+
+PieceWriter::~PieceWriter() {
+  if (file_ < 0) return;
+  (void)::fdatasync(file_);
+  (void)::close(file_);
+}
+
+void PieceWriter::open() {
+  file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (file_ < 0) fail(path_);
+  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(file_);
+    file_ = -1;
+    throw std::runtime_error(path_ + ": another gatewalk writes it");
+  }
+}
+
+void PieceWriter::add(std::uint32_t stage, dynamics::TrialRange items, std::string_view bytes) {
+  RecordHead head{kMark, stage, items.first, items.count, bytes.size(), crc_of(bytes), 0};
+  head.own_check = crc_of(checked_part(head));
+  const std::string record =
+      std::string(reinterpret_cast<const char*>(&head), sizeof head).append(bytes);
+  if (!markov::write_all(file_, record)) fail(path_);
+  is_synced_ = false;
+  if (since_sync_.seconds() >= 1.0) sync();
+}
+
+void PieceWriter::sync() {
+  if (!is_synced_ && ::fdatasync(file_) != 0) fail(path_);
+  is_synced_ = true;
+  since_sync_ = {};
+}
+
+}  // namespace gatewalk::cli

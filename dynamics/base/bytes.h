@@ -1,0 +1,107 @@
+#pragma once
+/// Results as bytes, to be read again by the same program: numbers as they are in memory.
+
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace gatewalk::dynamics {
+
+/// Appends what it is called with. What is kept of a type is said once, for writing and reading, by
+/// a function each_part(archive, object) that calls archive(part, ...).
+class WriteBytes {
+ public:
+  static constexpr bool reads = false;
+  template <class... Parts>
+  void operator()(Parts&... parts) {
+    (one(parts), ...);
+  }
+  [[nodiscard]] std::string take() { return std::move(bytes_); }
+
+ private:
+  void raw(const void* from, std::size_t size) {
+    bytes_.append(static_cast<const char*>(from), size);
+  }
+  template <class T>
+  void one(T& value) {
+    if constexpr (std::is_trivially_copyable_v<T>)
+      raw(&value, sizeof value);
+    else
+      each_part(*this, value);
+  }
+  template <class T>
+  void one(std::vector<T>& values) {
+    auto size = static_cast<std::uint64_t>(values.size());
+    one(size);
+    if constexpr (std::is_trivially_copyable_v<T>)
+      raw(values.data(), values.size() * sizeof(T));
+    else
+      for (T& value : values) one(value);
+  }
+
+  std::string bytes_;
+};
+
+/// Reads them back into what it is called with. Throws std::runtime_error where there are too few
+/// or too many bytes.
+class ReadBytes {
+ public:
+  static constexpr bool reads = true;
+  explicit ReadBytes(std::string_view bytes) : left_(bytes) {}
+
+  template <class... Parts>
+  void operator()(Parts&... parts) {
+    (one(parts), ...);
+  }
+  void end() const {
+    if (!left_.empty()) throw std::runtime_error("a kept piece has bytes too many");
+  }
+
+ private:
+  void raw(void* to, std::size_t size) {
+    if (size > left_.size()) throw std::runtime_error("a kept piece ends too early");
+    if (size > 0) std::memcpy(to, left_.data(), size);
+    left_.remove_prefix(size);
+  }
+  template <class T>
+  void one(T& value) {
+    if constexpr (std::is_trivially_copyable_v<T>)
+      raw(&value, sizeof value);
+    else
+      each_part(*this, value);
+  }
+  template <class T>
+  void one(std::vector<T>& values) {
+    std::uint64_t size = 0;
+    one(size);
+    if (size > left_.size()) throw std::runtime_error("a kept piece ends too early");
+    values.resize(static_cast<std::size_t>(size));
+    if constexpr (std::is_trivially_copyable_v<T>)
+      raw(values.data(), values.size() * sizeof(T));
+    else
+      for (T& value : values) one(value);
+  }
+
+  std::string_view left_;
+};
+
+template <class T>
+[[nodiscard]] std::string bytes_of(const T& value) {
+  WriteBytes write;
+  write(const_cast<T&>(value));  // which is only read
+  return write.take();
+}
+/// Into `value`, which is as new.
+template <class T>
+void read_bytes(std::string_view bytes, T& value) {
+  ReadBytes read(bytes);
+  read(value);
+  read.end();
+}
+
+}  // namespace gatewalk::dynamics
