@@ -93,6 +93,16 @@ lattice::AccuracyOptions accuracy_of(const Options& options) {
   return how;
 }
 
+void fix_trials(const Options& options, lattice::AccuracyOptions& how) {
+  if (options.has("trials")) {
+    refuse(options, {"gate-runs"}, "beside --trials");
+    how.trials = options.count("trials", lattice::kTrialGroups);
+  } else if (options.has("shard")) {
+    throw UsageError(
+        "--shard of trees needs --trials N: a part must know how many there are in all");
+  }
+}
+
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy) {
   if (prediction.reached) return;
   double worst = 0.0;

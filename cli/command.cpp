@@ -356,7 +356,8 @@ void Options::add_kept(std::set<std::string> divided) {
 }
 
 void Options::add_first_trial() {
-  add_count("first-trial", "I", "number of the first trial: others than those of another run", "0");
+  add_count("first-trial", "I",
+            "number of the first trial: others than those of another run (default: 0)");
 }
 
 void Options::input_file(const std::string& name, const std::string& help) {
@@ -615,7 +616,8 @@ bool Options::parse(const Arguments& arguments) {
     Strings& words = is_output ? state_->words.outputs : state_->words.shaping;
     if (option.position_key >= 0) {
       words.push_back(option.value.front());
-    } else if (!shapes_nothing(option.string_key) || is_output) {
+    } else if (option.string_key != "part" && option.string_key != "checkpoint" &&
+               (is_output || !shapes_nothing(option.string_key))) {
       if (option.value.empty()) words.push_back("--" + option.string_key);
       for (const auto& value : option.value)
         words.push_back("--" + option.string_key + "=" + value);
@@ -686,8 +688,9 @@ Provenance Options::provenance(const lattice::Scene& scene) const {
 }
 
 dynamics::TrialRange Options::trial_range() const {
-  const std::int64_t first = count("first-trial", 0);
-  return {first, count("trials", 1, kMostCount - first)};
+  const std::int64_t first = has("first-trial") ? count("first-trial", 0) : 0;
+  constexpr std::int64_t kPapers = 100;
+  return {first, has("trials") ? count("trials", 1, kMostCount - first) : kPapers};
 }
 
 dynamics::Work Options::work() const {

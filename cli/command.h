@@ -134,7 +134,7 @@ class Options {
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;
   [[nodiscard]] std::int64_t trials() const { return count("trials"); }
-  /// Those of --first-trial and --trials.
+  /// Those of --first-trial and --trials; the paper's 100 without them.
   [[nodiscard]] dynamics::TrialRange trial_range() const;
   [[nodiscard]] std::uint64_t seed() const;
   /// Those of --set.

@@ -34,25 +34,22 @@ int build_bins(const Options& options, const lattice::Scene& scene,
                const lattice::BinsChoice& choice, const Settled& settled) {
   refuse(options, {"accuracy", "gate-runs", "starts", "start", "states"},
          "for bins: it is for --bins tree");
-  const std::int64_t trials = options.has("trials") ? options.count("trials") : 100;
-  const std::int64_t first = options.count("first-trial", 0);
+  const dynamics::TrialRange trials = options.trial_range();
   const dynamics::Stopwatch watch;
   const lattice::States states = states_of(options, scene, choice, {scene.start});
   const auto matrices =
-      lattice::build_matrices(scene, states, {first, trials}, options.seed(), options.work());
+      lattice::build_matrices(scene, states, trials, options.seed(), options.work());
   const Json bins = bins_json(states.choice), space = to_json(states);
-  const int status = give_out(options, scene, {matrices, bins, space, settled, trials}, {});
+  const int status = give_out(options, scene, {matrices, bins, space, settled, trials.count}, {});
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
   for (const std::string& text : complaints(states)) options.warn(text);
   return status;
 }
 
 int build_tree(const Options& options, const lattice::Scene& scene, const Settled& settled) {
-  if (options.has("trials"))
-    throw UsageError(
-        "--trials is of runs per state, and a tree grows from full trials: take "
-        "--accuracy, or other --bins");
-  const lattice::TreeOptions how = tree_options(options, scene);
+  refuse(options, {"first-trial"}, "for trees: --shard divides their trials");
+  lattice::TreeOptions how = tree_options(options, scene);
+  fix_trials(options, how.accuracy);
   const dynamics::Stopwatch watch;
   const lattice::TreeChain chain =
       lattice::make_tree_chain(lattice::problem_of(scene), how, options.work());
@@ -60,6 +57,7 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
   const int status = give_out(options, scene, {chain.transitions, bins, space, settled, {}},
                               lattice::arrays_of(chain.pool, chain.kernel.space.section()));
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
+  if (how.accuracy.trials) return status;
   if (chain.prediction) warn_of(options, *chain.prediction, how.accuracy.accuracy);
   if (chain.range && !chain.range->reached)
     options.warn("starts of the range need more runs than these for the accuracy asked for, " +
@@ -79,10 +77,12 @@ int run_build(const Arguments& arguments) {
       "gatewalk build scenes/field.toml --accuracy 0.02 --starts all -o chain.nc");
   options.scene();
   add_accuracy(options);
-  options.add_count("trials", "N", "bins: runs per input state (default: 100)");
+  options.add_count("trials", "N",
+                    "bins: runs per input state (default: 100); tree: exactly so many full trials, "
+                    "whatever the accuracy");
   options.add_first_trial();
   options.add_seed();
-  options.add_kept({"building matrix", "full trials"});
+  options.add_kept({"building matrix", "full trials", "scattered trials"});
   options.add_strict();
   options.main_output_file("MATRIX.nc", "matrix file to write (NetCDF-4)",
                            Options::Content::binary);

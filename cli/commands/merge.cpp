@@ -37,7 +37,7 @@ std::vector<std::string> words_of(const std::vector<Json>& heads, const std::str
       return w.starts_with("--trials=") || w.starts_with("--first-trial=");
     });
     words.push_back("--trials=" + std::to_string(trials.count));
-    words.push_back("--first-trial=" + std::to_string(trials.first));
+    if (trials.first > 0) words.push_back("--first-trial=" + std::to_string(trials.first));
   }
   std::erase(words, "--passages");
   add_all(head.at("outputs"));
@@ -71,7 +71,8 @@ int run_merge(const Arguments& arguments) {
   for (const std::string& part : parts) heads.push_back(Json::parse(PieceFile(part).head()));
   const std::string name = heads.front().at("command");
   const Command* const command = command_named(name);
-  if (!command) throw markov::BadFile(parts.front() + ": is of a command " + name + ", unknown here");
+  if (!command)
+    throw markov::BadFile(parts.front() + ": is of a command " + name + ", unknown here");
   Arguments all(words_of(heads, options.text("output")));
   for (const char* flag : {"quiet", "force"})
     if (options.has(flag)) all.words.push_back("--" + std::string(flag));

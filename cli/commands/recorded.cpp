@@ -53,7 +53,8 @@ void give_out(const Options& options, std::vector<dynamics::Transitions> matrice
 
 int build_recorded(const Options& options) {
   refuse(options,
-         {"accuracy", "gate-runs", "starts", "start", "states", "trials", "bins", "strict"},
+         {"accuracy", "gate-runs", "starts", "start", "states", "trials", "first-trial", "shard",
+          "bins", "strict"},
          "for recorded runs");
   lattice::CellFile cells = lattice::read_cell_file(options.text("cell"), options.overrides());
   const lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
@@ -74,19 +75,20 @@ int build_recorded(const Options& options) {
 }
 
 int build_program(const Options& options) {
-  refuse(options, {"cell", "trials", "bins", "starts"},
+  refuse(options, {"cell", "first-trial", "bins", "starts"},
          "for cells that another program carries out");
   const Subject s = open_program(options, options.text("scene"));
   if (s.file) throw UsageError(s.path + ": is a matrix already");
   lattice::TreeOptions how{.accuracy = s.how, .starts = s.entries()};
   if (options.has("states"))
     how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
+  fix_trials(options, how.accuracy);
   lattice::TreeChain chain = lattice::make_tree_chain(s.problem, how, options.work());
   const dynamics::Health health = chain.transitions.front().health;
   const Json states = to_json(chain, s.how.accuracy);
   give_out(options, std::move(chain.transitions), *s.cells, chain.pool, states, to_json(health),
            "gatewalk counts of passages through cells that another program carries out");
-  warn_of(options, *chain.prediction, s.how.accuracy);
+  if (!how.accuracy.trials) warn_of(options, *chain.prediction, s.how.accuracy);
   return status_of(options, health);
 }
 

@@ -47,10 +47,10 @@ bool is_by_trials(const Options& options) { return options.has("part") && !optio
 
 Json head_of(const Options& options) {
   const CommandWords& words = options.words();
-  Json head{{"version", kVersion},           {"commit", kCommit},
-            {"command", words.command},      {"words", words.shaping},
-            {"outputs", words.outputs},      {"main_output", words.main_output},
-            {"scene", nullptr},              {"inputs", Json::array()}};
+  Json head{{"version", kVersion},      {"commit", kCommit},
+            {"command", words.command}, {"words", words.shaping},
+            {"outputs", words.outputs}, {"main_output", words.main_output},
+            {"scene", nullptr},         {"inputs", Json::array()}};
   if (options.has("passages")) head["words"].push_back("--passages");  // what is kept has them
   if (options.has("scene")) {
     try {
@@ -110,7 +110,7 @@ void check_kept(const Options& options) {
   if (options.has("shard")) {
     (void)shard_of(options.text("shard"));
     if (!options.has("part")) throw UsageError("--shard needs --part FILE, where the part goes");
-    if (options.has("first-trial") && options.count("first-trial", 0) > 0)
+    if (options.has("first-trial"))
       throw UsageError("--shard and --first-trial both say which part: give one");
   }
   if (is_by_trials(options) && !options.has("first-trial"))

@@ -39,8 +39,8 @@ std::string name_of_part(const Json& head) {
 /// Which keys differ between two scenes as TOML.
 std::string scene_difference(const std::string& there, const std::string& here) {
   try {
-    const auto differences = lattice::physics_differences(
-        lattice::parse_scene(here, "here"), lattice::parse_scene(there, "there"));
+    const auto differences = lattice::physics_differences(lattice::parse_scene(here, "here"),
+                                                          lattice::parse_scene(there, "there"));
     std::string text;
     for (const std::string& line : differences) text += "\n  " + line;
     return text;
@@ -99,13 +99,15 @@ Shard shard_of(const std::string& text) {
 
 KeptRun::KeptRun(KeptPlan plan) : plan_(std::move(plan)) {
   if (!plan_.parts.empty()) {
-    for (const std::string& part : plan_.parts) read(part);
+    for (const std::string& part : plan_.parts) files_.emplace_back(part);
     check_parts();
+    for (std::size_t i = 0; i < files_.size(); ++i) read(i);
     return;
   }
   if (plan_.file.empty()) return;
   if (std::filesystem::exists(plan_.file) && plan_.goes_on) {
-    read(plan_.file);
+    files_.emplace_back(plan_.file);
+    read(0);
     writer_.emplace(files_.front());
     set_kept_file(plan_.file);
   } else if (plan_.at_once) {
@@ -113,15 +115,16 @@ KeptRun::KeptRun(KeptPlan plan) : plan_(std::move(plan)) {
   }
 }
 
-void KeptRun::read(const std::string& path) {
-  files_.emplace_back(path);
-  const PieceFile& file = files_.back();
+void KeptRun::read(std::size_t number) {
+  const PieceFile& file = files_[number];
+  const std::string& path = file.path();
   const Json head = Json::parse(file.head());
   const bool goes_on = plan_.parts.empty();
   const std::string differs = difference(head, plan_.head);
   if (!differs.empty())
-    throw UsageError(path + ": is of another run" + (goes_on ? "" : " than " + plan_.parts.front()) +
-                     ", " + differs + (goes_on ? ". Without --resume this run begins anew" : ""));
+    throw UsageError(path + ": is of another run" +
+                     (goes_on ? "" : " than " + plan_.parts.front()) + ", " + differs +
+                     (goes_on ? ". Without --resume this run begins anew" : ""));
   const auto part_of = [](const Json& h) {
     return std::array{h.value("shard", Json()), h.value("first_trial", Json()),
                       h.value("trials", Json())};
@@ -149,7 +152,7 @@ void KeptRun::read(const std::string& path) {
       if (other != pieces.end() && overlaps(other->second))
         throw UsageError(path + " and " + files_[other->second.file].path() + " both have " +
                          shown(other->second.record.items) + " of " + names_[record.stage]);
-    pieces.emplace(record.items.first, Found{files_.size() - 1, record});
+    pieces.emplace(record.items.first, Found{number, record});
   }
 }
 
@@ -169,7 +172,8 @@ void KeptRun::check_parts() const {
         throw UsageError(file.path() + ": " + name_of_part(head) + " is given twice");
     }
     if (!file.is_finished())
-      unfinished += (unfinished.empty() ? "" : ", ") + file.path() + " (" + name_of_part(head) + ")";
+      unfinished +=
+          (unfinished.empty() ? "" : ", ") + file.path() + " (" + name_of_part(head) + ")";
   }
   if (!unfinished.empty())
     throw UsageError("not finished: " + unfinished +
@@ -185,8 +189,9 @@ void KeptRun::check_parts() const {
       break;
     }
   }
-  throw UsageError("missing: part" + std::string(missing.size() > 1 ? "s " : " ") + all + " of " +
-                   std::to_string(Json::parse(files_.front().head())["shard"][1].get<std::int64_t>()));
+  throw UsageError(
+      "missing: part" + std::string(missing.size() > 1 ? "s " : " ") + all + " of " +
+      std::to_string(Json::parse(files_.front().head())["shard"][1].get<std::int64_t>()));
 }
 
 TrialRange KeptRun::own_share(const dynamics::Stage& stage) const {
@@ -227,7 +232,8 @@ std::optional<dynamics::KeptPieces::Next> KeptRun::next(std::int64_t at) {
     const Found& found = there->second;
     return Next{found.record.items, files_[found.file].bytes_of(found.record)};
   }
-  const std::int64_t end = there == pieces.end() ? end_of(own_) : std::min(end_of(own_), there->first);
+  const std::int64_t end =
+      there == pieces.end() ? end_of(own_) : std::min(end_of(own_), there->first);
   const TrialRange gap{at, end - at};
   if (!plan_.parts.empty())
     throw UsageError("missing: " + shown(gap) + " of " + what_ + ", which no part has");

@@ -27,13 +27,13 @@ struct Shard {
 
 /// What a run keeps and where.
 struct KeptPlan {
-  Json head;                       // what command this is: the same for all its runs
-  std::string file;                // empty: pieces are only read
-  bool at_once = true;             // the file is made at once, or when there is a minute in it
-  bool goes_on = false;            // with what the file holds
-  bool is_part = false;            // ends when its own items are done
-  std::optional<Shard> shard{};    // of the stages that are divided ...
-  std::set<std::string> divided{};  // ... these
+  Json head;                         // what command this is: the same for all its runs
+  std::string file;                  // empty: pieces are only read
+  bool at_once = true;               // the file is made at once, or when there is a minute in it
+  bool goes_on = false;              // with what the file holds
+  bool is_part = false;              // ends when its own items are done
+  std::optional<Shard> shard{};      // of the stages that are divided ...
+  std::set<std::string> divided{};   // ... these
   std::vector<std::string> parts{};  // files that hold all pieces: none is done
   std::function<void(const std::string&)> warn;
 };
@@ -69,7 +69,7 @@ class KeptRun : public dynamics::KeptPieces {
   };
   using Stages = std::map<std::uint32_t, std::map<std::int64_t, Found>>;
 
-  void read(const std::string& path);
+  void read(std::size_t number);
   void check_parts() const;
   [[nodiscard]] dynamics::TrialRange own_share(const dynamics::Stage& stage) const;
   [[nodiscard]] bool divides(const dynamics::Stage& stage) const {

@@ -156,7 +156,8 @@ class PredictionRun {
       : problem_(problem),
         pool_(pool),
         options_(options),
-        runner_(problem, options.seed, options.most_runs, work),
+        work_(work),
+        runner_(problem, options.seed, options.limit(), work),
         chains_(problem.map(), problem.field, options.per_leaf, starts.size(), options.seed) {
     place(starts);
     result_.starts.resize(starts.size());
@@ -164,7 +165,9 @@ class PredictionRun {
   }
 
   [[nodiscard]] PooledPrediction carry_out() {
-    while (ask() && runner_.may_go_on() && !options_.first_runs) add_trials();
+    work_.end_part();
+    const bool may_add = !options_.first_runs && !options_.trials;
+    while (ask() && runner_.may_go_on() && may_add) add_trials();
     result_.reached = open_.empty();
     result_.gate_runs = runner_.gate_runs;
     result_.run_seconds = runner_.seconds;
@@ -195,7 +198,7 @@ class PredictionRun {
       if (has_kernel)
         runner_.run_first(s, options_.first_runs.value_or(kLeastFirstRuns));
       else
-        runner_.run_full(s, kFirstRound / std::ssize(starts));
+        runner_.run_full(s, options_.trials.value_or(kFirstRound) / std::ssize(starts));
     }
   }
 
@@ -306,6 +309,7 @@ class PredictionRun {
   const Problem& problem_;
   RunPool& pool_;
   const AccuracyOptions& options_;
+  const Work& work_;
   PoolRunner runner_;
   PoolChains chains_;
   bool by_walks_ = false;            // are the answers so far
@@ -437,7 +441,7 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
   constexpr int kTried = 7;
   constexpr std::int64_t kFirstRuns = 400, kBegin = 2000, kLargestTried = 20'000;
   const Stopwatch watch;
-  PoolRunner runner(problem, options.seed, options.most_runs, work);
+  PoolRunner runner(problem, options.seed, options.limit(), work);
   PooledRange result;
   result.range = range;
   result.tried_on = kTried;
@@ -449,7 +453,8 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
     runner.run_first(s, kFirstRuns);
   }
   const std::vector<PoolStart> all(tried.starts.begin(), tried.starts.end());
-  runner.run_scattered(pool.scattered, range, kBegin);
+  runner.run_scattered(pool.scattered, range, options.trials.value_or(kBegin));
+  work.end_part();
   PoolChains chains(problem.map(), problem.field, options.per_leaf, kTried, options.seed);
   for (;;) {
     tried.scattered = std::move(pool.scattered);
@@ -464,7 +469,7 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
     result.kernel_error_95 = errors[errors.size() / 2];
     result.worst_kernel_error_95 = errors.back();
     result.reached = result.kernel_error_95 <= options.accuracy;
-    if (result.reached || !runner.may_go_on()) break;
+    if (result.reached || !runner.may_go_on() || options.trials) break;
     // To try a large pool costs more than its runs: after the last step it is not tried again, and
     // its error is taken to fall as 1 / sqrt(runs).
     const auto n = static_cast<double>(pool.scattered.starts.size());

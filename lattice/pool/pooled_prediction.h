@@ -4,6 +4,7 @@
 /// these are the more certain.
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -20,8 +21,16 @@ struct AccuracyOptions {
   std::int64_t most_runs = 20'000'000;
   /// None are added but these: so many first runs of a start that the pool does not know.
   std::optional<std::int64_t> first_runs{};
+  /// Exactly so many full trials of all starts together, or from anywhere in a range, whatever the
+  /// accuracy.
+  std::optional<std::int64_t> trials{};
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;
+
+  /// Gate runs, about, that no more are added from.
+  [[nodiscard]] std::int64_t limit() const {
+    return trials ? std::numeric_limits<std::int64_t>::max() : most_runs;
+  }
 };
 
 /// What is said of one start.
