@@ -502,6 +502,13 @@ void Options::check_files() {
                        " are the same file: an output needs a file of its own");
   };
   std::vector<NamedFile> others = inputs();
+  const bool takes_parts =
+      !state_->positional_help.empty() && state_->positional_help.front().first == "part";
+  for (const NamedFile& input : others)
+    if (!takes_parts && PieceFile::is_one(input.path))
+      throw UsageError(input.name +
+                       ": holds pieces of a run: gatewalk merge makes one run of all parts, or its "
+                       "command with --resume goes on");
   others.emplace_back("standard output", "-");
   for (const NamedFile& input : others)
     if (input.path != "-") refuse_same(input, others.back());

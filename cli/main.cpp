@@ -80,7 +80,8 @@ int main(int argc, char** argv) {
     std::cerr << cli::stopped_text();
     return cli::stopped_status();
   } catch (const cli::PartDone& part) {
-    std::cerr << "gatewalk: " << part.file << " is done; gatewalk merge makes one run of all parts\n";
+    std::cerr << "gatewalk: " << part.file
+              << " is done; gatewalk merge makes one run of all parts\n";
     return cli::kFine;
   } catch (const cli::UsageError& e) {
     return fail(cli::kWrongUse, e);

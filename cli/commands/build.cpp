@@ -39,6 +39,7 @@ int build_bins(const Options& options, const lattice::Scene& scene,
   const lattice::States states = states_of(options, scene, choice, {scene.start});
   const auto matrices =
       lattice::build_matrices(scene, states, trials, options.seed(), options.work());
+  options.work().end_part();
   const Json bins = bins_json(states.choice), space = to_json(states);
   const int status = give_out(options, scene, {matrices, bins, space, settled, trials.count}, {});
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");

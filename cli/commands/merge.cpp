@@ -33,11 +33,11 @@ std::vector<std::string> words_of(const std::vector<Json>& heads, const std::str
       if (!other.contains("first_trial"))
         throw UsageError("some parts are by --shard, others by --first-trial");
     const dynamics::TrialRange trials = trials_of(heads);
-    std::erase_if(words, [](const std::string& w) {
-      return w.starts_with("--trials=") || w.starts_with("--first-trial=");
-    });
-    words.push_back("--trials=" + std::to_string(trials.count));
-    if (trials.first > 0) words.push_back("--first-trial=" + std::to_string(trials.first));
+    for (std::string& w : words) {
+      if (w.starts_with("--trials=")) w = "--trials=" + std::to_string(trials.count);
+      if (w.starts_with("--first-trial=")) w = "--first-trial=" + std::to_string(trials.first);
+    }
+    if (trials.first == 0) std::erase(words, "--first-trial=0");
   }
   std::erase(words, "--passages");
   add_all(head.at("outputs"));

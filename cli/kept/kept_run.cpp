@@ -110,8 +110,6 @@ KeptRun::KeptRun(KeptPlan plan) : plan_(std::move(plan)) {
     read(0);
     writer_.emplace(files_.front());
     set_kept_file(plan_.file);
-  } else if (plan_.at_once) {
-    open();
   }
 }
 
@@ -211,11 +209,12 @@ bool KeptRun::has_share(const dynamics::Stage& stage) const { return own_share(s
 void KeptRun::begin(const dynamics::Stage& stage) {
   ++stage_;
   what_ = stage.what;
+  is_named_ = true;
   own_ = own_share(stage);
   // What every part does, the first one keeps for all.
   keeps_ = !plan_.shard || divides(stage) || plan_.shard->number == 1;
   if (const auto known = names_.find(stage_); known == names_.end()) {
-    if (keeps_) write(stage_, {own_.first, 0}, what_);
+    is_named_ = false;
   } else if (known->second != what_) {
     throw markov::BadFile((files_.empty() ? plan_.file : files_.front().path()) + ": its stage " +
                           std::to_string(stage_) + " is " + known->second + ", and here " + what_ +
@@ -241,7 +240,9 @@ std::optional<dynamics::KeptPieces::Next> KeptRun::next(std::int64_t at) {
 }
 
 void KeptRun::keep(TrialRange items, std::string bytes) {
-  if (keeps_) write(stage_, items, bytes);
+  if (!keeps_) return;
+  if (!std::exchange(is_named_, true)) write(stage_, {items.first, 0}, what_);
+  write(stage_, items, bytes);
 }
 
 void KeptRun::write(std::uint32_t stage, TrialRange items, std::string_view bytes) {
@@ -252,7 +253,8 @@ void KeptRun::write(std::uint32_t stage, TrialRange items, std::string_view byte
       constexpr double kMinute = 60.0;  // s
       waiting_.push_back({stage, items, std::string(bytes)});
       waiting_bytes_ += bytes.size();
-      if (since_start_.seconds() >= kMinute || waiting_bytes_ > kMostWaiting) open();
+      const bool is_time = since_start_.seconds() >= kMinute || waiting_bytes_ > kMostWaiting;
+      if (plan_.at_once || plan_.goes_on || is_time) open();
       return;
     }
     writer_->add(stage, items, bytes);
@@ -280,6 +282,7 @@ void KeptRun::give_up(const std::exception& e) {
 
 void KeptRun::end_part() {
   if (!plan_.is_part) return;
+  if (!writer_) open();
   writer_->add(kEndStage, {}, "");
   writer_->sync();
   writer_.reset();

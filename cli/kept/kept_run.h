@@ -27,12 +27,12 @@ struct Shard {
 
 /// What a run keeps and where.
 struct KeptPlan {
-  Json head;                         // what command this is: the same for all its runs
-  std::string file;                  // empty: pieces are only read
-  bool at_once = true;               // the file is made at once, or when there is a minute in it
-  bool goes_on = false;              // with what the file holds
-  bool is_part = false;              // ends when its own items are done
-  std::optional<Shard> shard{};      // of the stages that are divided ...
+  Json head;                     // what command this is: the same for all its runs
+  std::string file;              // empty: pieces are only read
+  bool at_once = true;           // the file is made with the first piece, or once it is a minute's
+  bool goes_on = false;          // with what the file holds
+  bool is_part = false;          // ends when its own items are done
+  std::optional<Shard> shard{};  // of the stages that are divided ...
   std::set<std::string> divided{};   // ... these
   std::vector<std::string> parts{};  // files that hold all pieces: none is done
   std::function<void(const std::string&)> warn;
@@ -88,6 +88,7 @@ class KeptRun : public dynamics::KeptPieces {
   std::string what_;
   dynamics::TrialRange own_;  // items of it
   bool keeps_ = true;         // its pieces
+  bool is_named_ = false;     // in the file
 
   std::optional<PieceWriter> writer_;
   struct Waiting {

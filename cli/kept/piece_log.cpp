@@ -67,7 +67,8 @@ PieceFile::PieceFile(const std::string& path) : path_(path) {
   if (!in) throw markov::BadFile(path + ": cannot be read: " + std::strerror(errno));
   std::string first;
   if (!std::getline(in, first) || !first.starts_with(kFirstLine))
-    throw markov::BadFile(path + ": holds no pieces of a run (--part and --checkpoint write such files)");
+    throw markov::BadFile(path +
+                          ": holds no pieces of a run (--part and --checkpoint write such files)");
   std::getline(in, head_);
   if (first + "\n" != first_line(head_))
     throw markov::BadFile(path + ": its first lines are damaged, or of another kind of machine");

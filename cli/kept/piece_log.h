@@ -48,8 +48,8 @@ class PieceFile {
   std::uint64_t end_ = 0;
 };
 
-/// Appends to a file of pieces, which nobody else does meanwhile. Bytes are with the system at once,
-/// and on the disk after a second at most, and at the end.
+/// Appends to a file of pieces, which nobody else does meanwhile. Bytes are with the system at
+/// once, and on the disk after a second at most, and at the end.
 class PieceWriter {
  public:
   /// A new file. Throws std::runtime_error when it cannot be written.

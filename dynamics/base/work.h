@@ -51,7 +51,7 @@ class KeptPieces {
   virtual void keep(TrialRange items, std::string bytes) = 0;
   /// This run does a part of each stage only.
   [[nodiscard]] virtual bool is_part() const = 0;
-  /// Whether any item of the stage is for this run; asked before the stage begins.
+  /// Whether any item of the stage is for this run.
   [[nodiscard]] virtual bool has_share(const Stage& stage) const = 0;
   /// From here on all pieces are needed: a part ends. Throws what ends it.
   virtual void end_part() = 0;
@@ -98,7 +98,12 @@ struct Work {
   }
   /// A part of a run knows some of its trials only, and has no result.
   [[nodiscard]] bool is_part() const { return kept && kept->is_part(); }
-  [[nodiscard]] bool has_share(const Stage& stage) const { return !kept || kept->has_share(stage); }
+  /// Whether to prepare a stage, of which a part may do nothing. It is done with where not.
+  [[nodiscard]] bool has_share(const Stage& stage) const {
+    if (!kept || kept->has_share(stage)) return true;
+    kept->begin(stage);
+    return false;
+  }
   /// Where all trials are needed from here on: ends a part.
   void end_part() const {
     if (kept) kept->end_part();

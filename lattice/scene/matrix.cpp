@@ -45,7 +45,6 @@ std::vector<dynamics::Transitions> build_matrices(const Scene& scene, const Stat
     require_unbroken(t);
     if (matrices.size() > 1) matrices.front().health += std::exchange(t.health, dynamics::Health{});
   }
-  work.end_part();
   dynamics::Transitions& first = matrices.front();
   check_outcomes(scene, RunsFrom::everywhere, seed, first.totals().runs, first.health, work);
   return matrices;

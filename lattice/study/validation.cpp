@@ -167,7 +167,8 @@ TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const m
 ForceMemory run_anew(const Setup& setup, const dynamics::Entry& start, const RunTrials& held) {
   RunTrials anew{FieldTally(setup.problem.field), {}};
   setup.work.in_kept_pieces(
-      {"force drawn anew", {0, setup.options.trials}}, anew,
+      {"force drawn anew", {0, setup.options.trials}},
+      RunTrials{FieldTally(setup.problem.field), {}},
       [&](TrialRange range) {
         FieldTrials each;
         FieldTally tally =

@@ -1,0 +1,139 @@
+#!/usr/bin/env bash
+# --shard, --first-trial, merge: parts of a run make the bits of one.   parts_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+# What the commands write, but for times and for the list of parts.
+plain() { jq -S 'walk(if type == "object" then del(.parts, .seconds, .run_seconds, .direct_seconds, .chain_seconds, .speed_ratio) else . end)' "$1"; }
+same() {
+  case $1 in
+    *.json) cmp -s <(plain "$1") <(plain "$2") ;;
+    *) cmp -s "$1" "$2" ;;
+  esac || fail "$2 is not $1, of one run"
+}
+# divided PARTS OUTPUT COMMAND...: the command, which writes OUTPUT, in one run and in parts.
+divided() {
+  local parts=$1 output=$2 i
+  shift 2
+  "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
+  mv "$output" "one-$output"
+  rm -f part*
+  for ((i = parts; i >= 1; --i)); do
+    "$gatewalk" "$@" --quiet --shard "$i/$parts" --part "part$i" >out.txt 2>err.txt || fail "part $i of $* ($(cat err.txt))"
+    [ ! -e "$output" ] || fail "a part wrote $output: $*"
+  done
+  "$gatewalk" merge part* --quiet >/dev/null 2>err.txt || fail "merge of $* ($(cat err.txt))"
+  same "one-$output" "$output"
+  rm -f "$output"
+}
+field=("$scenes/field.toml" --set run.method=moreau --seed 5)
+divided 7 gate.json gate "${field[@]}" --trials 1000 --json gate.json
+divided 2 sweep.csv sweep "$scenes/single_gate.toml" --vary forces.propulsion_N=5:1:8 --trials 90 --csv sweep.csv
+divided 7 sweep.json sweep "$scenes/single_gate.toml" --set run.method=auto --vary forces.propulsion_N=6,8 --trials 90 --json sweep.json
+divided 2 bins.nc build "${field[@]}" --bins paper --trials 20 -o bins.nc
+divided 7 bins.nc build "$scenes/mixed.toml" --set run.method=moreau --bins paper --trials 5 -o bins.nc
+divided 2 tree.nc build "${field[@]}" --bins tree --trials 400 -o tree.nc
+divided 7 tree.nc build "${field[@]}" --bins tree --starts all --trials 400 -o tree.nc
+divided 7 lattice.json lattice "${field[@]}" --trials 500 --json lattice.json
+divided 100 lattice.json lattice "${field[@]}" --trials 250 --json lattice.json
+divided 2 runs.csv lattice "${field[@]}" --trials 200 --passages runs.csv
+divided 2 rare.json rare "${field[@]}" --row 4 --split-trials 1500 --trials 300 --json rare.json
+divided 7 validate.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 210 --null-draws 99 --json validate.json
+divided 2 force.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 100 --null-draws 99 --memory --start 0,0,15 --start 4,5,10 --json force.json
+if command -v python3 >/dev/null; then
+  cat >pillars.toml <<'END'
+[cell]
+width_m = 1.0
+length_m = 1.0
+symmetric = true
+[[cell.faces]]
+name = "S"
+move = [0, 1]
+odd = ["s", "v"]
+[[cell.faces]]
+name = "N"
+move = [0, -1]
+odd = ["s", "v"]
+[[cell.faces]]
+name = "W"
+move = [1, 0]
+odd = []
+[[cell.faces]]
+name = "E"
+move = [-1, 0]
+odd = []
+[[cell.coordinates]]
+name = "s"
+unit = "m"
+[[cell.coordinates]]
+name = "v"
+unit = "m/s"
+[field]
+columns = 5
+rows = 3
+max_gates = 20
+[start]
+face = "S"
+s_m = 0.1
+v_m_per_s = 0.0
+END
+  program=(--cell-program "python3 $scenes/programs/pillars.py" --seed 5)
+  divided 2 cell.json lattice pillars.toml "${program[@]}" --trials 200 --json cell.json
+  divided 2 cell.nc build pillars.toml "${program[@]}" --trials 200 -o cell.nc
+fi
+
+# Parts by the numbers of their trials: any of them, also those of another machine's run later on.
+one=(lattice "${field[@]}" --quiet)
+"$gatewalk" "${one[@]}" --trials 300 --json one.json
+for range in 0:100 250:50 100:150; do
+  "$gatewalk" "${one[@]}" --first-trial "${range%:*}" --trials "${range#*:}" --part "from${range%:*}" 2>/dev/null
+done
+"$gatewalk" merge from* -o all.json --quiet
+same one.json all.json
+holds '[.made_by.parts[].holds] == ["trials 0 to 99", "trials 100 to 249", "trials 250 to 299"]' all.json
+# Without --part a result of these trials.
+"$gatewalk" "${one[@]}" --first-trial 250 --trials 50 --json last.json
+"$gatewalk" merge from250 -o again.json --quiet
+same last.json again.json
+# The outputs that the parts were told of, others, and the table.
+"$gatewalk" "${one[@]}" --trials 300 --json told.json --shard 1/2 --part a 2>/dev/null
+"$gatewalk" "${one[@]}" --trials 300 --json told.json --shard 2/2 --part b 2>/dev/null
+expect 0 'crossed' "$gatewalk" merge a b -- --netcdf field.nc
+[ -s told.json ] && [ -s field.nc ] || fail "merge: does not write what the parts were told, or what it is told"
+expect 0 '' "$gatewalk" merge b a -o other.json --quiet
+same told.json other.json
+
+# What is missing, twice, or of another run is named.
+"$gatewalk" "${one[@]}" --trials 300 --shard 1/3 --part c 2>/dev/null
+"$gatewalk" "${one[@]}" --trials 300 --shard 3/3 --part d 2>/dev/null
+expect 2 'missing: part 2 of 3' "$gatewalk" merge c d -o x.json
+expect 2 'c: part 1 of 3 is given twice' "$gatewalk" merge c d c -o x.json
+expect 2 'a: is part 1 of 2, and c is part 1 of 3' "$gatewalk" merge c a d -o x.json
+"$gatewalk" "${one[@]}" --first-trial 50 --trials 100 --part overlap 2>/dev/null
+expect 2 'both have items .* of field trials' "$gatewalk" merge from0 overlap -o x.json
+expect 2 'missing: items 100 to 249 of field trials' "$gatewalk" merge from0 from250 -o x.json
+"$gatewalk" "${one[@]}" --set forces.random_N=40 --trials 300 --shard 2/3 --part e 2>/dev/null
+expect 2 'e: is of another run than c, the scene:' "$gatewalk" merge c e d -o x.json
+grep -q 'forces.random_N' out.txt || fail "merge: does not name the key that differs: $(cat out.txt)"
+"$gatewalk" lattice "${field[@]}" --seed 6 --trials 300 --shard 2/3 --part e --quiet --force 2>/dev/null
+expect 2 'e: is of another run than c, there: .* --seed=6 .*; here: .* --seed=5 ' "$gatewalk" merge c e d -o x.json
+head -c -60 d >cut
+expect 2 'not finished: cut (part 3 of 3)' "$gatewalk" merge c cut -o x.json
+expect 2 'field.toml: holds no pieces of a run' "$gatewalk" merge c "$scenes/field.toml" -o x.json
+expect 2 'cannot be read' "$gatewalk" merge c nosuch -o x.json
+# A part is a checkpoint as well; it is no matrix.
+expect 2 'd: holds what an earlier run has done' "$gatewalk" "${one[@]}" --trials 300 --shard 3/3 --part d
+expect 0 'd is done' "$gatewalk" "${one[@]}" --trials 300 --shard 3/3 --part d --resume
+expect 2 'd: holds part 3 of 3, and this is part 2 of 3' "$gatewalk" "${one[@]}" --trials 300 --shard 2/3 --part d --resume
+expect 2 'MATRIX d: holds pieces of a run: gatewalk merge' "$gatewalk" predict d
+# Wrong use.
+expect 2 'must be I/N' "$gatewalk" "${one[@]}" --shard 0/3 --part x
+expect 2 'must be I/N' "$gatewalk" "${one[@]}" --shard 4/3 --part x
+expect 2 'must be I/N' "$gatewalk" "${one[@]}" --shard 1-3 --part x
+expect 2 'needs --part' "$gatewalk" "${one[@]}" --shard 1/3
+expect 2 'needs --shard' "$gatewalk" "${one[@]}" --part x
+expect 2 'both say which part' "$gatewalk" "${one[@]}" --shard 1/3 --first-trial 5 --part x
+expect 2 'needs --trials' "$gatewalk" build "${field[@]}" -o x.nc --shard 1/3 --part x
+expect 2 'needs --split-trials' "$gatewalk" rare "${field[@]}" --shard 1/3 --part x
+[ ! -e x ] && [ ! -e x.json ] || fail "wrong use wrote a file"
+
+finish
