@@ -15,7 +15,8 @@ cell = folder / "cell.toml"
 FIRST_RUNS = 100
 # Seeds, starts and what the pool's size is chosen by: an error bar, or not by what it shows.
 POOLS = {
-    "pool": ((1, 2, 3), 300, ("--accuracy", 0.05)),
+    "pool": ((1, 2, 3), 300, ("--accuracy", 0.02)),
+    "coarse pool": ((1, 2, 3), 300, ("--accuracy", 0.05)),
     "more pools": (range(4, 10), 40, ("--accuracy", 0.05)),
     "pools of 5000": (range(4, 10), 40, ("--accuracy", 0.001, "--gate-runs", 5000)),
 }

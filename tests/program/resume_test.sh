@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# --checkpoint, --resume, --max-time: what is done is not lost, and what goes on gives the bits of a run that was never
+# stopped.   resume_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+plain() { jq -S 'walk(if type == "object" then del(.seconds, .run_seconds, .direct_seconds, .chain_seconds, .speed_ratio) else . end)' "$1"; }
+same() {
+  case $1 in
+    *.json) cmp -s <(plain "$1") <(plain "$2") ;;
+    *) cmp -s "$1" "$2" ;;
+  esac || fail "$2 is not $1, of a run that was never stopped"
+}
+# killed OUTPUT SECONDS COMMAND...: the command in one go, and killed again and again; SECONDS: what it takes, about.
+killed() {
+  local output=$1 seconds=$2 pid status stops=0 i
+  shift 2
+  "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
+  mv "$output" "one-$output"
+  for i in $(seq 40); do
+    "$gatewalk" "$@" --quiet --checkpoint pieces --resume >/dev/null 2>err.txt &
+    pid=$!
+    sleep "$(awk -v s="$seconds" -v r=$RANDOM 'BEGIN { print 0.05 + s * r / 32768 / 2 }')"
+    kill -KILL $pid 2>/dev/null
+    wait $pid 2>/dev/null
+    status=$?
+    [ $status = 0 ] && break
+    [ $status = 137 ] || fail "status $status of $* ($(cat err.txt))"
+    [ ! -e "$output" ] || fail "killed, and there is $output: $*"
+    stops=$((stops + 1))
+  done
+  [ $stops -gt 0 ] || fail "never killed: $*"
+  [ $status = 0 ] || "$gatewalk" "$@" --quiet --checkpoint pieces --resume >/dev/null 2>err.txt || fail "resumed: $* ($(cat err.txt))"
+  same "one-$output" "$output"
+  [ ! -e pieces ] || fail "the checkpoint is still there: $*"
+  ls -A | grep '^\.gatewalk-' && rm -f .gatewalk-*  # of what was killed while it replaced a file
+}
+field=("$scenes/field.toml" --seed 5)
+killed gate.json 2 gate "${field[@]}" --trials 150000 --json gate.json
+killed sweep.csv 2 sweep "$scenes/single_gate.toml" --vary forces.propulsion_N=5:1:8 --trials 30000 --csv sweep.csv
+killed bins.nc 2 build "${field[@]}" --bins paper --trials 1500 -o bins.nc
+killed tree.nc 2 build "${field[@]}" --accuracy 0.01 -o tree.nc
+killed lattice.json 2 lattice "${field[@]}" --trials 40000 --json lattice.json
+killed predict.json 2 predict "${field[@]}" --accuracy 0.01 --start 0,0,15 --start 4,5,10 --json predict.json
+killed rare.json 2 rare "${field[@]}" --row 5 --accuracy 0.1 --json rare.json
+killed validate.json 2 validate "${field[@]}" --bins paper --matrix-trials 200 --trials 10000 --null-draws 99 --json validate.json
+killed analyze.json 2 analyze "${field[@]}" --accuracy 0.02 --runs 1000 --json analyze.json
+
+# A stop that can go on: its own status, within two seconds, and how to go on.
+long=(lattice "${field[@]}" --trials 1e8 --json long.json)
+for signal in TERM HUP USR1; do
+  "$gatewalk" "${long[@]}" --checkpoint pieces --resume >out.txt 2>&1 &
+  pid=$!
+  sleep 1
+  start=$(date +%s%N)
+  kill -$signal $pid
+  wait $pid
+  status=$?
+  took=$((($(date +%s%N) - start) / 1000000))
+  [ $status = 75 ] || fail "SIG$signal: status $status ($(cat out.txt))"
+  [ $took -lt 2000 ] || fail "SIG$signal took $took ms"
+  grep -q 'what is done is kept in pieces: the same command with --resume goes on' out.txt || fail "SIG$signal: $(cat out.txt)"
+done
+[ -s pieces ] && [ ! -e long.json ] || fail "stopped: no pieces, or a result"
+expect 75 'kept in pieces' "$gatewalk" "${long[@]}" --checkpoint pieces --resume --max-time 1s
+rm pieces
+# Without --checkpoint beside the output: at once where a time is given.
+expect 75 'kept in long.json.unfinished' "$gatewalk" "${long[@]}" --max-time 1s
+expect 2 'long.json.unfinished: holds what an earlier run has done: --resume goes on' "$gatewalk" "${long[@]}"
+cp long.json.unfinished kept
+# Its torn end is cut off, and what was whole is used.
+printf 'torn' >>long.json.unfinished
+truncate -s -30 kept
+for log in long.json.unfinished kept; do
+  expect 75 "kept in $log" "$gatewalk" "${long[@]}" --checkpoint $log --resume --max-time 1s
+done
+# Of another scene, seed, or input: refused, by what differs.
+expect 2 'kept: is of another run, the scene:' "$gatewalk" "${long[@]}" --set forces.random_N=40 --checkpoint kept --resume
+grep -q 'forces.random_N' out.txt || fail "--resume: does not name the key that differs"
+expect 2 'kept: is of another run, there: .*--seed=5.*; here: .*--seed=5 --trials=10$\|kept: is of another run, there:' "$gatewalk" lattice "${field[@]}" --trials 10 --json long.json --checkpoint kept --resume
+expect 2 'kept: is of another run, command: lattice there, gate here' "$gatewalk" gate "${field[@]}" --checkpoint kept --resume
+cp "$scenes/field.toml" mine.toml
+expect 75 'kept in mine' "$gatewalk" lattice mine.toml --trials 1e8 --checkpoint mine --max-time 1s
+echo '# a remark' >>mine.toml
+expect 2 'mine.toml has changed' "$gatewalk" lattice mine.toml --trials 1e8 --checkpoint mine --resume
+# A byte that is another: found, and only that piece is done again, or said.
+"$gatewalk" lattice "${field[@]}" --trials 20000 --json one.json --quiet
+expect 75 '' "$gatewalk" lattice "${field[@]}" --trials 20000 --json two.json --threads 1 --checkpoint flipped --max-time 0.7s
+python3 - <<'END' 2>/dev/null || true
+data = bytearray(open("flipped", "rb").read())
+data[len(data) // 2] ^= 1
+open("flipped", "wb").write(data)
+END
+expect 2 'flipped: is damaged at byte' "$gatewalk" lattice "${field[@]}" --trials 20000 --json two.json --checkpoint flipped --resume
+# Nothing to go on with: from the beginning.
+expect 0 'crossed' "$gatewalk" lattice "${field[@]}" --trials 100 --checkpoint none --resume
+[ ! -e none ] || fail "a checkpoint stays behind"
+# Wrong use.
+expect 2 'must be a time' "$gatewalk" "${long[@]}" --max-time 3
+expect 2 'must be a time' "$gatewalk" "${long[@]}" --max-time=-3h
+expect 2 'needs an output file, or --checkpoint' "$gatewalk" lattice "${field[@]}" --max-time 3h
+expect 2 'needs an output file, or --checkpoint' "$gatewalk" lattice "${field[@]}" --resume
+expect 2 'are the same file' "$gatewalk" "${long[@]}" --checkpoint long.json
+expect 2 'holds no pieces' "$gatewalk" "${long[@]}" --checkpoint one.json --resume
+cmp -s one.json <(cat one.json) && [ -s one.json ] || fail "--resume touched another file"
+
+finish
