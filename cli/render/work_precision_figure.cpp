@@ -223,8 +223,8 @@ std::string key_of(const std::vector<WorkPrecision>& charts, const Sheet& sheet)
 }  // namespace
 
 Figure figure_of(const std::vector<WorkPrecision>& charts) {
-  constexpr double kHead = 112, kPanel = 142, kBelow = 30, kLine = 16;
-  double height = kHead;
+  constexpr double kTop = 112, kPanel = 142, kBelow = 30, kLine = 16;
+  double height = kTop;
   for (const WorkPrecision& chart : charts)
     height += 30 + kLine * static_cast<double>(refused_lines(chart).size()) + kPanel + kBelow;
   const Sheet sheet{static_cast<int>(height + 32)};
@@ -233,7 +233,7 @@ Figure figure_of(const std::vector<WorkPrecision>& charts) {
                     "set logscale xy\nset format y '10^{%L}'\nset grid" + kThin + "\nset xrange " +
                     ranges.time.text() + "\nset xtics (" +
                     tics_1_2_5(ranges.time.low, ranges.time.high, 160) + ")\n";
-  double top = kHead;
+  double top = kTop;
   for (std::size_t i = 0; i < charts.size(); ++i) {
     const WorkPrecision& chart = charts[i];
     out += sheet.text(chart.label, 8, top + 14);

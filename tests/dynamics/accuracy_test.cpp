@@ -290,7 +290,7 @@ TEST(TrialEnds, CutShortIsBroken) {
 TEST(CheckedTrials, AreThoseOfTheGateAndASampleIsChecked) {
   const GateParams p = test::study(10.0);
   const BodyState start{.x = 1.0, .y = 0.0, .vx = 0.0, .vy = 12.0};
-  const GateTally checked = run_checked_trials(p, start, 3, 600);
+  const GateTally checked = run_checked_trials(p, start, 3, {"runs", {0, 600}});
   const GateTally plain = run_gate_trials(p, start, 3, {0, 600});
   EXPECT_EQ(checked.trials, 600);
   EXPECT_EQ(checked.counts, plain.counts);

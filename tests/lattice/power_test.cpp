@@ -108,7 +108,8 @@ TEST(TrialsForShare, AreTheLeastThatStayEnough) {
 TEST(TrialsForShare, KeepWhatTheyPromise) {
   constexpr int kRepeats = 2000;
   std::uint64_t row = 0;
-  for (const auto& [expected, truth] : Pairs{{0.28, 0.38}, {0.1, 0.2}, {0.6, 0.4}}) {
+  for (const auto& pair : Pairs{{0.28, 0.38}, {0.1, 0.2}, {0.6, 0.4}}) {
+    const double expected = pair.first, truth = pair.second;
     const int n = static_cast<int>(trials_for_share(expected, truth, kGoal).value());
     const auto found = [&](double share) {
       ++row;

@@ -53,7 +53,7 @@ TEST(Sweep, RunsTheGateAtEveryPointUnderTheSameNoise) {
   EXPECT_EQ(points[1].values, (Values{"6", "0"}));  // the last axis runs fastest
   EXPECT_EQ(points[3].values, (Values{"8", "-1"}));
   std::int64_t most = 0;
-  run_sweep(points, 30, 9, {[&](std::string_view what, std::int64_t done, std::int64_t total) {
+  run_sweep(points, {0, 30}, 9, {[&](std::string_view what, std::int64_t done, std::int64_t total) {
               EXPECT_EQ(what, "sweep");
               EXPECT_EQ(total, 6000);
               most = std::max(most, done);

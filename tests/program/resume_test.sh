@@ -1,49 +1,15 @@
 #!/usr/bin/env bash
 # --checkpoint, --resume, --max-time: what is done is not lost, and what goes on gives the bits of a run that was never
 # stopped.   resume_test.sh GATEWALK ROOT
-. "$(dirname "$0")/preamble.sh"
+here=$(realpath "$(dirname "$0")")
+. "$here/preamble.sh"
 
-plain() { jq -S 'walk(if type == "object" then del(.seconds, .run_seconds, .direct_seconds, .chain_seconds, .speed_ratio) else . end)' "$1"; }
-same() {
-  case $1 in
-    *.json) cmp -s <(plain "$1") <(plain "$2") ;;
-    *) cmp -s "$1" "$2" ;;
-  esac || fail "$2 is not $1, of a run that was never stopped"
-}
-# killed OUTPUT SECONDS COMMAND...: the command in one go, and killed again and again; SECONDS: what it takes, about.
-killed() {
-  local output=$1 seconds=$2 pid status stops=0 i
-  shift 2
-  "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
-  mv "$output" "one-$output"
-  for i in $(seq 40); do
-    "$gatewalk" "$@" --quiet --checkpoint pieces --resume >/dev/null 2>err.txt &
-    pid=$!
-    sleep "$(awk -v s="$seconds" -v r=$RANDOM 'BEGIN { print 0.05 + s * r / 32768 / 2 }')"
-    kill -KILL $pid 2>/dev/null
-    wait $pid 2>/dev/null
-    status=$?
-    [ $status = 0 ] && break
-    [ $status = 137 ] || fail "status $status of $* ($(cat err.txt))"
-    [ ! -e "$output" ] || fail "killed, and there is $output: $*"
-    stops=$((stops + 1))
-  done
-  [ $stops -gt 0 ] || fail "never killed: $*"
-  [ $status = 0 ] || "$gatewalk" "$@" --quiet --checkpoint pieces --resume >/dev/null 2>err.txt || fail "resumed: $* ($(cat err.txt))"
-  same "one-$output" "$output"
-  [ ! -e pieces ] || fail "the checkpoint is still there: $*"
-  ls -A | grep '^\.gatewalk-' && rm -f .gatewalk-*  # of what was killed while it replaced a file
-}
-field=("$scenes/field.toml" --seed 5)
-killed gate.json 2 gate "${field[@]}" --trials 150000 --json gate.json
-killed sweep.csv 2 sweep "$scenes/single_gate.toml" --vary forces.propulsion_N=5:1:8 --trials 30000 --csv sweep.csv
-killed bins.nc 2 build "${field[@]}" --bins paper --trials 1500 -o bins.nc
-killed tree.nc 2 build "${field[@]}" --accuracy 0.01 -o tree.nc
-killed lattice.json 2 lattice "${field[@]}" --trials 40000 --json lattice.json
-killed predict.json 2 predict "${field[@]}" --accuracy 0.01 --start 0,0,15 --start 4,5,10 --json predict.json
-killed rare.json 2 rare "${field[@]}" --row 5 --accuracy 0.1 --json rare.json
-killed validate.json 2 validate "${field[@]}" --bins paper --matrix-trials 200 --trials 10000 --null-draws 99 --json validate.json
-killed analyze.json 2 analyze "${field[@]}" --accuracy 0.02 --runs 1000 --json analyze.json
+. "$(realpath "$(dirname "$here")")/killed.sh"
+
+killed bins.nc 0.6 3 build "${field[@]}" --bins paper --trials 500 -o bins.nc
+killed lattice.json 0.6 3 lattice "${field[@]}" --trials 10000 --json lattice.json
+killed predict.json 0.6 3 predict "${field[@]}" --accuracy 0.02 --start 0,0,15 --start 4,5,10 --json predict.json
+killed validate.json 1 3 validate "${field[@]}" --bins paper --matrix-trials 100 --trials 3000 --null-draws 99 --json validate.json
 
 # A stop that can go on: its own status, within two seconds, and how to go on.
 long=(lattice "${field[@]}" --trials 1e8 --json long.json)
