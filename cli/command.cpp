@@ -705,7 +705,7 @@ dynamics::Work Options::work() const {
     state_->work = watched_work(talk());
     if (state_->divided) {
       state_->kept = kept_run(*this, *state_->divided);
-      state_->work = kept_work(*this, *state_->work, *state_->kept);
+      if (state_->kept) state_->work = kept_work(*this, *state_->work, *state_->kept);
     }
   }
   return *state_->work;

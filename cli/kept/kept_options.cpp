@@ -120,6 +120,17 @@ void check_kept(const Options& options) {
 }
 
 std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::string>& divided) {
+  std::vector<std::string> inputs = options.files_read();
+  if (options.text("scene") == "-") inputs.emplace_back("-");
+  for (const std::string& path : inputs) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(path, error)) continue;
+    for (const char* name : {"checkpoint", "resume", "max-time", "part"})
+      if (options.has(name))
+        throw UsageError("--" + std::string(name) + ": " + path +
+                         " is no file, and what was read from it cannot be read again");
+    return nullptr;
+  }
   KeptPlan plan{.head = head_of(options),
                 .file = options.text(options.has("part") ? "part" : "checkpoint"),
                 .goes_on = options.has("resume"),

@@ -14,7 +14,8 @@ namespace gatewalk::cli {
 void declare_kept(Options& options, bool can_be_divided);
 /// Throws UsageError where they do not go together.
 void check_kept(const Options& options);
-/// `divided`: names of the stages that parts divide.
+/// None where the run reads what can be read only once (a pipe). `divided`: names of the stages
+/// that parts divide. Throws UsageError where a file cannot serve.
 [[nodiscard]] std::unique_ptr<KeptRun> kept_run(const Options& options,
                                                 const std::set<std::string>& divided);
 /// `work` with its pieces kept, stopped by --max-time.

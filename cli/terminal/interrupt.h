@@ -1,7 +1,7 @@
 #pragma once
 /// Ctrl-C, SIGTERM, SIGHUP and SIGUSR1: the first asks to stop at the next safe point and ends
-/// after a second if none comes, the second ends at once. Files are replaced in one go, so an end at any
-/// time harms none; a temporary file under way is removed.
+/// after a second if none comes, the second ends at once. Files are replaced in one go, so an end
+/// at any time harms none; a temporary file under way is removed.
 
 #include <string>
 
