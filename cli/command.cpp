@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "cli/kept/kept_options.h"
+#include "cli/kept/ranks.h"
 #include "cli/render/json.h"
 #include "cli/terminal/backup.h"
 #include "cli/terminal/gnuplot.h"
@@ -694,6 +695,8 @@ Provenance Options::provenance(const lattice::Scene& scene) const {
   return p;
 }
 
+bool Options::talk() const { return !has("quiet") && is_first_rank(); }
+
 dynamics::TrialRange Options::trial_range() const {
   const std::int64_t first = has("first-trial") ? count("first-trial", 0) : 0;
   constexpr std::int64_t kPapers = 100;
@@ -702,11 +705,15 @@ dynamics::TrialRange Options::trial_range() const {
 
 dynamics::Work Options::work() const {
   if (!state_->work) {
-    state_->work = watched_work(talk());
+    state_->work = watched_work(talk(), {}, !ranks());
     if (state_->divided) {
       state_->kept = kept_run(*this, *state_->divided);
-      if (state_->kept) state_->work = kept_work(*this, *state_->work, *state_->kept);
+      state_->work = kept_work(*this, *state_->work, state_->kept.get());
     }
+    // One of all processes writes.
+    for (const char* name : {"output", "passages"})
+      if (!is_first_rank() && has(name))
+        state_->values.find(name)->second.value() = std::string("/dev/null");
   }
   return *state_->work;
 }
@@ -734,22 +741,24 @@ void Options::remark(const std::string& text) const {
 // ---- What is given out ----
 
 void Options::give_out(const Json& json, const std::string& table, int indent) const {
+  if (!is_first_rank()) return;
   const std::string target = text("json");
   if (target != "-" && (target.empty() || talk())) write_text_atomically("-", table);
   if (!target.empty()) write(target, text_of(json, indent) + "\n");
 }
 
 void Options::keep_old(const std::string& path) const {
-  if (path != "-" && !has("force")) state_->backups.try_emplace(path, path);
+  if (path != "-" && !has("force") && is_first_rank()) state_->backups.try_emplace(path, path);
 }
 
 void Options::write(const std::string& path, std::string_view text) const {
+  if (!is_first_rank()) return;
   keep_old(path);
   write_text_atomically(path, text);
 }
 
 void Options::draw(const std::function<Figure()>& picture) const {
-  if (!has("figure")) return;
+  if (!has("figure") || !is_first_rank()) return;
   try {
     keep_old(text("figure"));
     cli::draw(text("figure"), picture(), about());

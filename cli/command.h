@@ -143,7 +143,7 @@ class Options {
   [[nodiscard]] lattice::Scene read_scene() const;
 
   /// Progress lines and remarks are wanted.
-  [[nodiscard]] bool talk() const { return !has("quiet"); }
+  [[nodiscard]] bool talk() const;
   /// Long work of this command: shown unless --quiet, stopped by a signal or --max-time, its pieces
   /// kept if that was declared; or as the arguments say. Throws UsageError as KeptRun.
   [[nodiscard]] dynamics::Work work() const;

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/kept/kept_run.h"
+#include "cli/kept/ranks.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"
@@ -69,9 +70,18 @@ int run(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   using namespace gatewalk;
   cli::install_interrupt_handler();
-  const auto fail = [](cli::ExitCode code, const std::exception& e) {
+  const cli::RanksScope scope;
+  // One of all processes speaks, but for what goes wrong in one alone.
+  std::streambuf* const err = std::cerr.rdbuf();
+  if (!cli::is_first_rank()) {
+    std::cerr.rdbuf(nullptr);
+    std::cout.rdbuf(nullptr);
+  }
+  const auto fail = [&](cli::ExitCode code, const std::exception& e) {
+    if (code == cli::kFailure) std::cerr.rdbuf(err);
     std::cerr << "gatewalk: " << e.what() << "\n";
     if (cli::stopped_status() != cli::kStopped) std::cerr << cli::stopped_text();
+    if (code == cli::kFailure) cli::abort_ranks(code);
     return static_cast<int>(code);
   };
   try {

@@ -7,9 +7,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "cli/kept/ranks.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"
@@ -137,6 +139,7 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
                 .is_part = options.has("part"),
                 .divided = divided,
                 .parts = options.words().parts,
+                .writes = is_first_rank(),
                 .warn = [&options](const std::string& text) { options.warn(text); }};
   if (options.has("shard")) plan.shard = shard_of(options.text("shard"));
   if (plan.file.empty() && plan.parts.empty()) {
@@ -153,13 +156,20 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
   return std::make_unique<KeptRun>(std::move(plan));
 }
 
-dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun& kept) {
-  work.kept = &kept;
+dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun* kept) {
+  work.kept = kept;
+  work.ranks = ranks();
+  const double most = options.has("max-time") ? seconds_of(options.text("max-time"))
+                                              : std::numeric_limits<double>::infinity();
+  const auto is_late = [most, since = dynamics::Stopwatch()] { return since.seconds() >= most; };
+  if (work.ranks) {  // which stop together
+    set_ranks_stop([is_late] { return is_late() || interrupted(); });
+    return work;
+  }
   if (!options.has("max-time")) return work;
-  work.told = [told = work.told, most = seconds_of(options.text("max-time")),
-               since = dynamics::Stopwatch()](std::string_view what, std::int64_t done,
-                                              std::int64_t total) {
-    if (done < total && since.seconds() >= most) throw Interrupted{};
+  work.told = [told = work.told, is_late](std::string_view what, std::int64_t done,
+                                          std::int64_t total) {
+    if (done < total && is_late()) throw Interrupted{};
     told(what, done, total);
   };
   return work;

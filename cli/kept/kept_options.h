@@ -18,7 +18,8 @@ void check_kept(const Options& options);
 /// that parts divide. Throws UsageError where a file cannot serve.
 [[nodiscard]] std::unique_ptr<KeptRun> kept_run(const Options& options,
                                                 const std::set<std::string>& divided);
-/// `work` with its pieces kept, stopped by --max-time.
-[[nodiscard]] dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun& kept);
+/// `work` with its pieces kept, if there is somebody, shared with other processes, if there are
+/// any, and stopped by --max-time.
+[[nodiscard]] dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun* kept);
 
 }  // namespace gatewalk::cli

@@ -108,7 +108,7 @@ KeptRun::KeptRun(KeptPlan plan) : plan_(std::move(plan)) {
   if (std::filesystem::exists(plan_.file) && plan_.goes_on) {
     files_.emplace_back(plan_.file);
     read(0);
-    writer_.emplace(files_.front());
+    if (plan_.writes) writer_.emplace(files_.front());
     set_kept_file(plan_.file);
   }
 }
@@ -155,41 +155,33 @@ void KeptRun::read(std::size_t number) {
 }
 
 void KeptRun::check_parts() const {
+  const Json first = Json::parse(files_.front().head());
+  const std::int64_t of = first.contains("shard") ? first["shard"][1].get<std::int64_t>() : 0;
+  std::set<std::int64_t> missing, to_do;
+  for (std::int64_t i = 1; i <= of; ++i) missing.insert(i);
   std::string unfinished;
-  std::set<std::int64_t> missing;
   for (const PieceFile& file : files_) {
     const Json head = Json::parse(file.head());
-    if (head.contains("shard") && missing.empty() && &file == &files_.front())
-      for (std::int64_t i = 1; i <= head["shard"][1].get<std::int64_t>(); ++i) missing.insert(i);
-    if (head.contains("shard")) {
-      const Json first = Json::parse(files_.front().head());
-      if (!first.contains("shard") || first["shard"][1] != head["shard"][1])
-        throw UsageError(file.path() + ": is " + name_of_part(head) + ", and " +
-                         files_.front().path() + " is " + name_of_part(first));
-      if (missing.erase(head["shard"][0].get<std::int64_t>()) == 0)
-        throw UsageError(file.path() + ": " + name_of_part(head) + " is given twice");
-    }
-    if (!file.is_finished())
-      unfinished +=
-          (unfinished.empty() ? "" : ", ") + file.path() + " (" + name_of_part(head) + ")";
+    const std::string name = name_of_part(head);
+    if (head.contains("shard") != (of > 0) || (of > 0 && head["shard"][1] != of))
+      throw UsageError(file.path() + ": is " + name + ", and " + files_.front().path() + " is " +
+                       name_of_part(first));
+    if (of > 0 && missing.erase(head["shard"][0].get<std::int64_t>()) == 0)
+      throw UsageError(file.path() + ": " + name + " is given twice");
+    if (file.is_finished()) continue;
+    if (of > 0) to_do.insert(head["shard"][0].get<std::int64_t>());
+    unfinished += (unfinished.empty() ? "not finished: " : ", ") + file.path() + " (" + name + ")";
   }
-  if (!unfinished.empty())
-    throw UsageError("not finished: " + unfinished +
-                     "; its command with --resume does what is left");
-  if (missing.empty()) return;
-  constexpr std::size_t kNamed = 20;
-  std::string all;
-  for (const std::int64_t i : missing) {
-    if (i != *missing.begin()) all += ",";
-    all += std::to_string(i);
-    if (static_cast<std::size_t>(std::count(all.begin(), all.end(), ',')) == kNamed) {
-      all += " and more";
-      break;
-    }
-  }
-  throw UsageError(
-      "missing: part" + std::string(missing.size() > 1 ? "s " : " ") + all + " of " +
-      std::to_string(Json::parse(files_.front().head())["shard"][1].get<std::int64_t>()));
+  if (missing.empty() && unfinished.empty()) return;
+  std::string all, shards;
+  for (const std::int64_t i : missing)
+    all += (all.empty() ? "missing: part " : ", ") + std::to_string(i);
+  if (!missing.empty()) all += " of " + std::to_string(of) + (unfinished.empty() ? "" : "; ");
+  to_do.insert(missing.begin(), missing.end());
+  for (const std::int64_t i : to_do)
+    shards += (shards.empty() ? " --shard " : ", ") + std::to_string(i) + "/" + std::to_string(of);
+  throw UsageError(all + unfinished + "; the parts' command with" + shards +
+                   (shards.empty() ? "" : " and") + " --resume does what is left");
 }
 
 TrialRange KeptRun::own_share(const dynamics::Stage& stage) const {
@@ -246,7 +238,7 @@ void KeptRun::keep(TrialRange items, std::string bytes) {
 }
 
 void KeptRun::write(std::uint32_t stage, TrialRange items, std::string_view bytes) {
-  if (plan_.file.empty()) return;
+  if (plan_.file.empty() || !plan_.writes) return;
   try {
     if (!writer_) {
       constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
@@ -282,6 +274,7 @@ void KeptRun::give_up(const std::exception& e) {
 
 void KeptRun::end_part() {
   if (!plan_.is_part) return;
+  if (!plan_.writes) throw PartDone{plan_.file};
   if (!writer_) open();
   writer_->add(kEndStage, {}, "");
   writer_->sync();

@@ -35,6 +35,7 @@ struct KeptPlan {
   std::optional<Shard> shard{};  // of the stages that are divided ...
   std::set<std::string> divided{};   // ... these
   std::vector<std::string> parts{};  // files that hold all pieces: none is done
+  bool writes = true;                // the file; else another process does
   std::function<void(const std::string&)> warn;
 };
 

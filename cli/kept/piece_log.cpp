@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -57,6 +58,8 @@ std::string first_line(std::string_view head) {
 }  // namespace
 
 bool PieceFile::is_one(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read only once
   std::ifstream in(path, std::ios::binary);
   std::string start(sizeof kFirstLine - 1, '\0');
   return in.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kFirstLine;

@@ -123,20 +123,20 @@ void Progress::finish() {
   drawn_ = false;
 }
 
-dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines) {
+dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines, bool stops) {
   struct Watched {
     Progress progress;
     std::string what;       // the part in hand; empty: none
     std::int64_t most = 0;  // done; checks at the end of a part begin at its start again
   };
   const std::shared_ptr<Watched> watched(new Watched{{"", 0, show_progress, lines}, {}});
-  return {[watched](std::string_view what, std::int64_t done, std::int64_t total) {
+  return {[watched, stops](std::string_view what, std::int64_t done, std::int64_t total) {
     if (done >= total) {
       watched->progress.finish();
       watched->what.clear();
       return;
     }
-    if (interrupted()) throw Interrupted{};
+    if (stops && interrupted()) throw Interrupted{};
     if (what != watched->what) {
       watched->progress.begin(watched->what = what, total);
       watched->most = 0;

@@ -58,6 +58,7 @@ class Progress {
 
 /// Work whose progress is shown, if wanted, and that a first signal stops: Interrupted is thrown
 /// before the next piece.
-[[nodiscard]] dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines = {});
+[[nodiscard]] dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines = {},
+                                          bool stops = true);
 
 }  // namespace gatewalk::cli

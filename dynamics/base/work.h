@@ -9,6 +9,7 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "dynamics/base/bytes.h"
 #include "dynamics/base/trial_set.h"
@@ -57,12 +58,28 @@ class KeptPieces {
   virtual void end_part() = 0;
 };
 
-/// Whoever starts long work says here who is told how far it is, and who keeps what is done. Nobody
-/// by default.
+/// Processes that carry out the same command and share its pieces among them: each gets those of
+/// all, in the same order. All of them make the same calls.
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+  [[nodiscard]] virtual int rank() const = 0;
+  [[nodiscard]] virtual int size() const = 0;
+  /// The first rank's number.
+  [[nodiscard]] virtual std::int64_t of_first(std::int64_t number) = 0;
+  /// Each rank's bytes, by rank.
+  [[nodiscard]] virtual std::vector<std::string> all(const std::string& own) = 0;
+  /// Throws on all of them where one is to stop.
+  virtual void stop_if_asked() = 0;
+};
+
+/// Whoever starts long work says here who is told how far it is, who keeps what is done, and who
+/// shares it. Nobody by default.
 struct Work {
   /// Told before each piece, and when all is done: `done` of `total` of what. May throw to stop.
   std::function<void(std::string_view what, std::int64_t done, std::int64_t total)> told;
   KeptPieces* kept = nullptr;
+  Ranks* ranks = nullptr;
 
   /// Calls run(range) for consecutive ranges that cover [0, total) exactly once, as long as
   /// PieceSize says. The ranges depend on the machine's speed, so results must not depend
@@ -77,24 +94,24 @@ struct Work {
   void in_kept_pieces(const Stage& stage, const T& none,
                       const std::type_identity_t<std::function<T(TrialRange)>>& run,
                       const std::type_identity_t<std::function<void(T)>>& take) const {
-    if (!kept) {
+    if (!kept && !ranks) {
       in_pieces(stage.what, stage.items.count, [&](TrialRange range) {
         take(run({stage.items.first + range.first, range.count}));
       });
       return;
     }
-    in_pieces_of(
-        stage,
-        [&](TrialRange range) {
-          T done = run(range);
-          kept->keep(range, bytes_of(done));
-          take(std::move(done));
-        },
-        [&](std::string_view bytes) {
-          T done = none;
-          read_bytes(bytes, done);
-          take(std::move(done));
-        });
+    const auto take_bytes = [&](std::string_view bytes) {
+      T done = none;
+      read_bytes(bytes, done);
+      take(std::move(done));
+    };
+    const auto run_to_bytes = [&](TrialRange range) { return bytes_of(run(range)); };
+    const auto run_and_take = [&](TrialRange range) {
+      T done = run(range);
+      kept->keep(range, bytes_of(done));
+      take(std::move(done));
+    };
+    in_pieces_of(stage, {run_and_take, run_to_bytes, take_bytes});
   }
   /// A part of a run knows some of its trials only, and has no result.
   [[nodiscard]] bool is_part() const { return kept && kept->is_part(); }
@@ -121,8 +138,15 @@ struct Work {
   }
 
  private:
-  void in_pieces_of(const Stage& stage, const std::function<void(TrialRange)>& run,
-                    const std::function<void(std::string_view)>& take_kept) const;
+  struct Steps {
+    std::function<void(TrialRange)> run_and_take;
+    std::function<std::string(TrialRange)> run_to_bytes;
+    std::function<void(std::string_view)> take_bytes;
+  };
+  void in_pieces_of(const Stage& stage, const Steps& steps) const;
+  /// One piece on each rank.
+  [[nodiscard]] std::int64_t on_all_ranks(TrialRange items, std::int64_t size,
+                                          const Steps& steps) const;
 };
 
 /// Seconds since construction.

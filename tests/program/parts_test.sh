@@ -117,7 +117,7 @@ grep -q 'forces.random_N' out.txt || fail "merge: does not name the key that dif
 "$gatewalk" lattice "${field[@]}" --seed 6 --trials 300 --shard 2/3 --part e --quiet --force 2>/dev/null
 expect 2 'e: is of another run than c, there: .* --seed=6 .*; here: .* --seed=5 ' "$gatewalk" merge c e d -o x.json
 head -c -60 d >cut
-expect 2 'not finished: cut (part 3 of 3)' "$gatewalk" merge c cut -o x.json
+expect 2 "missing: part 2 of 3; not finished: cut (part 3 of 3); .* --shard 2/3, 3/3 and --resume" "$gatewalk" merge c cut -o x.json
 expect 2 'field.toml: holds no pieces of a run' "$gatewalk" merge c "$scenes/field.toml" -o x.json
 expect 2 'cannot be read' "$gatewalk" merge c nosuch -o x.json
 # A part is a checkpoint as well; it is no matrix.

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Part SLURM_ARRAY_TASK_ID of the command in FOLDER; stopped, it goes on the next time.   part.sh FOLDER
+set -uo pipefail
+folder=$1 i=$SLURM_ARRAY_TASK_ID
+mapfile -d '' -t command <"$folder/command"
+"$GATEWALK" "${command[@]}" --shard "$i/$(<"$folder/parts")" --part "$folder/part$i" --resume --quiet \
+  --threads "${SLURM_CPUS_PER_TASK:-1}" &
+trap 'kill -USR1 $!' USR1
+wait $!
+status=$?
+[ $status -le 128 ] || { wait $!; status=$?; }  # a signal ended the first wait
+# 75: there was not enough time.
+if [ $status = 75 ] && [ "${SLURM_RESTART_COUNT:-0}" -lt 10 ]; then scontrol requeue "${SLURM_ARRAY_JOB_ID}_$i"; fi
+exit $status
