@@ -7,8 +7,8 @@ cd "$(dirname "$0")"
 packages+=(libgtest-dev jq netcdf-bin ffmpeg chromium clang-format)
 # Cells that other programs simulate: in Chipmunk, in Python.
 packages+=(libchipmunk-dev)
-# A cluster on this machine, for parts of runs.
-packages+=(slurmctld slurmd slurm-client munge)
+# A cluster on this machine, for parts of runs; processes that share one.
+packages+=(slurmctld slurmd slurm-client munge libopenmpi-dev openmpi-bin)
 command -v python3 >/dev/null || packages+=(python3)
 # Some machines bring an npm of their own, which Debian's package would conflict with.
 command -v npm >/dev/null || packages+=(npm)

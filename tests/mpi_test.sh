@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Ranks of MPI share a run: the bits of one process, on 1 to 4 of them; they stop together, and a run goes on that lost
+# one.   mpi_test.sh GATEWALK ROOT GATEWALK_MPI
+here=$(realpath "$(dirname "$0")")
+with_mpi=$(realpath "$3")
+. "$here/program/preamble.sh" "$1" "$2"
+. "$here/killed.sh"
+
+# on N COMMAND...: as root too, and on more ranks than there are processors.
+on() {
+  local n=$1
+  shift
+  OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout 120 \
+    mpirun -n "$n" --oversubscribe "$with_mpi" "$@" --quiet --threads 1
+}
+# shared OUTPUT COMMAND...
+shared() {
+  local output=$1 n
+  shift
+  "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
+  mv "$output" "one-$output"
+  for n in 1 2 3 4; do
+    on $n "$@" >out.txt 2>err.txt || fail "$n ranks: $* ($(cat err.txt))"
+    same "one-$output" "$output"
+    rm -f "$output"
+  done
+}
+shared predict.json predict "${field[@]}" --accuracy 0.03 --json predict.json
+shared tree.nc build "${field[@]}" --starts all --accuracy 0.1 -o tree.nc
+shared bins.nc build "${field[@]}" --bins paper --trials 30 -o bins.nc
+shared lattice.json lattice "${field[@]}" --trials 3000 --json lattice.json
+shared rare.json rare "${field[@]}" --set run.method=moreau --row 3 --accuracy 0.1 --json rare.json
+shared validate.json validate "${field[@]}" --bins paper --matrix-trials 20 --trials 1000 --null-draws 99 --json validate.json
+# What it prints is printed once.
+[ "$(on 3 lattice "${field[@]}" --trials 100 | grep -c crossed)" = 1 ] || fail "not one table of three ranks"
+on 2 lattice "${field[@]}" --trials 0 >out.txt 2>&1 && fail "--trials 0 is not refused"
+[ "$(grep -c 'must be at least 1' out.txt)" = 1 ] || fail "not one complaint: $(cat out.txt)"
+
+# Stopped together, resumed by other numbers of ranks, and by one process.
+long=(lattice "${field[@]}" --trials 60000 --json long.json)
+"$gatewalk" "${long[@]}" --quiet && mv long.json one-long.json
+on 3 "${long[@]}" --checkpoint pieces --max-time 1s >out.txt 2>&1 && fail "--max-time: status 0"
+[ "$(grep -c 'kept in pieces' out.txt)" = 1 ] || fail "--max-time: $(cat out.txt)"
+on 2 "${long[@]}" --checkpoint pieces --resume --max-time 1s >out.txt 2>&1
+# A rank that is lost ends all; what was done is kept.
+on 3 "${long[@]}" --checkpoint pieces --resume >out.txt 2>&1 &
+sleep 1.5
+pkill -KILL -n -f "^$with_mpi lattice.*pieces" || fail "no rank to kill"
+wait $! && fail "a rank was killed: status 0"
+[ -s pieces ] && [ ! -e long.json ] || fail "a rank was killed: no pieces, or a result"
+"$gatewalk" "${long[@]}" --quiet --checkpoint pieces --resume
+same one-long.json long.json
+finish
