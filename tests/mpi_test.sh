@@ -13,24 +13,24 @@ on() {
   OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout 120 \
     mpirun -n "$n" --oversubscribe "$with_mpi" "$@" --quiet --threads 1
 }
-# shared OUTPUT COMMAND...
+# shared RANKS OUTPUT COMMAND...
 shared() {
-  local output=$1 n
-  shift
-  "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
+  local ranks=$1 output=$2 n
+  shift 2
+  "$gatewalk" "$@" --quiet --threads 1 >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
   mv "$output" "one-$output"
-  for n in 1 2 3 4; do
+  for n in $ranks; do
     on $n "$@" >out.txt 2>err.txt || fail "$n ranks: $* ($(cat err.txt))"
     same "one-$output" "$output"
     rm -f "$output"
   done
 }
-shared predict.json predict "${field[@]}" --accuracy 0.03 --json predict.json
-shared tree.nc build "${field[@]}" --starts all --accuracy 0.1 -o tree.nc
-shared bins.nc build "${field[@]}" --bins paper --trials 30 -o bins.nc
-shared lattice.json lattice "${field[@]}" --trials 3000 --json lattice.json
-shared rare.json rare "${field[@]}" --set run.method=moreau --row 3 --accuracy 0.1 --json rare.json
-shared validate.json validate "${field[@]}" --bins paper --matrix-trials 20 --trials 1000 --null-draws 99 --json validate.json
+shared "1 2 3 4" predict.json predict "${field[@]}" --accuracy 0.03 --json predict.json
+shared "2 4" tree.nc build "${field[@]}" --starts all --accuracy 0.1 -o tree.nc
+shared 3 bins.nc build "${field[@]}" --bins paper --trials 30 -o bins.nc
+shared 3 lattice.json lattice "${field[@]}" --trials 3000 --json lattice.json
+shared 3 rare.json rare "${field[@]}" --set run.method=moreau --row 3 --accuracy 0.1 --json rare.json
+shared 3 validate.json validate "${field[@]}" --bins paper --matrix-trials 20 --trials 1000 --null-draws 99 --json validate.json
 # What it prints is printed once.
 [ "$(on 3 lattice "${field[@]}" --trials 100 | grep -c crossed)" = 1 ] || fail "not one table of three ranks"
 on 2 lattice "${field[@]}" --trials 0 >out.txt 2>&1 && fail "--trials 0 is not refused"
