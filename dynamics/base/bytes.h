@@ -12,79 +12,73 @@
 
 namespace gatewalk::dynamics {
 
-/// Appends what it is called with. What is kept of a type is said once, for writing and reading, by
-/// a function each_part(archive, object) that calls archive(part, ...).
-class WriteBytes {
+/// Goes through what it is called with, part by part. What is kept of a type that memory alone does
+/// not hold is said once, for writing and reading, by a function each_part(archive, object) that
+/// calls archive(part, ...).
+template <class Archive>
+class PartByPart {
  public:
-  static constexpr bool reads = false;
   template <class... Parts>
   void operator()(Parts&... parts) {
     (one(parts), ...);
   }
-  [[nodiscard]] std::string take() { return std::move(bytes_); }
 
  private:
-  void raw(const void* from, std::size_t size) {
-    bytes_.append(static_cast<const char*>(from), size);
-  }
+  [[nodiscard]] Archive& self() { return static_cast<Archive&>(*this); }
   template <class T>
   void one(T& value) {
     if constexpr (std::is_trivially_copyable_v<T>)
-      raw(&value, sizeof value);
+      self().raw(&value, sizeof value);
     else
-      each_part(*this, value);
+      each_part(self(), value);
   }
   template <class T>
   void one(std::vector<T>& values) {
     auto size = static_cast<std::uint64_t>(values.size());
     one(size);
+    if constexpr (Archive::reads) {
+      self().require(size);
+      values.resize(static_cast<std::size_t>(size));
+    }
     if constexpr (std::is_trivially_copyable_v<T>)
-      raw(values.data(), values.size() * sizeof(T));
+      self().raw(values.data(), values.size() * sizeof(T));
     else
       for (T& value : values) one(value);
+  }
+};
+
+class WriteBytes : public PartByPart<WriteBytes> {
+ public:
+  static constexpr bool reads = false;
+  [[nodiscard]] std::string take() { return std::move(bytes_); }
+
+ private:
+  friend PartByPart<WriteBytes>;
+  void raw(const void* from, std::size_t size) {
+    bytes_.append(static_cast<const char*>(from), size);
   }
 
   std::string bytes_;
 };
 
-/// Reads them back into what it is called with. Throws std::runtime_error where there are too few
-/// or too many bytes.
-class ReadBytes {
+/// Throws std::runtime_error where there are too few or too many bytes.
+class ReadBytes : public PartByPart<ReadBytes> {
  public:
   static constexpr bool reads = true;
   explicit ReadBytes(std::string_view bytes) : left_(bytes) {}
-
-  template <class... Parts>
-  void operator()(Parts&... parts) {
-    (one(parts), ...);
-  }
   void end() const {
     if (!left_.empty()) throw std::runtime_error("a kept piece has bytes too many");
   }
 
  private:
+  friend PartByPart<ReadBytes>;
+  void require(std::uint64_t bytes) const {
+    if (bytes > left_.size()) throw std::runtime_error("a kept piece ends too early");
+  }
   void raw(void* to, std::size_t size) {
-    if (size > left_.size()) throw std::runtime_error("a kept piece ends too early");
+    require(size);
     if (size > 0) std::memcpy(to, left_.data(), size);
     left_.remove_prefix(size);
-  }
-  template <class T>
-  void one(T& value) {
-    if constexpr (std::is_trivially_copyable_v<T>)
-      raw(&value, sizeof value);
-    else
-      each_part(*this, value);
-  }
-  template <class T>
-  void one(std::vector<T>& values) {
-    std::uint64_t size = 0;
-    one(size);
-    if (size > left_.size()) throw std::runtime_error("a kept piece ends too early");
-    values.resize(static_cast<std::size_t>(size));
-    if constexpr (std::is_trivially_copyable_v<T>)
-      raw(values.data(), values.size() * sizeof(T));
-    else
-      for (T& value : values) one(value);
   }
 
   std::string_view left_;

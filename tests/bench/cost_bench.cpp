@@ -207,7 +207,10 @@ void registers(const std::string& scenes) {
   std::vector<double> best(subjects.size() * sets.size(), std::numeric_limits<double>::infinity());
   for (int round = 0; round < kRounds; ++round)
     for (std::size_t i = 0; i < best.size(); ++i) {
-      const auto& [name, p, start] = subjects[i / sets.size()];
+      const auto& subject = subjects[i / sets.size()];
+      const auto& name = subject.name;
+      const auto& p = subject.p;
+      const auto& start = subject.start;
       const std::int64_t target = sets[i % sets.size()].second;
       double microseconds = 0.0;
       if (target == 0) {

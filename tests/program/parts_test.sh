@@ -40,42 +40,7 @@ divided 2 rare.json rare "${field[@]}" --row 4 --split-trials 1500 --trials 300 
 divided 7 validate.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 210 --null-draws 99 --json validate.json
 divided 2 force.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 100 --null-draws 99 --memory --start 0,0,15 --start 4,5,10 --json force.json
 if command -v python3 >/dev/null; then
-  cat >pillars.toml <<'END'
-[cell]
-width_m = 1.0
-length_m = 1.0
-symmetric = true
-[[cell.faces]]
-name = "S"
-move = [0, 1]
-odd = ["s", "v"]
-[[cell.faces]]
-name = "N"
-move = [0, -1]
-odd = ["s", "v"]
-[[cell.faces]]
-name = "W"
-move = [1, 0]
-odd = []
-[[cell.faces]]
-name = "E"
-move = [-1, 0]
-odd = []
-[[cell.coordinates]]
-name = "s"
-unit = "m"
-[[cell.coordinates]]
-name = "v"
-unit = "m/s"
-[field]
-columns = 5
-rows = 3
-max_gates = 20
-[start]
-face = "S"
-s_m = 0.1
-v_m_per_s = 0.0
-END
+  cp "$scenes/programs/pillars.toml" .
   program=(--cell-program "python3 $scenes/programs/pillars.py" --seed 5)
   divided 2 cell.json lattice pillars.toml "${program[@]}" --trials 200 --json cell.json
   divided 2 cell.nc build pillars.toml "${program[@]}" --trials 200 -o cell.nc

@@ -126,42 +126,7 @@ expect 2 'has no meaning for' "$gatewalk" validate coin.nc --trials 100
 
 # Another program's cells.
 if command -v python3 >/dev/null; then
-  cat >pillars.toml <<'END'
-[cell]
-width_m = 1.0
-length_m = 1.0
-symmetric = true
-[[cell.faces]]
-name = "S"
-move = [0, 1]
-odd = ["s", "v"]
-[[cell.faces]]
-name = "N"
-move = [0, -1]
-odd = ["s", "v"]
-[[cell.faces]]
-name = "W"
-move = [1, 0]
-odd = []
-[[cell.faces]]
-name = "E"
-move = [-1, 0]
-odd = []
-[[cell.coordinates]]
-name = "s"
-unit = "m"
-[[cell.coordinates]]
-name = "v"
-unit = "m/s"
-[field]
-columns = 5
-rows = 3
-max_gates = 20
-[start]
-face = "S"
-s_m = 0.1
-v_m_per_s = 0.0
-END
+  cp "$scenes/programs/pillars.toml" .
   expect 0 '^went back' "$gatewalk" predict pillars.toml --cell-program "python3 $scenes/programs/pillars.py" \
     --accuracy 0.1 --json pillars.json --threads 2
   holds '.reached and (.endings | add) > 0.999 and (.endings | add) < 1.001 and .endings.went_back > 0' pillars.json
