@@ -87,11 +87,58 @@ std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
 
 }  // namespace
 
+namespace {
+
+/// Throws UsageError where the cell of a program is not that of a file.
+void require_same(const dynamics::Cell& cell, const lattice::CellFile& file,
+                  const std::string& path) {
+  const dynamics::Section &program = cell.section(), &own = file.map.section;
+  const auto refuse_where = [&](bool differs, const std::string& what, const std::string& there,
+                                const std::string& here) {
+    if (differs)
+      throw UsageError("--cell-program: " + what + " " + there + " of its cell, " + here + " in " +
+                       path);
+  };
+  const auto differ = [&](const char* what, const auto& a, const auto& b) {
+    refuse_where(names_of(a) != names_of(b), what, names_of(a), names_of(b));
+  };
+  differ("faces", program.faces, own.faces);
+  differ("coordinates", program.coordinates, own.coordinates);
+  refuse_where(file.types.size() > 1, "one type", "", std::to_string(file.types.size()) + " types");
+  for (std::size_t c = 0; c < own.coordinates.size(); ++c) {
+    const dynamics::Coordinate &a = program.coordinates[c], &b = own.coordinates[c];
+    refuse_where(a.key != b.key && a.unit != b.unit, "the unit of " + a.name + " is", a.unit,
+                 b.unit);
+  }
+  const bool symmetric = cell.is_symmetric();
+  refuse_where(symmetric != file.map.types.front().symmetric, "symmetric is",
+               symmetric ? "true" : "false", symmetric ? "false" : "true");
+  for (std::size_t f = 0; f < own.faces.size(); ++f) {
+    const dynamics::Face &a = program.faces[f], &b = own.faces[f];
+    const auto move_of = [](const dynamics::Face& face) {
+      return "[" + std::to_string(face.di_x) + ", " + std::to_string(face.di_y) + "]";
+    };
+    refuse_where(move_of(a) != move_of(b), "the move of face " + a.name + " is", move_of(a),
+                 move_of(b));
+    refuse_where(symmetric && (a.mirror != b.mirror || a.odd != b.odd),
+                 "mirror image and odd coordinates of face " + a.name, "are those", "others");
+  }
+  for (const dynamics::CostInfo& cost : own.costs)
+    refuse_where(std::none_of(program.costs.begin(), program.costs.end(),
+                              [&](const dynamics::CostInfo& c) { return c.key == cost.key; }),
+                 "there is no cost " + cost.key, "", "one");
+}
+
+}  // namespace
+
 Subject open_program(const Options& options, const std::string& path) {
   Subject s{.path = path};
   const std::vector<std::string> overrides = overrides_of(options, false);
   s.how = accuracy_of(options);
   if (is_matrix(path)) {
+    if (!parameters_of(options).empty())
+      throw UsageError("--set parameters: " + path +
+                       " holds runs of the program with its own: make a matrix with these");
     lattice::CellMatrix m = lattice::read_cell_matrix(path, overrides);
     s.cells = std::move(m.cells);
     s.file = std::move(m.file);
@@ -106,14 +153,7 @@ Subject open_program(const Options& options, const std::string& path) {
   if (options.has("cell-timeout")) how.timeout_s = options.number("cell-timeout");
   const auto cell =
       std::make_shared<ProgramCell>(options.text("cell-program"), how, parameters_of(options));
-  const dynamics::Section& section = s.cells->map.section;
-  if (names_of(cell->section().faces) != names_of(section.faces) ||
-      names_of(cell->section().coordinates) != names_of(section.coordinates) ||
-      s.cells->map.types.size() > 1)
-    throw UsageError("--cell-program: its cell has faces " + names_of(cell->section().faces) +
-                     " and coordinates " + names_of(cell->section().coordinates) + ", " + path +
-                     " has " + names_of(section.faces) + " and " + names_of(section.coordinates) +
-                     " (and must have one type)");
+  require_same(*cell, *s.cells, path);
   s.problem = lattice::problem_of(*s.cells, *s.pool);
   dynamics::CellMap& map = s.problem.cells.map;
   const std::vector<dynamics::Face> faces = std::exchange(map.section, cell->section()).faces;
@@ -269,6 +309,7 @@ Subject open_subject(const Options& options, const std::string& name) {
     throw UsageError(path + ": is no matrix of a scene; a second one, \"" + second +
                      "\", has no meaning beside it");
   if (program) return open_program(options, path);
+  refuse(options, {"cell-timeout"}, "without --cell-program");
   if (!matrix) return open_scene(options, path);
   return of_cells ? open_recorded(options, path) : open_matrix(options, name, path);
 }

@@ -61,6 +61,11 @@ int build_recorded(const Options& options) {
   const lattice::RunPool pool = lattice::pool_of(runs);
   const lattice::Problem problem = lattice::problem_of(cells, pool);
   for (const std::string& text : doubts(pool, problem)) options.warn(text);
+  const auto& costs = problem.map().section.costs;
+  for (std::size_t c = 0; c < costs.size(); ++c)
+    if (runs.unknown[c] > 0)
+      options.warn(costs[c].key + " is blank in " + std::to_string(runs.unknown[c]) +
+                   " passages: analyze gives none of it");
   auto matrices = lattice::cell_matrices(problem, pool, dynamics::kEntriesPerLeaf);
   const Json states = {{"bins", "tree"},
                        {"entries_per_leaf", dynamics::kEntriesPerLeaf},

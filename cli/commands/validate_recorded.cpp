@@ -21,6 +21,10 @@ int validate_recorded(const Options& options) {
   const auto halves = lattice::validate_halves(s.problem, *s.pool, how, options.work());
   const auto memory = lattice::body_memory(s.problem, *s.pool, how.per_leaf,
                                            how.null_draws.value_or(999), how.seed);
+  constexpr std::int64_t kChecked = 200;  // results/tracks
+  if (s.pool->bodies() < kChecked)
+    options.warn("these are " + std::to_string(s.pool->bodies()) + " bodies: of fewer than " +
+                 std::to_string(kChecked) + " p may come out too small");
   const ShownField shown = s.shown();
   const dynamics::Section& section = shown.map.section;
   Json json = to_json(halves);

@@ -381,7 +381,9 @@ void read_types(CellFile& file, const GivenTable& cell, bool symmetric) {
     if (file.types.size() == kMostCellTypes)
       throw SceneError(given.at(given.table) + "[[cell.types]]: more than " +
                        std::to_string(kMostCellTypes) + " are not permitted");
-    file.types.push_back(given.plain_name("name", "soft", file.types));
+    const bool is_own = file.types.empty() && given.text("name", "") == kOwnGate;  // of a scene
+    file.types.push_back(is_own ? std::string(kOwnGate)
+                                : given.plain_name("name", "soft", file.types));
     file.map.types.push_back({given.truth("symmetric", symmetric)});
   }
   if (!file.types.empty()) return;

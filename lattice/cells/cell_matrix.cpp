@@ -27,6 +27,10 @@ bool is_of_cells(const std::string& path) {
 }
 
 CellMatrix read_cell_matrix(const std::string& path, const std::vector<std::string>& overrides) {
+  for (const std::string& set : overrides)
+    if (!set.starts_with("field.") && !set.starts_with("terrain.") && !set.starts_with("start."))
+      throw SceneError("--set " + set + ": " + path +
+                       " has its runs, and only keys of field, terrain and start can be set");
   CellMatrix m{read_file(path), {}, {}, {}};
   m.cells = cells_in(m.file.text, path, overrides);
   m.pool = pool_of(m.file, problem_of(m.cells, {}), path);

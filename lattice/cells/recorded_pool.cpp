@@ -60,7 +60,14 @@ Problem problem_of(const CellFile& cells, const RunPool& pool) {
                   .types = cells.types,
                   .source = cells.source,
                   .check = {}};
-  Section& section = problem.cells.map.section;
+  CellMap& map = problem.cells.map;
+  if (map.types.size() > 1 && map.type_of_cell.empty()) {  // the first one stands everywhere
+    map.columns = cells.field.columns;
+    map.type_of_cell.assign(
+        static_cast<std::size_t>(cells.field.columns) * static_cast<std::size_t>(cells.field.rows),
+        0);
+  }
+  Section& section = map.section;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<std::array<std::array<double, 2>, kMostCoordinates>> seen(section.faces.size());
   for (auto& face : seen) face.fill({kNone, -kNone});

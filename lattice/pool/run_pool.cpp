@@ -361,12 +361,16 @@ void each_first_run(const CellMap& map, const StateSpace& space, const FieldTria
   }
 }
 
-/// The same of a start with runs of its own, or of all scattered trials.
+/// The same of a start with runs of its own, or of all scattered trials through a cell of this
+/// type; of those as they were: cells are symmetric, and where bodies come from need not be.
 template <class Use>
 void each_first_run(const CellMap& map, const StateSpace& space, const RunPool& pool,
-                    const PoolStart& start, TrialGroup group, Use use) {
+                    const PoolStart& start, int type, TrialGroup group, Use use) {
   if (start.own == nullptr)
-    return each_first_run(map, space, pool.scattered.each, true, group, use);
+    return each_first_run(map, space, pool.scattered.each, false, group,
+                          [&](int output, const CellPassage& passage) {
+                            if (passage.type == type) use(output, passage);
+                          });
   const bool in_the_middle = mirrored(space.section(), start.own->start) == start.own->start;
   for (const FieldTrials* trials : {&start.own->full, &start.own->first})
     each_first_run(map, space, *trials, in_the_middle, group, use);
@@ -374,19 +378,43 @@ void each_first_run(const CellMap& map, const StateSpace& space, const RunPool& 
 
 }  // namespace
 
+namespace {
+
+/// Calls use(leaf) for where the row of a start begins that has no runs of its own in cells of this
+/// type: its leaf, or those of all scattered trials of which none ran through such a cell first.
+/// False where there are such runs.
+template <class Use>
+bool each_leaf_instead(const Kernel& kernel, const RunPool& pool, const PoolStart& start, int type,
+                       TrialGroup group, Use use) {
+  if (start.own != nullptr) return false;
+  const auto use_entry = [&](const Entry& entry) { use(kernel.space.index_of(entry).state); };
+  if (start.entry) {
+    use_entry(*start.entry);
+    return true;
+  }
+  const FieldTrials& each = pool.scattered.each;
+  const auto is_of_type = [&](std::size_t i) { return each.of_trial(i).front().type == type; };
+  for (std::size_t i = 0; i < each.final_gates.size(); ++i)
+    if (is_of_type(i)) return false;
+  for (std::int64_t i = 0; i < std::ssize(pool.scattered.starts); ++i)
+    if (group.holds(each, i)) use_entry(pool.scattered.starts[static_cast<std::size_t>(i)]);
+  return true;
+}
+
+}  // namespace
+
 std::vector<std::int64_t> first_row(const Kernel& kernel, const CellMap& map, const RunPool& pool,
                                     const PoolStart& start, int type, TrialGroup group) {
   std::vector<std::int64_t> row(static_cast<std::size_t>(kernel.space.size()) + 1, 0);
-  if (start.own == nullptr && start.entry) {
-    const int leaf = kernel.space.index_of(*start.entry).state;
+  const auto add_leaf = [&](int leaf) {
     for (markov::Counts::InnerIterator it(kernel.counts[static_cast<std::size_t>(type)], leaf); it;
          ++it)
-      row[static_cast<std::size_t>(it.col())] = it.value();
-  } else {
-    each_first_run(map, kernel.space, pool, start, group, [&](int output, const CellPassage&) {
-      ++row[static_cast<std::size_t>(output)];
-    });
-  }
+      row[static_cast<std::size_t>(it.col())] += it.value();
+  };
+  if (!each_leaf_instead(kernel, pool, start, type, group, add_leaf))
+    each_first_run(
+        map, kernel.space, pool, start, type, group,
+        [&](int output, const CellPassage&) { ++row[static_cast<std::size_t>(output)]; });
   return row;
 }
 
@@ -395,17 +423,17 @@ std::vector<CostSums> first_cost_sums(const Kernel& kernel,
                                       const CellMap& map, const RunPool& pool,
                                       const PoolStart& start, int type, TrialGroup group) {
   std::vector<CostSums> row(static_cast<std::size_t>(kernel.space.size()) + 1);
-  if (start.own == nullptr && start.entry) {
+  const auto add_leaf = [&](int leaf) {
     const markov::Counts& counts = kernel.counts[static_cast<std::size_t>(type)];
-    const int leaf = kernel.space.index_of(*start.entry).state;
     for (auto k = counts.outerIndexPtr()[leaf]; k < counts.outerIndexPtr()[leaf + 1]; ++k)
-      row[static_cast<std::size_t>(counts.innerIndexPtr()[k])] =
+      row[static_cast<std::size_t>(counts.innerIndexPtr()[k])] +=
           sums[static_cast<std::size_t>(type)][static_cast<std::size_t>(k)];
-  } else {
-    each_first_run(map, kernel.space, pool, start, group, [&](int output, const CellPassage& run) {
-      row[static_cast<std::size_t>(output)].add(run.costs);
-    });
-  }
+  };
+  if (!each_leaf_instead(kernel, pool, start, type, group, add_leaf))
+    each_first_run(map, kernel.space, pool, start, type, group,
+                   [&](int output, const CellPassage& run) {
+                     row[static_cast<std::size_t>(output)].add(run.costs);
+                   });
   return row;
 }
 

@@ -124,6 +124,77 @@ holds '.differs and .p < 0.05' unlike.json
 expect 2 'two halves need 32 bodies at least, these are 12' "$gatewalk" validate few.nc
 expect 2 'has no meaning for' "$gatewalk" validate coin.nc --trials 100
 
+# Two types without a map: the first one stands everywhere, also where bodies were seen to begin in the other. Of cells
+# that trap none and all, whatever the entry.
+cat >types.toml <<'END'
+[cell]
+width_m = 0.1
+length_m = 0.1
+[[cell.faces]]
+name = "S"
+move = [0, 1]
+[[cell.coordinates]]
+name = "s"
+unit = "m"
+scale = 0.1
+[[cell.types]]
+name = "soft"
+[[cell.types]]
+name = "hard"
+[field]
+columns = 1
+rows = 2
+max_gates = 0
+END
+awk 'BEGIN {
+  print "body,trial,type,in,s,out,out_s,time_s"
+  for (b = 0; b < 400; ++b) {
+    s = 0.1 * b / 400
+    if (b % 2) { print b ",1,soft,S," s ",S,0.05,1"; print b ",1,hard,S,0.05,trapped,,1" }
+    else print b ",1,hard,S," s ",trapped,,1"
+  }
+}' >types.csv
+expect 0 'type hard' "$gatewalk" build types.csv --cell types.toml -o types.nc
+"$gatewalk" predict types.nc --json types.json --quiet >/dev/null
+holds '.endings.crossed > 0.999' types.json
+expect 0 'one half of the bodies' "$gatewalk" validate types.nc --null-draws 99
+expect 0 'crossed' "$gatewalk" analyze types.nc
+# Cells that are symmetric do not make starts so: all of these enter on the right side, and leave to the left.
+cat >sides.toml <<'END'
+[cell]
+width_m = 0.1
+length_m = 0.1
+symmetric = true
+[[cell.faces]]
+name = "S"
+move = [0, 1]
+odd = ["s"]
+[[cell.faces]]
+name = "W"
+move = [1, 0]
+odd = []
+[[cell.faces]]
+name = "E"
+move = [-1, 0]
+odd = []
+[[cell.coordinates]]
+name = "s"
+unit = "m"
+[field]
+columns = 1
+rows = 1
+max_gates = 0
+END
+awk 'BEGIN { print "body,trial,in,s,out,out_s,time_s"; for (b = 0; b < 100; ++b) print b ",1,S," 0.02 + 0.0002 * b ",E,0.01,1" }' >sides.csv
+"$gatewalk" build sides.csv --cell sides.toml -o sides.nc --quiet >/dev/null 2>&1
+"$gatewalk" predict sides.nc --json sides.json --quiet >/dev/null 2>&1
+holds '.endings.left_side == 1 and .endings.right_side == 0' sides.json
+# What was run is not changed any more.
+expect 2 'has its runs, and only keys of field, terrain and start can be set' "$gatewalk" predict sides.nc --set cell.symmetric=false
+# Simulated trials of a scene with terrain, as recorded runs, come back.
+"$gatewalk" lattice "$scenes/mixed.toml" --set run.method=moreau --trials 300 --passages mixed.csv --cell-file mixed.toml --quiet >/dev/null
+expect 0 '300 bodies' "$gatewalk" build mixed.csv --cell mixed.toml -o mixed.nc
+
 # Another program's cells.
 if command -v python3 >/dev/null; then
   cp "$scenes/programs/pillars.toml" .
@@ -156,6 +227,13 @@ if command -v python3 >/dev/null; then
   "$gatewalk" predict pillars.nc --cell-program "$pillars" --start W:0.1,0.2 --start S:0.3,0 --first-runs 40 \
     --json first.json --quiet >/dev/null || fail "predict of pillars.nc with 40 first runs"
   holds '.gate_runs == 80 and ([.starts[].first_runs] == [40, 40])' first.json
+  expect 2 'holds runs of the program with its own' "$gatewalk" predict pillars.nc --cell-program "$pillars" --set parameters.radius_m=0.2
+  # Its cell must be that of the file.
+  sed 's/unit = "m"$/unit = "cm"/; s/s_m/s_cm/' pillars.toml >cm.toml
+  expect 2 'the unit of s is m of its cell, cm in cm.toml' "$gatewalk" predict cm.toml --cell-program "$pillars"
+  sed 's/move = \[0, -1\]/move = [0, -2]/' pillars.toml >moves.toml
+  expect 2 'the move of face N is \[0, -1\] of its cell, \[0, -2\] in moves.toml' "$gatewalk" predict moves.toml --cell-program "$pillars"
+  expect 2 'cell-timeout has no meaning without --cell-program' "$gatewalk" predict pillars.nc --cell-timeout 3
   expect 2 'it is for a matrix of a scene' "$gatewalk" predict pillars.nc --cell-program "$pillars" --first-runs 0
   expect 2 'it is for a matrix of a scene, or (above 0) of a cell program' "$gatewalk" predict pillars.nc --first-runs 40
   expect 2 'it is for a matrix of a scene, or (above 0) of a cell program' "$gatewalk" predict pillars.toml --cell-program "$pillars" --first-runs 40
