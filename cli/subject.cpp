@@ -1,6 +1,8 @@
 #include "cli/subject.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <sstream>
 #include <utility>
@@ -43,6 +45,7 @@ void put_problem(Subject& s, const Options& options) {
 }
 
 Subject open_scene(const Options& options, const std::string& path) {
+  refuse_files_of_cells(path);
   Subject s{.path = path, .scene = lattice::read_scene(path, options.overrides())};
   s.pool.emplace();
   s.how = accuracy_of(options);
@@ -86,6 +89,22 @@ std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
 }
 
 }  // namespace
+
+void refuse_files_of_cells(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return;  // a pipe is read only once
+  if (path.ends_with(".csv"))
+    throw UsageError(path +
+                     ": is a table, and no scene: of recorded runs gatewalk build TABLE --cell "
+                     "CELL.toml -o MATRIX.nc makes a chain");
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("[cell]"))
+      throw UsageError(path +
+                       ": has cells of another kind, [cell]: --cell-program COMMAND says who "
+                       "simulates them, gatewalk build TABLE --cell " +
+                       path + " makes a chain of recorded runs");
+}
 
 namespace {
 

@@ -100,6 +100,7 @@ int run_build(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (options.has("cell-program")) return build_program(options);
   if (options.has("cell")) return build_recorded(options);
+  refuse_files_of_cells(options.text("scene"));
   lattice::Scene scene = options.read_scene();
   if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)
     throw UsageError(scene.source + ": the scene with its map has " + std::to_string(bytes) +

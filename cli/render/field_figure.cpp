@@ -62,9 +62,10 @@ struct Plan {
   static constexpr double kLeft = 58, kMap = 270, kSmall = 108, kSmallLeft = 384;
   double top, map_width, map_height, cell_width, cell_height, legend_height;
   bool with_exits;
+  std::size_t endings;
 
-  Plan(const FieldMap& map, double from_top, double legend, bool exits)
-      : top(from_top + 42), legend_height(legend), with_exits(exits) {
+  Plan(const FieldMap& map, double from_top, double legend, bool exits, std::size_t bars)
+      : top(from_top + 42), legend_height(legend), with_exits(exits), endings(bars) {
     const auto columns = static_cast<double>(map.columns.blocks()),
                rows = static_cast<double>(map.rows.blocks());
     // Gates are drawn square where neither side would become too long or too short.
@@ -89,7 +90,7 @@ struct Plan {
   [[nodiscard]] double legend() const { return map().bottom + 52; }
   [[nodiscard]] Box bars() const {
     const double begin = legend() + legend_height + 14;
-    return {102, 300, begin, begin + height_of_bars(kEndingNames.size())};
+    return {102, 300, begin, begin + height_of_bars(endings)};
   }
   [[nodiscard]] double exits() const { return bars().bottom + 8; }
   [[nodiscard]] double end() const { return exits() + (with_exits ? height_of_exits() : 0.0); }
@@ -142,10 +143,14 @@ std::string small_map(const std::string& title, const FieldMap& map, const Box& 
          "\nunset label\n";
 }
 
-/// The five endings with their intervals.
-std::vector<ShareBar> bars_of(const lattice::EndingShares& endings) {
+/// The endings with their intervals; who went back where cells let bodies go there.
+std::vector<ShareBar> bars_of(const lattice::EndingShares& endings, const ShownField& shown) {
+  const auto& faces = shown.map.section.faces;
+  const bool back = std::any_of(faces.begin(), faces.end(),
+                                [](const dynamics::Face& face) { return face.di_y < 0; });
   std::vector<ShareBar> bars;
-  for (const EndingName& e : kEndingNames) {
+  for (const EndingName& e : kAllEndingNames) {
+    if (e.ending == markov::Ending::near_edge && !back) continue;
     const auto at = static_cast<std::size_t>(e.ending);
     bars.push_back({e.name, endings.share[at], endings.interval[at]});
   }
@@ -164,7 +169,8 @@ Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& sh
   double height = 0.0, most = 0.0;
   for (const FieldPicture& p : pictures) {
     maps.emplace_back(p.final_gates, kMostDrawn, kMostDrawn);
-    plans.emplace_back(maps.back(), height, types.legend_height(), p.exits.has_value());
+    plans.emplace_back(maps.back(), height, types.legend_height(), p.exits.has_value(),
+                       bars_of(p.endings, shown).size());
     height = plans.back().end();
     most = std::max(most, maps.back().blocks_of(p.final_gates).maxCoeff());
   }
@@ -187,7 +193,7 @@ Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& sh
            large_map(maps[i], plan, sheet, "$all" + tag, scale, types) +
            small_map("trapped, % of all", maps[i], plan.small(0), sheet, "$trapped" + tag) +
            small_map("departed, % of all", maps[i], plan.small(1), sheet, "$left" + tag) +
-           share_bars(sheet, plan.bars(), "$endings" + tag, bars_of(p.endings));
+           share_bars(sheet, plan.bars(), "$endings" + tag, bars_of(p.endings, shown));
     if (p.exits) out += panels_of(*p.exits, shown, sheet, plan.exits(), tag);
   }
   return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};

@@ -325,7 +325,8 @@ class Cutter {
         (cut_.columns > 0 ? ", " + std::to_string(cut_.columns) + " x " +
                                 std::to_string(cut_.rows) + " of them from (0, 0) on"
                           : "") +
-        " (are --metres-per-unit and --origin right?)");
+        " (are --metres-per-unit, --origin, --fps and --fastest right? " +
+        std::to_string(cut_.jumps) + " steps were faster than --fastest)");
   }
 
   const TrackFile& file_;

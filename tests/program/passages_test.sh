@@ -110,7 +110,7 @@ expect 2 'origin 1: must be two numbers' "$gatewalk" passages "${table[@]}" -o x
 for lattice in 0,3 2.5,3 x 3; do expect 2 'lattice .*: must be two' "$gatewalk" passages "${table[@]}" -o x.csv --lattice $lattice; done
 expect 2 'window 4: must be an odd number' "$gatewalk" passages "${table[@]}" -o x.csv --window 4
 expect 2 'fastest -1: must be above 0' "$gatewalk" passages "${table[@]}" -o x.csv --fastest -1
-expect 2 'no body is seen to enter a cell.*are --metres-per-unit and --origin right' "$gatewalk" passages "${table[@]}" -o x.csv --metres-per-unit 1e-6
+expect 2 'no body is seen to enter a cell.*are --metres-per-unit, --origin, --fps and --fastest right' "$gatewalk" passages "${table[@]}" -o x.csv --metres-per-unit 1e-6
 sed 's/name = "vx"/name = "spin"/; s/"vx"/"spin"/' cell.toml >spin.toml
 expect 2 'coordinate spin cannot be measured of tracks: these can, s' "$gatewalk" passages "${table[@]}" -o x.csv --cell spin.toml
 sed '0,/odd = \["s", "vx"\]/s//odd = ["vx"]/' cell.toml >even.toml

@@ -189,6 +189,11 @@ awk 'BEGIN { print "body,trial,in,s,out,out_s,time_s"; for (b = 0; b < 100; ++b)
 "$gatewalk" build sides.csv --cell sides.toml -o sides.nc --quiet >/dev/null 2>&1
 "$gatewalk" predict sides.nc --json sides.json --quiet >/dev/null 2>&1
 holds '.endings.left_side == 1 and .endings.right_side == 0' sides.json
+# What is easily taken for a scene.
+expect 2 'is a table, and no scene: .* gatewalk build TABLE --cell' "$gatewalk" predict sides.csv
+expect 2 'is a table, and no scene' "$gatewalk" build sides.csv -o x.nc
+expect 2 'has cells of another kind, \[cell\]: --cell-program' "$gatewalk" predict sides.toml
+expect 0 'none on record: runs were recorded' "$gatewalk" show sides.nc
 # What was run is not changed any more.
 expect 2 'has its runs, and only keys of field, terrain and start can be set' "$gatewalk" predict sides.nc --set cell.symmetric=false
 # Simulated trials of a scene with terrain, as recorded runs, come back.
@@ -223,6 +228,8 @@ if command -v python3 >/dev/null; then
   [ "$(jq -c .final_gates pillars.json)" = "$(jq -c .final_gates kept.json)" ] || fail "the file's runs are others"
   expect 0 '^start W' "$gatewalk" predict pillars.nc --cell-program "$pillars" --start W:0.1,0.2 --json west.json
   holds '.reached and .gate_runs > 0' west.json
+  # A figure has who went back.
+  "$gatewalk" predict pillars.nc --figure pillars.svg --quiet >/dev/null && grep -q 'went back' pillars.svg || fail "the figure leaves out who went back"
   # So many first runs and no other trials, for the starts that the file does not know.
   "$gatewalk" predict pillars.nc --cell-program "$pillars" --start W:0.1,0.2 --start S:0.3,0 --first-runs 40 \
     --json first.json --quiet >/dev/null || fail "predict of pillars.nc with 40 first runs"
