@@ -133,7 +133,7 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
                          " is no file, and what was read from it cannot be read again");
     return nullptr;
   }
-  KeptPlan plan{.head = head_of(options),
+  KeptPlan plan{.head = {},
                 .file = options.text(options.has("part") ? "part" : "checkpoint"),
                 .goes_on = options.has("resume"),
                 .is_part = options.has("part"),
@@ -148,11 +148,13 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
     if (plan.file.empty() && (options.has("max-time") || plan.goes_on))
       throw UsageError("--" + std::string(plan.goes_on ? "resume" : "max-time") +
                        " needs an output file, or --checkpoint FILE");
+    if (plan.file.empty()) return nullptr;
   }
   if (!plan.goes_on && PieceFile::is_one(plan.file) && !options.has("force"))
     throw UsageError(plan.file +
                      ": holds what an earlier run has done: --resume goes on with it, --force "
                      "begins anew");
+  plan.head = head_of(options);
   return std::make_unique<KeptRun>(std::move(plan));
 }
 

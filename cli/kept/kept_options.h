@@ -14,8 +14,9 @@ namespace gatewalk::cli {
 void declare_kept(Options& options, bool can_be_divided);
 /// Throws UsageError where they do not go together.
 void check_kept(const Options& options);
-/// None where the run reads what can be read only once (a pipe). `divided`: names of the stages
-/// that parts divide. Throws UsageError where a file cannot serve.
+/// None where there is no file to keep pieces in, and where the run reads what can be read only
+/// once (a pipe). `divided`: names of the stages that parts divide. Throws UsageError where a file
+/// cannot serve.
 [[nodiscard]] std::unique_ptr<KeptRun> kept_run(const Options& options,
                                                 const std::set<std::string>& divided);
 /// `work` with its pieces kept, if there is somebody, shared with other processes, if there are
