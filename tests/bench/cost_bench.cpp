@@ -208,7 +208,6 @@ void registers(const std::string& scenes) {
   for (int round = 0; round < kRounds; ++round)
     for (std::size_t i = 0; i < best.size(); ++i) {
       const auto& subject = subjects[i / sets.size()];
-      const auto& name = subject.name;
       const auto& p = subject.p;
       const auto& start = subject.start;
       const std::int64_t target = sets[i % sets.size()].second;
