@@ -61,6 +61,7 @@ int build_recorded(const Options& options) {
   const lattice::RunPool pool = lattice::pool_of(runs);
   const lattice::Problem problem = lattice::problem_of(cells, pool);
   for (const std::string& text : doubts(pool, problem)) options.warn(text);
+  if (const std::string text = far_from_faces(pool, problem); !text.empty()) options.warn(text);
   const auto& costs = problem.map().section.costs;
   for (std::size_t c = 0; c < costs.size(); ++c)
     if (runs.unknown[c] > 0)

@@ -1,5 +1,8 @@
 #include "cli/render/recorded.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
@@ -43,6 +46,18 @@ std::string table_of(const lattice::RunPool& pool) {
   return std::to_string(pool.bodies()) + " bodies, " + std::to_string(pool.trials()) + " trials, " +
          std::to_string(pool.gate_runs()) + " passages: " + std::to_string(fates.left) + " left, " +
          std::to_string(fates.trapped) + " trapped, " + std::to_string(fates.lost) + " lost\n";
+}
+
+std::string far_from_faces(const lattice::RunPool& pool, const lattice::Problem& problem) {
+  const dynamics::Coordinate& place = problem.map().section.coordinates.front();
+  const double large = std::max(problem.width, problem.length);
+  double farthest = 0.0;
+  lattice::each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
+    farthest = std::max(farthest, std::abs(entry.at[0]));
+  });
+  if (place.unit != "m" || farthest <= large) return "";
+  return place.name + " is up to " + digits(farthest) + " m, and a cell is " + digits(large) +
+         " m large: is it in metres, and measured on the face?";
 }
 
 std::vector<std::string> doubts(const lattice::RunPool& pool, const lattice::Problem& problem) {

@@ -13,6 +13,9 @@ namespace gatewalk::cli {
 [[nodiscard]] Json to_json(const lattice::RunPool& pool);
 [[nodiscard]] std::string table_of(const lattice::RunPool& pool);
 /// What they cannot tell, a sentence each: few bodies, faces that nobody entered by.
+/// Whether places on the faces are farther off than a cell is large. Empty: none is.
+[[nodiscard]] std::string far_from_faces(const lattice::RunPool& pool,
+                                         const lattice::Problem& problem);
 [[nodiscard]] std::vector<std::string> doubts(const lattice::RunPool& pool,
                                               const lattice::Problem& problem);
 

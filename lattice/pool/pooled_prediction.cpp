@@ -165,7 +165,7 @@ class PredictionRun {
   }
 
   [[nodiscard]] PooledPrediction carry_out() {
-    work_.end_part();
+    if (options_.trials) work_.end_part();  // else all parts need the same ones
     const bool may_add = !options_.first_runs && !options_.trials;
     while (ask() && runner_.may_go_on() && may_add) add_trials();
     result_.reached = open_.empty();
@@ -454,7 +454,7 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
   }
   const std::vector<PoolStart> all(tried.starts.begin(), tried.starts.end());
   runner.run_scattered(pool.scattered, range, options.trials.value_or(kBegin));
-  work.end_part();
+  if (options.trials) work.end_part();
   PoolChains chains(problem.map(), problem.field, options.per_leaf, kTried, options.seed);
   for (;;) {
     tried.scattered = std::move(pool.scattered);

@@ -38,6 +38,7 @@ divided 100 lattice.json lattice "${field[@]}" --trials 250 --json lattice.json
 divided 2 runs.csv lattice "${field[@]}" --trials 200 --passages runs.csv
 divided 2 rare.json rare "${field[@]}" --row 4 --split-trials 1500 --trials 300 --json rare.json
 divided 7 validate.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 210 --null-draws 99 --json validate.json
+divided 3 trees.json validate "${field[@]}" --accuracy 0.1 --trials 120 --null-draws 99 --json trees.json
 divided 2 force.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 100 --null-draws 99 --memory --start 0,0,15 --start 4,5,10 --json force.json
 if command -v python3 >/dev/null; then
   cp "$scenes/programs/pillars.toml" .

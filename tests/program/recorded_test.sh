@@ -189,6 +189,9 @@ awk 'BEGIN { print "body,trial,in,s,out,out_s,time_s"; for (b = 0; b < 100; ++b)
 "$gatewalk" build sides.csv --cell sides.toml -o sides.nc --quiet >/dev/null 2>&1
 "$gatewalk" predict sides.nc --json sides.json --quiet >/dev/null 2>&1
 holds '.endings.left_side == 1 and .endings.right_side == 0' sides.json
+# In millimetres, where metres are said.
+awk -F, -v OFS=, 'NR > 1 { $4 *= 1000 } { print }' sides.csv >mm.csv
+expect 0 's is up to 39.8 m, and a cell is 0.1 m large: is it in metres' "$gatewalk" build mm.csv --cell sides.toml -o mm.nc
 # What is easily taken for a scene.
 expect 2 'is a table, and no scene: .* gatewalk build TABLE --cell' "$gatewalk" predict sides.csv
 expect 2 'is a table, and no scene' "$gatewalk" build sides.csv -o x.nc
