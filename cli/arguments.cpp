@@ -16,6 +16,7 @@
 #include "cli/render/text.h"
 #include "cli/subject.h"
 #include "dynamics/base/work.h"
+#include "lattice/pool/pool_runner.h"
 
 namespace gatewalk::cli {
 void add_starts(Options& options, const std::string& by_default) {
@@ -93,10 +94,13 @@ lattice::AccuracyOptions accuracy_of(const Options& options) {
   return how;
 }
 
-void fix_trials(const Options& options, lattice::AccuracyOptions& how) {
+void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int64_t starts) {
   if (options.has("trials")) {
-    refuse(options, {"gate-runs"}, "beside --trials");
-    how.trials = options.count("trials", lattice::kTrialGroups);
+    refuse(options, {"gate-runs", "accuracy"}, "beside --trials");
+    how.trials = options.count("trials", lattice::PoolRunner::kLeastTrials * starts);
+    if (*how.trials % starts != 0)
+      throw UsageError("--trials " + std::to_string(*how.trials) +
+                       ": must be so many for each of " + std::to_string(starts) + " starts alike");
   } else if (options.has("shard")) {
     throw UsageError(
         "--shard of trees needs --trials N: a part must know how many there are in all");

@@ -39,7 +39,7 @@ void add_accuracy(Options& options, const std::string& by_default = "0.02");
 /// Of these. Throws UsageError for an accuracy outside (0, 1).
 [[nodiscard]] lattice::AccuracyOptions accuracy_of(const Options& options);
 /// Of trees: --trials, if it is given, instead of an accuracy; parts need it.
-void fix_trials(const Options& options, lattice::AccuracyOptions& how);
+void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int64_t starts);
 /// Warns where it was not reached.
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy);
 

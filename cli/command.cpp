@@ -621,11 +621,12 @@ bool Options::parse(const Arguments& arguments) {
         std::any_of(state_->output_files.begin(), state_->output_files.end(),
                     [&](const State::Output& o) { return o.name == option.string_key; }) ||
         (option.string_key == "output" && !state_->needs_output.empty());
-    Strings& words = is_output ? state_->words.outputs : state_->words.shaping;
+    const bool is_strict = option.string_key == "strict";  // of the result of all parts
+    Strings& words = is_output || is_strict ? state_->words.outputs : state_->words.shaping;
     if (option.position_key >= 0) {
       words.push_back(option.value.front());
     } else if (option.string_key != "part" && option.string_key != "checkpoint" &&
-               (is_output || !shapes_nothing(option.string_key))) {
+               (is_output || is_strict || !shapes_nothing(option.string_key))) {
       if (option.value.empty()) words.push_back("--" + option.string_key);
       for (const auto& value : option.value)
         words.push_back("--" + option.string_key + "=" + value);
@@ -725,6 +726,8 @@ std::vector<std::string> Options::files_read() const {
 }
 
 const CommandWords& Options::words() const { return state_->words; }
+
+void Options::depends_on(const std::string& text) const { state_->words.others.push_back(text); }
 
 void Options::warn(const std::string& text) const {
   if (text.empty()) return;

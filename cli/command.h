@@ -42,7 +42,8 @@ struct CommandWords {
   std::vector<std::string> shaping, outputs;  // what shapes the result; what it is written to
   std::string main_output;                    // output (-o) or json
   bool output_is_folder = false;
-  std::vector<std::string> parts{};  // Arguments::parts
+  std::vector<std::string> others{};  // what else shapes the result, and is no word of it
+  std::vector<std::string> parts{};   // Arguments::parts
 };
 
 /// Exit statuses, a contract for scripts.
@@ -149,6 +150,8 @@ class Options {
   [[nodiscard]] dynamics::Work work() const;
   /// Its words without what only says how it runs.
   [[nodiscard]] const CommandWords& words() const;
+  /// The result depends on this too: pieces of other such are refused.
+  void depends_on(const std::string& text) const;
   /// All files that it reads, also those that a scene names.
   [[nodiscard]] std::vector<std::string> files_read() const;
   /// A warning, always: the result cannot be taken at face value. Nothing for an empty text.

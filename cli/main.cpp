@@ -80,7 +80,8 @@ int main(int argc, char** argv) {
   const auto fail = [&](cli::ExitCode code, const std::exception& e) {
     if (code == cli::kFailure) std::cerr.rdbuf(err);
     std::cerr << "gatewalk: " << e.what() << "\n";
-    if (cli::stopped_status() != cli::kStopped) std::cerr << cli::stopped_text();
+    if (code == cli::kFailure && cli::stopped_status() != cli::kStopped)
+      std::cerr << cli::stopped_text();
     if (code == cli::kFailure) cli::abort_ranks(code);
     return static_cast<int>(code);
   };

@@ -108,6 +108,21 @@ void refuse_files_of_cells(const std::string& path) {
 
 namespace {
 
+std::string names(const std::vector<dynamics::CostInfo>& costs) {
+  std::string all;
+  for (const dynamics::CostInfo& cost : costs) all += (all.empty() ? "" : ", ") + cost.key;
+  return all;
+}
+
+/// What a program says of its cell: another one is told by it, mostly.
+std::string told_by(const dynamics::Cell& cell) {
+  std::string text = "cell program: " + names_of(cell.section().faces) + "; " +
+                     names_of(cell.section().coordinates) + "; " + names(cell.section().costs);
+  for (const dynamics::Cell::Number& n : cell.numbers())
+    text += "; " + n.key + " = " + digits(n.value);
+  return text;
+}
+
 /// Throws UsageError where the cell of a program is not that of a file.
 void require_same(const dynamics::Cell& cell, const lattice::CellFile& file,
                   const std::string& path) {
@@ -173,6 +188,10 @@ Subject open_program(const Options& options, const std::string& path) {
   const auto cell =
       std::make_shared<ProgramCell>(options.text("cell-program"), how, parameters_of(options));
   require_same(*cell, *s.cells, path);
+  if (s.file && names(cell->section().costs) != names(s.cells->map.section.costs))
+    throw UsageError("--cell-program: costs " + names(cell->section().costs) + " of its cell, " +
+                     names(s.cells->map.section.costs) + " of the runs in " + path);
+  options.depends_on(told_by(*cell));
   s.problem = lattice::problem_of(*s.cells, *s.pool);
   dynamics::CellMap& map = s.problem.cells.map;
   const std::vector<dynamics::Face> faces = std::exchange(map.section, cell->section()).faces;

@@ -50,7 +50,7 @@ int build_bins(const Options& options, const lattice::Scene& scene,
 int build_tree(const Options& options, const lattice::Scene& scene, const Settled& settled) {
   refuse(options, {"first-trial"}, "for trees: --shard divides their trials");
   lattice::TreeOptions how = tree_options(options, scene);
-  fix_trials(options, how.accuracy);
+  fix_trials(options, how.accuracy, std::max<std::int64_t>(1, std::ssize(how.starts)));
   const dynamics::Stopwatch watch;
   const lattice::TreeChain chain =
       lattice::make_tree_chain(lattice::problem_of(scene), how, options.work());

@@ -20,32 +20,44 @@ dynamics::TrialRange trials_of(const std::vector<Json>& heads) {
   return {first, end - first};
 }
 
+/// Appends those of a list that are not there yet, each option once.
+void add_options(std::vector<std::string>& words, const Json& more) {
+  for (const std::string word : more) {
+    const std::string name = word.substr(0, word.find('='));
+    if (std::none_of(words.begin(), words.end(),
+                     [&](const std::string& w) { return w.substr(0, w.find('=')) == name; }))
+      words.push_back(word);
+  }
+}
+
 /// The words of the one run.
 std::vector<std::string> words_of(const std::vector<Json>& heads, const std::string& output) {
   const Json& head = heads.front();
-  std::vector<std::string> words;
-  const auto add_all = [&](const Json& from) {
-    for (const std::string word : from) words.push_back(word);
-  };
-  add_all(head.at("words"));
+  std::vector<std::string> words, outputs;
+  for (const std::string word : head.at("words")) words.push_back(word);
+  std::erase(words, "--passages");
   if (head.contains("first_trial")) {
     for (const Json& other : heads)
       if (!other.contains("first_trial"))
         throw UsageError("some parts are by --shard, others by --first-trial");
     const dynamics::TrialRange trials = trials_of(heads);
-    for (std::string& w : words) {
-      if (w.starts_with("--trials=")) w = "--trials=" + std::to_string(trials.count);
-      if (w.starts_with("--first-trial=")) w = "--first-trial=" + std::to_string(trials.first);
-    }
+    const auto put = [&](const std::string& name, std::int64_t value) {
+      const auto there = std::find_if(words.begin(), words.end(),
+                                      [&](const std::string& w) { return w.starts_with(name); });
+      (there == words.end() ? words.emplace_back() : *there) = name + std::to_string(value);
+    };
+    put("--trials=", trials.count);
+    put("--first-trial=", trials.first);
     if (trials.first == 0) std::erase(words, "--first-trial=0");
   }
-  std::erase(words, "--passages");
-  add_all(head.at("outputs"));
-  if (output.empty()) return words;
-  std::string name = head.at("main_output");
-  if (head.at("command") == "sweep" && output.ends_with(".csv")) name = "csv";
-  std::erase_if(words, [&](const std::string& w) { return w.starts_with("--" + name + "="); });
-  words.push_back("--" + name + "=" + output);
+  for (const Json& each : heads) add_options(outputs, each.at("outputs"));
+  if (!output.empty()) {
+    std::string name = head.at("main_output");
+    if (head.at("command") == "sweep" && output.ends_with(".csv")) name = "csv";
+    std::erase_if(outputs, [&](const std::string& w) { return w.starts_with("--" + name + "="); });
+    outputs.push_back("--" + name + "=" + output);
+  }
+  words.insert(words.end(), outputs.begin(), outputs.end());
   return words;
 }
 
@@ -73,12 +85,18 @@ int run_merge(const Arguments& arguments) {
   const Command* const command = command_named(name);
   if (!command)
     throw markov::BadFile(parts.front() + ": is of a command " + name + ", unknown here");
+  if (options.has("output") && options.has("json") && heads.front().at("main_output") == "json")
+    throw UsageError("-o and --json name the same output of gatewalk " + name + ": give one");
   Arguments all(words_of(heads, options.text("output")));
   for (const char* flag : {"quiet", "force"})
     if (options.has(flag)) all.words.push_back("--" + std::string(flag));
   if (options.has("json")) all.words.push_back("--json=" + options.text("json"));
-  if (own_end != arguments.words.end())
-    all.words.insert(all.words.end(), own_end + 1, arguments.words.end());
+  for (auto word = own_end; word != arguments.words.end(); ++word) {
+    for (const char* option : {"shard", "part", "checkpoint", "resume", "max-time", "first-trial"})
+      if (word->starts_with("--" + std::string(option)))
+        throw UsageError(*word + " has no meaning in merge, which has all parts");
+    if (word != own_end) all.words.push_back(*word);
+  }
   all.parts = parts;
   return command->run(all);
 }

@@ -97,7 +97,7 @@ int run_rare(const Arguments& arguments) {
   if (const lattice::Splitting& s = event.splitting; !(s.rows.back().probability > 0.0))
     options.warn("none of " + std::to_string(s.trials) + " trials entered row " +
                  std::to_string(how.row) + "; --gate-runs N goes on for so many gate runs");
-  else if (!s.reached)
+  else if (!s.reached && !how.trials)
     options.warn("the relative standard error of " + digits(how.accuracy) +
                  " was not reached with " + std::to_string(how.most_runs) +
                  " gate runs; --gate-runs allows more");

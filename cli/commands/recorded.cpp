@@ -53,8 +53,8 @@ void give_out(const Options& options, std::vector<dynamics::Transitions> matrice
 
 int build_recorded(const Options& options) {
   refuse(options,
-         {"accuracy", "gate-runs", "starts", "start", "states", "trials", "first-trial", "shard",
-          "bins", "strict"},
+         {"accuracy", "gate-runs", "starts", "start", "states", "trials", "first-trial", "bins",
+          "strict", "shard", "part", "checkpoint", "resume", "max-time"},
          "for recorded runs");
   lattice::CellFile cells = lattice::read_cell_file(options.text("cell"), options.overrides());
   const lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
@@ -88,7 +88,7 @@ int build_program(const Options& options) {
   lattice::TreeOptions how{.accuracy = s.how, .starts = s.entries()};
   if (options.has("states"))
     how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
-  fix_trials(options, how.accuracy);
+  fix_trials(options, how.accuracy, std::ssize(how.starts));
   lattice::TreeChain chain = lattice::make_tree_chain(s.problem, how, options.work());
   const dynamics::Health health = chain.transitions.front().health;
   const Json states = to_json(chain, s.how.accuracy);

@@ -11,7 +11,7 @@ int validate_recorded(const Options& options) {
   const std::string path = options.text("scene");
   refuse(options,
          {"matrix", "matrix-trials", "observed", "trials", "walks", "accuracy", "gate-runs",
-          "start", "bins", "memory", "strict"},
+          "start", "bins", "memory", "strict", "shard", "part", "checkpoint", "resume", "max-time"},
          "for " + path + ", of whose bodies one half is held against the other");
   const Subject s = open_subject(options, "scene");
   if (s.pool->scattered.each.bodies.empty())

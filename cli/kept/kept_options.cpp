@@ -53,6 +53,7 @@ Json head_of(const Options& options) {
             {"command", words.command}, {"words", words.shaping},
             {"outputs", words.outputs}, {"main_output", words.main_output},
             {"scene", nullptr},         {"inputs", Json::array()}};
+  head["others"] = words.others;
   if (options.has("passages")) head["words"].push_back("--passages");  // what is kept has them
   if (options.has("scene")) {
     try {
@@ -150,10 +151,16 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
                        " needs an output file, or --checkpoint FILE");
     if (plan.file.empty()) return nullptr;
   }
-  if (!plan.goes_on && PieceFile::is_one(plan.file) && !options.has("force"))
+  const bool is_there = std::filesystem::exists(plan.file), is_kept = PieceFile::is_one(plan.file);
+  if (is_kept && !plan.goes_on && !options.has("force"))
     throw UsageError(plan.file +
                      ": holds what an earlier run has done: --resume goes on with it, --force "
                      "begins anew");
+  if (is_there && !is_kept && !(options.has("force") && !plan.goes_on))
+    throw UsageError(plan.file +
+                     ": is there and holds no pieces of a run: name another file, or --force");
+  if (options.has("max-time") && !ranks())  // which stop together
+    plan.most_seconds = seconds_of(options.text("max-time"));
   plan.head = head_of(options);
   return std::make_unique<KeptRun>(std::move(plan));
 }
@@ -161,19 +168,12 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
 dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun* kept) {
   work.kept = kept;
   work.ranks = ranks();
+  if (!work.ranks) return work;
   const double most = options.has("max-time") ? seconds_of(options.text("max-time"))
                                               : std::numeric_limits<double>::infinity();
-  const auto is_late = [most, since = dynamics::Stopwatch()] { return since.seconds() >= most; };
-  if (work.ranks) {  // which stop together
-    set_ranks_stop([is_late] { return is_late() || interrupted(); });
-    return work;
-  }
-  if (!options.has("max-time")) return work;
-  work.told = [told = work.told, is_late](std::string_view what, std::int64_t done,
-                                          std::int64_t total) {
-    if (done < total && is_late()) throw Interrupted{};
-    told(what, done, total);
-  };
+  set_ranks_stop([most, since = dynamics::Stopwatch()] {  // all of them together
+    return since.seconds() >= most || interrupted();
+  });
   return work;
 }
 

@@ -19,8 +19,8 @@ void check_kept(const Options& options);
 /// cannot serve.
 [[nodiscard]] std::unique_ptr<KeptRun> kept_run(const Options& options,
                                                 const std::set<std::string>& divided);
-/// `work` with its pieces kept, if there is somebody, shared with other processes, if there are
-/// any, and stopped by --max-time.
+/// `work` with its pieces kept, if there is somebody, and shared with other processes, if there are
+/// any.
 [[nodiscard]] dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun* kept);
 
 }  // namespace gatewalk::cli

@@ -71,6 +71,8 @@ std::string difference(const Json& there, const Json& here) {
     return all;
   };
   if (words(there) != words(here)) return "there:" + words(there) + "; here:" + words(here);
+  if (there.at("others") != here.at("others"))
+    return "there: " + there.at("others").dump() + "; here: " + here.at("others").dump();
   for (const Json& input : here.at("inputs"))
     if (std::find(there.at("inputs").begin(), there.at("inputs").end(), input) ==
         there.at("inputs").end())
@@ -110,6 +112,8 @@ KeptRun::KeptRun(KeptPlan plan) : plan_(std::move(plan)) {
     read(0);
     if (plan_.writes) writer_.emplace(files_.front());
     set_kept_file(plan_.file);
+  } else if (plan_.at_once || plan_.goes_on) {
+    set_kept_file(plan_.file);
   }
 }
 
@@ -120,9 +124,11 @@ void KeptRun::read(std::size_t number) {
   const bool goes_on = plan_.parts.empty();
   const std::string differs = difference(head, plan_.head);
   if (!differs.empty())
-    throw UsageError(path + ": is of another run" +
-                     (goes_on ? "" : " than " + plan_.parts.front()) + ", " + differs +
-                     (goes_on ? ". Without --resume this run begins anew" : ""));
+    throw UsageError(
+        path + ": is of another run" +
+        (goes_on || path == plan_.parts.front() ? "" : " than " + plan_.parts.front()) + ", " +
+        differs + (goes_on ? ". --force instead of --resume begins anew" : ""));
+  const bool skips = !goes_on && head.contains("shard") && head["shard"][0] != 1;
   const auto part_of = [](const Json& h) {
     return std::array{h.value("shard", Json()), h.value("first_trial", Json()),
                       h.value("trials", Json())};
@@ -140,6 +146,8 @@ void KeptRun::read(std::size_t number) {
                          ", that of other parts " + known->second);
       continue;
     }
+    // What every part does is taken from one of them.
+    if (skips && !plan_.divided.contains(names_[record.stage])) continue;
     auto& pieces = found_[record.stage];
     const auto after = pieces.upper_bound(record.items.first);
     const auto overlaps = [&](const Found& other) {
@@ -203,8 +211,6 @@ void KeptRun::begin(const dynamics::Stage& stage) {
   what_ = stage.what;
   is_named_ = true;
   own_ = own_share(stage);
-  // What every part does, the first one keeps for all.
-  keeps_ = !plan_.shard || divides(stage) || plan_.shard->number == 1;
   if (const auto known = names_.find(stage_); known == names_.end()) {
     is_named_ = false;
   } else if (known->second != what_) {
@@ -215,6 +221,7 @@ void KeptRun::begin(const dynamics::Stage& stage) {
 }
 
 std::optional<dynamics::KeptPieces::Next> KeptRun::next(std::int64_t at) {
+  const bool is_late = since_start_.seconds() >= plan_.most_seconds && plan_.writes;
   at = std::max(at, own_.first);
   if (at >= end_of(own_)) return {};
   const auto& pieces = found_[stage_];
@@ -228,11 +235,11 @@ std::optional<dynamics::KeptPieces::Next> KeptRun::next(std::int64_t at) {
   const TrialRange gap{at, end - at};
   if (!plan_.parts.empty())
     throw UsageError("missing: " + shown(gap) + " of " + what_ + ", which no part has");
+  if (is_late) throw Interrupted{};
   return Next{gap, {}};
 }
 
 void KeptRun::keep(TrialRange items, std::string bytes) {
-  if (!keeps_) return;
   if (!std::exchange(is_named_, true)) write(stage_, {items.first, 0}, what_);
   write(stage_, items, bytes);
 }
@@ -285,9 +292,10 @@ void KeptRun::end_part() {
 void KeptRun::done() {
   set_kept_file("");
   if (!writer_) return;
+  const bool is_ours = writer_->is_at_its_path();
   writer_.reset();
   std::error_code error;
-  std::filesystem::remove(plan_.file, error);
+  if (is_ours) std::filesystem::remove(plan_.file, error);
 }
 
 std::vector<std::pair<std::string, std::string>> part_names(const std::vector<std::string>& parts) {

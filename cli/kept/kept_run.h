@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -36,6 +37,8 @@ struct KeptPlan {
   std::set<std::string> divided{};   // ... these
   std::vector<std::string> parts{};  // files that hold all pieces: none is done
   bool writes = true;                // the file; else another process does
+  /// It stops, between two pieces, after so many.
+  double most_seconds = std::numeric_limits<double>::infinity();
   std::function<void(const std::string&)> warn;
 };
 
@@ -60,7 +63,7 @@ class KeptRun : public dynamics::KeptPieces {
   [[nodiscard]] bool has_share(const dynamics::Stage& stage) const override;
   void end_part() override;
 
-  /// The result is there: the file goes.
+  /// The result is there: the file goes, unless another run has put its own there.
   void done();
 
  private:
@@ -88,7 +91,6 @@ class KeptRun : public dynamics::KeptPieces {
   std::uint32_t stage_ = 0;  // at hand
   std::string what_;
   dynamics::TrialRange own_;  // items of it
-  bool keeps_ = true;         // its pieces
   bool is_named_ = false;     // in the file
 
   std::optional<PieceWriter> writer_;

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include "markov/formats/counts.h"
 #include "markov/formats/file.h"
@@ -115,6 +116,10 @@ std::string PieceFile::bytes_of(const PieceRecord& record) const {
 }
 
 PieceWriter::PieceWriter(const std::string& path, std::string_view head) : path_(path) {
+  if (PieceFile::is_one(path)) {  // to be replaced
+    open();
+    ::close(std::exchange(file_, -1));
+  }
   // As a whole: there is no file without its head.
   markov::replace_file(path, first_line(head) + std::string(head) + "\n");
   open();
@@ -149,6 +154,12 @@ void PieceWriter::add(std::uint32_t stage, dynamics::TrialRange items, std::stri
   if (!markov::write_all(file_, record)) fail(path_);
   is_synced_ = false;
   if (since_sync_.seconds() >= 1.0) sync();
+}
+
+bool PieceWriter::is_at_its_path() const {
+  struct stat own = {}, there = {};
+  return ::fstat(file_, &own) == 0 && ::stat(path_.c_str(), &there) == 0 &&
+         own.st_dev == there.st_dev && own.st_ino == there.st_ino;
 }
 
 void PieceWriter::sync() {

@@ -52,7 +52,8 @@ class PieceFile {
 /// once, and on the disk after a second at most, and at the end.
 class PieceWriter {
  public:
-  /// A new file. Throws std::runtime_error when it cannot be written.
+  /// A new file. Throws std::runtime_error when it cannot be written, and where one is there that
+  /// somebody writes.
   PieceWriter(const std::string& path, std::string_view head);
   /// Goes on behind the last whole record; what follows is cut off.
   explicit PieceWriter(const PieceFile& file);
@@ -62,6 +63,8 @@ class PieceWriter {
 
   void add(std::uint32_t stage, dynamics::TrialRange items, std::string_view bytes);
   void sync();
+  /// Nobody has put another file there.
+  [[nodiscard]] bool is_at_its_path() const;
 
  private:
   void open();

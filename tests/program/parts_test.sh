@@ -56,6 +56,14 @@ done
 "$gatewalk" merge from* -o all.json --quiet
 same one.json all.json
 holds '[.made_by.parts[].holds] == ["trials 0 to 99", "trials 100 to 249", "trials 250 to 299"]' all.json
+# In any order, and where only the default says how many.
+"$gatewalk" "${one[@]}" --first-trial 0 --part usual0 2>/dev/null
+"$gatewalk" "${one[@]}" --first-trial 100 --trials 200 --part usual100 2>/dev/null
+for order in "usual0 usual100" "usual100 usual0"; do
+  # shellcheck disable=SC2086
+  "$gatewalk" merge $order -o usual.json --quiet --force
+  holds '.trials == 300' usual.json
+done
 # Without --part a result of these trials.
 "$gatewalk" "${one[@]}" --first-trial 250 --trials 50 --json last.json
 "$gatewalk" merge from250 -o again.json --quiet
@@ -91,6 +99,35 @@ expect 2 'd: holds what an earlier run has done' "$gatewalk" "${one[@]}" --trial
 expect 0 'd is done' "$gatewalk" "${one[@]}" --trials 300 --shard 3/3 --part d --resume
 expect 2 'd: holds part 3 of 3, and this is part 2 of 3' "$gatewalk" "${one[@]}" --trials 300 --shard 2/3 --part d --resume
 expect 2 'MATRIX d: holds pieces of a run: gatewalk merge' "$gatewalk" predict d
+# Faults count where one of the parts was to be strict, as in one run.
+loose=(lattice "$scenes/field.toml" --set run.method=moreau --set run.step_s=0.02 --trials 1000 --strict --json strict.json --quiet)
+"$gatewalk" "${loose[@]}" --force >/dev/null 2>&1
+one_status=$?
+for i in 1 2; do "$gatewalk" "${loose[@]}" --shard $i/2 --part strict$i 2>/dev/null; done
+"$gatewalk" merge strict1 strict2 --quiet --force >/dev/null 2>&1
+[ $? = $one_status ] && [ $one_status = 1 ] || fail "merge forgets --strict"
+# A part of another program's cell is told.
+if command -v python3 >/dev/null; then
+  cp "$scenes/programs/pillars.py" own.py
+  own=(lattice pillars.toml --cell-program "python3 own.py" --trials 40 --quiet)
+  "$gatewalk" "${own[@]}" --shard 1/2 --part own1 2>/dev/null
+  sed -i 's/"radius_m": 0.3/"radius_m": 0.2/' own.py
+  "$gatewalk" "${own[@]}" --shard 2/2 --part own2 2>/dev/null
+  expect 2 'own1: is of another run, there: .*radius_m = 0.3.*; here: .*radius_m = 0.2' "$gatewalk" merge own1 own2 -o x.json
+fi
+# A file that is somebody else's is not taken; nor one behind --.
+echo precious >notes.txt
+expect 2 'notes.txt: is there and holds no pieces' "$gatewalk" "${one[@]}" --json x.json --checkpoint notes.txt
+expect 2 'notes.txt: is there and holds no pieces' "$gatewalk" "${one[@]}" --shard 1/2 --part notes.txt
+[ "$(cat notes.txt)" = precious ] || fail "a checkpoint replaced another file"
+expect 2 'has no meaning in merge' "$gatewalk" merge c d -- --shard 1/2
+expect 2 'name the same output' "$gatewalk" merge a b -o x.json --json y.json
+expect 2 'must be at least 16' "$gatewalk" build "${field[@]}" --bins tree --trials 10 -o x.nc
+# Each part gets on under a time limit, also with what all parts do.
+part=(rare "${field[@]}" --row 4 --split-trials 2000 --shard 2/2 --part late --quiet --threads 1)
+status=75
+for _ in $(seq 20); do "$gatewalk" "${part[@]}" --max-time 1s --resume >/dev/null 2>&1; status=$?; [ $status = 75 ] || break; done
+[ $status = 0 ] || fail "part 2 under --max-time: status $status"
 # Wrong use.
 expect 2 'must be I/N' "$gatewalk" "${one[@]}" --shard 0/3 --part x
 expect 2 'must be I/N' "$gatewalk" "${one[@]}" --shard 4/3 --part x

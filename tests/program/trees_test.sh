@@ -30,7 +30,7 @@ expect 0 'fewer states than the runs allow' "$gatewalk" build "$scenes/field.tom
 expect 0 'for starts d' "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.2 --starts=-5:5,-5:5,12:16 -o range.nc
 expect 2 'd must lie inside' "$gatewalk" build "$scenes/field.toml" --starts=-50:5,-5:5,12:16 -o x.nc
 expect 2 'three ranges' "$gatewalk" build "$scenes/field.toml" --starts 1:2 -o x.nc
-expect 2 'must be at least 8' "$gatewalk" build "$scenes/field.toml" --bins tree --trials 5 -o x.nc
+expect 2 'must be at least 16' "$gatewalk" build "$scenes/field.toml" --bins tree --trials 5 -o x.nc
 expect 2 'no meaning for bins' "$gatewalk" build "$scenes/field.toml" --bins paper --accuracy 0.1 -o x.nc
 
 finish
