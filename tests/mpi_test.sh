@@ -25,8 +25,8 @@ shared() {
     rm -f "$output"
   done
 }
-shared "1 2 3 4" predict.json predict "${field[@]}" --accuracy 0.03 --json predict.json
-shared "2 4" tree.nc build "${field[@]}" --starts all --accuracy 0.1 -o tree.nc
+shared "${GATEWALK_LONG:+1 3} 2 4" predict.json predict "${field[@]}" --accuracy 0.03 --json predict.json
+shared 2 tree.nc build "${field[@]}" --starts all --accuracy 0.1 -o tree.nc
 shared 3 bins.nc build "${field[@]}" --bins paper --trials 30 -o bins.nc
 shared 3 lattice.json lattice "${field[@]}" --trials 3000 --json lattice.json
 shared 3 rare.json rare "${field[@]}" --set run.method=moreau --row 3 --accuracy 0.1 --json rare.json

@@ -28,17 +28,17 @@ divided() {
 field=("$scenes/field.toml" --set run.method=moreau --seed 5)
 divided 7 gate.json gate "${field[@]}" --trials 1000 --json gate.json
 divided 2 sweep.csv sweep "$scenes/single_gate.toml" --vary forces.propulsion_N=5:1:8 --trials 90 --csv sweep.csv
-divided 7 sweep.json sweep "$scenes/single_gate.toml" --set run.method=auto --vary forces.propulsion_N=6,8 --trials 90 --json sweep.json
+divided 3 sweep.json sweep "$scenes/single_gate.toml" --set run.method=auto --vary forces.propulsion_N=6,8 --trials 90 --json sweep.json
 divided 2 bins.nc build "${field[@]}" --bins paper --trials 20 -o bins.nc
-divided 7 bins.nc build "$scenes/mixed.toml" --set run.method=moreau --bins paper --trials 5 -o bins.nc
+divided 3 bins.nc build "$scenes/mixed.toml" --set run.method=moreau --bins paper --trials 5 -o bins.nc
 divided 2 tree.nc build "${field[@]}" --bins tree --trials 400 -o tree.nc
-divided 7 tree.nc build "${field[@]}" --bins tree --starts all --trials 400 -o tree.nc
-divided 7 lattice.json lattice "${field[@]}" --trials 500 --json lattice.json
-divided 100 lattice.json lattice "${field[@]}" --trials 250 --json lattice.json
+divided 3 tree.nc build "${field[@]}" --bins tree --starts all --trials 400 -o tree.nc
+divided 2 lattice.json lattice "${field[@]}" --trials 500 --json lattice.json
+[ -z "${GATEWALK_LONG:-}" ] || divided 100 lattice.json lattice "${field[@]}" --trials 250 --json lattice.json
 divided 2 runs.csv lattice "${field[@]}" --trials 200 --passages runs.csv
 divided 2 rare.json rare "${field[@]}" --row 4 --split-trials 1500 --trials 300 --json rare.json
-divided 7 validate.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 210 --null-draws 99 --json validate.json
-divided 3 trees.json validate "${field[@]}" --accuracy 0.1 --trials 120 --null-draws 99 --json trees.json
+divided 2 validate.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 210 --null-draws 99 --json validate.json
+divided 2 trees.json validate "${field[@]}" --accuracy 0.1 --trials 120 --null-draws 99 --json trees.json
 divided 2 force.json validate "${field[@]}" --bins paper --matrix-trials 10 --trials 100 --null-draws 99 --memory --start 0,0,15 --start 4,5,10 --json force.json
 if command -v python3 >/dev/null; then
   cp "$scenes/programs/pillars.toml" .
