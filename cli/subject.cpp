@@ -127,40 +127,43 @@ std::string told_by(const dynamics::Cell& cell) {
 void require_same(const dynamics::Cell& cell, const lattice::CellFile& file,
                   const std::string& path) {
   const dynamics::Section &program = cell.section(), &own = file.map.section;
-  const auto refuse_where = [&](bool differs, const std::string& what, const std::string& there,
-                                const std::string& here) {
+  const auto differ = [&](bool differs, const std::string& what, const std::string& there,
+                          const std::string& here) {
     if (differs)
       throw UsageError("--cell-program: " + what + " " + there + " of its cell, " + here + " in " +
                        path);
   };
-  const auto differ = [&](const char* what, const auto& a, const auto& b) {
-    refuse_where(names_of(a) != names_of(b), what, names_of(a), names_of(b));
+  const auto name = [&](const char* what, const auto& a, const auto& b) {
+    differ(names_of(a) != names_of(b), what, names_of(a), names_of(b));
   };
-  differ("faces", program.faces, own.faces);
-  differ("coordinates", program.coordinates, own.coordinates);
-  refuse_where(file.types.size() > 1, "one type", "", std::to_string(file.types.size()) + " types");
+  name("faces", program.faces, own.faces);
+  name("coordinates", program.coordinates, own.coordinates);
+  if (file.types.size() > 1)
+    throw UsageError("--cell-program: is a cell of one type, " + path + " has " +
+                     std::to_string(file.types.size()));
   for (std::size_t c = 0; c < own.coordinates.size(); ++c) {
     const dynamics::Coordinate &a = program.coordinates[c], &b = own.coordinates[c];
-    refuse_where(a.key != b.key && a.unit != b.unit, "the unit of " + a.name + " is", a.unit,
-                 b.unit);
+    differ(a.key != b.key && a.unit != b.unit, "the unit of " + a.name + " is", a.unit, b.unit);
   }
   const bool symmetric = cell.is_symmetric();
-  refuse_where(symmetric != file.map.types.front().symmetric, "symmetric is",
-               symmetric ? "true" : "false", symmetric ? "false" : "true");
+  differ(symmetric != file.map.types.front().symmetric, "symmetric is",
+         symmetric ? "true" : "false", symmetric ? "false" : "true");
+  const auto move_of = [](const dynamics::Face& face) {
+    return "[" + std::to_string(face.di_x) + ", " + std::to_string(face.di_y) + "]";
+  };
   for (std::size_t f = 0; f < own.faces.size(); ++f) {
     const dynamics::Face &a = program.faces[f], &b = own.faces[f];
-    const auto move_of = [](const dynamics::Face& face) {
-      return "[" + std::to_string(face.di_x) + ", " + std::to_string(face.di_y) + "]";
-    };
-    refuse_where(move_of(a) != move_of(b), "the move of face " + a.name + " is", move_of(a),
-                 move_of(b));
-    refuse_where(symmetric && (a.mirror != b.mirror || a.odd != b.odd),
-                 "mirror image and odd coordinates of face " + a.name, "are those", "others");
+    differ(move_of(a) != move_of(b), "the move of face " + a.name + " is", move_of(a), move_of(b));
+    if (symmetric && (a.mirror != b.mirror || a.odd != b.odd))
+      throw UsageError("--cell-program: face " + a.name +
+                       " of its cell has another mirror image, " +
+                       "or other odd coordinates, than in " + path);
   }
   for (const dynamics::CostInfo& cost : own.costs)
-    refuse_where(std::none_of(program.costs.begin(), program.costs.end(),
-                              [&](const dynamics::CostInfo& c) { return c.key == cost.key; }),
-                 "there is no cost " + cost.key, "", "one");
+    if (std::none_of(program.costs.begin(), program.costs.end(),
+                     [&](const dynamics::CostInfo& c) { return c.key == cost.key; }))
+      throw UsageError("--cell-program: its cell has no cost " + cost.key + ", which " + path +
+                       " has");
 }
 
 }  // namespace

@@ -85,27 +85,23 @@ int run_build(const Arguments& arguments) {
   options.add_seed();
   options.add_kept({"building matrix", "full trials", "scattered trials"});
   options.add_strict();
-  options.main_output_file("MATRIX.nc", "matrix file to write (NetCDF-4)",
-                           Options::Content::binary);
+  options.main_output_file("MATRIX.nc", "matrix file (NetCDF-4)", Options::Content::binary);
   add_bins(options);
   add_cell(options);
   add_cell_program(options);
   add_starts(options,
              "the scene's start; gatewalk validate takes those of Table IV in the paper's field; "
              "tree only: each is a state of its own");
-  options.add_text("starts", "all|D,VX,VY",
-                   "tree: good for any start of a range, each axis LOW:HIGH; all: what Table III's "
-                   "entries from below span, in the scene's own units");
+  options.add_text(
+      "starts", "all|D,VX,VY",
+      "tree: good for any start of a range, LOW:HIGH each; all: Table III's from below");
   options.add_count("states", "S", "tree: at most S states beside the starts");
   if (!options.parse(arguments)) return kFine;
   if (options.has("cell-program")) return build_program(options);
   if (options.has("cell")) return build_recorded(options);
   refuse_files_of_cells(options.text("scene"));
   lattice::Scene scene = options.read_scene();
-  if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)
-    throw UsageError(scene.source + ": the scene with its map has " + std::to_string(bytes) +
-                     " bytes, a matrix file keeps " + std::to_string(markov::kMostTextBytes) +
-                     ": take a random map, or a smaller one of the same types");
+  require_keepable(scene);
   const lattice::BinsChoice choice = bins_choice(options, scene, options.has("trials"));
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);

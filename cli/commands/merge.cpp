@@ -80,7 +80,7 @@ int run_merge(const Arguments& arguments) {
 
   const std::vector<std::string> parts = options.texts("part");
   std::vector<Json> heads;
-  for (const std::string& part : parts) heads.push_back(Json::parse(PieceFile(part).head()));
+  for (const std::string& part : parts) heads.push_back(Json::parse(piece_head(part)));
   const std::string name = heads.front().at("command");
   const Command* const command = command_named(name);
   if (!command)

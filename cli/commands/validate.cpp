@@ -19,16 +19,11 @@ int run_validate(const Arguments& arguments) {
       "and final gates that counts chance in trials and matrix together; corrcoef, RMSE and total\n"
       "variation of walks and of the exact chain, each beside its noise floor; the time each "
       "takes.\n"
-      "In JSON, trials_and_matrix is that verdict; p_values count chance in the trials (and "
-      "walks)\n"
-      "alone. Last it asks whether the gate before, the visit or the row tell more than the "
-      "state.\n"
-      "With --observed, counts of an experiment are held against both, and the smallest "
-      "differences\n"
-      "are said that so many trials could have shown. Of a matrix of recorded runs (in SCENE's "
-      "place): "
-      "does\n"
-      "one half of the bodies predict the other?",
+      "In JSON, trials_and_matrix is that verdict; p_values count chance in the trials (and\n"
+      "walks) alone. Last it asks whether the gate before, the visit or the row tell more than\n"
+      "the state. With --observed, counts of an experiment are held against both, and the\n"
+      "smallest differences are said that so many trials could have shown. Of a matrix of\n"
+      "recorded runs (in SCENE's place): does one half of the bodies predict the other?",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.scene();
   options.add_count("trials", "N",

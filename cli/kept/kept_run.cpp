@@ -301,7 +301,7 @@ void KeptRun::done() {
 std::vector<std::pair<std::string, std::string>> part_names(const std::vector<std::string>& parts) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const std::string& part : parts)
-    names.emplace_back(part, name_of_part(Json::parse(PieceFile(part).head())));
+    names.emplace_back(part, name_of_part(Json::parse(piece_head(part))));
   return names;
 }
 

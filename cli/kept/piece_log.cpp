@@ -66,17 +66,22 @@ bool PieceFile::is_one(const std::string& path) {
   return in.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kFirstLine;
 }
 
-PieceFile::PieceFile(const std::string& path) : path_(path) {
+std::string piece_head(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw markov::BadFile(path + ": cannot be read: " + std::strerror(errno));
-  std::string first;
+  std::string first, head;
   if (!std::getline(in, first) || !first.starts_with(kFirstLine))
     throw markov::BadFile(path +
                           ": holds no pieces of a run (--part and --checkpoint write such files)");
-  std::getline(in, head_);
-  if (first + "\n" != first_line(head_))
+  std::getline(in, head);
+  if (first + "\n" != first_line(head))
     throw markov::BadFile(path + ": its first lines are damaged, or of another kind of machine");
-  end_ = first.size() + head_.size() + 2;
+  return head;
+}
+
+PieceFile::PieceFile(const std::string& path) : path_(path), head_(piece_head(path)) {
+  std::ifstream in(path, std::ios::binary);
+  end_ = first_line(head_).size() + head_.size() + 1;
   in.seekg(0, std::ios::end);
   const auto size = static_cast<std::uint64_t>(in.tellg());
   for (RecordHead head{};;) {

@@ -23,6 +23,9 @@ struct PieceRecord {
 [[nodiscard]] inline bool is_name(const PieceRecord& r) { return r.items.count == 0; }
 inline constexpr std::uint32_t kEndStage = 0xffffffff;
 
+/// What the command was, as JSON: the second line of a file of pieces. Throws markov::BadFile.
+[[nodiscard]] std::string piece_head(const std::string& path);
+
 /// A file of pieces as it was found. Of one that is still written to, or was cut short, what is
 /// whole.
 class PieceFile {
@@ -32,7 +35,7 @@ class PieceFile {
   [[nodiscard]] static bool is_one(const std::string& path);
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// What the command was, as JSON.
+  /// As piece_head.
   [[nodiscard]] const std::string& head() const { return head_; }
   [[nodiscard]] const std::vector<PieceRecord>& records() const { return records_; }
   /// Behind the last whole record.

@@ -136,6 +136,14 @@ Json bins_json(const lattice::BinsChoice& choice) {
                                                          : Json(choice.name());
 }
 
+void require_keepable(const lattice::Scene& scene) {
+  if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)
+    throw std::invalid_argument(scene.source + ": the scene with its map has " +
+                                std::to_string(bytes) + " bytes, a matrix file keeps " +
+                                std::to_string(markov::kMostTextBytes) +
+                                ": take a random map, or a smaller one of the same types");
+}
+
 std::map<std::string, std::string> record_of(const MadeMatrix& made, const lattice::Scene& scene,
                                              const Provenance& provenance) {
   const Json made_by = to_json(provenance);

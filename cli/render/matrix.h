@@ -34,6 +34,8 @@ struct MadeMatrix {
 };
 /// The factor on Table III's bins, or the bins' name.
 [[nodiscard]] Json bins_json(const lattice::BinsChoice& choice);
+/// Throws std::invalid_argument where a scene is larger than what a matrix file keeps of it.
+void require_keepable(const lattice::Scene& scene);
 /// All that a file of this matrix keeps beside its counts, by key.
 [[nodiscard]] std::map<std::string, std::string> record_of(const MadeMatrix& made,
                                                            const lattice::Scene& scene,

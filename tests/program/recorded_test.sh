@@ -197,6 +197,9 @@ expect 2 'is a table, and no scene: .* gatewalk build TABLE --cell' "$gatewalk" 
 expect 2 'is a table, and no scene' "$gatewalk" build sides.csv -o x.nc
 expect 2 'has cells of another kind, \[cell\]: --cell-program' "$gatewalk" predict sides.toml
 expect 0 'none on record: runs were recorded' "$gatewalk" show sides.nc
+# Nothing is run, so nothing is divided or stopped.
+expect 2 'shard has no meaning' "$gatewalk" validate types.nc --shard 1/2 --part x
+expect 2 'max-time has no meaning' "$gatewalk" build sides.csv --cell sides.toml -o x.nc --max-time 1s
 # What was run is not changed any more.
 expect 2 'has its runs, and only keys of field, terrain and start can be set' "$gatewalk" predict sides.nc --set cell.symmetric=false
 # Simulated trials of a scene with terrain, as recorded runs, come back.

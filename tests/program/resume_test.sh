@@ -29,6 +29,16 @@ done
 [ -s pieces ] && [ ! -e long.json ] || fail "stopped: no pieces, or a result"
 expect 75 'kept in pieces' "$gatewalk" "${long[@]}" --checkpoint pieces --resume --max-time 1s
 rm pieces
+# Two runs do not write one file, whatever is asked for.
+"$gatewalk" "${long[@]}" --checkpoint pieces >/dev/null 2>&1 &
+pid=$!
+for _ in $(seq 40); do [ -s pieces ] && break; sleep 0.1; done
+expect 1 'pieces: another gatewalk writes it' "$gatewalk" "${long[@]}" --checkpoint pieces --force --max-time 1s
+expect 1 'pieces: another gatewalk writes it' "$gatewalk" "${long[@]}" --checkpoint pieces --resume
+kill -TERM $pid
+wait $pid
+[ -s pieces ] || fail "the file of a run that writes it is gone"
+rm pieces
 # Without --checkpoint beside the output: at once where a time is given.
 expect 75 'kept in long.json.unfinished' "$gatewalk" "${long[@]}" --max-time 1s
 expect 2 'long.json.unfinished: holds what an earlier run has done: --resume goes on' "$gatewalk" "${long[@]}"
