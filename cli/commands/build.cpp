@@ -79,8 +79,7 @@ int run_build(const Arguments& arguments) {
   options.scene();
   add_accuracy(options);
   options.add_count("trials", "N",
-                    "bins: runs per input state (default: 100); tree: exactly so many full trials, "
-                    "whatever the accuracy");
+                    "bins: runs per input state (default: 100); tree: exactly so many full trials");
   options.add_first_trial();
   options.add_seed();
   options.add_kept({"building matrix", "full trials", "scattered trials"});
