@@ -196,9 +196,9 @@ TrialRange KeptRun::own_share(const dynamics::Stage& stage) const {
   if (!divides(stage)) return stage.items;
   // Parts are stretches of all items of the stages that are divided as one.
   const auto bound = [&](std::int64_t i) {
-    const auto [n, of] = std::pair(static_cast<__int128>(stage.of), plan_.shard->of);
-    return std::clamp<std::int64_t>(static_cast<std::int64_t>(n * i / of) - stage.before, 0,
-                                    stage.items.count);
+    const std::int64_t of = plan_.shard->of;  // i * stage.of / of, without overflow
+    const std::int64_t at = stage.of / of * i + stage.of % of * i / of;
+    return std::clamp<std::int64_t>(at - stage.before, 0, stage.items.count);
   };
   const std::int64_t from = bound(plan_.shard->number - 1), to = bound(plan_.shard->number);
   return {stage.items.first + from, to - from};
