@@ -80,7 +80,7 @@ int run_rare(const Arguments& arguments) {
   Subject subject = open_subject(options, "scene");
   if (subject.file)
     throw UsageError(subject.path + ": is a matrix, and new bodies are to be run: give a scene");
-  how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 2001))
+  how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 10001))
                                : subject.problem.field.rows;
   (void)up_to_row(subject, how.row);  // refuses before any work
   subject.settle(options);

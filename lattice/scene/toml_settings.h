@@ -41,7 +41,7 @@ struct Interval {
 };
 
 /// Rows and columns of a field, and gates that a body may visit in it.
-inline constexpr Interval kFieldSizes{1, 2001}, kGateLimits{0, 1e9};
+inline constexpr Interval kFieldSizes{1, 10001}, kGateLimits{0, 1e9};
 
 /// One key that a file or an override gives.
 struct Setting {

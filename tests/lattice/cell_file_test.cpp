@@ -248,7 +248,7 @@ TEST(CellFile, OverridesSetSingleKeys) {
   EXPECT_EQ(refused_as(kTracks, {"cell.faces=[]"}),
             "--set cell.faces=[]: cell.faces can only be given in the file, not by --set");
   EXPECT_EQ(refused_as(kTracks, {"field.rows=0"}),
-            "--set field.rows=0: field.rows = 0 is not permitted: must lie in [1, 2001]");
+            "--set field.rows=0: field.rows = 0 is not permitted: must lie in [1, 10001]");
   EXPECT_EQ(refused_as(kTracks, {"field.row=1"}),
             "--set field.row=1: unknown key field.row (did you mean rows?); [field] has columns, "
             "rows and max_gates");
@@ -382,8 +382,9 @@ TEST(CellFile, RefusesByFileLineAndKey) {
       {"[field]", "[[cell.types]]\nname = \"a\"\nsymmetric = \"yes\"\n[field]",
        "x.toml:36: cell.types.symmetric = \"yes\" is not permitted: must be true or false"},
       {"columns = 3", "columns = 3.5",
-       "x.toml:35: field.columns = 3.5 is not permitted: must be a whole number in [1, 2001]"},
-      {"rows = 2", "rows = 0", "x.toml:36: field.rows = 0 is not permitted: must lie in [1, 2001]"},
+       "x.toml:35: field.columns = 3.5 is not permitted: must be a whole number in [1, 10001]"},
+      {"rows = 2", "rows = 0",
+       "x.toml:36: field.rows = 0 is not permitted: must lie in [1, 10001]"},
       {"max_gates = 0", "fidelity = \"all\"",
        "x.toml:37: unknown key field.fidelity; [field] has columns, rows and max_gates"},
       {"max_gates = 0", "max_gates = 0\n[start]\ns_m = 0",
