@@ -55,8 +55,8 @@ struct PredictOptions {
   /// Cells a walk may visit before it is cut off; 0: no limit.
   int max_cells = 0;
 
-  /// automatic: `rows` if there is no limit of cells and no exit leads to a row below, and all
-  ///   cells of a row have one type; else `steps`.
+  /// automatic: `rows` if there is no limit of cells and no exit leads to a row below; else
+  ///   `steps`.
   /// steps: forward propagation of all planes of the field, step by step. Memory per start: 4 n_in
   ///   numbers per cell that can be reached, half of that when every move leads to the other colour
   ///   of a chessboard. With a limit it stops once next to nobody walks (1e-30 of all walks in any
@@ -70,9 +70,9 @@ struct PredictOptions {
   Solver solver = Solver::automatic;
 
   /// How `rows` finds the visits of a row: by elimination of its columns, which takes as long
-  /// whatever the number of moves, if the chain lets it (no move within a row to any but the next
-  /// column); by `sums` over more and more moves; `cheapest`: what takes fewer operations by
-  /// estimate.
+  /// whatever the number of moves, if the row lets it (cells of one type, no move within the row to
+  /// any but the next column); by `sums` over more and more moves; `cheapest`: what takes fewer
+  /// operations by estimate.
   enum class RowMethod { cheapest, elimination, sums };
   RowMethod row_method = RowMethod::cheapest;
 
@@ -112,7 +112,7 @@ class Predictor {
       const Field& field, const std::vector<Start>& starts,
       const PredictOptions& options = {}) const;
 
-  /// Whether Solver::rows can be used: no exit leads to a row below, rows are uniform.
+  /// Whether Solver::rows can be used: no exit leads to a row below.
   [[nodiscard]] bool can_go_by_rows() const;
 
  private:

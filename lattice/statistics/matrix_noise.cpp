@@ -120,8 +120,8 @@ std::int64_t affordable_replicates(const markov::Field& field, int max_cells, st
 
 std::int64_t affordable_replicates(const CountedField& gates, const markov::Field& field,
                                    int max_cells, std::int64_t most) {
-  // Without limit, rows of several types are not gone through one by one, but in steps; and chains
-  // of many states not by elimination, but by sums: so many.
+  // Without limit, rows of several types and chains of many states are not solved by elimination,
+  // but by sums: so many.
   constexpr int kSteps = 100, kManyStates = 1000;
   if (max_cells == 0 && (!gates.chains.has_uniform_rows() || gates.chains.inputs() > kManyStates))
     max_cells = kSteps;

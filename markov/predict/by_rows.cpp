@@ -36,13 +36,15 @@ class PredictionRows {
                 std::vector<std::int64_t>(starts.size())),
         stride_(layout_.stride()),
         tallies_(kTallyMoved + std::ssize(plan.moves)),
-        buffer_((5 + plan.highest) * plan.inputs + tallies_, stride_),
+        masks_(plan.has_uniform_rows ? 0 : std::ssize(plan.chains)),
+        buffer_((5 + plan.highest) * plan.inputs + tallies_ + masks_, stride_),
         within_(buffer_.take(plan.inputs)),
         visits_(buffer_.take(plan.inputs)),
         now_(buffer_.take(plan.inputs)),
         next_(buffer_.take(plan.inputs)) {
     for (int k = 0; k <= plan.highest; ++k) entering_.push_back(buffer_.take(plan.inputs));
     tally_ = buffer_.take(tallies_);
+    type_masks_ = buffer_.take(masks_);
     layout_.cover(0, field.columns - 1, 0, 0, whole_);
     first_ = field.rows;
     for (const Start& s : starts) {
@@ -56,24 +58,27 @@ class PredictionRows {
 
   std::vector<StartTally> run() {
     for (std::int64_t row = first_; row < field_.rows; ++row) {
-      const PreparedChain& chain = plan_.at(0, row);
+      look_at(row);
       within_.clear();
-      apply_in_row(chain.first_sideways, entering_.front(), within_);
+      apply_in_row(&PreparedChain::first_sideways, entering_.front(), within_);
       if (!enter(row)) break;
       visits_.clear();
-      const auto& columns = columns_[static_cast<std::size_t>(plan_.field_chain.type_of(0, row))];
-      if (columns.empty())
-        sum(chain, row);
+      const auto& columns = columns_[types_.front().type];
+      if (types_.size() > 1 || columns.empty())
+        sum(row);
       else
-        eliminate(chain, columns);
+        eliminate(plan_.chains[types_.front().type], columns);
       add(entering_.front(), visits_);
-      count(chain, row);
+      count(row);
       // On to the next row: entering_[k] is now of the row k above that one, so what goes up by k +
       // 1 rows from this one is added there.
       entering_.front().clear();
       std::rotate(entering_.begin(), entering_.begin() + 1, entering_.end());
-      for (std::size_t k = 0; k < chain.upwards.size(); ++k)
-        apply_in_row(chain.upwards[k], visits_, entering_[k]);
+      for (const CellsOfType& cells : types_) {
+        const std::vector<Stencil>& upwards = plan_.chains[cells.type].upwards;
+        for (std::size_t k = 0; k < upwards.size(); ++k)
+          apply(upwards[k], cells, layout_.shifts(0), visits_, entering_[k]);
+      }
     }
     return std::move(starts_);
   }
@@ -84,17 +89,63 @@ class PredictionRows {
   [[nodiscard]] double passed(std::size_t j) const { return passed_[j]; }
 
  private:
-  [[nodiscard]] std::ptrdiff_t first_of(std::size_t j) const { return layout_.place(j, 0, 0).at; }
+  /// The cells of one type in a row: a mask of their places (none: all), and the registers that
+  /// hold some of them.
+  struct CellsOfType {
+    std::size_t type;
+    const double* mask;
+    std::vector<Range> ranges;
+  };
 
-  /// to += stencil from, all moves within one row: what goes up arrives in the same column of `to`.
-  void apply_in_row(const Stencil& stencil, Planes from, Planes to) const {
-    apply_stencil(stencil, layout_.shifts(0), stride_, nullptr, whole_, from.data(), to.data(),
-                  true);
+  [[nodiscard]] std::ptrdiff_t first_of(std::size_t j) const { return layout_.place(j, 0, 0).at; }
+  [[nodiscard]] std::size_t type_of(std::int64_t column, std::int64_t row) const {
+    return static_cast<std::size_t>(plan_.field_chain.type_of(column, row));
   }
-  void tally(const Stencil& stencil, Planes mass) {
-    tally_.clear();  // not every chain ends in all ways
-    apply_stencil(stencil, layout_.identity(0), stride_, nullptr, whole_, mass.data(),
-                  tally_.data(), false);
+
+  /// Finds the types of a row's cells.
+  void look_at(std::int64_t row) {
+    types_.clear();
+    bool is_uniform = true;
+    if (masks_ > 0)
+      for (std::int64_t c = 1; c < field_.columns && is_uniform; ++c)
+        is_uniform = type_of(c, row) == type_of(0, row);
+    if (is_uniform) {
+      types_.push_back({type_of(0, row), nullptr, whole_});
+      return;
+    }
+    type_masks_.clear();
+    for (std::size_t j = 0; j < starts_.size(); ++j)
+      for (std::ptrdiff_t c = 0; c < field_.columns; ++c)
+        mask_of(type_of(c, row))[first_of(j) + c] = 1.0;
+    for (std::size_t type = 0; type < plan_.chains.size(); ++type) {
+      CellsOfType cells{type, mask_of(type), {}};
+      for (const Range& all : whole_)
+        for (std::ptrdiff_t at = all.first; at < all.last; at += kLanes) {
+          if (std::all_of(cells.mask + at, cells.mask + at + kLanes,
+                          [](double m) { return m == 0.0; }))
+            continue;
+          if (!cells.ranges.empty() && cells.ranges.back().last == at)
+            cells.ranges.back().last += kLanes;
+          else
+            cells.ranges.push_back({at, at + kLanes});
+        }
+      if (!cells.ranges.empty()) types_.push_back(std::move(cells));
+    }
+  }
+  [[nodiscard]] double* mask_of(std::size_t type) const {
+    return type_masks_.data() + static_cast<std::ptrdiff_t>(type) * stride_;
+  }
+
+  /// to += stencil from, from cells of one type.
+  void apply(const Stencil& stencil, const CellsOfType& cells, const Shift* shifts, Planes from,
+             Planes to) const {
+    apply_stencil(stencil, shifts, stride_, cells.mask, cells.ranges, from.data(), to.data(), true);
+  }
+  /// The same from all cells, each by the stencil of its type; all moves within one row: what goes
+  /// up arrives in the same column of `to`.
+  void apply_in_row(Stencil PreparedChain::*stencil, Planes from, Planes to) const {
+    for (const CellsOfType& cells : types_)
+      apply(plan_.chains[cells.type].*stencil, cells, layout_.shifts(0), from, to);
   }
   void add(Planes from, Planes to) const {
     for (const Range& r : whole_)
@@ -112,7 +163,8 @@ class PredictionRows {
     return sums;
   }
   [[nodiscard]] std::vector<double> totals(const Stencil& stencil, Planes mass) {
-    tally(stencil, mass);
+    tally_.clear();
+    apply(stencil, {0, nullptr, whole_}, layout_.identity(0), mass, tally_);
     return totals();
   }
   void erase(std::size_t j, Planes mass) const {
@@ -134,7 +186,7 @@ class PredictionRows {
     for (std::size_t j = 0; j < starts_.size(); ++j) {
       StartTally& w = starts_[j];
       if (w.start.row == row) {
-        w.draw_first(plan_.field_chain.at(0, row), field_, false,
+        w.draw_first(plan_.field_chain.at(w.start.column, row), field_, false,
                      [&](std::int64_t column, std::int64_t to_row, int input, double p) {
                        const Planes to = to_row == row
                                              ? within_
@@ -155,7 +207,7 @@ class PredictionRows {
   }
 
   /// visits = within + Q within + Q Q within + ...
-  void sum(const PreparedChain& chain, std::int64_t row) {
+  void sum(std::int64_t row) {
     std::swap(now_, within_);
     std::vector<char> done(starts_.size());
     for (int sums = 0;; ++sums) {
@@ -181,7 +233,7 @@ class PredictionRows {
       if (!any) return;
       add(now_, visits_);
       next_.clear();
-      apply_in_row(chain.sideways, now_, next_);
+      apply_in_row(&PreparedChain::sideways, now_, next_);
       std::swap(now_, next_);
     }
   }
@@ -202,7 +254,7 @@ class PredictionRows {
           chain.elimination->get().solve(columns, from + first_of(j), visits_.data() + first_of(j),
                                          stride_, workspace_.data());
       std::copy_n(within_.data(), within_.size(), next_.data());
-      apply_in_row(chain.sideways, visits_, next_);
+      apply_in_row(&PreparedChain::sideways, visits_, next_);
       double* const total = tally_.data() + kTallyTotal * stride_;
       std::fill_n(total, stride_, 0.0);
       for (const int input : plan_.sideways) {
@@ -231,15 +283,17 @@ class PredictionRows {
     }
   }
 
-  void count(const PreparedChain& chain, std::int64_t row) {
-    tally(chain.ends, visits_);
+  void count(std::int64_t row) {
+    tally_.clear();
+    for (const CellsOfType& cells : types_)
+      apply(plan_.chains[cells.type].ends, cells, layout_.identity(0), visits_, tally_);
     for (std::size_t j = 0; j < starts_.size(); ++j)
       for (std::ptrdiff_t c = 0; c < field_.columns; ++c)
         starts_[j].count(field_, plan_.moves, c, row, false, tally_.data() + first_of(j) + c,
                          stride_);
   }
 
-  /// Columns to eliminate, per chain; none where sums are chosen.
+  /// Columns to eliminate, per chain; none where sums are chosen. Rows of several types are summed.
   void choose(PredictOptions::RowMethod method) {
     columns_.resize(plan_.chains.size());
     if (method == PredictOptions::RowMethod::sums) return;
@@ -266,8 +320,8 @@ class PredictionRows {
   double tolerance_;  // left walking at most: in a row, of what entered it; of all walks, in all
                       // rows not yet entered
   int most_sums_;
-  Layout layout_;  // of one row
-  std::ptrdiff_t stride_, tallies_;
+  Layout layout_;                            // of one row
+  std::ptrdiff_t stride_, tallies_, masks_;  // masks: of types, none where rows are uniform
   PlaneBuffer buffer_;
   // Planes of a row, by input. With Q, one move within the row: within, what enters the row's
   // states by a first move within it; visits = within + Q within + Q Q within + ...; now, next: two
@@ -275,8 +329,10 @@ class PredictionRows {
   Planes within_, visits_, now_, next_;
   std::vector<Planes> entering_;  // from below: this row, the row above, ...
   Planes tally_;                  // by Tally
+  Planes type_masks_;             // by type: 1 in cells of it, of the present row
   std::vector<Range> whole_;
-  std::int64_t first_ = 0;  // row
+  std::vector<CellsOfType> types_;  // of the present row
+  std::int64_t first_ = 0;          // row
   std::vector<StartTally> starts_;
   std::vector<double> entered_, passed_;  // per start: this row, rows until now
   std::vector<int> most_sums_taken_;      // per start

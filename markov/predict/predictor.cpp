@@ -155,7 +155,7 @@ Predictor::Predictor(FieldChain chain) : plan_(plan_of(std::move(chain))) {}
 
 Predictor::~Predictor() = default;
 
-bool Predictor::can_go_by_rows() const { return plan_->lowest >= 0 && plan_->has_uniform_rows; }
+bool Predictor::can_go_by_rows() const { return plan_->lowest >= 0; }
 
 std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
                                                       const std::vector<Start>& starts,
@@ -171,8 +171,6 @@ std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
         "predict: tolerance and max_steps must not be negative, by rows max_steps be positive");
   if (by_rows) {
     require_no_limit("rows", options);
-    if (!plan_->has_uniform_rows)
-      throw std::invalid_argument("predict: solver rows needs rows of one type of cell each");
     if (!can_go_by_rows())
       throw std::invalid_argument("predict: solver rows: an exit leads to a row below");
     return in_groups(starts, std::clamp(40 / field.columns, 1, 4), [&](const auto& group) {

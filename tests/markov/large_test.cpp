@@ -147,7 +147,7 @@ FieldChain patterned(const Field& cells) {
 }
 
 // Blocks of 9 x 1 cells make uniform rows of it, 9 x 9 (of 3 x 3 blocks of 3 x 3 cells) one type.
-void expect_same_in_both_blocks(int side, bool and_in_cells) {
+void expect_same_in_both_blocks(int side) {
   const Field cells{side, side};
   const Start start{side / 2, 0, 12};
   const FieldChain chain = patterned(cells);
@@ -167,7 +167,6 @@ void expect_same_in_both_blocks(int side, bool and_in_cells) {
     return predict(square.chain, squares, {square.start(small.start(start))}, options).front();
   });
   test::expect_same_in_blocks(in_wide, in_squares, {1, 9}, 1e-12);
-  if (!and_in_cells) return;
   const auto fine =
       timed("prediction in cells", [&] { return predict(chain, cells, {start}, options).front(); });
   test::expect_same_in_blocks(fine, in_wide, {9, 1}, 1e-12);
@@ -175,10 +174,10 @@ void expect_same_in_both_blocks(int side, bool and_in_cells) {
 }
 
 TEST(LargeField, ARepeatedPatternInBlocks) {
-  expect_same_in_both_blocks(gatewalk::test::usual_or_full(45, 297), true);
+  expect_same_in_both_blocks(gatewalk::test::usual_or_full(45, 297));
 }
 TEST(LargeField, AMillionCellsInBlocks) {
-  expect_same_in_both_blocks(gatewalk::test::usual_or_full(90, 999), false);
+  expect_same_in_both_blocks(gatewalk::test::usual_or_full(90, 999));
 }
 
 // One type: there the cells' own rows are the faster way.

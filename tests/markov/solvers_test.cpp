@@ -136,10 +136,6 @@ FieldChain chessboard(int columns, int rows) {
 
 TEST_P(Solvers, ATypePerCellOfAChessboard) {
   const Field field{3, 3};
-  if (GetParam().solver == Solver::rows) {
-    EXPECT_THROW((void)from(chessboard(3, 3), field, {0, 0, 0}), std::invalid_argument);
-    return;
-  }
   // (column, row). (0, 0) passes 1/2 each to (1, 0) and (0, 1), both white: each traps 1/4 and
   // passes 1/4 up. (1, 1) passes 1/8 each to (2, 1) and (1, 2). (0, 2) passes 1/8 over the far edge
   // and 1/8 to (1, 2), where 1/4 ends, half of it trapped. (2, 1) traps 1/16 and passes 1/16 to (2,
@@ -184,7 +180,6 @@ TEST_P(Solvers, AgreeWithThePlainReferenceWithinTheirBounds) {
   for (const FieldChain& chain :
        {FieldChain(chains[0]), FieldChain::by_row(chains, {0, 2, 2, 1, 0}),
         FieldChain::by_cell(chains, 7, types)}) {
-    if (GetParam().solver == Solver::rows && !chain.has_uniform_rows()) continue;
     const std::vector<Start> starts{{3, 0, 12}, {0, 1, 30}, {6, 4, 70}, {2, 2, 6}};
     for (const int max_cells : {0, 1, 2, 13}) {
       if (max_cells != 0 && !takes_a_limit()) continue;
