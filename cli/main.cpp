@@ -1,9 +1,13 @@
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <iterator>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 
 #include "cli/commands.h"
 #include "cli/kept/kept_run.h"
@@ -64,11 +68,26 @@ int run(const std::vector<std::string>& words) {
   return command ? command->run(std::vector(words.begin() + 1, words.end())) : kWrongUse;
 }
 
+/// Where there is no memory left for words either.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view kText =
+        "gatewalk: out of memory; files that are written already are whole and stay\n";
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kText.data(), kText.size());
+    _exit(kFailure);
+  } catch (...) {
+  }
+  std::abort();
+}
+
 }  // namespace
 }  // namespace gatewalk::cli
 
 int main(int argc, char** argv) {
   using namespace gatewalk;
+  std::set_terminate(cli::end_without_memory);
   cli::install_interrupt_handler();
   const cli::RanksScope scope;
   // One of all processes speaks, but for what goes wrong in one alone.

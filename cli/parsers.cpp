@@ -8,6 +8,7 @@
 #include "cli/arguments.h"
 #include "cli/film/video.h"
 #include "cli/render/text.h"
+#include "cli/web/embedded.h"
 #include "dynamics/disc/study/work_precision.h"
 #include "lattice/statistics/ending_shares.h"
 
@@ -140,6 +141,10 @@ lattice::RecordingOptions recording_options(const Options& options) {
     throw UsageError("--trials " + std::to_string(wanted.trials) + ": at most " +
                      std::to_string(lattice::kMostRecordings) +
                      " runs are recorded; pick some with --only");
+  check_option(options, "replay", [](const std::string&) {
+    if (!has_pages())
+      throw std::invalid_argument("needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
+  });
   check_option(options, "video", [](const std::string& path) { (void)video_format(path); });
   return wanted;
 }

@@ -1,4 +1,5 @@
-/* Loaded before libc: call number FAULT_AT of FAULT_CALL fails with FAULT_ERRNO, and with FAULT_EVER all after it. */
+/* Loaded before libc: call number FAULT_AT of FAULT_CALL fails with FAULT_ERRNO, and with FAULT_EVER all after it.
+   "malloc" stands for all that give memory. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -20,6 +21,19 @@ static int fails(const char *call) {
   }
   errno = atoi(getenv("FAULT_ERRNO"));
   return 1;
+}
+
+/* glibc's own names: to look them up would take memory. */
+extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t), *__libc_memalign(size_t, size_t);
+void *malloc(size_t size) { return fails("malloc") ? NULL : __libc_malloc(size); }
+void *calloc(size_t count, size_t size) { return fails("malloc") ? NULL : __libc_calloc(count, size); }
+void *realloc(void *old, size_t size) { return fails("malloc") ? NULL : __libc_realloc(old, size); }
+void *aligned_alloc(size_t at, size_t size) { return fails("malloc") ? NULL : __libc_memalign(at, size); }
+int posix_memalign(void **to, size_t at, size_t size) {
+  void *const p = fails("malloc") ? NULL : __libc_memalign(at, size);
+  if (!p) return ENOMEM;
+  *to = p;
+  return 0;
 }
 #define REAL(name) __typeof__(&name) real = (__typeof__(&name))dlsym(RTLD_NEXT, #name)
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What becomes of results when the system fails: call number k of write, fsync, fdatasync, rename, ftruncate fails, once
-# and from then on, for every k that a command makes; /dev/full, a full disk, a folder that cannot be written, little
-# memory. Never a silent success, never a damaged file.   faults.sh GATEWALK ROOT [MOST]    at most MOST values of k each
+# and from then on, for every k that a command makes; so does getting memory; /dev/full, a full disk, a folder that cannot
+# be written, little memory. Never a silent success, never a damaged file.
+#   faults.sh GATEWALK ROOT [MOST]    at most MOST values of k each; of memory, which is asked for 10^5 times, k grows by fifths
 here=$(realpath "$(dirname "$0")")
 most=${3:-12}
 . "$here/program/preamble.sh" "$1" "$2"
@@ -44,8 +45,30 @@ survives() {
       done
     done
   done
+  # Libraries may crash without memory: that is no success, and no file is damaged either.
+  for ever in "" 1; do
+    for ((k = 1000; k < 1000000; k += k / 5)); do
+      echo old >"$output"
+      rm -f seen pieces
+      env LD_PRELOAD=./faults.so FAULT_CALL=malloc FAULT_AT="$k" ${ever:+FAULT_EVER=1} FAULT_ERRNO=12 FAULT_SEEN=seen \
+        "$gatewalk" "$@" --quiet --force --checkpoint pieces >/dev/null 2>err.txt
+      status=$?
+      [ -e seen ] || break
+      runs=$((runs + 1))
+      case $status in
+        0) same "one-$output" "$output" ;;
+        1) grep -q '^gatewalk: ' err.txt || fail "without memory $k: no words: $*" ;;
+        *) crashes=$((crashes + 1)) ;;
+      esac
+      [ $status = 0 ] || [ "$(head -c 4 "$output")" = old ] || same "one-$output" "$output"
+      [ -e pieces ] || continue
+      "$gatewalk" "$@" --quiet --force --checkpoint pieces --resume >/dev/null 2>err.txt || fail "not resumed after memory $k: $* ($(cat err.txt))"
+      same "one-$output" "$output"
+    done
+  done 2>/dev/null  # the shell's own words about crashes
   rm -f "$output" pieces
 }
+crashes=0
 survives gate.json gate "${field[@]}" --trials 2000 --json gate.json
 survives sweep.csv sweep "$scenes/single_gate.toml" --vary forces.propulsion_N=6,7 --trials 500 --csv sweep.csv
 survives bins.nc build "${field[@]}" --bins paper --trials 10 -o bins.nc
@@ -75,5 +98,5 @@ echo old >big.nc
 (ulimit -v 400000; "$gatewalk" build "${field[@]}" --accuracy 0.001 --starts all -o big.nc --force --quiet --threads 1 >/dev/null 2>err.txt; [ $? = 1 ]) || fail "out of memory: another status"
 grep -q 'out of memory' err.txt || fail "out of memory without a word: $(cat err.txt)"
 [ "$(cat big.nc)" = old ] || fail "out of memory: the old file is gone"
-echo "$runs runs with a failing call"
+echo "$runs runs with a failing call; without memory $crashes crashed in libraries"
 finish

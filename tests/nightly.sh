@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # What takes too long for every change, each in a build folder of its own (build-odr, build-alone ...):
-#   tests/nightly.sh [odr] [alone] [debug] [clang]      all four without an argument
+#   tests/nightly.sh [odr] [alone] [small] [debug] [clang]      all five without an argument
 # odr    links the whole program with -flto -Wodr: no name may have two definitions. Without optimisation,
 #        which inlines functions before their types are compared. Two definitions within one batch of
 #        sources are an error of the compiler; the linker compares the batches.
 # alone  every source and every public header compiles without what others include before it: g++ without
 #        batches reads and checks them, and writes no code, which takes half the time.
+# small  without films and pages, as on a cluster: needs neither cairo nor libpng, and says so when asked for them.
 # debug  g++ with the checks of the standard library, of Eigen and of TBB: unit tests. -Og, with which those
 #        of the dynamics take three to four times as long as in a Release build.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
@@ -48,6 +49,29 @@ alone() {
   echo "$number sources and headers compile alone"
 }
 
+small() {
+  cmake -S . -B build-small -G Ninja -DCMAKE_BUILD_TYPE=Release -DGATEWALK_WERROR=ON -DGATEWALK_VIDEO=OFF -DGATEWALK_PAGES=OFF
+  cmake --build build-small
+  if ldd build-small/gatewalk | grep -E 'cairo|png'; then return 1; fi
+  build-small/gatewalk predict scenes/field.toml --accuracy 0.1 | grep 'crossed'
+  refused 'needs films' trace scenes/field.toml --video build-small/x.gif
+  refused 'needs pages' trace scenes/field.toml --replay build-small/x.html
+  cp scenes/field.toml build-small/map.toml
+  printf '[terrain]\nmap_file = "map.png"\ngrey = { "." = 255 }\n' >>build-small/map.toml
+  : >build-small/map.png
+  refused 'without pictures' lattice build-small/map.toml
+}
+# refused TEXT COMMAND...: of the build without films and pages.
+refused() {
+  local text=$1 status
+  shift
+  set +e
+  build-small/gatewalk "$@" >build-small/out.txt 2>&1
+  status=$?
+  set -e
+  [ $status = 2 ] && grep "$text" build-small/out.txt
+}
+
 debug() {
   cmake -S . -B build-debug -G Ninja -DCMAKE_CXX_COMPILER=g++ -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_FLAGS_DEBUG='-Og -D_GLIBCXX_ASSERTIONS' -DGATEWALK_WERROR=ON -DBUILD_TESTING=ON
@@ -61,9 +85,9 @@ clang() {
   ctest --test-dir build-clang --output-on-failure -j "$(nproc)" -E "$web"
 }
 
-[ $# -gt 0 ] || set -- odr alone debug clang
+[ $# -gt 0 ] || set -- odr alone small debug clang
 for step in "$@"; do
-  case $step in odr | alone | debug | clang) ;; *) echo "no step '$step': odr, alone, debug, clang" >&2; exit 2 ;; esac
+  case $step in odr | alone | small | debug | clang) ;; *) echo "no step '$step': odr, alone, small, debug, clang" >&2; exit 2 ;; esac
 done
 case " $* " in *" clang "*) packages+=(clang) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac

@@ -6,6 +6,7 @@
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/terminal/interrupt.h"
+#include "cli/web/embedded.h"
 
 namespace gatewalk::cli {
 
@@ -36,8 +37,7 @@ int run_reproduce(const Arguments& arguments) {
       std::cout << "\n"
                 << table_of(r.claims) << "\n"
                 << r.tally() << ". Studies " << fixed(r.seconds, 0) << " s. Open " << folder
-                << "/report.html\n"
-                << std::flush;
+                << (has_pages() ? "/report.html\n" : "/report.json\n") << std::flush;
   } catch (const Interrupted&) {
     std::cerr << "gatewalk: stopped before the end; what was finished stays in " << folder
               << ", the same command goes on from there\n";

@@ -18,11 +18,22 @@ extern "C" const CarriedFile gatewalk_carried_files[];
 
 namespace gatewalk::cli {
 
-std::string_view carried_file(std::string_view name) {
-  for (const CarriedFile* file = gatewalk_carried_files; file->name; ++file) {
-    if (name == file->name) return {file->begin, static_cast<std::size_t>(file->end - file->begin)};
-  }
-  throw std::logic_error("gatewalk carries no file named " + std::string(name));
+namespace {
+
+const CarriedFile* find(std::string_view name) {
+  for (const CarriedFile* file = gatewalk_carried_files; file->name; ++file)
+    if (name == file->name) return file;
+  return nullptr;
 }
+
+}  // namespace
+
+std::string_view carried_file(std::string_view name) {
+  const CarriedFile* const file = find(name);
+  if (!file) throw std::logic_error("gatewalk carries no file named " + std::string(name));
+  return {file->begin, static_cast<std::size_t>(file->end - file->begin)};
+}
+
+bool has_pages() { return find("report.html") != nullptr; }
 
 }  // namespace gatewalk::cli

@@ -10,4 +10,7 @@ namespace gatewalk::cli {
 /// std::logic_error for a name that is not carried.
 [[nodiscard]] std::string_view carried_file(std::string_view name);
 
+/// False of a program built with GATEWALK_PAGES=OFF: it carries only the scenes.
+[[nodiscard]] bool has_pages();
+
 }  // namespace gatewalk::cli

@@ -3,7 +3,6 @@
 #include <png.h>
 
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -11,12 +10,6 @@
 #include <string_view>
 
 namespace gatewalk::lattice {
-
-bool is_png(const std::string& path) {
-  std::string ending = path.size() < 4 ? "" : path.substr(path.size() - 4);
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".png";
-}
 
 namespace {
 

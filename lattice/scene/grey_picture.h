@@ -7,9 +7,6 @@
 
 namespace gatewalk::lattice {
 
-/// Whether the name of a file ends in .png.
-[[nodiscard]] bool is_png(const std::string& path);
-
 struct GreyPicture {
   int columns = 0, rows = 0;
   std::vector<std::uint8_t> grey;  // (rows x columns), the upper row first; 0 black, 255 white

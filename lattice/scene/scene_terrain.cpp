@@ -1,6 +1,7 @@
 #include "lattice/scene/scene_terrain.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -16,6 +17,13 @@
 
 namespace gatewalk::lattice {
 namespace {
+
+/// Whether the name of a file ends in .png.
+bool is_png(const std::string& path) {
+  std::string ending = path.size() < 4 ? "" : path.substr(path.size() - 4);
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".png";
+}
 
 constexpr std::size_t kMostTypes = 100;
 constexpr const char* kKeys = "map, map_file, grey, random, seed and types";
