@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -27,7 +28,8 @@ double seconds_of(const std::string& text) {
   constexpr std::array<std::pair<const char*, double>, 4> kUnits{
       {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}}};
   for (const auto& [name, seconds] : kUnits)
-    if (read.ec == std::errc() && unit == name && number > 0.0) return number * seconds;
+    if (read.ec == std::errc() && unit == name && number > 0.0 && std::isfinite(number))
+      return number * seconds;
   throw UsageError("--max-time " + text + ": must be a time, such as 90s, 45min, 3h or 2d");
 }
 

@@ -33,6 +33,16 @@ struct Terms {
   }
 };
 
+/// What runs through changed cells gave, by sample; empty where the cells cannot be changed so.
+struct ChangedRuns {
+  std::vector<double> above, below;
+  Health health;
+};
+template <class Archive>
+void each_part(Archive& archive, ChangedRuns& runs) {
+  archive(runs.above, runs.below, runs.health);
+}
+
 /// Of what passages take for a chain and for its groups, 8 GiB hold so many states.
 double most_states(const FieldParams& field) {
   constexpr double kMostBytes = 8.0 * (1 << 30), kNumbers = 2.0 * 4.0;
@@ -48,25 +58,51 @@ class Parameters {
     add_samples(chain, passages, options.runs);
     for (std::size_t g = 0; g < groups.size(); ++g)
       add_samples(chain.groups[g], groups[g], options.runs / std::ssize(groups));
-    as_it_is_ = values(cells_.cells);
   }
 
-  /// Of that number of the cells. None where it is zero, or cannot be changed.
-  [[nodiscard]] std::optional<ParameterEffect> effect(std::size_t number) {
-    std::vector<Cell::Number> of_types;
-    for (const auto& cell : cells_.cells) of_types.push_back(cell->numbers()[number]);
-    double value = of_types.front().value;
-    bool any = false;
-    for (const Cell::Number& n : of_types) {
-      any = any || n.value != 0.0;
-      if (n.value != of_types.front().value) value = std::nan("");
+  /// Runs item `item`: 0 through the cells as they are (`above`), k through those with number k - 1
+  /// changed.
+  [[nodiscard]] ChangedRuns run(std::int64_t item) const {
+    ChangedRuns runs;
+    if (item == 0) {
+      runs.above = values(cells_.cells, runs.health);
+      return runs;
     }
+    const auto number = static_cast<std::size_t>(item - 1);
+    if (std::all_of(cells_.cells.begin(), cells_.cells.end(),
+                    [&](const auto& cell) { return cell->numbers()[number].value == 0.0; }))
+      return runs;
     const double step = options_.relative_step;
-    const Cells larger = changed(number, 1.0 + step), smaller = changed(number, 1.0 - step);
-    const bool up = !larger.empty(), down = !smaller.empty();
-    if (!any || (!up && !down)) return {};
-    const std::vector<double> above = up ? values(larger) : as_it_is_,
-                              below = down ? values(smaller) : as_it_is_;
+    if (const Cells larger = changed(number, 1.0 + step); !larger.empty())
+      runs.above = values(larger, runs.health);
+    if (const Cells smaller = changed(number, 1.0 - step); !smaller.empty())
+      runs.below = values(smaller, runs.health);
+    return runs;
+  }
+
+  /// Takes what run(item) gave, in the order of the items. An effect, where the number is not zero
+  /// and can be changed.
+  [[nodiscard]] std::optional<ParameterEffect> take(std::int64_t item, ChangedRuns runs) {
+    health_ += runs.health;
+    if (item == 0) {
+      as_it_is_ = std::move(runs.above);
+      return {};
+    }
+    const bool up = !runs.above.empty(), down = !runs.below.empty();
+    if (!up && !down) return {};
+    return effect(static_cast<std::size_t>(item - 1), up ? runs.above : as_it_is_,
+                  down ? runs.below : as_it_is_, up, down);
+  }
+  [[nodiscard]] const Health& health() const { return health_; }
+
+ private:
+  [[nodiscard]] ParameterEffect effect(std::size_t number, const std::vector<double>& above,
+                                       const std::vector<double>& below, bool up, bool down) const {
+    const Cell::Number first = cells_.cells.front()->numbers()[number];
+    double value = first.value;
+    for (const auto& cell : cells_.cells)
+      if (cell->numbers()[number].value != first.value) value = std::nan("");
+    const double step = options_.relative_step;
     const auto used = [&](std::size_t i) {
       return std::isfinite(above[i] + below[i] + as_it_is_[i]);
     };
@@ -86,7 +122,7 @@ class Parameters {
     const auto both = [&](const Sides& s, std::size_t part) {
       return (more(s, part) + less(s, part)) / (up && down ? 2.0 : 1.0);
     };
-    ParameterEffect e{of_types.front().key, value, {}, {}};
+    ParameterEffect e{first.key, value, {}, {}};
     e.left_out =
         1.0 - static_cast<double>(changes.both.front().n) / static_cast<double>(options_.runs);
     constexpr double kMostLeftOut = 0.05;
@@ -106,9 +142,7 @@ class Parameters {
     e.bends = up && down && std::abs(bend.mean) > kSure * (bend.mean - bend.interval[0]);
     return e;
   }
-  [[nodiscard]] const Health& health() const { return health_; }
 
- private:
   /// Samples of one chain: that of all trials, or of a group of them.
   struct Part {
     const StateSpace& space;
@@ -195,7 +229,7 @@ class Parameters {
 
   /// The chance of the target behind a passage of each sample through these cells; NaN where it
   /// broke, and where a changed cell is in the way of the entry, which bodies then make otherwise.
-  [[nodiscard]] std::vector<double> values(const Cells& cells) {
+  [[nodiscard]] std::vector<double> values(const Cells& cells, Health& health) const {
     std::vector<double> out(samples_.size());
     for (int type = 0; type < std::ssize(cells); ++type) {
       const Cell& cell = *cells[static_cast<std::size_t>(type)];
@@ -220,7 +254,7 @@ class Parameters {
             out[i] = value_of(samples_[i], passage);
             return false;
           },
-          health_);
+          health);
     }
     return out;
   }
@@ -265,10 +299,20 @@ ParameterEffects parameter_effects(const Problem& problem, const AnalysedChain& 
   ParameterEffects out{.chance = passages.at_start(), .effects = {}, .health = {}};
   if (passages.at_start() > 0.0) {
     Parameters parameters(problem, chain, passages, groups, options);
-    for (std::size_t k = 0; k < numbers; ++k) {
-      work.tell(kRuns, static_cast<std::int64_t>(k), static_cast<std::int64_t>(numbers));
-      if (auto effect = parameters.effect(k)) out.effects.push_back(std::move(*effect));
-    }
+    std::int64_t taken = 0;
+    work.in_kept_pieces(
+        {kRuns, {0, static_cast<std::int64_t>(numbers) + 1}}, std::vector<ChangedRuns>(),
+        [&](TrialRange items) {
+          std::vector<ChangedRuns> runs;
+          for (std::int64_t k = 0; k < items.count; ++k)
+            runs.push_back(parameters.run(items.first + k));
+          return runs;
+        },
+        [&](std::vector<ChangedRuns> piece) {
+          for (ChangedRuns& runs : piece)
+            if (auto effect = parameters.take(taken++, std::move(runs)))
+              out.effects.push_back(std::move(*effect));
+        });
     out.health = parameters.health();
   }
   out.seconds = watch.seconds();

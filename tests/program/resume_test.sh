@@ -73,6 +73,7 @@ expect 0 'crossed' "$gatewalk" lattice "${field[@]}" --trials 100 --checkpoint n
 # Wrong use.
 expect 2 'must be a time' "$gatewalk" "${long[@]}" --max-time 3
 expect 2 'must be a time' "$gatewalk" "${long[@]}" --max-time=-3h
+expect 2 'must be a time' "$gatewalk" "${long[@]}" --max-time=infs
 expect 2 'needs an output file, or --checkpoint' "$gatewalk" lattice "${field[@]}" --max-time 3h
 expect 2 'needs an output file, or --checkpoint' "$gatewalk" lattice "${field[@]}" --resume
 expect 2 'are the same file' "$gatewalk" "${long[@]}" --checkpoint long.json
