@@ -9,10 +9,12 @@ packages+=(libgtest-dev jq netcdf-bin ffmpeg chromium clang-format)
 packages+=(libchipmunk-dev)
 # A cluster on this machine, for parts of runs; processes that share one.
 packages+=(slurmctld slurmd slurm-client munge libopenmpi-dev openmpi-bin)
-command -v python3 >/dev/null || packages+=(python3)
+# The Python module, and what it makes tables and pictures with.
+packages+=(pybind11-dev python3-dev python3-numpy python3-scipy python3-pandas python3-xarray python3-matplotlib python3-venv
+  python3-pip python3-wheel mypy)
 # Some machines bring an npm of their own, which Debian's package would conflict with.
 command -v npm >/dev/null || packages+=(npm)
-build_gatewalk -DBUILD_TESTING=ON
+build_gatewalk -DBUILD_TESTING=ON -DGATEWALK_PYTHON=ON -DPython_EXECUTABLE=/usr/bin/python3
 # What drives the browser, as package-lock.json fixes it, checksums included. Once per lock file.
 web=tests/web
 if ! cmp -s $web/package-lock.json $web/node_modules/.installed-lock; then

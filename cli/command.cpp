@@ -158,7 +158,8 @@ std::string mistake_in(const po::error& error, const po::options_description& of
     return "there are more arguments than the command takes";
   const auto* named = dynamic_cast<const po::error_with_option_name*>(&error);
   if (!named) return error.what();
-  const std::string given = named->get_option_name();
+  std::string given = named->get_option_name();
+  given = given.substr(0, given.find('='));
   if (dynamic_cast<const po::unknown_option*>(&error)) {
     Strings names;
     for (const auto& option : offered.options()) names.push_back(option->long_name());
@@ -234,6 +235,8 @@ struct Options::State {
   std::string no_scene;  // why there is no --set, if there is none
   std::optional<dynamics::Work> work;
   std::function<void(const std::string&)> warned;
+  std::function<void(const Json&)> given_out;
+  std::shared_ptr<const dynamics::Cell> cell;
 
   std::optional<std::set<std::string>> divided;  // stages; none: nothing is kept
   CommandWords words;
@@ -549,6 +552,8 @@ void Options::check_files() {
 bool Options::parse(const Arguments& arguments) {
   state_->work = arguments.work;
   state_->warned = arguments.warned;
+  state_->given_out = arguments.given_out;
+  state_->cell = arguments.cell;
   state_->words.parts = arguments.parts;
   (state_->no_scene.empty() ? state_->own : state_->hidden)
       .add_options()("set", po::value<Strings>()->composing()->value_name("KEY=VALUE"),
@@ -743,7 +748,13 @@ void Options::remark(const std::string& text) const {
 
 // ---- What is given out ----
 
+const std::shared_ptr<const dynamics::Cell>& Options::cell() const { return state_->cell; }
+
 void Options::give_out(const Json& json, const std::string& table, int indent) const {
+  if (state_->given_out) {
+    state_->given_out(json);
+    return;
+  }
   if (!is_first_rank()) return;
   const std::string target = text("json");
   if (target != "-" && (target.empty() || talk())) write_text_atomically("-", table);

@@ -18,14 +18,18 @@
 #include "cli/render/provenance.h"
 #include "dynamics/base/work.h"
 
+namespace gatewalk::dynamics {
+class Cell;
+}
 namespace gatewalk::lattice {
 struct Scene;
 }
 
 namespace gatewalk::cli {
 
-/// The words behind a command's name; and who is told how far it is and what it warns of, where
-/// that is not the user at the terminal.
+/// The words behind a command's name; and what they have no words for, where they do not come from
+/// the user at the terminal: who is told how far it is and what it warns of, who takes the result
+/// as JSON, the cell of --cell-program.
 struct Arguments {
   Arguments(std::vector<std::string> given) : words(std::move(given)) {}  // NOLINT: the usual case
   Arguments(std::initializer_list<std::string> given) : words(given) {}
@@ -34,6 +38,8 @@ struct Arguments {
   std::optional<dynamics::Work> work = std::nullopt;
   std::function<void(const std::string&)> warned = nullptr;
   std::vector<std::string> parts{};  // files that hold all its work (merge)
+  std::function<void(const Json&)> given_out = nullptr;
+  std::shared_ptr<const dynamics::Cell> cell = nullptr;
 };
 
 /// A command by its words, for another run of it.
@@ -143,6 +149,9 @@ class Options {
   /// The scene of SCENE and --set. Throws lattice::SceneError.
   [[nodiscard]] lattice::Scene read_scene() const;
 
+  /// Arguments::cell.
+  [[nodiscard]] const std::shared_ptr<const dynamics::Cell>& cell() const;
+
   /// Progress lines and remarks are wanted.
   [[nodiscard]] bool talk() const;
   /// Long work of this command: shown unless --quiet, stopped by a signal or --max-time, its pieces
@@ -165,9 +174,9 @@ class Options {
   [[nodiscard]] Provenance provenance() const;
   [[nodiscard]] Provenance provenance(const lattice::Scene& scene) const;
 
-  /// Prints the result: JSON where --json says, the table on standard output otherwise; with --json
-  /// FILE the table too, unless --quiet.
-  /// `indent` -1: JSON on one line, for long arrays.
+  /// Gives the result to Arguments::given_out; without it prints it: JSON where --json says, the
+  /// table on standard output otherwise; with --json FILE the table too, unless --quiet. `indent`
+  /// -1: JSON on one line, for long arrays.
   void give_out(const Json& json, const std::string& table, int indent = 2) const;
   /// To be called before an output is written: what is there is kept as a Backup until the command
   /// is done, unless there is --force or it is written again. Then it is said which backups stay.

@@ -64,8 +64,7 @@ FieldRun run_cells(const Options& options) {
 }  // namespace
 
 FieldRun field_run(const Options& options) {
-  const bool any_cells =
-      options.has("cell-program") || options.has("passages") || options.has("cell-file");
+  const bool any_cells = has_cell(options) || options.has("passages") || options.has("cell-file");
   return any_cells ? run_cells(options) : run_scene(options);
 }
 

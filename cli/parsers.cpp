@@ -143,7 +143,8 @@ lattice::RecordingOptions recording_options(const Options& options) {
                      " runs are recorded; pick some with --only");
   check_option(options, "replay", [](const std::string&) {
     if (!has_pages())
-      throw std::invalid_argument("needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
+      throw std::invalid_argument(
+          "needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
   });
   check_option(options, "video", [](const std::string& path) { (void)video_format(path); });
   return wanted;

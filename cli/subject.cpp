@@ -114,6 +114,19 @@ std::string names(const std::vector<dynamics::CostInfo>& costs) {
   return all;
 }
 
+/// The cell that carries bodies through: the one given, or that of --cell-program.
+std::shared_ptr<const dynamics::Cell> cell_of(const Options& options) {
+  const std::vector<dynamics::Cell::Number> set = parameters_of(options);
+  if (!options.cell()) {
+    ProgramOptions how;
+    if (options.has("cell-timeout")) how.timeout_s = options.number("cell-timeout");
+    return std::make_shared<ProgramCell>(options.text("cell-program"), how, set);
+  }
+  if (!set.empty() || options.has("cell-program") || options.has("cell-timeout"))
+    throw UsageError("a cell is given: --set parameters and --cell-program are for programs");
+  return options.cell();
+}
+
 /// What a program says of its cell: another one is told by it, mostly.
 std::string told_by(const dynamics::Cell& cell) {
   std::string text = "cell program: " + names_of(cell.section().faces) + "; " +
@@ -186,10 +199,7 @@ Subject open_program(const Options& options, const std::string& path) {
     s.cells = lattice::read_cell_file(path, overrides);
     s.pool.emplace();
   }
-  ProgramOptions how;
-  if (options.has("cell-timeout")) how.timeout_s = options.number("cell-timeout");
-  const auto cell =
-      std::make_shared<ProgramCell>(options.text("cell-program"), how, parameters_of(options));
+  const std::shared_ptr<const dynamics::Cell> cell = cell_of(options);
   require_same(*cell, *s.cells, path);
   if (s.file && names(cell->section().costs) != names(s.cells->map.section.costs))
     throw UsageError("--cell-program: costs " + names(cell->section().costs) + " of its cell, " +
@@ -343,7 +353,7 @@ Json Subject::made_by(const Options& options) const {
 
 Subject open_subject(const Options& options, const std::string& name) {
   const std::string path = options.text(name);
-  const bool program = options.has("cell-program"), matrix = !program && is_matrix(path),
+  const bool program = has_cell(options), matrix = !program && is_matrix(path),
              of_cells = program || (matrix && lattice::is_of_cells(path));
   if (const std::string second = second_scene(options, name);
       !second.empty() && (!matrix || of_cells))
@@ -368,6 +378,8 @@ void refuse(const Options& options, std::initializer_list<const char*> names,
   for (const char* name : names)
     if (options.has(name)) throw UsageError(std::string("--") + name + " has no meaning " + where);
 }
+
+bool has_cell(const Options& options) { return options.has("cell-program") || options.cell(); }
 
 void add_cell_program(Options& options) {
   options.add_text("cell-program", "COMMAND",

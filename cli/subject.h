@@ -71,6 +71,8 @@ void refuse(const Options& options, std::initializer_list<const char*> names,
 /// recorded runs as they are. Warns where it was not reached.
 [[nodiscard]] lattice::PooledPrediction predict(const Options& options, Subject& s);
 
+/// Whether bodies are carried by cells that are not ours: --cell-program, or a cell given.
+[[nodiscard]] bool has_cell(const Options& options);
 /// Declares --cell-program and --cell-timeout.
 void add_cell_program(Options& options);
 

@@ -141,7 +141,7 @@ Validated program_subject(const Options& options) {
 }  // namespace
 
 Validated validated(const Options& options) {
-  if (options.has("cell-program")) return program_subject(options);
+  if (has_cell(options)) return program_subject(options);
   return options.has("matrix") ? read_subject(options) : build_subject(options);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The first line that a cell program writes: what its cell looks like (PROGRAM.md).
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,20 @@ struct Hello {
   int normals = 0, uniforms = 0;  // that a passage gets; one of both is 0
   std::vector<Parameter> parameters;
 };
+
+/// A passage's noise, number by number, to `take`; drawn first, so that a trial's first passage
+/// gets what other cells' bodies get. Returns its seed.
+template <class Take>
+std::uint64_t draw_noise(const Hello& hello, dynamics::Random& random, Take take) {
+  dynamics::Random::Normals normals;
+  for (int i = 0; i < hello.normals; ++i) {
+    const std::size_t at = static_cast<std::size_t>(i) % normals.size();
+    if (at == 0) random.normals(normals);
+    take(normals[at]);
+  }
+  for (int i = 0; i < hello.uniforms; ++i) take(random.uniform());
+  return random.word();
+}
 
 /// Throws std::invalid_argument naming the key and what is allowed.
 [[nodiscard]] Hello read_hello(std::string_view line);

@@ -41,16 +41,9 @@ void append(std::string& line, Number x) {
   line.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr);
 }
 
-/// The noise is drawn first, so that a trial's first passage gets what other cells' bodies get.
 void append_noise(std::string& line, const Hello& hello, Random& random) {
   std::string noise;
-  Random::Normals normals;
-  for (int i = 0; i < hello.normals; ++i) {
-    if (i % std::ssize(normals) == 0) random.normals(normals);
-    append(noise, normals[i % normals.size()]);
-  }
-  for (int i = 0; i < hello.uniforms; ++i) append(noise, random.uniform());
-  append(line, random.word());
+  append(line, draw_noise(hello, random, [&](double x) { append(noise, x); }));
   line += noise;
 }
 

@@ -96,7 +96,7 @@ int run_build(const Arguments& arguments) {
       "tree: good for any start of a range, LOW:HIGH each; all: Table III's from below");
   options.add_count("states", "S", "tree: at most S states beside the starts");
   if (!options.parse(arguments)) return kFine;
-  if (options.has("cell-program")) return build_program(options);
+  if (has_cell(options)) return build_program(options);
   if (options.has("cell")) return build_recorded(options);
   refuse_files_of_cells(options.text("scene"));
   lattice::Scene scene = options.read_scene();

@@ -53,7 +53,7 @@ int run_validate(const Arguments& arguments) {
   add_cell_program(options);
   options.add_figure("final gates of dynamics and chain, and their difference");
   if (!options.parse(arguments)) return kFine;
-  if (!options.has("cell-program") && lattice::is_of_cells(options.text("scene")))
+  if (!has_cell(options) && lattice::is_of_cells(options.text("scene")))
     return validate_recorded(options);
   constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
   lattice::ValidationOptions how{.trials = options.has("trials") ? options.trials() : 100,

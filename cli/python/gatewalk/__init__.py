@@ -1,0 +1,241 @@
+"""Locomotion through cluttered obstacles: short runs of single gates, chained over a field.
+
+The same commands as the program ``gatewalk``, with the same numbers to the last bit and the same errors. Options of a
+command are keyword arguments (``--gate-runs 1e5`` is ``gate_runs=1e5``); ``help(gatewalk.predict)`` names the usual
+ones, ``gatewalk.options("predict")`` all of them.
+
+>>> import gatewalk as gw
+>>> scene = gw.Scene({"body": {"radius_cm": 4.0, "mass_g": 250.0}, "forces": {"propulsion_N": 1.2}})
+>>> p = gw.predict(scene, accuracy=0.05, seed=1)
+>>> round(sum(p.endings.values()), 12)
+1.0
+>>> p.final_gates.shape
+(9, 9)
+
+States, rows and columns count from 0 here; tables and JSON of the program count states from 1.
+"""
+
+from __future__ import annotations
+
+import contextlib as _contextlib
+import os as _os
+import sys as _sys
+import typing as _t
+import warnings as _warnings
+
+from . import _core
+from ._cell import BROKEN, TRAPPED, Cell
+from ._core import BadFile, SceneError, UsageError, threads
+from ._results import Analysis, Prediction, Result, Sweep, Trace
+from ._scene import Scene, file_of as _file_of, _table_html
+
+__version__: str = _core.version
+__all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Matrix", "Prediction", "Result", "Scene", "SceneError",
+           "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "from_passages", "gate", "lattice", "load", "options",
+           "passages", "power", "predict", "rare", "sweep", "threads", "trace", "validate", "walk"]
+
+
+class GatewalkWarning(UserWarning):
+    """What a result must not be taken at face value for; the program's own words."""
+
+
+def _word(value: _t.Any) -> str:
+    """A value as the command line has it."""
+    if isinstance(value, float):
+        return repr(value)
+    if isinstance(value, (tuple, list)):
+        return ",".join(_word(x) for x in value)
+    if hasattr(value, "item"):  # of numpy
+        return _word(value.item())
+    return str(value)
+
+
+#: Options that a process has no use for, and those that the module itself gives.
+_NOT_HERE = {"quiet", "json", "checkpoint", "resume", "max-time", "shard", "part"}
+
+
+def _words_of(given: dict[str, _t.Any]) -> list[str]:
+    words: list[str] = []
+    for key, value in given.items():
+        if value is None or value is False:
+            continue
+        name = key.replace("_", "-")
+        if name in _NOT_HERE:
+            raise UsageError(f"{key}: has no meaning in Python; the program has --{name}")
+        if name == "threads":
+            raise UsageError("threads: gatewalk.threads(n) sets them, for all that follows")
+        if name in ("set", "versus") and isinstance(value, dict):
+            value = [f"{k}={_word(v)}" for k, v in value.items()]
+        if name == "vary" and isinstance(value, dict):
+            value = [f"{k}={_word(v)}" for k, v in value.items()]
+        if name == "start":
+            rows = list(value) if isinstance(value, list) else [value]
+            value = [_word(row) for row in rows]
+        many = value if isinstance(value, list) else [value]
+        words += [f"--{name}"] if value is True else [f"--{name}={_word(v)}" for v in many]
+    return words
+
+
+@_contextlib.contextmanager
+def _progress(wanted: bool | None) -> _t.Iterator[_t.Callable[[str, int, int], None] | None]:
+    """tqdm's bar, where it is installed and somebody looks (or progress=True)."""
+    if wanted is False or (wanted is None and not _sys.stderr.isatty()):
+        yield None
+        return
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        yield None
+        return
+    bars: dict[str, _t.Any] = {}
+
+    def told(what: str, done: int, total: int) -> None:
+        if what not in bars:
+            for bar in bars.values():
+                bar.close()
+            bars.clear()
+            bars[what] = tqdm(total=total, desc=what, leave=False)
+        bars[what].total = total
+        bars[what].update(done - bars[what].n)
+
+    try:
+        yield told
+    finally:
+        for bar in bars.values():
+            bar.close()
+
+
+def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: list[str] | None = None) -> dict[str, _t.Any]:
+    """Runs a command about these subjects; raises what the program would say."""
+    cell = given.pop("cell", None)
+    progress = given.pop("progress", None)
+    with _contextlib.ExitStack() as stack:
+        words: list[str] = []
+        for subject in subjects:
+            path, overrides = stack.enter_context(_file_of(subject))
+            words.append(path)
+            words += [f"--set={k}={_word(v)}" for k, v in overrides.items()]
+        words += _words_of(given) + (extra or []) + ["--quiet"]
+        if command not in ("build", "passages"):
+            words.append("--json=-")
+        told = stack.enter_context(_progress(progress))
+        warned: list[str] = []
+        try:
+            status, result = _core.run(command, words, told=told, warned=warned.append, cell=cell)
+        finally:
+            for text in warned:
+                _warnings.warn(text, GatewalkWarning, stacklevel=3)
+    if status != 0 and given.get("strict"):
+        raise RuntimeError(f"gatewalk {command}: the result's status is not clean")
+    return _t.cast("dict[str, _t.Any]", result) if result is not None else {}
+
+
+def options(command: str) -> str:
+    """The help page of a command, by name: all options that its function here takes.
+
+    Parameters
+    ----------
+    command : str
+        "predict", "build", ...
+    """
+    import subprocess
+
+    code = "import sys; from gatewalk import _core; _core.run(sys.argv[1], ['--help'], told=None, warned=print, cell=None)"
+    done = subprocess.run([_sys.executable, "-c", code, command], capture_output=True, text=True, check=False,
+                          env={**_os.environ, "PYTHONPATH": _os.pathsep.join(p for p in _sys.path if p)})
+    if done.returncode != 0:
+        raise UsageError(done.stderr.strip().splitlines()[-1])
+    return done.stdout
+
+
+def predict(subject: _t.Any, *, accuracy: float | None = None, start: _t.Any = None, seed: int | None = None, cell: Cell | None = None,
+            progress: bool | None = None, **more: _t.Any) -> Prediction:
+    """Where bodies end in a field, and how, with error bars.
+
+    Parameters
+    ----------
+    subject : Scene, Matrix, path, text or dict
+        A scene: trials are run until the bar keeps `accuracy`. A matrix of trees: the same with its runs.
+    accuracy : float, optional
+        Of all shares together (total variation, 95 %); 0.02 without it.
+    start : tuple or list of tuples, optional
+        (d, vx, vy) in m and m/s, of each start: where and how fast a body enters the field.
+    seed : int, optional
+        Of all trials; 1 without it.
+    cell : Cell, optional
+        Who carries bodies through the cells of `subject`, which is a cell file then.
+    progress : bool, optional
+        A bar of tqdm; without it, where one is installed and standard error is a terminal.
+    **more
+        Any option of ``gatewalk predict``, "-" written "_".
+
+    Returns
+    -------
+    Prediction
+
+    Raises
+    ------
+    SceneError, UsageError, BadFile
+        All of them ValueErrors: the key, and what is allowed.
+    """
+    return Prediction(_run("predict", [subject], dict(accuracy=accuracy, start=start, seed=seed, cell=cell, progress=progress, **more)))
+
+
+def lattice(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
+            **more: _t.Any) -> Prediction:
+    """The full dynamics through the field: how many of `trials` (100) bodies end where, and how. See `predict`."""
+    return Prediction(_run("lattice", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
+
+
+def gate(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
+    """`trials` (100) runs of one gate: how many traverse it, leave by its sides, are trapped."""
+    return Result(_run("gate", [scene], dict(trials=trials, seed=seed, progress=progress, **more)))
+
+
+def sweep(scene: _t.Any, vary: dict[str, _t.Any], *, trials: int | None = None, seed: int | None = None, progress: bool | None = None,
+          **more: _t.Any) -> Sweep:
+    """`gate` over a grid of scene keys.
+
+    Parameters
+    ----------
+    vary : dict
+        Values of each key, a list or a text such as "5:1:8": ``{"forces.propulsion_N": [5, 6, 7]}``.
+    """
+    return Sweep(_run("sweep", [scene], dict(vary=vary, trials=trials, seed=seed, progress=progress, **more)))
+
+
+def trace(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Trace:
+    """Single runs in full: every step with places, velocities, beams, forces and energies; field=True: across the field."""
+    return Trace(_run("trace", [scene], dict(trials=trials, seed=seed, progress=progress, **more)))
+
+
+def validate(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
+             **more: _t.Any) -> Result:
+    """Compares the chain with the full dynamics, or with counts of yours (observed=FILE)."""
+    return Result(_run("validate", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
+
+
+def analyze(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
+            **more: _t.Any) -> Analysis:
+    """Times, work, paths, other starts; what would change a field's outcome most."""
+    return Analysis(_run("analyze", [subject], dict(accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
+
+
+def rare(subject: _t.Any, *, row: int | None = None, accuracy: float | None = None, seed: int | None = None, cell: Cell | None = None,
+         progress: bool | None = None, **more: _t.Any) -> Result:
+    """How likely far rows are, where trials never get (splitting)."""
+    return Result(_run("rare", [subject], dict(row=row, accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
+
+
+def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
+          **more: _t.Any) -> Result:
+    """How many trials an experiment needs to show a difference."""
+    return Result(_run("power", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
+
+
+def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
+    """Walks the field by drawing from a matrix."""
+    return Result(_run("walk", [matrix], dict(seed=seed, progress=progress, **more)))
+
+
+from ._matrix import Matrix, build, from_passages, load, passages  # noqa: E402  (they use _run)

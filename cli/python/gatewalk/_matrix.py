@@ -1,0 +1,269 @@
+"""Matrices: built, saved, read, and asked."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import shutil
+import tempfile
+import typing as t
+import weakref
+
+from . import _core, _run
+from ._cell import Cell
+from ._results import Analysis, Prediction, Result
+from ._scene import file_of
+
+
+def _unlink(path: str) -> None:
+    with contextlib.suppress(OSError):
+        os.unlink(path)
+
+
+class Matrix:
+    """A transition matrix: what short runs gave, as a file of NetCDF-4 that the program reads too.
+
+    `build`, `from_passages` and `load` make one. States count from 0.
+    """
+
+    def __init__(self, path: t.Any, _owned: bool = False) -> None:
+        self._path = os.fspath(path)
+        self._core = _core.Matrix(self._path)
+        if _owned:
+            self._gone = weakref.finalize(self, _unlink, self._path)
+
+    @property
+    def matrix(self) -> t.Any:
+        """Probabilities as a scipy.sparse.csr_matrix, shape (states, states + 1), the last column trapped; no copy."""
+        return self.probabilities()
+
+    def probabilities(self, type: str = "") -> t.Any:  # noqa: A002
+        """The same of a type of gates."""
+        return self._csr(type, True)
+
+    def counts(self, type: str = "") -> t.Any:  # noqa: A002
+        """Numbers of runs, int64. A tree's hold mirror images too: a posterior from them is too narrow by sqrt(2)."""
+        return self._csr(type, False)
+
+    def _csr(self, type: str, probabilities: bool) -> t.Any:  # noqa: A002
+        from scipy.sparse import csr_matrix
+
+        data, indices, indptr, shape = self._core.csr(type, probabilities)
+        return csr_matrix((data, indices, indptr), shape=shape, copy=False)
+
+    @property
+    def types(self) -> list[str]:
+        """Types of gates; "" is the scene's own."""
+        return self._core.types
+
+    @property
+    def states(self) -> t.Any:
+        """A pandas.DataFrame: face, and low and high of each coordinate, of every state."""
+        import pandas
+
+        return pandas.DataFrame(self._core.states()).rename_axis("state")
+
+    @property
+    def moves(self) -> dict[str, tuple[int, int]]:
+        """By face: the move (columns, rows) that enters by it."""
+        return {name: (x, y) for name, x, y in self._core.faces()}
+
+    @property
+    def made_by(self) -> dict[str, str]:
+        """Where it comes from: scene, seed, version, command."""
+        return self._core.text
+
+    def save(self, path: t.Any) -> None:
+        """Writes it to `path`, as a whole or not at all."""
+        path = os.fspath(path)
+        handle, name = tempfile.mkstemp(dir=os.path.dirname(path) or ".", prefix=".gatewalk-")
+        try:
+            with os.fdopen(handle, "wb") as out, open(self._path, "rb") as source:
+                shutil.copyfileobj(source, out)
+                out.flush()
+                os.fsync(out.fileno())
+            os.chmod(name, 0o644)
+            os.replace(name, path)
+        except BaseException:
+            _unlink(name)
+            raise
+
+    def predict(self, **more: t.Any) -> Prediction:
+        """See `gatewalk.predict`."""
+        from . import predict
+
+        return predict(self, **more)
+
+    def analyze(self, **more: t.Any) -> Analysis:
+        """See `gatewalk.analyze`."""
+        from . import analyze
+
+        return analyze(self, **more)
+
+    def walk(self, **more: t.Any) -> Result:
+        """See `gatewalk.walk`."""
+        from . import walk
+
+        return walk(self, **more)
+
+    def validate(self, **more: t.Any) -> Result:
+        """See `gatewalk.validate`."""
+        from . import validate
+
+        return validate(self, **more)
+
+    def plot(self, axes: t.Any = None) -> t.Any:
+        """The matrix, from states downwards to states at the right, by matplotlib."""
+        import matplotlib.pyplot as plt
+        import numpy as np
+        from matplotlib.colors import LogNorm
+
+        if axes is None:
+            _, axes = plt.subplots(figsize=(3.5, 3.2), constrained_layout=True)
+        dense = np.ma.masked_less_equal(self.matrix.toarray(), 0.0)
+        image = axes.imshow(dense, norm=LogNorm(), cmap="viridis", interpolation="nearest")
+        axes.figure.colorbar(image, ax=axes, label="probability")
+        axes.set_xlabel("to state (last: trapped)")
+        axes.set_ylabel("from state")
+        return axes
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Matrix) and self._bytes() == other._bytes()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _bytes(self) -> bytes:
+        with open(self._path, "rb") as file:
+            return file.read()
+
+    def __reduce__(self) -> t.Any:
+        return _from_bytes, (self._bytes(),)
+
+    def __copy__(self) -> Matrix:
+        return _from_bytes(self._bytes())
+
+    def __deepcopy__(self, memo: t.Any) -> Matrix:
+        return _from_bytes(self._bytes())
+
+    def __repr__(self) -> str:
+        _, _, _, (rows, columns) = self._core.csr("", False)
+        return f"<gatewalk.Matrix {rows} x {columns}{', types ' + ', '.join(t for t in self.types if t) if len(self.types) > 1 else ''}>"
+
+
+def _temporary() -> str:
+    handle, name = tempfile.mkstemp(suffix=".nc", prefix="gatewalk-")
+    os.close(handle)
+    return name
+
+
+def _from_bytes(data: bytes) -> Matrix:
+    name = _temporary()
+    with open(name, "wb") as out:
+        out.write(data)
+    return Matrix(name, _owned=True)
+
+
+def load(path: t.Any) -> Matrix:
+    """Reads a matrix file. Raises BadFile where it is none, or damaged."""
+    return Matrix(path)
+
+
+def _built(subject: t.Any, given: dict[str, t.Any], words: t.Sequence[str] = ()) -> Matrix:
+    name = _temporary()
+    try:
+        _run("build", [subject], given, [*words, f"--output={name}", "--force"])
+        return Matrix(name, _owned=True)
+    except BaseException:
+        _unlink(name)
+        raise
+
+
+def build(subject: t.Any, *, accuracy: float | None = None, starts: t.Any = None, seed: int | None = None, cell: Cell | None = None,
+          progress: bool | None = None, **more: t.Any) -> Matrix:
+    """Makes the transition matrix of a scene's gates.
+
+    Parameters
+    ----------
+    subject : Scene, path, text or dict
+    accuracy : float, optional
+        Of predictions from it; 0.02 without it. bins="paper", trials=100: the paper's 87 states instead.
+    starts : str, optional
+        "all", or a range of starts: the matrix then serves any of them.
+    seed, cell, progress, **more
+        See `predict`.
+
+    Returns
+    -------
+    Matrix
+    """
+    return _built(subject, dict(accuracy=accuracy, starts=starts, seed=seed, cell=cell, progress=progress, **more))
+
+
+def _csv_of(table: t.Any) -> str:
+    """A DataFrame as CSV, every digit; numbers that are none as nothing."""
+    out = io.StringIO()
+    table.to_csv(out, index=False, float_format="%.17g")
+    return out.getvalue()
+
+
+@contextlib.contextmanager
+def _table_file(table: t.Any) -> t.Iterator[str]:
+    """A file with the table; a path as it is."""
+    if isinstance(table, (str, os.PathLike)):
+        yield os.fspath(table)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        if hasattr(table, "to_netcdf") and not hasattr(table, "to_csv"):
+            name = os.path.join(folder, "tracks.nc")
+            table.to_netcdf(name)
+        else:
+            name = os.path.join(folder, "table.csv")
+            with open(name, "w", encoding="utf-8") as file:
+                file.write(_csv_of(table))
+        try:
+            yield name
+        except ValueError as error:
+            raise type(error)(str(error).replace(name, "the table")) from None
+
+
+def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
+    """Makes a matrix of recorded passages.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame or path
+        A line a passage: body, trial, in, coordinates, out, out_ coordinates, time_s.
+    cell : path, text or dict
+        The cell file: faces, coordinates, field.
+    """
+    with _table_file(table) as name, file_of(cell) as (path, _):
+        return _built(name, dict(more), [f"--cell={path}"])
+
+
+def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
+    """Cuts tracks into passages through cells.
+
+    Parameters
+    ----------
+    tracks : pandas.DataFrame, xarray.Dataset or path
+        Places by body and frame (columns={"x": "POSITION_X", ...}), or movement's poses.
+    cell : path, text or dict
+        The cell file.
+    **more
+        Options of ``gatewalk passages``: fps, metres_per_unit, fastest, bridge, ...
+
+    Returns
+    -------
+    pandas.DataFrame
+        A line a passage, as `from_passages` takes it.
+    """
+    import pandas
+
+    columns = more.pop("columns", None)
+    if isinstance(columns, dict):
+        columns = ",".join(f"{k}={v}" for k, v in columns.items())
+    with _table_file(tracks) as name, file_of(cell) as (path, _), tempfile.TemporaryDirectory() as folder:
+        out = os.path.join(folder, "runs.csv")
+        _run("passages", [name], {**more, "columns": columns}, [f"--cell={path}", f"--output={out}"])
+        return pandas.read_csv(out, comment="#")

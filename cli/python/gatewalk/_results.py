@@ -1,0 +1,206 @@
+"""What commands give: the program's JSON, with numpy arrays, tables and pictures."""
+
+from __future__ import annotations
+
+import collections.abc
+import typing as t
+
+import numpy as np
+
+from ._scene import _table_html
+
+
+def _same(a: t.Any, b: t.Any) -> bool:
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(_same(a[k], b[k]) for k in a if not k.endswith("seconds"))
+    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(map(_same, a, b))
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        return np.shape(a) == np.shape(b) and bool(np.array_equal(a, b, equal_nan=True))
+    return bool(a == b)
+
+
+class Result(collections.abc.Mapping):  # type: ignore[type-arg]
+    """A command's result: its JSON as a mapping, keys as attributes too. Equal where all but times and origin is.
+
+    Tables of numbers are numpy arrays, intervals are tuples (low, high).
+    """
+
+    def __init__(self, data: dict[str, t.Any]) -> None:
+        self._data = data
+
+    def __getitem__(self, key: str) -> t.Any:
+        return self._data[key]
+
+    def __iter__(self) -> t.Iterator[str]:
+        return iter(self._data)
+
+    def __len__(self) -> int:
+        return len(self._data)
+
+    def __getattr__(self, name: str) -> t.Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self._data[name]
+        except KeyError:
+            raise AttributeError(f"{type(self).__name__} has no {name}; it has {', '.join(self._data)}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._data]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Result):
+            return NotImplemented
+
+        def shown(result: Result) -> dict[str, t.Any]:
+            return {k: v for k, v in result._data.items() if k not in ("made_by", "speed_ratio")}
+
+        return type(self) is type(other) and _same(shown(self), shown(other))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _lines(self) -> list[tuple[str, str]]:
+        return [(k, f"{v:.6g}" if isinstance(v, float) else str(v)) for k, v in self._data.items()
+                if isinstance(v, (bool, int, float, str))]
+
+    def __repr__(self) -> str:
+        return f"<gatewalk.{type(self).__name__} " + ", ".join(f"{k} {v}" for k, v in self._lines()[:6]) + ">"
+
+    def _repr_html_(self) -> str:
+        return _table_html(self._lines(), ("", ""))
+
+
+class Prediction(Result):
+    """Where bodies end, and how. Of several starts, `starts` has one for each.
+
+    Attributes
+    ----------
+    endings, endings_95 : dict
+        Shares of all bodies by ending (lattice: numbers of bodies); their 95 % intervals.
+    final_gates, trapped_gates, departed_gates : array, shape (rows, columns)
+        Shares (lattice: numbers) by the gate bodies end in, row 0 the one they enter by; of those trapped there, and of those
+        that left the field from there.
+    error_95 : float or None
+        The bar: total variation of all shares, 95 %; none where nothing could be told.
+    """
+
+    @property
+    def starts(self) -> list[Prediction]:
+        """One prediction for each start."""
+        rows = self._data.get("starts")
+        return [Prediction(row) for row in rows] if rows else [self]
+
+    def _gates(self) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]:
+        first = self.starts[0]._data
+        bars = first.get("final_gates_95")
+        return np.asarray(first["final_gates"]), (np.asarray(bars["low"]), np.asarray(bars["high"])) if bars else None
+
+    def to_xarray(self) -> t.Any:
+        """An xarray.Dataset: final, trapped and departed gates by i_y and i_x (0 in the middle), endings by ending."""
+        import xarray
+
+        first = self.starts[0]._data
+        rows, columns = np.shape(first["final_gates"])
+        is_count = "trials" in self._data
+        unit = {"units": "1", "long_name": "bodies" if is_count else "share of bodies"}
+        place = ("i_y", "i_x")
+        data: dict[str, t.Any] = {k: (place, np.asarray(first[k]), unit) for k in ("final_gates", "trapped_gates", "departed_gates")
+                                  if k in first}
+        _, bars = self._gates()
+        if bars:
+            data["final_gates_95"] = (("bound", *place), np.stack(bars), unit)
+        data["endings"] = (("ending",), np.array(list(first["endings"].values()), dtype=float), unit)
+        if "endings_95" in first:
+            data["endings_95"] = (("ending", "bound"), np.array(list(first["endings_95"].values()), dtype=float), unit)
+        coordinates = {"i_y": ("i_y", np.arange(rows), {"long_name": "row of gates, from the start's side"}),
+                       "i_x": ("i_x", np.arange(columns) - (columns - 1) // 2, {"long_name": "column of gates"}),
+                       "ending": list(first["endings"])}
+        if bars or "endings_95" in first:
+            coordinates["bound"] = ["low", "high"]
+        return xarray.Dataset(data, coordinates, {"title": "gatewalk", "scene": self._data.get("made_by", {}).get("scene", "")})
+
+    def to_frame(self) -> t.Any:
+        """A pandas.DataFrame: a line per ending, its share (lattice: number) and 95 % interval."""
+        import pandas
+
+        first = self.starts[0]._data
+        low_high = np.array([first.get("endings_95", {}).get(k, (np.nan, np.nan)) for k in first["endings"]], dtype=float)
+        return pandas.DataFrame({"value": list(first["endings"].values()), "low_95": low_high[:, 0], "high_95": low_high[:, 1]},
+                                index=pandas.Index(list(first["endings"]), name="ending"))
+
+    def plot(self, axes: t.Any = None) -> t.Any:
+        """Final gates as a map and endings as bars, by matplotlib; returns both axes."""
+        import matplotlib.pyplot as plt
+
+        if axes is None:
+            _, axes = plt.subplots(1, 2, figsize=(7.0, 3.0), constrained_layout=True)
+        first = self.starts[0]._data
+        total = float(self._data.get("trials", 1))
+        gates = np.asarray(first["final_gates"], dtype=float) / total
+        columns = gates.shape[1]
+        left = -((columns - 1) // 2) - 0.5
+        shown = np.ma.masked_less_equal(100 * gates, 0.0)
+        image = axes[0].imshow(shown, origin="lower", cmap="viridis", extent=(left, left + columns, -0.5, gates.shape[0] - 0.5))
+        axes[0].set_xlabel("$i_x$")
+        axes[0].set_ylabel("$i_y$")
+        axes[0].figure.colorbar(image, ax=axes[0], label="final gate, % of bodies")
+        table = np.array(list(first["endings"].values()), dtype=float) / total
+        names = [name.replace("_", " ") for name in first["endings"]]
+        bars = first.get("endings_95")
+        errors = None
+        if bars:
+            limits = np.array(list(bars.values()), dtype=float)
+            errors = 100 * np.clip(np.stack([table - limits[:, 0], limits[:, 1] - table]), 0.0, None)
+        axes[1].barh(names, 100 * table, xerr=errors, color="0.6", ecolor="black", capsize=2)
+        axes[1].invert_yaxis()
+        axes[1].set_xlabel("% of bodies, with 95 % intervals" if bars else "% of bodies")
+        return axes
+
+    def _lines(self) -> list[tuple[str, str]]:
+        first = self.starts[0]._data
+        bars = first.get("endings_95", {})
+        lines = [(k.replace("_", " "), f"{v:.4g}" + (f" [{bars[k][0]:.3g}, {bars[k][1]:.3g}]" if k in bars else ""))
+                 for k, v in first["endings"].items()]
+        if first.get("error_95") is not None:
+            lines.append(("error_95", f"{first['error_95']:.3g}"))
+        return lines
+
+
+class Analysis(Result):
+    """Times, work, other starts and influences of a field."""
+
+
+class Sweep(Result):
+    """Outcomes over a grid of keys: `points`, or a table."""
+
+    def to_frame(self) -> t.Any:
+        """A pandas.DataFrame: a line per point, the keys first, then the numbers of each outcome."""
+        import pandas
+
+        return pandas.DataFrame([{**p["at"], **{k: v for k, v in p.items() if isinstance(v, int) and not isinstance(v, bool)}}
+                                 for p in self._data["points"]])
+
+
+class Trace(Result):
+    """Runs in full: `runs` has a dict of arrays for each."""
+
+    def to_frame(self, run: int = 0) -> t.Any:
+        """A pandas.DataFrame of one run, a line per step."""
+        import pandas
+
+        return pandas.DataFrame({k: v for k, v in self._data["runs"][run].items() if isinstance(v, np.ndarray)})
+
+    def plot(self, axes: t.Any = None) -> t.Any:
+        """The ways of all runs, by matplotlib."""
+        import matplotlib.pyplot as plt
+
+        if axes is None:
+            _, axes = plt.subplots(figsize=(3.5, 4.0), constrained_layout=True)
+        width, length = self._data["gate_m"]
+        for run in self._data["runs"]:
+            axes.plot(np.asarray(run["gx"]) * width + run["x"], np.asarray(run["gy"]) * length + run["y"], label=run["label"], lw=0.8)
+        axes.set_xlabel("x (m)")
+        axes.set_ylabel("y (m)")
+        axes.set_aspect("equal")
+        return axes

@@ -1,0 +1,235 @@
+// The Python module gatewalk._core: commands by their words, and matrices.
+
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <tbb/global_control.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/python/python_cell.h"
+#include "cli/render/json.h"
+#include "cli/render/version.h"
+#include "lattice/cells/cell_matrix.h"
+#include "lattice/scene/scene.h"
+
+namespace gatewalk::python {
+namespace {
+
+namespace py = pybind11;
+using cli::Json;
+
+/// Numbers of an array; none where something else is in it.
+std::optional<std::vector<double>> numbers_of(const Json& array) {
+  std::vector<double> numbers;
+  for (const Json& x : array) {
+    if (!x.is_number()) return {};
+    numbers.push_back(x.get<double>());
+  }
+  return numbers;
+}
+
+/// Tables of numbers and longer rows of them are numpy arrays, pairs of numbers (intervals) tuples.
+py::object to_python(const Json& json) {
+  switch (json.type()) {
+    case Json::value_t::null:
+      return py::none();
+    case Json::value_t::boolean:
+      return py::bool_(json.get<bool>());
+    case Json::value_t::number_integer:
+      return py::int_(json.get<std::int64_t>());
+    case Json::value_t::number_unsigned:
+      return py::int_(json.get<std::uint64_t>());
+    case Json::value_t::number_float:
+      return py::float_(json.get<double>());
+    case Json::value_t::string:
+      return py::str(json.get<std::string>());
+    case Json::value_t::object: {
+      py::dict dict;
+      for (const auto& [key, value] : json.items()) dict[py::str(key)] = to_python(value);
+      return dict;
+    }
+    default:
+      break;
+  }
+  if (json.size() == 2 && json[0].is_number() && json[1].is_number())
+    return py::make_tuple(to_python(json[0]), to_python(json[1]));
+  const auto as_array = [](const auto& numbers, std::vector<py::ssize_t> shape) {
+    py::array_t<double> array(std::move(shape));
+    std::copy(numbers.begin(), numbers.end(), array.mutable_data());
+    return array;
+  };
+  if (json.size() > 2) {
+    if (const auto numbers = numbers_of(json))
+      return as_array(*numbers, {static_cast<py::ssize_t>(json.size())});
+  }
+  if (!json.empty() && json[0].is_array() && json[0].size() != 2) {
+    std::vector<double> all;
+    bool is_table = true;
+    for (const Json& row : json) {
+      const auto numbers = row.is_array() && row.size() == json[0].size()
+                               ? numbers_of(row)
+                               : std::optional<std::vector<double>>();
+      is_table = is_table && numbers.has_value();
+      if (!is_table) break;
+      all.insert(all.end(), numbers->begin(), numbers->end());
+    }
+    if (is_table)
+      return as_array(
+          all, {static_cast<py::ssize_t>(json.size()), static_cast<py::ssize_t>(json[0].size())});
+  }
+  py::list list;
+  for (const Json& x : json) list.append(to_python(x));
+  return list;
+}
+
+/// One at a time: files of NetCDF are read and written, and a command is one of its process.
+std::mutex& running() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+py::tuple run(const std::string& name, std::vector<std::string> words, const py::object& told,
+              const py::object& warned, const py::object& cell) {
+  const cli::Command* const command = cli::command_named(name);
+  if (!command) throw cli::UsageError("there is no command '" + name + "'");
+  Json result;
+  cli::Arguments arguments(std::move(words));
+  arguments.work =
+      dynamics::Work{[&](std::string_view what, std::int64_t done, std::int64_t total) {
+                       const py::gil_scoped_acquire gil;
+                       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+                       if (!told.is_none()) told(std::string(what), done, total);
+                     },
+                     nullptr, nullptr};
+  arguments.warned = [&](const std::string& text) {
+    const py::gil_scoped_acquire gil;
+    warned(text);
+  };
+  arguments.given_out = [&](const Json& json) { result = json; };
+  if (!cell.is_none()) arguments.cell = std::make_shared<PythonCell>(cell);
+  int status = 0;
+  {
+    const py::gil_scoped_release no_gil;
+    const std::lock_guard lock(running());
+    status = command->run(arguments);
+  }
+  return py::make_tuple(status, to_python(result));
+}
+
+/// What a matrix file holds; its arrays are views of it.
+class Matrix {
+ public:
+  explicit Matrix(const std::string& path) : file_(lattice::read_any_matrix(path)) {
+    add("", file_.transitions);
+    for (const auto& [name, transitions] : file_.types) add(name, transitions);
+  }
+  [[nodiscard]] std::vector<std::string> types() const {
+    std::vector<std::string> names;
+    for (const auto& [name, type] : types_) names.push_back(name);
+    return names;
+  }
+  [[nodiscard]] const std::map<std::string, std::string>& text() const { return file_.text; }
+
+  /// (data, indices, indptr, shape) of the counts or of the probabilities, rows compressed.
+  static py::tuple csr(const py::object& self, const std::string& type, bool probabilities) {
+    const auto& matrix = self.cast<const Matrix&>();
+    const auto found = matrix.types_.find(type);
+    if (found == matrix.types_.end()) throw py::key_error("the matrix has no type '" + type + "'");
+    const auto of = [&](const auto& m) {
+      using Value = std::decay_t<decltype(*m.valuePtr())>;
+      const auto rows = static_cast<py::ssize_t>(m.rows());
+      const auto read_only = [&](auto array) {
+        array.attr("flags").attr("writeable") = false;
+        return array;
+      };
+      return py::make_tuple(
+          read_only(py::array_t<Value>(static_cast<py::ssize_t>(m.nonZeros()), m.valuePtr(), self)),
+          read_only(
+              py::array_t<int>(static_cast<py::ssize_t>(m.nonZeros()), m.innerIndexPtr(), self)),
+          read_only(py::array_t<int>(rows + 1, m.outerIndexPtr(), self)),
+          py::make_tuple(rows, static_cast<py::ssize_t>(m.cols())));
+    };
+    return probabilities ? of(found->second.chain.matrix()) : of(found->second.counts);
+  }
+  /// Of the states: faces, and low and high of each coordinate.
+  [[nodiscard]] py::dict states() const {
+    const dynamics::StateSpace& space = file_.transitions.space;
+    const auto n = static_cast<py::ssize_t>(space.size());
+    py::dict all;
+    py::list faces;
+    for (int s = 0; s < space.size(); ++s)
+      faces.append(space.section().faces[static_cast<std::size_t>(space.face(s))].name);
+    all["face"] = faces;
+    for (std::size_t c = 0; c < space.section().coordinates.size(); ++c)
+      for (const int side : {0, 1}) {
+        py::array_t<double> values(n);
+        for (int s = 0; s < space.size(); ++s)
+          values.mutable_data()[s] = space.range(s).at[c][static_cast<std::size_t>(side)];
+        all[py::str(space.section().coordinates[c].key + (side == 0 ? "_low" : "_high"))] = values;
+      }
+    return all;
+  }
+  /// By face: name, and the move that enters by it.
+  [[nodiscard]] py::list faces() const {
+    py::list all;
+    for (const dynamics::Face& f : file_.transitions.space.section().faces)
+      all.append(py::make_tuple(f.name, f.di_x, f.di_y));
+    return all;
+  }
+
+ private:
+  struct Type {
+    markov::Counts counts;
+    markov::Chain chain;
+  };
+  void add(const std::string& name, const dynamics::Transitions& t) {
+    types_.emplace(name, Type{t.counts(), lattice::make_chain(t)});
+  }
+  lattice::MatrixFile file_;
+  std::map<std::string, Type> types_;  // "": the first, or only one
+};
+
+}  // namespace
+}  // namespace gatewalk::python
+
+PYBIND11_MODULE(_core, m) {
+  using namespace gatewalk;
+  using python::Matrix;
+  m.doc() = "What gatewalk is made of in C++; see the module gatewalk.";
+  m.attr("version") = cli::kVersion;
+  m.attr("commit") = cli::kCommit;
+  const auto error = [&](auto tag, const char* name, PyObject* base) {
+    pybind11::register_exception<typename decltype(tag)::type>(m, name, base);
+  };
+  error(std::common_type<lattice::SceneError>(), "SceneError", PyExc_ValueError);
+  error(std::common_type<cli::UsageError>(), "UsageError", PyExc_ValueError);
+  error(std::common_type<markov::BadFile>(), "BadFile", PyExc_ValueError);
+  m.def("run", &python::run, pybind11::arg("command"), pybind11::arg("words"), pybind11::kw_only(),
+        pybind11::arg("told"), pybind11::arg("warned"), pybind11::arg("cell"),
+        "Runs a command with these words: (exit status, its result as JSON says it). told(what, "
+        "done, total) hears how far it is, warned(text) what it warns of.");
+  m.def(
+      "threads",
+      [](int n) {
+        static std::unique_ptr<tbb::global_control> limit;
+        if (n < 0) throw cli::UsageError("threads: must not be negative");
+        limit.reset();
+        if (n > 0)
+          limit = std::make_unique<tbb::global_control>(
+              tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n));
+      },
+      pybind11::arg("n"), "Threads to use from now on; 0: all.");
+  pybind11::class_<Matrix>(m, "Matrix", "What a matrix file holds.")
+      .def(pybind11::init<std::string>(), pybind11::arg("path"))
+      .def_property_readonly("types", &Matrix::types, "Names of types; '' is the first.")
+      .def_property_readonly("text", &Matrix::text, "Scene, seed, version, command.")
+      .def("csr", &Matrix::csr, pybind11::arg("type"), pybind11::arg("probabilities"),
+           "(data, indices, indptr, shape), views of the matrix.")
+      .def("states", &Matrix::states, "By name: face, and low and high of each coordinate.")
+      .def("faces", &Matrix::faces, "(name, di_x, di_y) of each face.");
+}

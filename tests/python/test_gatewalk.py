@@ -1,0 +1,337 @@
+"""The Python module against the program: GATEWALK and ROOT say where the program and the checkout are."""
+
+import copy
+import doctest
+import json
+import math
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+import gatewalk as gw
+
+PROGRAM, ROOT = os.environ["GATEWALK"], Path(os.environ["ROOT"])
+FIELD, SINGLE = ROOT / "scenes/field.toml", ROOT / "scenes/single_gate.toml"
+TIMES = {"made_by", "seconds", "run_seconds", "chain_seconds", "direct_seconds", "speed_ratio"}
+
+
+def program(*words):
+    """What the program says as JSON."""
+    done = subprocess.run([PROGRAM, *map(str, words), "--json", "-", "--quiet"], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def plain(value):
+    """As JSON has it, without times."""
+    if isinstance(value, (gw.Result, dict)):
+        return {k: plain(v) for k, v in value.items() if k not in TIMES}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [plain(v) for v in (value.tolist() if isinstance(value, np.ndarray) else value)]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+class Pillars(gw.Cell):
+    """Square cells with a slow patch; leaves straight on, or to a side, by one uniform number."""
+
+    faces = [{"name": "S", "move": [0, 1], "odd": ["s"]}, {"name": "W", "move": [1, 0], "mirror": "E"},
+             {"name": "E", "move": [-1, 0], "mirror": "W"}]
+    coordinates = [{"name": "s", "unit": "m", "scale": 0.1}]
+    symmetric = True
+    uniforms = 2
+    memory = 1
+    parameters = {"side": 0.2, "stay": 0.05}
+
+    def pass_(self, entries, random):
+        u = random.uniforms
+        out = np.where(u[:, 0] < self.parameters["side"] * (1 + 0.5 * entries["s"]), 1,
+                       np.where(u[:, 0] < 2 * self.parameters["side"], 2, 0))
+        out = np.where(u[:, 1] < self.parameters["stay"], gw.TRAPPED, out)
+        return {"face": out, "s": 0.5 * entries["s"] + 0.2 * (u[:, 1] - 0.5), "time_s": 1.0 + u[:, 0],
+                "memory": entries["memory"] + 1.0}
+
+
+CELLS = """[cell]
+width_m = 1.0
+length_m = 1.0
+symmetric = true
+[[cell.faces]]
+name = "S"
+move = [0, 1]
+odd = ["s"]
+[[cell.faces]]
+name = "W"
+move = [1, 0]
+mirror = "E"
+odd = []
+[[cell.faces]]
+name = "E"
+move = [-1, 0]
+mirror = "W"
+odd = []
+[[cell.coordinates]]
+name = "s"
+unit = "m"
+scale = 0.1
+[field]
+columns = 5
+rows = 4
+max_gates = 20
+[start]
+face = "S"
+s_m = 0.05
+"""
+
+
+class SameAsTheProgram(unittest.TestCase):
+    def check(self, result, *words):
+        self.assertEqual(plain(result), plain(program(*words)))
+
+    def test_all_commands(self):
+        key = {"forces.random_N": 40.0}
+        of = ["--set", "forces.random_N=40.0", "--seed", 7]
+        self.check(gw.predict(FIELD, accuracy=0.05, seed=7, set=key), "predict", FIELD, "--accuracy", 0.05, *of)
+        self.check(gw.predict(FIELD, accuracy=0.1, start=[(0.0, 0.0, 15.0), (-4.0, 5.0, 10.0)]), "predict", FIELD, "--accuracy", 0.1,
+                   "--start=0,0,15", "--start=-4,5,10")
+        self.check(gw.lattice(gw.Scene(FIELD, key), trials=300, seed=7), "lattice", FIELD, "--trials", 300, *of)
+        self.check(gw.gate(FIELD, trials=300, seed=7, set=key), "gate", FIELD, "--trials", 300, *of)
+        self.check(gw.sweep(SINGLE, {"forces.propulsion_N": [5, 6.5]}, trials=50), "sweep", SINGLE, "--trials", 50,
+                   "--vary", "forces.propulsion_N=5,6.5")
+        self.check(gw.trace(FIELD, trials=2, field=True), "trace", FIELD, "--trials", 2, "--field")
+        self.check(gw.validate(FIELD, accuracy=0.2, trials=100, null_draws=99), "validate", FIELD, "--accuracy", 0.2, "--trials", 100,
+                   "--null-draws", 99)
+        self.check(gw.analyze(FIELD, accuracy=0.1, runs=200), "analyze", FIELD, "--accuracy", 0.1, "--runs", 200)
+        self.check(gw.rare(FIELD, row=3, accuracy=0.3), "rare", FIELD, "--row", 3, "--accuracy", 0.3)
+        self.check(gw.power(FIELD, trials=50), "power", FIELD, "--trials", 50)
+
+    def test_matrices(self):
+        with tempfile.TemporaryDirectory() as folder:
+            theirs = Path(folder) / "theirs.nc"
+            words = ["--bins", "paper", "--trials", "20"]
+            subprocess.run([PROGRAM, "build", FIELD, *words, "-o", theirs, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+            ours = gw.build(FIELD, bins="paper", trials=20)
+            other = gw.load(theirs)
+            self.assertEqual((ours.counts() != other.counts()).nnz, 0)
+            self.assertEqual(plain(ours.walk(walks=50)), plain(program("walk", theirs, "--walks", 50)))
+            self.check(ours.predict(start=(0.0, 0.0, 15.0)), "predict", theirs, "--start=0,0,15")
+            matrix = ours.matrix
+            np.testing.assert_allclose(np.asarray(matrix.sum(axis=1)).ravel(), 1.0, rtol=1e-12)
+            self.assertTrue(np.shares_memory(matrix.data, ours.matrix.data))  # no copy
+            with self.assertRaises(ValueError):
+                matrix.data[0] = 2.0
+            self.assertEqual(len(ours.states), 87)
+            self.assertEqual(ours.moves["EN"], (0, 1))
+            saved = Path(folder) / "saved.nc"
+            ours.save(saved)
+            self.assertEqual(gw.load(saved), ours)
+            for twin in (pickle.loads(pickle.dumps(ours)), copy.copy(ours), copy.deepcopy(ours)):
+                self.assertEqual(twin, ours)
+            saved.write_bytes(saved.read_bytes()[:-100])
+            with self.assertRaisesRegex(gw.BadFile, "saved.nc"):
+                gw.load(saved)
+
+
+class Scenes(unittest.TestCase):
+    def test_sources(self):
+        text = FIELD.read_text()
+        self.assertEqual(gw.Scene(FIELD), gw.Scene(text))
+        tables = gw.Scene({"body": {"radius_cm": 4.0, "mass_g": 250.0}, "forces": {"propulsion_N": 1.2}})
+        self.assertEqual(tables["body.radius_m"], 0.04)
+        self.assertEqual(tables["body.mass_kg"], 0.25)
+        self.assertNotEqual(tables, tables.with_set({"body.mass_g": 240}))
+        for twin in (pickle.loads(pickle.dumps(tables)), copy.deepcopy(tables)):
+            self.assertEqual(twin, tables)
+            self.assertEqual(hash(twin), hash(tables))
+        self.assertIn("<td>body.radius_m</td>", tables._repr_html_())
+
+    def test_errors_are_the_programs(self):
+        for wrong, text in (({"forces.propulsion_N": -1.0}, "must lie in"), ({"forces.propulsion": 1.0}, "did you mean|closest known key")):
+            with self.assertRaisesRegex(gw.SceneError, text) as caught:
+                gw.Scene(FIELD, wrong)
+            self.assertIsInstance(caught.exception, ValueError)
+            key, value = next(iter(wrong.items()))
+            said = subprocess.run([PROGRAM, "scene", FIELD, f"--set={key}={value}"], capture_output=True, text=True, check=False).stderr
+            self.assertEqual(f"gatewalk: {caught.exception}\n", said)
+        with self.assertRaisesRegex(gw.UsageError, "did you mean --accuracy"):
+            gw.predict(FIELD, acuracy=0.1)
+        with self.assertRaisesRegex(gw.UsageError, "has no meaning in Python"):
+            gw.predict(FIELD, checkpoint="x")
+        with self.assertRaisesRegex(gw.SceneError, "nosuch.toml"):
+            gw.Scene("nosuch.toml")
+        with self.assertRaisesRegex(gw.SceneError, "^scene.toml:2: "):
+            gw.predict("[forces]\npropulsion_N = -1\n")
+
+
+class Results(unittest.TestCase):
+    def test_tables(self):
+        p = gw.predict(FIELD, accuracy=0.1)
+        self.assertAlmostEqual(sum(p.endings.values()), 1.0, 12)
+        self.assertEqual(p.final_gates.shape, (9, 9))
+        data = p.to_xarray()
+        self.assertEqual(data.final_gates.dims, ("i_y", "i_x"))
+        self.assertEqual(list(data.i_x.values), list(range(-4, 5)))
+        np.testing.assert_array_equal(data.final_gates.values, p.final_gates)
+        self.assertEqual(list(p.to_frame().index), list(p.endings))
+        twin = pickle.loads(pickle.dumps(p))
+        self.assertEqual(twin, p)
+        self.assertNotEqual(gw.predict(FIELD, accuracy=0.1, seed=2), p)
+        self.assertIn("crossed", repr(p))
+        self.assertIn("<table>", p._repr_html_())
+        with self.assertRaisesRegex(AttributeError, "has no endngs"):
+            p.endngs
+        frame = gw.sweep(SINGLE, {"forces.propulsion_N": [6, 7]}, trials=20).to_frame()
+        self.assertEqual(list(frame["forces.propulsion_N"]), [6, 7])
+        self.assertEqual(list(frame["trials"]), [20, 20])
+        self.assertIn("vy", gw.trace(FIELD).to_frame())
+
+    def test_pictures(self):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        with tempfile.TemporaryDirectory() as folder:
+            for name, axes in (("prediction", gw.predict(FIELD, accuracy=0.1).plot()[0]), ("lattice", gw.lattice(FIELD, trials=50).plot()[0]),
+                               ("matrix", gw.build(FIELD, bins="paper", trials=5).plot()), ("trace", gw.trace(FIELD, field=True).plot())):
+                file = Path(os.environ.get("KEEP", folder)) / f"{name}.png"
+                axes.figure.savefig(file, dpi=100)
+                self.assertGreater(file.stat().st_size, 5000)
+
+    def test_warnings_are_heard(self):
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always")
+            gw.predict(FIELD, accuracy=0.01, gate_runs=200)
+        self.assertTrue(any(issubclass(w.category, gw.GatewalkWarning) for w in heard))
+
+
+class Cells(unittest.TestCase):
+    def test_batches_of_numpy(self):
+        gw.threads(1)
+        one = gw.predict(CELLS, cell=Pillars(), accuracy=0.03, seed=3)
+        gw.threads(0)
+        self.assertEqual(one, gw.predict(CELLS, cell=Pillars(), accuracy=0.03, seed=3))  # same bits for any threads
+        seen = gw.lattice(CELLS, cell=Pillars(), trials=4000)
+        for ending, count in seen.endings.items():
+            low, high = one.endings_95.get(ending, (0.0, 0.0))
+            self.assertLess(abs(count / 4000 - one.endings[ending]), high - low + 0.02, ending)
+        matrix = gw.build(CELLS, cell=Pillars(), accuracy=0.05)
+        self.assertEqual(plain(matrix.predict(cell=Pillars()).endings.keys()), plain(one.endings.keys()))
+        influences = gw.analyze(CELLS, cell=Pillars(), accuracy=0.05, runs=500)
+        self.assertIn("stay", str(influences._data))
+
+    def test_wrong_cells(self):
+        def with_answer(change):
+            class Wrong(Pillars):
+                def pass_(self, entries, random):
+                    return change(super().pass_(entries, random))
+            return Wrong()
+
+        for change, text in ((lambda a: {**a, "face": a["face"] + 7}, "the face [789]; faces are 0 to 2"),
+                             (lambda a: {**a, "s": a["s"] * np.nan}, "s that is not finite"),
+                             (lambda a: {**a, "time_s": -a["time_s"]}, "a time that is negative"),
+                             (lambda a: {k: v for k, v in a.items() if k != "s"}, "gave no s"),
+                             (lambda a: {**a, "face": a["face"] * 1.0}, "whole numbers as face"),
+                             (lambda a: 1 / 0, "division by zero")):
+            with self.assertRaisesRegex((ValueError, ZeroDivisionError), text):
+                gw.lattice(CELLS, cell=with_answer(change), trials=10)
+        with self.assertRaisesRegex(NotImplementedError, "pass_"):
+            class Bare(gw.Cell):
+                faces, coordinates = Pillars.faces, Pillars.coordinates
+            gw.lattice(CELLS.replace("symmetric = true\n", ""), cell=Bare(), trials=10)
+
+
+class Recorded(unittest.TestCase):
+    def test_tables_and_tracks(self):
+        import pandas
+
+        with tempfile.TemporaryDirectory() as folder:
+            runs, cell = Path(folder) / "runs.csv", Path(folder) / "cell.toml"
+            subprocess.run([PROGRAM, "lattice", FIELD, "--trials", "400", "--passages", runs, "--cell-file", cell, "--quiet"], check=True,
+                           stdout=subprocess.DEVNULL)
+            frame = pandas.read_csv(runs, comment="#", float_precision="round_trip")
+            of_frame, of_file = gw.from_passages(frame, cell), gw.from_passages(runs, cell)
+            self.assertEqual((of_frame.counts() != of_file.counts()).nnz, 0)
+            self.assertEqual(of_frame.predict().endings, of_file.predict().endings)
+            wrong = frame.copy()
+            wrong.loc[3, "in"] = "Q"
+            with self.assertRaisesRegex(ValueError, "^the table:"):
+                gw.from_passages(wrong, cell)
+        n = 240
+        steps = np.arange(n)
+        tracks = pandas.concat([pandas.DataFrame({"body": f"b{b}", "frame": steps, "x": 0.5 + 0.002 * b + 0.0 * steps,
+                                                  "y": 0.01 + 0.01 * steps}) for b in range(3)])
+        plain_cell = CELLS.replace("symmetric = true\n", "").replace('odd = ["s"]\n', "").replace("odd = []\n", "").replace(
+            'mirror = "E"\n', "").replace('mirror = "W"\n', "")
+        cut = gw.passages(tracks, plain_cell, fps=60, metres_per_unit=1, fastest=5.0, columns={"body": "body", "frame": "frame", "x": "x", "y": "y"})
+        self.assertGreaterEqual(len(cut), 3)
+        self.assertEqual(set(cut["in"]), {"S"})
+
+
+class AsAGuest(unittest.TestCase):
+    def test_other_threads_run(self):
+        ticks, stop = [], threading.Event()
+
+        def tick():
+            while not stop.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.005)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        gw.lattice(FIELD, trials=4000)
+        stop.set()
+        thread.join()
+        self.assertGreater(len(ticks), 10)
+
+    def test_interrupt(self):
+        code = ("import signal, sys, time, gatewalk as gw\n"
+                "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+                "print('go', flush=True)\n"
+                "try:\n    gw.lattice(sys.argv[1], trials=10**8)\n"
+                "except KeyboardInterrupt:\n    print('stopped', flush=True)\n")
+        child = subprocess.Popen([sys.executable, "-c", code, str(FIELD)], stdout=subprocess.PIPE, text=True)
+        child.stdout.readline()
+        time.sleep(1.5)
+        begin = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        self.assertEqual(child.stdout.readline(), "stopped\n")
+        self.assertLess(time.monotonic() - begin, 1.5)  # 0.3 s on an idle machine
+        child.stdout.close()
+        child.wait()
+
+    def test_import_is_light(self):
+        code = ("import sys, time, numpy\nbegin = time.monotonic()\nimport gatewalk\ntook = time.monotonic() - begin\n"
+                "assert not {'pandas', 'xarray', 'matplotlib', 'scipy'} & set(sys.modules), sys.modules.keys()\nassert took < 1.0, took\n")
+        subprocess.run([sys.executable, "-c", code], check=True)
+
+    def test_help_and_examples(self):
+        self.assertIn("--gate-runs", gw.options("predict"))
+        import gatewalk._cell
+        import gatewalk._matrix
+        import gatewalk._results
+        import gatewalk._scene
+        for module in (gw, gatewalk._scene, gatewalk._cell, gatewalk._matrix, gatewalk._results):
+            self.assertEqual(doctest.testmod(module).failed, 0, module)
+
+    def test_stubs(self):
+        try:
+            import mypy  # noqa: F401
+        except ImportError:
+            self.skipTest("mypy is not installed")
+        with tempfile.TemporaryDirectory() as folder:
+            allow = Path(folder) / "allow"
+            allow.write_text("gatewalk._core.Matrix\n")  # pybind11's metaclass
+            done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "gatewalk._core", "--allowlist", str(allow)], cwd=folder,
+                                  capture_output=True, text=True, check=False, env={**os.environ, "MYPYPATH": os.environ["PYTHONPATH"]})
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
