@@ -549,6 +549,30 @@ void Options::check_files() {
   });
 }
 
+CommandHelp Options::help() const {
+  CommandHelp help{state_->synopsis, state_->about, state_->example, {}, {}};
+  for (const auto& [name, text] : state_->positional_help)
+    help.arguments.emplace_back(upper_case(name), text);
+  for (const auto* all : {&state_->own, &state_->shared})
+    for (const auto& option : all->options()) {
+      const std::string& name = option->long_name();
+      const bool is_flag = option->semantic()->max_tokens() == 0;
+      std::string value = is_flag ? "" : option->format_parameter();
+      if (!is_flag && value.find("(=") != value.npos) value = value.substr(0, value.find(" (="));
+      const std::string letters =
+          option->canonical_display_name(po::command_line_style::allow_dash_for_short);
+      const bool is_file =
+          std::any_of(state_->output_files.begin(), state_->output_files.end(),
+                      [&](const State::Output& o) { return o.name == name; }) ||
+          std::any_of(state_->reads.begin(), state_->reads.end(),
+                      [&](const auto& r) { return r.first == name && name != "set"; }) ||
+          name == "output" || name == "figure";
+      help.options.push_back({name, value, option->description(),
+                              letters.size() == 2 ? letters[1] : char{0}, is_file});
+    }
+  return help;
+}
+
 bool Options::parse(const Arguments& arguments) {
   state_->work = arguments.work;
   state_->warned = arguments.warned;
@@ -560,6 +584,10 @@ bool Options::parse(const Arguments& arguments) {
                      "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what "
                      "the file leaves out stays as it follows from the file");
   reads("set", [](const std::string& given) { return lattice::map_file_in(given, ""); });
+  if (arguments.helped) {
+    arguments.helped(help());
+    return false;
+  }
   po::options_description offered, all;
   offered.add(state_->own).add(state_->shared);
   all.add(offered).add(state_->hidden);

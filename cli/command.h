@@ -27,6 +27,18 @@ struct Scene;
 
 namespace gatewalk::cli {
 
+/// A command's help page, part by part.
+struct CommandHelp {
+  std::string synopsis, about, example;
+  std::vector<std::pair<std::string, std::string>> arguments;  // name as shown, what it is
+  struct Option {
+    std::string name, value, text;  // value: as shown, empty of a flag
+    char letter = 0;                // -o
+    bool is_file = false;
+  };
+  std::vector<Option> options;
+};
+
 /// The words behind a command's name; and what they have no words for, where they do not come from
 /// the user at the terminal: who is told how far it is and what it warns of, who takes the result
 /// as JSON, the cell of --cell-program.
@@ -40,6 +52,7 @@ struct Arguments {
   std::vector<std::string> parts{};  // files that hold all its work (merge)
   std::function<void(const Json&)> given_out = nullptr;
   std::shared_ptr<const dynamics::Cell> cell = nullptr;
+  std::function<void(const CommandHelp&)> helped = nullptr;  // the help page, and nothing else
 };
 
 /// A command by its words, for another run of it.
@@ -196,6 +209,7 @@ class Options {
   std::unique_ptr<State> state_;
 
   [[nodiscard]] std::vector<NamedFile> inputs() const;
+  [[nodiscard]] CommandHelp help() const;
   void check_values_given() const;
   void check_files();
 };

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "cli/commands.h"
+#include "cli/help.h"
 #include "cli/kept/kept_run.h"
 #include "cli/kept/ranks.h"
 #include "cli/render/version.h"
@@ -51,6 +52,10 @@ int run(const std::vector<std::string>& words) {
   if (words.empty()) {
     print_help(std::cerr);
     return kWrongUse;
+  }
+  if (words[0] == "help" && words.size() == 3 && words[1] == "--write") {
+    write_help(words[2]);
+    return kFine;
   }
   if (words[0] == "help" && words.size() == 2 && words[1] != "help" && words[1] != "--help") {
     const Command* const command = find_command(words[1]);

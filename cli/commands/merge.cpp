@@ -76,7 +76,9 @@ int run_merge(const Arguments& arguments) {
   options.output_file("output", "FILE", "the main output", Options::Content::binary);
   options.without_scene("the parts have their scene");
   const auto own_end = std::find(arguments.words.begin(), arguments.words.end(), "--");
-  if (!options.parse(std::vector(arguments.words.begin(), own_end))) return kFine;
+  Arguments own = arguments;
+  own.words.assign(arguments.words.begin(), own_end);
+  if (!options.parse(own)) return kFine;
 
   const std::vector<std::string> parts = options.texts("part");
   std::vector<Json> heads;

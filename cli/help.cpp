@@ -1,0 +1,221 @@
+#include "cli/help.h"
+
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/render/version.h"
+#include "cli/terminal/output.h"
+
+namespace gatewalk::cli {
+namespace {
+
+struct Page {
+  std::string name, summary;
+  CommandHelp help;
+};
+
+std::vector<Page> pages() {
+  std::vector<Page> all;
+  for (const Command& c : kCommands) {
+    Arguments arguments{};
+    arguments.helped = [&](const CommandHelp& help) { all.push_back({c.name, c.summary, help}); };
+    (void)c.run(arguments);
+  }
+  return all;
+}
+
+std::string day() {
+  std::time_t now = std::time(nullptr);
+  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
+    const std::string text = epoch;
+    std::from_chars(text.data(), text.data() + text.size(), now);
+  }
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  std::string text(10, ' ');
+  return text.substr(0, std::strftime(text.data(), text.size() + 1, "%Y-%m-%d", &parts));
+}
+
+// ---- Manual pages ----
+
+/// Text as it stands in a manual page.
+std::string roff(const std::string& text) {
+  std::string out;
+  bool at_start = true;
+  for (const char c : text) {
+    if (at_start && (c == '.' || c == '\'')) out += "\\&";
+    if (c == '\\')
+      out += "\\e";
+    else if (c == '-')
+      out += "\\-";
+    else
+      out += c;
+    at_start = c == '\n';
+  }
+  return out;
+}
+
+std::string header(const std::string& title, const std::string& summary) {
+  std::string upper = title;
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return ".TH " + roff(upper) + " 1 " + day() + " \"gatewalk " + kVersion +
+         "\" \"User commands\"\n.SH NAME\n" + roff(title) + " \\- " + roff(summary) + "\n";
+}
+
+std::string exit_status() {
+  return ".SH EXIT STATUS\n.TP\n0\nfine\n.TP\n1\nfailure; with \\-\\-strict also a result whose "
+         "status "
+         "is not clean\n.TP\n2\nwrong use or input\n.TP\n75\nstopped; the same command with "
+         "\\-\\-resume goes on\n.TP\n130\nstopped by a signal, nothing was kept\n";
+}
+
+std::string manual_of(const Page& page) {
+  std::string text = header("gatewalk-" + page.name, page.summary);
+  text += ".SH SYNOPSIS\n.B gatewalk " + roff(page.help.synopsis) + "\n.SH DESCRIPTION\n" +
+          roff(page.help.about) + "\n";
+  for (const auto& [name, what] : page.help.arguments)
+    text += ".TP\n.I " + roff(name) + "\n" + roff(what) + "\n";
+  text += ".SH OPTIONS\n";
+  for (const CommandHelp::Option& o : page.help.options) {
+    text += ".TP\n";
+    if (o.letter != 0) text += "\\fB\\-" + std::string(1, o.letter) + "\\fR, ";
+    text += "\\fB" + roff("--" + o.name) + "\\fR" +
+            (o.value.empty() ? "" : " \\fI" + roff(o.value) + "\\fR") + "\n" + roff(o.text) + "\n";
+  }
+  text += exit_status() + ".SH EXAMPLE\n.nf\n" + roff(page.help.example) + "\n.fi\n";
+  return text + ".SH SEE ALSO\n.BR gatewalk (1)\n";
+}
+
+std::string manual(const std::vector<Page>& all) {
+  std::string text =
+      header("gatewalk",
+             "multi-scale Markov chain analysis of locomotion through cluttered obstacles") +
+      ".SH SYNOPSIS\n.B gatewalk\n.I COMMAND\n[arguments] [options]\n.SH DESCRIPTION\n"
+      "A disc-shaped body pushes through a field of gates, pairs of hinged springy beams. Short "
+      "runs "
+      "of single gates make a transition matrix, a Markov chain walks the field with it, and its "
+      "final gates are compared with the full dynamics.\n.SH COMMANDS\n";
+  for (const Page& page : all)
+    text += ".TP\n.BR " + roff("gatewalk-" + page.name) + " (1)\n" + roff(page.summary) + "\n";
+  text += exit_status() + ".SH SEE ALSO\n";
+  for (std::size_t k = 0; k < all.size(); ++k)
+    text +=
+        ".BR " + roff("gatewalk-" + all[k].name) + " (1)" + (k + 1 < all.size() ? "," : "") + "\n";
+  return text;
+}
+
+// ---- Completion ----
+
+/// In single quotes of a shell.
+std::string in_quotes(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text;
+}
+
+std::string for_bash(const std::vector<Page>& all) {
+  std::string commands, cases;
+  for (const Page& page : all) {
+    commands += page.name + " ";
+    std::string options;
+    for (const CommandHelp::Option& o : page.help.options) {
+      options += "--" + o.name + " ";
+    }
+    cases += "    " + page.name + ") options=" + in_quotes(options) + " ;;\n";
+  }
+  return "# Completion of gatewalk for bash.\n_gatewalk() {\n  local "
+         "current=${COMP_WORDS[COMP_CWORD]} "
+         "options=\n  COMPREPLY=()\n  if [ \"$COMP_CWORD\" = 1 ]; then\n"
+         "    mapfile -t COMPREPLY < <(compgen -W " +
+         in_quotes(commands + "help --help --version") +
+         " -- \"$current\")\n    return\n  fi\n  case ${COMP_WORDS[1]} in\n" + cases +
+         "    help) options=" + in_quotes(commands) +
+         " ;;\n  esac\n  case $current in\n"
+         "    -*) mapfile -t COMPREPLY < <(compgen -W \"$options\" -- \"$current\") ;;\n"
+         "    *)\n      [ \"${COMP_WORDS[1]}\" != help ] || mapfile -t COMPREPLY < <(compgen -W "
+         "\"$options\" -- \"$current\")\n      [ ${#COMPREPLY[@]} -gt 0 ] || mapfile -t COMPREPLY "
+         "< "
+         "<(compgen -f -- \"$current\")\n      ;;\n  esac\n}\ncomplete -o filenames -F _gatewalk "
+         "gatewalk\n";
+}
+
+std::string for_zsh(const std::vector<Page>& all) {
+  std::string text =
+      "#compdef gatewalk\n# Completion of gatewalk for zsh.\n_gatewalk() {\n"
+      "  local -a commands=(\n";
+  const auto plain = [](const std::string& words) {  // of _arguments: : and [] mean something
+    std::string out;
+    for (const char c : one_line(words)) {
+      if (c == ':' || c == '[' || c == ']' || c == '\\') out += '\\';
+      out += c;
+    }
+    return out;
+  };
+  for (const Page& page : all)
+    text += "    " + in_quotes(page.name + ":" + plain(page.summary)) + "\n";
+  text +=
+      "  )\n  if (( CURRENT == 2 )); then\n    _describe command commands\n    return\n  fi\n"
+      "  case $words[2] in\n";
+  for (const Page& page : all) {
+    text += "    " + page.name + ")\n      _arguments";
+    for (const CommandHelp::Option& o : page.help.options)
+      text +=
+          " \\\n        " +
+          in_quotes("*--" + o.name + "[" + plain(o.text) + "]" +
+                    (o.value.empty() ? "" : ":" + plain(o.value) + (o.is_file ? ":_files" : ":")));
+    text += " \\\n        '*:file:_files'\n      ;;\n";
+  }
+  return text + "  esac\n}\n_gatewalk \"$@\"\n";
+}
+
+std::string for_fish(const std::vector<Page>& all) {
+  std::string text = "# Completion of gatewalk for fish.\n";
+  const auto escaped = [](const std::string& words) {
+    std::string out = "'";
+    for (const char c : one_line(words)) {
+      if (c == '\'' || c == '\\') out += '\\';
+      out += c;
+    }
+    return out + "'";
+  };
+  for (const Page& page : all)
+    text += "complete -c gatewalk -n __fish_use_subcommand -f -a " + page.name + " -d " +
+            escaped(page.summary) + "\n";
+  for (const Page& page : all)
+    for (const CommandHelp::Option& o : page.help.options)
+      text += "complete -c gatewalk -n '__fish_seen_subcommand_from " + page.name + "' -l " +
+              o.name +
+              (o.value.empty() ? ""
+               : o.is_file     ? " -r"
+                               : " -x") +
+              " -d " + escaped(o.text) + "\n";
+  return text;
+}
+
+}  // namespace
+
+void write_help(const std::string& share) {
+  const std::filesystem::path root = share;
+  const auto write = [&](const std::string& file, const std::string& text) {
+    std::filesystem::create_directories((root / file).parent_path());
+    write_text_atomically((root / file).string(), text);
+  };
+  const std::vector<Page> all = pages();
+  write("man/man1/gatewalk.1", manual(all));
+  for (const Page& page : all) write("man/man1/gatewalk-" + page.name + ".1", manual_of(page));
+  write("bash-completion/completions/gatewalk", for_bash(all));
+  write("zsh/vendor-completions/_gatewalk", for_zsh(all));
+  write("fish/vendor_completions.d/gatewalk.fish", for_fish(all));
+}
+
+}  // namespace gatewalk::cli
