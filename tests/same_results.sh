@@ -76,6 +76,9 @@ lines() {
 0 show tree.nc --json out.json --figure out.svg
 0 show mixed.nc --type u --json out.json
 0 walk matrix.nc --walks 2000 --json out.json --figure out.svg
+0 export matrix.nc --set field.max_gates=0 -o out.drn --json out.json
+0 export mixed.nc -o out.tra
+0 export tree.nc --set field.max_gates=0 -o out.umb
 0 walk own.nc --walks 2000 --json out.json
 0 walk tree.nc --walks 2000 --set field.max_gates=0 --json out.json
 0 walk mixed.nc --walks 2000 --json out.json

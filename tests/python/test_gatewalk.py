@@ -9,6 +9,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import tarfile
 import tempfile
 import threading
 import time
@@ -138,6 +139,86 @@ class SameAsTheProgram(unittest.TestCase):
             saved.write_bytes(saved.read_bytes()[:-100])
             with self.assertRaisesRegex(gw.BadFile, "saved.nc"):
                 gw.load(saved)
+
+
+def read_umb(path):
+    """By the format's specification: (matrix, initial state, states by label)."""
+    from scipy.sparse import csr_matrix
+
+    with tarfile.open(path) as tar:
+        names = tar.getnames()
+        assert names[0] == "index.json", names
+        def numbers(name, kind):
+            return np.frombuffer(tar.extractfile(name).read(), kind)
+        index = json.load(tar.extractfile("index.json"))
+        n = index["transition-system"]["#states"]
+        def bits(name):
+            return np.flatnonzero(np.unpackbits(numbers(name, "u1"), bitorder="little")[:n])
+        first = numbers("choice-to-branches.bin", "<u8").astype(np.int64)
+        target, p = numbers("branch-to-target.bin", "<u8").astype(np.int64), numbers("branch-to-probability.bin", "<f8")
+        assert len(first) == n + 1 and first[-1] == len(target) == len(p) == index["transition-system"]["#branches"]
+        labels = {label: bits(f"annotations/aps/{label}/states/values.bin")[0] for label in index["annotations"]["aps"]}
+        return csr_matrix((p, target, first), shape=(n, n)), bits("state-is-initial.bin")[0], labels
+
+
+def read_drn(path):
+    from scipy.sparse import csr_matrix
+
+    lines = path.read_text().splitlines()
+    n = int(lines[lines.index("@nr_states") + 1])
+    rows, columns, values, labels, initial = [], [], [], {}, None
+    for line in lines[lines.index("@model") + 1:]:
+        words = line.split()
+        if words[0] == "state":
+            state = int(words[1])
+            for word in words[2:]:
+                if word == "init":
+                    initial = state
+                else:
+                    labels[word] = state
+        elif words[0] != "action":
+            assert line.startswith("\t\t") and words[1] == ":", line
+            rows.append(state), columns.append(int(words[0])), values.append(float(words[2]))
+    return csr_matrix((values, (rows, columns)), shape=(n, n)), initial, labels
+
+
+def read_prism(path):
+    from scipy.sparse import csr_matrix
+
+    n, m = map(int, path.read_text().splitlines()[0].split())
+    table = np.loadtxt(path, skiprows=1)
+    assert len(table) == m
+    names, *rows = path.with_suffix(".lab").read_text().splitlines()
+    label = {int(k): v.strip('"') for k, v in (word.split("=") for word in names.split())}
+    where = {label[int(number)]: int(state) for state, numbers in (row.split(":") for row in rows) for number in numbers.split()}
+    assert len(path.with_suffix(".sta").read_text().splitlines()) == n + 1
+    initial = where.pop("init")
+    return csr_matrix((table[:, 2], (table[:, 0].astype(int), table[:, 1].astype(int))), shape=(n, n)), initial, where
+
+
+class Elsewhere(unittest.TestCase):
+    def test_chains_for_model_checkers(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for made in (dict(bins="paper", trials=30), dict(accuracy=0.1)):
+                matrix = gw.build(FIELD, **made)
+                for limit in (0, 13):
+                    more = dict(first_runs=0) if "accuracy" in made else {}
+                    key = {"field.max_gates": limit}
+                    exact = matrix.predict(set=key, **more).starts[0].endings
+                    for ending, read in ((".umb", read_umb), (".drn", read_drn), (".tra", read_prism)):
+                        path = Path(folder) / f"field{ending}"
+                        said = matrix.export(path, set=key, force=True)
+                        chain, initial, labels = read(path)
+                        self.assertEqual((chain.shape[0], initial, labels), (said.states, 0, dict(said.endings)))
+                        np.testing.assert_allclose(np.asarray(chain.sum(axis=1)).ravel(), 1.0, rtol=1e-12)
+                        share = np.zeros(chain.shape[0])
+                        share[initial] = 1.0
+                        for _ in range(600):
+                            share = chain.T @ share
+                        for name, p in exact.items():
+                            self.assertAlmostEqual(share[labels[name]], p, 11, (made, limit, ending, name))
+            with self.assertRaisesRegex(gw.UsageError, "must end in .umb, .drn or .tra"):
+                matrix.export(Path(folder) / "x.txt")
 
 
 class Scenes(unittest.TestCase):

@@ -95,6 +95,16 @@ class Matrix:
 
         return predict(self, **more)
 
+    def export(self, path: t.Any, **more: t.Any) -> Result:
+        """Writes the field's chain for other programs: path ends in .umb (PRISM, Storm), .drn (Storm) or .tra (PRISM).
+
+        Returns
+        -------
+        Result
+            states, transitions, and `endings`, the state of each.
+        """
+        return Result(_run("export", [self], dict(more), [f"--output={os.fspath(path)}"]))
+
     def analyze(self, **more: t.Any) -> Analysis:
         """See `gatewalk.analyze`."""
         from . import analyze

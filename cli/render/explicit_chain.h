@@ -1,0 +1,27 @@
+#pragma once
+/// A field's chain in the formats of model checkers.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/render/json_fwd.h"
+#include "markov/explicit_chain.h"
+
+namespace gatewalk::cli {
+
+/// Names of the endings, by number: labels of the states that are never left.
+[[nodiscard]] const std::vector<std::string>& ending_labels();
+
+/// A tar of the Unified Markov Binary format (version 1): read by PRISM from 4.10, Storm from 1.12.
+/// `tool`: what and how it was made by. Bit-exact.
+[[nodiscard]] std::string umb_of(const markov::ExplicitChain& chain, const Json& tool);
+/// Storm's explicit text, with labels.
+[[nodiscard]] std::string drn_of(const markov::ExplicitChain& chain);
+/// PRISM's transitions, states and labels.
+struct PrismFiles {
+  std::string transitions, states, labels;
+};
+[[nodiscard]] PrismFiles prism_of(const markov::ExplicitChain& chain);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,23 @@
+#pragma once
+/// The chain that walks through a field draw from.
+
+#include <string>
+
+#include "cli/subject.h"
+#include "markov/chain.h"
+
+namespace gatewalk::cli {
+
+struct Walked {
+  markov::FieldChain chain;
+  markov::Start start;
+  Json start_state;
+  std::string start_text;
+  bool clean = true;  // the runs behind it
+};
+
+/// Of a matrix: of a scene, in which the start becomes a state (trials are added for one that it
+/// does not know, which is said), or of recorded runs. Throws UsageError.
+[[nodiscard]] Walked walked_chain(const Options& options, Subject& s);
+
+}  // namespace gatewalk::cli
