@@ -13,6 +13,7 @@
 #include "dynamics/base/share.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/statistics/draws.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -505,6 +506,47 @@ void add_statistics(std::vector<double>& all, const Eigen::VectorXd& difference)
     all.push_back(exact(std::abs(difference[difference.size() - endings + e])));
 }
 
+/// Endings of which a half has, by what was seen and by the chain, hardly any trial, or all but a
+/// few: bodies that end so are too few to tell what chance makes. Counts of both halves are drawn
+/// instead, as if every trial were independent.
+class RareEndings {
+ public:
+  RareEndings(const std::array<Half, 2>& halves, const HalvesValidation& v) {
+    constexpr double kFew = 5.0;  // trials of a half
+    for (std::size_t h = 0; h < 2; ++h) trials_[h] = std::ssize(halves[h].trials);
+    const auto n = static_cast<double>(trials_[0] + trials_[1]);
+    for (std::size_t e = 0; e < kEndings; ++e) {
+      double count = 0.0;
+      for (std::size_t h = 0; h < 2; ++h)  // way w is of half 1 - w as seen
+        count += 0.5 * (v.ways[1 - h].seen.share[e] + v.ways[1 - h].chain.endings[e]) *
+                 static_cast<double>(trials_[h]);
+      if (count > kShareRounding && n - count > kShareRounding &&
+          0.5 * std::min(count, n - count) < kFew)
+        rare_.push_back({static_cast<Eigen::Index>(e), (count + 0.5) / (n + 1.0)});
+    }
+  }
+  /// Puts them into the difference by chance of each way.
+  void draw(Random& random, std::array<Eigen::VectorXd, 2>& by_chance) const {
+    for (const auto& [ending, share] : rare_) {
+      std::array<double, 2> seen{};
+      for (std::size_t h = 0; h < 2; ++h)
+        seen[h] = static_cast<double>(binomial(trials_[h], share, random)) /
+                  static_cast<double>(trials_[h]);
+      for (std::size_t w = 0; w < 2; ++w)
+        by_chance[w][by_chance[w].size() - static_cast<Eigen::Index>(kEndings) + ending] =
+            seen[1 - w] - seen[w];
+    }
+  }
+
+ private:
+  struct Rare {
+    Eigen::Index ending;
+    double share;
+  };
+  std::array<std::int64_t, 2> trials_{};
+  std::vector<Rare> rare_;
+};
+
 }  // namespace
 
 HalvesValidation validate_halves(const Problem& problem, const RunPool& pool,
@@ -526,6 +568,7 @@ HalvesValidation validate_halves(const Problem& problem, const RunPool& pool,
       std::clamp<std::int64_t>(1'000'000'000 / (2 * numbers * signs), 999, 1999));
   std::vector<double> all;
   std::array<std::vector<double>, 2> correlations, rmses;
+  const RareEndings rare(halves, v);
   for (std::int64_t k = 0; k < v.null_draws; ++k) {
     Random random(Purpose::comparison, {options.seed, kSigns, static_cast<std::uint64_t>(k)});
     std::array<Eigen::VectorXd, 2> sign;
@@ -533,8 +576,12 @@ HalvesValidation validate_halves(const Problem& problem, const RunPool& pool,
       sign[h].resize(halves[h].parts);
       for (double& s : sign[h]) s = random.uniform() < 0.5 ? -1.0 : 1.0;
     }
+    std::array<Eigen::VectorXd, 2> of_way;
+    for (std::size_t w = 0; w < 2; ++w)
+      of_way[w] = parts[w].seen * sign[1 - w] + parts[w].chain * sign[w];
+    rare.draw(random, of_way);
     for (std::size_t w = 0; w < 2; ++w) {
-      const Eigen::VectorXd by_chance = parts[w].seen * sign[1 - w] + parts[w].chain * sign[w];
+      const Eigen::VectorXd& by_chance = of_way[w];
       add_statistics(all, by_chance);
       const CellProbabilities& chain = v.ways[w].chain.final_cells;
       const CellProbabilities seen =

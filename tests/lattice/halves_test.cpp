@@ -150,6 +150,24 @@ TEST(Halves, ChanceIsFoundAsOftenAsItIsAskedFor) {
   EXPECT_LE(held, 2 * kSeeds * 97 / 100);
 }
 
+/// Nearly all are trapped: endings that a half of the bodies sees once or not at all.
+int hardly_on(const Walker&, Random& random) {
+  const double u = random.uniform();
+  if (u < 0.75) return -1;
+  return u < 0.9 ? kS : u < 0.95 ? kW : kE;
+}
+
+TEST(Halves, RareEndingsRaiseNoAlarm) {
+  constexpr int kSeeds = 100;
+  int differ = 0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const RunPool pool = pool_of(walked(80, seed, hardly_on, 5, 4));
+    const Problem problem = problem_of(cells(), pool);
+    differ += validate_halves(problem, pool, {.null_draws = 499, .seed = seed}).differs();
+  }
+  EXPECT_LE(differ, expected_999(kSeeds, 0.05)[1]);
+}
+
 TEST(Halves, ADifferenceBetweenBodiesIsFound) {
   int differ = 0, remember = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
