@@ -73,6 +73,8 @@ int run(const std::vector<std::string>& words) {
   return command ? command->run(std::vector(words.begin() + 1, words.end())) : kWrongUse;
 }
 
+std::terminate_handler usual_end = nullptr;
+
 /// Where there is no memory left for words either.
 [[noreturn]] void end_without_memory() {
   try {
@@ -84,6 +86,7 @@ int run(const std::vector<std::string>& words) {
     _exit(kFailure);
   } catch (...) {
   }
+  if (usual_end) usual_end();
   std::abort();
 }
 
@@ -92,7 +95,7 @@ int run(const std::vector<std::string>& words) {
 
 int main(int argc, char** argv) {
   using namespace gatewalk;
-  std::set_terminate(cli::end_without_memory);
+  cli::usual_end = std::set_terminate(cli::end_without_memory);
   cli::install_interrupt_handler();
   const cli::RanksScope scope;
   // One of all processes speaks, but for what goes wrong in one alone.

@@ -6,6 +6,9 @@
 #include <pybind11/stl.h>
 #include <tbb/global_control.h>
 
+#include <unistd.h>
+
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -33,8 +36,8 @@ std::optional<std::vector<double>> numbers_of(const Json& array) {
   return numbers;
 }
 
-/// Tables of numbers and longer rows of them are numpy arrays, pairs of numbers (intervals) tuples.
-py::object to_python(const Json& json) {
+/// Rows and tables of numbers are numpy arrays; below a key with _95, pairs are tuples: intervals.
+py::object to_python(const Json& json, bool intervals = false) {
   switch (json.type()) {
     case Json::value_t::null:
       return py::none();
@@ -50,24 +53,25 @@ py::object to_python(const Json& json) {
       return py::str(json.get<std::string>());
     case Json::value_t::object: {
       py::dict dict;
-      for (const auto& [key, value] : json.items()) dict[py::str(key)] = to_python(value);
+      for (const auto& [key, value] : json.items())
+        dict[py::str(key)] = to_python(value, intervals || key.find("_95") != key.npos);
       return dict;
     }
     default:
       break;
   }
-  if (json.size() == 2 && json[0].is_number() && json[1].is_number())
+  if (intervals && json.size() == 2 && json[0].is_number() && json[1].is_number())
     return py::make_tuple(to_python(json[0]), to_python(json[1]));
   const auto as_array = [](const auto& numbers, std::vector<py::ssize_t> shape) {
     py::array_t<double> array(std::move(shape));
     std::copy(numbers.begin(), numbers.end(), array.mutable_data());
     return array;
   };
-  if (json.size() > 2) {
+  if (!json.empty()) {
     if (const auto numbers = numbers_of(json))
       return as_array(*numbers, {static_cast<py::ssize_t>(json.size())});
   }
-  if (!json.empty() && json[0].is_array() && json[0].size() != 2) {
+  if (!json.empty() && json[0].is_array() && !json[0].empty()) {
     std::vector<double> all;
     bool is_table = true;
     for (const Json& row : json) {
@@ -83,15 +87,48 @@ py::object to_python(const Json& json) {
           all, {static_cast<py::ssize_t>(json.size()), static_cast<py::ssize_t>(json[0].size())});
   }
   py::list list;
-  for (const Json& x : json) list.append(to_python(x));
+  for (const Json& x : json) list.append(to_python(x, intervals));
   return list;
 }
 
-/// One at a time: files of NetCDF are read and written, and a command is one of its process.
-std::mutex& running() {
-  static std::mutex mutex;
-  return mutex;
-}
+/// One command at a time: NetCDF's files are read and written by one thread, and a command is one
+/// of its process. Whoever waits hears Ctrl-C. A process that was forked meanwhile has its own.
+class Turn {
+ public:
+  /// With the GIL held. Throws UsageError within a command.
+  Turn() {
+    if (is_mine_ || is_in_cell())
+      throw cli::UsageError(
+          "a command cannot be called while another one calls: from pass_ of a "
+          "cell, or from progress");
+    static pid_t owner = ::getpid();
+    static auto* mutex = new std::timed_mutex;  // never destroyed: threads may wait at the end
+    if (owner != ::getpid()) {
+      owner = ::getpid();
+      mutex = new std::timed_mutex;
+    }
+    mutex_ = mutex;
+    for (bool taken = false; !taken;) {
+      {
+        const py::gil_scoped_release no_gil;
+        taken = mutex_->try_lock_for(std::chrono::milliseconds(50));
+      }
+      if (!taken && PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+    is_mine_ = true;
+  }
+  ~Turn() {
+    is_mine_ = false;
+    mutex_->unlock();
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  static thread_local bool is_mine_;
+  std::timed_mutex* mutex_ = nullptr;
+};
+thread_local bool Turn::is_mine_ = false;
 
 py::tuple run(const std::string& name, std::vector<std::string> words, const py::object& told,
               const py::object& warned, const py::object& cell) {
@@ -114,8 +151,8 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
   if (!cell.is_none()) arguments.cell = std::make_shared<PythonCell>(cell);
   int status = 0;
   {
+    const Turn turn;
     const py::gil_scoped_release no_gil;
-    const std::lock_guard lock(running());
     status = command->run(arguments);
   }
   return py::make_tuple(status, to_python(result));
@@ -124,7 +161,11 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
 /// What a matrix file holds; its arrays are views of it.
 class Matrix {
  public:
-  explicit Matrix(const std::string& path) : file_(lattice::read_any_matrix(path)) {
+  explicit Matrix(const std::string& path)
+      : file_([&] {
+          const Turn turn;
+          return lattice::read_any_matrix(path);
+        }()) {
     add("", file_.transitions);
     for (const auto& [name, transitions] : file_.types) add(name, transitions);
   }

@@ -37,7 +37,11 @@ py::array_t<T, py::array::c_style | py::array::forcecast> given(const py::handle
   return array;
 }
 
+thread_local bool in_cell = false;
+
 }  // namespace
+
+bool is_in_cell() { return in_cell; }
 
 struct PythonCell::Slot {
   Body body{.entry = {}, .random = Random(Purpose::gate, {})};
@@ -120,7 +124,14 @@ void PythonCell::run_batch(std::vector<Slot>& slots) const {
     std::copy_n(body.carried.as<Memory>().numbers.data(), memory,
                 carried.mutable_data() + k * memory);
   }
-  const py::tuple answer = cell_.attr("_passes")(face, at, seed, numbers, carried);
+  struct InCell {
+    InCell() { in_cell = true; }
+    ~InCell() { in_cell = false; }
+  };
+  const py::tuple answer = [&] {
+    const InCell here;
+    return cell_.attr("_passes")(face, at, seed, numbers, carried);
+  }();
   const auto out = given<std::int32_t>(answer[0], "faces", n, 1);
   const auto to = given<double>(answer[1], "coordinates", n, coordinates);
   const auto took = given<double>(answer[2], "costs", n, costs);

@@ -42,4 +42,7 @@ class PythonCell : public dynamics::Cell {
   int memory_ = 0;  // numbers that a body carries from cell to cell
 };
 
+/// Whether this thread is in pass_ of a cell.
+[[nodiscard]] bool is_in_cell();
+
 }  // namespace gatewalk::python

@@ -1,5 +1,6 @@
 """The Python module against the program: GATEWALK and ROOT say where the program and the checkout are."""
 
+import atexit
 import copy
 import doctest
 import json
@@ -234,6 +235,29 @@ class Scenes(unittest.TestCase):
             self.assertEqual(hash(twin), hash(tables))
         self.assertIn("<td>body.radius_m</td>", tables._repr_html_())
 
+    def test_terrain_is_part_of_a_scene(self):
+        mixed = (ROOT / "scenes/mixed.toml").read_text()
+        one, other = gw.Scene(mixed), gw.Scene(mixed.replace("seed = 5", "seed = 6"))
+        self.assertNotEqual(one, other)
+        self.assertNotEqual(hash(one), hash(other))
+        self.assertEqual(one, gw.Scene(ROOT / "scenes/mixed.toml"))
+
+    def test_values_of_numpy(self):
+        frame = gw.sweep(SINGLE, {"forces.propulsion_N": np.array([6.0, 7.0])}, trials=10).to_frame()
+        self.assertEqual(list(frame["forces.propulsion_N"]), [6, 7])
+        for start in ((1.0, 0.0, 15.0), [1.0, 0.0, 15.0], np.array([1.0, 0.0, 15.0])):
+            self.assertEqual(len(gw.predict(FIELD, accuracy=0.2, start=start).starts), 1)
+        self.assertIn("crossed", gw.predict(FIELD, accuracy=0.2, start=start).endings)
+        two = gw.predict(FIELD, accuracy=0.2, start=[(1.0, 0.0, 15.0), (0.0, 0.0, 15.0)])
+        with self.assertRaisesRegex(ValueError, "there are 2 starts"):
+            two.to_frame()
+        for wrong in ({"start": []}, {"accuracy": [0.1, 0.2]}, {"output": "x.nc"}):
+            with self.assertRaises(gw.UsageError):
+                gw.predict(FIELD, **wrong)
+        thin = gw.lattice(FIELD, trials=10, set={"field.columns": 2, "field.rows": 2})
+        self.assertEqual(thin.final_gates.shape, (2, 2))
+        self.assertEqual(gw.trace("[forces]\npropulsion_N = 7\n", trials=1), gw.trace("[forces]\npropulsion_N = 7\n", trials=1))
+
     def test_errors_are_the_programs(self):
         for wrong, text in (({"forces.propulsion_N": -1.0}, "must lie in"), ({"forces.propulsion": 1.0}, "did you mean|closest known key")):
             with self.assertRaisesRegex(gw.SceneError, text) as caught:
@@ -319,9 +343,18 @@ class Cells(unittest.TestCase):
                              (lambda a: {**a, "time_s": -a["time_s"]}, "a time that is negative"),
                              (lambda a: {k: v for k, v in a.items() if k != "s"}, "gave no s"),
                              (lambda a: {**a, "face": a["face"] * 1.0}, "whole numbers as face"),
-                             (lambda a: 1 / 0, "division by zero")):
+                             (lambda a: 1 / 0, "division by zero"),
+                             (lambda a: {**a, "face": a["face"].astype(np.int64) + 2**32}, "gave the face 42949"),
+                             (lambda a: {**a, "memory": np.zeros((2, len(a["face"])))}, "memory of shape"),
+                             (lambda a: {**a, "vx": 0.0}, "gave vx; it may give"),
+                             (lambda a: None, "must give a dict"),
+                             (lambda a: gw.gate(FIELD, trials=1), "a command cannot be called")):
             with self.assertRaisesRegex((ValueError, ZeroDivisionError), text):
                 gw.lattice(CELLS, cell=with_answer(change), trials=10)
+        with self.assertRaisesRegex(gw.UsageError, "not the class itself"):
+            gw.lattice(CELLS, cell=Pillars, trials=10)
+        with self.assertRaisesRegex(gw.UsageError, "is of gates"):
+            gw.gate(FIELD, cell=Pillars())
         with self.assertRaisesRegex(NotImplementedError, "pass_"):
             class Bare(gw.Cell):
                 faces, coordinates = Pillars.faces, Pillars.coordinates
@@ -386,6 +419,19 @@ class AsAGuest(unittest.TestCase):
         self.assertLess(time.monotonic() - begin, 1.5)  # 0.3 s on an idle machine
         child.stdout.close()
         child.wait()
+
+    def test_forked_processes(self):
+        matrix = gw.build(FIELD, bins="paper", trials=5)
+        child = os.fork()
+        if child == 0:
+            os._exit(0 if gw.gate(FIELD, trials=1).trials == 1 else 1)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        child = os.fork()
+        if child == 0:
+            atexit._run_exitfuncs()
+            os._exit(0)
+        os.waitpid(child, 0)
+        self.assertEqual(len(matrix.predict().starts), 1)
 
     def test_import_is_light(self):
         code = ("import sys, time, numpy\nbegin = time.monotonic()\nimport gatewalk\ntook = time.monotonic() - begin\n"

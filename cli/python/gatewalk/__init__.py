@@ -27,7 +27,7 @@ from . import _core
 from ._cell import BROKEN, TRAPPED, Cell
 from ._core import BadFile, SceneError, UsageError, threads
 from ._results import Analysis, Prediction, Result, Sweep, Trace
-from ._scene import Scene, file_of as _file_of, _table_html
+from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
 
 __version__: str = _core.version
 __all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Matrix", "Prediction", "Result", "Scene", "SceneError",
@@ -41,17 +41,19 @@ class GatewalkWarning(UserWarning):
 
 def _word(value: _t.Any) -> str:
     """A value as the command line has it."""
+    if hasattr(value, "tolist"):  # of numpy
+        value = value.tolist()
     if isinstance(value, float):
-        return repr(value)
+        return repr(float(value))
     if isinstance(value, (tuple, list)):
         return ",".join(_word(x) for x in value)
-    if hasattr(value, "item"):  # of numpy
-        return _word(value.item())
-    return str(value)
+    return str(getattr(value, "_path", None) or value)
 
 
 #: Options that a process has no use for, and those that the module itself gives.
-_NOT_HERE = {"quiet", "json", "checkpoint", "resume", "max-time", "shard", "part"}
+_NOT_HERE = {"quiet", "json", "checkpoint", "resume", "max-time", "shard", "part", "output"}
+#: Options that may be given several times.
+_REPEATED = {"set", "versus", "vary", "start", "row", "bins", "observed"}
 
 
 def _words_of(given: dict[str, _t.Any]) -> list[str]:
@@ -69,11 +71,31 @@ def _words_of(given: dict[str, _t.Any]) -> list[str]:
         if name == "vary" and isinstance(value, dict):
             value = [f"{k}={_word(v)}" for k, v in value.items()]
         if name == "start":
-            rows = list(value) if isinstance(value, list) else [value]
-            value = [_word(row) for row in rows]
+            value = value.tolist() if hasattr(value, "tolist") else value
+            if not isinstance(value, str) and not len(value):
+                raise UsageError("start: is empty; a start is (d, vx, vy), several are a list of them")
+            one = isinstance(value, str) or not isinstance(value[0], (tuple, list, str))
+            value = [_word(value)] if one else [_word(row) for row in value]
+        if isinstance(value, list) and name not in _REPEATED:
+            raise UsageError(f"{key}: takes one value, not a list")
+        if type(value).__name__ == "DataFrame":
+            raise UsageError(f"{key}: takes the path of a file, not a DataFrame")
         many = value if isinstance(value, list) else [value]
         words += [f"--{name}"] if value is True else [f"--{name}={_word(v)}" for v in many]
     return words
+
+
+def _without_folder(value: _t.Any, name: str) -> _t.Any:
+    """A result in which the file of a text is called scene.toml."""
+    if not _is_of_text(name):
+        return value
+    if isinstance(value, str):
+        return value.replace(name, "scene.toml")
+    if isinstance(value, dict):
+        return {k: _without_folder(v, name) for k, v in value.items()}
+    if isinstance(value, list):
+        return [_without_folder(v, name) for v in value]
+    return value
 
 
 @_contextlib.contextmanager
@@ -105,10 +127,23 @@ def _progress(wanted: bool | None) -> _t.Iterator[_t.Callable[[str, int, int], N
             bar.close()
 
 
+def _outside() -> int:
+    """How many calls up the one is that is not in this package: where a warning belongs."""
+    here = _os.path.dirname(__file__)
+    level, frame = 1, _sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(here):
+        frame, level = frame.f_back, level + 1
+    return level
+
+
 def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: list[str] | None = None) -> dict[str, _t.Any]:
     """Runs a command about these subjects; raises what the program would say."""
     cell = given.pop("cell", None)
     progress = given.pop("progress", None)
+    if cell is not None and command in ("gate", "sweep", "trace", "walk", "export", "passages"):
+        raise UsageError(f"cell: gatewalk.{command} is of gates")
+    if cell is not None and not isinstance(cell, Cell):
+        raise UsageError("cell: must be an object of a class derived from gatewalk.Cell" + (", not the class itself" if isinstance(cell, type) else ""))
     with _contextlib.ExitStack() as stack:
         words: list[str] = []
         for subject in subjects:
@@ -124,7 +159,8 @@ def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: 
             status, result = _core.run(command, words, told=told, warned=warned.append, cell=cell)
         finally:
             for text in warned:
-                _warnings.warn(text, GatewalkWarning, stacklevel=3)
+                _warnings.warn(text, GatewalkWarning, stacklevel=_outside())
+        result = _without_folder(result, words[0])
     if status != 0 and given.get("strict"):
         raise RuntimeError(f"gatewalk {command}: the result's status is not clean")
     return _t.cast("dict[str, _t.Any]", result) if result is not None else {}
@@ -165,7 +201,7 @@ def predict(subject: _t.Any, *, accuracy: float | None = None, start: _t.Any = N
     cell : Cell, optional
         Who carries bodies through the cells of `subject`, which is a cell file then.
     progress : bool, optional
-        A bar of tqdm; without it, where one is installed and standard error is a terminal.
+        A bar of tqdm (which must not call gatewalk); without it, where one is installed and standard error is a terminal.
     **more
         Any option of ``gatewalk predict``, "-" written "_".
 

@@ -32,7 +32,9 @@ class Cell:
     memory : int
         So many numbers that a body carries from cell to cell, and that no coordinate shows (up to 60; 0 at first).
     parameters : dict
-        Numbers that ``analyze`` may change: ``self.parameters["radius_m"]``.
+        Numbers that ``analyze`` may change: ``self.parameters["radius_m"]``. Another value: another object with its own.
+    limits : dict
+        The least and the most that a parameter may be: ``{"radius_m": (0.0, 0.5)}``.
     """
 
     faces: list[dict[str, t.Any]] = []
@@ -43,6 +45,7 @@ class Cell:
     uniforms: int = 0
     memory: int = 0
     parameters: dict[str, float] = {}
+    limits: dict[str, tuple[float, float]] = {}
 
     def pass_(self, entries: dict[str, np.ndarray], random: types.SimpleNamespace) -> dict[str, np.ndarray]:
         """Carries bodies through, all at once.
@@ -64,9 +67,11 @@ class Cell:
         raise NotImplementedError("derive from gatewalk.Cell and write pass_(entries, random)")
 
     def _hello(self) -> str:
+        parameters = {key: [float(value), *map(float, self.limits[key])] if key in self.limits else float(value)
+                      for key, value in self.parameters.items()}
         return json.dumps({"gatewalk": 1, "faces": self.faces, "coordinates": self.coordinates, "costs": self.costs,
                            "symmetric": self.symmetric, "normals": self.normals, "uniforms": self.uniforms,
-                           "parameters": self.parameters})
+                           "parameters": parameters})
 
     def _with(self, key: str, value: float) -> Cell:
         other = copy.copy(self)
@@ -79,10 +84,15 @@ class Cell:
         entries: dict[str, np.ndarray] = {"face": face, "memory": memory}
         entries.update({name: at[:, k] for k, name in enumerate(names)})
         out = self.pass_(entries, types.SimpleNamespace(seed=seed, normals=noise[:, :self.normals], uniforms=noise[:, self.normals:]))
+        if not isinstance(out, dict):
+            raise ValueError(f"cell: pass_ must give a dict of arrays, it gave {type(out).__name__}")
         wanted = ["face", *names, *(c["key"] for c in self.costs)]
         missing = [key for key in wanted if key not in out]
         if missing:
             raise ValueError(f"cell: pass_ gave no {', '.join(missing)}; it must give {', '.join(wanted)}")
+        unknown = set(out) - set(wanted) - {"memory"}
+        if unknown:
+            raise ValueError(f"cell: pass_ gave {', '.join(sorted(unknown))}; it may give {', '.join(wanted)} and memory")
         n = len(face)
 
         def stacked(keys: list[str]) -> np.ndarray:
@@ -93,5 +103,12 @@ class Cell:
         leaves = np.asarray(out["face"])
         if leaves.shape != (n,) or leaves.dtype.kind not in "iu":
             raise ValueError(f"cell: pass_ must give {n} whole numbers as face, it gave {leaves.dtype} of shape {leaves.shape}")
-        return (leaves.astype(np.int32), stacked(names), stacked(wanted[1 + len(names):]),
-                np.asarray(out.get("memory", memory), dtype=float).reshape(n, self.memory))
+        if n and not BROKEN <= leaves.min() <= leaves.max() < len(self.faces):
+            wrong = leaves[(leaves < BROKEN) | (leaves >= len(self.faces))][0]
+            raise ValueError(f"cell: pass_ gave the face {wrong}; faces are 0 to {len(self.faces) - 1}, TRAPPED or BROKEN")
+        kept = np.asarray(out.get("memory", memory), dtype=float)
+        if kept.shape == (n,) and self.memory == 1:
+            kept = kept[:, np.newaxis]
+        if kept.shape != (n, self.memory):
+            raise ValueError(f"cell: pass_ must give memory of shape ({n}, {self.memory}), it gave {kept.shape}")
+        return leaves.astype(np.int32), stacked(names), stacked(wanted[1 + len(names):]), kept

@@ -13,10 +13,12 @@ import weakref
 from . import _core, _run
 from ._cell import Cell
 from ._results import Analysis, Prediction, Result
-from ._scene import file_of
+from ._scene import OWN_ERRORS, file_of
 
 
-def _unlink(path: str) -> None:
+def _unlink(path: str, owner: int | None = None) -> None:
+    if owner not in (None, os.getpid()):  # a forked process: the file is its parent's
+        return
     with contextlib.suppress(OSError):
         os.unlink(path)
 
@@ -28,10 +30,10 @@ class Matrix:
     """
 
     def __init__(self, path: t.Any, _owned: bool = False) -> None:
-        self._path = os.fspath(path)
+        self._path = os.path.abspath(os.fspath(path))
         self._core = _core.Matrix(self._path)
         if _owned:
-            self._gone = weakref.finalize(self, _unlink, self._path)
+            self._gone = weakref.finalize(self, _unlink, self._path, os.getpid())
 
     @property
     def matrix(self) -> t.Any:
@@ -118,10 +120,11 @@ class Matrix:
         return walk(self, **more)
 
     def validate(self, **more: t.Any) -> Result:
-        """See `gatewalk.validate`."""
+        """See `gatewalk.validate`: recorded runs, one half of the bodies against the other; else against full trials."""
         from . import validate
 
-        return validate(self, **more)
+        text = self.made_by.get("scene")
+        return validate(self, **more) if text is None else validate(text + "\n", matrix=self, **more)
 
     def plot(self, axes: t.Any = None) -> t.Any:
         """The matrix, from states downwards to states at the right, by matplotlib."""
@@ -234,7 +237,9 @@ def _table_file(table: t.Any) -> t.Iterator[str]:
         try:
             yield name
         except ValueError as error:
-            raise type(error)(str(error).replace(name, "the table")) from None
+            if type(error) not in OWN_ERRORS:
+                raise
+            raise type(error)(str(error).replace(name, "the table")) from error.__cause__
 
 
 def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:

@@ -12,12 +12,12 @@ from ._scene import _table_html
 
 def _same(a: t.Any, b: t.Any) -> bool:
     if isinstance(a, dict) and isinstance(b, dict):
-        return a.keys() == b.keys() and all(_same(a[k], b[k]) for k in a if not k.endswith("seconds"))
+        return a.keys() == b.keys() and all(_same(a[k], b[k]) for k in a if not k.endswith("seconds") and k != "speed_ratio")
     if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
         return len(a) == len(b) and all(map(_same, a, b))
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.shape(a) == np.shape(b) and bool(np.array_equal(a, b, equal_nan=True))
-    return bool(a == b)
+    return bool(a == b) or (isinstance(a, float) and isinstance(b, float) and a != a and b != b)
 
 
 class Result(collections.abc.Mapping):  # type: ignore[type-arg]
@@ -54,7 +54,7 @@ class Result(collections.abc.Mapping):  # type: ignore[type-arg]
             return NotImplemented
 
         def shown(result: Result) -> dict[str, t.Any]:
-            return {k: v for k, v in result._data.items() if k not in ("made_by", "speed_ratio")}
+            return {k: v for k, v in result._data.items() if k != "made_by"}
 
         return type(self) is type(other) and _same(shown(self), shown(other))
 
@@ -72,7 +72,9 @@ class Result(collections.abc.Mapping):  # type: ignore[type-arg]
 
 
 class Prediction(Result):
-    """Where bodies end, and how. Of several starts, `starts` has one for each.
+    """Where bodies end, and how. Of several starts, `starts` has one for each; of one, all is here.
+
+    Of `lattice`: what was seen, numbers of bodies where a prediction has shares.
 
     Attributes
     ----------
@@ -85,14 +87,27 @@ class Prediction(Result):
         The bar: total variation of all shares, 95 %; none where nothing could be told.
     """
 
+    def __getattr__(self, name: str) -> t.Any:
+        rows = self.__dict__.get("_data", {}).get("starts")
+        if rows and len(rows) == 1 and name in rows[0]:  # what is said of the only start
+            return rows[0][name]
+        return super().__getattr__(name)
+
     @property
     def starts(self) -> list[Prediction]:
         """One prediction for each start."""
         rows = self._data.get("starts")
         return [Prediction(row) for row in rows] if rows else [self]
 
+    def _only(self) -> dict[str, t.Any]:
+        if len(self.starts) > 1:
+            raise ValueError(f"there are {len(self.starts)} starts: starts[0], starts[1], ... have one each")
+        if self.starts[0]._data.get("final_gates") is None:
+            raise ValueError("the field has too many gates for tables: netcdf=FILE writes them")
+        return self.starts[0]._data
+
     def _gates(self) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]:
-        first = self.starts[0]._data
+        first = self._only()
         bars = first.get("final_gates_95")
         return np.asarray(first["final_gates"]), (np.asarray(bars["low"]), np.asarray(bars["high"])) if bars else None
 
@@ -100,7 +115,7 @@ class Prediction(Result):
         """An xarray.Dataset: final, trapped and departed gates by i_y and i_x (0 in the middle), endings by ending."""
         import xarray
 
-        first = self.starts[0]._data
+        first = self._only()
         rows, columns = np.shape(first["final_gates"])
         is_count = "trials" in self._data
         unit = {"units": "1", "long_name": "bodies" if is_count else "share of bodies"}
@@ -124,7 +139,7 @@ class Prediction(Result):
         """A pandas.DataFrame: a line per ending, its share (lattice: number) and 95 % interval."""
         import pandas
 
-        first = self.starts[0]._data
+        first = self._only()
         low_high = np.array([first.get("endings_95", {}).get(k, (np.nan, np.nan)) for k in first["endings"]], dtype=float)
         return pandas.DataFrame({"value": list(first["endings"].values()), "low_95": low_high[:, 0], "high_95": low_high[:, 1]},
                                 index=pandas.Index(list(first["endings"]), name="ending"))
@@ -135,7 +150,7 @@ class Prediction(Result):
 
         if axes is None:
             _, axes = plt.subplots(1, 2, figsize=(7.0, 3.0), constrained_layout=True)
-        first = self.starts[0]._data
+        first = self._only()
         total = float(self._data.get("trials", 1))
         gates = np.asarray(first["final_gates"], dtype=float) / total
         columns = gates.shape[1]
@@ -158,6 +173,8 @@ class Prediction(Result):
         return axes
 
     def _lines(self) -> list[tuple[str, str]]:
+        if len(self.starts) > 1:
+            return [("starts", str(len(self.starts)))]
         first = self.starts[0]._data
         bars = first.get("endings_95", {})
         lines = [(k.replace("_", " "), f"{v:.4g}" + (f" [{bars[k][0]:.3g}, {bars[k][1]:.3g}]" if k in bars else ""))

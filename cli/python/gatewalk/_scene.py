@@ -2,40 +2,60 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import hashlib
 import html
+import json
 import os
+import re
+import shutil
 import tempfile
+import threading
 import typing as t
 
 from . import _core
 
 
+#: What the program says; a cell's own errors come out as they are.
+OWN_ERRORS = (ValueError, _core.SceneError, _core.UsageError, _core.BadFile)
+
+
 def _toml_value(value: t.Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (int, float)):
-        return repr(value)
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_toml_value(v) for v in value) + "]"
     if hasattr(value, "tolist"):
         return _toml_value(value.tolist())
-    text = str(value).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-    return f'"{text}"'
+    if isinstance(value, float):
+        return repr(float(value))
+    if isinstance(value, int):
+        return repr(int(value))
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml_value(v) for v in value) + "]"
+    if isinstance(value, t.Mapping):
+        return "{ " + ", ".join(f"{_toml_key(k)} = {_toml_value(v)}" for k, v in value.items()) + " }"
+    if value is None:
+        raise _core.SceneError("a key is None; leave it out")
+    return _quoted(str(value))
+
+
+def _quoted(text: str) -> str:
+    """A string of TOML; JSON's escapes are among its own."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _toml_key(key: str) -> str:
+    parts = str(key).split(".")
+    return ".".join(p if re.fullmatch(r"[A-Za-z0-9_-]+", p) else _quoted(p) for p in parts)
 
 
 def _toml(tables: t.Mapping[str, t.Any], name: str = "") -> str:
     """A dict of dicts as TOML."""
-    lines = [f"{key} = {_toml_value(value)}" for key, value in tables.items()
-             if not isinstance(value, t.Mapping) and not (isinstance(value, list) and value and isinstance(value[0], t.Mapping))]
+    lines = [f"{_toml_key(key)} = {_toml_value(value)}" for key, value in tables.items() if not isinstance(value, t.Mapping)]
     text = (f"[{name}]\n" if name else "") + "".join(line + "\n" for line in lines)
     for key, value in tables.items():
-        full = f"{name}.{key}" if name else key
         if isinstance(value, t.Mapping):
-            text += _toml(value, full)
-        elif isinstance(value, list) and value and isinstance(value[0], t.Mapping):
-            for row in value:
-                text += f"[{full}]\n".replace("[", "[[", 1).replace("]", "]]", 1) + _toml(row)
+            text += _toml(value, f"{name}.{_toml_key(key)}" if name else _toml_key(key))
     return text
 
 
@@ -52,7 +72,7 @@ class Scene:
     Parameters
     ----------
     source : path, str or dict
-        A scene file; its text; or tables as a dict. Keys may have other units: ``radius_cm``.
+        A scene file; its text; or tables as a dict (errors call both scene.toml; a map_file in them has a whole path). Keys may have other units: ``radius_cm``.
     set : dict, optional
         Keys with other values, ``{"forces.propulsion_N": 1.2}``.
 
@@ -83,14 +103,14 @@ class Scene:
         elif isinstance(source, str) and "\n" in source:
             self._text = source
         else:
-            self._path = os.fspath(source)
+            path = os.fspath(source)
+            self._path = f"./{path}" if path.startswith("-") else path
         self._set: dict[str, t.Any] = dict(set or {})
-        self._keys = self._read()
-
-    def _read(self) -> list[dict[str, t.Any]]:
         from . import _run
 
-        return t.cast("list[dict[str, t.Any]]", _run("scene", [self], {})["keys"])
+        shown = _run("scene", [self], {})
+        self._keys: list[dict[str, t.Any]] = shown["keys"]
+        self._toml: str = shown["scene"]
 
     @property
     def keys(self) -> dict[str, t.Any]:
@@ -113,10 +133,10 @@ class Scene:
         return Scene(self._path if self._text is None else self._text, {**self._set, **set})
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Scene) and self.keys == other.keys
+        return isinstance(other, Scene) and self._toml == other._toml
 
     def __hash__(self) -> int:
-        return hash(tuple(sorted((k, str(v)) for k, v in self.keys.items())))
+        return hash(self._toml)
 
     def __repr__(self) -> str:
         of = "of a text" if self._path is None else repr(self._path)
@@ -138,11 +158,40 @@ def file_of(subject: t.Any) -> t.Iterator[tuple[str, dict[str, t.Any]]]:
         yield os.fspath(subject), {}
         return
     text = subject._text if isinstance(subject, Scene) else _toml(subject) if isinstance(subject, t.Mapping) else str(subject)
-    with tempfile.TemporaryDirectory() as folder:
-        name = os.path.join(folder, "scene.toml")
-        with open(name, "w", encoding="utf-8") as out:
+    name = _file_of_text(t.cast(str, text))
+    try:
+        yield name, getattr(subject, "_set", {})
+    except ValueError as error:  # the folder means nothing to anybody
+        if type(error) not in OWN_ERRORS:
+            raise
+        raise type(error)(str(error).replace(name, "scene.toml")) from error.__cause__
+
+
+_folders: dict[int, str] = {}  # by process: a forked one makes its own
+
+
+def _file_of_text(text: str) -> str:
+    """A file with that text, the same one for the same text until the process ends."""
+    folder = _folders.get(os.getpid())
+    if folder is None:
+        folder = _folders[os.getpid()] = tempfile.mkdtemp(prefix="gatewalk-")
+        atexit.register(_remove, folder, os.getpid())
+    place = os.path.join(folder, hashlib.sha256(text.encode()).hexdigest()[:16])
+    name = os.path.join(place, "scene.toml")
+    if not os.path.exists(name):
+        os.makedirs(place, exist_ok=True)
+        with open(f"{name}.{threading.get_ident()}", "w", encoding="utf-8") as out:
             out.write(text)
-        try:
-            yield name, getattr(subject, "_set", {})
-        except ValueError as error:  # the folder means nothing to anybody
-            raise type(error)(str(error).replace(name, "scene.toml")) from None
+        os.replace(out.name, name)
+    return name
+
+
+def _remove(folder: str, owner: int) -> None:
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def is_of_text(name: str) -> bool:
+    """Whether it is a file of _file_of_text."""
+    folder = _folders.get(os.getpid())
+    return folder is not None and name.startswith(folder + os.sep)
