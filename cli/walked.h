@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/render/json.h"
 #include "cli/subject.h"
 #include "markov/chain.h"
 
