@@ -68,9 +68,9 @@ std::string header(const std::string& title, const std::string& summary) {
 }
 
 std::string exit_status() {
-  return ".SH EXIT STATUS\n.TP\n0\nfine\n.TP\n1\nfailure; with \\-\\-strict also a result whose "
-         "status "
-         "is not clean\n.TP\n2\nwrong use or input\n.TP\n75\nstopped; the same command with "
+  return ".SH EXIT STATUS\n.TP\n0\nfine\n.TP\n1\nfailure; with \\-\\-strict also a result "
+         "whose status is not clean\n.TP\n2\nwrong use or input\n.TP\n75\nstopped; the same "
+         "command with "
          "\\-\\-resume goes on\n.TP\n130\nstopped by a signal, nothing was kept\n";
 }
 
@@ -96,9 +96,9 @@ std::string manual(const std::vector<Page>& all) {
       header("gatewalk",
              "multi-scale Markov chain analysis of locomotion through cluttered obstacles") +
       ".SH SYNOPSIS\n.B gatewalk\n.I COMMAND\n[arguments] [options]\n.SH DESCRIPTION\n"
-      "A disc-shaped body pushes through a field of gates, pairs of hinged springy beams. Short "
-      "runs "
-      "of single gates make a transition matrix, a Markov chain walks the field with it, and its "
+      "A disc-shaped body pushes through a field of gates, pairs of hinged springy beams. "
+      "Short runs of single gates make a transition matrix, a Markov chain walks the field with "
+      "it, and its "
       "final gates are compared with the full dynamics.\n.SH COMMANDS\n";
   for (const Page& page : all)
     text += ".TP\n.BR " + roff("gatewalk-" + page.name) + " (1)\n" + roff(page.summary) + "\n";
@@ -128,14 +128,12 @@ std::string for_bash(const std::vector<Page>& all) {
   for (const Page& page : all) {
     commands += page.name + " ";
     std::string options;
-    for (const CommandHelp::Option& o : page.help.options) {
-      options += "--" + o.name + " ";
-    }
+    for (const CommandHelp::Option& o : page.help.options) options += "--" + o.name + " ";
     cases += "    " + page.name + ") options=" + in_quotes(options) + " ;;\n";
   }
-  return "# Completion of gatewalk for bash.\n_gatewalk() {\n  local "
-         "current=${COMP_WORDS[COMP_CWORD]} "
-         "options=\n  COMPREPLY=()\n  if [ \"$COMP_CWORD\" = 1 ]; then\n"
+  return "# Completion of gatewalk for bash.\n_gatewalk() {\n"
+         "  local current=${COMP_WORDS[COMP_CWORD]} options=\n  COMPREPLY=()\n  if [ "
+         "\"$COMP_CWORD\" = 1 ]; then\n"
          "    mapfile -t COMPREPLY < <(compgen -W " +
          in_quotes(commands + "help --help --version") +
          " -- \"$current\")\n    return\n  fi\n  case ${COMP_WORDS[1]} in\n" + cases +
@@ -143,9 +141,9 @@ std::string for_bash(const std::vector<Page>& all) {
          " ;;\n  esac\n  case $current in\n"
          "    -*) mapfile -t COMPREPLY < <(compgen -W \"$options\" -- \"$current\") ;;\n"
          "    *)\n      [ \"${COMP_WORDS[1]}\" != help ] || mapfile -t COMPREPLY < <(compgen -W "
-         "\"$options\" -- \"$current\")\n      [ ${#COMPREPLY[@]} -gt 0 ] || mapfile -t COMPREPLY "
-         "< "
-         "<(compgen -f -- \"$current\")\n      ;;\n  esac\n}\ncomplete -o filenames -F _gatewalk "
+         "\"$options\" -- \"$current\")\n      [ ${#COMPREPLY[@]} -gt 0 ] || mapfile -t "
+         "COMPREPLY < <(compgen -f -- \"$current\")\n      ;;\n  esac\n}\ncomplete -o filenames -F "
+         "_gatewalk "
          "gatewalk\n";
 }
 

@@ -1,3 +1,6 @@
+#include <filesystem>
+#include <system_error>
+
 #include "cli/arguments.h"
 #include "cli/render/explicit_chain.h"
 #include "cli/render/json.h"
@@ -27,6 +30,15 @@ int run_export(const Arguments& arguments) {
   const bool umb = output.ends_with(".umb"), drn = output.ends_with(".drn");
   if (!umb && !drn && !output.ends_with(".tra"))
     throw UsageError("-o " + output + ": must end in .umb, .drn or .tra");
+  const std::vector<std::string> beside =
+      umb || drn ? std::vector<std::string>() : std::vector{stem + ".sta", stem + ".lab"};
+  for (const std::string& file : beside)
+    for (const std::string& input : options.files_read()) {
+      std::error_code missing;
+      if (std::filesystem::equivalent(file, input, missing))
+        throw UsageError(file + ", which is written beside -o " + output +
+                         ", is an input: give -o another name");
+    }
   if (!is_matrix(path)) (void)read_matrix(options);  // says what it is instead
   Subject s = open_subject(options, "matrix");
   if (s.starts.size() > 1) throw UsageError("--start: a chain has one");
@@ -42,8 +54,8 @@ int run_export(const Arguments& arguments) {
     options.write(output, drn_of(chain));
   } else {
     const PrismFiles files = prism_of(chain);
-    options.write(stem + ".sta", files.states);
-    options.write(stem + ".lab", files.labels);
+    options.write(beside[0], files.states);
+    options.write(beside[1], files.labels);
     options.write(output, files.transitions);
   }
   Json json = {

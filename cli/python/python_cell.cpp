@@ -2,6 +2,8 @@
 
 #include <pybind11/numpy.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -132,7 +134,7 @@ void PythonCell::run_batch(std::vector<Slot>& slots) const {
     const InCell here;
     return cell_.attr("_passes")(face, at, seed, numbers, carried);
   }();
-  const auto out = given<std::int32_t>(answer[0], "faces", n, 1);
+  const auto out = given<std::int64_t>(answer[0], "faces", n, 1);
   const auto to = given<double>(answer[1], "coordinates", n, coordinates);
   const auto took = given<double>(answer[2], "costs", n, costs);
   const auto kept = given<double>(answer[3], "numbers of memory", n, memory);
@@ -141,8 +143,8 @@ void PythonCell::run_batch(std::vector<Slot>& slots) const {
       return std::invalid_argument("cell: pass_ gave body " + std::to_string(k) +
                                    " (counted from 0) " + what);
     };
-    const int fate = out.data()[k];
-    if (fate < -2 || fate >= static_cast<int>(hello_.section.faces.size()))
+    const std::int64_t fate = out.data()[k];
+    if (fate < -2 || fate >= std::ssize(hello_.section.faces))
       throw wrong("the face " + std::to_string(fate) + "; faces are 0 to " +
                   std::to_string(hello_.section.faces.size() - 1) + ", -1 is trapped, -2 broken");
     Passage& passage = slots[k].passage;
@@ -155,7 +157,7 @@ void PythonCell::run_batch(std::vector<Slot>& slots) const {
                     " that is not finite, or a time that is negative");
     }
     if (fate == -1) continue;
-    passage.next.face = fate;
+    passage.next.face = static_cast<int>(fate);
     for (std::size_t c = 0; c < coordinates; ++c) {
       passage.next.at[c] = to.data()[k * coordinates + c];
       if (!std::isfinite(passage.next.at[c]))

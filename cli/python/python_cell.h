@@ -13,8 +13,8 @@ namespace gatewalk::python {
 
 /// `cell` has _hello(), the first line of a cell program (cli/cells/PROGRAM.md), and
 /// _passes(face, at, seed, noise, memory) -> (out, at, costs, memory), all arrays with a row per
-/// body: face and out (int32) number faces, out is -1 for trapped, -2 for broken. Both are called
-/// with the GIL held; what they raise ends the run.
+/// body: face (int32) and out (int64) number faces, out is -1 for trapped, -2 for broken. Both are
+/// called with the GIL held; what they raise ends the run.
 class PythonCell : public dynamics::Cell {
  public:
   /// With the GIL held. Throws std::invalid_argument for a cell that is none.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Do predictions from tracks keep what they promise? Bodies whose truth is known, as a camera sees them.
-#   results/tracks/run.sh [BUILD]      BUILD: with tests; about 15 minutes on two cores, needs python3
+#   results/tracks/run.sh [BUILD]      BUILD: with tests; about 9 minutes on two cores, needs python3
 # Writes truth.json, predict.json, validate.json, many.csv, coverage.csv, summary.txt, halves.svg, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

@@ -220,6 +220,9 @@ class Elsewhere(unittest.TestCase):
                             self.assertAlmostEqual(share[labels[name]], p, 11, (made, limit, ending, name))
             with self.assertRaisesRegex(gw.UsageError, "must end in .umb, .drn or .tra"):
                 matrix.export(Path(folder) / "x.txt")
+            matrix.save(Path(folder) / "x.sta")
+            with self.assertRaisesRegex(gw.UsageError, "x.sta, .* is an input"):
+                gw.load(Path(folder) / "x.sta").export(Path(folder) / "x.tra")
 
 
 class Scenes(unittest.TestCase):
@@ -344,7 +347,7 @@ class Cells(unittest.TestCase):
                              (lambda a: {k: v for k, v in a.items() if k != "s"}, "gave no s"),
                              (lambda a: {**a, "face": a["face"] * 1.0}, "whole numbers as face"),
                              (lambda a: 1 / 0, "division by zero"),
-                             (lambda a: {**a, "face": a["face"].astype(np.int64) + 2**32}, "gave the face 42949"),
+                             (lambda a: {**a, "face": a["face"].astype(np.int64) + 2**32}, "the face 42949"),
                              (lambda a: {**a, "memory": np.zeros((2, len(a["face"])))}, "memory of shape"),
                              (lambda a: {**a, "vx": 0.0}, "gave vx; it may give"),
                              (lambda a: None, "must give a dict"),

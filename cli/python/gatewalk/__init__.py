@@ -1,6 +1,6 @@
 """Locomotion through cluttered obstacles: short runs of single gates, chained over a field.
 
-The same commands as the program ``gatewalk``, with the same numbers to the last bit and the same errors. Options of a
+Commands of the program ``gatewalk`` as functions, with the same numbers to the last bit and the same errors. Options of a
 command are keyword arguments (``--gate-runs 1e5`` is ``gate_runs=1e5``); ``help(gatewalk.predict)`` names the usual
 ones, ``gatewalk.options("predict")`` all of them.
 
@@ -66,9 +66,7 @@ def _words_of(given: dict[str, _t.Any]) -> list[str]:
             raise UsageError(f"{key}: has no meaning in Python; the program has --{name}")
         if name == "threads":
             raise UsageError("threads: gatewalk.threads(n) sets them, for all that follows")
-        if name in ("set", "versus") and isinstance(value, dict):
-            value = [f"{k}={_word(v)}" for k, v in value.items()]
-        if name == "vary" and isinstance(value, dict):
+        if name in ("set", "versus", "vary") and isinstance(value, dict):
             value = [f"{k}={_word(v)}" for k, v in value.items()]
         if name == "start":
             value = value.tolist() if hasattr(value, "tolist") else value
@@ -143,7 +141,8 @@ def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: 
     if cell is not None and command in ("gate", "sweep", "trace", "walk", "export", "passages"):
         raise UsageError(f"cell: gatewalk.{command} is of gates")
     if cell is not None and not isinstance(cell, Cell):
-        raise UsageError("cell: must be an object of a class derived from gatewalk.Cell" + (", not the class itself" if isinstance(cell, type) else ""))
+        raise UsageError("cell: must be an object of a class derived from gatewalk.Cell"
+                         + (", not the class itself" if isinstance(cell, type) else ""))
     with _contextlib.ExitStack() as stack:
         words: list[str] = []
         for subject in subjects:

@@ -103,12 +103,9 @@ class Cell:
         leaves = np.asarray(out["face"])
         if leaves.shape != (n,) or leaves.dtype.kind not in "iu":
             raise ValueError(f"cell: pass_ must give {n} whole numbers as face, it gave {leaves.dtype} of shape {leaves.shape}")
-        if n and not BROKEN <= leaves.min() <= leaves.max() < len(self.faces):
-            wrong = leaves[(leaves < BROKEN) | (leaves >= len(self.faces))][0]
-            raise ValueError(f"cell: pass_ gave the face {wrong}; faces are 0 to {len(self.faces) - 1}, TRAPPED or BROKEN")
         kept = np.asarray(out.get("memory", memory), dtype=float)
         if kept.shape == (n,) and self.memory == 1:
             kept = kept[:, np.newaxis]
         if kept.shape != (n, self.memory):
             raise ValueError(f"cell: pass_ must give memory of shape ({n}, {self.memory}), it gave {kept.shape}")
-        return leaves.astype(np.int32), stacked(names), stacked(wanted[1 + len(names):]), kept
+        return leaves.astype(np.int64), stacked(names), stacked(wanted[1 + len(names):]), kept

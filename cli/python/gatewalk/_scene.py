@@ -72,7 +72,8 @@ class Scene:
     Parameters
     ----------
     source : path, str or dict
-        A scene file; its text; or tables as a dict (errors call both scene.toml; a map_file in them has a whole path). Keys may have other units: ``radius_cm``.
+        A scene file; its text; or tables as a dict (errors call both scene.toml; a map_file in them has a whole path).
+        Keys may have other units: ``radius_cm``.
     set : dict, optional
         Keys with other values, ``{"forces.propulsion_N": 1.2}``.
 
