@@ -17,6 +17,7 @@
 #include "cli/kept/kept_options.h"
 #include "cli/kept/ranks.h"
 #include "cli/render/json.h"
+#include "cli/render/numbers.h"
 #include "cli/terminal/backup.h"
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
@@ -47,10 +48,10 @@ std::string memory_advice;
 
 /// Options that cannot change a result, left out of the recorded command.
 bool shapes_nothing(const std::string& name) {
-  return name == "threads" || name == "quiet" || name == "json" || name == "output" ||
-         name == "strict" || name == "figure" || name == "netcdf" || name == "force" ||
-         name == "checkpoint" || name == "resume" || name == "max-time" || name == "shard" ||
-         name == "part";
+  return name == "threads" || name == "quiet" || name == "json" || name == "csv" ||
+         name == "output" || name == "strict" || name == "figure" || name == "netcdf" ||
+         name == "force" || name == "checkpoint" || name == "resume" || name == "max-time" ||
+         name == "shard" || name == "part";
 }
 
 /// An option as users write it.
@@ -250,6 +251,7 @@ struct Options::State {
   std::vector<Output> output_files{{"json", Content::text}};
   std::vector<std::string> folder_files;  // what is written into the folder of --output
   std::vector<std::pair<std::string, std::function<std::string(const std::string&)>>> reads;
+  bool has_table = false;                 // --csv is that of all commands
   std::map<std::string, Backup> backups;  // by the file that is replaced
   std::string needs_output;               // what to call the value of -o, if it must be given
 
@@ -270,7 +272,8 @@ Options::Options(std::string synopsis, std::string about, std::string example)
       "threads", po::value<Count>()->default_value(Count{0}, "0")->value_name("N"),
       "threads to use, 0: all; never changes a result")(
       "force", "replace files that are there; without it they are kept, as FILE.~1~ and so on")(
-      "quiet", "no progress, no remarks, no table when there is JSON")("help,h", "this page");
+      "quiet", "no progress, no remarks, no table when there is JSON or CSV")("help,h",
+                                                                              "this page");
 }
 
 Options::~Options() {
@@ -583,6 +586,14 @@ bool Options::parse(const Arguments& arguments) {
       .add_options()("set", po::value<Strings>()->composing()->value_name("KEY=VALUE"),
                      "override a key of the scene, e.g. forces.random_N=20 (may be repeated); what "
                      "the file leaves out stays as it follows from the file");
+  if (!state_->own.find_nothrow("csv", false)) {
+    state_->shared.add_options()(
+        "csv", po::value<std::string>()->value_name("FILE"),
+        "write the result's numbers as CSV: quantity,i,j,value,low_95,high_95; "
+        "- is standard output");
+    state_->output_files.push_back({"csv", Content::text});
+    state_->has_table = true;
+  }
   reads("set", [](const std::string& given) { return lattice::map_file_in(given, ""); });
   if (arguments.helped) {
     arguments.helped(help());
@@ -779,14 +790,15 @@ void Options::remark(const std::string& text) const {
 const std::shared_ptr<const dynamics::Cell>& Options::cell() const { return state_->cell; }
 
 void Options::give_out(const Json& json, const std::string& table, int indent) const {
-  if (state_->given_out) {
-    state_->given_out(json);
-    return;
+  const std::string csv = state_->has_table ? text("csv") : "";
+  if (!state_->given_out && is_first_rank()) {
+    const bool to_stdout = text("json") == "-" || csv == "-";
+    if (!to_stdout && ((text("json").empty() && csv.empty()) || talk()))
+      write_text_atomically("-", table);
+    if (has("json")) write(text("json"), json_text(json, indent));
   }
-  if (!is_first_rank()) return;
-  const std::string target = text("json");
-  if (target != "-" && (target.empty() || talk())) write_text_atomically("-", table);
-  if (!target.empty()) write(target, text_of(json, indent) + "\n");
+  if (!csv.empty()) write(csv, table_of_numbers(json));
+  if (state_->given_out) state_->given_out(with_format_version(json));
 }
 
 void Options::keep_old(const std::string& path) const {
@@ -831,7 +843,7 @@ void ResultFolder::write(const std::string& csv_file, const std::string& csv,
       std::filesystem::remove(path(file));
     }
   options_.write(path(csv_file), csv);
-  options_.write(path(json_file), text_of(json) + "\n");
+  options_.write(path(json_file), json_text(json));
 }
 
 void ResultFolder::draw(const std::string& file, const Figure& figure) const {

@@ -2,29 +2,41 @@
 /// Every command as a function (commands.def); its arguments are the words behind its name, what it
 /// returns is the exit status.
 
+#include <iterator>
 #include <string_view>
+#include <vector>
 
 #include "cli/command.h"
 
 namespace gatewalk::cli {
 
+#define GROUP(name)
 #define COMMAND(name, run, summary) int run(const Arguments& arguments);
 #include "cli/commands.def"
 #undef COMMAND
+#undef GROUP
 
+/// A command; or, without a function, the name of the group that begins.
 struct Command {
   const char *name, *summary;
   int (*run)(const Arguments& arguments);
 };
-inline constexpr Command kCommands[] = {
+inline constexpr Command kCommandsAndGroups[] = {
+#define GROUP(name) {name, "", nullptr},
 #define COMMAND(name, run, summary) {name, summary, run},
 #include "cli/commands.def"
 #undef COMMAND
+#undef GROUP
 };
+[[nodiscard]] inline std::vector<Command> commands() {
+  std::vector<Command> all(std::begin(kCommandsAndGroups), std::end(kCommandsAndGroups));
+  std::erase_if(all, [](const Command& c) { return !c.run; });
+  return all;
+}
 /// The command of that name, if there is one.
 [[nodiscard]] inline const Command* command_named(std::string_view name) {
-  for (const Command& c : kCommands)
-    if (name == c.name) return &c;
+  for (const Command& c : kCommandsAndGroups)
+    if (c.run && name == c.name) return &c;
   return nullptr;
 }
 

@@ -21,7 +21,7 @@ struct Page {
 
 std::vector<Page> pages() {
   std::vector<Page> all;
-  for (const Command& c : kCommands) {
+  for (const Command& c : commands()) {
     Arguments arguments{};
     arguments.helped = [&](const CommandHelp& help) { all.push_back({c.name, c.summary, help}); };
     (void)c.run(arguments);
@@ -100,8 +100,10 @@ std::string manual(const std::vector<Page>& all) {
       "Short runs of single gates make a transition matrix, a Markov chain walks the field with "
       "it, and its "
       "final gates are compared with the full dynamics.\n.SH COMMANDS\n";
-  for (const Page& page : all)
-    text += ".TP\n.BR " + roff("gatewalk-" + page.name) + " (1)\n" + roff(page.summary) + "\n";
+  for (const Command& c : kCommandsAndGroups)
+    text += c.run ? ".TP\n.BR " + roff("gatewalk-" + std::string(c.name)) + " (1)\n" +
+                        roff(c.summary) + "\n"
+                  : ".SS " + roff(c.name) + "\n";
   text += exit_status() + ".SH SEE ALSO\n";
   for (std::size_t k = 0; k < all.size(); ++k)
     text +=

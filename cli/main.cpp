@@ -26,10 +26,17 @@ void print_help(std::ostream& out) {
   out << "gatewalk " << kVersion
       << ": multi-scale Markov chain analysis of locomotion through cluttered obstacles\n\n"
          "usage: gatewalk COMMAND [arguments] [options]\n\n";
-  for (const Command& c : kCommands)
-    out << "  " << c.name << std::string(13 - std::string(c.name).size(), ' ') << c.summary << "\n";
+  bool is_first = true;
+  for (const Command& c : kCommandsAndGroups) {
+    if (!c.run)
+      out << (is_first ? "" : "\n") << c.name << "\n";
+    else
+      out << "  " << c.name << std::string(13 - std::string(c.name).size(), ' ') << c.summary
+          << "\n";
+    is_first = false;
+  }
   out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an "
-         "example.\n"
+         "example.\ngatewalk --version --verbose says what it was built with.\n"
          "exit status: 0 fine, 1 failure (with --strict also a result whose status is not clean),\n"
          "2 wrong use or input, 130 stopped by ctrl-C, SIGTERM, SIGHUP or SIGUSR1, 75 stopped and\n"
          "--resume goes on\n";
@@ -40,7 +47,7 @@ const Command* find_command(const std::string& name) {
   if (const Command* const named = command_named(name)) return named;
   std::cerr << "gatewalk: no command '" << name << "'";
   std::vector<std::string> names;
-  for (const Command& c : kCommands) names.emplace_back(c.name);
+  for (const Command& c : commands()) names.emplace_back(c.name);
   if (const std::string meant = lattice::meant_name(name, names); !meant.empty())
     std::cerr << "; did you mean " << meant << "?";
   std::cerr << "\n\n";
@@ -67,6 +74,10 @@ int run(const std::vector<std::string>& words) {
   }
   if (words[0] == "--version" || words[0] == "-V") {
     std::cout << "gatewalk " << kVersion << " (" << kCommit << ")\n";
+    if (words.size() == 2 && words[1] == "--verbose")
+      std::cout << kBuiltWith;
+    else if (words.size() > 1)
+      throw UsageError("--version takes --verbose alone");
     return std::cout.flush() ? kFine : kFailure;
   }
   const Command* const command = find_command(words[0]);

@@ -347,7 +347,7 @@ Reproduction reproduce(const ReproductionOptions& options) {
   std::filesystem::remove("report.html");
   Reproduction r = report_of(carry_out(studies, options.talk), studies, options.quick, scenes);
   write_text_atomically("claims.csv", csv_of(r.claims));
-  write_text_atomically("report.json", text_of(r.report, -1) + "\n");
+  write_text_atomically("report.json", json_text(r.report, -1));
   if (has_pages()) write_text_atomically("report.html", report_page(r.report, file_text));
   return r;
 }

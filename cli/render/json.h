@@ -11,4 +11,11 @@ namespace gatewalk::cli {
 /// JSON as text; bytes that are no UTF-8 (names of files) become U+FFFD. `indent` -1: on one line.
 [[nodiscard]] std::string text_of(const Json& json, int indent = 2);
 
+/// Of the JSON that commands write; a key that goes, or changes its meaning, makes another one.
+inline constexpr int kFormatVersion = 1;
+/// The result with "format_version" as its first key.
+[[nodiscard]] Json with_format_version(const Json& result);
+/// The same as the text of a file.
+[[nodiscard]] std::string json_text(const Json& result, int indent = 2);
+
 }  // namespace gatewalk::cli

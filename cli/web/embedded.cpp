@@ -1,5 +1,6 @@
 #include "cli/web/embedded.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -32,6 +33,14 @@ std::string_view carried_file(std::string_view name) {
   const CarriedFile* const file = find(name);
   if (!file) throw std::logic_error("gatewalk carries no file named " + std::string(name));
   return {file->begin, static_cast<std::size_t>(file->end - file->begin)};
+}
+
+std::vector<std::string> carried_files() {
+  std::vector<std::string> names;
+  for (const CarriedFile* file = gatewalk_carried_files; file->name; ++file)
+    names.emplace_back(file->name);
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 bool has_pages() { return find("report.html") != nullptr; }

@@ -7,7 +7,7 @@ import random
 draw = random.Random(5)
 HALF = 0.05  # m
 
-print("# made up by make_runs.py: no animal was tracked")
+print("# Recorded passages for gatewalk build, through the cells of cell.toml. Made up by make_runs.py, no animal was tracked.")
 print("body,trial,in,s,vx,vy,out,out_s,out_vx,out_vy,time_s")
 for body in range(1, 13):
     face, s, direction, speed = "S", draw.uniform(-0.04, 0.04), math.pi / 2, draw.uniform(0.05, 0.2)

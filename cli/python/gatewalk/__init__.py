@@ -32,7 +32,7 @@ from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
 __version__: str = _core.version
 __all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Matrix", "Prediction", "Result", "Scene", "SceneError",
            "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "from_passages", "gate", "lattice", "load", "options",
-           "passages", "power", "predict", "rare", "sweep", "threads", "trace", "validate", "walk"]
+           "passages", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
 
 
 class GatewalkWarning(UserWarning):
@@ -159,7 +159,7 @@ def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: 
         finally:
             for text in warned:
                 _warnings.warn(text, GatewalkWarning, stacklevel=_outside())
-        result = _without_folder(result, words[0])
+        result = _without_folder(result, words[0] if words else "")
     if status != 0 and given.get("strict"):
         raise RuntimeError(f"gatewalk {command}: the result's status is not clean")
     return _t.cast("dict[str, _t.Any]", result) if result is not None else {}
@@ -266,6 +266,25 @@ def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None
           **more: _t.Any) -> Result:
     """How many trials an experiment needs to show a difference."""
     return Result(_run("power", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
+
+
+def sample(name: str | None = None) -> str:
+    """The text of a sample: a scene, "tracks" with its "cell", "runs", "observed"; without a name what there is.
+
+    Raises
+    ------
+    UsageError
+        Where there is none of that name.
+
+    Examples
+    --------
+    >>> import gatewalk as gw
+    >>> gw.Scene(gw.sample("walker"))["body.mass_kg"]
+    0.09
+    """
+    if name is None:
+        return "\n".join(f"{s['name']}: {s['about']}" for s in _run("sample", [], {})["samples"])
+    return _t.cast(str, _run("sample", [name], {})["text"])
 
 
 def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:

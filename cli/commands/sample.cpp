@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/render/json.h"
+#include "cli/web/embedded.h"
+#include "lattice/text/edit_distance.h"
+
+namespace gatewalk::cli {
+namespace {
+
+struct Sample {
+  std::string name, file, about;
+};
+
+/// What a file is: the first line of it, a comment, up to a colon.
+std::string first_words(std::string_view text) {
+  text = text.substr(0, text.find('\n'));
+  text = text.substr(0, text.find(':'));
+  text.remove_prefix(std::min(text.size(), text.find_first_not_of("# ")));
+  return std::string(text.substr(0, text.find_last_not_of(". ") + 1));
+}
+
+std::vector<Sample> samples() {
+  std::vector<Sample> all;
+  for (const std::string& file : carried_files()) {
+    if (!file.starts_with("scenes/")) continue;
+    const std::size_t begin = file.rfind('/') + 1;
+    all.push_back(
+        {file.substr(begin, file.rfind('.') - begin), file, first_words(carried_file(file))});
+  }
+  return all;
+}
+
+}  // namespace
+
+int run_sample(const Arguments& arguments) {
+  Options options(
+      "sample [NAME] [options]",
+      "Writes a ready file to begin with: a scene, tracks of bodies with the cells that cut them,\n"
+      "recorded passages, an experiment's counts. Without NAME it says which there are.",
+      "gatewalk sample walker -o mine.toml");
+  options.positional("name", "which one", false);
+  options.output_file("output", "FILE", "the file to write (default: standard output)");
+  options.without_scene("a sample is written as it is");
+  if (!options.parse(arguments)) return kFine;
+  const std::vector<Sample> all = samples();
+  if (!options.has("name")) {
+    if (options.has("output")) throw UsageError("-o without NAME: which sample?");
+    Json json;
+    std::string table;
+    for (const Sample& s : all) {
+      json["samples"].push_back({{"name", s.name}, {"file", s.file}, {"about", s.about}});
+      table += "  " + s.name + std::string(14 - std::min<std::size_t>(12, s.name.size()), ' ') +
+               s.about + "\n";
+    }
+    options.give_out(json, table);
+    return kFine;
+  }
+  const std::string name = options.text("name");
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Sample& s) { return s.name == name; });
+  if (found == all.end()) {
+    std::vector<std::string> names;
+    for (const Sample& s : all) names.push_back(s.name);
+    const std::string meant = lattice::meant_name(name, names);
+    throw UsageError("there is no sample '" + name + "'" +
+                     (meant.empty() ? "" : "; did you mean " + meant + "?") +
+                     " (gatewalk sample lists all)");
+  }
+  const std::string text(carried_file(found->file));
+  const Json json{
+      {"name", found->name}, {"file", found->file}, {"about", found->about}, {"text", text}};
+  if (options.has("output")) options.write(options.text("output"), text);
+  options.give_out(json, options.has("output") ? "" : text);
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Samples: each is what it says, and the commands that need one take it; and a result as a table of numbers.
+#   sample_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+expect 0 '^  walker  ' "$gatewalk" sample
+"$gatewalk" sample --json all.json --quiet || fail "the list as JSON"
+[ "$(jq '.samples | length' all.json)" = "$(find "$scenes" "$scenes/tracks" -maxdepth 1 -name '*.toml' -o -maxdepth 1 -name '*.csv' | sort -u | wc -l)" ] ||
+  fail "other samples than files: $(jq -c '[.samples[].file]' all.json)"
+for name in $(jq -r '.samples[].name' all.json); do
+  file=$(jq -r --arg name "$name" '.samples[] | select(.name == $name) | .file' all.json)
+  "$gatewalk" sample "$name" | cmp -s - "$scenes/../$file" || fail "$name is not $file"
+done
+expect 2 "there is no sample 'wlaker'; did you mean walker?" "$gatewalk" sample wlaker
+expect 2 'which sample?' "$gatewalk" sample -o x.toml
+"$gatewalk" sample walker -o mine.toml || fail "sample walker"
+cmp -s mine.toml "$scenes/walker.toml" || fail "sample -o"
+expect 0 'kept as mine.toml.~1~' "$gatewalk" sample field -o mine.toml
+
+# Tracks become passages, these a chain; counts are held against the model.
+for name in tracks runs observed; do "$gatewalk" sample $name -o $name.csv; done
+"$gatewalk" sample cell -o cell.toml
+expect 0 'in 48 trials' "$gatewalk" passages tracks.csv --cell cell.toml -o passages.csv --fps 10 --metres-per-unit 0.001 \
+  --fastest 0.4 --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y
+expect 0 '48 bodies' "$gatewalk" build passages.csv --cell cell.toml -o passages.nc
+expect 0 '12 bodies' "$gatewalk" build runs.csv --cell cell.toml -o runs.nc
+expect 0 'observed' "$gatewalk" validate "$scenes/field.toml" --observed observed.csv --trials 200 --accuracy 0.2
+
+# --csv has every number of the JSON, with its limits, and no other.
+"$gatewalk" predict "$scenes/field.toml" --accuracy 0.2 --json p.json --csv p.csv --quiet >out.txt || fail "predict --csv"
+[ -s out.txt ] && fail "--csv --quiet prints: $(cat out.txt)"
+head -n 1 p.csv | grep -qx 'quantity,i,j,value,low_95,high_95' || fail "names of columns: $(head -n 1 p.csv)"
+numbers='[paths(type == "number" or type == "boolean" or . == null)
+  | select(.[0] != "made_by" and .[0] != "format_version" and ([.[] | strings | select(endswith("_95") and . != "error_95"
+    and . != "corrcoef_95" and . != "rmse_per_100_95" and . != "kernel_error_95")] | length) == 0)] | length'
+[ "$(jq "$numbers" p.json)" = "$(($(wc -l <p.csv) - 1))" ] ||
+  fail "$(jq "$numbers" p.json) numbers in JSON, $(($(wc -l <p.csv) - 1)) in CSV"
+csv_value() { awk -F, -v key="$1" '$1","$2","$3 == key { print $4","$5","$6 }' p.csv; }
+[ "$(csv_value endings.trapped,,)" = "$(jq -r '[.endings.trapped, .endings_95.trapped[]] | map(tostring) | join(",")' p.json)" ] ||
+  fail "trapped: $(csv_value endings.trapped,,)"
+[ "$(csv_value final_gates,1,4)" = "$(jq -r '[.final_gates[1][4], .final_gates_95.low[1][4], .final_gates_95.high[1][4]] | map(tostring) | join(",")' p.json)" ] ||
+  fail "final gates: $(csv_value final_gates,1,4)"
+[ "$(csv_value exits.crossed.4.share,,)" = "$(jq -r '.exits.crossed[4] | [.share, .interval_95[]] | map(tostring) | join(",")' p.json)" ] ||
+  fail "exits: $(csv_value exits.crossed.4.share,,)"
+"$gatewalk" gate "$scenes/field.toml" --csv - --quiet >gate.csv
+"$gatewalk" gate "$scenes/field.toml" --json gate.json --quiet
+grep -qx "trapped,,,$(jq -r '[.trapped, .intervals_95.trapped[]] | map(tostring) | join(",")' gate.json)" gate.csv || fail "$(cat gate.csv)"
+expect 2 'only one thing can go to standard output' "$gatewalk" gate "$scenes/field.toml" --csv - --json -
+holds '.format_version == 1 and (keys_unsorted[0] == "format_version")' gate.json
+finish
