@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -115,26 +114,26 @@ void add_tree(markov::CountsFile& out, const Section& section, const Face& face,
                               "; nodes in preorder, states are the leaves of " +
                               names_of(section.faces),
                           std::move(values)});
+    if (name != kTreeSeen) out.arrays.back().dimension = tree_array(face, "node");
+    out.arrays.back().whole = name == kTreeAxis;
   };
   std::vector<double> axis, cut, seen;
   for (const Tree::Node& node : tree.nodes) {
     axis.push_back(node.axis);
     cut.push_back(node.cut);
   }
-  std::string units, sides;
-  std::set<std::string> told;
+  std::string sides;
   for (std::size_t k = 0; k < section.coordinates.size(); ++k) {
     const Coordinate& c = section.coordinates[k];
     seen.insert(seen.end(), tree.seen[k].begin(), tree.seen[k].end());
     sides += k == 0 ? c.name + " low, " + c.name + " high" : ", " + c.name;
-    if (told.insert(c.unit).second) units += (k > 0 ? " or " : "") + c.unit;
   }
   add(kTreeAxis, "1",
       "axis of each node's cut: " + numbers_of(section.coordinates) +
           "; -1: a leaf, which is a state",
       std::move(axis));
-  add(kTreeCut, units, "place of each node's cut", std::move(cut));
-  add(kTreeSeen, units, "between what entries were seen: " + sides, std::move(seen));
+  add(kTreeCut, "", "place of each node's cut, in the unit of its axis", std::move(cut));
+  add(kTreeSeen, "", "between what entries were seen, in their units: " + sides, std::move(seen));
 }
 
 Tree tree_in(const markov::CountsFile& in, const Section& section, const Face& face,
@@ -209,10 +208,11 @@ void add_costs(markov::CountsFile& out, const Transitions& t, const std::string&
   for (std::size_t c = 0; c < costs.size(); ++c)
     for (const bool squares : {false, true}) {
       const std::string& unit = costs[c].unit;
-      out.arrays.push_back({cost_array(costs[c], squares, type), squares ? unit + "2" : unit,
+      out.arrays.push_back({cost_array(costs[c], squares, type), squares ? "(" + unit + ")2" : unit,
                             std::string(squares ? "sum of squares" : "sum") + " over the runs of " +
                                 "each count: " + costs[c].words,
                             std::move(tables[c][squares])});
+      if (type.empty()) out.arrays.back().dimension = "nonzero";
     }
 }
 
@@ -244,6 +244,36 @@ void read_costs(const markov::CountsFile& in, const std::string& type, const std
     }
 }
 
+// What the states are, for readers that know no trees and bins: not read back.
+constexpr const char* kStates = "state_";
+
+void add_states(markov::CountsFile& out, const StateSpace& space) {
+  const Section& section = space.section();
+  const auto add = [&](const std::string& name, const std::string& unit,
+                       const std::string& meaning) {
+    out.arrays.push_back({kStates + name, unit, meaning, {}, "input_state"});
+    return out.arrays.size() - 1;
+  };
+  const std::size_t face = add("face", "1", "face by which bodies of each state enter");
+  out.arrays[face].whole = true;
+  for (const Face& f : section.faces) out.arrays[face].codes.push_back(f.name);
+  for (int s = 0; s < space.size(); ++s) {
+    out.arrays[face].values.push_back(space.face(s));
+    out.state_names.push_back(section.faces[static_cast<std::size_t>(space.face(s))].name + "_" +
+                              std::to_string(s));
+  }
+  out.state_names.emplace_back("trapped");
+  for (std::size_t c = 0; c < section.coordinates.size(); ++c)
+    for (const std::size_t side : {0, 1}) {
+      const Coordinate& coordinate = section.coordinates[c];
+      const std::size_t at = add(
+          coordinate.name + (side == 0 ? "_low" : "_high"), coordinate.unit,
+          std::string(side == 0 ? "least " : "greatest ") + coordinate.words + " of each state");
+      for (int s = 0; s < space.size(); ++s)
+        out.arrays[at].values.push_back(space.range(s).at[c][side]);
+    }
+}
+
 /// Tables that do not belong to the state space.
 std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays,
                                           const Section& section) {
@@ -252,7 +282,7 @@ std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays
         std::any_of(section.faces.begin(), section.faces.end(),
                     [&](const Face& face) { return a.name.starts_with(face.name + "_"); });
     return of_face || a.name == kOpenBins || a.name.starts_with("point_") ||
-           a.name.starts_with(kCountCosts);
+           a.name.starts_with(kStates) || a.name.starts_with(kCountCosts);
   });
   return arrays;
 }
@@ -275,6 +305,17 @@ Transitions transitions_of(const StateSpace& space, const markov::RowCounts& in)
 
 }  // namespace
 
+std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
+  const bool any = std::any_of(map.types.begin(), map.types.end(),
+                               [](const CellMap::Type& type) { return type.symmetric; });
+  if (!space.has_trees() || !any) return "";
+  return "count: a run of a gate that is its own mirror image is counted twice, as it was and as "
+         "its "
+         "mirror image: a posterior from these counts would be too narrow by the square root of 2. "
+         "Rows with few runs are those of several neighbouring states together. run_* has each run "
+         "once.";
+}
+
 void write_matrix(const std::string& path, const MatrixFile& file) {
   const Transitions& t = file.transitions;
   markov::CountsFile out;
@@ -285,6 +326,7 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
     add_costs(out, of_type, name);
   }
   out.exits = exits_of(t.space);
+  add_states(out, t.space);
   out.arrays.insert(out.arrays.end(), file.arrays.begin(), file.arrays.end());
   const Section& section = t.space.section();
   for (std::size_t f = 0; f < section.faces.size(); ++f)
@@ -299,13 +341,13 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
     std::vector<double> boundary;
     for (const Entry& c : t.space.points()) boundary.push_back(c.face);
     const std::string meaning = "entries that are states of their own, numbered after all bins";
-    out.arrays.push_back(
-        {kPointBoundary, "1", meaning + ": " + numbers_of(section.faces), boundary});
+    out.arrays.push_back({kPointBoundary, "1", meaning, boundary, "point", true});
+    for (const Face& face : section.faces) out.arrays.back().codes.push_back(face.name);
     for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
       std::vector<double> values;
       for (const Entry& c : t.space.points()) values.push_back(c.at[axis]);
       const Coordinate& c = section.coordinates[axis];
-      out.arrays.push_back({point_array(c), c.unit, meaning, std::move(values)});
+      out.arrays.push_back({point_array(c), c.unit, meaning, std::move(values), "point"});
     }
   }
   out.text = file.text;

@@ -51,6 +51,13 @@ struct MatrixFile {
   std::map<std::string, dynamics::Transitions> types{};  // of other gates in the field, by name
 };
 
+/// What readers of a file's counts must know of those of trees, where mirror images are counted;
+/// empty where there is nothing.
+[[nodiscard]] std::string comment_on_counts(const dynamics::CellMap& map,
+                                            const dynamics::StateSpace& space);
+/// The key of a file's text that has it.
+inline constexpr const char* kCommentText = "comment";
+
 /// As markov::write_counts.
 void write_matrix(const std::string& path, const MatrixFile& file);
 

@@ -48,6 +48,9 @@ MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices, CellFil
                             const RunPool& pool, std::map<std::string, std::string> text) {
   cells.has_scale.assign(cells.has_scale.size(), true);
   text[kCellText] = to_toml(cells);
+  if (const std::string comment = comment_on_counts(cells.map, matrices.front().space);
+      !comment.empty())
+    text[kCommentText] = comment;
   MatrixFile file{std::move(matrices.front()), std::move(text), arrays_of(pool, cells.map.section)};
   for (std::size_t type = 1; type < matrices.size(); ++type)
     file.types.emplace(cells.types[type], std::move(matrices[type]));

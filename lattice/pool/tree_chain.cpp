@@ -98,19 +98,27 @@ namespace {
 
 struct RunArray {
   std::string name, unit, meaning;
+  bool whole = false;
+  std::vector<std::string> codes{};
 };
 const RunArray kTrialRuns{"trial_runs", "1",
-                          "gate runs of each trial, one after the other in run_*"},
-    kTrialKind{"trial_kind", "1",
-               "0: from anywhere; from a start of its own: 1 through the field, 2 one gate only"},
+                          "gate runs of each trial, one after the other in run_*", true},
+    kTrialKind{"trial_kind",
+               "1",
+               "where each trial started: anywhere, or a start of its own (point_*); through the "
+               "field, or one gate only",
+               true,
+               {"from_anywhere", "from_its_start_through_the_field", "from_its_start_one_gate"}},
     // Only where there are several.
     kRunType{"run_type", "1",
              "type of the gate of each run: 0 the scene's own, then those of its terrain that are "
-             "not like one before, by name"},
+             "not like one before, by name",
+             true},
     // Only where not all start by the first face.
-    kTrialFace{"trial_face", "1", "by which face each trial started, numbered as run_boundary"},
+    kTrialFace{"trial_face", "1", "by which face each trial started, numbered as run_boundary",
+               true},
     // Only where one body made several trials.
-    kTrialBody{"trial_body", "1", "number of the body that made each trial"};
+    kTrialBody{"trial_body", "1", "number of the body that made each trial", true};
 
 /// How a run ended: by the move that it made, or without one.
 enum RunEnding : int { kForward, kToLeft, kToRight, kTrapped, kBack, kLost, kRunEndings };
@@ -124,15 +132,20 @@ int ending_of(const Section& section, const CellPassage& passage) {
 
 /// `others`: some ended in another way than a gate's runs do.
 RunArray ending_array(bool others) {
-  return {"run_ending", "1",
-          std::string("how each gate run ended: 0 traversed, 1 exited left, 2 exited right, 3 "
-                      "trapped") +
-              (others ? ", 4 moved back, 5 lost from sight" : "")};
+  RunArray array{"run_ending",
+                 "1",
+                 "how each gate run ended",
+                 true,
+                 {"traversed", "exited_left", "exited_right", "trapped"}};
+  if (others) array.codes.insert(array.codes.end(), {"moved_back", "lost_from_sight"});
+  return array;
 }
 
 RunArray face_array(const Section& section) {
-  return {"run_boundary", "1",
-          "how it entered the next gate: " + numbers_of(section.faces) + " (trapped: 0)"};
+  RunArray array{"run_boundary", "1", "how it entered the next gate (of no meaning if trapped)",
+                 true};
+  for (const Face& face : section.faces) array.codes.push_back(face.name);
+  return array;
 }
 /// Where each trial started, by coordinate.
 std::vector<RunArray> start_arrays(const Section& section) {
@@ -214,7 +227,9 @@ std::vector<markov::NamedArray> arrays_of(const RunPool& pool, const Section& se
   };
   std::vector<markov::NamedArray> arrays;
   const auto add = [&](const RunArray& array, std::vector<double>& values) {
-    arrays.push_back({array.name, array.unit, array.meaning, std::move(values)});
+    const bool of_trial = array.name.starts_with("trial_");
+    arrays.push_back({array.name, array.unit, array.meaning, std::move(values),
+                      of_trial ? "trial" : "run", array.whole, array.codes});
   };
   const auto add_all = [&](const std::vector<RunArray>& all,
                            std::vector<std::vector<double>>& values) {

@@ -70,6 +70,9 @@ void put_matrices(MatrixFile& file, const Scene& scene,
   for (std::size_t i = 0; i < types.size(); ++i)
     file.types.emplace(scene.terrain->types[i].name, matrices[static_cast<std::size_t>(types[i])]);
   file.transitions = std::move(matrices.front());
+  const std::string comment = comment_on_counts(problem_of(scene).map(), file.transitions.space);
+  file.text.erase(kCommentText);
+  if (!comment.empty()) file.text[kCommentText] = comment;
 }
 
 SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string& scene_path,

@@ -6,13 +6,18 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/crc.hpp>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <set>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -25,13 +30,16 @@ namespace {
 using namespace netcdf;
 
 constexpr const char* kFormat = "gatewalk transition counts";
-constexpr int kFormatVersion = 1;
+constexpr int kFormatVersion = 2, kFirstVersion = 1;
 const std::set<std::string> kOwnVariables = {
-    "count_row", "count_column", "count",       "trials",  "clamped",     "exit_next_input",
-    "exit_di_x", "exit_di_y",    "input_state", "nonzero", "output_state"};
+    "count_row",       "count_column", "count",      "trials",      "clamped",
+    "exit_next_input", "exit_di_x",    "exit_di_y",  "input_state", "nonzero",
+    "output_state",    "state_name",   "name_length"};
+const std::set<std::string> kOwnDimensions = {"input_state", "output_state", "nonzero"};
 // A matrix of 10 000 states and 10^8 nonzeros has fewer.
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 const std::string kTypeGroup = "type_";
+constexpr const char *kCodeValues = "flag_values", *kCodeWords = "flag_meanings";
 const std::set<std::string> kOwnAttributes = {"format", "format_version", "checksum"};
 
 [[noreturn]] void refuse_counts(const std::string& what) { throw std::invalid_argument(what); }
@@ -41,7 +49,9 @@ std::string named_row(std::int64_t row) {
 }
 
 // The dimension of an array; no variable may have its name (netCDF 4.9 stumbles over some such).
-std::string length_of(const std::string& array) { return array + "_length"; }
+std::string dimension_of(const NamedArray& array) {
+  return array.dimension.empty() ? array.name + "_length" : array.dimension;
+}
 
 // ---- Content: the same rules for what is written and what was read ----
 
@@ -64,6 +74,29 @@ void check_text(const std::string& name, const std::string& text) {
   }
   if (text.find('\0') != std::string::npos)
     refuse_counts("text of \"" + name + "\" holds a zero byte");
+}
+
+void check_codes(const NamedArray& array) {
+  if (!array.whole && !array.codes.empty())
+    refuse_counts("array " + array.name + ": only whole numbers have codes");
+  for (const std::string& code : array.codes)
+    if (code.empty() || code.find_first_of(" \t\n") != code.npos || code.size() > kMostTextBytes)
+      refuse_counts("array " + array.name + ": code \"" + code + "\" is no word");
+  if (!array.whole) return;
+  for (const double x : array.values)
+    if (!(std::abs(x) <= std::numeric_limits<std::int32_t>::max() && x == std::floor(x)))
+      refuse_counts("array " + array.name + ": " + std::to_string(x) + " is no whole number");
+}
+
+void check_state_names(const CountsFile& file) {
+  if (file.state_names.empty()) return;
+  const std::set<std::string> different(file.state_names.begin(), file.state_names.end());
+  if (file.state_names.size() != file.exits.size() || different.size() != file.exits.size())
+    refuse_counts("state_name: every output must have one of its own");
+  for (const std::string& name : file.state_names) {
+    check_text("state_name", name);
+    if (name.empty() || name.back() == ' ') refuse_counts("state_name \"" + name + "\" is no name");
+  }
 }
 
 void check_rows(const RowCounts& file) {
@@ -98,14 +131,26 @@ void check_content(const CountsFile& file) {
   validate(file.exits, file.counts.rows(), file.counts.cols());
   check_rows(file);
   std::set<std::string> taken = kOwnVariables;
+  std::map<std::string, std::size_t> lengths{
+      {"input_state", file.trials.size()},
+      {"output_state", file.exits.size()},
+      {"nonzero", static_cast<std::size_t>((file.counts.coeffs() != 0).count())}};
   for (const NamedArray& array : file.arrays) {
-    for (const std::string& name : {array.name, length_of(array.name)}) {
-      check_name(name, taken);
-      taken.insert(name);
-    }
+    check_name(array.name, taken);
+    taken.insert(array.name);
     check_text(array.name, array.unit);
     check_text(array.name, array.meaning);
+    check_codes(array);
   }
+  for (const NamedArray& array : file.arrays) {
+    const std::string dimension = dimension_of(array);
+    if (!kOwnDimensions.contains(dimension)) check_name(dimension, taken);
+    const auto [at, is_new] = lengths.emplace(dimension, array.values.size());
+    if (at->second != array.values.size() || (!is_new && array.dimension.empty()))
+      refuse_counts("array " + array.name + " has " + std::to_string(array.values.size()) +
+                    " numbers, its dimension " + dimension + " " + std::to_string(at->second));
+  }
+  check_state_names(file);
   for (const auto& [key, value] : file.text) {
     check_name(key, kOwnAttributes);
     check_text(key, value);
@@ -180,6 +225,36 @@ void put_counts(int group, int input, const RowCounts& rows) {
                "of these, trials that crossed outside every bin");
 }
 
+void put_array(int nc, int dimension, const NamedArray& array) {
+  if (!array.whole) {
+    put_variable(nc, array.name, dimension, array.values, array.unit, array.meaning);
+    return;
+  }
+  const std::vector<std::int32_t> values(array.values.begin(), array.values.end());
+  const int variable = put_variable(nc, array.name, dimension, values, array.unit, array.meaning);
+  if (array.codes.empty()) return;
+  std::vector<std::int32_t> codes(array.codes.size());
+  std::iota(codes.begin(), codes.end(), 0);
+  check(nc_put_att_int(nc, variable, kCodeValues, NC_INT, codes.size(), codes.data()), kCodeValues);
+  std::string words;
+  for (const std::string& code : array.codes) words += (words.empty() ? "" : " ") + code;
+  put_text(nc, variable, kCodeWords, words);
+}
+
+// Characters, padded with blanks: Octave reads no strings of NetCDF-4.
+void put_state_names(int nc, int output, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  std::size_t length = 0;
+  for (const std::string& name : names) length = std::max(length, name.size());
+  std::string all;
+  for (const std::string& name : names) all += name + std::string(length - name.size(), ' ');
+  const std::array<int, 2> dimensions{output, define_dimension(nc, "name_length", length)};
+  int variable = -1;
+  check(nc_def_var(nc, "state_name", NC_CHAR, 2, dimensions.data(), &variable), "state_name");
+  put_text(nc, variable, "long_name", "name of each state, blanks behind it");
+  check(nc_put_var_text(nc, variable, all.data()), "state_name");
+}
+
 std::vector<char> encode(const CountsFile& file) {
   std::vector<std::int32_t> next_input, di_x, di_y;
   for (const Exit& exit : file.exits) {
@@ -203,9 +278,14 @@ std::vector<char> encode(const CountsFile& file) {
                "input state of the next cell, from 0; -1: trapped");
   put_variable(nc, "exit_di_x", output, di_x, "1", "columns to the next cell");
   put_variable(nc, "exit_di_y", output, di_y, "1", "rows to the next cell");
+  put_state_names(nc, output, file.state_names);
+  std::map<std::string, int> dimensions{{"input_state", input}, {"output_state", output}};
+  check(nc_inq_dimid(nc, "nonzero", &dimensions["nonzero"]), "nonzero");
   for (const NamedArray& array : file.arrays) {
-    const int length = define_dimension(nc, length_of(array.name), array.values.size());
-    put_variable(nc, array.name, length, array.values, array.unit, array.meaning);
+    const std::string dimension = dimension_of(array);
+    if (!dimensions.contains(dimension))
+      dimensions[dimension] = define_dimension(nc, dimension, array.values.size());
+    put_array(nc, dimensions[dimension], array);
   }
   for (const auto& [name, rows] : file.types) {
     int group = -1;
@@ -233,6 +313,7 @@ class Reader {
     file.types = types(n_in, n_out);
     file.exits = exits();
     file.arrays = arrays();
+    file.state_names = state_names(n_out);
     file.text = text();
     check_content(file);
     return file;
@@ -249,9 +330,10 @@ class Reader {
     int version = 0;
     if (type != NC_INT || length != 1) throw std::runtime_error("format_version is not a number");
     check(nc_get_att_int(nc_, NC_GLOBAL, "format_version", &version), "format_version");
-    if (version != kFormatVersion) {
+    if (version < kFirstVersion || version > kFormatVersion) {
       throw std::runtime_error("format_version is " + std::to_string(version) +
-                               ", this program reads " + std::to_string(kFormatVersion));
+                               ", this program reads " + std::to_string(kFirstVersion) + " to " +
+                               std::to_string(kFormatVersion));
     }
   }
 
@@ -385,12 +467,67 @@ class Reader {
       char name[NC_MAX_NAME + 1] = "";
       check(nc_inq_varname(nc_, variable, name), "variables");
       if (kOwnVariables.contains(name)) continue;
-      result.push_back({name, attribute(variable, "units"), attribute(variable, "long_name"),
-                        values<double>(nc_, name, length_of(name))});
+      result.push_back(array(variable, name));
     }
     std::sort(result.begin(), result.end(),
               [](const NamedArray& a, const NamedArray& b) { return a.name < b.name; });
     return result;
+  }
+
+  [[nodiscard]] bool has(int variable, const char* name) {
+    return nc_inq_attid(nc_, variable, name, nullptr) == NC_NOERR;
+  }
+
+  [[nodiscard]] NamedArray array(int variable, const std::string& name) {
+    NamedArray array{name,
+                     has(variable, "units") ? attribute(variable, "units") : "",
+                     attribute(variable, "long_name"),
+                     {}};
+    int dimensions = 0, dimension = -1;
+    check(nc_inq_varndims(nc_, variable, &dimensions), "variable " + name);
+    if (dimensions != 1) throw std::runtime_error("variable " + name + " has not one dimension");
+    check(nc_inq_vardimid(nc_, variable, &dimension), "variable " + name);
+    char of[NC_MAX_NAME + 1] = "";
+    check(nc_inq_dimname(nc_, dimension, of), "variable " + name);
+    if (of != dimension_of(array)) array.dimension = of;
+    nc_type type = NC_NAT;
+    check(nc_inq_vartype(nc_, variable, &type), "variable " + name);
+    array.whole = type == NC_INT;
+    if (!array.whole) {
+      array.values = values<double>(nc_, name, of);
+      return array;
+    }
+    const auto whole = values<std::int32_t>(nc_, name, of);
+    array.values.assign(whole.begin(), whole.end());
+    if (!has(variable, kCodeWords)) return array;
+    std::istringstream words(attribute(variable, kCodeWords));
+    array.codes.assign(std::istream_iterator<std::string>(words), {});
+    return array;
+  }
+
+  [[nodiscard]] std::vector<std::string> state_names(std::size_t n_out) {
+    int variable = -1;
+    if (nc_inq_varid(nc_, "state_name", &variable) != NC_NOERR) return {};
+    int dimensions = 0;
+    nc_type type = NC_NAT;
+    check(nc_inq_varndims(nc_, variable, &dimensions), "state_name");
+    check(nc_inq_vartype(nc_, variable, &type), "state_name");
+    std::array<int, 2> ids{};
+    if (dimensions == 2) check(nc_inq_vardimid(nc_, variable, ids.data()), "state_name");
+    const std::size_t length = dimension("name_length");
+    if (type != NC_CHAR || dimensions != 2 ||
+        dimension_length(nc_, ids[0], "of state_name") != n_out ||
+        dimension_length(nc_, ids[1], "of state_name") != length || length > kMostTextBytes ||
+        n_out * length > kMostFileBytes)
+      throw std::runtime_error("variable state_name is not characters of output_state");
+    std::string all(n_out * length, ' ');
+    check(nc_get_var_text(nc_, variable, all.data()), "state_name");
+    std::vector<std::string> names;
+    for (std::size_t j = 0; j < n_out; ++j) {
+      const std::string name = all.substr(j * length, length);
+      names.push_back(name.substr(0, name.find_last_not_of(' ') + 1));
+    }
+    return names;
   }
 
   [[nodiscard]] std::map<std::string, std::string> text() {

@@ -2,12 +2,14 @@
 /// Counts on disk: one NetCDF-4 (HDF5) file that MATLAB, Python, R and Octave open as it is.
 ///
 /// Dimensions input_state, output_state, nonzero. Variables count_row, count_column (from 0), count
-/// (nonzero); trials, clamped (input_state); exit_next_input, exit_di_x, exit_di_y (output_state);
-/// each NamedArray by its name. Cells of another type have a group type_NAME with its own nonzero,
-/// count_row, count_column, count, trials and clamped. Global attributes format, format_version,
-/// checksum and `text`. checksum = "crc64-xz:" + 16 hexadecimal digits: CRC-64/XZ of the whole file
-/// with these digits read as zeros. The mark "crc64-xz:" may stand nowhere else in the file. Same
-/// content, same bytes. NetCDF is not thread-safe: one call at a time.
+/// (nonzero); trials, clamped (input_state); exit_next_input, exit_di_x, exit_di_y, state_name
+/// (output_state; characters); each NamedArray by its name. Version 1, which is read too, has no
+/// state_name, and only arrays of numbers with a dimension each. Cells of another type have a group
+/// type_NAME with its own nonzero, count_row, count_column, count, trials and clamped. Global
+/// attributes format, format_version, checksum and `text`. checksum = "crc64-xz:" + 16 hexadecimal
+/// digits: CRC-64/XZ of the whole file with these digits read as zeros. The mark "crc64-xz:" may
+/// stand nowhere else in the file. Same content, same bytes. NetCDF is not thread-safe: one call at
+/// a time.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,10 +28,15 @@ inline constexpr std::size_t kMostTextBytes = 60'000;
 
 /// A named table of numbers that travels with the counts (bin edges, for example).
 struct NamedArray {
-  std::string name;  // letters, digits and _, a letter first; its dimension is name + "_length"
-  std::string unit;
+  std::string name;  // letters, digits and _, a letter first
+  std::string unit;  // as udunits has it; empty: none
   std::string meaning;
   std::vector<double> values;
+  /// Shared by all arrays that name it; input_state, output_state and nonzero are those of the
+  /// counts. Empty: its own, name + "_length".
+  std::string dimension{};
+  bool whole = false;                // written as 32-bit integers
+  std::vector<std::string> codes{};  // of whole numbers: words without blanks, what 0, 1, ... mean
 };
 
 /// The counts of one type of cell.
@@ -44,6 +51,7 @@ struct CountsFile : RowCounts {
   std::map<std::string, RowCounts> types;   // of other types of cells, by name
   std::vector<Exit> exits;                  // (n_out)
   std::vector<NamedArray> arrays;           // unique names; read back sorted by name
+  std::vector<std::string> state_names{};   // (n_out), different ones; or none
   std::map<std::string, std::string> text;  // named as arrays are; up to 60 000 bytes each
 };
 

@@ -90,7 +90,7 @@ int put_variable(int nc, const std::string& name, int dimension, const std::vect
   check(nc_def_var(nc, name.c_str(), type_of(values), 1, &dimension, &variable), name);
   check(nc_def_var_deflate(nc, variable, kShuffle, kDeflate, kLevel), name);
   check(nc_def_var_fletcher32(nc, variable, NC_FLETCHER32), name);
-  put_text(nc, variable, "units", unit);
+  if (!unit.empty()) put_text(nc, variable, "units", unit);
   put_text(nc, variable, "long_name", meaning);
   const std::size_t first = 0;
   const std::size_t count = values.size();

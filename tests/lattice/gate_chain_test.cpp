@@ -304,7 +304,11 @@ TEST_F(MatrixOnDisk, KeepsOpenBinsAndSingleEntries) {
   markov::write_counts(path(), file);
   EXPECT_THROW((void)read_matrix(path()), markov::BadFile);
   edges(file, "point_boundary")[1] = 4;
-  edges(file, "point_vx").pop_back();
+  for (markov::NamedArray& array : file.arrays)
+    if (array.name == "point_vx") {
+      array.values.pop_back();
+      array.dimension = "";
+    }
   markov::write_counts(path(), file);
   EXPECT_THROW((void)read_matrix(path()), markov::BadFile);
 }
@@ -349,12 +353,29 @@ TEST_F(MatrixOnDisk, CarriesRefinedSpacesToThePrediction) {
 TEST_F(MatrixOnDisk, HasTheEdgesByName) {
   write_matrix(path(), {made_up(), {}});
   markov::CountsFile file = markov::read_counts(path());
+  std::erase_if(file.arrays, [](const auto& a) { return a.name.starts_with("state_"); });
   EXPECT_EQ(file.arrays.size(), 15u);
   EXPECT_EQ(edges(file, "EN_d_edges"), (std::vector<double>{-25, -15, -5, 5, 15, 25}));
   EXPECT_EQ(edges(file, "RD_vx_edges"), (std::vector<double>{-30, -20, -10, 0}));
   EXPECT_EQ(edges(file, "LT_vy_edges"), (std::vector<double>{-20, 30}));
   for (const auto& array : file.arrays)
     EXPECT_EQ(array.unit, array.name.find("_d_") != array.name.npos ? "m" : "m s-1") << array.name;
+}
+
+TEST_F(MatrixOnDisk, NamesItsStatesAndSaysWhatTheyAre) {
+  const Transitions t = made_up();
+  write_matrix(path(), {t, {}});
+  markov::CountsFile file = markov::read_counts(path());
+  ASSERT_EQ(file.state_names.size(), 88u);
+  EXPECT_EQ(file.state_names[0], "EN_0");
+  EXPECT_EQ(file.state_names[86], "LT_86");
+  EXPECT_EQ(file.state_names[87], "trapped");
+  for (int state = 0; state < t.space.size(); ++state) {
+    const StateRange range = t.space.range(state);
+    EXPECT_EQ(edges(file, "state_face")[static_cast<std::size_t>(state)], range.face);
+    EXPECT_EQ(edges(file, "state_vx_low")[static_cast<std::size_t>(state)], range.at[1][0]);
+    EXPECT_EQ(edges(file, "state_vy_high")[static_cast<std::size_t>(state)], range.at[2][1]);
+  }
 }
 
 TEST_F(MatrixOnDisk, UntouchedIsAccepted) {

@@ -117,13 +117,22 @@ CountsFile example() {
   file.exits = test::lattice_exits();
   file.arrays = {{"empty", "", "", {}},
                  {"speed_edges", "m/s", "bin edges of \xc3\xbc", {-0.0, 1.5, 1e300, 0.1}},
-                 {"x2", "1", "", {7.0}}};
+                 {"x2", "1", "", {7.0}},
+                 {"of_rows", "1", "a number each", std::vector<double>(87, 0.5), "input_state"},
+                 {"pair_a", "s", "", {1.5, 2.5}, "pair"},
+                 {"pair_b", "1", "", {2, -1}, "pair", true},
+                 {"side", "1", "", {1, 0, 1}, "", true, {"left", "right"}}};
+  std::sort(file.arrays.begin(), file.arrays.end(),
+            [](const NamedArray& a, const NamedArray& b) { return a.name < b.name; });
+  for (int j = 0; j < 88; ++j)
+    file.state_names.push_back(j < 87 ? "EN_" + std::to_string(j) : "trapped");
   file.text = {{"scene", "F_prop = 8 # N\n\xc3\x84\tRm = 20"}, {"seed", "1"}, {"remark", ""}};
   return file;
 }
 
 bool same(const NamedArray& a, const NamedArray& b) {
   return a.name == b.name && a.unit == b.unit && a.meaning == b.meaning &&
+         a.dimension == b.dimension && a.whole == b.whole && a.codes == b.codes &&
          std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
                     [](double x, double y) {
                       return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
@@ -142,7 +151,7 @@ bool same(const CountsFile& a, const CountsFile& b) {
                     [](const auto& x, const auto& y) {
                       return x.first == y.first && same(x.second, y.second);
                     }) &&
-         a.exits == b.exits && a.text == b.text &&
+         a.exits == b.exits && a.text == b.text && a.state_names == b.state_names &&
          std::equal(a.arrays.begin(), a.arrays.end(), b.arrays.begin(), b.arrays.end(),
                     [](const NamedArray& x, const NamedArray& y) { return same(x, y); });
 }
@@ -316,6 +325,24 @@ TEST_F(ChainIo, RefusesToWriteWhatDoesNotAddUp) {
   refused("name \"empty_length\" is taken", [](CountsFile& f) {
     f.arrays = {{"empty_length", "", "", {}}, {"empty", "", "", {}}};
   });
+  const auto array = [](CountsFile& f, const std::string& name) -> NamedArray& {
+    return *std::find_if(f.arrays.begin(), f.arrays.end(),
+                         [&](const NamedArray& a) { return a.name == name; });
+  };
+  refused("array pair_b has 3 numbers, its dimension pair 2",
+          [&](CountsFile& f) { array(f, "pair_b").values.push_back(1); });
+  refused("array of_rows has 86 numbers, its dimension input_state 87",
+          [&](CountsFile& f) { array(f, "of_rows").values.pop_back(); });
+  refused("name \"x2\" is taken", [&](CountsFile& f) { array(f, "pair_a").dimension = "x2"; });
+  refused("array side: 0.500000 is no whole number",
+          [&](CountsFile& f) { array(f, "side").values[1] = 0.5; });
+  refused("array side: code \"a b\" is no word",
+          [&](CountsFile& f) { array(f, "side").codes[0] = "a b"; });
+  refused("only whole numbers have codes", [&](CountsFile& f) { array(f, "x2").codes = {"a"}; });
+  refused("every output must have one of its own", [](CountsFile& f) { f.state_names.pop_back(); });
+  refused("every output must have one of its own",
+          [](CountsFile& f) { f.state_names[3] = f.state_names[4]; });
+  refused("is no name", [](CountsFile& f) { f.state_names[3] = "EN "; });
   refused("name \"checksum\" is taken", [](CountsFile& f) { f.text["checksum"] = "1"; });
   for (const std::string name : {"", "1st", "_x", "a b", "a/b", "\xc3\xa9t\xc3\xa9"}) {
     refused("name \"" + name + "\"", [&](CountsFile& f) { f.arrays[0].name = name; });
@@ -534,8 +561,8 @@ TEST_F(ChainIo, RefusesEveryMalformedDraft) {
     d.text.erase("format");
     d.numbers["format"] = 1;
   });
-  refused("format_version is 2, this program reads 1",
-          [](Draft& d) { d.numbers["format_version"] = 2; });
+  refused("format_version is 3, this program reads 1 to 2",
+          [](Draft& d) { d.numbers["format_version"] = 3; });
   refused("format_version", [](Draft& d) { d.numbers.clear(); });
   refused("format_version is not a number", [](Draft& d) {
     d.numbers.clear();
@@ -544,7 +571,7 @@ TEST_F(ChainIo, RefusesEveryMalformedDraft) {
   refused("attribute seed is not text", [](Draft& d) { d.numbers["seed"] = 1; });
   refused("name \"1st\"", [](Draft& d) { d.text["1st"] = "x"; });
   // A variable that is not ours must be a NamedArray.
-  refused("attribute units", [](Draft& d) {
+  refused("attribute long_name", [](Draft& d) {
     d.dimensions["extra_length"] = 1;
     d.variables["extra"] = {"extra_length", {1}, NC_DOUBLE};
   });

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Matrix files that earlier versions wrote are read, and give what they gave.   old_files_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+files=$(dirname "$scenes")/tests/files
+shopt -s nullglob
+for packed in "$files"/version_*/*.nc.gz; do
+  gunzip -c "$packed" >old.nc
+  "$gatewalk" predict old.nc --json new.json --quiet 2>/dev/null || fail "$packed: not read"
+  jq -cS '{endings, final_gates} + (.starts // [] | if length > 0 then {starts: map({endings, final_gates})} else {} end)' new.json |
+    cmp -s - "${packed%.nc.gz}.json" || fail "$packed: another answer than it gave"
+done
+[ -n "${packed-}" ] || fail "there are no files"
+# A later version is refused, not guessed at.
+"$gatewalk" build "$scenes/field.toml" --trials 1 -o new.nc --quiet >/dev/null
+[ "$(ncdump -h new.nc | grep -c 'format_version = 2')" = 1 ] || fail "another version than 2"
+finish
