@@ -4,7 +4,6 @@
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
-#include "lattice/scene/row_matrices.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
@@ -31,18 +30,17 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
 AnalysedSubject chain_of_bins(const Options& options, const Subject& s) {
   refuse(options, {"accuracy", "gate-runs"},
          "for " + s.path + ": it has bins, and keeps no gate runs that could be added to");
-  const lattice::SceneMatrix m = s.matrix();
-  const auto start = ready_start(options, m, *s.starts.front(), s.name_of(0));
-  const auto prediction = lattice::predict(lattice::field_of(m, s.path, {}), m.scene.field, {start},
-                                           {}, options.seed(), options.work());
-  const Json status = recorded_status(m.file);
-  return {.chain = lattice::analysed_chain(s.problem, lattice::matrices_of(m.file, m.scene),
-                                           start.start),
+  const std::vector<dynamics::Transitions> matrices = s.matrices();
+  const auto start = ready_start(options, matrices, s.problem, *s.starts.front(), s.name_of(0));
+  const auto prediction =
+      lattice::predict(s.counted(), s.problem.field, {start}, {}, options.seed(), options.work());
+  const Json status = recorded_status(*s.file);
+  return {.chain = lattice::analysed_chain(s.problem, matrices, start.start),
           .endings = prediction.starts.front().shares,
           .status = status,
-          .method = recorded(m.file, s.path, "method"),
+          .method = recorded(*s.file, s.path, "method"),
           .clean = faults_recorded(status).empty(),
-          .states = m.file.transitions.space.size(),
+          .states = s.file->transitions.space.size(),
           .seconds = prediction.seconds};
 }
 

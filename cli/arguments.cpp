@@ -308,17 +308,17 @@ void require_inside_bins(const Options& options, const std::vector<lattice::Pape
                         "start" + start_text(space.section(), s.entry()));
 }
 
-lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatrix& m,
-                                const dynamics::Entry& entry, const std::string& name) {
-  const dynamics::StateSpace& space = m.file.transitions.space;
-  const lattice::ChainStart start = checked_start(options, space, m.scene.field, entry, name);
+lattice::ChainStart ready_start(const Options& options,
+                                const std::vector<dynamics::Transitions>& matrices,
+                                const lattice::Problem& problem, const dynamics::Entry& entry,
+                                const std::string& name) {
+  const dynamics::StateSpace& space = matrices.front().space;
+  const lattice::ChainStart start = checked_start(options, space, problem.field, entry, name);
   const dynamics::StateRange range = space.range(start.start.input);
   const bool own_state =
       start.start.input >= space.size() - static_cast<int>(space.points().size());
   if (space.has_trees() && !own_state) {
-    const auto type = static_cast<std::size_t>(
-        lattice::gates_of(m.scene).type_of(m.scene.field.start_column(), 0));
-    const auto runs = lattice::matrices_of(m.file, m.scene)[type].trials;
+    const auto& runs = matrices[static_cast<std::size_t>(problem.start_type())].trials;
     options.warn(name + " is no state of its own: its row is that of its leaf, " +
                  text_of(space.section(), range) + ", " +
                  std::to_string(runs[static_cast<std::size_t>(start.start.input)]) +

@@ -98,7 +98,9 @@ void require_inside_bins(const Options& options, const std::vector<lattice::Pape
                          const lattice::Scene& scene, const dynamics::StateSpace& space);
 /// As checked_start. Remarks when the start lies on an edge of its bin: then another bin would
 /// serve it as well.
-[[nodiscard]] lattice::ChainStart ready_start(const Options& options, const lattice::SceneMatrix& m,
+[[nodiscard]] lattice::ChainStart ready_start(const Options& options,
+                                              const std::vector<dynamics::Transitions>& matrices,
+                                              const lattice::Problem& problem,
                                               const dynamics::Entry& entry,
                                               const std::string& name);
 /// exit_status of a result with this health; warns of the faults seen, `where` first.

@@ -72,28 +72,32 @@ int predict_from_runs(const Options& options, Subject& s) {
 
 int predict_from_matrix(const Options& options, const Subject& s,
                         const std::vector<lattice::RowMatrix>& others) {
-  const lattice::SceneMatrix m = s.matrix();
   const std::string solver = options.text("solver");
-  const lattice::CountedField gates = lattice::field_of(m, s.path, others);
+  const lattice::CountedField gates =
+      others.empty() ? s.counted() : lattice::field_of(s.matrix(), s.path, others);
+  const lattice::FieldParams& field = s.problem.field;
   std::vector<lattice::ChainStart> starts;
+  const std::vector<dynamics::Transitions> matrices = s.matrices();
   for (std::size_t k = 0; k < s.starts.size(); ++k)
-    starts.push_back(ready_start(options, m, *s.starts[k], s.name_of(k)));
-  if ((solver == "klu" || solver == "march") && m.scene.field.max_gates != 0)
+    starts.push_back(ready_start(options, matrices, s.problem, *s.starts[k], s.name_of(k)));
+  if ((solver == "klu" || solver == "march") && field.max_gates != 0)
     throw UsageError("--solver " + solver + " needs field.max_gates = 0 (no limit), it is " +
-                     std::to_string(m.scene.field.max_gates));
-  const auto prediction = lattice::predict(
-      gates, m.scene.field, starts, {.solver = solver_of(options)}, options.seed(), options.work());
+                     std::to_string(field.max_gates));
+  const auto prediction = lattice::predict(gates, field, starts, {.solver = solver_of(options)},
+                                           options.seed(), options.work());
   if (prediction.failed)
     options.warn("no interval counts the sampling of the matrix: a resampled one fails: " +
                  *prediction.failed);
-  const PredictedField shown{m, s.given ? s.starts : std::vector<Start>(), others};
+  const ShownField field_shown = s.shown();
+  const PredictedField shown{*s.file, field_shown, s.given ? s.starts : std::vector<Start>(),
+                             others, gates.exact};
   Json json = to_json(prediction, shown, solver);
-  say_left_out(json, m.scene.field.columns, m.scene.field.rows);
+  say_left_out(json, field.columns, field.rows);
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(prediction, shown));
-  options.warn(too_few_gates(m.scene));
+  options.warn(too_few_gates(field_shown));
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
-  const int exit = exit_status(options, faults_recorded(recorded_status(m.file)).empty());
+  const int exit = exit_status(options, faults_recorded(recorded_status(*s.file)).empty());
   show(options, s, prediction.starts, &lattice::StartPrediction::shares);
   return exit;
 }

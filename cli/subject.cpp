@@ -192,6 +192,7 @@ Subject open_program(const Options& options, const std::string& path) {
     lattice::CellMatrix m = lattice::read_cell_matrix(path, overrides);
     s.cells = std::move(m.cells);
     s.file = std::move(m.file);
+    if (!m.pool) throw UsageError(path + ": is a chain that was made elsewhere, without runs");
     s.pool = std::move(m.pool);
     s.how.per_leaf = entries_per_leaf(*s.file, path);
     if (!options.has("accuracy")) s.how.accuracy = accuracy_of(*s.file, path);
@@ -220,13 +221,20 @@ Subject open_program(const Options& options, const std::string& path) {
 namespace {
 
 Subject open_recorded(const Options& options, const std::string& path) {
-  refuse(options, {"gate-runs"}, "for " + path + ", whose runs were recorded");
   lattice::CellMatrix m = lattice::read_cell_matrix(path, options.overrides());
+  refuse(options, {"gate-runs"},
+         "for " + path +
+             (m.pool ? ", whose runs were recorded" : ", a chain that was made elsewhere"));
   Subject s{.path = path,
             .cells = std::move(m.cells),
             .file = std::move(m.file),
             .pool = std::move(m.pool),
             .problem = std::move(m.problem)};
+  if (!s.pool) {
+    put_starts(s, options, s.cells->start, StartsFrom::any_face);
+    s.problem.start = s.entries().front();
+    return s;
+  }
   s.how = accuracy_of(options);
   if (!options.has("accuracy")) s.how.accuracy = 1.0;  // whatever its runs give
   s.how.per_leaf = entries_per_leaf(*s.file, path);
@@ -320,6 +328,17 @@ std::vector<dynamics::Entry> Subject::entries() const {
     entries.push_back(*start);
   }
   return entries;
+}
+
+std::vector<dynamics::Transitions> Subject::matrices() const {
+  return scene ? lattice::matrices_of(*file, *scene) : lattice::matrices_of(*file, *cells);
+}
+
+lattice::CountedField Subject::counted() const {
+  lattice::CountedField field = lattice::counted_field(problem.map(), matrices());
+  const Json states = recorded(*file, path, "state_space");
+  field.exact = states.is_object() && states.value("probabilities", false);
+  return field;
 }
 
 std::string Subject::name_of(std::size_t start) const {

@@ -37,8 +37,12 @@ struct Subject {
   [[nodiscard]] std::vector<dynamics::Entry> entries() const;
   /// "start d 4 m, ..." of a start that was given, else "the start".
   [[nodiscard]] std::string name_of(std::size_t start) const;
-  /// Of bins.
+  /// Of a matrix of a scene.
   [[nodiscard]] lattice::SceneMatrix matrix() const { return {*file, *scene}; }
+  /// Of a matrix: one for each type of cell.
+  [[nodiscard]] std::vector<dynamics::Transitions> matrices() const;
+  /// Of a matrix of bins, or one that was made elsewhere: what the cells draw from.
+  [[nodiscard]] lattice::CountedField counted() const;
 
   /// So finely (s) durations of trials are kept: to a thousandth of the time after which a body is
   /// trapped, or else of the mean duration of some trials.

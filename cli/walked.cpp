@@ -9,8 +9,8 @@
 namespace gatewalk::cli {
 
 Walked walked_chain(const Options& options, Subject& s) {
-  if (s.is_recorded()) {
-    const auto kernel = lattice::kernel_of(s.problem.map(), *s.pool, s.how.per_leaf);
+  if (s.is_recorded() && s.pool) {
+    auto kernel = lattice::kernel_of(s.problem.map(), *s.pool, s.how.per_leaf);
     const int row = kernel.space.size();  // of the start, behind those of the kernel
     return {lattice::chain_of(
                 kernel, s.problem.map(), s.problem.field,
@@ -18,15 +18,25 @@ Walked walked_chain(const Options& options, Subject& s) {
                                     s.pool->begin(s.starts.front()), s.problem.start_type())}),
             {s.problem.field.start_column(), 0, row},
             to_json(s.problem.map().section, s.starts.front()),
-            title_of(s.problem.map().section, s.starts.front())};
+            title_of(s.problem.map().section, s.starts.front()),
+            true,
+            std::move(kernel.space)};
   }
-  lattice::SceneMatrix m = s.matrix();
-  add_starts_to(m, s.path, options, s.entries());
-  const dynamics::Transitions& t = m.file.transitions;
-  const lattice::ChainStart start = ready_start(options, m, s.entries().front(), "the start");
-  return {lattice::make_chain(s.problem.map(), lattice::matrices_of(m.file, m.scene)), start.start,
-          to_json(start, t.space), text_of(t.space.section(), t.space.range(start.start.input)),
-          t.health.clean()};
+  if (s.scene) {
+    lattice::SceneMatrix m = s.matrix();
+    add_starts_to(m, s.path, options, s.entries());
+    s.file = std::move(m.file);
+  }
+  const std::vector<dynamics::Transitions> matrices = s.matrices();
+  const dynamics::StateSpace& space = matrices.front().space;
+  const lattice::ChainStart start =
+      ready_start(options, matrices, s.problem, s.entries().front(), "the start");
+  return {lattice::make_chain(s.problem.map(), matrices),
+          start.start,
+          to_json(start, space),
+          text_of(space.section(), space.range(start.start.input)),
+          s.file->transitions.health.clean(),
+          space};
 }
 
 }  // namespace gatewalk::cli

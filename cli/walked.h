@@ -14,7 +14,8 @@ struct Walked {
   markov::Start start;
   Json start_state;
   std::string start_text;
-  bool clean = true;  // the runs behind it
+  bool clean;                  // the runs behind it
+  dynamics::StateSpace space;  // of the chain's states; a start of its own is behind them
 };
 
 /// Of a matrix: of a scene, in which the start becomes a state (trials are added for one that it

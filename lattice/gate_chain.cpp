@@ -257,12 +257,8 @@ void add_states(markov::CountsFile& out, const StateSpace& space) {
   const std::size_t face = add("face", "1", "face by which bodies of each state enter");
   out.arrays[face].whole = true;
   for (const Face& f : section.faces) out.arrays[face].codes.push_back(f.name);
-  for (int s = 0; s < space.size(); ++s) {
-    out.arrays[face].values.push_back(space.face(s));
-    out.state_names.push_back(section.faces[static_cast<std::size_t>(space.face(s))].name + "_" +
-                              std::to_string(s));
-  }
-  out.state_names.emplace_back("trapped");
+  for (int s = 0; s < space.size(); ++s) out.arrays[face].values.push_back(space.face(s));
+  out.state_names = state_names(space);
   for (std::size_t c = 0; c < section.coordinates.size(); ++c)
     for (const std::size_t side : {0, 1}) {
       const Coordinate& coordinate = section.coordinates[c];
@@ -304,6 +300,15 @@ Transitions transitions_of(const StateSpace& space, const markov::RowCounts& in)
 }
 
 }  // namespace
+
+std::vector<std::string> state_names(const StateSpace& space) {
+  std::vector<std::string> names;
+  for (int s = 0; s < space.size(); ++s)
+    names.push_back(space.section().faces[static_cast<std::size_t>(space.face(s))].name + "_" +
+                    std::to_string(s));
+  names.emplace_back("trapped");
+  return names;
+}
 
 std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
   const bool any = std::any_of(map.types.begin(), map.types.end(),

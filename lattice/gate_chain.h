@@ -51,6 +51,9 @@ struct MatrixFile {
   std::map<std::string, dynamics::Transitions> types{};  // of other gates in the field, by name
 };
 
+/// A name for each of the n + 1 outputs: face and number from 0, "EN_0"; the last one "trapped".
+[[nodiscard]] std::vector<std::string> state_names(const dynamics::StateSpace& space);
+
 /// What readers of a file's counts must know of those of trees, where mirror images are counted;
 /// empty where there is nothing.
 [[nodiscard]] std::string comment_on_counts(const dynamics::CellMap& map,

@@ -3,7 +3,7 @@ cmake_minimum_required(VERSION 3.25)
 # Who may include whom, folder by folder: a folder's own files, and those of the folders named. Fails naming
 # the file and the line.
 set(libraries dynamics dynamics/base dynamics/cells dynamics/disc dynamics/disc/methods dynamics/disc/study markov markov/predict markov/formats lattice lattice/text lattice/statistics lattice/pool lattice/study lattice/scene lattice/cells)
-set(folders ${libraries} cli/cells cli/terminal cli/web cli/render cli/film cli/paper cli/kept cli/commands cli/python cli)
+set(folders ${libraries} cli/cells cli/terminal cli/web cli/render cli/exchange cli/film cli/paper cli/kept cli/commands cli/python cli)
 
 set(allowed_dynamics)
 set(allowed_dynamics/base)
@@ -29,6 +29,7 @@ set(allowed_cli/cells dynamics/base dynamics/cells cli/render)
 set(allowed_cli/terminal dynamics/base markov/formats cli/render)
 set(allowed_cli/web cli/render)
 set(allowed_cli/render ${libraries})
+set(allowed_cli/exchange ${libraries} cli/render)
 set(allowed_cli/film ${libraries} cli/terminal cli/web cli/render)
 set(allowed_cli/paper ${libraries} cli cli/terminal cli/web cli/render)
 set(allowed_cli/kept dynamics/base markov/formats lattice/scene cli/render cli/terminal cli)

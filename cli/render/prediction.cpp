@@ -15,7 +15,7 @@ namespace gatewalk::cli {
 namespace {
 
 /// What is predicted for one start.
-void add_to(Json& json, const lattice::StartPrediction& s, const lattice::Scene& scene) {
+void add_to(Json& json, const lattice::StartPrediction& s, const ShownField& shown_field) {
   const markov::FinalDistribution& f = s.final;
   const lattice::EndingShares shown = shown_endings(s.shares, f);
   json["endings"] = endings(shown.share);
@@ -24,7 +24,7 @@ void add_to(Json& json, const lattice::StartPrediction& s, const lattice::Scene&
                              {"total_variation_mean", s.mean_total_variation},
                              {"total_variation_95", s.total_variation_95}};
   add_final_gates(json, f);
-  json["exits"] = cli::to_json(s.exits, scene);
+  json["exits"] = cli::to_json(s.exits, shown_field);
   json["still_walking"] = f.remainder;
   json["rounding_at_most"] = f.rounding;
   json["error_at_most"] = f.remainder + f.rounding;
@@ -35,17 +35,17 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
   const markov::FinalDistribution& f = s.final;
   const lattice::EndingShares shares = shown_endings(s.shares, f);
   const bool intervals = !std::isnan(shares.interval.front().front());
-  const dynamics::StateSpace& space = of.matrix.file.transitions.space;
+  const dynamics::StateSpace& space = of.matrix.transitions.space;
   std::string table =
       endings_text(shares,
-                   intervals
-                       ? "of all walks, 95 % intervals for the sampling of the matrix"
+                   intervals ? "of all walks, 95 % intervals for the sampling of the matrix"
+                   : of.probabilities
+                       ? "of all walks; no intervals: the matrix holds probabilities, not counts"
                        : "of all walks; no intervals: the field is too large for many predictions, "
                          "rows have few runs each, "
                          "or a resampled matrix failed") +
-      limits_text(of.matrix.scene) + map_of(f.final_cells) +
-      map_of_trapped(markov::trapped_cells(f)) + "departed " + percent(f.left_field, 1.0, 2) +
-      "\n" + cli::table_of(s.exits, of.matrix.scene) +
+      limits_text(of.shown) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
+      "departed " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(s.exits, of.shown) +
       "start: " + text_of(space.section(), space.range(s.start.start.input)) + "\n";
   if (f.unsampled > 0.0)
     table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
@@ -65,19 +65,19 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
 
 Json to_json(const lattice::Prediction& prediction, const PredictedField& of,
              const std::string& solver) {
-  const dynamics::StateSpace& space = of.matrix.file.transitions.space;
+  const dynamics::StateSpace& space = of.matrix.transitions.space;
   Json json;
-  if (of.starts.empty()) add_to(json, prediction.starts.front(), of.matrix.scene);
+  if (of.starts.empty()) add_to(json, prediction.starts.front(), of.shown);
   for (std::size_t k = 0; k < of.starts.size(); ++k) {
     Json one;
     one["start"] = to_json(space.section(), of.starts[k]);
-    add_to(one, prediction.starts[k], of.matrix.scene);
+    add_to(one, prediction.starts[k], of.shown);
     one["start_state"] = to_json(prediction.starts[k].start, space);
     json["starts"].push_back(std::move(one));
   }
   json["solver"] = solver;
   if (of.starts.empty()) json["start_state"] = to_json(prediction.starts.front().start, space);
-  json["matrix_status"] = recorded_status(of.matrix.file);
+  json["matrix_status"] = recorded_status(of.matrix);
   for (const lattice::RowMatrix& o : of.other_rows)
     json["rows"].push_back({{"first", o.first},
                             {"last", o.last},
@@ -91,9 +91,8 @@ std::string table_of(const lattice::Prediction& prediction, const PredictedField
   std::string table;
   if (of.starts.empty()) table = table_of(prediction.starts.front(), of);
   for (std::size_t k = 0; k < of.starts.size(); ++k)
-    table += (k > 0 ? "\n" : "") +
-             title_of(of.matrix.file.transitions.space.section(), of.starts[k]) + "\n" +
-             table_of(prediction.starts[k], of);
+    table += (k > 0 ? "\n" : "") + title_of(of.matrix.transitions.space.section(), of.starts[k]) +
+             "\n" + table_of(prediction.starts[k], of);
   for (const lattice::RowMatrix& o : of.other_rows)
     table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " +
              o.path + "\n";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/render/json_fwd.h"
+#include "cli/render/shown_field.h"
 #include "cli/render/start.h"
 #include "lattice/scene/row_matrices.h"
 #include "lattice/study/prediction.h"
@@ -14,9 +15,11 @@ namespace gatewalk::cli {
 /// What was predicted: the field of a matrix, from these starts (none: the scene's own), with rows
 /// of other matrices.
 struct PredictedField {
-  const lattice::SceneMatrix& matrix;
+  const lattice::MatrixFile& matrix;
+  const ShownField& shown;
   const std::vector<Start>& starts;
   const std::vector<lattice::RowMatrix>& other_rows;
+  bool probabilities = false;  // the matrix was given so, not counted
 };
 
 /// Without "made_by".

@@ -121,6 +121,9 @@ Json to_json(const lattice::TreeChain& c, double accuracy) {
 std::string states_line(const Json& j) {
   if (j.is_null()) return "";
   if (j.at("bins") == "tree") return tree_line(j);
+  if (j.at("bins") == "imported")
+    return "states: " + j.at("states").dump() + ", of a chain from elsewhere" +
+           (j.value("probabilities", false) ? ", given as probabilities" : "") + "\n";
   const Json &r = j.at("resolution"), &pilot = j.at("pilot"),
              &unresolved = r.at("unresolved_variance");
   const std::string kind = j.at("bins");

@@ -33,6 +33,7 @@ void Section::validate() const {
     if (face.di_x == 0 && face.di_y == 0) refuse("face " + face.name + " leads nowhere");
     if (face.odd >> coordinates.size() != 0)
       refuse("face " + face.name + " has an odd coordinate that is none");
+    if (face.mirror == kNoMirror) continue;
     if (face.mirror < 0 || face.mirror >= std::ssize(faces))
       refuse("face " + face.name + " has no mirror image");
     const Face& image = faces[face.mirror];

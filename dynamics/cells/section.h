@@ -35,13 +35,17 @@ struct Coordinate {
   }
 };
 
+inline constexpr int kNoMirror = -1;
+
 /// A part of a cell's border with coordinates of its own.
 struct Face {
   std::string name;        // "EN"
   int di_x = 0, di_y = 0;  // the move from cell to cell that enters through it
-  int mirror = 0;          // the face by which mirror images enter: itself in the middle
-  std::uint8_t odd = 0;    // bit k: coordinate k changes its sign in the mirror
-  std::string origin;      // where bodies come from: "from below"
+  /// The face by which mirror images enter, itself in the middle; kNoMirror where no cell is
+  /// symmetric and nothing enters so.
+  int mirror = 0;
+  std::uint8_t odd = 0;  // bit k: coordinate k changes its sign in the mirror
+  std::string origin;    // where bodies come from: "from below"
   /// By coordinate, from and to: of its only state where no entry was seen.
   std::array<std::array<double, 2>, kMostCoordinates> usual{};
 
@@ -60,7 +64,8 @@ struct Section {
   std::vector<CostInfo> costs;          // up to kMostCosts
 
   /// Throws std::invalid_argument unless there are as many as that, all of a kind have different
-  /// names (costs: keys), faces lead somewhere and are the mirror images of their mirror images,
+  /// names (costs: keys), faces lead somewhere and are the mirror images of their mirror images (or
+  /// have none),
   /// and scales are finite and > 0.
   void validate() const;
   friend bool operator==(const Section&, const Section&) = default;
@@ -88,7 +93,7 @@ template <class Named>
 [[nodiscard]] const std::array<std::array<double, 2>, kMostCoordinates>& usual_at(
     const Section& section, const Face& face);
 
-/// The mirror image, left for right.
+/// The mirror image, left for right; of face kNoMirror where there is none.
 [[nodiscard]] Entry mirrored(const Section& section, const Entry& entry);
 
 }  // namespace gatewalk::dynamics

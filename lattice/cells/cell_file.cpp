@@ -307,7 +307,8 @@ void read_usual(const GivenTable& given, const Names& coordinates, Face& face) {
 }
 
 /// Without a word of it, the face by which the mirror image of a move enters.
-int mirror_in(const GivenTable& given, const std::vector<Face>& faces, std::size_t own) {
+int mirror_in(const GivenTable& given, const std::vector<Face>& faces, std::size_t own,
+              bool symmetric) {
   const Names names = all_names_of(faces);
   const std::string allowed = "be the face by which mirror images enter, one of " + listed(names);
   if (given.has("mirror")) {
@@ -320,11 +321,13 @@ int mirror_in(const GivenTable& given, const std::vector<Face>& faces, std::size
   for (std::size_t f = 0; f < faces.size(); ++f)
     if (faces[f].di_x == -faces[own].di_x && faces[f].di_y == faces[own].di_y)
       images.push_back(static_cast<int>(f));
-  if (images.size() != 1) given.require("mirror", allowed);
-  return images[0];
+  if (images.size() == 1) return images[0];
+  if (symmetric) given.require("mirror", allowed);
+  return dynamics::kNoMirror;
 }
 
 void require_images(const GivenTable& given, const std::vector<Face>& faces, std::size_t own) {
+  if (faces[own].mirror == dynamics::kNoMirror) return;
   const Face &face = faces[own], &image = faces[static_cast<std::size_t>(face.mirror)];
   const auto refuse = [&](const std::string& why) {
     const toml::node* const key = given.table.get("mirror");
@@ -370,7 +373,14 @@ std::vector<Face> faces_in(const GivenTable& cell, const Names& coordinates, boo
     read_usual(given, coordinates, face);
     faces.push_back(std::move(face));
   }
-  for (std::size_t f = 0; f < faces.size(); ++f) faces[f].mirror = mirror_in(tables[f], faces, f);
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    faces[f].mirror = mirror_in(tables[f], faces, f, symmetric);
+  if (!symmetric)  // nobody needs one that is not given, and not the other's too
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      if (const int image = faces[f].mirror;
+          image != dynamics::kNoMirror && !tables[f].has("mirror") &&
+          faces[static_cast<std::size_t>(image)].mirror != static_cast<int>(f))
+        faces[f].mirror = dynamics::kNoMirror;
   for (std::size_t f = 0; f < faces.size(); ++f) require_images(tables[f], faces, f);
   return faces;
 }
@@ -598,8 +608,10 @@ std::string to_toml(const CellFile& file) {
   if (file.trapped_after) text += "trapped_after_s = " + toml_float(*file.trapped_after) + "\n";
   for (const Face& face : section.faces) {
     text += "\n[[cell.faces]]\nname = \"" + face.name + "\"\nmove = [" + std::to_string(face.di_x) +
-            ", " + std::to_string(face.di_y) + "]\nmirror = \"" +
-            section.faces[static_cast<std::size_t>(face.mirror)].name + "\"\nodd = [";
+            ", " + std::to_string(face.di_y) + "]\n";
+    if (face.mirror != dynamics::kNoMirror)
+      text += "mirror = \"" + section.faces[static_cast<std::size_t>(face.mirror)].name + "\"\n";
+    text += "odd = [";
     std::string odd;
     for (std::size_t c = 0; c < coordinates.size(); ++c)
       if (face.is_odd(c)) odd += (odd.empty() ? "\"" : ", \"") + coordinates[c] + "\"";

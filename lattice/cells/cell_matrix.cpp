@@ -33,9 +33,18 @@ CellMatrix read_cell_matrix(const std::string& path, const std::vector<std::stri
                        " has its runs, and only keys of field, terrain and start can be set");
   CellMatrix m{read_file(path), {}, {}, {}};
   m.cells = cells_in(m.file.text, path, overrides);
-  m.pool = pool_of(m.file, problem_of(m.cells, {}), path);
-  m.problem = problem_of(m.cells, m.pool);
+  m.problem = problem_of(m.cells, {});
+  if (!has_runs(m.file)) return m;
+  m.pool = pool_of(m.file, m.problem, path);
+  m.problem = problem_of(m.cells, *m.pool);
   return m;
+}
+
+std::vector<dynamics::Transitions> matrices_of(const MatrixFile& file, const CellFile& cells) {
+  std::vector<dynamics::Transitions> matrices{file.transitions};
+  for (std::size_t type = 1; type < cells.types.size(); ++type)
+    matrices.push_back(file.types.at(cells.types[type]));
+  return matrices;
 }
 
 std::vector<dynamics::Transitions> cell_matrices(const Problem& problem, const RunPool& pool,

@@ -1,6 +1,8 @@
 #pragma once
-/// Matrix files of cells that are not ours: the chain of their runs, the runs, and the cell file.
+/// Matrix files of cells that are not ours: the chain of their runs, the runs, and the cell file;
+/// or a chain that was made elsewhere, without runs.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +21,7 @@ inline constexpr const char* kCellText = "cell";
 struct CellMatrix {
   MatrixFile file;
   CellFile cells;
-  RunPool pool;
+  std::optional<RunPool> pool;  // none of a chain that was made elsewhere
   Problem problem;
 };
 /// Throws markov::BadFile, and SceneError for an override that is not permitted.
@@ -33,6 +35,10 @@ struct CellMatrix {
 [[nodiscard]] MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices,
                                           CellFile cells, const RunPool& pool,
                                           std::map<std::string, std::string> text);
+
+/// One matrix for each type of `cells`, of its file.
+[[nodiscard]] std::vector<dynamics::Transitions> matrices_of(const MatrixFile& file,
+                                                             const CellFile& cells);
 
 /// The section of a matrix file of any cells: of the cell file, or of a disc in its gate.
 [[nodiscard]] MatrixFile read_any_matrix(const std::string& path);

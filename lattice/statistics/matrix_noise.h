@@ -17,6 +17,7 @@ struct CountedField {
   bool small_rows = false;             // rows of a few runs each, as those of trees
   /// By matrix and row: how many counts a run makes in it, 2 with its mirror image; empty: 1.
   std::vector<std::vector<std::int64_t>> images{};
+  bool exact = false;  // probabilities were given, not counted: nothing is known of their sampling
 
   /// Runs of the row that a walk begins in, mirror images not counted twice.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;

@@ -1,10 +1,10 @@
-#include "cli/render/explicit_chain.h"
+#include "cli/exchange/explicit_chain.h"
 
 #include <array>
 #include <bit>
 #include <charconv>
-#include <cstring>
 
+#include "cli/exchange/archive.h"
 #include "cli/render/json.h"
 
 namespace gatewalk::cli {
@@ -18,35 +18,6 @@ std::string probability(double p) {
   std::array<char, 32> digits;
   return {digits.data(),
           std::to_chars(digits.data(), digits.data() + digits.size(), p < 1.0 ? p : 1.0).ptr};
-}
-
-/// A file in a POSIX tar (ustar), of no owner and no time.
-void add_to_tar(std::string& tar, const std::string& name, const std::string& bytes) {
-  std::array<char, 512> head{};
-  const auto put = [&](std::size_t at, const std::string& text) {
-    std::memcpy(head.data() + at, text.data(), text.size());
-  };
-  const auto octal = [](std::uint64_t number, std::size_t width) {
-    std::string text(width, '0');
-    for (std::size_t k = width; k-- > 0; number >>= 3)
-      text[k] = static_cast<char>('0' + (number & 7));
-    return text;
-  };
-  put(0, name);
-  put(100, octal(0644, 7));
-  put(108, octal(0, 7));
-  put(116, octal(0, 7));
-  put(124, octal(bytes.size(), 11));
-  put(136, octal(0, 11));
-  put(148, std::string(8, ' '));
-  put(156, "0");
-  put(257, std::string("ustar\0", 6) + "00");
-  unsigned sum = 0;
-  for (const char c : head) sum += static_cast<unsigned char>(c);
-  put(148, octal(sum, 6) + std::string("\0 ", 2));
-  tar.append(head.data(), head.size());
-  tar += bytes;
-  tar.append((512 - bytes.size() % 512) % 512, '\0');
 }
 
 template <class T>
@@ -92,16 +63,15 @@ std::string umb_of(const ExplicitChain& chain, const Json& tool) {
                         {"#observations", 0},
                         {"branch-probability-type", {{"type", "double"}, {"size", 64}}}}},
                       {"annotations", {{"aps", aps}}}};
-  std::string tar;
-  add_to_tar(tar, "index.json", text_of(index) + "\n");
-  add_to_tar(tar, "state-is-initial.bin", one_bit(n, 0));
-  add_to_tar(tar, "choice-to-branches.bin", little_endian(chain.first));
-  add_to_tar(tar, "branch-to-target.bin", little_endian(chain.target));
-  add_to_tar(tar, "branch-to-probability.bin", little_endian(chain.probability));
+  std::vector<PackedFile> files{{"index.json", text_of(index) + "\n"},
+                                {"state-is-initial.bin", one_bit(n, 0)},
+                                {"choice-to-branches.bin", little_endian(chain.first)},
+                                {"branch-to-target.bin", little_endian(chain.target)},
+                                {"branch-to-probability.bin", little_endian(chain.probability)}};
   for (std::size_t e = 0; e < ending_labels().size(); ++e)
-    add_to_tar(tar, "annotations/aps/" + ending_labels()[e] + "/states/values.bin",
-               one_bit(n, chain.ends() + static_cast<std::int64_t>(e)));
-  return tar + std::string(1024, '\0');
+    files.push_back({"annotations/aps/" + ending_labels()[e] + "/states/values.bin",
+                     one_bit(n, chain.ends() + static_cast<std::int64_t>(e))});
+  return pack(Packing::tar, files);
 }
 
 std::string drn_of(const ExplicitChain& chain) {
@@ -149,6 +119,51 @@ PrismFiles prism_of(const ExplicitChain& chain) {
                            probability(chain.probability[k]) + "\n";
   }
   return files;
+}
+
+SparseTable table_of(const ExplicitChain& chain) {
+  SparseTable table{chain.size(), chain.size(), {}, false};
+  for (std::int64_t s = 0; s < chain.size(); ++s)
+    for (auto k = static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s)]);
+         k < static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s) + 1]); ++k)
+      table.entries.push_back({s, chain.target[k], chain.probability[k]});
+  return table;
+}
+
+namespace {
+
+/// The start of a matrix that does not know it has a row of its own, behind the states.
+std::string entered_as(const ExplicitChain::State& state, const std::vector<std::string>& names) {
+  const auto input = static_cast<std::size_t>(state.input);
+  return input + 1 < names.size() ? names[input] : "start";
+}
+
+}  // namespace
+
+std::vector<std::string> names_of(const ExplicitChain& chain,
+                                  const std::vector<std::string>& names) {
+  std::vector<std::string> all;
+  for (const ExplicitChain::State& s : chain.states)
+    all.push_back("x" + std::to_string(s.column) + "_y" + std::to_string(s.row) + "_" +
+                  entered_as(s, names) + "_n" + std::to_string(s.draws));
+  all.insert(all.end(), ending_labels().begin(), ending_labels().end());
+  return all;
+}
+
+std::string states_csv(const ExplicitChain& chain, const std::vector<std::string>& names) {
+  const std::vector<std::string> all = names_of(chain, names);
+  std::string text = "number,name,column,row,state,entered_before,ending\n";
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    text += std::to_string(s) + "," + all[s] + ",";
+    if (s < chain.states.size()) {
+      const ExplicitChain::State& state = chain.states[s];
+      text += std::to_string(state.column) + "," + std::to_string(state.row) + "," +
+              entered_as(state, names) + "," + std::to_string(state.draws) + ",\n";
+    } else {
+      text += ",,,," + all[s] + "\n";
+    }
+  }
+  return text;
 }
 
 }  // namespace gatewalk::cli

@@ -1,10 +1,11 @@
 #pragma once
-/// A field's chain in the formats of model checkers.
+/// A field's chain in the formats of model checkers, and as a sparse matrix.
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cli/exchange/sparse_table.h"
 #include "cli/render/json_fwd.h"
 #include "markov/explicit_chain.h"
 
@@ -23,5 +24,14 @@ struct PrismFiles {
   std::string transitions, states, labels;
 };
 [[nodiscard]] PrismFiles prism_of(const markov::ExplicitChain& chain);
+
+/// The same as a sparse matrix, (states x states), and a table of its states: number, name, i_x and
+/// i_y of the cell, the state in which it is entered, how many were entered before, and the ending
+/// of those that are never left. `names`: of the states in which cells are entered.
+[[nodiscard]] SparseTable table_of(const markov::ExplicitChain& chain);
+[[nodiscard]] std::vector<std::string> names_of(const markov::ExplicitChain& chain,
+                                                const std::vector<std::string>& names);
+[[nodiscard]] std::string states_csv(const markov::ExplicitChain& chain,
+                                     const std::vector<std::string>& names);
 
 }  // namespace gatewalk::cli

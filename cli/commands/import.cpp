@@ -1,0 +1,90 @@
+#include "cli/command.h"
+#include "cli/exchange/imported.h"
+#include "cli/parsers.h"
+#include "cli/render/json.h"
+#include "cli/render/matrix.h"
+#include "lattice/cells/cell_matrix.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// What is wrong in a file is the user's to mend.
+template <class Read>
+auto read_file(const Read& read) {
+  try {
+    return read();
+  } catch (const std::runtime_error& e) {
+    throw UsageError(e.what());
+  }
+}
+
+}  // namespace
+
+int run_import(const Arguments& arguments) {
+  Options options(
+      "import FILE --states STATES.csv -o MATRIX.nc [options]",
+      "Makes a matrix file of a Markov chain from elsewhere, for predict, analyze, walk, export:\n"
+      "counts or probabilities of one cell (.mtx, .csv: from,to,count or from,to,probability; "
+      ".npz\n"
+      "of scipy), states x states or states x (states + 1), the last column trapped; or\n"
+      "trajectories (.dtrajs: a line each, states between blanks; .npz: an array each), whose "
+      "last\n"
+      "state may be the number of states: trapped. Whole numbers are counts, from which error "
+      "bars\n"
+      "follow. STATES.csv says by which move from cell to cell each state is entered:\n"
+      "state,move_x,move_y (columns to the right, rows ahead; and if wanted name, face).",
+      "gatewalk import counts.mtx --states states.csv --start 0 --set field.rows=5 -o chain.nc");
+  options.positional("file", "the matrix or the trajectories", true);
+  options.input_file("states", "the table of states");
+  options.main_output_file("MATRIX.nc", "the matrix file to write", Options::Content::binary);
+  options.add_count("start", "STATE", "the state in which walks start (from 0)");
+  options.add_number("width", "M", "width of a cell, m (default: 1)");
+  options.add_number("length", "M", "its length along the way, m (default: 1)");
+  if (!options.parse(arguments)) return kFine;
+  if (!options.has("states"))
+    throw UsageError("missing --states STATES.csv: which move enters each state");
+  const auto states = read_file([&] { return read_states(options.text("states")); });
+  const std::string path = options.text("file");
+  const ForeignMatrix matrix = read_file([&] { return read_foreign(path, states); });
+  lattice::CellFile cells =
+      lattice::parse_cell_file(cell_text(states, number_within(options, "width", 1.0, 1e-9, 1e9),
+                                         number_within(options, "length", 1.0, 1e-9, 1e9)),
+                               options.text("states"), options.overrides());
+  if (options.has("start")) {
+    const auto start = static_cast<std::size_t>(
+        options.count("start", 0, static_cast<std::int64_t>(states.size()) - 1));
+    cells.start = entry_of(states, start, cells.map.section);
+  }
+  dynamics::Transitions t = transitions_of(matrix, states, cells);
+  Json space = {{"bins", "imported"}, {"states", t.space.size()}};
+  if (matrix.probabilities) space["probabilities"] = true;
+  Json made_by = to_json(options.provenance());
+  lattice::MatrixFile file{std::move(t),
+                           {{"title", "gatewalk counts of a chain from elsewhere"},
+                            {"state_space", space.dump()},
+                            {"program", "gatewalk " + made_by.at("version").get<std::string>()},
+                            {"commit", made_by.at("commit")},
+                            {"command", options.canonical()},
+                            {lattice::kCellText, lattice::to_toml(cells)}}};
+  const std::string output = options.text("output");
+  options.keep_old(output);
+  lattice::write_matrix(output, file);
+  Json json = to_json(file, output);
+  json["matrix"] = output;
+  json["made_by"] = made_by;
+  options.give_out(json, summary_table(file, output));
+  const dynamics::StateSpace& by_face = file.transitions.space;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (by_face.index_of(entry_of(states, k, by_face.section())).state != static_cast<int>(k)) {
+      options.warn("states of one face stand together in " + output + ": the number that " +
+                   options.text("states") + " gives each is its coordinate \"state\"");
+      break;
+    }
+  if (matrix.probabilities)
+    options.warn(path +
+                 " has probabilities: nothing says how certain they are, so that predictions "
+                 "have no error bars");
+  return kFine;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,274 @@
+#include "cli/exchange/imported.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "cli/render/csv.h"
+#include "lattice/text/csv.h"
+#include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using lattice::shortest;
+
+/// "ahead", "right": what a move is called where nobody names the face.
+std::string name_of_move(int x, int y) {
+  if (x == 0 && y == 1) return "ahead";
+  if (x == 0 && y == -1) return "back";
+  if (x == 1 && y == 0) return "right";
+  if (x == -1 && y == 0) return "left";
+  const auto sign = [](int n) { return (n < 0 ? "m" : "") + std::to_string(std::abs(n)); };
+  return "move_" + sign(x) + "_" + sign(y);
+}
+
+/// Faces in the order in which states name them.
+std::vector<const ForeignState*> faces_of(const std::vector<ForeignState>& states) {
+  std::vector<const ForeignState*> faces;
+  for (const ForeignState& s : states)
+    if (std::none_of(faces.begin(), faces.end(), [&](const auto* f) { return f->face == s.face; }))
+      faces.push_back(&s);
+  return faces;
+}
+
+/// As many steps as doubles of probabilities need, and no more than sums of all rows may have.
+double steps_of(std::int64_t states) {
+  int bits = 53;
+  while (bits > 20 && std::ldexp(static_cast<double>(states) + 1.0, bits) > std::ldexp(1.0, 62))
+    --bits;
+  return std::ldexp(1.0, bits);
+}
+
+/// The rows as whole numbers of such steps.
+void in_steps(const std::string& path, SparseTable& table) {
+  constexpr double kOff = 1e-9;
+  const double steps = steps_of(table.rows);
+  for (std::size_t begin = 0, end = 0; begin < table.entries.size(); begin = end) {
+    double sum = 0.0;
+    for (; end < table.entries.size() && table.entries[end].row == table.entries[begin].row; ++end)
+      sum += table.entries[end].value;
+    if (sum != 0.0 && !(std::abs(sum - 1.0) <= kOff))
+      throw std::runtime_error(path + ": row " + std::to_string(table.entries[begin].row) +
+                               " (from 0) sums to " + shortest(sum) +
+                               ": probabilities of a row sum to 1, counts are whole numbers "
+                               "(integer, count)");
+    double left = sum == 0.0 ? 0.0 : steps;
+    std::size_t largest = begin;
+    for (std::size_t k = begin; k < end; ++k) {
+      SparseTable::Entry& e = table.entries[k];
+      if (e.value > table.entries[largest].value) largest = k;
+    }
+    for (std::size_t k = begin; k < end; ++k) {
+      SparseTable::Entry& e = table.entries[k];
+      if (k == largest) continue;
+      e.value = std::round(e.value * steps);
+      left -= e.value;
+    }
+    table.entries[largest].value = left;
+  }
+  std::erase_if(table.entries, [](const SparseTable::Entry& e) { return e.value == 0.0; });
+}
+
+SparseTable counts_of(const std::string& path, const Trajectories& all, std::int64_t states) {
+  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> counts;
+  for (std::size_t t = 0; t < all.size(); ++t)
+    for (std::size_t k = 0; k < all[t].size(); ++k) {
+      const bool is_last = k + 1 == all[t].size();
+      if (all[t][k] < 0 || all[t][k] > (is_last ? states : states - 1))
+        throw std::runtime_error(
+            path + ": trajectory " + std::to_string(t + 1) + ", step " + std::to_string(k + 1) +
+            ": there is no state " + std::to_string(all[t][k]) + " (0 to " +
+            std::to_string(states - 1) + "; at the end " + std::to_string(states) + ": trapped)");
+      if (k > 0) ++counts[{all[t][k - 1], all[t][k]}];
+    }
+  SparseTable table{states, states + 1, {}, true};
+  for (const auto& [place, n] : counts)
+    table.entries.push_back({place.first, place.second, static_cast<double>(n)});
+  return table;
+}
+
+}  // namespace
+
+std::vector<ForeignState> read_states(const std::string& path) {
+  const auto lines = lattice::lines_of(path);
+  if (!lines) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
+  std::vector<ForeignState> states;
+  std::vector<std::string> columns;
+  std::set<std::string> names;
+  for (std::size_t k = 0; k < lines->size(); ++k) {
+    const std::string& line = (*lines)[k];
+    const auto refuse = [&](const std::string& what) {
+      throw std::runtime_error(path + ":" + std::to_string(k + 1) + ": " + what);
+    };
+    if (line.empty() || line.starts_with('#')) continue;
+    const auto fields = lattice::csv_fields(line);
+    if (!fields) refuse("has a quotation mark that is not closed");
+    if (columns.empty()) {
+      columns = *fields;
+      for (const char* needed : {"state", "move_x", "move_y"})
+        if (std::count(columns.begin(), columns.end(), needed) != 1)
+          refuse(std::string("must name the columns, ") + needed +
+                 " among them once: state,move_x,move_y[,name][,face]");
+      continue;
+    }
+    if (fields->size() != columns.size())
+      refuse("has " + std::to_string(fields->size()) + " fields, not " +
+             std::to_string(columns.size()));
+    const auto field = [&](const std::string& name) {
+      const auto at = std::find(columns.begin(), columns.end(), name);
+      return at == columns.end() ? std::string()
+                                 : (*fields)[static_cast<std::size_t>(at - columns.begin())];
+    };
+    const auto whole = [&](const char* name) {
+      const std::string text = field(name);
+      int value = 0;
+      const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (read.ec != std::errc() || read.ptr != text.data() + text.size() ||
+          std::abs(value) > 1'000'000)
+        refuse(std::string(name) + " \"" + lattice::printable(text) + "\" is no whole number");
+      return value;
+    };
+    if (whole("state") != std::ssize(states))
+      refuse("state must be " + std::to_string(states.size()) +
+             ": they are numbered from 0, in order");
+    ForeignState s{field("name"), field("face"), whole("move_x"), whole("move_y")};
+    if (s.move_x == 0 && s.move_y == 0) refuse("the move must lead to another cell");
+    if (s.name.empty()) s.name = std::to_string(states.size());
+    if (s.name == "trapped" || !names.insert(s.name).second)
+      refuse("name \"" + lattice::printable(s.name) + "\" is taken");
+    if (s.face.empty()) s.face = name_of_move(s.move_x, s.move_y);
+    for (const ForeignState& other : states)
+      if (other.face == s.face && (other.move_x != s.move_x || other.move_y != s.move_y))
+        refuse("face " + lattice::printable(s.face) + " has another move than before");
+    states.push_back(std::move(s));
+    if (states.size() > static_cast<std::size_t>(dynamics::kMostStates))
+      refuse("there are more than " + std::to_string(dynamics::kMostStates) + " states");
+  }
+  if (states.empty()) throw std::runtime_error(path + ": holds no states");
+  return states;
+}
+
+std::string states_csv(const dynamics::StateSpace& space) {
+  const dynamics::Section& section = space.section();
+  std::string text = "state,name,face,move_x,move_y";
+  for (const dynamics::Coordinate& c : section.coordinates)
+    text += "," + c.key + "_low," + c.key + "_high";
+  const std::vector<std::string> names = lattice::state_names(space);
+  for (int s = 0; s < space.size(); ++s) {
+    const dynamics::Face& face = section.faces[static_cast<std::size_t>(space.face(s))];
+    text += "\n" + std::to_string(s) + "," + csv_text(names[static_cast<std::size_t>(s)]) + "," +
+            csv_text(face.name) + "," + std::to_string(face.di_x) + "," + std::to_string(face.di_y);
+    const dynamics::StateRange range = space.range(s);
+    for (std::size_t c = 0; c < section.coordinates.size(); ++c)
+      text += "," + shortest(range.at[c][0]) + "," + shortest(range.at[c][1]);
+  }
+  return text + "\n";
+}
+
+ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignState>& states) {
+  const std::int64_t n = std::ssize(states);
+  std::vector<std::string> names;
+  for (const ForeignState& s : states) names.push_back(s.name);
+  names.emplace_back("trapped");
+  const bool npz = path.ends_with(".npz");
+  ForeignMatrix matrix;
+  if (path.ends_with(".dtrajs") || (npz && holds_trajectories(path))) {
+    matrix.table = counts_of(path, read_trajectories(path), n);
+    return matrix;
+  }
+  if (path.ends_with(".mtx"))
+    matrix.table = read_matrix_market(path);
+  else if (path.ends_with(".csv"))
+    matrix.table = read_csv(path, n, names);
+  else if (npz)
+    matrix.table = read_sparse_npz(path);
+  else
+    throw std::runtime_error(path + ": must end in .mtx, .csv, .npz or .dtrajs");
+  SparseTable& table = matrix.table;
+  if (table.rows != n || (table.columns != n && table.columns != n + 1))
+    throw std::runtime_error(path + ": is " + std::to_string(table.rows) + " x " +
+                             std::to_string(table.columns) + "; of " + std::to_string(n) +
+                             " states it must be " + std::to_string(n) + " x " +
+                             std::to_string(n + 1) + ", the last column trapped, or " +
+                             std::to_string(n) + " x " + std::to_string(n));
+  table.columns = n + 1;
+  for (const SparseTable::Entry& e : table.entries)
+    if (!(e.value >= 0.0) || !std::isfinite(e.value) ||
+        (table.whole && (e.value != std::floor(e.value) || e.value > 1e15)))
+      throw std::runtime_error(path + ": row " + std::to_string(e.row) + ", column " +
+                               std::to_string(e.column) + " (from 0): " + shortest(e.value) +
+                               (table.whole ? " is no count" : " is no probability"));
+  matrix.probabilities = !table.whole;
+  if (matrix.probabilities) in_steps(path, table);
+  return matrix;
+}
+
+std::string cell_text(const std::vector<ForeignState>& states, double width, double length) {
+  std::string text = "[cell]\nwidth_m = " + lattice::toml_float(width) +
+                     "\nlength_m = " + lattice::toml_float(length) + "\nsymmetric = false\n";
+  for (const ForeignState* face : faces_of(states)) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t s = 0; s < states.size(); ++s)
+      if (states[s].face == face->face) {
+        low = std::min(low, static_cast<double>(s) - 0.5);
+        high = std::max(high, static_cast<double>(s) + 0.5);
+      }
+    text += "\n[[cell.faces]]\nname = \"" + face->face + "\"\nmove = [" +
+            std::to_string(face->move_x) + ", " + std::to_string(face->move_y) +
+            "]\nusual.state = [" + lattice::toml_float(low) + ", " + lattice::toml_float(high) +
+            "]\n";
+  }
+  return text +
+         "\n[[cell.coordinates]]\nname = \"state\"\nunit = \"1\"\nscale = 1.0\nwords = \"number of "
+         "the "
+         "state\"\n";
+}
+
+dynamics::Entry entry_of(const std::vector<ForeignState>& states, std::size_t state,
+                         const dynamics::Section& section) {
+  dynamics::Entry entry;
+  while (section.faces[static_cast<std::size_t>(entry.face)].name != states[state].face)
+    ++entry.face;
+  entry.at[0] = static_cast<double>(state);
+  return entry;
+}
+
+dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
+                                     const std::vector<ForeignState>& states,
+                                     const lattice::CellFile& cells) {
+  const dynamics::Section& section = cells.map.section;
+  std::vector<dynamics::Bins> bins;
+  for (const dynamics::Face& face : section.faces) {
+    auto& edges = bins.emplace_back().edges[0];
+    double before = 0.0;
+    for (std::size_t s = 0; s < states.size(); ++s) {
+      if (states[s].face != face.name) continue;
+      const auto at = static_cast<double>(s);
+      edges.push_back(edges.empty() ? at - 0.5 : 0.5 * (before + at));
+      before = at;
+    }
+    edges.push_back(before + 0.5);
+  }
+  dynamics::Transitions t(dynamics::StateSpace(section, std::move(bins)));
+  std::vector<int> place;
+  for (std::size_t s = 0; s < states.size(); ++s)
+    place.push_back(t.space.index_of(entry_of(states, s, section)).state);
+  place.push_back(t.space.trapped());
+  for (const SparseTable::Entry& e : matrix.table.entries) {
+    if (e.value == 0.0) continue;
+    const auto row = static_cast<std::size_t>(place[static_cast<std::size_t>(e.row)]);
+    const auto n = static_cast<std::int64_t>(e.value);
+    t.rows[row][place[static_cast<std::size_t>(e.column)]] = n;
+    t.trials[row] += n;
+  }
+  return t;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,51 @@
+#pragma once
+/// Matrices that were made elsewhere, as matrix files of cells: their states are numbers.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/exchange/sparse_table.h"
+#include "lattice/cells/cell_file.h"
+#include "lattice/gate_chain.h"
+
+namespace gatewalk::cli {
+
+/// A state of another program: how the cell that it belongs to is entered.
+struct ForeignState {
+  std::string name;            // in tables; its number unless given
+  std::string face;            // states of one face make the same move
+  int move_x = 0, move_y = 0;  // columns to the right, rows ahead
+};
+
+/// A table of states, CSV: state (0, 1, ... in order), move_x, move_y, and if wanted name and face;
+/// other columns are left alone. Without faces states with one move are of one. Throws
+/// std::runtime_error naming file and line.
+[[nodiscard]] std::vector<ForeignState> read_states(const std::string& path);
+/// The other way round: of a matrix file, with the low and high of each coordinate.
+[[nodiscard]] std::string states_csv(const dynamics::StateSpace& space);
+
+/// (states x states + 1), the last column: trapped.
+struct ForeignMatrix {
+  SparseTable table;  // whole numbers: of runs, or probabilities times a power of 2
+  bool probabilities = false;
+};
+/// Reads .mtx, .csv, .npz (a matrix, or trajectories) or .dtrajs. A matrix without a column of
+/// "trapped" has nobody trapped. Whole numbers are counts, others probabilities whose rows sum to 1
+/// within 1e-9, or to 0. Of a trajectory each step is a count; its last state may be the number of
+/// states: trapped. Throws std::runtime_error naming the file and the place.
+[[nodiscard]] ForeignMatrix read_foreign(const std::string& path,
+                                         const std::vector<ForeignState>& states);
+
+/// The text of a cell file with these states, of cells of this size (m): to it --set adds.
+[[nodiscard]] std::string cell_text(const std::vector<ForeignState>& states, double width,
+                                    double length);
+/// The place of a state among entries.
+[[nodiscard]] dynamics::Entry entry_of(const std::vector<ForeignState>& states, std::size_t state,
+                                       const dynamics::Section& section);
+/// The matrix by states of `cells`.
+[[nodiscard]] dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
+                                                   const std::vector<ForeignState>& states,
+                                                   const lattice::CellFile& cells);
+
+}  // namespace gatewalk::cli

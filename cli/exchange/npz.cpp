@@ -1,0 +1,153 @@
+#include "cli/exchange/npz.h"
+
+#include <bit>
+#include <cstring>
+#include <regex>
+#include <stdexcept>
+
+#include "cli/exchange/archive.h"
+
+namespace gatewalk::cli {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::size_t kMostBytes = std::size_t{1} << 30, kPrefix = 10;
+
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+std::string npy_of(const NumpyArray& array) {
+  std::string type = "<f8", data;
+  if (const auto* real = std::get_if<std::vector<double>>(&array.values)) {
+    data = bytes_of(*real);
+  } else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&array.values)) {
+    type = "<i8";
+    data = bytes_of(*whole);
+  } else {
+    data = std::get<std::string>(array.values);
+    type = "|S" + std::to_string(data.size());
+  }
+  std::string shape;
+  for (const std::int64_t n : array.shape) shape += std::to_string(n) + ", ";
+  std::string header =
+      "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + shape + "), }";
+  constexpr std::size_t kAligned = 64;
+  header.append(kAligned - (kPrefix + header.size() + 1) % kAligned, ' ');
+  header += '\n';
+  const auto length = static_cast<std::uint16_t>(header.size());
+  return std::string(kMagic) + std::string("\x01\x00", 2) + static_cast<char>(length & 255) +
+         static_cast<char>(length >> 8) + header + data;
+}
+
+template <class From, class To>
+void convert(std::string_view bytes, std::vector<To>& values) {
+  values.reserve(bytes.size() / sizeof(From));
+  for (std::size_t at = 0; at + sizeof(From) <= bytes.size(); at += sizeof(From)) {
+    From value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    values.push_back(static_cast<To>(value));
+  }
+}
+
+/// Numbers of this type; false where there is none such.
+bool put_numbers(const std::string& type, std::string_view bytes, NumpyArray& array) {
+  std::vector<std::int64_t> whole;
+  std::vector<double> real;
+  if (type == "f8")
+    convert<double>(bytes, real);
+  else if (type == "f4")
+    convert<float>(bytes, real);
+  else if (type == "i8")
+    convert<std::int64_t>(bytes, whole);
+  else if (type == "i4")
+    convert<std::int32_t>(bytes, whole);
+  else if (type == "i2")
+    convert<std::int16_t>(bytes, whole);
+  else if (type == "i1")
+    convert<std::int8_t>(bytes, whole);
+  else if (type == "u4")
+    convert<std::uint32_t>(bytes, whole);
+  else if (type == "u2")
+    convert<std::uint16_t>(bytes, whole);
+  else if (type == "u1" || type == "b1")
+    convert<std::uint8_t>(bytes, whole);
+  else
+    return false;
+  if (type[0] == 'f')
+    array.values = std::move(real);
+  else
+    array.values = std::move(whole);
+  return true;
+}
+
+NumpyArray array_of(const PackedFile& file, const std::string& path) {
+  const std::string name = file.name.substr(0, file.name.rfind(".npy"));
+  const auto refuse = [&](const std::string& why) {
+    throw std::runtime_error(path + ": array " + name + ": " + why);
+  };
+  const std::string_view bytes = file.bytes;
+  if (!bytes.starts_with(kMagic) || bytes.size() < kPrefix + 2) refuse("is none of numpy");
+  const bool is_long = bytes[kMagic.size()] != '\x01';  // versions 2 and 3: four bytes of length
+  const auto byte = [&](std::size_t at) {
+    return std::size_t{static_cast<unsigned char>(bytes[at])};
+  };
+  std::size_t length = byte(8) | byte(9) << 8, begin = kPrefix;
+  if (is_long) {
+    length |= byte(10) << 16 | byte(11) << 24;
+    begin += 2;
+  }
+  if (begin + length > bytes.size()) refuse("is cut short");
+  const std::string header(bytes.substr(begin, length));
+  static const std::regex pattern(
+      R"re(\{\s*'descr':\s*'([<|=])([a-zA-Z])(\d+)',\s*'fortran_order':\s*(True|False),\s*'shape':\s*\(([\d,\s]*)\),?\s*\}\s*)re");
+  std::smatch found;
+  if (length > 1000 || !std::regex_match(header, found, pattern))
+    refuse("is of a kind that is not read: little-endian numbers and texts are");
+  NumpyArray array{name, {}, {}};
+  std::size_t count = 1;
+  const std::string shape = found[5];
+  static const std::regex number(R"(\d+)");
+  for (auto at = std::sregex_iterator(shape.begin(), shape.end(), number);
+       at != std::sregex_iterator(); ++at) {
+    if (at->str().size() > 10) refuse("is too large");
+    array.shape.push_back(std::stoll(at->str()));
+    count *= static_cast<std::size_t>(array.shape.back());
+    if (count > kMostBytes) refuse("is too large");
+  }
+  if (found[4] == "True" && array.shape.size() > 1) refuse("is in Fortran's order");
+  if (found[3].length() > 9) refuse("is too large");
+  const std::string kind = found[2], type = kind + found[3].str();
+  const std::string_view data = bytes.substr(begin + length);
+  const std::size_t size = std::stoul(found[3]) * (kind == "U" ? 4 : 1);
+  if (data.size() != count * size)
+    refuse("has " + std::to_string(data.size()) + " bytes, not " + std::to_string(count * size));
+  if (kind == "S" || kind == "U") {
+    std::string text;
+    for (const char c : data)
+      if (c != '\0') text += c;
+    array.values = std::move(text);
+  } else if (!put_numbers(type, data, array)) {
+    refuse("holds " + type + ": whole numbers, f4 and f8 are read");
+  }
+  return array;
+}
+
+}  // namespace
+
+std::string npz_of(const std::vector<NumpyArray>& arrays) {
+  std::vector<PackedFile> files;
+  for (const NumpyArray& array : arrays) files.push_back({array.name + ".npy", npy_of(array)});
+  return pack(Packing::zip, files);
+}
+
+std::vector<NumpyArray> read_npz(const std::string& path) {
+  std::vector<NumpyArray> arrays;
+  for (const PackedFile& file : unpack(path, kMostBytes)) arrays.push_back(array_of(file, path));
+  return arrays;
+}
+
+}  // namespace gatewalk::cli

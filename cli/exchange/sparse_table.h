@@ -1,0 +1,58 @@
+#pragma once
+/// Sparse matrices as other programs write and read them.
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gatewalk::cli {
+
+/// Entries in the order of rows, within each of columns; no two at one place.
+struct SparseTable {
+  struct Entry {
+    std::int64_t row = 0, column = 0;  // from 0
+    double value = 0.0;
+  };
+  std::int64_t rows = 0, columns = 0;
+  std::vector<Entry> entries;
+  bool whole = false;  // written as whole numbers
+};
+
+template <class Value>
+[[nodiscard]] SparseTable table_of(const Eigen::SparseMatrix<Value, Eigen::RowMajor>& matrix) {
+  SparseTable table{matrix.rows(), matrix.cols(), {}, std::is_integral_v<Value>};
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row)
+    for (typename Eigen::SparseMatrix<Value, Eigen::RowMajor>::InnerIterator it(matrix, row); it;
+         ++it)
+      table.entries.push_back({row, it.col(), static_cast<double>(it.value())});
+  return table;
+}
+
+/// Matrix Market's coordinate format, which counts from 1; `comment` on a line of its own.
+[[nodiscard]] std::string matrix_market_of(const SparseTable& table, const std::string& comment);
+/// from,to,VALUE with the names of rows and columns.
+[[nodiscard]] std::string csv_of(const SparseTable& table, const std::vector<std::string>& rows,
+                                 const std::vector<std::string>& columns, const std::string& value);
+/// As scipy.sparse.load_npz reads it: compressed rows.
+[[nodiscard]] std::string npz_of(const SparseTable& table);
+
+/// "coordinate", "real" or "integer", "general". These throw std::runtime_error naming file, line
+/// and what is allowed.
+[[nodiscard]] SparseTable read_matrix_market(const std::string& path);
+/// Columns from, to and count or probability, in any order; states by these names, or by their
+/// numbers from 0. `columns`: names of outputs, the first `rows` of which are those of the rows.
+[[nodiscard]] SparseTable read_csv(const std::string& path, std::int64_t rows,
+                                   const std::vector<std::string>& columns);
+/// Compressed rows, as scipy writes them.
+[[nodiscard]] SparseTable read_sparse_npz(const std::string& path);
+
+/// Sequences of states from 0: a line each, numbers between blanks; or an array each of an .npz.
+using Trajectories = std::vector<std::vector<std::int64_t>>;
+[[nodiscard]] std::string text_of(const Trajectories& all);
+[[nodiscard]] std::string npz_of(const Trajectories& all);
+[[nodiscard]] Trajectories read_trajectories(const std::string& path);
+/// Whether an .npz holds such sequences, and no sparse matrix.
+[[nodiscard]] bool holds_trajectories(const std::string& path);
+
+}  // namespace gatewalk::cli

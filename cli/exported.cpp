@@ -1,0 +1,140 @@
+#include "cli/exported.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include "cli/exchange/explicit_chain.h"
+#include "cli/exchange/imported.h"
+#include "cli/exchange/trajectories.h"
+#include "cli/render/json.h"
+#include "cli/render/version.h"
+#include "cli/terminal/output.h"
+#include "cli/walked.h"
+#include "lattice/cells/cell_matrix.h"
+#include "lattice/pool/tree_chain.h"
+
+namespace gatewalk::cli {
+namespace {
+
+std::string stem_of(const std::string& output) { return output.substr(0, output.rfind('.')); }
+
+std::string numbers(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what;
+}
+
+/// A sparse matrix, and its states beside it.
+void write_table(const Options& options, ExportForm form, const SparseTable& table,
+                 const std::vector<std::string>& rows, const std::vector<std::string>& columns,
+                 const std::string& states) {
+  const std::string output = options.text("output");
+  options.write(stem_of(output) + ".states.csv", states);
+  if (form == ExportForm::matrix_market)
+    options.write(output, matrix_market_of(table, "gatewalk " + std::string(kVersion) + ": " +
+                                                      options.canonical()));
+  else if (form == ExportForm::csv)
+    options.write(output, csv_of(table, rows, columns, table.whole ? "count" : "probability"));
+  else
+    options.write(output, npz_of(table));
+}
+
+}  // namespace
+
+ExportForm export_form(const std::string& output) {
+  constexpr std::pair<const char*, ExportForm> kForms[] = {
+      {".umb", ExportForm::umb},   {".drn", ExportForm::drn},
+      {".tra", ExportForm::prism}, {".mtx", ExportForm::matrix_market},
+      {".csv", ExportForm::csv},   {".dtrajs.npz", ExportForm::trajectories},
+      {".npz", ExportForm::npz},   {".dtrajs", ExportForm::trajectories}};
+  for (const auto& [ending, form] : kForms)
+    if (output.ends_with(ending)) return form;
+  throw UsageError("-o " + output +
+                   ": must end in .umb, .drn, .tra, .mtx, .csv, .npz, .dtrajs or .dtrajs.npz");
+}
+
+std::vector<std::string> files_beside(const Options& options, ExportForm form) {
+  const std::string output = options.text("output"), stem = stem_of(output);
+  std::vector<std::string> files;
+  if (form == ExportForm::prism) files = {stem + ".sta", stem + ".lab"};
+  if (form == ExportForm::matrix_market || form == ExportForm::csv || form == ExportForm::npz)
+    files = {stem + ".states.csv"};
+  for (const std::string& file : files) {
+    for (const std::string& input : options.files_read()) {
+      std::error_code missing;
+      if (std::filesystem::equivalent(file, input, missing))
+        throw UsageError(file + ", which is written beside -o " + output +
+                         ", is an input: give -o another name");
+    }
+    try {
+      require_writable(file);
+    } catch (const std::runtime_error& e) {
+      throw UsageError(std::string("beside -o: ") + e.what());
+    }
+  }
+  return files;
+}
+
+std::string export_field(const Options& options, ExportForm form, Json& json) {
+  Subject s = open_subject(options, "matrix");
+  if (s.starts.size() > 1) throw UsageError("--start: a chain has one");
+  const Walked walked = walked_chain(options, s);
+  const lattice::FieldParams& field = s.problem.field;
+  const auto chain = markov::explicit_chain(walked.chain, {field.columns, field.rows}, walked.start,
+                                            field.max_gates);
+  const std::string output = options.text("output");
+  if (form == ExportForm::umb) {
+    options.write(output, umb_of(chain, {{"tool", "gatewalk"},
+                                         {"tool-version", kVersion},
+                                         {"parameters", options.canonical()}}));
+  } else if (form == ExportForm::drn) {
+    options.write(output, drn_of(chain));
+  } else if (form == ExportForm::prism) {
+    const PrismFiles files = prism_of(chain);
+    options.write(stem_of(output) + ".sta", files.states);
+    options.write(stem_of(output) + ".lab", files.labels);
+    options.write(output, files.transitions);
+  } else {
+    const std::vector<std::string> names = lattice::state_names(walked.space);
+    const std::vector<std::string> all = names_of(chain, names);
+    write_table(options, form, table_of(chain), all, all, states_csv(chain, names));
+  }
+  json = {{"states", chain.size()}, {"transitions", chain.target.size()}, {"initial_state", 0}};
+  for (std::size_t e = 0; e < ending_labels().size(); ++e)
+    json["endings"][ending_labels()[e]] = chain.ends() + static_cast<std::int64_t>(e);
+  json["made_by"] = s.made_by(options);
+  return std::to_string(chain.size()) + " states, " + numbers(chain.target.size(), "transitions") +
+         "; state 0 is " + walked.start_text + ", the last " +
+         numbers(ending_labels().size(), "are endings\n");
+}
+
+std::string export_gate(const Options& options, ExportForm form, Json& json) {
+  const std::string path = options.text("matrix");
+  const lattice::MatrixFile file = lattice::read_any_matrix(path);
+  const auto type = file.types.find(options.text("type"));
+  if (options.has("type") && type == file.types.end())
+    throw UsageError("--type " + options.text("type") + ": " + path + " has no such type");
+  const dynamics::Transitions& t = options.has("type") ? type->second : file.transitions;
+  SparseTable table =
+      options.has("counts") ? table_of(t.counts()) : table_of(lattice::make_chain(t).matrix());
+  const std::vector<std::string> names = lattice::state_names(t.space);
+  write_table(options, form, table, names, names, states_csv(t.space));
+  json = {{"states", t.space.size()}, {"transitions", table.entries.size()}};
+  json["made_by"] = to_json(options.provenance());
+  return std::to_string(t.space.size()) + " states of one gate, " +
+         numbers(table.entries.size(), "entries; the last column is trapped\n");
+}
+
+std::string export_trials(const Options& options, Json& json) {
+  const Subject s = open_subject(options, "matrix");
+  if (!s.pool)
+    throw UsageError(s.path + ": keeps no trials: it was not made of trees or recorded runs");
+  const dynamics::StateSpace& space = s.file->transitions.space;
+  const Trajectories all = trajectories_of(*s.pool, space);
+  const std::string output = options.text("output");
+  options.write(output, output.ends_with(".npz") ? npz_of(all) : text_of(all));
+  json = {{"states", space.size()}, {"trajectories", all.size()}};
+  json["made_by"] = s.made_by(options);
+  return numbers(all.size(), "trajectories through ") + std::to_string(space.size()) + " states; " +
+         std::to_string(space.size()) + " is trapped\n";
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# Chains to and from other programs: what is written is read back the same; an own matrix answers like ours; errors
+# name the place.   exchange_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+paper_matrix p.nc
+"$gatewalk" build "$scenes/field.toml" --gate-runs 500 -o tree.nc --quiet >/dev/null 2>&1
+
+# The field's chain in every format has the same states and transitions.
+for form in umb drn tra mtx csv npz; do
+  "$gatewalk" export p.nc --set field.max_gates=0 -o field.$form --json field.json --force --quiet >/dev/null || fail "export $form"
+  [ -s field.$form ] || fail "field.$form is empty"
+  jq -c '[.states, .transitions, .endings]' field.json >sizes.$form
+  cmp -s sizes.umb sizes.$form || fail "$form: $(cat sizes.$form), .umb has $(cat sizes.umb)"
+done
+[ "$(wc -l <field.csv)" = "$(($(jq .transitions field.json) + 1))" ] || fail "lines of field.csv"
+[ "$(grep -vc '^%' field.mtx)" = "$(($(jq .transitions field.json) + 1))" ] || fail "lines of field.mtx"
+[ "$(wc -l <field.states.csv)" = "$(($(jq .states field.json) + 1))" ] || fail "lines of field.states.csv"
+"$gatewalk" export p.nc --set field.max_gates=0 -o again.npz --quiet >/dev/null && cmp -s field.npz again.npz || fail "the same chain, other bytes"
+
+# Counts of one gate come back bit for bit, by every format; the chain answers the same.
+"$gatewalk" predict p.nc --json ours.json --quiet
+start=$(jq '.start_state.input - 1' ours.json)
+for form in mtx csv npz; do
+  "$gatewalk" export p.nc --gate --counts -o g.$form --force --quiet >/dev/null || fail "export --gate $form"
+  expect 0 '87 x 88 matrix' "$gatewalk" import g.$form --states g.states.csv --start "$start" -o $form.nc
+  "$gatewalk" export $form.nc --gate --counts -o back.$form --force --quiet >/dev/null
+  cmp -s <(grep -av '^%' g.$form) <(grep -av '^%' back.$form) || fail "$form comes back otherwise"
+  "$gatewalk" predict $form.nc --json back.json --quiet
+  [ "$(jq -cS '[.endings, .endings_95, .final_gates]' back.json)" = "$(jq -cS '[.endings, .endings_95, .final_gates]' ours.json)" ] ||
+    fail "$form: the imported chain answers otherwise"
+done
+# Probabilities have no error bars, and say so.
+"$gatewalk" export p.nc --gate -o q.csv --quiet >/dev/null
+expect 0 'have no error bars' "$gatewalk" import q.csv --states g.states.csv --start "$start" -o q.nc
+expect 0 'the matrix holds probabilities, not counts' "$gatewalk" predict q.nc --json q.json
+jq -s '[.[0].endings[], .[1].endings[]] as $e | [range(5) | ($e[.] - $e[. + 5]) | fabs] | max < 1e-14' q.json ours.json | grep -q true ||
+  fail "probabilities: another answer"
+holds '.matrix_sampling.replicates == 0' q.json
+
+# A chain of one's own, by names; and by trajectories, of which each step is a count.
+cat >s.csv <<'END'
+state,name,move_x,move_y
+0,up,0,1
+1,aside,1,0
+2,up_again,0,1
+END
+printf 'from,to,count\nup,up,5\nup,aside,3\nup,trapped,2\naside,up_again,4\nup_again,1,1\n' >own.csv
+expect 0 'states of one face stand together' "$gatewalk" import own.csv --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o own.nc
+printf '0 0 0 0 0 0 1 2 1\n0 1 2\n0 1 2\n1 2\n0 3\n0 3\n' >own.dtrajs
+expect 0 '15 gate runs' "$gatewalk" import own.dtrajs --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o steps.nc
+for command in predict analyze "walk --walks 1000" "show --rows"; do
+  # shellcheck disable=SC2086
+  for matrix in own steps; do "$gatewalk" ${command%% *} $matrix.nc $(printf '%s' "${command#"${command%% *}"}") --json $matrix.json --quiet 2>/dev/null || fail "$command $matrix.nc"; done
+  [ "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' own.json)" = "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' steps.json)" ] || fail "$command: steps are not their counts"
+done
+expect 0 'crossed       0.00' "$gatewalk" predict own.nc --start right:1 --set field.rows=30
+expect 2 'has no \[start\]' bash -c "'$gatewalk' import own.csv --states s.csv -o nowhere.nc && '$gatewalk' predict nowhere.nc"
+
+# Trials as trajectories: a trial ends as it ended, and its counts are those of its runs.
+"$gatewalk" export tree.nc -o t.dtrajs --json t.json --quiet
+[ "$(wc -l <t.dtrajs)" = "$(jq .trajectories t.json)" ] || fail "trajectories"
+[ "$(tr ' ' '\n' <t.dtrajs | grep -c .)" = "$(($(ncdump -h tree.nc | sed -n 's/^\trun = \([0-9]*\) ;/\1/p') + $(wc -l <t.dtrajs)))" ] || fail "steps of the trajectories"
+"$gatewalk" export tree.nc -o t.dtrajs.npz --quiet >/dev/null && [ -s t.dtrajs.npz ] || fail "export .dtrajs.npz"
+expect 2 'keeps no trials' "$gatewalk" export p.nc -o p.dtrajs
+
+# What is wrong is said, and where.
+wrong() { # TEXT FILE CONTENT
+  printf '%b' "$3" >"$2"
+  expect 2 "$1" "$gatewalk" import "$2" --states s.csv -o no.nc
+  [ ! -e no.nc ] || fail "$2: something is written"
+}
+wrong 'w.csv: row 0 (from 0) sums to 0.9: probabilities' w.csv 'from,to,probability\n0,0,.5\n0,1,.4\n'
+wrong 'w.csv:2: there is no state "sideways"' w.csv 'from,to,count\nsideways,up,1\n'
+wrong 'w.csv:3: has the same row and column as line 2' w.csv 'from,to,count\n0,1,1\nup,aside,2\n'
+wrong 'w.csv: row 0, column 1 (from 0): -1 is no count' w.csv 'from,to,count\n0,1,-1\n'
+wrong 'w.csv:1: must name the columns: from,to,count' w.csv 'a,b,c\n'
+wrong 'w.mtx:1: must be "%%MatrixMarket' w.mtx '%%MatrixMarket matrix array real general\n'
+wrong 'w.mtx:3: row and column must lie in 1 to 3' w.mtx '%%MatrixMarket matrix coordinate integer general\n3 3 1\n4 1 2\n'
+wrong 'has 1 entries, not 2 as it says' w.mtx '%%MatrixMarket matrix coordinate integer general\n3 3 2\n1 1 2\n'
+wrong 'of 3 states it must be 3 x 4, the last column trapped, or 3 x 3' w.mtx '%%MatrixMarket matrix coordinate integer general\n2 3 1\n1 1 2\n'
+wrong 'trajectory 2, step 1: there is no state 3' w.dtrajs '0 1\n3 0\n'
+wrong 'w.dtrajs:1: "x" is no whole number' w.dtrajs '0 x\n'
+wrong 'w.npz' w.npz 'no archive\n'
+wrong 'must end in .mtx, .csv, .npz or .dtrajs' w.txt '0 1\n'
+head -c 3000 g.npz >cut.npz
+expect 2 'cut.npz' "$gatewalk" import cut.npz --states g.states.csv -o no.nc
+printf 'state,move_x,move_y\n0,0,1\n2,0,1\n' >s2.csv
+expect 2 's2.csv:3: state must be 1' "$gatewalk" import own.csv --states s2.csv -o no.nc
+printf 'state,move_x,move_y\n0,0,0\n' >s2.csv
+expect 2 's2.csv:2: the move must lead to another cell' "$gatewalk" import own.csv --states s2.csv -o no.nc
+expect 2 'missing --states' "$gatewalk" import own.csv -o no.nc
+expect 2 'are the same file' "$gatewalk" import own.csv --states s.csv -o s.csv
+expect 2 'cannot be written' "$gatewalk" export p.nc -o /nowhere/at/all.mtx
+expect 2 'is for .mtx, .csv and .npz' "$gatewalk" export p.nc --gate -o g.umb
+finish
