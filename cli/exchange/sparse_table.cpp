@@ -92,8 +92,8 @@ std::string csv_of(const SparseTable& table, const std::vector<std::string>& row
   std::string text = "from,to," + value + "\n";
   for (const SparseTable::Entry& e : table.entries)
     text += csv_text(rows[static_cast<std::size_t>(e.row)]) + "," +
-            csv_text(columns[static_cast<std::size_t>(e.column)]) + "," + value_text(table, e.value) +
-            "\n";
+            csv_text(columns[static_cast<std::size_t>(e.column)]) + "," +
+            value_text(table, e.value) + "\n";
   return text;
 }
 
