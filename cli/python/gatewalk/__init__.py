@@ -172,6 +172,15 @@ def options(command: str) -> str:
     ----------
     command : str
         "predict", "build", ...
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    UsageError
+        Where there is no such command.
     """
     import subprocess
 
@@ -218,12 +227,51 @@ def predict(subject: _t.Any, *, accuracy: float | None = None, start: _t.Any = N
 
 def lattice(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
             **more: _t.Any) -> Prediction:
-    """The full dynamics through the field: how many of `trials` (100) bodies end where, and how. See `predict`."""
+    """The full dynamics through the field: how many bodies end where, and how.
+
+    Parameters
+    ----------
+    subject : Scene, path, text or dict
+        A scene, or with `cell` a cell file.
+    trials : int, optional
+        Bodies; 100 without it.
+    seed, cell, progress, **more
+        See `predict`.
+
+    Returns
+    -------
+    Prediction
+        Numbers of bodies where `predict` gives shares.
+
+    Raises
+    ------
+    SceneError, UsageError, BadFile
+        See `predict`.
+    """
     return Prediction(_run("lattice", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def gate(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
-    """`trials` (100) runs of one gate: how many traverse it, leave by its sides, are trapped."""
+    """Runs of one gate: how many traverse it, leave by its sides, are trapped.
+
+    Parameters
+    ----------
+    scene : Scene, path, text or dict
+    trials : int, optional
+        Runs; 100 without it.
+    seed, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk gate``.
+
+    Returns
+    -------
+    Result
+        `trials`, and the number of each outcome.
+
+    Raises
+    ------
+    SceneError, UsageError
+        See `predict`.
+    """
     return Result(_run("gate", [scene], dict(trials=trials, seed=seed, progress=progress, **more)))
 
 
@@ -233,38 +281,151 @@ def sweep(scene: _t.Any, vary: dict[str, _t.Any], *, trials: int | None = None, 
 
     Parameters
     ----------
+    scene : Scene, path, text or dict
     vary : dict
         Values of each key, a list or a text such as "5:1:8": ``{"forces.propulsion_N": [5, 6, 7]}``.
+    trials : int, optional
+        Runs at each point.
+    seed, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk sweep``.
+
+    Returns
+    -------
+    Sweep
+
+    Raises
+    ------
+    SceneError, UsageError
+        See `predict`.
     """
     return Sweep(_run("sweep", [scene], dict(vary=vary, trials=trials, seed=seed, progress=progress, **more)))
 
 
 def trace(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Trace:
-    """Single runs in full: every step with places, velocities, beams, forces and energies; field=True: across the field."""
+    """Single runs in full: every step with places, velocities, beams, forces and energies.
+
+    Parameters
+    ----------
+    scene : Scene, path, text or dict
+    trials : int, optional
+        Runs, from number 0 on.
+    seed, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk trace``: ``field=True`` follows bodies across the field,
+        ``trial=7`` is that run alone, ``only="trapped"`` leaves out others.
+
+    Returns
+    -------
+    Trace
+
+    Raises
+    ------
+    SceneError, UsageError
+        See `predict`.
+    """
     return Trace(_run("trace", [scene], dict(trials=trials, seed=seed, progress=progress, **more)))
 
 
 def validate(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
              **more: _t.Any) -> Result:
-    """Compares the chain with the full dynamics, or with counts of yours (observed=FILE)."""
+    """Compares the chain with the full dynamics, or with counts of yours; is the chain Markov?
+
+    Parameters
+    ----------
+    subject : Scene, Matrix, path, text or dict
+        A scene. A matrix of recorded runs: one half of the bodies against the other.
+    trials : int, optional
+        Bodies of the full dynamics from each start; 100 without it, which shows no error of the chain: take 10 000.
+    seed, cell, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk validate``: ``matrix=MATRIX``, ``observed="endings.csv"``.
+
+    Returns
+    -------
+    Result
+        `starts`: verdict, endings, p-values of each; `markov`: what the states forget.
+
+    Raises
+    ------
+    SceneError, UsageError, BadFile
+        See `predict`.
+    """
     return Result(_run("validate", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def analyze(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
             **more: _t.Any) -> Analysis:
-    """Times, work, paths, other starts; what would change a field's outcome most."""
+    """Times, work, paths, other starts; what would change a field's outcome most.
+
+    Parameters
+    ----------
+    subject : Scene, Matrix, path, text or dict
+    accuracy : float, optional
+        Of the final gates (total variation, 95 %); 0.02 without it.
+    seed, cell, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk analyze``: ``target="left_side"``, ``runs=0`` (no
+        derivatives, which take most of the time).
+
+    Returns
+    -------
+    Analysis
+        Times in s, work in J.
+
+    Raises
+    ------
+    SceneError, UsageError, BadFile
+        See `predict`.
+    """
     return Analysis(_run("analyze", [subject], dict(accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def rare(subject: _t.Any, *, row: int | None = None, accuracy: float | None = None, seed: int | None = None, cell: Cell | None = None,
          progress: bool | None = None, **more: _t.Any) -> Result:
-    """How likely far rows are, where trials never get (splitting)."""
+    """How likely far rows are, where trials never get (importance splitting).
+
+    Parameters
+    ----------
+    subject : Scene, path, text or dict
+    row : int, optional
+        The row to reach, of a field without limit of gates.
+    accuracy : float, optional
+        Of the chance: its standard error as a part of it.
+    seed, cell, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk rare``.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    SceneError, UsageError
+        See `predict`.
+    """
     return Result(_run("rare", [subject], dict(row=row, accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
           **more: _t.Any) -> Result:
-    """How many trials an experiment needs to show a difference."""
+    """How many trials an experiment needs to show a difference.
+
+    Parameters
+    ----------
+    subject : Scene, Matrix, path, text or dict
+    trials : int, optional
+        Trials of the experiment that is planned.
+    seed, cell, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk power``: ``versus={"forces.random_N": 30.0}`` is the other
+        scene.
+
+    Returns
+    -------
+    Result
+        `summary` in words, `from_prediction` and `versus` by ending.
+
+    Raises
+    ------
+    SceneError, UsageError, BadFile
+        See `predict`.
+    """
     return Result(_run("power", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
 
 
@@ -288,7 +449,24 @@ def sample(name: str | None = None) -> str:
 
 
 def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
-    """Walks the field by drawing from a matrix."""
+    """Walks the field by drawing from a matrix, one outcome a gate.
+
+    Parameters
+    ----------
+    matrix : Matrix or path
+    seed, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk walk``: ``walks=1_000_000``.
+
+    Returns
+    -------
+    Result
+        `endings`, and `final_gates` of shape (rows, columns), in shares of all walks.
+
+    Raises
+    ------
+    UsageError, BadFile
+        See `predict`.
+    """
     return Result(_run("walk", [matrix], dict(seed=seed, progress=progress, **more)))
 
 

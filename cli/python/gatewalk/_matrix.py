@@ -37,15 +37,30 @@ class Matrix:
 
     @property
     def matrix(self) -> t.Any:
-        """Probabilities as a scipy.sparse.csr_matrix, shape (states, states + 1), the last column trapped; no copy."""
+        """Probabilities, a scipy.sparse.csr_matrix of shape (states, states + 1): rows are ways in, columns ways into the
+        next gate, the last one trapped. Not copied."""
         return self.probabilities()
 
     def probabilities(self, type: str = "") -> t.Any:  # noqa: A002
-        """The same of a type of gates."""
+        """Probabilities as in `matrix`, of a type of gates.
+
+        Parameters
+        ----------
+        type : str
+            One of `types`.
+        """
         return self._csr(type, True)
 
     def counts(self, type: str = "") -> t.Any:  # noqa: A002
-        """Numbers of runs, int64. A tree's hold mirror images too: a posterior from them is too narrow by sqrt(2)."""
+        """Numbers of runs as in `matrix`, int64.
+
+        A tree's hold mirror images too: a posterior from them is too narrow by sqrt(2).
+
+        Parameters
+        ----------
+        type : str
+            One of `types`.
+        """
         return self._csr(type, False)
 
     def _csr(self, type: str, probabilities: bool) -> t.Any:  # noqa: A002
@@ -61,7 +76,7 @@ class Matrix:
 
     @property
     def states(self) -> t.Any:
-        """A pandas.DataFrame: face, and low and high of each coordinate, of every state."""
+        """A pandas.DataFrame: face, and low and high of each coordinate (m, m/s), of every state."""
         import pandas
 
         return pandas.DataFrame(self._core.states()).rename_axis("state")
@@ -77,7 +92,7 @@ class Matrix:
         return self._core.text
 
     def save(self, path: t.Any) -> None:
-        """Writes it to `path`, as a whole or not at all."""
+        """Writes it to `path` as NetCDF-4, as a whole or not at all. Raises OSError where that fails."""
         path = os.fspath(path)
         handle, name = tempfile.mkstemp(dir=os.path.dirname(path) or ".", prefix=".gatewalk-")
         try:
@@ -178,7 +193,22 @@ def _from_bytes(data: bytes) -> Matrix:
 
 
 def load(path: t.Any) -> Matrix:
-    """Reads a matrix file. Raises BadFile where it is none, or damaged."""
+    """Reads a matrix file.
+
+    Parameters
+    ----------
+    path : path
+        A file of ``gatewalk build`` or `Matrix.save`.
+
+    Returns
+    -------
+    Matrix
+
+    Raises
+    ------
+    BadFile
+        Where it is no matrix file, or damaged.
+    """
     return Matrix(path)
 
 
@@ -209,6 +239,11 @@ def build(subject: t.Any, *, accuracy: float | None = None, starts: t.Any = None
     Returns
     -------
     Matrix
+
+    Raises
+    ------
+    SceneError, UsageError, BadFile
+        See `predict`.
     """
     return _built(subject, dict(accuracy=accuracy, starts=starts, seed=seed, cell=cell, progress=progress, **more))
 
@@ -248,9 +283,20 @@ def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
     Parameters
     ----------
     table : pandas.DataFrame or path
-        A line a passage: body, trial, in, coordinates, out, out_ coordinates, time_s.
+        A line a passage: ``body``, ``trial``, ``in``, each coordinate, ``out``, each coordinate as ``out_...``, ``time_s``.
     cell : path, text or dict
         The cell file: faces, coordinates, field.
+    **more
+        Any option of ``gatewalk build``, "-" written "_".
+
+    Returns
+    -------
+    Matrix
+
+    Raises
+    ------
+    SceneError, UsageError, BadFile
+        The line and column of a table that is wrong, and what is allowed.
     """
     with _table_file(table) as name, file_of(cell) as (path, _):
         return _built(name, dict(more), [f"--cell={path}"])
@@ -272,6 +318,11 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
     -------
     pandas.DataFrame
         A line a passage, as `from_passages` takes it.
+
+    Raises
+    ------
+    SceneError, UsageError, BadFile
+        What is missing or wrong in the tracks, and where.
     """
     import pandas
 

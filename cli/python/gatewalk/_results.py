@@ -185,11 +185,35 @@ class Prediction(Result):
 
 
 class Analysis(Result):
-    """Times, work, other starts and influences of a field."""
+    """Times (s), work (J), other starts and influences of a field.
+
+    Attributes
+    ----------
+    endings : dict
+        ``probability`` and ``interval_95`` of each.
+    expected_gates, expected_seconds, expected_work_J : float
+        Means over all bodies; with ``_95`` their intervals.
+    expected_visits : array, shape (rows, columns)
+        Of each gate.
+    by_ending : dict
+        Of ``all`` and of each ending: means, standard deviations and quantiles of times and works.
+    quasi_stationary : dict or None
+        What becomes of those who go on for ever: ``survival_per_gate``, ``kept_per_gate``, ...
+    starts, paths : list of dict
+        Chances of the target from other ways in; the most frequent ways to it.
+    sensitivities : dict
+        What would change the chance of the target most.
+    """
 
 
 class Sweep(Result):
-    """Outcomes over a grid of keys: `points`, or a table."""
+    """Outcomes over a grid of keys.
+
+    Attributes
+    ----------
+    points : list of dict
+        ``at``, the keys' values, and the number of each outcome.
+    """
 
     def to_frame(self) -> t.Any:
         """A pandas.DataFrame: a line per point, the keys first, then the numbers of each outcome."""
@@ -200,7 +224,15 @@ class Sweep(Result):
 
 
 class Trace(Result):
-    """Runs in full: `runs` has a dict of arrays for each."""
+    """Runs in full.
+
+    Attributes
+    ----------
+    runs : list of dict
+        Of each run its ``label`` and arrays, shape (steps,): times (s), places (m), velocities (m/s), energies (J).
+    gate_m : tuple
+        Width and length of a gate, m.
+    """
 
     def to_frame(self, run: int = 0) -> t.Any:
         """A pandas.DataFrame of one run, a line per step."""
