@@ -1,0 +1,45 @@
+"""Sphinx's settings for the site; prepare.py makes the pages, build.sh starts both."""
+
+import os
+import pathlib
+import re
+import sys
+
+from pygments.lexers.special import TextLexer
+
+sys.path.insert(0, os.path.dirname(__file__))
+import debian_furo  # noqa: E402
+
+root = pathlib.Path(os.environ["GATEWALK_ROOT"])
+
+project = "gatewalk"
+author = copyright = "the gatewalk authors"
+release = version = re.search(r"^project\(gatewalk VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"), re.M)[1]
+extensions = ["myst_parser", "breathe", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+
+myst_enable_extensions = ["colon_fence", "deflist"]
+myst_heading_anchors = 4
+highlight_language = "none"
+smartquotes = False  # "--set" is an option
+
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+default_role = "py:obj"  # `predict` in a docstring
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+
+breathe_projects = {"gatewalk": os.environ["GATEWALK_XML"]}
+breathe_default_project = "gatewalk"
+
+html_theme = "furo"
+html_title = f"gatewalk {version}"
+html_css_files = ["site.css"]
+html_static_path = [os.path.join(os.path.dirname(__file__), "static")]
+html_copy_source = False
+html_show_sphinx = False
+html_theme_options = {"navigation_with_keys": True}
+
+
+def setup(app):
+    app.add_lexer("csv", TextLexer)
+    app.connect("build-finished", lambda app, error: error or debian_furo.repair(pathlib.Path(app.outdir, "_static")))

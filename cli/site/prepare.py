@@ -1,0 +1,151 @@
+"""Makes the sources of the documentation site: all pages in one folder, as Sphinx reads them.
+
+    prepare.py ROOT PROGRAM SOURCE [NOTEBOOKS]
+
+ROOT is the repository, PROGRAM the built gatewalk, SOURCE the folder to make, NOTEBOOKS a folder with executed
+notebooks as pages. The READMEs of the repository are the pages; links to files that are none are to copies.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+
+import yaml
+
+import cpp
+import text_of
+
+PICTURES = {".svg", ".gif", ".png"}
+
+
+def tracked(root: pathlib.Path) -> list[str]:
+    """All pages of the repository, by their paths from its root."""
+    git = subprocess.run(["git", "-C", root, "ls-files", "-z", "--cached", "--others", "--exclude-standard", "*.md"],
+                         capture_output=True, text=True, check=False)
+    if git.returncode == 0:
+        found = [name for name in git.stdout.split("\0") if name and (root / name).exists()]
+    else:  # an archive of the sources
+        found = [str(path.relative_to(root)) for path in root.rglob("*.md") if "node_modules" not in path.parts
+                 and not path.relative_to(root).parts[0].startswith("build")]
+    return sorted(found)
+
+
+def place_of(page: str) -> str:
+    """Where a page of the repository stands on the site."""
+    path = pathlib.PurePosixPath(page)
+    if path.is_relative_to("cli/site"):
+        path = path.relative_to("cli/site")
+    return str(path.with_name("index.md") if path.name == "README.md" else path)
+
+
+def with_links(root: pathlib.Path, page: str, pages: set[str], source: pathlib.Path) -> str:
+    """A page's text with its links as they are on the site. What it links to beside pages is copied."""
+    here = pathlib.PurePosixPath(page).parent
+    place = pathlib.PurePosixPath(place_of(page)).parent
+    lines = (root / page).read_text(encoding="utf-8")
+
+    def link(match: re.Match[str]) -> str:
+        target, _, anchor = match["target"].partition("#")
+        if not target or re.match(r"[a-z]+:", target):
+            return match[0]
+        path = os.path.normpath(here / target)
+        if (root / path).is_dir():
+            path = os.path.join(path, "README.md")
+        if not (root / path).is_file():
+            number = lines.count("\n", 0, match.start()) + 1
+            raise SystemExit(f"{page}:{number}: a link to {match['target']}, which is not in the repository")
+        if path in pages:
+            path = place_of(path)
+        else:
+            copy = source / path
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(root / path, copy)
+        return f"]({os.path.relpath(path, place)}{'#' + anchor if anchor else ''})"
+
+    # Code is no place for links: fences, and words in backticks.
+    parts = re.split(r"(^```.*?^```$|`[^`\n]+`)", lines, flags=re.MULTILINE | re.DOTALL)
+    done, at = [], 0
+    for k, part in enumerate(parts):
+        done.append(part if k % 2 else re.sub(r"\]\((?P<target>[^()\s]+)\)", link, part))
+        at += len(part)
+    return "".join(done)
+
+
+def write(path: pathlib.Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def commands(program: pathlib.Path, work: pathlib.Path, source: pathlib.Path) -> None:
+    """A page for each command, of the manual pages that the program writes."""
+    subprocess.run([program, "help", "--write", work], check=True)
+    for manual in sorted((work / "man/man1").glob("gatewalk-*.1")):
+        name = manual.stem.removeprefix("gatewalk-")
+        write(source / "commands" / f"{name}.md", text_of.command_page(manual.read_text(encoding="utf-8"), name))
+
+
+def gallery(root: pathlib.Path, program: pathlib.Path, work: pathlib.Path, source: pathlib.Path) -> None:
+    """Figures, each with its command, which is run here unless the figure names a picture of results/."""
+    work.mkdir(parents=True)
+    (work / "scenes").symlink_to(root / "scenes")
+    environment = {**os.environ, "PATH": f"{program.parent}{os.pathsep}{os.environ['PATH']}"}
+    page = tomllib.loads((root / "cli/site/gallery.toml").read_text(encoding="utf-8"))
+    out = [f"# Gallery\n\n{page['words']}\n"]
+    (source / "gallery").mkdir(parents=True)
+    for figure in page["figure"]:
+        if "picture" in figure:
+            picture = root / figure["picture"]
+            shown = figure["commands"]
+        else:
+            for command in figure["commands"]:
+                done = subprocess.run(["sh", "-ec", command + " --quiet"], cwd=work, env=environment, capture_output=True,
+                                      text=True, check=False)
+                if done.returncode != 0:
+                    raise SystemExit(f"cli/site/gallery.toml: {command}: {done.stderr}")
+            picture = work / figure["file"]
+            shown = figure["commands"]
+        # One of results/ may have the name of another.
+        name = "-".join(picture.relative_to(root if "picture" in figure else work).parts)
+        shutil.copyfile(picture, source / "gallery" / name)
+        out.append(f"## {figure['title']}\n\n{figure['words']}\n\n![{figure['title']}](gallery/{name})\n\n```\n"
+                   + "\n".join(shown) + "\n```\n")
+    write(source / "gallery.md", "\n".join(out))
+
+
+def notebooks(folder: pathlib.Path | None, source: pathlib.Path) -> None:
+    """Executed notebooks as they are."""
+    names = []
+    if folder is not None:
+        shutil.copytree(folder, source / "notebooks", ignore=shutil.ignore_patterns("*.ipynb"))
+        names = sorted(path.stem for path in folder.glob("*.md"))
+    if names:
+        write(source / "notebooks.md", text_of.notebooks_page(names))
+
+
+def main() -> None:
+    root, program, source = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+    folder = pathlib.Path(sys.argv[4]).resolve() if len(sys.argv) > 4 else None
+    work = source.with_name("work")
+    for old in (source, work):
+        shutil.rmtree(old, ignore_errors=True)
+    pages = tracked(root)
+    for page in pages:
+        write(source / place_of(page), with_links(root, page, set(pages), source))
+    contents = (root / "cli/site/contents.txt").read_text(encoding="utf-8")
+    notebooks(folder, source)
+    if folder is None:
+        contents = contents.replace("notebooks\n", "")
+    with open(source / "index.md", "a", encoding="utf-8") as front:
+        front.write("\n" + contents)
+    commands(program, work / "help", source)
+    gallery(root, program, work / "gallery", source)
+    cpp.pages(root, work / "headers", source / "cpp")
+    write(source / "cite.md", text_of.cite_page(yaml.safe_load((root / "CITATION.cff").read_text(encoding="utf-8"))))
+
+
+if __name__ == "__main__":
+    main()

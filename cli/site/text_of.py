@@ -1,0 +1,82 @@
+"""Pages that are made of other texts: a command's manual page, CITATION.cff, a list of notebooks."""
+
+import re
+import typing as t
+
+ROFF = {r"\-": "-", r"\(aq": "'", r"\e": "\\", r"\&": "", r"\fB": "", r"\fI": "", r"\fR": ""}
+
+
+def _plain(text: str) -> str:
+    for code, meaning in ROFF.items():
+        text = text.replace(code, meaning)
+    if re.search(r"\\[^\\]", text.replace("\\\\", "")):
+        raise SystemExit(f"a manual page has a code that the site does not know: {text}")
+    return text
+
+
+def _words(text: str) -> str:
+    """A manual page's text as Markdown that shows it as it is."""
+    return re.sub(r"([*_`<>\[\]#|$~])", r"\\\1", _plain(text))
+
+
+def command_page(manual: str, name: str) -> str:
+    """The page of a command, of its manual page: head, use, what it does, options, example."""
+    sections: dict[str, list[str]] = {}
+    for line in manual.splitlines():
+        if line.startswith(".SH "):
+            section = sections.setdefault(line[4:], [])
+        elif not line.startswith(".TH "):
+            section.append(line)
+    what = _plain(" ".join(sections["NAME"])).partition(" - ")[2]
+    out = [f"# gatewalk {name}", "", f"{_words(what[0].upper() + what[1:])}.", "", "```"]
+    out += [_plain(line.removeprefix(".B ")) for line in sections["SYNOPSIS"]]
+    out += ["```", "", f"```{{program}} gatewalk {name}", "```", ""]
+    for title in ("DESCRIPTION", "OPTIONS", "EXAMPLE"):
+        lines = sections.get(title, [])
+        if title != "DESCRIPTION":
+            out += [f"## {title.capitalize()}", ""]
+        while lines:
+            if lines[0] == ".nf":
+                end = lines.index(".fi")
+                out += ["```", *map(_plain, lines[1:end]), "```", ""]
+                lines = lines[end + 1:]
+            elif lines[0] == ".TP":
+                head, body, lines = lines[1], lines[2], lines[3:]
+                if title == "OPTIONS":
+                    out += [f"````{{option}} {_plain(head)}", _words(body), "````", ""]
+                else:
+                    out += ["", f"`{_plain(head.removeprefix('.I '))}`", f": {_words(body)}", ""]
+            elif lines[0].startswith("."):
+                out, lines = [*out, ""], lines[1:]
+            else:
+                out, lines = [*out, _words(lines[0])], lines[1:]
+        out.append("")
+    out += ["Exit statuses are [those of all commands](../cli/index.md#options-and-exit-status).", ""]
+    return "\n".join(out)
+
+
+def notebooks_page(names: list[str]) -> str:
+    return "\n".join(["# Notebooks", "", "Each is run when this site is built: its numbers and pictures are of this version.", "",
+                      "```{toctree}", ":maxdepth: 1", "", *(f"notebooks/{name}" for name in names), "```", ""])
+
+
+def _bibtex(kind: str, key: str, fields: dict[str, t.Any]) -> str:
+    lines = [f"  {name} = {{{value}}}," for name, value in fields.items()]
+    return "\n".join(["```", f"@{kind}{{{key},", *lines, "}", "```"])
+
+
+def _authors(people: list[dict[str, str]]) -> str:
+    return " and ".join(f"{{{who['name']}}}" if "name" in who else f"{who['family-names']}, {who['given-names']}" for who in people)
+
+
+def cite_page(cff: dict[str, t.Any]) -> str:
+    """How to cite, of CITATION.cff."""
+    out = ["# How to cite", "", cff["message"], "", "The program:", "",
+           _bibtex("software", "gatewalk", {"title": cff["title"], "author": _authors(cff["authors"]), "version": cff["version"],
+                                            "license": cff["license"]})]
+    for paper in cff["references"]:
+        key = paper["authors"][0]["family-names"].lower() + str(paper["year"])
+        out += ["", "The paper:", "",
+                _bibtex(paper["type"], key, {name: _authors(value) if name == "authors" else value for name, value in paper.items()
+                                             if name != "type"}).replace("  authors =", "  author =")]
+    return "\n".join([*out, ""])
