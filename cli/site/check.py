@@ -95,7 +95,7 @@ def missing(site: pathlib.Path, pages: dict[pathlib.Path, Page], root: pathlib.P
         if f"gatewalk.{name}" not in ids.get("python.html", ()):
             wrong.append(f"python.html: gatewalk.{name} is not documented")
     overview = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
-    commands = re.findall(r"^  (\w[\w-]*)  +\w", overview, re.M)
+    commands = re.findall(r"^  ([\w-]+)  +\w", overview, re.M)
     if not commands:
         wrong.append("gatewalk --help names no commands")
     for command in commands:
@@ -109,6 +109,11 @@ def missing(site: pathlib.Path, pages: dict[pathlib.Path, Page], root: pathlib.P
         coded = "8gatewalk" + "".join(f"{len(part)}{part}" for part in name.split("::"))
         if coded not in declared:
             wrong.append(f"cpp/: gatewalk::{name} is not documented")
+    said = {name: re.search(pattern, (root / name).read_text(encoding="utf-8"), re.M) for name, pattern in
+            {"CHANGELOG.md": r"^## ([\d.]+) - ", "CITATION.cff": r"^version: (\S+)", "cli/packaging/changelog": r"^gatewalk \((.*?)\)"}.items()}
+    for name, version in said.items():
+        if version is None or version[1] != gatewalk.__version__:
+            wrong.append(f"{name} is of version {version and version[1]}, not {gatewalk.__version__}")
     for page in prepare.tracked(root):
         if prepare.place_of(page).removesuffix(".md") + ".html" not in ids:
             wrong.append(f"{page} is no page of the site")

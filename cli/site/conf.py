@@ -37,6 +37,7 @@ html_css_files = ["site.css"]
 html_static_path = [os.path.join(os.path.dirname(__file__), "static")]
 html_copy_source = False
 html_show_sphinx = False
+html_show_search_summary = False  # which only a web server could give
 html_theme_options = {"navigation_with_keys": True}
 
 

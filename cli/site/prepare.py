@@ -81,11 +81,13 @@ def write(path: pathlib.Path, text: str) -> None:
 
 
 def commands(program: pathlib.Path, work: pathlib.Path, source: pathlib.Path) -> None:
-    """A page for each command, of the manual pages that the program writes."""
+    """A page for each command, of the manual pages that the program writes, and one that lists them."""
     subprocess.run([program, "help", "--write", work], check=True)
     for manual in sorted((work / "man/man1").glob("gatewalk-*.1")):
         name = manual.stem.removeprefix("gatewalk-")
         write(source / "commands" / f"{name}.md", text_of.command_page(manual.read_text(encoding="utf-8"), name))
+    overview = subprocess.run([program, "help"], capture_output=True, text=True, check=True).stdout
+    write(source / "commands.md", text_of.commands_page(overview))
 
 
 def gallery(root: pathlib.Path, program: pathlib.Path, work: pathlib.Path, source: pathlib.Path) -> None:
@@ -99,7 +101,6 @@ def gallery(root: pathlib.Path, program: pathlib.Path, work: pathlib.Path, sourc
     for figure in page["figure"]:
         if "picture" in figure:
             picture = root / figure["picture"]
-            shown = figure["commands"]
         else:
             for command in figure["commands"]:
                 done = subprocess.run(["sh", "-ec", command + " --quiet"], cwd=work, env=environment, capture_output=True,
@@ -107,12 +108,11 @@ def gallery(root: pathlib.Path, program: pathlib.Path, work: pathlib.Path, sourc
                 if done.returncode != 0:
                     raise SystemExit(f"cli/site/gallery.toml: {command}: {done.stderr}")
             picture = work / figure["file"]
-            shown = figure["commands"]
         # One of results/ may have the name of another.
         name = "-".join(picture.relative_to(root if "picture" in figure else work).parts)
         shutil.copyfile(picture, source / "gallery" / name)
         out.append(f"## {figure['title']}\n\n{figure['words']}\n\n![{figure['title']}](gallery/{name})\n\n```\n"
-                   + "\n".join(shown) + "\n```\n")
+                   + "\n".join(figure["commands"]) + "\n```\n")
     write(source / "gallery.md", "\n".join(out))
 
 
@@ -135,16 +135,17 @@ def main() -> None:
     pages = tracked(root)
     for page in pages:
         write(source / place_of(page), with_links(root, page, set(pages), source))
-    contents = (root / "cli/site/contents.txt").read_text(encoding="utf-8")
     notebooks(folder, source)
-    if folder is None:
-        contents = contents.replace("notebooks\n", "")
-    with open(source / "index.md", "a", encoding="utf-8") as front:
-        front.write("\n" + contents)
     commands(program, work / "help", source)
     gallery(root, program, work / "gallery", source)
     cpp.pages(root, work / "headers", source / "cpp")
     write(source / "cite.md", text_of.cite_page(yaml.safe_load((root / "CITATION.cff").read_text(encoding="utf-8"))))
+    contents = (root / "cli/site/contents.txt").read_text(encoding="utf-8")
+    for page in ("tutorial", "notebooks"):  # where there are none yet
+        if not (source / f"{page}.md").exists():
+            contents = contents.replace(f"{page}\n", "")
+    with open(source / "index.md", "a", encoding="utf-8") as front:
+        front.write("\n" + contents)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Pages that are made of other texts: a command's manual page, CITATION.cff, a list of notebooks."""
+"""Pages that are made of other texts: the program's help, CITATION.cff, a list of notebooks."""
 
 import re
 import typing as t
@@ -52,6 +52,17 @@ def command_page(manual: str, name: str) -> str:
                 out, lines = [*out, _words(lines[0])], lines[1:]
         out.append("")
     out += ["Exit statuses are [those of all commands](../cli/index.md#options-and-exit-status).", ""]
+    return "\n".join(out)
+
+
+def commands_page(overview: str) -> str:
+    """All commands in the groups of `gatewalk help`."""
+    out = ["# Commands", "", "Each page is the program's own help, `gatewalk help COMMAND`. The front page has the same [by what you",
+           "want](index.md#i-want-); [options and exit status](cli/index.md#options-and-exit-status) are those of all commands.", ""]
+    for title, lines in re.findall(r"^(\w.*)\n((?:  [\w-]+  +.*\n)+)", overview, re.M):
+        out += [f"## {title}", "", "```{toctree}", ":maxdepth: 1", ""]
+        out += [f"{what[0].upper()}{what[1:]}: {name} <commands/{name}>" for name, what in re.findall(r"^  ([\w-]+)  +(.*)$", lines, re.M)]
+        out += ["```", ""]
     return "\n".join(out)
 
 

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# The documentation site: it is built without a warning, its links lead somewhere, nothing comes from outside, nothing is
+# missing, the code of its page for Markov modellers runs, and a browser shows it light, dark, narrow and by keyboard. Then
+# faults are put into it, which must be found.   site_test.sh PROGRAM PYTHONPATH OUT
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+program=$(realpath "$1") modules=$(realpath "$2") out=$3
+[ -d "$root/tests/web/node_modules/playwright-core" ] || { echo "playwright-core is not installed (npm ci --prefix tests/web)"; exit 77; }
+"$root/cli/site/build.sh" "$program" "$modules" "$out"
+export PYTHONPATH=$modules PYTHONDONTWRITEBYTECODE=1
+check() { /usr/bin/python3 "$root/cli/site/check.py" "$1" "$root" "$program"; }
+check "$out/html"
+(cd "$root" && sed -n '/^```python$/,/^```$/{/^```/d;p}' cli/site/markov_modeller.md | /usr/bin/python3 -)
+node "$root/tests/web/site_test.mjs" "$out/html"
+
+failures=0
+broken=$out/broken
+must_find() {  # WHAT FILE SED-SCRIPT: what check.py must say of a site whose FILE was changed so
+  rm -rf "$broken"
+  cp -r "$out/html" "$broken"
+  sed -i "$3" "$broken/$2"
+  cmp -s "$broken/$2" "$out/html/$2" && { echo "FAILED: $2 was not changed by $3"; failures=1; }
+  check "$broken" >"$out/broken.log" && { echo "FAILED: not found: $1"; failures=1; }
+  grep -qF -- "$1" "$out/broken.log" || { echo "FAILED: no word of: $1"; cat "$out/broken.log"; failures=1; }
+}
+must_find 'which is not there' glossary.html 's|href="markov_modeller.html"|href="markov_modeler.html"|'
+must_find 'which has no such anchor' lattice/index.html 's|id="the-comparison"|id="comparison"|'
+must_find 'loads https://example.org/a.png' index.html 's|<h1>|<img src="https://example.org/a.png">&|'
+must_find 'loads //example.org/a.css' _static/site.css '$ a @import url(//example.org/a.css);'
+must_find 'gatewalk.power is not documented' python.html 's|id="gatewalk.power"||'
+must_find '--accuracy is not documented' commands/predict.html 's|id="cmdoption-gatewalk-predict-accuracy"||'
+must_find 'gatewalk::markov::propagate is not documented' cpp/markov.html 's|9propagateE|9propagated|g'
+rm -rf "$broken"
+[ $failures = 0 ] && echo "all fine"
+exit $failures
