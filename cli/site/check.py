@@ -106,7 +106,7 @@ def missing(site: pathlib.Path, pages: dict[pathlib.Path, Page], root: pathlib.P
                 wrong.append(f"{page}: {option} is not documented")
     declared = " ".join(" ".join(found) for page, found in ids.items() if page.startswith("cpp/"))
     for name in CPP:
-        coded = "8gatewalk" + "".join(f"{len(part)}{part}" for part in name.split("::"))
+        coded = "8gatewalk" + "".join(f"{len(part)}{part}" for part in name.split("::")) + "E"
         if coded not in declared:
             wrong.append(f"cpp/: gatewalk::{name} is not documented")
     said = {name: re.search(pattern, (root / name).read_text(encoding="utf-8"), re.M) for name, pattern in

@@ -30,6 +30,7 @@ napoleon_use_ivar = True
 
 breathe_projects = {"gatewalk": os.environ["GATEWALK_XML"]}
 breathe_default_project = "gatewalk"
+breathe_show_include = False  # the heading above says it whole
 
 html_theme = "furo"
 html_title = f"gatewalk {version}"

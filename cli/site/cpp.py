@@ -76,12 +76,13 @@ def _for_doxygen(text: str, group: str, title: str) -> str:
     return f"#pragma once\n{includes}\n{inside}{group_begins}" + "\n".join(lines) + "\n"
 
 
-def _first_sentence(element: ElementTree.Element | None) -> str:
-    words = " ".join("".join(element.itertext()).split()) if element is not None else ""
-    return re.sub(r"([*`_|\\\\])", r"\\\1", re.split(r"(?<=\.) ", words)[0])
+def _paragraphs(element: ElementTree.Element | None) -> list[str]:
+    """What a comment says, as text of Sphinx's."""
+    found = [" ".join("".join(part.itertext()).split()) for part in element] if element is not None else []
+    return [re.sub(r"([*`_|\\])", r"\\\1", words) for words in found if words]
 
 
-def _named(xml: pathlib.Path, group: str) -> tuple[str, list[str]]:
+def _named(xml: pathlib.Path, group: str) -> tuple[list[str], list[str]]:
     """What a header is about and what it declares. Names in its group's XML become whole ones: breathe takes them as they are."""
     path = xml / f"group__{group.replace('_', '__')}.xml"
     tree = ElementTree.parse(path)
@@ -93,7 +94,7 @@ def _named(xml: pathlib.Path, group: str) -> tuple[str, list[str]]:
     tree.write(path, encoding="utf-8", xml_declaration=True)
     about = tree.find("compounddef/detaileddescription")
     top = {name for name in names if "::operator" not in name and not any(name.startswith(other + "::") for other in names)}
-    return _first_sentence(about), sorted(top)
+    return _paragraphs(about), sorted(top)
 
 
 def pages(root: pathlib.Path, work: pathlib.Path, out: pathlib.Path) -> None:
@@ -118,9 +119,10 @@ def pages(root: pathlib.Path, work: pathlib.Path, out: pathlib.Path) -> None:
         text = [title, "=" * len(title), "", f"``namespace gatewalk::{folder.split('/')[0]}``", ""]
         index += [title, "-" * len(title), "", f"All of it: :doc:`{page}`.", "", ".. list-table::", "   :widths: 30 70", ""]
         for group, header in sorted(headers):
-            text += [header, "-" * len(header), "", f".. doxygengroup:: {group}", "   :content-only:", "   :members:",
-                     "   :undoc-members:", ""]
             about, names = _named(work / "xml", group)
+            text += [header, "-" * len(header), "", *(f"{words}\n" for words in about), f".. doxygengroup:: {group}",
+                     "   :content-only:", "   :members:", "   :undoc-members:", ""]
+            about = re.split(r"(?<=\.) ", " ".join(about))[0]
             links = ", ".join(f":cpp:any:`{name.rpartition('::')[2]} <{name}>`" for name in names)
             index += [f"   * - ``{header}``", f"     - {about}", "", f"       {links}"]
         index += [""]

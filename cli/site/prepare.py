@@ -42,37 +42,29 @@ def place_of(page: str) -> str:
     return str(path.with_name("index.md") if path.name == "README.md" else path)
 
 
-def with_links(root: pathlib.Path, page: str, pages: set[str], source: pathlib.Path) -> str:
+def with_links(root: pathlib.Path, page: str, text: str, places: dict[str, str], source: pathlib.Path) -> str:
     """A page's text with its links as they are on the site. What it links to beside pages is copied."""
     here = pathlib.PurePosixPath(page).parent
-    place = pathlib.PurePosixPath(place_of(page)).parent
-    lines = (root / page).read_text(encoding="utf-8")
+    place = pathlib.PurePosixPath(places[page]).parent
 
     def link(match: re.Match[str]) -> str:
         target, _, anchor = match["target"].partition("#")
-        if not target or re.match(r"[a-z]+:", target):
+        if not target or re.match(r"[a-z]+:", target) or (source / place / target).is_file():
             return match[0]
         path = os.path.normpath(here / target)
         if (root / path).is_dir():
             path = os.path.join(path, "README.md")
         if not (root / path).is_file():
-            number = lines.count("\n", 0, match.start()) + 1
-            raise SystemExit(f"{page}:{number}: a link to {match['target']}, which is not in the repository")
-        if path in pages:
-            path = place_of(path)
-        else:
+            raise SystemExit(f"{page}: a link to {match['target']}, which is not in the repository")
+        if path not in places:
             copy = source / path
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(root / path, copy)
-        return f"]({os.path.relpath(path, place)}{'#' + anchor if anchor else ''})"
+        return f"]({os.path.relpath(places.get(path, path), place)}{'#' + anchor if anchor else ''})"
 
     # Code is no place for links: fences, and words in backticks.
-    parts = re.split(r"(^```.*?^```$|`[^`\n]+`)", lines, flags=re.MULTILINE | re.DOTALL)
-    done, at = [], 0
-    for k, part in enumerate(parts):
-        done.append(part if k % 2 else re.sub(r"\]\((?P<target>[^()\s]+)\)", link, part))
-        at += len(part)
-    return "".join(done)
+    parts = re.split(r"(^```.*?^```$|`[^`\n]+`)", text, flags=re.MULTILINE | re.DOTALL)
+    return "".join(part if k % 2 else re.sub(r"\]\((?P<target>[^()\s]+)\)", link, part) for k, part in enumerate(parts))
 
 
 def write(path: pathlib.Path, text: str) -> None:
@@ -116,26 +108,23 @@ def gallery(root: pathlib.Path, program: pathlib.Path, work: pathlib.Path, sourc
     write(source / "gallery.md", "\n".join(out))
 
 
-def notebooks(folder: pathlib.Path | None, source: pathlib.Path) -> None:
-    """Executed notebooks as they are."""
-    names = []
-    if folder is not None:
-        shutil.copytree(folder, source / "notebooks", ignore=shutil.ignore_patterns("*.ipynb"))
-        names = sorted(path.stem for path in folder.glob("*.md"))
-    if names:
-        write(source / "notebooks.md", text_of.notebooks_page(names))
-
-
 def main() -> None:
     root, program, source = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
     folder = pathlib.Path(sys.argv[4]).resolve() if len(sys.argv) > 4 else None
     work = source.with_name("work")
     for old in (source, work):
         shutil.rmtree(old, ignore_errors=True)
-    pages = tracked(root)
-    for page in pages:
-        write(source / place_of(page), with_links(root, page, set(pages), source))
-    notebooks(folder, source)
+    texts = {page: (root / page).read_text(encoding="utf-8") for page in tracked(root)}
+    places = {page: place_of(page) for page in texts}
+    if folder is not None:  # pictures lie beside pages
+        shutil.copytree(folder, source / "notebooks")
+        for path in sorted(folder.glob("*.md")):
+            notebook = f"cli/site/notebooks/{path.stem}.ipynb"
+            texts[notebook] = path.read_text(encoding="utf-8")
+            places[notebook] = f"notebooks/{path.name}"
+        write(source / "notebooks.md", text_of.notebooks_page([path.stem for path in sorted(folder.glob("*.md"))]))
+    for page, text in texts.items():
+        write(source / places[page], with_links(root, page, text, places, source))
     commands(program, work / "help", source)
     gallery(root, program, work / "gallery", source)
     cpp.pages(root, work / "headers", source / "cpp")

@@ -59,11 +59,14 @@ def commands_page(overview: str) -> str:
     """All commands in the groups of `gatewalk help`."""
     out = ["# Commands", "", "Each page is the program's own help, `gatewalk help COMMAND`. The front page has the same [by what you",
            "want](index.md#i-want-); [options and exit status](cli/index.md#options-and-exit-status) are those of all commands.", ""]
+    names = []
     for title, lines in re.findall(r"^(\w.*)\n((?:  [\w-]+  +.*\n)+)", overview, re.M):
-        out += [f"## {title}", "", "```{toctree}", ":maxdepth: 1", ""]
-        out += [f"{what[0].upper()}{what[1:]}: {name} <commands/{name}>" for name, what in re.findall(r"^  ([\w-]+)  +(.*)$", lines, re.M)]
-        out += ["```", ""]
-    return "\n".join(out)
+        out += [f"## {title}", ""]
+        for name, what in re.findall(r"^  ([\w-]+)  +(.*)$", lines, re.M):
+            names.append(name)
+            out.append(f"- [{name}](commands/{name}.md): {what}")
+        out.append("")
+    return "\n".join([*out, "```{toctree}", ":hidden:", "", *(f"{name} <commands/{name}>" for name in names), "```", ""])
 
 
 def notebooks_page(names: list[str]) -> str:
