@@ -120,7 +120,8 @@ def main() -> None:
         shutil.copytree(folder, source / "notebooks")
         for path in sorted(folder.glob("*.md")):
             notebook = f"cli/site/notebooks/{path.stem}.ipynb"
-            texts[notebook] = path.read_text(encoding="utf-8")
+            # pandas' style of a table has empty lines, behind which Markdown takes it for text.
+            texts[notebook] = re.sub(r"<style scoped>.*?</style>\n", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
             places[notebook] = f"notebooks/{path.name}"
         write(source / "notebooks.md", text_of.notebooks_page([path.stem for path in sorted(folder.glob("*.md"))]))
     for page, text in texts.items():
