@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
-# The documentation site: it is built without a warning, its links lead somewhere, nothing comes from outside, nothing is
-# missing, the code of its page for Markov modellers runs, and a browser shows it light, dark, narrow and by keyboard. Then
-# faults are put into it, which must be found.   site_test.sh PROGRAM PYTHONPATH OUT
+# The documentation site: it is built without a warning, its links lead somewhere, nothing comes from outside, nothing
+# is missing, the code of its page for Markov modellers runs, and a browser shows it light, dark, narrow, by keyboard.
+# Then faults are put into it, which must be found.   site_test.sh PROGRAM PYTHONPATH OUT
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 program=$(realpath "$1") modules=$(realpath "$2") out=$3
-[ -d "$root/tests/web/node_modules/playwright-core" ] || { echo "playwright-core is not installed (npm ci --prefix tests/web)"; exit 77; }
+web=$root/tests/web
+[ -d "$web/node_modules/playwright-core" ] || { echo "playwright-core is not installed: npm ci --prefix tests/web"; exit 77; }
 "$root/cli/site/build.sh" "$program" "$modules" "$out"
 export PYTHONPATH=$modules PYTHONDONTWRITEBYTECODE=1
 check() { /usr/bin/python3 "$root/cli/site/check.py" "$1" "$root" "$program"; }
 check "$out/html"
 (cd "$root" && sed -n '/^```python$/,/^```$/{/^```/d;p}' cli/site/markov_modeller.md | /usr/bin/python3 -)
-node "$root/tests/web/site_test.mjs" "$out/html"
+node "$web/site_test.mjs" "$out/html"
 
 failures=0
 broken=$out/broken

@@ -18,11 +18,14 @@ import gatewalk
 import prepare
 
 # A user of the installed libraries looks for these first.
-CPP = ["dynamics::Transitions", "dynamics::StateSpace", "dynamics::GateParams", "dynamics::add_trials", "lattice::make_chain",
-       "lattice::chain_start", "lattice::predict_pooled", "markov::Chain", "markov::FieldChain", "markov::Counts",
-       "markov::propagate", "markov::Ending", "markov::Exit"]
-LOADS = {"script": "src", "img": "src", "iframe": "src", "source": "src", "video": "src", "audio": "src", "embed": "src",
-         "object": "data", "image": "href", "use": "href"}
+CPP = ["dynamics::Transitions", "dynamics::StateSpace", "dynamics::GateParams", "dynamics::add_trials",
+       "lattice::make_chain", "lattice::chain_start", "lattice::predict_pooled", "markov::Chain", "markov::FieldChain",
+       "markov::Counts", "markov::propagate", "markov::Ending", "markov::Exit"]
+LOADS = {"script": "src", "img": "src", "iframe": "src", "source": "src", "video": "src", "audio": "src",
+         "embed": "src", "object": "data", "image": "href", "use": "href"}
+NOT_LOADED = ("canonical", "index", "search", "next", "prev", "author", "copyright")
+VERSIONS = {"CHANGELOG.md": r"^## ([\d.]+) - ", "CITATION.cff": r"^version: (\S+)",
+            "cli/packaging/changelog": r"^gatewalk \((.*?)\)"}
 
 
 class Page(html.parser.HTMLParser):
@@ -42,7 +45,7 @@ class Page(html.parser.HTMLParser):
             self.ids.add(given["id"])
         if tag == "a" and "href" in given:
             self.links.append(given["href"])
-        if tag == "link" and given.get("rel") not in ("canonical", "index", "search", "next", "prev", "author", "copyright"):
+        if tag == "link" and given.get("rel") not in NOT_LOADED:
             self.loads.append(given.get("href", ""))
         if tag in LOADS and LOADS[tag] in given:
             target = given[LOADS[tag]]
@@ -109,9 +112,8 @@ def missing(site: pathlib.Path, pages: dict[pathlib.Path, Page], root: pathlib.P
         coded = "8gatewalk" + "".join(f"{len(part)}{part}" for part in name.split("::")) + "E"
         if coded not in declared:
             wrong.append(f"cpp/: gatewalk::{name} is not documented")
-    said = {name: re.search(pattern, (root / name).read_text(encoding="utf-8"), re.M) for name, pattern in
-            {"CHANGELOG.md": r"^## ([\d.]+) - ", "CITATION.cff": r"^version: (\S+)", "cli/packaging/changelog": r"^gatewalk \((.*?)\)"}.items()}
-    for name, version in said.items():
+    for name, pattern in VERSIONS.items():
+        version = re.search(pattern, (root / name).read_text(encoding="utf-8"), re.M)
         if version is None or version[1] != gatewalk.__version__:
             wrong.append(f"{name} is of version {version and version[1]}, not {gatewalk.__version__}")
     for page in prepare.tracked(root):

@@ -14,7 +14,8 @@ root = pathlib.Path(os.environ["GATEWALK_ROOT"])
 
 project = "gatewalk"
 author = copyright = "the gatewalk authors"
-release = version = re.search(r"^project\(gatewalk VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"), re.M)[1]
+cmake = (root / "CMakeLists.txt").read_text(encoding="utf-8")
+release = version = re.search(r"^project\(gatewalk VERSION ([\d.]+)", cmake, re.M)[1]
 extensions = ["myst_parser", "breathe", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 
 myst_enable_extensions = ["colon_fence", "deflist"]

@@ -31,8 +31,8 @@ INDEX = """C++ reference
 
 What ``cmake --install`` brings: ``find_package(gatewalk)``, then link ``gatewalk::dynamics``, ``gatewalk::markov`` or
 ``gatewalk::lattice``, which brings the other two. :doc:`The front page </index>` has a first program, :doc:`lattice
-</lattice/index>` says which function is which command. Folder, namespace and library have one name; ``dynamics/dynamics.h``,
-``markov/markov.h`` and ``lattice/lattice.h`` include what most programs need.
+</lattice/index>` says which function is which command. Folder, namespace and library have one name;
+``dynamics/dynamics.h``, ``markov/markov.h`` and ``lattice/lattice.h`` include what most programs need.
 
 Here are all headers with what they declare. A member's default with named parts (``= {.trials = 100}``) is not shown.
 """
@@ -41,7 +41,8 @@ Here are all headers with what they declare. A member's default with named parts
 def _installed(root: pathlib.Path, module: str) -> list[str]:
     """The headers that a module installs, as its CMakeLists.txt names them."""
     text = (root / module / "CMakeLists.txt").read_text(encoding="utf-8")
-    return [f"{module}/{name}" for name in re.findall(r"^gatewalk_library\(.*?PUBLIC(.*?)PRIVATE", text, re.M | re.S)[0].split()]
+    public = re.search(r"^gatewalk_library\(.*?PUBLIC(.*?)PRIVATE", text, re.M | re.S)[1]
+    return [f"{module}/{name}" for name in public.split()]
 
 
 def _escaped(text: str) -> str:
@@ -83,7 +84,7 @@ def _paragraphs(element: ElementTree.Element | None) -> list[str]:
 
 
 def _named(xml: pathlib.Path, group: str) -> tuple[list[str], list[str]]:
-    """What a header is about and what it declares. Names in its group's XML become whole ones: breathe takes them as they are."""
+    """What a header is about and declares. Names in its group's XML become whole ones, as breathe takes them."""
     path = xml / f"group__{group.replace('_', '__')}.xml"
     tree = ElementTree.parse(path)
     names = [element.text or "" for element in tree.iter("innerclass")]
@@ -93,7 +94,8 @@ def _named(xml: pathlib.Path, group: str) -> tuple[list[str], list[str]]:
         member.find("name").text = whole
     tree.write(path, encoding="utf-8", xml_declaration=True)
     about = tree.find("compounddef/detaileddescription")
-    top = {name for name in names if "::operator" not in name and not any(name.startswith(other + "::") for other in names)}
+    inner = {name for name in names if any(name.startswith(other + "::") for other in names)}
+    top = {name for name in names if "::operator" not in name} - inner
     return _paragraphs(about), sorted(top)
 
 
@@ -117,7 +119,8 @@ def pages(root: pathlib.Path, work: pathlib.Path, out: pathlib.Path) -> None:
     for folder, headers in folders.items():
         title, page = f"{folder}/", folder.replace("/", "_")
         text = [title, "=" * len(title), "", f"``namespace gatewalk::{folder.split('/')[0]}``", ""]
-        index += [title, "-" * len(title), "", f"All of it: :doc:`{page}`.", "", ".. list-table::", "   :widths: 30 70", ""]
+        index += [title, "-" * len(title), "", f"All of it: :doc:`{page}`.", ""]
+        index += [".. list-table::", "   :widths: 30 70", ""]
         for group, header in sorted(headers):
             about, names = _named(work / "xml", group)
             text += [header, "-" * len(header), "", *(f"{words}\n" for words in about), f".. doxygengroup:: {group}",

@@ -1,6 +1,6 @@
-"""Debian 12's furo as its authors meant it: without a web server its script does not start, a style sheet is looked for
-where only a server of Debian has it, and dark pages are lost for readers whose system is dark. A furo without these faults
-is left as it is."""
+"""Debian 12's furo as its authors meant it: without a web server its script does not start, a style sheet is looked
+for where only a server of Debian has it, and dark pages are lost for readers whose system is dark. A furo without these
+faults is left as it is."""
 
 import pathlib
 import re
@@ -25,7 +25,8 @@ def repair(static: pathlib.Path) -> None:
     text = script.read_text(encoding="utf-8")
     imported = re.match(r'import Gumshoe from "\./([\w.-]+)";\n', text)
     if imported:  # browsers load no modules from files
-        script.write_text((static / "scripts" / imported[1]).read_text(encoding="utf-8") + text[imported.end():], encoding="utf-8")
+        needed = (static / "scripts" / imported[1]).read_text(encoding="utf-8")
+        script.write_text(needed + text[imported.end():], encoding="utf-8")
 
     sheet = static / "styles/furo.css"
     css = sheet.read_text(encoding="utf-8")

@@ -95,8 +95,8 @@ def gallery(root: pathlib.Path, program: pathlib.Path, work: pathlib.Path, sourc
             picture = root / figure["picture"]
         else:
             for command in figure["commands"]:
-                done = subprocess.run(["sh", "-ec", command + " --quiet"], cwd=work, env=environment, capture_output=True,
-                                      text=True, check=False)
+                done = subprocess.run(["sh", "-ec", command + " --quiet"], cwd=work, env=environment,
+                                      capture_output=True, text=True, check=False)
                 if done.returncode != 0:
                     raise SystemExit(f"cli/site/gallery.toml: {command}: {done.stderr}")
             picture = work / figure["file"]
@@ -121,7 +121,8 @@ def main() -> None:
         for path in sorted(folder.glob("*.md")):
             notebook = f"cli/site/notebooks/{path.stem}.ipynb"
             # pandas' style of a table has empty lines, behind which Markdown takes it for text.
-            texts[notebook] = re.sub(r"<style scoped>.*?</style>\n", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+            text = path.read_text(encoding="utf-8")
+            texts[notebook] = re.sub(r"<style scoped>.*?</style>\n", "", text, flags=re.DOTALL)
             places[notebook] = f"notebooks/{path.name}"
         write(source / "notebooks.md", text_of.notebooks_page([path.stem for path in sorted(folder.glob("*.md"))]))
     for page, text in texts.items():

@@ -57,8 +57,9 @@ def command_page(manual: str, name: str) -> str:
 
 def commands_page(overview: str) -> str:
     """All commands in the groups of `gatewalk help`."""
-    out = ["# Commands", "", "Each page is the program's own help, `gatewalk help COMMAND`. The front page has the same [by what you",
-           "want](index.md#i-want-); [options and exit status](cli/index.md#options-and-exit-status) are those of all commands.", ""]
+    out = ["# Commands", "", "Each page is the program's own help, `gatewalk help COMMAND`. The front page has them",
+           "[by what you want](index.md#i-want-); [options and exit status](cli/index.md#options-and-exit-status) are",
+           "those of all commands.", ""]
     names = []
     for title, lines in re.findall(r"^(\w.*)\n((?:  [\w-]+  +.*\n)+)", overview, re.M):
         out += [f"## {title}", ""]
@@ -66,12 +67,14 @@ def commands_page(overview: str) -> str:
             names.append(name)
             out.append(f"- [{name}](commands/{name}.md): {what}")
         out.append("")
-    return "\n".join([*out, "```{toctree}", ":hidden:", "", *(f"{name} <commands/{name}>" for name in names), "```", ""])
+    out += ["```{toctree}", ":hidden:", "", *(f"{name} <commands/{name}>" for name in names), "```", ""]
+    return "\n".join(out)
 
 
 def notebooks_page(names: list[str]) -> str:
-    return "\n".join(["# Notebooks", "", "Each is run when this site is built: its numbers and pictures are of this version.", "",
-                      "```{toctree}", ":maxdepth: 1", "", *(f"notebooks/{name}" for name in names), "```", ""])
+    out = ["# Notebooks", "", "Each is run when this site is built: its numbers and pictures are of this version.", ""]
+    out += ["```{toctree}", ":maxdepth: 1", "", *(f"notebooks/{name}" for name in names), "```", ""]
+    return "\n".join(out)
 
 
 def _bibtex(kind: str, key: str, fields: dict[str, t.Any]) -> str:
@@ -80,17 +83,20 @@ def _bibtex(kind: str, key: str, fields: dict[str, t.Any]) -> str:
 
 
 def _authors(people: list[dict[str, str]]) -> str:
-    return " and ".join(f"{{{who['name']}}}" if "name" in who else f"{who['family-names']}, {who['given-names']}" for who in people)
+    def one(who: dict[str, str]) -> str:
+        return f"{{{who['name']}}}" if "name" in who else f"{who['family-names']}, {who['given-names']}"
+
+    return " and ".join(map(one, people))
 
 
 def cite_page(cff: dict[str, t.Any]) -> str:
     """How to cite, of CITATION.cff."""
-    out = ["# How to cite", "", cff["message"], "", "The program:", "",
-           _bibtex("software", "gatewalk", {"title": cff["title"], "author": _authors(cff["authors"]), "version": cff["version"],
-                                            "license": cff["license"]})]
+    program = {"title": cff["title"], "author": _authors(cff["authors"]), "version": cff["version"],
+               "license": cff["license"]}
+    out = ["# How to cite", "", cff["message"], "", "The program:", "", _bibtex("software", "gatewalk", program)]
     for paper in cff["references"]:
         key = paper["authors"][0]["family-names"].lower() + str(paper["year"])
-        out += ["", "The paper:", "",
-                _bibtex(paper["type"], key, {name: _authors(value) if name == "authors" else value for name, value in paper.items()
-                                             if name != "type"}).replace("  authors =", "  author =")]
+        fields = {"title": paper["title"], "author": _authors(paper["authors"]), "journal": paper["journal"],
+                  "year": paper["year"]}
+        out += ["", "The paper:", "", _bibtex(paper["type"], key, fields)]
     return "\n".join([*out, ""])

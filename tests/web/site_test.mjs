@@ -1,4 +1,4 @@
-// The documentation site as a reader sees it, from files, without network: light and dark, wide and narrow, by keyboard.
+// The documentation site as a reader sees it, from files, without network: light, dark, wide, narrow, by keyboard.
 //   node site_test.mjs HTML
 import {join} from 'node:path';
 import {browse, close} from './browser.mjs';
@@ -26,7 +26,8 @@ for (const name of pages) {
         const over = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
         if (over > 0) fail(`${what}: ${over} px too wide`);
         if ((await brightness(page) < 128) !== (colorScheme === 'dark')) fail(`${what}: not ${colorScheme}`);
-        const unseen = await page.evaluate(() => [...document.images].filter(i => i.complete && !i.naturalWidth).map(i => i.src));
+        const unseen = await page.evaluate(() =>
+          [...document.images].filter(image => image.complete && !image.naturalWidth).map(image => image.src));
         if (unseen.length) fail(`${what}: no picture ${unseen}`);
         for (const fault of faults) fail(`${what}: ${fault}`);
       });
@@ -34,7 +35,8 @@ for (const name of pages) {
   }
 }
 
-await browse(join(site, 'index.html'), {colorScheme: 'light', viewport: {width: 1280, height: 900}}, async (page, faults) => {
+const wide = {colorScheme: 'light', viewport: {width: 1280, height: 900}};
+await browse(join(site, 'index.html'), wide, async (page, faults) => {
   await page.waitForLoadState();
   // By Tab alone: the search field, the pages, the switch between light and dark, all with a visible focus.
   const reached = new Set();
@@ -42,7 +44,8 @@ await browse(join(site, 'index.html'), {colorScheme: 'light', viewport: {width: 
     await page.keyboard.press('Tab');
     reached.add(await page.evaluate(() => {
       const at = document.activeElement;
-      return at.classList.contains('theme-toggle') ? 'theme-toggle' : at.name === 'q' ? 'search' : at.getAttribute('href') ?? '';
+      if (at.classList.contains('theme-toggle')) return 'theme-toggle';
+      return at.name === 'q' ? 'search' : at.getAttribute('href') ?? '';
     }));
   }
   for (const what of ['search', 'gallery.html', 'python.html', 'theme-toggle']) {
@@ -54,10 +57,13 @@ await browse(join(site, 'index.html'), {colorScheme: 'light', viewport: {width: 
   if (await brightness(page) > 128) fail('Enter on the switch: not dark');
   const picture = await page.evaluate(() => getComputedStyle(document.images[0]).colorScheme);
   if (picture !== 'dark') fail('pictures stay light');
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press('ArrowRight');
+  await page.waitForURL(/(tutorial|gallery)\.html$/, {timeout: 10000}).catch(() => fail('ArrowRight leads nowhere'));
   for (const fault of faults) fail(`index: ${fault}`);
 });
 
-await browse(join(site, 'search.html'), {viewport: {width: 1280, height: 900}}, async (page, faults) => {
+await browse(join(site, 'search.html'), wide, async (page, faults) => {
   await page.fill('input[name=q]', 'committor');
   await page.keyboard.press('Enter');
   await page.waitForSelector('#search-results li a', {timeout: 10000}).catch(() => fail('the search finds nothing'));
