@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, runs the tests. ./test.sh [ctest arguments], e.g. -R Impact
+# ./test.sh elsewhere: the tests in other programs and places (Python's wheel, R, Octave, the site of the
+# documentation, packages in a clean root), which need many packages and some minutes.
 set -euo pipefail
 cd "$(dirname "$0")"
 . ./.ci/prepare
@@ -11,7 +13,15 @@ packages+=(libchipmunk-dev)
 packages+=(slurmctld slurmd slurm-client munge libopenmpi-dev openmpi-bin)
 # The Python module, and what it makes tables and pictures with.
 packages+=(pybind11-dev python3-dev python3-numpy python3-scipy python3-pandas python3-xarray python3-matplotlib python3-venv
-  python3-pip python3-wheel mypy)
+  python3-pip python3-wheel mypy python3-jsonschema)
+which=(-LE elsewhere)
+if [ "${1-}" = elsewhere ]; then
+  shift
+  which=(-L elsewhere)
+  packages+=(python3-sphinx furo python3-myst-parser python3-breathe doxygen jupyter-nbconvert python3-ipykernel)
+  packages+=(python3-netcdf4 python3-h5py r-base-core r-cran-ncdf4 r-cran-markovchain octave octave-netcdf)
+  packages+=(mmdebstrap lintian man-db zsh fish pkg-config)
+fi
 # Some machines bring an npm of their own, which Debian's package would conflict with.
 command -v npm >/dev/null || packages+=(npm)
 build_gatewalk -DBUILD_TESTING=ON -DGATEWALK_PYTHON=ON -DPython_EXECUTABLE=/usr/bin/python3
@@ -22,4 +32,4 @@ if ! cmp -s $web/package-lock.json $web/node_modules/.installed-lock; then
   cp $web/package-lock.json $web/node_modules/.installed-lock
 fi
 # One more than there are processors: some tests wait, for a page or a signal.
-ctest --test-dir build --output-on-failure -j $(($(nproc) + 1)) "$@"
+ctest --test-dir build --output-on-failure -j $(($(nproc) + 1)) "${which[@]}" "$@"

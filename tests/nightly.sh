@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What takes too long for every change, each in a build folder of its own (build-odr, build-alone ...):
-#   tests/nightly.sh [odr] [alone] [small] [debug] [clang]      all five without an argument
+#   tests/nightly.sh [odr] [alone] [small] [debug] [clang] [reproducible]      all six without an argument
 # odr    links the whole program with -flto -Wodr: no name may have two definitions. Without optimisation,
 #        which inlines functions before their types are compared. Two definitions within one batch of
 #        sources are an error of the compiler; the linker compares the batches.
@@ -10,6 +10,8 @@
 # debug  g++ with the checks of the standard library, of Eigen and of TBB: unit tests. -Og, with which those
 #        of the dynamics take three to four times as long as in a Release build.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
+# reproducible  the sources of the last commit, built in two folders of other names: the packages have the
+#        same bytes.
 # What a step prints is in nightly-STEP.log; of one that fails the end is shown.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -85,11 +87,32 @@ clang() {
   ctest --test-dir build-clang --output-on-failure -j "$(nproc)" -E "$web"
 }
 
-[ $# -gt 0 ] || set -- odr alone small debug clang
+reproducible() {
+  local work commit folder
+  work=$(mktemp -d)
+  commit=$(git rev-parse HEAD)
+  export SOURCE_DATE_EPOCH
+  SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+  for folder in a a/longer/name; do
+    mkdir -p "$work/$folder"
+    git archive --prefix=source/ "$commit" | tar -x -C "$work/$folder"
+    # Each compiled anew.
+    CCACHE_DISABLE=1 cmake -S "$work/$folder/source" -B "$work/$folder/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF \
+      -DGATEWALK_PYTHON=ON -DPython_EXECUTABLE=/usr/bin/python3 -DGATEWALK_COMMIT="${commit:0:12}"
+    CCACHE_DISABLE=1 cmake --build "$work/$folder/build"
+    (cd "$work/$folder/build" && cpack -G DEB)
+  done
+  sha256sum "$work"/a/build/*.deb "$work"/a/longer/name/build/*.deb
+  for folder in "$work"/a/build/*.deb; do cmp "$folder" "$work/a/longer/name/build/$(basename "$folder")"; done
+  rm -rf "$work"
+}
+
+[ $# -gt 0 ] || set -- odr alone small debug clang reproducible
 for step in "$@"; do
-  case $step in odr | alone | small | debug | clang) ;; *) echo "no step '$step': odr, alone, small, debug, clang" >&2; exit 2 ;; esac
+  case $step in odr | alone | small | debug | clang | reproducible) ;; *) echo "no step '$step': odr, alone, small, debug, clang, reproducible" >&2; exit 2 ;; esac
 done
 case " $* " in *" clang "*) packages+=(clang) ;; esac
+case " $* " in *" reproducible "*) packages+=(pybind11-dev python3-dev python3-numpy) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac
 if command -v apt-get >/dev/null; then install_missing; fi
 failed=0

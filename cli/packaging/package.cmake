@@ -10,6 +10,7 @@ install(CODE "
   file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/gatewalk*.1\")
   execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
+install(DIRECTORY cli/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
 install(DIRECTORY cli/cluster DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
 install(TARGETS dynamics markov lattice EXPORT gatewalk COMPONENT dev
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gatewalk COMPONENT dev)
@@ -26,11 +27,17 @@ find_dependency(TBB)
 find_dependency(hwy CONFIG)
 find_dependency(netCDF)
 find_dependency(tomlplusplus)
+find_path(GATEWALK_RANDOM123_INCLUDE_DIR Random123/philox.h)
+if(NOT GATEWALK_RANDOM123_INCLUDE_DIR)
+  set(gatewalk_FOUND FALSE)
+  set(gatewalk_NOT_FOUND_MESSAGE "Random123/philox.h was not found (Debian: librandom123-dev)")
+  return()
+endif()
 @find_png@
 include("${CMAKE_CURRENT_LIST_DIR}/gatewalkTargets.cmake")
 ]] @ONLY)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/gatewalkConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion)
+  COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/gatewalkConfig.cmake
   ${PROJECT_BINARY_DIR}/gatewalkConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/gatewalk COMPONENT dev)
@@ -91,7 +98,7 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Multi-scale Markov chain analysis of lo
  Runs a body through single gates of a cluttered field, chains the outcomes
  over the whole field, and compares the final gates with the full dynamics.")
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libhwy-dev, libnetcdf-dev, libtomlplusplus-dev, libsuitesparse-dev, libpng-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libhwy-dev, librandom123-dev, libnetcdf-dev, libtomlplusplus-dev, libsuitesparse-dev, libpng-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Libraries of gatewalk: dynamics, chains, fields
  Static libraries with their headers, for CMake and pkg-config.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

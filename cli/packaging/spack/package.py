@@ -28,6 +28,7 @@ class Gatewalk(CMakePackage):
     depends_on("tomlplusplus")
     depends_on("nlohmann-json")
     depends_on("zlib-api")
+    depends_on("libarchive")
     depends_on("mpi", when="+mpi")
     depends_on("cairo", when="+video")
     depends_on("libpng@1.6:", when="+video")

@@ -1,0 +1,147 @@
+#!/usr/bin/python3
+"""JSON as the schemas of cli/schemas promise it: many command lines of every command, validated; a schema that has a
+key no result has any more is told too.   schemas_test.py GATEWALK ROOT"""
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+try:
+    from jsonschema import Draft202012Validator, RefResolver
+except ImportError:
+    print("python3-jsonschema is not installed")
+    sys.exit(77)
+
+gatewalk, root = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+schemas = {path.name: json.loads(path.read_text()) for path in (root / "cli/schemas").glob("*.json")}
+store = {schema["$id"]: schema for schema in schemas.values()}
+failures = []
+seen = {}  # by command: the keys at the top
+
+# What makes the files that the others read; no results of interest.
+MAKE = """
+sample runs -o runs.csv
+sample cell -o cell.toml
+sample tracks -o tracks.csv
+sample observed -o observed.csv
+sample field -o field.toml
+sample mixed -o mixed.toml
+sample walker -o walker.toml
+"""
+# {json}: the file that the result goes to.
+LINES = """
+sample
+sample walker
+scene walker.toml
+scene mixed.toml
+gate field.toml --trials 100
+gate walker.toml --set run.method=auto --trials 50
+sweep field.toml --vary forces.propulsion_N=6,8 --trials 20
+trace field.toml --trials 2
+trace mixed.toml --field --trials 1
+build field.toml --trials 5 -o bins.nc
+build field.toml --bins auto --trials 5 -o auto.nc
+build field.toml --gate-runs 500 -o tree.nc
+build field.toml --gate-runs 500 --starts all -o all.nc
+build mixed.toml --gate-runs 500 -o mixed.nc
+build runs.csv --cell cell.toml -o runs.nc
+passages tracks.csv --cell cell.toml -o passages.csv --fps 10 --metres-per-unit 0.001 --fastest 0.4 --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y
+build passages.csv --cell cell.toml -o passages.nc
+show bins.nc
+show tree.nc
+show mixed.nc
+show passages.nc
+walk bins.nc
+walk passages.nc
+export tree.nc --set field.max_gates=0 -o x.drn
+export bins.nc --gate --counts -o gate.csv
+export tree.nc -o x.dtrajs
+import gate.csv --states gate.states.csv --start 12 -o own.nc
+predict own.nc
+analyze own.nc
+show own.nc
+predict field.toml --accuracy 0.2
+predict field.toml --accuracy 0.2 --start 0,0,15 --start 4,5,10
+predict bins.nc
+predict bins.nc --start 4,5,10 --set field.max_gates=0
+predict mixed.toml --accuracy 0.2
+predict passages.nc
+predict runs.nc
+predict tree.nc --set field.columns=401 --set field.rows=401
+analyze field.toml --accuracy 0.2 --runs 200
+analyze mixed.toml --accuracy 0.2 --runs 0 --trials 50 --target trapped
+analyze bins.nc --runs 0
+analyze passages.nc --set field.rows=4
+analyze field.toml --accuracy 0.2 --runs 0 --set field.max_gates=0 --lump 2,1,1
+lattice field.toml --trials 50
+lattice mixed.toml --trials 50
+rare field.toml --row 4 --accuracy 0.5
+validate field.toml --trials 50 --accuracy 0.2
+validate field.toml --trials 50 --bins paper
+validate field.toml --trials 50 --accuracy 0.2 --observed observed.csv
+validate passages.nc
+power field.toml --trials 20 --accuracy 0.2
+power field.toml --trials 20 --accuracy 0.2 --versus forces.propulsion_N=8
+power passages.nc --trials 20
+"""
+# Those with a folder of results, in which their JSON stands.
+FOLDERS = {"landscape field.toml": "landscape.json", "landscape field.toml --trials 20": "landscape.json",
+           "stability --quick": "stability.json", "chart-field field.toml --trials 50": "fidelity.json",
+           "chart field.toml --trials 20": "chart.json"}
+
+
+def run(words, want=(0,)):
+    done = subprocess.run([gatewalk, *words, "--quiet", "--force"], capture_output=True, text=True, check=False)
+    if done.returncode not in want:
+        failures.append(f"{' '.join(words)}: status {done.returncode}: {done.stderr.strip()[:300]}")
+    return done.returncode
+
+
+def check(name, result, line):
+    schema = schemas.get(f"{name}.schema.json")
+    if schema is None:
+        failures.append(f"{name}: has no schema")
+        return
+    seen.setdefault(name, set()).update(result)
+    for error in list(Draft202012Validator(schema, resolver=RefResolver(schema["$id"], schema, store=store)).iter_errors(result))[:3]:
+        failures.append(f"{line}: {'/'.join(map(str, error.absolute_path))}: {error.message[:300]}")
+
+
+def main():
+    for schema in schemas.values():
+        Draft202012Validator.check_schema(schema)
+    for line in filter(None, MAKE.split("\n")):
+        run(line.split())
+    for line in filter(None, LINES.split("\n")):
+        words = line.split()
+        if run([*words, "--json", "result.json"]) == 0:
+            check(words[0], json.loads(Path("result.json").read_text()), line)
+    for line, file in FOLDERS.items():
+        words = line.split()
+        if run([*words, "-o", "out"]) == 0:
+            check(words[0], json.loads(Path("out", file).read_text()), line)
+    # A key that the schemas promise always is in each result, by the schema; others were seen in some.
+    for name, keys in seen.items():
+        for key in set(schemas[f"{name}.schema.json"].get("required", ())) - keys:
+            failures.append(f"{name}: no result has {key}")
+    commands = subprocess.run([gatewalk, "--help"], capture_output=True, text=True, check=True).stdout
+    for row in commands.split("\n"):
+        if row.startswith("  ") and row.split()[0] not in ("merge",) and f"{row.split()[0]}.schema.json" not in schemas:
+            failures.append(f"{row.split()[0]}: has no schema")
+    # A schema refuses what it does not know.
+    wrong = json.loads(Path("result.json").read_text())
+    wrong["no_such_key"] = 1
+    schema = schemas["power.schema.json"]
+    if Draft202012Validator(schema, resolver=RefResolver(schema["$id"], schema, store=store)).is_valid(wrong):
+        failures.append("a key that is none is taken")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    import os
+
+    os.chdir(folder)
+    main()
+for failure in failures:
+    print("FAILED:", failure)
+sys.exit(1 if failures else 0)
