@@ -99,9 +99,9 @@ PageStates states_of(const Options& options, const Subject& s,
 Json analysis_of(const Options& options, const Subject& s, const lattice::AnalysedChain& chain,
                  const PageStart& start) {
   const lattice::Analysis analysis = lattice::analyze(
-      s.problem, chain, {.lumping = lattice::LumpingParts(
-                             s.problem.map().section.coordinates.size(), 1),
-                         .seed = options.seed()},
+      s.problem, chain,
+      {.lumping = lattice::LumpingParts(s.problem.map().section.coordinates.size(), 1),
+       .seed = options.seed()},
       options.work());
   const ShownField shown = s.shown();
   const std::optional<DirectTrials> direct;
@@ -216,24 +216,24 @@ void write_page(const Options& options, const Subject& s,
                             {"can_run", !s.is_recorded() && s.pool.has_value()}},
                   .analysis = shown_of(analysis)};
   const Json made_by = s.made_by(options);
-  const std::string words = endings_text(
-      shown_endings(starts.front().endings, starts.front().final),
-      "of bodies from " + title_of(shown.map.section, starts.front().start));
+  const std::string words =
+      endings_text(shown_endings(starts.front().endings, starts.front().final),
+                   "of bodies from " + title_of(shown.map.section, starts.front().start));
   const auto text_of_page = [&](bool gates_95) {
     const Json json = to_json(page, gates_95);
-    return filled(carried_file("answer.html"),
-                  {{"title", escaped(page.title)},
-                   {"cell", s.scene ? "gate" : "cell"},
-                   {"words", escaped(words)},
-                   {"css", std::string(carried_file("report.css"))},
-                   {"answer_css", std::string(carried_file("answer.css"))},
-                   {"theme", std::string(carried_file("theme.js"))},
-                   {"script", std::string(carried_file("answer.js"))},
-                   {"command", escaped(made_by.at("command").get<std::string>())},
-                   {"version", escaped(made_by.value("version", "") + " " +
-                                       made_by.value("commit", ""))},
-                   {"scene", escaped(made_by.value(s.scene ? "scene" : "cell", ""))},
-                   {"answer", script_json(json)}});
+    return filled(
+        carried_file("answer.html"),
+        {{"title", escaped(page.title)},
+         {"cell", s.scene ? "gate" : "cell"},
+         {"words", escaped(words)},
+         {"css", std::string(carried_file("report.css"))},
+         {"answer_css", std::string(carried_file("answer.css"))},
+         {"theme", std::string(carried_file("theme.js"))},
+         {"script", std::string(carried_file("answer.js"))},
+         {"command", escaped(made_by.at("command").get<std::string>())},
+         {"version", escaped(made_by.value("version", "") + " " + made_by.value("commit", ""))},
+         {"scene", escaped(made_by.value(s.scene ? "scene" : "cell", ""))},
+         {"answer", script_json(json)}});
   };
   std::string text = text_of_page(true);
   if (text.size() > kMostBytes) text = text_of_page(false);

@@ -28,8 +28,8 @@ void check_page(const Options& options, const Subject& s);
 [[nodiscard]] std::vector<PageStart> page_starts(const AnalysedSubject& analysed, const Subject& s);
 
 /// Writes the page, if it is asked for. Starts' states are those of the file, if there is one, else
-/// of the chain that the answer comes from. `analysis`: gatewalk analyze's, made here if it is null.
-/// Throws std::runtime_error for what is larger than 2 MB even without what can be left out.
+/// of the chain that the answer comes from. `analysis`: gatewalk analyze's, made here if it is
+/// null. Throws std::runtime_error for what is larger than 2 MB even without what can be left out.
 void write_page(const Options& options, const Subject& s,
                 const std::optional<lattice::RunPool>& of_file,
                 const std::vector<PageStart>& starts, Json analysis = {});

@@ -2,6 +2,7 @@
 /// How walks end, told by everything at once: after each first draw, and after visits to each cell.
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "markov/chain.h"

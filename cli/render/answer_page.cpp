@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "lattice/scene/gates.h"
 
@@ -224,7 +223,8 @@ Json to_json(const AnswerPage& page, bool gates_95) {
   }
   const auto back_at = static_cast<std::size_t>(lattice::kWentBack.ending);
   bool back = false;
-  for (const Known& k : places) back = back || (k.gates->size() > 0 && k.endings->share[back_at] > 0.0);
+  for (const Known& k : places)
+    back = back || (k.gates->size() > 0 && k.endings->share[back_at] > 0.0);
   Json names = Json::array();
   for (const EndingName& e : kAllEndingNames)
     if (back || e.ending != lattice::kWentBack.ending)

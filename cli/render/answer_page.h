@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/json_fwd.h"
+#include "cli/render/json.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
 #include "lattice/study/outlook.h"

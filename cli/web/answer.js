@@ -618,8 +618,8 @@ class Drawing {
     const {answer} = this;
     let offset = null;
     const at = (e) => {
-      const box = this.svg.getBoundingClientRect(), k = this.svg.viewBox.baseVal.width / box.width;
-      return [(e.clientX - box.left) * k / this.scale + this.x0, this.y1 - (e.clientY - box.top) * k / this.scale];
+      const p = new DOMPoint(e.clientX, e.clientY).matrixTransform(this.svg.getScreenCTM().inverse());
+      return [p.x / this.scale + this.x0, this.y1 - p.y / this.scale];
     };
     group.addEventListener('pointerdown', (e) => {
       const [x, y] = at(e), [d, vx, vy] = answer.start.at;

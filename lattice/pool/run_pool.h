@@ -126,8 +126,8 @@ struct Kernel {
                                                                      const RunPool& pool,
                                                                      TrialGroup group = {});
 
-/// Runs of all trials through cells of this type, as those of a kernel: from the states of one space
-/// (rows) to the outputs of another, with mirror images where the cells are symmetric.
+/// Runs of all trials through cells of this type, as those of a kernel: from the states of one
+/// space (rows) to the outputs of another, with mirror images where the cells are symmetric.
 [[nodiscard]] markov::Counts counts_between(const dynamics::StateSpace& rows,
                                             const dynamics::StateSpace& outputs,
                                             const dynamics::CellMap& map, const RunPool& pool,

@@ -33,9 +33,8 @@ class MeanOfRuns {
  public:
   explicit MeanOfRuns(double runs)
       : runs_(runs),
-        quantile_(runs < 2.0
-                      ? 0.0
-                      : boost::math::quantile(boost::math::students_t(runs - 1.0), 0.975)) {}
+        quantile_(runs < 2.0 ? 0.0
+                             : boost::math::quantile(boost::math::students_t(runs - 1.0), 0.975)) {}
   [[nodiscard]] double half_width(double mean, double mean_square) const {
     if (runs_ < 2.0) return 1.0;
     return quantile_ * std::sqrt(std::max(0.0, mean_square - mean * mean) / (runs_ - 1.0));
@@ -134,9 +133,8 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
                  squares = means_of(rows, runs, follows.square());
   std::vector<EndTable> kernels;
   for (std::size_t g = 0; g < outcomes.groups.size(); ++g)
-    kernels.push_back(
-        means_of(join * counts_between(space, chain.groups[g].space, map, pool, type), runs,
-                 outcomes.groups[g].by_output));
+    kernels.push_back(means_of(join * counts_between(space, chain.groups[g].space, map, pool, type),
+                               runs, outcomes.groups[g].by_output));
   const auto bodies = static_cast<double>(pool.bodies()),
              gate_runs = static_cast<double>(pool.gate_runs());
   const auto interval = [&](Eigen::Index state, Eigen::Index end, double n,
@@ -149,8 +147,7 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
     }
     std::vector<double> groups;
     for (const EndTable& k : kernels) groups.push_back(k(state, end));
-    return share_95(share, groups, {n, gate_runs},
-                    first.half_width(share, squares(state, end)));
+    return share_95(share, groups, {n, gate_runs}, first.half_width(share, squares(state, end)));
   };
   for (int& state : out.of_leaf)  // where nobody ever entered
     if (state >= 0 && runs[static_cast<std::size_t>(state)] == 0) state = -1;
@@ -207,8 +204,7 @@ std::vector<CellAhead> cells_ahead(const ChainOutcomes& outcomes, const FieldPar
       return share;
     };
     for (Eigen::Index e = 0; e < kEndCount; ++e) {
-      const Mean95 share =
-          share_of([&](const markov::Outcomes& o) { return o.by_cell(cell, e); });
+      const Mean95 share = share_of([&](const markov::Outcomes& o) { return o.by_cell(cell, e); });
       a.endings.share[static_cast<std::size_t>(e)] = share.mean;
       a.endings.interval[static_cast<std::size_t>(e)] = share.interval;
     }

@@ -133,11 +133,11 @@ class Backward {
     return next;
   }
   [[nodiscard]] const Block* values() const { return now_.data(); }
-
- private:
   [[noreturn]] static void refuse() {
     throw std::runtime_error("outcomes: walks circle (almost) for ever");
   }
+
+ private:
   [[nodiscard]] const Block& paid(std::int64_t cell, Ending ending) const {
     return paid_[static_cast<std::size_t>(cell) * kEndings + static_cast<std::size_t>(ending)];
   }
@@ -283,6 +283,10 @@ Outcomes outcomes(const FieldChain& chain, const Field& field, const Start& star
     backward.step(1, reached[1]);
     add_visits(1);
   }
+  constexpr double kEnded = 1.0 - 1e-9;
+  if (out.by_output.leftCols(static_cast<Eigen::Index>(kEndings)).rowwise().sum().minCoeff() <
+      kEnded)
+    Backward::refuse();
   return out;
 }
 
