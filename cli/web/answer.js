@@ -360,7 +360,7 @@ class Answer {
       if (x === 0 || x === this.most || Math.sqrt(x / this.most) > 0.12) places.append(tick);
     }
     this.ramp = element('div', {class: 'ramp'});
-    const types = this.data.types?.map((name, type) => `${kMarks[type % kMarks.length] || 'no mark'}: ${name}`).join('; ');
+    const types = this.data.types?.map((name, type) => `${kMarks[type % kMarks.length] || 'no mark'}: "${name}"`).join('; ');
     $('legend').append(this.ramp, places, element('div', {}, `Per cent of bodies; the colour goes with its square root. The bar below marks the ${this.cellWord} where bodies start.` +
       (types ? ` Types of ${this.cellWord}s: ${types}.` : '')));
   }
@@ -375,7 +375,7 @@ class Answer {
     const s = this.data.starts[0];
     const kNames = {time_s: 'time, s', forward_m: 'way forward, m', work_J: 'work of the propulsion, J',
       random_work_J: 'work of the random force, J', lost_J: 'lost, J'};
-    place.append(element('p', {}, `Of bodies from ${s.at ? this.words(s.at, s.face) : 'all first entries'}, by how they end: means, with 95 % intervals.`));
+    place.append(element('p', {}, `Of bodies from ${s.at ? this.words(s.at, s.face) : 'all first entries'}, by how they end: means${a.expected_gates_95 && Number.isFinite(a.expected_gates_95[0]) ? ', with 95 % intervals' : '; no intervals are known'}.`));
     const name = (key) => this.data.endings.find((e) => e.key === key)?.name ?? 'all';
     const rows = Object.keys(by).map((key) => {
       const interval = (c) => {
@@ -461,24 +461,17 @@ class Answer {
   }
 
   updateState({place, own, state, leaf, beyond}) {
-    const {chain, states} = this.data, note = $('state'), says = [];
+    const {chain} = this.data, note = $('state'), says = [];
     const command = (more = '') => element('code', {}, `gatewalk predict ${chain.asked} --start ${this.startWord(this.start.at, this.start.face)}${more}`);
     if (own) {
       const sure = own.error_95 === null ? '' : ` At most ${Number((100 * own.error_95).toPrecision(2))} % of the bodies end in another ${this.cellWord} than said, 95 times in 100.`;
-      if (own.answer_from === 'matrix') says.push(element('p', {}, `This start's state: ${own.first_runs} runs.`));
-      else says.push(element('p', {}, (own.at ? `This start has runs of its own: ${own.first_runs} through the first ${this.cellWord}. ` : `All first entries of ${own.first_runs} bodies. `) +
+      if (own.answer_from === 'matrix') says.push(this.stateWords(this.leafAt(own.face, own.at)));
+      else says.push(element('p', {}, (own.at ? `This start is a state of its own, with ${own.first_runs} runs of its own through the first ${this.cellWord}. ` : `All first entries of ${own.first_runs} bodies. `) +
         (own.answer_from === 'trials' ? 'The answer is the shares of its own trials.' : 'The answer is the chain\'s.') + sure));
     } else if (place < 0) {
       says.push(element('p', {class: 'warning'}, 'No run entered so: the chain says nothing of this start.'));
     } else {
-      const range = this.rangeOf(state), name = this.data.section.faces[this.start.face].name;
-      const open = (low, high, axis) => [low === -Infinity ? this.rangeSeen(axis)[0] : low, high === Infinity ? this.rangeSeen(axis)[1] : high];
-      const text = this.axes.map((c, axis) => {
-        const [low, high] = open(...range[axis], axis);
-        return `${c.name} ${minus(plain(low))} to ${minus(plain(high))} ${unitOf(c.unit)}`.trim();
-      }).join(', ');
-      const joined = states.joined_for > 1 ? 'one of several joined states' : `state ${leaf + 1} of ${chain.states}`;
-      says.push(element('p', {}, element('b', {}, `${name}, ${joined}: `), `${text}. ${this.runs[state]} runs entered so.`));
+      says.push(this.stateWords({leaf, state}));
       if (beyond) says.push(element('p', {class: 'warning'}, 'This start lies beyond all entries that were seen. The answer is that of the nearest state, which may be far off.'));
       if (chain.kind === 'bins') says.push(element('p', {}, 'All starts in this bin have this answer: ', command()));
       else if (!chain.can_run) says.push(element('p', {}, 'All starts in this state have this answer; no other runs were recorded: ', command()));
@@ -486,6 +479,18 @@ class Answer {
         command(), ' gives this start\'s own: some 500 runs through the first gate more, and full trials until its error bar is small.'));
     }
     note.replaceChildren(...says);
+  }
+
+  /** The name of a state, between what its entries lie, and how many there are. */
+  stateWords({leaf, state = this.ofLeaf[leaf]}) {
+    const {chain, states} = this.data, name = this.data.section.faces[this.start.face].name;
+    const range = this.rangeOf(state);
+    const text = this.axes.map((c, axis) => {
+      const [least, most] = this.rangeSeen(axis), [low, high] = range[axis];
+      return `${c.name} ${minus(plain(low === -Infinity ? least : low))} to ${minus(plain(high === Infinity ? most : high))} ${unitOf(c.unit)}`.trim();
+    }).join(', ');
+    const joined = states.joined_for > 1 ? 'a state of leaves that are joined' : `state ${leaf + 1} of ${chain.states}`;
+    return element('p', {}, element('b', {}, `${name}, ${joined}: `), `${text}. ${this.runs[state]} runs entered so.`);
   }
 
   rangeSeen(axis) { return this.faces[this.faceOf(this.start.face)].seen[axis]; }

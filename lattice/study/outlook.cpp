@@ -190,7 +190,7 @@ std::vector<CellAhead> cells_ahead(const ChainOutcomes& outcomes, const FieldPar
     CellAhead& a = ahead.emplace_back();
     a.visits = mean_95(visits, of_groups);
     if (visits < kNextToNone) continue;
-    a.visits.interval[0] = std::max(0.0, a.visits.interval[0]);
+    if (a.visits.interval[0] < 0.0) a.visits.interval[0] = 0.0;  // else it may be NaN
     const bool known =
         !of_groups.empty() && *std::min_element(of_groups.begin(), of_groups.end()) > 0.0;
     const Evidence from{static_cast<double>(bodies) * visits, static_cast<double>(gate_runs)};

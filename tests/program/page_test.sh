@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The page of an answer, --page: what is refused, what is written.   page_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
-small=(--set run.method=moreau --set run.step_s=0.02 --set field.columns=3 --set field.rows=3)
+small=(--set run.method=moreau --set field.columns=3 --set field.rows=3)
 
 # Refused before any work, and nothing is left.
 expect 2 'fields of up to 441 gates, this one has 101 x 9' "$gatewalk" predict "$scenes/field.toml" --page p.html --set field.columns=101
@@ -18,7 +18,7 @@ run() { "$gatewalk" "$1" "$scenes/field.toml" "${small[@]}" --accuracy 0.2 "${@:
 run predict --page p.html || fail "predict --page"
 grep -q '<script type="application/json" id="data">{' p.html || fail "no data in the page"
 grep -qE '(src|href)="?(https?:)?//' p.html && fail "the page asks for something"
-holds '.made_by.command | contains("page") | not' predict.json
+holds '.made_by.command | contains("--page") | not' predict.json
 cp p.html first.html
 run predict --page p.html --force || fail "predict --page again"
 cmp -s p.html first.html || fail "the same command, another page"

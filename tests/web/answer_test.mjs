@@ -12,7 +12,7 @@ mkdirSync(folder, {recursive: true});
 const at = (name) => join(folder, name);
 const run = (...words) => execFileSync(gatewalk, [...words, '--quiet', '--force'], {stdio: ['ignore', 'pipe', 'ignore']});
 const json = (...words) => JSON.parse(run(...words, '--json', '-'));
-const small = ['--set', 'run.method=moreau', '--set', 'run.step_s=0.02', '--set', 'field.columns=5', '--set', 'field.rows=6'];
+const small = ['--set', 'run.method=moreau', '--set', 'field.columns=5', '--set', 'field.rows=6'];
 const desktop = {viewport: {width: 1280, height: 900}, colorScheme: 'light'};
 
 before(() => {
@@ -59,7 +59,7 @@ test('the first thing shown is what predict says', () => seen('tree.html', {}, a
   const {low, high} = said.final_gates_95;
   assert.deepEqual(await tileWords(page), said.final_gates.flat().map((share, i) =>
     `${percents(share)} per cent [${percents(low.flat()[i])}, ${percents(high.flat()[i])}]`));
-  assert.match(await page.locator('#state').innerText(), new RegExp(`runs of its own: ${said.first_runs} through`));
+  assert.match(await page.locator('#state').innerText(), new RegExp(`a state of its own, with ${said.first_runs} runs`));
 }));
 
 for (const [name, more] of [['tree', ['--first-runs', '0']], ['bins', []]])
@@ -183,6 +183,12 @@ test('a chosen gate: where bodies go from there', () => seen('tree.html', {}, as
   assert.match(await cell.textContent(), new RegExp(`^${Number(analysis.by_ending.trapped.mean_time_s.toPrecision(4))}\\[`));
   await page.locator('#ways button').first().click();
   assert.ok(await page.locator('#map svg polyline').count() === 1);
+}));
+
+test('of bins: the state, and no bars that are not known', () => seen('bins.html', {}, async (page) => {
+  assert.match(await page.locator('#state').innerText(), /^EN, state \d+ of 87: d .* 60 runs entered so/);
+  const text = await page.locator('#gate-card').innerText();
+  assert.ok(!/NaN|\[/.test(text), text);
 }));
 
 test('a start that nobody saw is said to be one', () => seen('tree.html', {}, async (page) => {
