@@ -60,7 +60,8 @@ function textOf(code) {
   return code < kSmall ? (code / 100).toFixed(2) : twoDigits(percentOf(code));
 }
 
-const short = (percent) => (percent === 0 ? '' : percent < 0.05 ? '<.1' : percent < 9.95 ? percent.toFixed(1) : percent.toFixed(0));
+const short = (percent) => (percent === 0 ? '' : percent < 0.05 ? '<.1' : percent < 9.95 ? percent.toFixed(1)
+    : percent.toFixed(0));
 /** Four digits. */
 const plain = (value) => (value === null || !Number.isFinite(value) ? '-' : String(Number(value.toPrecision(4))));
 const unitOf = (unit) => (unit === '1' ? '' : unit.replace(/ s-1$/, '/s').replace('m s-1', 'm/s'));
@@ -213,7 +214,8 @@ class Answer {
     const barsOf = data.chain.kind === 'trees' ?
       'Bars: 95 % intervals. They count that runs are few, and what larger states of the chain would change.' :
       'Bars: 95 % intervals for the sampling of the matrix. What its bins leave out they do not count: gatewalk validate measures that.';
-    $('bars').textContent = (this.endings.low?.some((code) => code !== kNone) ? barsOf : 'There are no error bars: too few bodies were recorded.') +
+    $('bars').textContent = (this.endings.low?.some((code) => code !== kNone) ? barsOf
+        : 'There are no error bars: too few bodies were recorded.') +
       (data.max_gates > 0 ? ` Cut off: would go on after ${data.max_gates} ${this.cellWord}s.` : '');
     this.buildChoice();
     this.buildMap();
@@ -237,14 +239,17 @@ class Answer {
   buildFields() {
     const place = $('fields');
     if (this.faces.length > 1) {
-      this.faceField = element('select', {id: 'face', onchange: (e) => this.move([...this.start.at], Number(e.target.value))},
+      this.faceField = element('select', {id: 'face', onchange: (e) =>
+          this.move([...this.start.at], Number(e.target.value))},
         ...this.faces.map((f) => element('option', {value: f.face},
           `${this.data.section.faces[f.face].name} (${this.data.section.faces[f.face].origin})`)));
-      place.append(element('div', {class: 'field of-face'}, element('label', {for: 'face'}, 'enters by'), this.faceField));
+      place.append(element('div', {class: 'field of-face'}, element('label', {for: 'face'}, 'enters by'),
+          this.faceField));
     }
     this.fields = this.axes.map((c, axis) => {
       const [low, high] = this.ranges[axis], step = this.stepOf(axis), name = c.words || c.name;
-      const number = element('input', {type: 'number', id: `at-${axis}`, step: 'any', 'aria-describedby': `unit-${axis}`,
+      const number = element('input', {type: 'number', id: `at-${axis}`, step: 'any',
+          'aria-describedby': `unit-${axis}`,
         oninput: (e) => {
           const x = e.target.value === '' ? NaN : Number(e.target.value);
           e.target.setAttribute('aria-invalid', String(!Number.isFinite(x)));
@@ -259,7 +264,8 @@ class Answer {
           e.preventDefault();
           this.moveAlong(axis, this.start.at[axis] + by * step);
         }});
-      const slider = element('input', {type: 'range', min: low, max: high, step: step / 10, 'aria-label': `${name}, slider`,
+      const slider = element('input', {type: 'range', min: low, max: high, step: step / 10,
+          'aria-label': `${name}, slider`,
         oninput: (e) => this.moveAlong(axis, Number(e.target.value))});
       place.append(element('div', {class: 'field'}, element('label', {for: `at-${axis}`, title: name}, c.name), number,
         element('span', {class: 'unit', id: `unit-${axis}`}, unitOf(c.unit)), slider));
@@ -269,7 +275,8 @@ class Answer {
 
   buildChoice() {
     const choice = (value, text) => {
-      const input = element('input', {type: 'radio', name: 'shows', value, onchange: () => { this.shows = value; this.update(); }});
+      const input = element('input', {type: 'radio', name: 'shows', value, onchange: () =>
+          { this.shows = value; this.update(); }});
       input.checked = value === this.shows;
       return element('label', {}, input, element('span', {}, text));
     };
@@ -286,7 +293,8 @@ class Answer {
 
   buildMap() {
     const {columns, rows, start_column: middle, cell_m: [width, length]} = this.data;
-    const chart = element('div', {class: 'chart', role: 'grid', 'aria-label': `Last ${this.cellWord}s, per cent of bodies`,
+    const chart = element('div', {class: 'chart', role: 'grid',
+        'aria-label': `Last ${this.cellWord}s, per cent of bodies`,
       onkeydown: (e) => this.mapKey(e)});
     chart.style.gridTemplateColumns = `20px 22px repeat(${columns}, minmax(0, 1fr))`;
     this.tiles = [];
@@ -305,7 +313,8 @@ class Answer {
         const cell = row * columns + column;
         const tile = element('button', {type: 'button', role: 'gridcell', tabindex: '-1', 'data-cell': cell,
           class: row === 0 && column === middle ? 'first' : null, onclick: () => this.choose(cell)},
-        element('span', {class: 'number'}), element('span', {class: 'mark', 'aria-hidden': 'true'}, this.data.types ? kMarks[this.data.type_of_gate[cell] % kMarks.length] : ''));
+        element('span', {class: 'number'}), element('span', {class: 'mark', 'aria-hidden': 'true'}, this.data.types
+            ? kMarks[this.data.type_of_gate[cell] % kMarks.length] : ''));
         tile.style.aspectRatio = `${width} / ${length}`;
         this.tiles[cell] = tile;
         line.append(tile);
@@ -314,7 +323,8 @@ class Answer {
     }
     const below = element('div', {role: 'row'});
     for (let column = 0; column < columns; ++column) {
-      const number = element('span', {class: 'axis', role: 'columnheader', 'aria-label': `column ${column - middle}`}, minus(String(column - middle)));
+      const number = element('span', {class: 'axis', role: 'columnheader', 'aria-label': `column ${column - middle}`},
+          minus(String(column - middle)));
       number.style.gridColumn = String(column + 3);
       below.append(number);
     }
@@ -360,8 +370,10 @@ class Answer {
       if (x === 0 || x === this.most || Math.sqrt(x / this.most) > 0.12) places.append(tick);
     }
     this.ramp = element('div', {class: 'ramp'});
-    const types = this.data.types?.map((name, type) => `${kMarks[type % kMarks.length] || 'no mark'}: "${name}"`).join('; ');
-    $('legend').append(this.ramp, places, element('div', {}, `Per cent of bodies; the colour goes with its square root. The bar below marks the ${this.cellWord} where bodies start.` +
+    const types = this.data.types?.map((name, type) =>
+        `${kMarks[type % kMarks.length] || 'no mark'}: "${name}"`).join('; ');
+    $('legend').append(this.ramp, places, element('div', {},
+        `Per cent of bodies; the colour goes with its square root. The bar below marks the ${this.cellWord} where bodies start.` +
       (types ? ` Types of ${this.cellWord}s: ${types}.` : '')));
   }
 
@@ -385,15 +397,18 @@ class Answer {
       const q = by[key].quantiles_time_s;
       return element('tr', {'data-ending': key}, element('th', {scope: 'row'}, name(key)),
         ...costs.map((c) => element('td', {'data-cost': c}, plain(by[key][`mean_${c}`]), interval(c))),
-        ...(q ? [element('td', {}, q[2] === null ? '-' : plain(q[2]), q[0] === null ? '' : element('small', {}, `${plain(q[0])} to ${plain(q[4])}`))] : []));
+        ...(q ? [element('td', {}, q[2] === null ? '-' : plain(q[2]), q[0] === null ? ''
+            : element('small', {}, `${plain(q[0])} to ${plain(q[4])}`))] : []));
     });
     const hasQuantiles = Boolean(by.all.quantiles_time_s);
     const sheet = element('table', {}, element('thead', {}, element('tr', {}, element('td', {}),
       ...costs.map((c) => element('th', {scope: 'col'}, kNames[c] ?? c.replaceAll('_', ' '))),
-      ...(hasQuantiles ? [element('th', {scope: 'col'}, 'median of the time, 5 to 95 % of them, s')] : []))), element('tbody', {}, ...rows));
+      ...(hasQuantiles ? [element('th', {scope: 'col'}, 'median of the time, 5 to 95 % of them, s')] : []))),
+          element('tbody', {}, ...rows));
     place.append(element('div', {class: 'wide', tabindex: '0', role: 'group', 'aria-label': 'Times and work'}, sheet));
     if (Number.isFinite(a.expected_gates))
-      place.append(element('p', {class: 'remark'}, `${plain(a.expected_gates)} ${this.cellWord}s are visited on average` +
+      place.append(element('p', {class: 'remark'},
+          `${plain(a.expected_gates)} ${this.cellWord}s are visited on average` +
         (a.expected_gates_95 ? ` [${plain(a.expected_gates_95[0])}, ${plain(a.expected_gates_95[1])}].` : '.')));
   }
 
@@ -409,10 +424,12 @@ class Answer {
       this.wayButtons.forEach((b, k) => b.setAttribute('aria-pressed', String(k === this.way)));
       this.drawWay();
     }}, `${i + 1}: ${p.gates.length} ${this.cellWord}s, ${twoDigits(100 * p.probability)} %`));
-    $('ways-card').append(element('p', {}, `Per cent of bodies from ${this.data.starts[0].at ? this.words(this.data.starts[0].at, this.data.starts[0].face) : 'all first entries'}. Choose one to see it on the map.`),
+    $('ways-card').append(element('p', {},
+        `Per cent of bodies from ${this.data.starts[0].at ? this.words(this.data.starts[0].at, this.data.starts[0].face) : 'all first entries'}. Choose one to see it on the map.`),
       element('div', {}, ...this.wayButtons));
     if (a.paths_complete === false)
-      $('ways-card').append(element('p', {class: 'remark'}, 'There may be more frequent ones: the search was given up.'));
+      $('ways-card').append(element('p', {class: 'remark'},
+          'There may be more frequent ones: the search was given up.'));
     this.paths = paths;
   }
 
@@ -438,14 +455,16 @@ class Answer {
     this.updateFields();
     this.known.forEach((button, i) => button.setAttribute('aria-pressed', String(this.ownStart() === i)));
     this.updateState(answer);
-    fillShares(this.shareRows, this.data.endings.map((_, e) => (answer.place < 0 ? null : within(this.endings, e, answer.place))));
+    fillShares(this.shareRows, this.data.endings.map((_, e) =>
+        (answer.place < 0 ? null : within(this.endings, e, answer.place))));
     this.updateMap(answer);
     this.updateCell(answer);
     this.drawing?.update(answer);
     clearTimeout(this.saying);
     this.saying = setTimeout(() => {
       if (answer.place < 0) return;
-      $('said').textContent = this.data.endings.map((e, i) => `${e.name} ${within(this.endings, i, answer.place).text} per cent`).join(', ');
+      $('said').textContent = this.data.endings.map((e, i) =>
+          `${e.name} ${within(this.endings, i, answer.place).text} per cent`).join(', ');
     }, 600);
   }
 
@@ -462,20 +481,27 @@ class Answer {
 
   updateState({place, own, state, leaf, beyond}) {
     const {chain} = this.data, note = $('state'), says = [];
-    const command = (more = '') => element('code', {}, `gatewalk predict ${chain.asked} --start ${this.startWord(this.start.at, this.start.face)}${more}`);
+    const command = (more = '') => element('code', {},
+        `gatewalk predict ${chain.asked} --start ${this.startWord(this.start.at, this.start.face)}${more}`);
     if (own) {
-      const sure = own.error_95 === null ? '' : ` At most ${Number((100 * own.error_95).toPrecision(2))} % of the bodies end in another ${this.cellWord} than said, 95 times in 100.`;
+      const sure = own.error_95 === null ? ''
+          : ` At most ${Number((100 * own.error_95).toPrecision(2))} % of the bodies end in another ${this.cellWord} than said, 95 times in 100.`;
       if (own.answer_from === 'matrix') says.push(this.stateWords(this.leafAt(own.face, own.at)));
-      else says.push(element('p', {}, (own.at ? `This start is a state of its own, with ${own.first_runs} runs of its own through the first ${this.cellWord}. ` : `All first entries of ${own.first_runs} bodies. `) +
-        (own.answer_from === 'trials' ? 'The answer is the shares of its own trials.' : 'The answer is the chain\'s.') + sure));
+      else says.push(element('p', {}, (own.at
+          ? `This start is a state of its own, with ${own.first_runs} runs of its own through the first ${this.cellWord}. ` : `All first entries of ${own.first_runs} bodies. `) +
+        (own.answer_from === 'trials' ? 'The answer is the shares of its own trials.'
+            : 'The answer is the chain\'s.') + sure));
     } else if (place < 0) {
       says.push(element('p', {class: 'warning'}, 'No run entered so: the chain says nothing of this start.'));
     } else {
       says.push(this.stateWords({leaf, state}));
-      if (beyond) says.push(element('p', {class: 'warning'}, 'This start lies beyond all entries that were seen. The answer is that of the nearest state, which may be far off.'));
+      if (beyond) says.push(element('p', {class: 'warning'},
+          'This start lies beyond all entries that were seen. The answer is that of the nearest state, which may be far off.'));
       if (chain.kind === 'bins') says.push(element('p', {}, 'All starts in this bin have this answer: ', command()));
-      else if (!chain.can_run) says.push(element('p', {}, 'All starts in this state have this answer; no other runs were recorded: ', command()));
-      else says.push(element('p', {}, 'No run began here: the answer is that of the state, from its few runs, so it jumps from state to state within its bars. ',
+      else if (!chain.can_run) says.push(element('p', {},
+          'All starts in this state have this answer; no other runs were recorded: ', command()));
+      else says.push(element('p', {},
+          'No run began here: the answer is that of the state, from its few runs, so it jumps from state to state within its bars. ',
         command(), ' gives this start\'s own: some 500 runs through the first gate more, and full trials until its error bar is small.'));
     }
     note.replaceChildren(...says);
@@ -508,7 +534,8 @@ class Answer {
       const chosen = cell === this.cell;
       tile.setAttribute('aria-selected', String(chosen));
       tile.tabIndex = chosen ? 0 : -1;
-      tile.setAttribute('aria-label', `${this.cellWord} ${this.cellName(cell)}${this.typeOf(cell) ? `, ${this.typeOf(cell)}` : ''}: ` +
+      tile.setAttribute('aria-label',
+          `${this.cellWord} ${this.cellName(cell)}${this.typeOf(cell) ? `, ${this.typeOf(cell)}` : ''}: ` +
         (share ? `${share.text} per cent${share.interval ? ` ${share.interval.text}` : ''}` : 'not known'));
     });
   }
@@ -519,7 +546,8 @@ class Answer {
     const says = [];
     if (place >= 0) {
       const here = within(this.gates, cell, place);
-      says.push(element('p', {id: 'here'}, element('b', {}, `${here.text} %`), ` ${here.interval ? here.interval.text : ''} of the bodies from the start end here.`));
+      says.push(element('p', {id: 'here'}, element('b', {}, `${here.text} %`),
+          ` ${here.interval ? here.interval.text : ''} of the bodies from the start end here.`));
     }
     const [visits, low, high] = data.cells.visits[cell], s = data.starts[0];
     const from = s.at ? this.words(s.at, s.face) : 'all first entries';
@@ -530,9 +558,12 @@ class Answer {
     }
     says.push(element('p', {}, `A body from ${from} comes here ${plain(visits)}${low === null ? '' : ` [${plain(low)}, ${plain(high)}]`} times on average. From here, of each visit:`));
     const ends = element('div', {id: 'from-here'}), next = element('div', {id: 'next'});
-    fillShares(shareRows(ends, data.endings, this.target), data.endings.map((_, e) => within(this.cellEndings, e, cell)));
-    const arrow = ([dx, dy]) => ({'0,1': '↑ up', '1,0': '→ right', '-1,0': '← left', '0,-1': '↓ back'}[`${dx},${dy}`] ?? `by ${dx}, ${dy}`);
-    const moves = [...data.cells.moves.map((m) => ({key: m.join(','), name: arrow(m)})), {key: 'trapped', name: 'trapped here'}];
+    fillShares(shareRows(ends, data.endings, this.target), data.endings.map((_, e) => within(this.cellEndings, e,
+        cell)));
+    const arrow = ([dx, dy]) => ({'0,1': '↑ up', '1,0': '→ right', '-1,0': '← left',
+        '0,-1': '↓ back'}[`${dx},${dy}`] ?? `by ${dx}, ${dy}`);
+    const moves = [...data.cells.moves.map((m) => ({key: m.join(','), name: arrow(m)})),
+        {key: 'trapped', name: 'trapped here'}];
     fillShares(shareRows(next, moves), moves.map((_, m) => within(this.cellNext, m, cell)));
     says.push(element('h3', {}, 'How they end'), ends, element('h3', {}, `Where they go next`), next);
     card.replaceChildren(...says);
@@ -544,7 +575,8 @@ function shareRows(place, names, target = null) {
   const rows = names.map((n) => {
     const bar = element('i'), whisker = element('b'), number = element('span', {class: 'number'});
     return {bar, whisker, number, row: element('div', {'data-key': n.key},
-      element('span', {class: n.key === target ? 'target' : null}, n.name), element('span', {class: 'share', 'aria-hidden': 'true'}, bar, whisker), number)};
+      element('span', {class: n.key === target ? 'target' : null}, n.name),
+          element('span', {class: 'share', 'aria-hidden': 'true'}, bar, whisker), number)};
   });
   place.append(element('div', {class: 'shares'}, ...rows.map((r) => r.row)));
   return rows;
@@ -559,7 +591,8 @@ function fillShares(rows, shares) {
       whisker.style.left = `${s.interval.low}%`;
       whisker.style.width = `${Math.max(0, s.interval.high - s.interval.low)}%`;
     }
-    number.replaceChildren(s ? `${s.text} %` : '-', ...(s?.interval ? [' ', element('small', {}, s.interval.text)] : []));
+    number.replaceChildren(s ? `${s.text} %` : '-', ...(s?.interval ? [' ', element('small', {}, s.interval.text)]
+        : []));
   });
 }
 
@@ -580,11 +613,14 @@ class Drawing {
     this.seconds = [1, 2, 5].map((k) => k * power).filter((t) => t <= seconds).pop();
     const w = 400, h = (this.y1 + below) * this.scale;
     const beam = gate.beam_m[types ? type_of_gate[start_column] : 0];
-    const svg = element('svg:svg', {viewBox: `0 0 ${w} ${h.toFixed(1)}`, role: 'group', 'aria-label': 'The first gate from above, to scale; bodies enter from below'});
-    const line = (cls, x0, y0, x1, y1) => element('svg:line', {class: cls, x1: this.px(x0), y1: this.py(y0), x2: this.px(x1), y2: this.py(y1)});
+    const svg = element('svg:svg', {viewBox: `0 0 ${w} ${h.toFixed(1)}`, role: 'group',
+        'aria-label': 'The first gate from above, to scale; bodies enter from below'});
+    const line = (cls, x0, y0, x1, y1) => element('svg:line',
+        {class: cls, x1: this.px(x0), y1: this.py(y0), x2: this.px(x1), y2: this.py(y1)});
     const text = (x, y, words, anchor = 'middle') => element('svg:text', {x, y, 'text-anchor': anchor}, words);
     svg.append(element('svg:rect', {class: 'ground', x: 0, y: 0, width: w, height: h}),
-      element('svg:rect', {class: 'frame', x: this.px(-width / 2), y: this.py(length), width: width * this.scale, height: length * this.scale}));
+      element('svg:rect', {class: 'frame', x: this.px(-width / 2), y: this.py(length), width: width * this.scale,
+          height: length * this.scale}));
     this.stateBox = element('svg:rect', {class: 'state'});
     this.speedBox = element('svg:rect', {class: 'state'});
     svg.append(this.stateBox, line('entrance', -width / 2, 0, width / 2, 0));
@@ -593,7 +629,8 @@ class Drawing {
       svg.append(line('beam', x, gate.joint_y_m, x - side * beam, gate.joint_y_m),
         element('svg:circle', {class: 'joint', cx: this.px(x), cy: this.py(gate.joint_y_m), r: 5}));
     }
-    svg.append(text(this.px(0), 14, `${plain(width)} m wide, ${plain(length)} m long; beams ${plain(beam)} m, disc ${plain(gate.radius_m)} m in radius`),
+    svg.append(text(this.px(0), 14,
+        `${plain(width)} m wide, ${plain(length)} m long; beams ${plain(beam)} m, disc ${plain(gate.radius_m)} m in radius`),
       text(this.px(0), h - 6, `arrow: the way of ${plain(this.seconds)} s at this speed`));
     this.disc = element('svg:circle', {class: 'disc', r: this.radius * this.scale});
     this.discRing = element('svg:circle', {class: 'ring', r: this.radius * this.scale + 4});
@@ -601,8 +638,10 @@ class Drawing {
     this.head = element('svg:path', {class: 'head', d: 'M 0 0 L -13 -7 L -13 7 Z'});
     this.grip = element('svg:circle', {class: 'grip', r: 20});
     this.gripRing = element('svg:circle', {class: 'ring', r: 12});
-    this.place = element('svg:g', {role: 'slider', tabindex: '0', 'aria-label': 'place of the start'}, this.disc, this.discRing);
-    this.speed = element('svg:g', {role: 'slider', tabindex: '0', 'aria-label': 'velocity of the start'}, this.grip, this.gripRing);
+    this.place = element('svg:g', {role: 'slider', tabindex: '0', 'aria-label': 'place of the start'}, this.disc,
+        this.discRing);
+    this.speed = element('svg:g', {role: 'slider', tabindex: '0', 'aria-label': 'velocity of the start'}, this.grip,
+        this.gripRing);
     svg.append(this.place, this.speedBox, this.arrow, this.head, this.speed);
     place.append(svg);
     this.svg = svg;
@@ -643,7 +682,8 @@ class Drawing {
     for (const end of ['pointerup', 'pointercancel']) group.addEventListener(end, () => { offset = null; });
     group.addEventListener('keydown', (e) => {
       const many = e.shiftKey ? 10 : 1;
-      const [axis, by] = {ArrowLeft: [across, -1], ArrowRight: [across, 1], ArrowDown: [up, -1], ArrowUp: [up, 1]}[e.key] ?? [];
+      const [axis, by] = {ArrowLeft: [across, -1], ArrowRight: [across, 1], ArrowDown: [up, -1],
+          ArrowUp: [up, 1]}[e.key] ?? [];
       if (axis === undefined) {
         if (e.key === 'Home' || e.key === 'End') {
           e.preventDefault();
@@ -663,9 +703,11 @@ class Drawing {
     const far = Math.hypot(tipX - x, tipY - y), angle = Math.atan2(tipY - y, tipX - x);
     const short = Math.max(0, far - 9);
     this.arrow.setAttribute('x1', x); this.arrow.setAttribute('y1', y);
-    this.arrow.setAttribute('x2', x + short * Math.cos(angle)); this.arrow.setAttribute('y2', y + short * Math.sin(angle));
+    this.arrow.setAttribute('x2', x + short * Math.cos(angle));
+        this.arrow.setAttribute('y2', y + short * Math.sin(angle));
     this.head.setAttribute('transform', `translate(${tipX} ${tipY}) rotate(${angle * 180 / Math.PI})`);
-    for (const circle of [this.grip, this.gripRing]) { circle.setAttribute('cx', tipX); circle.setAttribute('cy', tipY); }
+    for (const circle of [this.grip, this.gripRing]) { circle.setAttribute('cx', tipX);
+        circle.setAttribute('cy', tipY); }
     const say = (group, axis, words) => {
       const [low, high] = this.answer.ranges[axis];
       group.setAttribute('aria-valuemin', low); group.setAttribute('aria-valuemax', high);
@@ -684,7 +726,8 @@ class Drawing {
     });
     const put = (box, x0, y0, x1, y1) => {
       const least = 3;  // points, to be seen
-      const at = {x: this.px(x0), y: this.py(y1), width: Math.max(least, (x1 - x0) * this.scale), height: Math.max(least, (y1 - y0) * this.scale)};
+      const at = {x: this.px(x0), y: this.py(y1), width: Math.max(least, (x1 - x0) * this.scale),
+          height: Math.max(least, (y1 - y0) * this.scale)};
       for (const [key, value] of Object.entries(at)) box.setAttribute(key, value);
     };
     const thick = 4 / this.scale, t = this.seconds;
@@ -704,7 +747,8 @@ async function readFace(face, axes) {
     return {...face, ranges};
   }
   const axis = await unpacked(face.axis, 'i8'), cuts = face.cut ? await unpacked(face.cut, 'f64') : [];
-  const cutOf = new Float64Array(axis.length), above = new Int32Array(axis.length), leaf = new Int32Array(axis.length), ranges = [];
+  const cutOf = new Float64Array(axis.length), above = new Int32Array(axis.length), leaf = new Int32Array(axis.length),
+      ranges = [];
   let cut = 0;
   const open = [];  // nodes whose part above is still to come, with that part's range
   let range = Array.from({length: axes}, () => [-Infinity, Infinity]);
@@ -747,5 +791,6 @@ async function read() {
 read().then((answer) => { window.gatewalkAnswer = answer; }, (error) => {
   $('failed').hidden = false;
   $('failed').textContent = typeof DecompressionStream === 'undefined' ?
-    'This browser is too old for the page: it needs Chrome 80, Firefox 113, Safari 16.4 or newer.' : `The page is broken: ${error.message}`;
+    'This browser is too old for the page: it needs Chrome 80, Firefox 113, Safari 16.4 or newer.'
+        : `The page is broken: ${error.message}`;
 });

@@ -10,7 +10,8 @@ import {browse, close} from './browser.mjs';
 const [gatewalk, root, folder] = process.argv.slice(2);
 mkdirSync(folder, {recursive: true});
 const at = (name) => join(folder, name);
-const run = (...words) => execFileSync(gatewalk, [...words, '--quiet', '--force'], {stdio: ['ignore', 'pipe', 'ignore']});
+const run = (...words) => execFileSync(gatewalk, [...words, '--quiet', '--force'],
+    {stdio: ['ignore', 'pipe', 'ignore']});
 const json = (...words) => JSON.parse(run(...words, '--json', '-'));
 const small = ['--set', 'run.method=moreau', '--set', 'field.columns=5', '--set', 'field.rows=6'];
 const desktop = {viewport: {width: 1280, height: 900}, colorScheme: 'light'};
@@ -20,7 +21,8 @@ before(() => {
   run('build', join(root, 'scenes/field.toml'), ...small, '--bins', 'paper', '--trials', '60', '-o', at('bins.nc'));
   run('predict', at('tree.nc'), '--page', at('tree.html'), '--json', at('tree.json'));
   run('analyze', at('bins.nc'), '--runs', '0', '--page', at('bins.html'), '--json', at('bins.json'));
-  run('predict', join(root, 'scenes/mixed.toml'), '--accuracy', '0.1', '--set', 'run.method=moreau', '--page', at('mixed.html'));
+  run('predict', join(root, 'scenes/mixed.toml'), '--accuracy', '0.1', '--set', 'run.method=moreau', '--page',
+      at('mixed.html'));
 });
 after(close);
 
@@ -38,7 +40,8 @@ function percents(share) {
   if (percent >= 1e-4) return String(Number(percent.toPrecision(2)));
   return percent.toExponential(1).replace(/\.0(?=e)/, '').replace(/e-(\d)$/, 'e-0$1');
 }
-const withInterval = (share, interval) => `${percents(share)} %` + (interval ? ` [${interval.map(percents).join(', ')}]` : '');
+const withInterval = (share, interval) => `${percents(share)} %` +
+    (interval ? ` [${interval.map(percents).join(', ')}]` : '');
 const numbersOf = (page) => page.locator('#endings .number').allTextContents();
 const tileWords = (page) => page.locator('#map [data-cell]').evaluateAll((tiles) =>
   tiles.sort((a, b) => a.dataset.cell - b.dataset.cell).map((t) => t.getAttribute('aria-label').replace(/^.*: /, '')));
@@ -55,26 +58,33 @@ const random = (low, high) => {
 
 test('the first thing shown is what predict says', () => seen('tree.html', {}, async (page) => {
   const said = JSON.parse(readFileSync(at('tree.json')));
-  assert.deepEqual(await numbersOf(page), Object.keys(said.endings).map((key) => withInterval(said.endings[key], said.endings_95[key])));
+  assert.deepEqual(await numbersOf(page), Object.keys(said.endings).map((key) =>
+      withInterval(said.endings[key], said.endings_95[key])));
   const {low, high} = said.final_gates_95;
   assert.deepEqual(await tileWords(page), said.final_gates.flat().map((share, i) =>
     `${percents(share)} per cent [${percents(low.flat()[i])}, ${percents(high.flat()[i])}]`));
-  assert.match(await page.locator('#state').innerText(), new RegExp(`a state of its own, with ${said.first_runs} runs`));
+  assert.match(await page.locator('#state').innerText(),
+      new RegExp(`a state of its own, with ${said.first_runs} runs`));
 }));
 
 for (const [name, more] of [['tree', ['--first-runs', '0']], ['bins', []]])
-  test(`starts drawn at random: the shares of predict ${name}.nc --start`, () => seen(`${name}.html`, {}, async (page) => {
-    const starts = Array.from({length: 6}, () => [random(-25, 25), random(-25, 25), random(10, 20)].map((x, i) => (name === 'bins' && i === 1 ? x / 2 : x)));
+  test(`starts drawn at random: the shares of predict ${name}.nc --start`, () =>
+      seen(`${name}.html`, {}, async (page) => {
+    const starts = Array.from({length: 6}, () => [random(-25, 25), random(-25, 25), random(10, 20)].map((x, i) =>
+        (name === 'bins' && i === 1 ? x / 2 : x)));
     const said = json('predict', at(`${name}.nc`), ...more, ...starts.flatMap((s) => ['--start', s.join(',')])).starts;
     const answers = new Set();
     for (const [i, start] of starts.entries()) {
       await goTo(page, start);
       const numbers = await numbersOf(page);
       answers.add(numbers.join());
-      assert.deepEqual(numbers.map((text) => text.replace(/ \[.*/, '')), Object.values(said[i].endings).map((share) => `${percents(share)} %`), start.join());
-      assert.deepEqual((await tileWords(page)).map((text) => text.replace(/ .*/, '')), said[i].final_gates.flat().map(percents), start.join());
+      assert.deepEqual(numbers.map((text) => text.replace(/ \[.*/, '')),
+          Object.values(said[i].endings).map((share) => `${percents(share)} %`), start.join());
+      assert.deepEqual((await tileWords(page)).map((text) => text.replace(/ .*/, '')),
+          said[i].final_gates.flat().map(percents), start.join());
       if (name === 'bins')
-        assert.deepEqual(numbers, Object.keys(said[i].endings).map((key) => withInterval(said[i].endings[key], said[i].endings_95[key])));
+        assert.deepEqual(numbers, Object.keys(said[i].endings).map((key) =>
+            withInterval(said[i].endings[key], said[i].endings_95[key])));
       else assert.ok(numbers.every((text) => / \[.+, .+\]$/.test(text)), 'a bar for each');
       const state = await page.locator('#state').innerText();
       assert.ok(state.includes(`gatewalk predict ${at(`${name}.nc`)} --start ${start.join(',')}`), state);
@@ -84,7 +94,8 @@ for (const [name, more] of [['tree', ['--first-runs', '0']], ['bins', []]])
 
 test('drag the disc, drag the arrow: the answer follows at once', () => seen('tree.html', {}, async (page) => {
   const fields = () => page.locator('#fields input[type=number]').evaluateAll((all) => all.map((i) => Number(i.value)));
-  const middle = async (what) => { const b = await page.locator(what).boundingBox(); return [b.x + b.width / 2, b.y + b.height / 2]; };
+  const middle = async (what) => { const b = await page.locator(what).boundingBox();
+      return [b.x + b.width / 2, b.y + b.height / 2]; };
   const drag = async (what, dx, dy) => {
     const [x, y] = await middle(what);
     await page.mouse.move(x, y);
@@ -129,12 +140,14 @@ test('everything can be done with the keyboard', () => seen('tree.html', {}, asy
     await page.keyboard.press('Tab');
     const [name, outline] = await page.evaluate(() => {
       const e = document.activeElement, ring = e.querySelector?.('.ring');
-      return [e.id || e.getAttribute('aria-label') || e.textContent.trim(), ring ? getComputedStyle(ring).stroke : getComputedStyle(e).outlineStyle];
+      return [e.id || e.getAttribute('aria-label') || e.textContent.trim(), ring ? getComputedStyle(ring).stroke
+          : getComputedStyle(e).outlineStyle];
     });
     order.push(name);
     assert.ok(!['none', 'rgba(0, 0, 0, 0)'].includes(outline) || name === 'start', `${name}: no focus seen`);
   }
-  for (const name of ['place of the start', 'velocity of the start', 'at-0', 'at-1', 'at-2']) assert.ok(order.includes(name), `${name} among ${order}`);
+  for (const name of ['place of the start', 'velocity of the start', 'at-0', 'at-1',
+      'at-2']) assert.ok(order.includes(name), `${name} among ${order}`);
   const place = page.getByRole('slider', {name: 'place of the start'});
   await place.focus();
   await page.keyboard.press('ArrowRight');
@@ -180,7 +193,8 @@ test('a chosen gate: where bodies go from there', () => seen('tree.html', {}, as
   await page.screenshot({path: at('chosen.png'), fullPage: true});
   // Times and works are analyze's.
   const cell = page.locator('#costs tr[data-ending=trapped] [data-cost=time_s]');
-  assert.match(await cell.textContent(), new RegExp(`^${Number(analysis.by_ending.trapped.mean_time_s.toPrecision(4))}\\[`));
+  assert.match(await cell.textContent(),
+      new RegExp(`^${Number(analysis.by_ending.trapped.mean_time_s.toPrecision(4))}\\[`));
   await page.locator('#ways button').first().click();
   assert.ok(await page.locator('#map svg polyline').count() === 1);
 }));
@@ -216,19 +230,22 @@ test('dark, and 400 px wide by touch', async () => {
     assert.match(await ground(page), /rgb\((\d|[1-4]\d), /);
     await page.screenshot({path: at('dark.png'), fullPage: true});
   });
-  await seen('tree.html', {viewport: {width: 400, height: 800}, isMobile: true, hasTouch: true, reducedMotion: 'reduce'}, async (page) => {
+  await seen('tree.html', {viewport: {width: 400, height: 800}, isMobile: true, hasTouch: true,
+      reducedMotion: 'reduce'}, async (page) => {
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 400, 'wider than the screen');
     const before = await numbersOf(page);
     const b = await page.locator('#drawing .disc').boundingBox();
     const touch = await page.context().newCDPSession(page);
-    const send = (type, x) => touch.send('Input.dispatchTouchEvent', {type, touchPoints: type === 'touchEnd' ? [] : [{x, y: b.y + b.height / 2}]});
+    const send = (type, x) => touch.send('Input.dispatchTouchEvent',
+        {type, touchPoints: type === 'touchEnd' ? [] : [{x, y: b.y + b.height / 2}]});
     await send('touchStart', b.x + b.width / 2);
     for (const by of [20, 40, 60]) await send('touchMove', b.x + b.width / 2 + by);
     await page.waitForTimeout(50);
     await send('touchEnd');
     assert.notDeepEqual(await numbersOf(page), before);
     await page.screenshot({path: at('narrow.png'), fullPage: true});
-    assert.equal(await page.locator('.chart button').first().evaluate((e) => getComputedStyle(e).transitionDuration), '0s');
+    assert.equal(await page.locator('.chart button').first().evaluate((e) => getComputedStyle(e).transitionDuration),
+        '0s');
   });
 });
 
