@@ -12,7 +12,6 @@
 #include "cli/render/text.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
-#include "lattice/scene/row_matrices.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -37,22 +36,23 @@ std::vector<int> start_faces(const Subject& s) {
 
 /// Every state of a matrix of bins, by gatewalk predict's own answers.
 PageStates states_of_bins(const Options& options, const Subject& s) {
-  const lattice::SceneMatrix m = s.matrix();
-  const dynamics::StateSpace& space = m.file.transitions.space;
+  const dynamics::Transitions& own = s.file->transitions;
+  const dynamics::StateSpace& space = own.space;
+  const lattice::FieldParams& field = s.problem.field;
   PageStates out{space, {}, 0};
   out.states.of_leaf.assign(static_cast<std::size_t>(space.size()), -1);
-  for (const std::int64_t trials : m.file.transitions.trials) out.gate_runs += trials;
+  for (const std::int64_t trials : own.trials) out.gate_runs += trials;
   std::vector<lattice::ChainStart> starts;
   for (const int face : start_faces(s))
     for (int state = space.first(face); state < space.first(face + 1); ++state) {
-      const std::int64_t runs = m.file.transitions.trials[static_cast<std::size_t>(state)];
+      const std::int64_t runs = own.trials[static_cast<std::size_t>(state)];
       if (runs == 0) continue;
       out.states.of_leaf[static_cast<std::size_t>(state)] = static_cast<int>(starts.size());
-      starts.push_back({{m.scene.field.start_column(), 0, state}});
+      starts.push_back({{field.start_column(), 0, state}});
       out.states.states.push_back({.first_leaf = state, .runs = runs, .gates = {}, .gates_95 = {}});
     }
-  auto prediction = lattice::predict(lattice::field_of(m, s.path, {}), m.scene.field, starts, {},
-                                     options.seed(), options.work());
+  auto prediction =
+      lattice::predict(s.counted(), field, starts, {}, options.seed(), options.work());
   for (std::size_t i = 0; i < starts.size(); ++i) {
     out.states.states[i].endings =
         shown_endings(prediction.starts[i].shares, prediction.starts[i].final);
@@ -76,10 +76,9 @@ lattice::AnalysedChain chain_from(const Subject& s, const lattice::RunPool& pool
 }
 lattice::AnalysedChain chain_from(const Subject& s) {
   if (s.pool) return chain_from(s, *s.pool);
-  const lattice::SceneMatrix m = s.matrix();
   return lattice::analysed_chain(
-      s.problem, lattice::matrices_of(m.file, m.scene),
-      lattice::chain_start(m.file.transitions.space, m.scene.field, *s.starts.front()).start);
+      s.problem, s.matrices(),
+      lattice::chain_start(s.file->transitions.space, s.problem.field, *s.starts.front()).start);
 }
 
 /// Of the subject's file, if it has one; `chain` is that of its pool now.
@@ -142,6 +141,9 @@ void check_page(const Options& options, const Subject& s) {
   refuse(options, {"row"}, "beside --page");
   if (!has_pages())
     throw UsageError("--page: needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
+  if (s.file && !s.pool && !s.scene)
+    throw UsageError("--page: " + s.path +
+                     " was made elsewhere: a page is of a scene, or of a matrix of gatewalk build");
   const lattice::FieldParams& field = s.problem.field;
   if (std::int64_t{field.columns} * field.rows > kMostGates)
     throw UsageError("--page: shows fields of up to " + std::to_string(kMostGates) +
