@@ -1,5 +1,7 @@
 #include "cli/analysed.h"
 
+#include <utility>
+
 #include "cli/arguments.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
@@ -11,19 +13,21 @@ namespace {
 
 /// From gate runs, to which more are added until the error bar says enough.
 AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
-  const auto prediction = predict(options, s);
+  auto prediction = predict(options, s);
   const lattice::StartAnswer& answer = prediction.starts.front();
-  return {.chain = lattice::analysed_chain(s.problem, *s.pool, s.pool->begin(s.starts.front()),
-                                           s.how.per_leaf),
-          .endings = answer.endings,
-          .status = cli::to_json(prediction.health),
-          .method = s.settled ? cli::to_json(*s.settled) : Json(),
-          .clean = status_of(options, prediction.health) == kFine,
-          .from_trials = answer.from_trials,
-          .reached = prediction.reached,
-          .gate_runs = prediction.gate_runs,
-          .states = prediction.states,
-          .seconds = prediction.seconds};
+  AnalysedSubject c{.chain = lattice::analysed_chain(
+                        s.problem, *s.pool, s.pool->begin(s.starts.front()), s.how.per_leaf),
+                    .endings = answer.endings,
+                    .status = cli::to_json(prediction.health),
+                    .method = s.settled ? cli::to_json(*s.settled) : Json(),
+                    .clean = status_of(options, prediction.health) == kFine,
+                    .from_trials = answer.from_trials,
+                    .reached = prediction.reached,
+                    .gate_runs = prediction.gate_runs,
+                    .states = prediction.states,
+                    .seconds = prediction.seconds};
+  c.of_runs = std::move(prediction);
+  return c;
 }
 
 /// From a matrix of bins.
@@ -32,16 +36,18 @@ AnalysedSubject chain_of_bins(const Options& options, const Subject& s) {
          "for " + s.path + ": it has bins, and keeps no gate runs that could be added to");
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const auto start = ready_start(options, matrices, s.problem, *s.starts.front(), s.name_of(0));
-  const auto prediction =
+  auto prediction =
       lattice::predict(s.counted(), s.problem.field, {start}, {}, options.seed(), options.work());
   const Json status = recorded_status(*s.file);
-  return {.chain = lattice::analysed_chain(s.problem, matrices, start.start),
-          .endings = prediction.starts.front().shares,
-          .status = status,
-          .method = recorded(*s.file, s.path, "method"),
-          .clean = faults_recorded(status).empty(),
-          .states = s.file->transitions.space.size(),
-          .seconds = prediction.seconds};
+  AnalysedSubject c{.chain = lattice::analysed_chain(s.problem, matrices, start.start),
+                    .endings = prediction.starts.front().shares,
+                    .status = status,
+                    .method = recorded(*s.file, s.path, "method"),
+                    .clean = faults_recorded(status).empty(),
+                    .states = s.file->transitions.space.size(),
+                    .seconds = prediction.seconds};
+  c.of_bins = std::move(prediction);
+  return c;
 }
 
 }  // namespace

@@ -9,12 +9,15 @@
 #include "lattice/pool/costed_chain.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/parameter_effects.h"
+#include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
 
 /// The chain of a subject, and what is said of how its walks end.
 struct AnalysedSubject {
   std::optional<lattice::AnalysedChain> chain;
+  std::optional<lattice::PooledPrediction> of_runs{};  // one of these two says where bodies end
+  std::optional<lattice::Prediction> of_bins{};
   lattice::EndingShares endings;
   Json status, method;
   bool clean = true, from_trials = false, reached = true;

@@ -50,8 +50,8 @@ std::string memory_advice;
 bool shapes_nothing(const std::string& name) {
   return name == "threads" || name == "quiet" || name == "json" || name == "csv" ||
          name == "output" || name == "strict" || name == "figure" || name == "netcdf" ||
-         name == "force" || name == "checkpoint" || name == "resume" || name == "max-time" ||
-         name == "shard" || name == "part";
+         name == "page" || name == "force" || name == "checkpoint" || name == "resume" ||
+         name == "max-time" || name == "shard" || name == "part";
 }
 
 /// An option as users write it.

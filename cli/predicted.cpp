@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "cli/answered.h"
 #include "cli/arguments.h"
 #include "cli/parsers.h"
 #include "cli/render/choice.h"
@@ -48,6 +49,7 @@ void show(const Options& options, const Subject& s, const std::vector<Answer>& a
 }  // namespace
 
 int predict_from_runs(const Options& options, Subject& s) {
+  const auto of_file = runs_of_file(options, s);
   const lattice::PooledPrediction prediction = predict(options, s);
   const ShownField shown = s.shown();
   Json json = to_json(prediction, shown, s.how.accuracy, s.given);
@@ -65,6 +67,7 @@ int predict_from_runs(const Options& options, Subject& s) {
   options.give_out(json, table);
   options.warn(too_few_gates(shown));
   const int exit = status_of(options, prediction.health);
+  write_page(options, s, of_file, page_starts(prediction));
   show(options, s, prediction.starts, &lattice::StartAnswer::endings,
        &lattice::StartAnswer::gates_95);
   return exit;
@@ -98,6 +101,7 @@ int predict_from_matrix(const Options& options, const Subject& s,
   options.warn(too_few_gates(field_shown));
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
   const int exit = exit_status(options, faults_recorded(recorded_status(*s.file)).empty());
+  write_page(options, s, s.pool, page_starts(prediction, s));
   show(options, s, prediction.starts, &lattice::StartPrediction::shares);
   return exit;
 }

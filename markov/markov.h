@@ -10,7 +10,8 @@
 ///              predict() by the solver asked for. Step by step: all planes of the field at a time; by
 ///              rows: the visits of a row by elimination or sums, then the next row. Plain references:
 ///              forward propagation (propagate) and one sparse solve (solve_absorption)
-///   Chain -> the chance of an ending from everywhere (committor.h), times and works of walks (totals.h),
+///   Chain -> the chance of an ending from everywhere (committor.h), of all ends by first draw and by cell
+///              visited (outcomes.h), times and works of walks (totals.h),
 ///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h),
 ///              how walks spread over an endless lattice (diffusion.h)
 ///   Small fields exactly, in any kind of number (absorbing.h, field_states.h), blocks of cells as
@@ -27,6 +28,7 @@
 #include "markov/field_states.h"
 #include "markov/formats/counts.h"
 #include "markov/lumping.h"
+#include "markov/outcomes.h"
 #include "markov/paths.h"
 #include "markov/predict.h"
 #include "markov/quasi_stationary.h"

@@ -1,4 +1,5 @@
 #include "cli/analysed.h"
+#include "cli/answered.h"
 #include "cli/arguments.h"
 #include "cli/parsers.h"
 #include "cli/render/analysis.h"
@@ -48,6 +49,7 @@ int run_analyze(const Arguments& arguments) {
   options.add_kept();
   options.add_strict();
   add_cell_program(options);
+  add_page(options);
   options.add_figure("visits and paths, durations, starts and influences");
   if (!options.parse(arguments)) return kFine;
   if (options.texts("start").size() > 1) throw UsageError("--start: an analysis is of one start");
@@ -61,10 +63,12 @@ int run_analyze(const Arguments& arguments) {
                                .paths = static_cast<std::size_t>(options.count("paths", 0, 1000)),
                                .seed = options.seed()};
   Subject s = open_subject(options, "matrix");
+  check_page(options, s);
   if (s.is_recorded())
     refuse(options, {"trials", "step"}, "for " + s.path + ", whose runs were recorded");
   how.lumping = lumping_of(options, s.problem.map().section);
   s.settle(options);
+  const auto of_file = runs_of_file(options, s);
   AnalysedSubject c = analysed(options, s);
   const dynamics::Work work = options.work();
   const auto analysis = lattice::analyze(s.problem, *c.chain, how, work);
@@ -92,6 +96,7 @@ int run_analyze(const Arguments& arguments) {
       status_of(options, effects.health, "in gates with changed numbers ") == kFine;
   const bool clean =
       clean_effects && (!direct || status_of(options, direct->tally.health) == kFine);
+  write_page(options, s, of_file, page_starts(c, s), json);
   options.draw([&] { return figure_of(shown); });
   return exit_status(options, c.clean && clean);
 }

@@ -1,3 +1,4 @@
+#include "cli/answered.h"
 #include "cli/arguments.h"
 #include "cli/parsers.h"
 #include "cli/predicted.h"
@@ -41,6 +42,7 @@ int run_predict(const Arguments& arguments) {
   options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where bodies end, and how; of up to " + std::to_string(kMostPictures) +
                      " starts");
+  add_page(options);
   options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
   options.add_seed(
       "seed of all trials; of a matrix of bins: of the resampled matrices behind the "
@@ -52,6 +54,7 @@ int run_predict(const Arguments& arguments) {
                      " starts, these are " + std::to_string(starts.size()));
   (void)solver_of(options);
   Subject s = open_subject(options, "matrix");
+  check_page(options, s);
   const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0,
              by_solver = options.text("solver") != "auto",
              as_it_is = !s.pool || by_solver || no_runs || options.has("row");

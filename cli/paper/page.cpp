@@ -295,6 +295,7 @@ std::string report_page(const Json& report, const FigureText& figure_text) {
                  {"sections", sections},
                  {"made_by", made_by(report.at("made_by"))},
                  {"replay", std::string(carried_file("replay.js"))},
+                 {"theme", std::string(carried_file("theme.js"))},
                  {"js", std::string(carried_file("report.js"))}});
 }
 

@@ -1,4 +1,4 @@
-// The report's animation, and its switch between light and dark; all else is there without it.
+// The report's animation, and links to claims; all else is there without it.
 'use strict';
 
 for (const box of document.querySelectorAll('.replay'))
@@ -15,17 +15,3 @@ function open_target() {
 }
 addEventListener('hashchange', open_target);
 open_target();
-
-const system = matchMedia('(prefers-color-scheme: dark)');
-const button = document.getElementById('theme');
-const is_dark = () => document.documentElement.dataset.theme ? document.documentElement.dataset.theme === 'dark' : system.matches;
-function name_button() {
-  button.textContent = is_dark() ? 'Light page' : 'Dark page';
-}
-button.hidden = false;
-button.addEventListener('click', () => {
-  document.documentElement.dataset.theme = is_dark() ? 'light' : 'dark';
-  name_button();
-});
-system.addEventListener('change', name_button);
-name_button();

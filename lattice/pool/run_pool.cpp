@@ -123,12 +123,7 @@ markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
                               std::vector<int>& first) {
   std::vector<std::int64_t> runs(static_cast<std::size_t>(space.size()), 0);
   for (const int r : row) ++runs[static_cast<std::size_t>(r)];
-  first.resize(runs.size());
-  for (int face = 0; face < std::ssize(space.trees()); ++face) {
-    const int begin = space.first(face);
-    join_leaves(space.trees()[static_cast<std::size_t>(face)], runs.data() + begin, least, begin,
-                first.data() + begin);
-  }
+  first = joined_leaves(space, runs, least);
   for (int& r : row) r = first[static_cast<std::size_t>(r)];
   const markov::Counts parts = counted(row, column, space.size());
   markov::Counts counts(parts.rows(), parts.cols());
@@ -305,6 +300,34 @@ double unseen_share(const Kernel& kernel, const CellMap& map, const FieldParams&
     }
   return std::max(0.0, static_cast<double>(outside) - expected - 2.0 * std::sqrt(variance)) /
          static_cast<double>(start.first_runs());
+}
+
+std::vector<int> joined_leaves(const StateSpace& space, const std::vector<std::int64_t>& runs,
+                               std::int64_t least) {
+  std::vector<int> first(runs.size());
+  for (int face = 0; face < std::ssize(space.trees()); ++face) {
+    const int begin = space.first(face);
+    join_leaves(space.trees()[static_cast<std::size_t>(face)], runs.data() + begin, least, begin,
+                first.data() + begin);
+  }
+  return first;
+}
+
+markov::Counts counts_between(const StateSpace& rows, const StateSpace& outputs, const CellMap& map,
+                              const RunPool& pool, int type) {
+  const Section& section = map.section;
+  const bool images = map.types[static_cast<std::size_t>(type)].symmetric;
+  std::vector<Eigen::Triplet<std::int64_t>> runs;
+  each_kernel_run(pool, {}, [&](const Entry& entry, const CellPassage& run, const auto*) {
+    if (run.type != type) return;
+    runs.emplace_back(rows.index_of(entry).state, output_of(outputs, run, run.entry), 1);
+    if (images)
+      runs.emplace_back(rows.index_of(mirrored(section, entry)).state,
+                        output_of(outputs, run, mirrored(section, run.entry)), 1);
+  });
+  markov::Counts counts(rows.size(), std::int64_t{outputs.size()} + 1);
+  counts.setFromTriplets(runs.begin(), runs.end());
+  return counts;
 }
 
 std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const CellMap& map,

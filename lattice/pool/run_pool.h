@@ -126,6 +126,19 @@ struct Kernel {
                                                                      const RunPool& pool,
                                                                      TrialGroup group = {});
 
+/// Runs of all trials through cells of this type, as those of a kernel: from the states of one
+/// space (rows) to the outputs of another, with mirror images where the cells are symmetric.
+[[nodiscard]] markov::Counts counts_between(const dynamics::StateSpace& rows,
+                                            const dynamics::StateSpace& outputs,
+                                            const dynamics::CellMap& map, const RunPool& pool,
+                                            int type);
+
+/// Leaves taken together, for each the first of its part: the smallest parts of the trees with
+/// `least` runs in each, where runs[i] are those of leaf i.
+[[nodiscard]] std::vector<int> joined_leaves(const dynamics::StateSpace& space,
+                                             const std::vector<std::int64_t>& runs,
+                                             std::int64_t least);
+
 /// How often the first runs from the start, of one group of the trials, in a cell of this type,
 /// ended in each of the kernel's outputs (n + 1). A start in the middle of a symmetric cell has
 /// mirror images too, and so have those of scattered trials.

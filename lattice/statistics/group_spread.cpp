@@ -116,15 +116,16 @@ std::array<double, 2> middle_95(std::vector<double> drawn, double own) {
 }
 
 std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
-                               const Evidence& from) {
+                               const Evidence& from, double besides) {
   if (whole > 0.5) {
     std::vector<double> others;
     for (const double g : groups) others.push_back(1.0 - g);
-    const auto [low, high] = share_95(1.0 - whole, others, from);
+    const auto [low, high] = share_95(1.0 - whole, others, from, besides);
     return {1.0 - high, 1.0 - low};
   }
   if (whole <= kShareRounding) return dynamics::interval_of_share(0.0, from.trials);
-  const double error = relative_half_width(whole, groups) / dynamics::kNormal95;
+  const double error =
+      std::hypot(relative_half_width(whole, groups), besides / whole) / dynamics::kNormal95;
   const double like = error > 0.0 ? (1.0 - whole) / (whole * error * error) : from.trials;
   return dynamics::interval_of_share(whole, std::min(like, from.gate_runs));
 }

@@ -19,8 +19,9 @@ struct Evidence {
 /// kTrialGroups groups of them: Jeffreys' of as many independent trials as would make the relative
 /// error that the groups show, so that it leans to the side where few were seen. It is no narrower
 /// than if each gate run were a trial. Where none or all of the trials end so, it is theirs.
+/// `besides`: half of the interval that an error makes which the groups have in common.
 [[nodiscard]] std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
-                                             const Evidence& from);
+                                             const Evidence& from, double besides = 0.0);
 
 /// Between what lie the middle 95 % of what was drawn (one at least), and `own`.
 [[nodiscard]] std::array<double, 2> middle_95(std::vector<double> drawn, double own);

@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -97,6 +98,16 @@ s_m = 0.05
 class SameAsTheProgram(unittest.TestCase):
     def check(self, result, *words):
         self.assertEqual(plain(result), plain(program(*words)))
+
+    def test_a_page_is_the_programs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, options in (("predict", {}), ("analyze", {"runs": 0})):
+                ours, theirs = Path(folder, "ours.html"), Path(folder, "theirs.html")
+                getattr(gw, name)(FIELD, accuracy=0.2, set={"field.rows": 3}, page=str(ours), force=True, **options)
+                words = [word for key, value in options.items() for word in (f"--{key}", value)]
+                program(name, FIELD, "--accuracy", 0.2, "--set", "field.rows=3", *words, "--page", theirs, "--force")
+                data = [re.search(r'id="data">(.*)</script>', page.read_text()).group(1) for page in (ours, theirs)]
+                self.assertEqual(*data)
 
     def test_all_commands(self):
         key = {"forces.random_N": 40.0}

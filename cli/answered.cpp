@@ -1,0 +1,249 @@
+#include "cli/answered.h"
+
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "cli/arguments.h"
+#include "cli/parsers.h"
+#include "cli/render/analysis.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
+#include "cli/web/embedded.h"
+#include "cli/web/html.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr std::size_t kMostBytes = 2'000'000;
+constexpr std::int64_t kMostGates = 441, kMostNumbers = 400'000;
+
+/// What is said of every start.
+struct PageStates {
+  dynamics::StateSpace space;
+  lattice::StartStates states;
+  std::int64_t gate_runs = 0;
+};
+
+/// Through which a start may be.
+std::vector<int> start_faces(const Subject& s) {
+  if (s.scene) return {s.problem.start.face};
+  std::vector<int> all(s.problem.map().section.faces.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// Every state of a matrix of bins, by gatewalk predict's own answers.
+PageStates states_of_bins(const Options& options, const Subject& s) {
+  const dynamics::Transitions& own = s.file->transitions;
+  const dynamics::StateSpace& space = own.space;
+  const lattice::FieldParams& field = s.problem.field;
+  PageStates out{space, {}, 0};
+  out.states.of_leaf.assign(static_cast<std::size_t>(space.size()), -1);
+  for (const std::int64_t trials : own.trials) out.gate_runs += trials;
+  std::vector<lattice::ChainStart> starts;
+  for (const int face : start_faces(s))
+    for (int state = space.first(face); state < space.first(face + 1); ++state) {
+      const std::int64_t runs = own.trials[static_cast<std::size_t>(state)];
+      if (runs == 0) continue;
+      out.states.of_leaf[static_cast<std::size_t>(state)] = static_cast<int>(starts.size());
+      starts.push_back({{field.start_column(), 0, state}});
+      out.states.states.push_back({.first_leaf = state, .runs = runs, .gates = {}, .gates_95 = {}});
+    }
+  auto prediction =
+      lattice::predict(s.counted(), field, starts, {}, options.seed(), options.work());
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    out.states.states[i].endings =
+        shown_endings(prediction.starts[i].shares, prediction.starts[i].final);
+    out.states.states[i].gates = std::move(prediction.starts[i].final.final_cells);
+  }
+  return out;
+}
+
+PageStates states_of_trees(const Subject& s, const lattice::RunPool& pool,
+                           const lattice::AnalysedChain& chain,
+                           const lattice::ChainOutcomes& outcomes) {
+  return {chain.space,
+          lattice::start_states(s.problem, pool, chain, outcomes, start_faces(s), s.how.per_leaf,
+                                kMostNumbers),
+          pool.gate_runs()};
+}
+
+/// The chain of the subject's first start; of trees with groups.
+lattice::AnalysedChain chain_from(const Subject& s, const lattice::RunPool& pool) {
+  return lattice::analysed_chain(s.problem, pool, pool.begin(s.starts.front()), s.how.per_leaf);
+}
+lattice::AnalysedChain chain_from(const Subject& s) {
+  if (s.pool) return chain_from(s, *s.pool);
+  return lattice::analysed_chain(
+      s.problem, s.matrices(),
+      lattice::chain_start(s.file->transitions.space, s.problem.field, *s.starts.front()).start);
+}
+
+/// Of the subject's file, if it has one; `chain` is that of its pool now.
+PageStates states_of(const Options& options, const Subject& s,
+                     const std::optional<lattice::RunPool>& of_file,
+                     const lattice::AnalysedChain& chain, const lattice::ChainOutcomes& outcomes) {
+  if (!s.pool) return states_of_bins(options, s);
+  // First runs of a start change no other state.
+  if (!of_file || of_file->trials() == s.pool->trials())
+    return states_of_trees(s, *s.pool, chain, outcomes);
+  const lattice::AnalysedChain before = chain_from(s, *of_file);
+  return states_of_trees(s, *of_file, before,
+                         lattice::chain_outcomes(before, s.problem.field, options.work()));
+}
+
+/// What gatewalk analyze says of this chain.
+Json analysis_of(const Options& options, const Subject& s, const lattice::AnalysedChain& chain,
+                 const PageStart& start) {
+  const lattice::Analysis analysis = lattice::analyze(
+      s.problem, chain,
+      {.lumping = lattice::LumpingParts(s.problem.map().section.coordinates.size(), 1),
+       .seed = options.seed()},
+      options.work());
+  const ShownField shown = s.shown();
+  const std::optional<DirectTrials> direct;
+  return to_json(AnalysedField{shown, start.start, start.endings, analysis, {}, direct});
+}
+
+/// What of an analysis is shown.
+Json shown_of(const Json& analysis) {
+  Json json;
+  for (const auto& [key, value] : analysis.items())
+    if (key.starts_with("expected_") || key == "by_ending" || key == "target" || key == "paths" ||
+        key == "paths_complete" || key == "types")
+      json[key] = value;
+  for (const Json& effect : analysis["sensitivities"]["parameters"])
+    json["parameters"].push_back({{"key", effect["key"]},
+                                  {"elasticity", effect["elasticity"]},
+                                  {"interval_95", effect["interval_95"]}});
+  return json;
+}
+
+std::string name_of_field(const Subject& s) {
+  const lattice::FieldParams field = s.shown().field;
+  return "Through " + std::to_string(field.columns) + " x " + std::to_string(field.rows) +
+         (s.scene ? " gates" : " cells");
+}
+
+}  // namespace
+
+void add_page(Options& options) {
+  options.output_file("page", "FILE.html",
+                      "write a page to play with, for any browser: endings and final gates of any "
+                      "start, what becomes of bodies from each gate, times and work",
+                      Options::Content::binary);
+}
+
+void check_page(const Options& options, const Subject& s) {
+  if (!options.has("page")) return;
+  refuse(options, {"row"}, "beside --page");
+  if (!has_pages())
+    throw UsageError("--page: needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
+  if (s.file && !s.pool && !s.scene)
+    throw UsageError("--page: " + s.path +
+                     " was made elsewhere: a page is of a scene, or of a matrix of gatewalk build");
+  const lattice::FieldParams& field = s.problem.field;
+  if (std::int64_t{field.columns} * field.rows > kMostGates)
+    throw UsageError("--page: shows fields of up to " + std::to_string(kMostGates) +
+                     " gates, this one has " + std::to_string(field.columns) + " x " +
+                     std::to_string(field.rows) +
+                     " (--set field.columns=N, --set field.rows=N make it smaller)");
+}
+
+std::optional<lattice::RunPool> runs_of_file(const Options& options, const Subject& s) {
+  if (!options.has("page") || !s.file) return {};
+  return s.pool;
+}
+
+std::vector<PageStart> page_starts(const lattice::PooledPrediction& prediction) {
+  std::vector<PageStart> starts;
+  for (const lattice::StartAnswer& a : prediction.starts)
+    starts.push_back({.start = a.as_seen ? Start() : Start(a.start),
+                      .final = a.final,
+                      .endings = a.endings,
+                      .gates_95 = a.gates_95,
+                      .from = a.from_trials ? "trials" : "chain",
+                      .error_95 = a.error.total_variation,
+                      .first_runs = a.first_runs});
+  return starts;
+}
+
+std::vector<PageStart> page_starts(const lattice::Prediction& prediction, const Subject& s) {
+  std::vector<PageStart> starts;
+  for (std::size_t k = 0; k < s.starts.size(); ++k) {
+    const lattice::StartPrediction& p = prediction.starts[k];
+    const auto row = static_cast<std::size_t>(p.start.start.input);
+    starts.push_back({.start = s.starts[k],
+                      .final = p.final,
+                      .endings = p.shares,
+                      .from = "matrix",
+                      .error_95 = std::nan(""),
+                      .first_runs = s.file->transitions.trials[row]});
+  }
+  return starts;
+}
+
+std::vector<PageStart> page_starts(const AnalysedSubject& analysed, const Subject& s) {
+  return analysed.of_runs ? page_starts(*analysed.of_runs) : page_starts(*analysed.of_bins, s);
+}
+
+void write_page(const Options& options, const Subject& s,
+                const std::optional<lattice::RunPool>& of_file,
+                const std::vector<PageStart>& starts, Json analysis) {
+  if (!options.has("page")) return;
+  const lattice::AnalysedChain chain = chain_from(s);
+  const lattice::ChainOutcomes outcomes =
+      lattice::chain_outcomes(chain, s.problem.field, options.work());
+  const PageStates states = states_of(options, s, of_file, chain, outcomes);
+  if (analysis.is_null()) analysis = analysis_of(options, s, chain, starts.front());
+  const std::int64_t bodies = s.pool ? s.pool->bodies() : 0,
+                     gate_runs = s.pool ? s.pool->gate_runs() : states.gate_runs;
+  const ShownField shown = s.shown();
+  AnswerPage page{.title = name_of_field(s),
+                  .shown = shown,
+                  .scene = s.scene ? &*s.scene : nullptr,
+                  .starts = starts,
+                  .space = states.space,
+                  .faces = start_faces(s),
+                  .states = states.states,
+                  .cells = lattice::cells_ahead(outcomes, s.problem.field, bodies, gate_runs),
+                  .moves = outcomes.whole.moves,
+                  .chain = {{"kind", s.pool ? "trees" : "bins"},
+                            {"states", chain.space.size()},
+                            {"gate_runs", states.gate_runs},
+                            {"asked", s.path},
+                            {"is_matrix", s.file.has_value()},
+                            {"can_run", !s.is_recorded() && s.pool.has_value()}},
+                  .analysis = shown_of(analysis)};
+  const Json made_by = s.made_by(options);
+  const std::string words =
+      endings_text(shown_endings(starts.front().endings, starts.front().final),
+                   "of bodies from " + title_of(shown.map.section, starts.front().start));
+  const auto text_of_page = [&](bool gates_95) {
+    const Json json = to_json(page, gates_95);
+    return filled(
+        carried_file("answer.html"),
+        {{"title", escaped(page.title)},
+         {"cell", s.scene ? "gate" : "cell"},
+         {"words", escaped(words)},
+         {"css", std::string(carried_file("report.css"))},
+         {"answer_css", std::string(carried_file("answer.css"))},
+         {"theme", std::string(carried_file("theme.js"))},
+         {"script", std::string(carried_file("answer.js"))},
+         {"command", escaped(made_by.at("command").get<std::string>())},
+         {"version", escaped(made_by.value("version", "") + " " + made_by.value("commit", ""))},
+         {"scene", escaped(made_by.value(s.scene ? "scene" : "cell", ""))},
+         {"answer", script_json(json)}});
+  };
+  std::string text = text_of_page(true);
+  if (text.size() > kMostBytes) text = text_of_page(false);
+  if (text.size() > kMostBytes)
+    throw std::runtime_error("no page: it would have " +
+                             fixed(1e-6 * static_cast<double>(text.size()), 1) +
+                             " MB, at most 2 MB are written; the numbers are written");
+  options.write(options.text("page"), text);
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,48 @@
+#pragma once
+/// What the page of an answer holds, as JSON: gatewalk predict --page.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/render/json.h"
+#include "cli/render/shown_field.h"
+#include "cli/render/start.h"
+#include "lattice/study/outlook.h"
+
+namespace gatewalk::cli {
+
+/// What is told of one start by its own runs (of bins: by its state).
+struct PageStart {
+  Start start;
+  const markov::FinalDistribution& final;
+  lattice::EndingShares endings;
+  std::array<markov::CellProbabilities, 2> gates_95{};  // without intervals: empty
+  std::string from;                                     // "chain", "trials"
+  double error_95 = 0.0;                                // NaN: not known
+  std::int64_t first_runs = 0;
+};
+
+struct AnswerPage {
+  std::string title;
+  const ShownField& shown;
+  const lattice::Scene* scene;    // whose gates are drawn to scale; null: other cells
+  std::vector<PageStart> starts;  // one at least; the cells' bodies have the first one
+  const dynamics::StateSpace& space;
+  std::vector<int> faces;  // through which starts may be
+  const lattice::StartStates& states;
+  const std::vector<lattice::CellAhead>& cells;
+  const std::vector<std::array<int, 2>>& moves;  // of the cells' `next`
+  Json chain;                                    // what it was made from
+  Json analysis;                                 // parts of gatewalk analyze's
+};
+
+/// Shares are packed as the digits that are shown (share_code), beside `gates_95` with their
+/// intervals; what is left out `left_out` says.
+[[nodiscard]] Json to_json(const AnswerPage& page, bool gates_95);
+
+/// A share as percents() shows it in 16 bits: hundredths of a per cent; above 10 000 two digits and
+/// a power of ten, where these would be 0; 65535: not a number.
+[[nodiscard]] std::uint16_t share_code(double share);
+
+}  // namespace gatewalk::cli
