@@ -96,33 +96,34 @@ def _without_folder(value: _t.Any, name: str) -> _t.Any:
     return value
 
 
-@_contextlib.contextmanager
-def _progress(wanted: bool | None) -> _t.Iterator[_t.Callable[[str, int, int], None] | None]:
-    """tqdm's bar, where it is installed and somebody looks (or progress=True)."""
+class _Bars:
+    """Bars of tqdm, one at a time."""
+
+    def __init__(self, tqdm: _t.Any) -> None:
+        self._tqdm, self._what, self._bar = tqdm, "", None
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        if what != self._what or self._bar is None:
+            self.close()
+            self._what, self._bar = what, self._tqdm(total=total, desc=what, leave=False)
+        self._bar.total = total
+        self._bar.update(done - self._bar.n)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+        self._bar = None
+
+
+def _bars(wanted: bool | None) -> _Bars | None:
+    """tqdm's, where it is installed and somebody looks (or progress=True)."""
     if wanted is False or (wanted is None and not _sys.stderr.isatty()):
-        yield None
-        return
+        return None
     try:
         from tqdm.auto import tqdm
     except ImportError:
-        yield None
-        return
-    bars: dict[str, _t.Any] = {}
-
-    def told(what: str, done: int, total: int) -> None:
-        if what not in bars:
-            for bar in bars.values():
-                bar.close()
-            bars.clear()
-            bars[what] = tqdm(total=total, desc=what, leave=False)
-        bars[what].total = total
-        bars[what].update(done - bars[what].n)
-
-    try:
-        yield told
-    finally:
-        for bar in bars.values():
-            bar.close()
+        return None
+    return _Bars(tqdm)
 
 
 def _outside() -> int:
@@ -143,23 +144,30 @@ def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: 
     if cell is not None and not isinstance(cell, Cell):
         raise UsageError("cell: must be an object of a class derived from gatewalk.Cell"
                          + (", not the class itself" if isinstance(cell, type) else ""))
+    words: list[str] = []
     with _contextlib.ExitStack() as stack:
-        words: list[str] = []
         for subject in subjects:
+            if isinstance(subject, Matrix):
+                words.append(subject._path)
+                continue
             path, overrides = stack.enter_context(_file_of(subject))
             words.append(path)
             words += [f"--set={k}={_word(v)}" for k, v in overrides.items()]
         words += _words_of(given) + (extra or []) + ["--quiet"]
         if command not in ("build", "passages"):
             words.append("--json=-")
-        told = stack.enter_context(_progress(progress))
+        loaded = [m._core for m in (*subjects, *given.values()) if isinstance(m, Matrix)]
+        bars = _bars(progress)
         warned: list[str] = []
         try:
-            status, result = _core.run(command, words, told=told, warned=warned.append, cell=cell)
+            status, result = _core.run(command, words, told=bars, warned=warned.append, cell=cell, matrices=loaded)
         finally:
+            if bars is not None:
+                bars.close()
             for text in warned:
                 _warnings.warn(text, GatewalkWarning, stacklevel=_outside())
-        result = _without_folder(result, words[0] if words else "")
+    if subjects and not isinstance(subjects[0], Matrix):
+        result = _without_folder(result, words[0])
     if status != 0 and given.get("strict"):
         raise RuntimeError(f"gatewalk {command}: the result's status is not clean")
     return _t.cast("dict[str, _t.Any]", result) if result is not None else {}
@@ -184,7 +192,7 @@ def options(command: str) -> str:
     """
     import subprocess
 
-    code = "import sys; from gatewalk import _core; _core.run(sys.argv[1], ['--help'], told=None, warned=print, cell=None)"
+    code = "import sys; from gatewalk import _core; _core.run(sys.argv[1], ['--help'], told=None, warned=print, cell=None, matrices=[])"
     done = subprocess.run([_sys.executable, "-c", code, command], capture_output=True, text=True, check=False,
                           env={**_os.environ, "PYTHONPATH": _os.pathsep.join(p for p in _sys.path if p)})
     if done.returncode != 0:

@@ -30,10 +30,27 @@ class Matrix:
     """
 
     def __init__(self, path: t.Any, _owned: bool = False) -> None:
-        self._path = os.path.abspath(os.fspath(path))
-        self._core = _core.Matrix(self._path)
+        self._file = os.path.abspath(os.fspath(path))
+        before = self._stamp()
+        self._core = _core.Matrix(self._file)
+        self._loaded = before
+        _ = self._path
         if _owned:
-            self._gone = weakref.finalize(self, _unlink, self._path, os.getpid())
+            self._gone = weakref.finalize(self, _unlink, self._file, os.getpid())
+
+    def _stamp(self) -> t.Any:
+        try:
+            s = os.stat(self._file)
+        except OSError:
+            return None
+        return s.st_dev, s.st_ino, s.st_size, s.st_mtime_ns, s.st_ctime_ns
+
+    @property
+    def _path(self) -> str:
+        """Its file, which still is what was loaded: commands, copies and `save` must not speak of another one."""
+        if self._stamp() != self._loaded:
+            raise _core.BadFile(f"{self._file}: was changed or removed since it was loaded; gatewalk.load(...) reads it again")
+        return self._file
 
     @property
     def matrix(self) -> t.Any:
