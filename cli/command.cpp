@@ -752,8 +752,9 @@ dynamics::TrialRange Options::trial_range() const {
 }
 
 dynamics::Work Options::work() const {
-  if (!state_->work) {
-    state_->work = watched_work(talk(), {}, !ranks());
+  const bool watched = !state_->work;
+  if (watched) state_->work = watched_work(talk(), {}, !ranks());
+  if (watched || (!state_->kept && !state_->words.parts.empty())) {
     if (state_->divided) {
       state_->kept = kept_run(*this, *state_->divided);
       state_->work = kept_work(*this, *state_->work, state_->kept.get());

@@ -1,7 +1,7 @@
 #include <tbb/global_control.h>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <algorithm>
 #include <string>
 #include "cli/commands.h"
 #include "cli/loaded_matrix.h"
@@ -9,16 +9,21 @@
 #include "cli/render/matrix.h"
 #include "lattice/cells/cell_matrix.h"
 #include "lattice/pool/tree_chain.h"
+#include "lattice/scene/disc_field.h"
 #include "lattice/scene/matrix.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/study/prediction.h"
-#include "lattice/scene/disc_field.h"
 using namespace gatewalk;
-template <class F> void best(const char* name, const F& f, int n = 30) {
-  double least = 1e9; f();
+template <class F>
+void best(const char* name, const F& f, int n = 30) {
+  double least = 1e9;
+  f();
   for (int i = 0; i < n; ++i) {
-    const auto b = std::chrono::steady_clock::now(); f();
-    least = std::min(least, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - b).count());
+    const auto b = std::chrono::steady_clock::now();
+    f();
+    least = std::min(
+        least,
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - b).count());
   }
   std::printf("%-24s %.4f ms\n", name, least);
 }
@@ -42,19 +47,27 @@ int main(int, char** argv) {
     best("pool_of", [&] { (void)lattice::pool_of(file, problem, path); });
     const auto pool = lattice::pool_of(file, problem, path);
     best("copy pool", [&] { auto c = pool; });
-    lattice::AccuracyOptions how; how.accuracy = 0.1;
+    lattice::AccuracyOptions how;
+    how.accuracy = 0.1;
     auto p = pool;
-    best("predict_pooled", [&] { (void)lattice::predict_pooled(problem, p, {problem.start}, how); });
+    best("predict_pooled",
+         [&] { (void)lattice::predict_pooled(problem, p, {problem.start}, how); });
   } else {
     best("predict", [&] {
-      (void)lattice::predict(lattice::counted_field(file.transitions), scene.field, {lattice::chain_start(file.transitions.space, scene.field, problem.start)}, {}, 1);
+      (void)lattice::predict(
+          lattice::counted_field(file.transitions), scene.field,
+          {lattice::chain_start(file.transitions.space, scene.field, problem.start)}, {}, 1);
     });
   }
-  const auto l=std::make_shared<const cli::LoadedMatrix>(cli::load_matrix(path));
-  best("command", [&] {
-    cli::Arguments a{path, "--quiet", "--json=-"}; a.loaded={l};
-    a.given_out = [](const cli::Json&) {};
-    a.work = dynamics::Work{};
-    (void)cli::run_predict(a);
-  }, 3000);
+  const auto l = std::make_shared<const cli::LoadedMatrix>(cli::load_matrix(path));
+  best(
+      "command",
+      [&] {
+        cli::Arguments a{path, "--quiet", "--json=-"};
+        a.loaded = {l};
+        a.given_out = [](const cli::Json&) {};
+        a.work = dynamics::Work{};
+        (void)cli::run_predict(a);
+      },
+      3000);
 }
