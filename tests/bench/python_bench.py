@@ -29,9 +29,9 @@ class Pillars(gw.Cell):
         self.passages, self.seconds = 0, 0.0
 
     def pass_(self, entries, random):
-        begin = time.perf_counter()
+        begin = time.process_time()
         out = self.carry(entries, random.normals * (self.parameters["turning"] * STEP**0.5))
-        self.passages, self.seconds = self.passages + len(out["face"]), self.seconds + time.perf_counter() - begin
+        self.passages, self.seconds = self.passages + len(out["face"]), self.seconds + time.process_time() - begin
         return out
 
     def carry(self, entries, turns):
@@ -68,8 +68,8 @@ class Pillars(gw.Cell):
 
 
 def calls(bench, folder):
-    """A line per matrix, medians in ms: the library's own time within gw.predict, what the call adds to it, and what the same
-    command adds in C++."""
+    """A line per matrix, medians in ms of CPU: the library's own time, what gw.predict adds to it, and what the same command adds
+    in C++."""
     field = gw.Scene(gw.sample("field"))
     matrices = {"3 x 3 gates": gw.build(field.with_set({"field.columns": 3, "field.rows": 3}), accuracy=0.1),
                 "9 x 9 gates": gw.build(field, accuracy=0.1)}
@@ -78,24 +78,23 @@ def calls(bench, folder):
         told = subprocess.run([bench, "predict", matrix._path, str(TIMES)], check=True, capture_output=True, text=True).stdout
         library, command = np.array([line.split(",") for line in told.split()], dtype=float).T
         gw.predict(matrix)
-        own, added = [], []
+        python = []
         for _ in range(TIMES):
-            begin = time.perf_counter()
-            seconds = gw.predict(matrix)["seconds"]
-            added.append(1e3 * (time.perf_counter() - begin - seconds))
-            own.append(1e3 * seconds)
-        lines.append(f"{name},{len(matrix.states)},{statistics.median(own):.3f},{statistics.median(added):.3f},"
-                     f"{statistics.median(command - library):.3f}")
+            begin = time.process_time()
+            gw.predict(matrix)
+            python.append(1e3 * (time.process_time() - begin))
+        own, by_command, by_python = map(statistics.median, (library, command, python))
+        lines.append(f"{name},{len(matrix.states)},{own:.3f},{by_python - own:.3f},{by_command - own:.3f}")
     (folder / "calls.csv").write_text("\n".join(lines) + "\n")
 
 
 def passages(bench, cells, folder):
-    """A line per language: passages, microseconds each; as many bodies must cross the field."""
+    """A line per language: passages, microseconds of CPU each; as many bodies must cross the field."""
     told = subprocess.run([bench, "pillars", cells, str(TRIALS)], check=True, capture_output=True, text=True).stdout.split(",")
     cell = Pillars()
-    begin = time.perf_counter()
+    begin = time.process_time()
     seen = gw.lattice(cells, cell=cell, trials=TRIALS)
-    wall = time.perf_counter() - begin
+    wall = time.process_time() - begin
     here, there = seen.endings["crossed"] / TRIALS, float(told[2])
     spread = 5 * (here * (1 - here) / TRIALS * 2) ** 0.5  # five standard errors of the difference
     if abs(here - there) > spread:
