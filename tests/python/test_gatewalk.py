@@ -268,7 +268,7 @@ class Elsewhere(unittest.TestCase):
                             share = chain.T @ share
                         for name, p in exact.items():
                             self.assertAlmostEqual(share[labels[name]], p, 11, (made, limit, ending, name))
-            with self.assertRaisesRegex(gw.UsageError, "must end in .umb, .drn or .tra"):
+            with self.assertRaisesRegex(gw.UsageError, "must end in .umb, .drn, .tra"):
                 matrix.export(Path(folder) / "x.txt")
             matrix.save(Path(folder) / "x.sta")
             with self.assertRaisesRegex(gw.UsageError, "x.sta, .* is an input"):
