@@ -5,8 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <sstream>
+#include <utility>
 
+#include "cli/loaded_matrix.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
@@ -195,18 +198,18 @@ int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
 
 void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
                    const std::vector<dynamics::Entry>& starts) {
-  if (!lattice::has_runs(m.file)) return;
-  warn_of_range(options, m.file, path, starts);
+  if (!lattice::has_runs(*m.file)) return;
+  warn_of_range(options, *m.file, path, starts);
   const lattice::Problem problem = lattice::problem_of(m.scene);
-  lattice::RunPool pool = lattice::pool_of(m.file, problem, path);
+  lattice::RunPool pool = lattice::pool_of(*m.file, problem, path);
   std::vector<dynamics::Entry> unknown;
   for (const dynamics::Entry& entry : starts)
     if (pool.place_of(entry) == pool.starts.size()) unknown.push_back(entry);
   if (unknown.empty()) return;
   lattice::AccuracyOptions how;
-  how.accuracy = accuracy_of(m.file, path);
+  how.accuracy = accuracy_of(*m.file, path);
   how.most_runs = std::max<std::int64_t>(100'000, pool.gate_runs());
-  how.per_leaf = entries_per_leaf(m.file, path);
+  how.per_leaf = entries_per_leaf(*m.file, path);
   how.seed = options.seed();
   const auto prediction = lattice::predict_pooled(problem, pool, unknown, how, options.work());
   options.remark(std::to_string(prediction.gate_runs) + " gate runs from starts that " + path +
@@ -215,10 +218,12 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
   warn_of(options, prediction, how.accuracy);
   std::vector<dynamics::Entry> all;
   for (const lattice::StartTrials& s : pool.starts) all.push_back(s.start);
-  dynamics::Health health = m.file.transitions.health;
+  lattice::MatrixFile file = *m.file;
+  dynamics::Health health = file.transitions.health;
   health += prediction.health;
-  lattice::put_matrices(m.file, m.scene, lattice::matrices_of(problem, pool, all, how.per_leaf));
-  m.file.transitions.health = health;
+  lattice::put_matrices(file, m.scene, lattice::matrices_of(problem, pool, all, how.per_leaf));
+  file.transitions.health = health;
+  m.file = std::make_shared<const lattice::MatrixFile>(std::move(file));
 }
 
 void require_active(const Options& options, const lattice::Scene& scene) {
@@ -278,12 +283,16 @@ lattice::SceneMatrix read_matrix(const Options& options) {
 lattice::SceneMatrix read_matrix(const Options& options, const std::string& matrix_path,
                                  const std::string& scene_path,
                                  const std::vector<std::string>& overrides) {
-  lattice::SceneMatrix m = lattice::read_scene_matrix(matrix_path, scene_path, overrides);
+  const LoadedMatrix* const loaded = options.loaded(matrix_path);
+  lattice::SceneMatrix m =
+      loaded && loaded->scene
+          ? lattice::scene_matrix(loaded->file, *loaded->scene, matrix_path, scene_path, overrides)
+          : lattice::read_scene_matrix(matrix_path, scene_path, overrides);
   if (!scene_path.empty())  // a matrix's own scene names every key
     for (const std::string& text :
          lattice::keys_without_effect(m.scene, lattice::RunsFrom::everywhere))
       options.warn(text);
-  if (const std::string faults = faults_recorded(recorded_status(m.file)); !faults.empty())
+  if (const std::string faults = faults_recorded(recorded_status(*m.file)); !faults.empty())
     options.warn("the runs that made " + matrix_path + ": " + faults);
   return m;
 }

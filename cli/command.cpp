@@ -238,6 +238,7 @@ struct Options::State {
   std::function<void(const std::string&)> warned;
   std::function<void(const Json&)> given_out;
   std::shared_ptr<const dynamics::Cell> cell;
+  std::vector<std::shared_ptr<const LoadedMatrix>> loaded;
 
   std::optional<std::set<std::string>> divided;  // stages; none: nothing is kept
   CommandWords words;
@@ -433,6 +434,7 @@ std::vector<Options::NamedFile> Options::inputs() const {
   const auto add = [&](const std::string& name, const std::string& path) {
     if (path.empty() || path == "-") return;
     files.emplace_back(name + " " + path, path);
+    if (loaded(path)) return;  // a matrix names no map
     if (const std::string map = map_named_in(path); !map.empty())
       files.emplace_back(map + " (the map of " + path + ")", map);
   };
@@ -512,7 +514,7 @@ void Options::check_files() {
   const bool takes_parts =
       !state_->positional_help.empty() && state_->positional_help.front().first == "part";
   for (const NamedFile& input : others)
-    if (!takes_parts && PieceFile::is_one(input.path))
+    if (!takes_parts && !loaded(input.path) && PieceFile::is_one(input.path))
       throw UsageError(input.name +
                        ": holds pieces of a run: gatewalk merge makes one run of all parts, or its "
                        "command with --resume goes on");
@@ -581,6 +583,7 @@ bool Options::parse(const Arguments& arguments) {
   state_->warned = arguments.warned;
   state_->given_out = arguments.given_out;
   state_->cell = arguments.cell;
+  state_->loaded = arguments.loaded;
   state_->words.parts = arguments.parts;
   (state_->no_scene.empty() ? state_->own : state_->hidden)
       .add_options()("set", po::value<Strings>()->composing()->value_name("KEY=VALUE"),
@@ -749,8 +752,9 @@ dynamics::TrialRange Options::trial_range() const {
 }
 
 dynamics::Work Options::work() const {
-  if (!state_->work) {
-    state_->work = watched_work(talk(), {}, !ranks());
+  const bool watched = !state_->work;
+  if (watched) state_->work = watched_work(talk(), {}, !ranks());
+  if (watched || (!state_->kept && !state_->words.parts.empty())) {
     if (state_->divided) {
       state_->kept = kept_run(*this, *state_->divided);
       state_->work = kept_work(*this, *state_->work, state_->kept.get());
@@ -788,6 +792,12 @@ void Options::remark(const std::string& text) const {
 // ---- What is given out ----
 
 const std::shared_ptr<const dynamics::Cell>& Options::cell() const { return state_->cell; }
+
+const LoadedMatrix* Options::loaded(const std::string& path) const {
+  for (const auto& matrix : state_->loaded)
+    if (matrix->path == path) return matrix.get();
+  return nullptr;
+}
 
 void Options::give_out(const Json& json, const std::string& table, int indent) const {
   const std::string csv = state_->has_table ? text("csv") : "";

@@ -27,6 +27,8 @@ struct Scene;
 
 namespace gatewalk::cli {
 
+struct LoadedMatrix;
+
 /// A command's help page, part by part.
 struct CommandHelp {
   std::string synopsis, about, example;
@@ -41,7 +43,7 @@ struct CommandHelp {
 
 /// The words behind a command's name; and what they have no words for, where they do not come from
 /// the user at the terminal: who is told how far it is and what it warns of, who takes the result
-/// as JSON, the cell of --cell-program.
+/// as JSON, the cell of --cell-program, matrix files that are in memory and need not be read again.
 struct Arguments {
   Arguments(std::vector<std::string> given) : words(std::move(given)) {}  // NOLINT: the usual case
   Arguments(std::initializer_list<std::string> given) : words(given) {}
@@ -52,6 +54,7 @@ struct Arguments {
   std::vector<std::string> parts{};  // files that hold all its work (merge)
   std::function<void(const Json&)> given_out = nullptr;
   std::shared_ptr<const dynamics::Cell> cell = nullptr;
+  std::vector<std::shared_ptr<const LoadedMatrix>> loaded{};
   std::function<void(const CommandHelp&)> helped = nullptr;  // the help page, and nothing else
 };
 
@@ -164,6 +167,8 @@ class Options {
 
   /// Arguments::cell.
   [[nodiscard]] const std::shared_ptr<const dynamics::Cell>& cell() const;
+  /// The one of Arguments::loaded that is of this path; null where it must be read.
+  [[nodiscard]] const LoadedMatrix* loaded(const std::string& path) const;
 
   /// Progress lines and remarks are wanted.
   [[nodiscard]] bool talk() const;

@@ -9,6 +9,7 @@
 
 #include "cli/arguments.h"
 #include "cli/cells/program.h"
+#include "cli/loaded_matrix.h"
 #include "cli/render/json.h"
 #include "cli/render/recorded.h"
 #include "cli/render/text.h"
@@ -62,8 +63,19 @@ Subject open_matrix(const Options& options, const std::string& name, const std::
   if (!lattice::has_runs(*s.file)) return s;
   if (!options.has("accuracy")) s.how.accuracy = accuracy_of(*s.file, path);
   s.how.per_leaf = entries_per_leaf(*s.file, path);
-  s.pool = lattice::pool_of(*s.file, s.problem, path);
+  const LoadedMatrix* const loaded = options.loaded(path);
+  const bool as_loaded =
+      loaded && loaded->pool && second_scene(options, name).empty() && options.overrides().empty();
+  s.pool = as_loaded ? *loaded->pool : lattice::pool_of(*s.file, s.problem, path);
   return s;
+}
+
+/// As lattice::read_cell_matrix; of a file in memory, if it is there.
+lattice::CellMatrix read_cell_matrix(const Options& options, const std::string& path,
+                                     const std::vector<std::string>& overrides) {
+  const LoadedMatrix* const loaded = options.loaded(path);
+  return loaded ? lattice::cell_matrix(loaded->file, path, overrides)
+                : lattice::read_cell_matrix(path, overrides);
 }
 
 /// Those of the program, and those of the cell file.
@@ -189,7 +201,7 @@ Subject open_program(const Options& options, const std::string& path) {
     if (!parameters_of(options).empty())
       throw UsageError("--set parameters: " + path +
                        " holds runs of the program with its own: make a matrix with these");
-    lattice::CellMatrix m = lattice::read_cell_matrix(path, overrides);
+    lattice::CellMatrix m = read_cell_matrix(options, path, overrides);
     s.cells = std::move(m.cells);
     s.file = std::move(m.file);
     if (!m.pool) throw UsageError(path + ": is a chain that was made elsewhere, without runs");
@@ -221,7 +233,7 @@ Subject open_program(const Options& options, const std::string& path) {
 namespace {
 
 Subject open_recorded(const Options& options, const std::string& path) {
-  lattice::CellMatrix m = lattice::read_cell_matrix(path, options.overrides());
+  lattice::CellMatrix m = read_cell_matrix(options, path, options.overrides());
   refuse(options, {"gate-runs"},
          "for " + path +
              (m.pool ? ", whose runs were recorded" : ", a chain that was made elsewhere"));
@@ -372,8 +384,9 @@ Json Subject::made_by(const Options& options) const {
 
 Subject open_subject(const Options& options, const std::string& name) {
   const std::string path = options.text(name);
-  const bool program = has_cell(options), matrix = !program && is_matrix(path),
-             of_cells = program || (matrix && lattice::is_of_cells(path));
+  const LoadedMatrix* const loaded = options.loaded(path);
+  const bool program = has_cell(options), matrix = !program && (loaded || is_matrix(path)),
+             of_cells = program || (loaded ? !loaded->scene : matrix && lattice::is_of_cells(path));
   if (const std::string second = second_scene(options, name);
       !second.empty() && (!matrix || of_cells))
     throw UsageError(path + ": is no matrix of a scene; a second one, \"" + second +

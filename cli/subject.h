@@ -3,6 +3,7 @@
 /// another program carries out, or recorded runs.
 
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,9 +22,9 @@ namespace gatewalk::cli {
 
 struct Subject {
   std::string path;
-  std::optional<lattice::Scene> scene{};      // of gates; else ...
-  std::optional<lattice::CellFile> cells{};   // ... of cells that are not ours
-  std::optional<lattice::MatrixFile> file{};  // it was read from
+  std::optional<lattice::Scene> scene{};              // of gates; else ...
+  std::optional<lattice::CellFile> cells{};           // ... of cells that are not ours
+  std::shared_ptr<const lattice::MatrixFile> file{};  // it was read from
   /// Of trees: the runs that there are, none yet of a scene or a program. Without: of bins.
   std::optional<lattice::RunPool> pool{};
   lattice::Problem problem{};
@@ -38,7 +39,7 @@ struct Subject {
   /// "start d 4 m, ..." of a start that was given, else "the start".
   [[nodiscard]] std::string name_of(std::size_t start) const;
   /// Of a matrix of a scene.
-  [[nodiscard]] lattice::SceneMatrix matrix() const { return {*file, *scene}; }
+  [[nodiscard]] lattice::SceneMatrix matrix() const { return {file, *scene}; }
   /// Of a matrix: one for each type of cell.
   [[nodiscard]] std::vector<dynamics::Transitions> matrices() const;
   /// Of a matrix of bins, or one that was made elsewhere: what the cells draw from.

@@ -70,13 +70,13 @@ Validated read_subject(const Options& options) {
   const auto starts = lattice::entries_at(papers);
   auto observed = experiment_of(options, m.scene.field);
   add_starts_to(m, path, options, starts);
-  require_inside_bins(options, papers, m.scene, m.file.transitions.space);
+  require_inside_bins(options, papers, m.scene, m.file->transitions.space);
   Validated v =
-      of_scene(options, m.scene, std::move(papers), lattice::matrices_of(m.file, m.scene));
+      of_scene(options, m.scene, std::move(papers), lattice::matrices_of(*m.file, m.scene));
   v.observed = std::move(observed);
-  v.status = recorded_status(m.file);
-  v.settled = recorded(m.file, path, "method");
-  v.states = recorded(m.file, path, "state_space");
+  v.status = recorded_status(*m.file);
+  v.settled = recorded(*m.file, path, "method");
+  v.states = recorded(*m.file, path, "state_space");
   return v;
 }
 

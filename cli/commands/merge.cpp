@@ -100,6 +100,9 @@ int run_merge(const Arguments& arguments) {
     if (word != own_end) all.words.push_back(*word);
   }
   all.parts = parts;
+  all.work = arguments.work;
+  all.warned = arguments.warned;
+  all.given_out = arguments.given_out;
   return command->run(all);
 }
 

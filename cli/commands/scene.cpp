@@ -55,6 +55,7 @@ int run_scene(const Arguments& arguments) {
   Json json;
   json["keys"] = to_json(keys);
   json["meaning"] = to_json(meaning, scene);
+  json["remarks"] = remarks(meaning, scene);
   json["scene"] = lattice::to_toml(scene);
   std::string map;
   if (scene.terrain) {

@@ -14,10 +14,11 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/loaded_matrix.h"
 #include "cli/python/python_cell.h"
 #include "cli/render/json.h"
 #include "cli/render/version.h"
-#include "lattice/cells/cell_matrix.h"
+#include "lattice/gate_chain.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::python {
@@ -130,51 +131,24 @@ class Turn {
 };
 thread_local bool Turn::is_mine_ = false;
 
-py::tuple run(const std::string& name, std::vector<std::string> words, const py::object& told,
-              const py::object& warned, const py::object& cell) {
-  const cli::Command* const command = cli::command_named(name);
-  if (!command) throw cli::UsageError("there is no command '" + name + "'");
-  Json result;
-  cli::Arguments arguments(std::move(words));
-  arguments.work =
-      dynamics::Work{[&](std::string_view what, std::int64_t done, std::int64_t total) {
-                       const py::gil_scoped_acquire gil;
-                       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-                       if (!told.is_none()) told(std::string(what), done, total);
-                     },
-                     nullptr, nullptr};
-  arguments.warned = [&](const std::string& text) {
-    const py::gil_scoped_acquire gil;
-    warned(text);
-  };
-  arguments.given_out = [&](const Json& json) { result = json; };
-  if (!cell.is_none()) arguments.cell = std::make_shared<PythonCell>(cell);
-  int status = 0;
-  {
-    const Turn turn;
-    const py::gil_scoped_release no_gil;
-    status = command->run(arguments);
-  }
-  return py::make_tuple(status, to_python(result));
-}
-
 /// What a matrix file holds; its arrays are views of it.
 class Matrix {
  public:
   explicit Matrix(const std::string& path)
-      : file_([&] {
+      : loaded_([&] {
           const Turn turn;
-          return lattice::read_any_matrix(path);
+          return std::make_shared<const cli::LoadedMatrix>(cli::load_matrix(path));
         }()) {
-    add("", file_.transitions);
-    for (const auto& [name, transitions] : file_.types) add(name, transitions);
+    add("", file().transitions);
+    for (const auto& [name, transitions] : file().types) add(name, transitions);
   }
+  [[nodiscard]] const std::shared_ptr<const cli::LoadedMatrix>& loaded() const { return loaded_; }
   [[nodiscard]] std::vector<std::string> types() const {
     std::vector<std::string> names;
     for (const auto& [name, type] : types_) names.push_back(name);
     return names;
   }
-  [[nodiscard]] const std::map<std::string, std::string>& text() const { return file_.text; }
+  [[nodiscard]] const std::map<std::string, std::string>& text() const { return file().text; }
 
   /// (data, indices, indptr, shape) of the counts or of the probabilities, rows compressed.
   static py::tuple csr(const py::object& self, const std::string& type, bool probabilities) {
@@ -199,7 +173,7 @@ class Matrix {
   }
   /// Of the states: faces, and low and high of each coordinate.
   [[nodiscard]] py::dict states() const {
-    const dynamics::StateSpace& space = file_.transitions.space;
+    const dynamics::StateSpace& space = file().transitions.space;
     const auto n = static_cast<py::ssize_t>(space.size());
     py::dict all;
     py::list faces;
@@ -218,7 +192,7 @@ class Matrix {
   /// By face: name, and the move that enters by it.
   [[nodiscard]] py::list faces() const {
     py::list all;
-    for (const dynamics::Face& f : file_.transitions.space.section().faces)
+    for (const dynamics::Face& f : file().transitions.space.section().faces)
       all.append(py::make_tuple(f.name, f.di_x, f.di_y));
     return all;
   }
@@ -228,12 +202,43 @@ class Matrix {
     markov::Counts counts;
     markov::Chain chain;
   };
+  [[nodiscard]] const lattice::MatrixFile& file() const { return *loaded_->file; }
   void add(const std::string& name, const dynamics::Transitions& t) {
     types_.emplace(name, Type{t.counts(), lattice::make_chain(t)});
   }
-  lattice::MatrixFile file_;
+  std::shared_ptr<const cli::LoadedMatrix> loaded_;
   std::map<std::string, Type> types_;  // "": the first, or only one
 };
+
+py::tuple run(const std::string& name, std::vector<std::string> words, const py::object& told,
+              const py::object& warned, const py::object& cell,
+              const std::vector<const Matrix*>& matrices) {
+  const cli::Command* const command = cli::command_named(name);
+  if (!command) throw cli::UsageError("there is no command '" + name + "'");
+  Json result;
+  cli::Arguments arguments(std::move(words));
+  arguments.work =
+      dynamics::Work{[&](std::string_view what, std::int64_t done, std::int64_t total) {
+                       const py::gil_scoped_acquire gil;
+                       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+                       if (!told.is_none()) told(std::string(what), done, total);
+                     },
+                     nullptr, nullptr};
+  arguments.warned = [&](const std::string& text) {
+    const py::gil_scoped_acquire gil;
+    warned(text);
+  };
+  arguments.given_out = [&](const Json& json) { result = json; };
+  if (!cell.is_none()) arguments.cell = std::make_shared<PythonCell>(cell);
+  for (const Matrix* matrix : matrices) arguments.loaded.push_back(matrix->loaded());
+  int status = 0;
+  {
+    const Turn turn;
+    const py::gil_scoped_release no_gil;
+    status = command->run(arguments);
+  }
+  return py::make_tuple(status, to_python(result));
+}
 
 }  // namespace
 }  // namespace gatewalk::python
@@ -252,8 +257,10 @@ PYBIND11_MODULE(_core, m) {
   error(std::common_type<markov::BadFile>(), "BadFile", PyExc_ValueError);
   m.def("run", &python::run, pybind11::arg("command"), pybind11::arg("words"), pybind11::kw_only(),
         pybind11::arg("told"), pybind11::arg("warned"), pybind11::arg("cell"),
+        pybind11::arg("matrices"),
         "Runs a command with these words: (exit status, its result as JSON says it). told(what, "
-        "done, total) hears how far it is, warned(text) what it warns of.");
+        "done, total) hears how far it is, warned(text) what it warns of. Files of `matrices` are "
+        "not read again.");
   m.def(
       "threads",
       [](int n) {

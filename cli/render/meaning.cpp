@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <sstream>
 
 #include "cli/render/json.h"
 #include "cli/render/quantity.h"
@@ -174,6 +175,24 @@ std::string meaning_text(const Meaning& m, const lattice::Scene& scene) {
   if (!all.empty()) text += "far from any animal or robot that walks:\n";
   for (const FarFromWalkers& far : all) text += "  " + far.what + ": " + far.reason + "\n";
   return text;
+}
+
+std::vector<std::string> remarks(const Meaning& m, const lattice::Scene& scene) {
+  constexpr std::size_t kText = 12;  // where sentences begin
+  std::vector<std::string> all;
+  std::istringstream lines(meaning_text(m, scene));
+  std::string about;
+  std::getline(lines, about);  // an empty line, and the heading
+  std::getline(lines, about);
+  for (std::string line; std::getline(lines, line) && line.starts_with("  ");) {
+    std::string name = line.substr(2, kText - 2);
+    name.erase(name.find_last_not_of(' ') + 1);
+    if (!name.empty()) about = name;
+    all.push_back(about + ": " + line.substr(kText));
+  }
+  for (const FarFromWalkers& far : far_from_walkers(m, scene))
+    all.push_back("far from what walks: " + far.what + ": " + far.reason);
+  return all;
 }
 
 }  // namespace gatewalk::cli

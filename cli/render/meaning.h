@@ -26,5 +26,8 @@ struct FarFromWalkers {
 /// A paragraph below the table of keys.
 [[nodiscard]] std::string meaning_text(const dynamics::Meaning& meaning,
                                        const lattice::Scene& scene);
+/// Its sentences, each behind what it is about: "sideways: noise shakes the body by ...".
+[[nodiscard]] std::vector<std::string> remarks(const dynamics::Meaning& meaning,
+                                               const lattice::Scene& scene);
 
 }  // namespace gatewalk::cli

@@ -82,7 +82,7 @@ Json to_json(const lattice::Prediction& prediction, const PredictedField& of,
     json["rows"].push_back({{"first", o.first},
                             {"last", o.last},
                             {"matrix", o.path},
-                            {"matrix_status", recorded_status(o.matrix.file)},
+                            {"matrix_status", recorded_status(*o.matrix.file)},
                             {"scene", lattice::to_toml(o.matrix.scene)}});
   return json;
 }

@@ -27,15 +27,20 @@ bool is_of_cells(const std::string& path) {
 }
 
 CellMatrix read_cell_matrix(const std::string& path, const std::vector<std::string>& overrides) {
+  return cell_matrix(std::make_shared<const MatrixFile>(read_file(path)), path, overrides);
+}
+
+CellMatrix cell_matrix(std::shared_ptr<const MatrixFile> file, const std::string& path,
+                       const std::vector<std::string>& overrides) {
   for (const std::string& set : overrides)
     if (!set.starts_with("field.") && !set.starts_with("terrain.") && !set.starts_with("start."))
       throw SceneError("--set " + set + ": " + path +
                        " has its runs, and only keys of field, terrain and start can be set");
-  CellMatrix m{read_file(path), {}, {}, {}};
-  m.cells = cells_in(m.file.text, path, overrides);
+  CellMatrix m{std::move(file), {}, {}, {}};
+  m.cells = cells_in(m.file->text, path, overrides);
   m.problem = problem_of(m.cells, {});
-  if (!has_runs(m.file)) return m;
-  m.pool = pool_of(m.file, m.problem, path);
+  if (!has_runs(*m.file)) return m;
+  m.pool = pool_of(*m.file, m.problem, path);
   m.problem = problem_of(m.cells, *m.pool);
   return m;
 }

@@ -2,6 +2,7 @@
 /// Matrix files of cells that are not ours: the chain of their runs, the runs, and the cell file;
 /// or a chain that was made elsewhere, without runs.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ inline constexpr const char* kCellText = "cell";
 
 /// What such a file holds. The field and start are the cell file's, with overrides.
 struct CellMatrix {
-  MatrixFile file;
+  std::shared_ptr<const MatrixFile> file;
   CellFile cells;
   std::optional<RunPool> pool;  // none of a chain that was made elsewhere
   Problem problem;
@@ -27,6 +28,10 @@ struct CellMatrix {
 /// Throws markov::BadFile, and SceneError for an override that is not permitted.
 [[nodiscard]] CellMatrix read_cell_matrix(const std::string& path,
                                           const std::vector<std::string>& overrides = {});
+/// The same of a file, read from there, that is in memory.
+[[nodiscard]] CellMatrix cell_matrix(std::shared_ptr<const MatrixFile> file,
+                                     const std::string& path,
+                                     const std::vector<std::string>& overrides);
 
 /// The matrices of a pool, by type, without starts of their own.
 [[nodiscard]] std::vector<dynamics::Transitions> cell_matrices(const Problem& problem,

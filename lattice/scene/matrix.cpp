@@ -75,20 +75,32 @@ void put_matrices(MatrixFile& file, const Scene& scene,
   if (!comment.empty()) file.text[kCommentText] = comment;
 }
 
+Scene own_scene(const MatrixFile& file, const std::string& path) {
+  const auto stored = file.text.find("scene");
+  if (stored == file.text.end()) throw markov::BadFile(path + ": holds no scene");
+  return parse_scene(stored->second, path + " (its scene)");
+}
+
 SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string& scene_path,
                               const std::vector<std::string>& overrides) {
-  MatrixFile file = read_matrix(matrix_path);
-  const auto stored = file.text.find("scene");
-  if (stored == file.text.end()) throw markov::BadFile(matrix_path + ": holds no scene");
-  const Scene built_with = parse_scene(stored->second, matrix_path + " (its scene)");
-  Scene scene = scene_path.empty()
-                    ? parse_scene(stored->second, matrix_path + " (its scene)", overrides)
-                    : read_scene(scene_path, overrides);
-  auto differences = physics_differences(scene, built_with);
+  auto file = std::make_shared<const MatrixFile>(read_matrix(matrix_path));
+  const Scene own = own_scene(*file, matrix_path);
+  return scene_matrix(std::move(file), own, matrix_path, scene_path, overrides);
+}
+
+SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& own,
+                         const std::string& matrix_path, const std::string& scene_path,
+                         const std::vector<std::string>& overrides) {
+  const auto wanted = [&] {
+    if (!scene_path.empty()) return read_scene(scene_path, overrides);
+    if (overrides.empty()) return own;
+    return parse_scene(file->text.at("scene"), matrix_path + " (its scene)", overrides);
+  };
+  Scene scene = wanted();
+  auto differences = physics_differences(scene, own);
   // A matrix that was built with a method by name is not the one that "auto" stands for.
-  if (scene.gate.run.method == "auto" && file.text.count("method") == 0)
-    differences.push_back("run.method: auto here, " + built_with.gate.run.method +
-                          " by name there");
+  if (scene.gate.run.method == "auto" && file->text.count("method") == 0)
+    differences.push_back("run.method: auto here, " + own.gate.run.method + " by name there");
   if (!differences.empty()) {
     std::string text = "the scene is not the one that " + matrix_path + " was built with:";
     for (const auto& line : differences) text += "\n  " + line;
@@ -97,7 +109,7 @@ SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string&
         "\n(here: the scene given; there: the matrix). Build a matrix for this "
         "scene, or give the matrix alone to use its own scene.");
   }
-  scene.gate = built_with.gate;  // the same, or the method that "auto" was settled to
+  scene.gate = own.gate;  // the same, or the method that "auto" was settled to
   return {std::move(file), std::move(scene)};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Matrices with the scene they belong to: building one, taking one from a file.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ void put_matrices(MatrixFile& file, const Scene& scene,
 
 /// A matrix and the scene to use it with.
 struct SceneMatrix {
-  MatrixFile file;
+  std::shared_ptr<const MatrixFile> file;
   Scene scene;
 };
 /// The matrix file with the scene at `scene_path`, or (empty) the one stored in the file. Throws
@@ -45,6 +46,13 @@ struct SceneMatrix {
 [[nodiscard]] SceneMatrix read_scene_matrix(const std::string& matrix_path,
                                             const std::string& scene_path,
                                             const std::vector<std::string>& overrides);
+/// The scene stored in a file read from there. Throws markov::BadFile.
+[[nodiscard]] Scene own_scene(const MatrixFile& file, const std::string& path);
+/// read_scene_matrix of a file that is in memory, `own` its own_scene.
+[[nodiscard]] SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& own,
+                                       const std::string& matrix_path,
+                                       const std::string& scene_path,
+                                       const std::vector<std::string>& overrides);
 
 /// As chain_start; `name` ("the start") begins the message. Throws std::invalid_argument when the
 /// start lies outside the chain's bins.

@@ -31,7 +31,7 @@ void require_same_kind(const RowMatrix& other, const SceneMatrix& base,
                                 " m wide and " + metres(a.gate_length()) + " m long, those of " +
                                 base_path + " " + metres(b.gate_width()) + " and " +
                                 metres(b.gate_length()) + " m: they make no field");
-  if (other.matrix.file.transitions.space != base.file.transitions.space)
+  if (other.matrix.file->transitions.space != base.file->transitions.space)
     throw std::invalid_argument(name_of(other) + ": its states are not those of " + base_path +
                                 " (other bins): what leaves one row could not enter the next");
 }
@@ -41,7 +41,7 @@ void require_same_kind(const RowMatrix& other, const SceneMatrix& base,
 CountedField field_of(const SceneMatrix& base, const std::string& base_path,
                       const std::vector<RowMatrix>& others) {
   if (others.empty())
-    return counted_field(gates_of(base.scene).map(), matrices_of(base.file, base.scene));
+    return counted_field(gates_of(base.scene).map(), matrices_of(*base.file, base.scene));
   for (const Scene* scene : {&base.scene, &others.front().matrix.scene})
     if (scene->terrain)
       throw std::invalid_argument(name_of(others.front()) +
@@ -49,8 +49,8 @@ CountedField field_of(const SceneMatrix& base, const std::string& base_path,
                                   "what stands where");
   const int rows = base.scene.field.rows;
   std::vector<int> type_of_row(static_cast<std::size_t>(rows), 0);
-  std::vector<markov::Chain> chains{make_chain(base.file.transitions)};
-  std::vector<markov::Counts> counts{base.file.transitions.counts()};
+  std::vector<markov::Chain> chains{make_chain(base.file->transitions)};
+  std::vector<markov::Counts> counts{base.file->transitions.counts()};
   std::map<std::string, int> known;  // matrix files
   for (const RowMatrix& o : others) {
     if (o.first > o.last) throw std::invalid_argument(name_of(o) + ": the lower row comes first");
@@ -64,8 +64,8 @@ CountedField field_of(const SceneMatrix& base, const std::string& base_path,
     require_same_kind(o, base, base_path);
     const auto [type, is_new] = known.emplace(o.path, static_cast<int>(chains.size()));
     if (is_new) {
-      chains.push_back(make_chain(o.matrix.file.transitions));
-      counts.push_back(o.matrix.file.transitions.counts());
+      chains.push_back(make_chain(o.matrix.file->transitions));
+      counts.push_back(o.matrix.file->transitions.counts());
     }
     std::fill(type_of_row.begin() + o.first, type_of_row.begin() + o.last + 1, type->second);
   }

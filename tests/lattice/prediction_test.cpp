@@ -24,12 +24,12 @@ SceneMatrix matrix(std::int64_t up, const std::string& keys = "") {
     if (up < 1000) t.rows[row][t.space.trapped()] = 1000 - up;
     t.trials[row] = 1000;
   }
-  return {{std::move(t), {}}, std::move(scene)};
+  return {std::make_shared<const MatrixFile>(MatrixFile{std::move(t), {}}), std::move(scene)};
 }
 
 Prediction predicted(const SceneMatrix& m, const std::vector<RowMatrix>& others = {}) {
   const ChainStart start =
-      chain_start(m.file.transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}});
+      chain_start(m.file->transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}});
   return predict(field_of(m, "base.nc", others), m.scene.field, {start}, {}, 1);
 }
 
@@ -88,7 +88,7 @@ TEST(FieldOf, RefusesWhatMakesNoField) {
 
 TEST(Prediction, IsStoppedByWhoWatches) {
   const SceneMatrix m = matrix(600);
-  const ChainStart a = chain_start(m.file.transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}});
+  const ChainStart a = chain_start(m.file->transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}});
   const dynamics::Work work{
       [](std::string_view, std::int64_t, std::int64_t) { throw std::runtime_error("enough"); }};
   EXPECT_THROW((void)predict(field_of(m, "base.nc", {}), m.scene.field, {a}, {}, 1, work),
@@ -97,8 +97,8 @@ TEST(Prediction, IsStoppedByWhoWatches) {
 
 TEST(Prediction, OfManyStartsIsOneEach) {
   const SceneMatrix m = matrix(600);
-  const ChainStart a = chain_start(m.file.transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}}),
-                   b = chain_start(m.file.transitions.space, m.scene.field, {0, {9.0, 3.0, 5.0}});
+  const ChainStart a = chain_start(m.file->transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}}),
+                   b = chain_start(m.file->transitions.space, m.scene.field, {0, {9.0, 3.0, 5.0}});
   const Prediction p = predict(field_of(m, "base.nc", {}), m.scene.field, {a, b}, {}, 1);
   ASSERT_EQ(p.starts.size(), 2u);
   EXPECT_EQ(p.starts[1].start.start.input, b.start.input);

@@ -472,11 +472,11 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   write_matrix(path, file);
 
   const SceneMatrix m = read_scene_matrix(path, "", {});
-  EXPECT_EQ(m.file.types.size(), 2U);
-  const auto matrices = matrices_of(m.file, m.scene);
+  EXPECT_EQ(m.file->types.size(), 2U);
+  const auto matrices = matrices_of(*m.file, m.scene);
   for (std::size_t type = 0; type < 3; ++type)
     EXPECT_EQ(matrices[type].rows, chain.transitions[type].rows) << type;
-  RunPool pool = pool_of(m.file, problem_of(m.scene), path);
+  RunPool pool = pool_of(*m.file, problem_of(m.scene), path);
   EXPECT_TRUE(pool.starts[0].knows_endings);
   EXPECT_EQ(pool.starts[0].full.final_gates, chain.pool.starts[0].full.final_gates);
   const auto p =
@@ -499,7 +499,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   // In a field where another gate stands at the start, its own first runs are none.
   Scene moved = m.scene;
   moved.terrain->type_of_cell[2] = 1;
-  RunPool others = pool_of(m.file, problem_of(moved), path);
+  RunPool others = pool_of(*m.file, problem_of(moved), path);
   EXPECT_TRUE(others.starts.empty());
   EXPECT_EQ(others.gate_runs(), chain.pool.gate_runs());
 

@@ -126,6 +126,45 @@ class SameAsTheProgram(unittest.TestCase):
         self.check(gw.rare(FIELD, row=3, accuracy=0.3), "rare", FIELD, "--row", 3, "--accuracy", 0.3)
         self.check(gw.power(FIELD, trials=50), "power", FIELD, "--trials", 50)
 
+    def test_landscape(self):
+        with tempfile.TemporaryDirectory() as folder:
+            seen = gw.landscape(SINGLE, beam="left", trials=20)
+            said = program("landscape", SINGLE, "--beam", "left", "--trials", 20, "-o", folder)
+            self.assertEqual(plain({k: v for k, v in seen.items() if k != "table"}), plain(said))
+            lines = (Path(folder) / "landscape.csv").read_text().splitlines()
+            self.assertEqual(list(seen.to_frame().columns), lines[0].split(","))
+            self.assertEqual(len(seen.to_frame()), len(lines) - 1)
+
+    def test_merge(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def parts(*words):
+                names = [Path(folder) / f"{words[0]}{i}" for i in (1, 2)]
+                for i, name in enumerate(names, 1):
+                    subprocess.run([PROGRAM, *words, "--shard", f"{i}/2", "--part", name, "--quiet"], check=True, capture_output=True)
+                return names
+            self.assertEqual(gw.merge(parts("lattice", FIELD, "--trials", "100")), gw.lattice(FIELD, trials=100))
+            built = gw.merge(parts("build", FIELD, "--bins", "paper", "--trials", "20", "-o", Path(folder) / "m.nc"))
+            self.assertEqual((built.counts() != gw.build(FIELD, bins="paper", trials=20).counts()).nnz, 0)
+            with self.assertRaisesRegex(gw.UsageError, "missing|lacks|other part"):
+                gw.merge([Path(folder) / "lattice1"])
+            with self.assertRaisesRegex(gw.UsageError, "takes a list"):
+                gw.merge("x")
+
+    def test_observed(self):
+        import pandas
+
+        counts = {"crossed": 0, "left_side": 5, "right_side": 2, "trapped": 48, "cut_off": 5}
+        how = dict(accuracy=0.2, trials=1200, null_draws=99)
+        of_file = gw.validate(FIELD, observed=ROOT / "scenes/observed.csv", **how)["observed"]
+        self.assertEqual(of_file["trials"], 60)
+        for table in (counts, pandas.DataFrame({"ending": counts.keys(), "count": counts.values()})):
+            of_table = gw.validate(FIELD, observed=table, **how)["observed"]
+            self.assertEqual(of_table["files"], ["a table"])
+            self.assertEqual(plain({**of_table, "files": 0}), plain({**of_file, "files": 0}))
+        for wrong, text in (({"crosed": 1}, '^the table:2: column ending: "crosed" is not permitted'), ({"crossed": 1.5}, "^the table:2: ")):
+            with self.assertRaisesRegex(ValueError, text):
+                gw.validate(FIELD, observed=wrong, **how)
+
     def test_matrices(self):
         with tempfile.TemporaryDirectory() as folder:
             theirs = Path(folder) / "theirs.nc"
@@ -148,6 +187,17 @@ class SameAsTheProgram(unittest.TestCase):
             self.assertEqual(gw.load(saved), ours)
             for twin in (pickle.loads(pickle.dumps(ours)), copy.copy(ours), copy.deepcopy(ours)):
                 self.assertEqual(twin, ours)
+            kept = gw.load(saved)
+            old = kept.predict(start=(0.0, 0.0, 15.0))
+            self.assertEqual(old, ours.predict(start=(0.0, 0.0, 15.0)))  # nothing that was left in memory has changed
+            other_seed = gw.build(FIELD, bins="paper", trials=20, seed=2)
+            self.assertNotEqual(other_seed.predict(start=(0.0, 0.0, 15.0)), old)
+            other_seed.save(saved)
+            for asked in (kept.predict, kept.walk, lambda: kept.save(Path(folder) / "x.nc"), lambda: pickle.dumps(kept),
+                          lambda: kept == ours, lambda: gw.validate(FIELD, matrix=kept)):
+                with self.assertRaisesRegex(gw.BadFile, "saved.nc: was changed or removed since it was loaded"):
+                    asked()
+            self.assertEqual(gw.load(saved).predict(start=(0.0, 0.0, 15.0)), other_seed.predict(start=(0.0, 0.0, 15.0)))
             saved.write_bytes(saved.read_bytes()[:-100])
             with self.assertRaisesRegex(gw.BadFile, "saved.nc"):
                 gw.load(saved)
@@ -229,7 +279,7 @@ class Elsewhere(unittest.TestCase):
                             share = chain.T @ share
                         for name, p in exact.items():
                             self.assertAlmostEqual(share[labels[name]], p, 11, (made, limit, ending, name))
-            with self.assertRaisesRegex(gw.UsageError, "must end in .umb, .drn or .tra"):
+            with self.assertRaisesRegex(gw.UsageError, "must end in .umb, .drn, .tra"):
                 matrix.export(Path(folder) / "x.txt")
             matrix.save(Path(folder) / "x.sta")
             with self.assertRaisesRegex(gw.UsageError, "x.sta, .* is an input"):
@@ -248,6 +298,16 @@ class Scenes(unittest.TestCase):
             self.assertEqual(twin, tables)
             self.assertEqual(hash(twin), hash(tables))
         self.assertIn("<td>body.radius_m</td>", tables._repr_html_())
+        walker = gw.Scene(gw.sample("walker"))
+        said = " ".join(subprocess.run([PROGRAM, "sample", "walker"], capture_output=True, check=True, text=True).stdout.split())
+        self.assertEqual(said, " ".join(gw.sample("walker").split()))
+        shown = subprocess.run([PROGRAM, "scene", ROOT / "scenes/walker.toml"], capture_output=True, check=True, text=True).stdout
+        self.assertGreaterEqual(len(walker.remarks), 5)
+        for remark in walker.remarks:
+            self.assertIn(remark.split(": ", 1)[1], shown)
+        self.assertIn("<li>sideways: noise shakes the body", walker._repr_html_())
+        self.assertEqual([r.split(": ")[0] for r in gw.Scene(FIELD).remarks],
+                         ["speed", "sideways", "beams", "beams", "trapped"] + ["far from what walks"] * 4)
 
     def test_terrain_is_part_of_a_scene(self):
         mixed = (ROOT / "scenes/mixed.toml").read_text()
@@ -290,6 +350,39 @@ class Scenes(unittest.TestCase):
             gw.predict("[forces]\npropulsion_N = -1\n")
 
 
+class Loaded(unittest.TestCase):
+    """Matrices in memory answer as the program does from their files."""
+
+    def check(self, matrix, *words, **asked):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "m.nc"
+            matrix.save(path)
+            said = plain(program("predict", path, *words))
+            for _ in range(2):  # the first call leaves nothing behind
+                self.assertEqual(plain(matrix.predict(**asked)), said)
+
+    def test_trees(self):
+        matrix = gw.build(FIELD, accuracy=0.1)
+        self.check(matrix)
+        self.check(matrix, "--set", "field.rows=3", set={"field.rows": 3})
+        self.check(matrix, "--start=1,0,15", "--first-runs", 100, start=(1.0, 0.0, 15.0), first_runs=100)
+        self.check(matrix, "--first-runs", 0, first_runs=0)
+        self.check(matrix, "--accuracy", 0.05, accuracy=0.05)
+        with tempfile.TemporaryDirectory() as folder:
+            text = FIELD.read_text()
+            (Path(folder) / "other.toml").write_text(text)
+            self.check(matrix, Path(folder) / "other.toml", "--set", "field.rows=4", scene=gw.Scene(text, {"field.rows": 4}))
+        with self.assertRaisesRegex(ValueError, "the scene is not the one"):
+            matrix.predict(scene=gw.Scene(FIELD, {"forces.random_N": 10.0}))
+
+    def test_types_of_gates_and_cells(self):
+        self.check(gw.build(ROOT / "scenes/mixed.toml", accuracy=0.2))
+        recorded = gw.from_passages(ROOT / "scenes/tracks/runs.csv", ROOT / "scenes/tracks/cell.toml")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", gw.GatewalkWarning)
+            self.check(recorded)
+
+
 class Results(unittest.TestCase):
     def test_tables(self):
         p = gw.predict(FIELD, accuracy=0.1)
@@ -318,7 +411,8 @@ class Results(unittest.TestCase):
         matplotlib.use("Agg")
         with tempfile.TemporaryDirectory() as folder:
             for name, axes in (("prediction", gw.predict(FIELD, accuracy=0.1).plot()[0]), ("lattice", gw.lattice(FIELD, trials=50).plot()[0]),
-                               ("matrix", gw.build(FIELD, bins="paper", trials=5).plot()), ("trace", gw.trace(FIELD, field=True).plot())):
+                               ("matrix", gw.build(FIELD, bins="paper", trials=5).plot()), ("trace", gw.trace(FIELD, field=True).plot()),
+                               ("landscape", gw.landscape(SINGLE).plot())):
                 file = Path(os.environ.get("KEEP", folder)) / f"{name}.png"
                 axes.figure.savefig(file, dpi=100)
                 self.assertGreater(file.stat().st_size, 5000)
@@ -424,15 +518,20 @@ class AsAGuest(unittest.TestCase):
                 "print('go', flush=True)\n"
                 "try:\n    gw.lattice(sys.argv[1], trials=10**8)\n"
                 "except KeyboardInterrupt:\n    print('stopped', flush=True)\n")
-        child = subprocess.Popen([sys.executable, "-c", code, str(FIELD)], stdout=subprocess.PIPE, text=True)
-        child.stdout.readline()
-        time.sleep(1.5)
-        begin = time.monotonic()
-        child.send_signal(signal.SIGINT)
-        self.assertEqual(child.stdout.readline(), "stopped\n")
-        self.assertLess(time.monotonic() - begin, 1.5)  # 0.3 s on an idle machine
-        child.stdout.close()
-        child.wait()
+        waited = []
+        for _ in range(5):  # others may keep the machine busy meanwhile
+            child = subprocess.Popen([sys.executable, "-c", code, str(FIELD)], stdout=subprocess.PIPE, text=True)
+            child.stdout.readline()
+            time.sleep(1.0)
+            begin = time.monotonic()
+            child.send_signal(signal.SIGINT)
+            self.assertEqual(child.stdout.readline(), "stopped\n")
+            waited.append(time.monotonic() - begin)
+            child.stdout.close()
+            child.wait()
+            if waited[-1] < 0.3:
+                break
+        self.assertLess(min(waited), 0.3)
 
     def test_forked_processes(self):
         matrix = gw.build(FIELD, bins="paper", trials=5)
@@ -468,10 +567,12 @@ class AsAGuest(unittest.TestCase):
             self.skipTest("mypy is not installed")
         with tempfile.TemporaryDirectory() as folder:
             allow = Path(folder) / "allow"
-            allow.write_text("gatewalk._core.Matrix\n")  # pybind11's metaclass
-            done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "gatewalk._core", "--allowlist", str(allow)], cwd=folder,
-                                  capture_output=True, text=True, check=False, env={**os.environ, "MYPYPATH": os.environ["PYTHONPATH"]})
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            allow.write_text("gatewalk._core.Matrix\n")  # pybind11's metaclass, which only some versions of mypy mind
+            for words in (["mypy.stubtest", "gatewalk._core", "--allowlist", str(allow), "--ignore-unused-allowlist"],
+                          ["mypy", "--strict", "--ignore-missing-imports", "--cache-dir", folder, str(Path(gw.__file__).parent)]):
+                done = subprocess.run([sys.executable, "-m", *words], cwd=folder, capture_output=True, text=True, check=False,
+                                      env={**os.environ, "MYPYPATH": os.environ["PYTHONPATH"]})
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ States, rows and columns count from 0 here; tables and JSON of the program count
 from __future__ import annotations
 
 import contextlib as _contextlib
+import json as _json
 import os as _os
 import sys as _sys
 import typing as _t
@@ -26,13 +27,13 @@ import warnings as _warnings
 from . import _core
 from ._cell import BROKEN, TRAPPED, Cell
 from ._core import BadFile, SceneError, UsageError, threads
-from ._results import Analysis, Prediction, Result, Sweep, Trace
+from ._results import Analysis, Landscape, Prediction, Result, Sweep, Trace
 from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
 
 __version__: str = _core.version
-__all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Matrix", "Prediction", "Result", "Scene", "SceneError",
-           "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "from_passages", "gate", "lattice", "load", "options",
-           "passages", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
+__all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError",
+           "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "from_passages", "gate", "landscape", "lattice", "load", "merge",
+           "options", "passages", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
 
 
 class GatewalkWarning(UserWarning):
@@ -96,33 +97,35 @@ def _without_folder(value: _t.Any, name: str) -> _t.Any:
     return value
 
 
-@_contextlib.contextmanager
-def _progress(wanted: bool | None) -> _t.Iterator[_t.Callable[[str, int, int], None] | None]:
-    """tqdm's bar, where it is installed and somebody looks (or progress=True)."""
+class _Bars:
+    """Bars of tqdm, one at a time."""
+
+    def __init__(self, tqdm: _t.Any) -> None:
+        self._tqdm, self._what = tqdm, ""
+        self._bar: _t.Any = None
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        if what != self._what or self._bar is None:
+            self.close()
+            self._what, self._bar = what, self._tqdm(total=total, desc=what, leave=False)
+        self._bar.total = total
+        self._bar.update(done - self._bar.n)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+        self._bar = None
+
+
+def _bars(wanted: bool | None) -> _Bars | None:
+    """tqdm's, where it is installed and somebody looks (or progress=True)."""
     if wanted is False or (wanted is None and not _sys.stderr.isatty()):
-        yield None
-        return
+        return None
     try:
         from tqdm.auto import tqdm
     except ImportError:
-        yield None
-        return
-    bars: dict[str, _t.Any] = {}
-
-    def told(what: str, done: int, total: int) -> None:
-        if what not in bars:
-            for bar in bars.values():
-                bar.close()
-            bars.clear()
-            bars[what] = tqdm(total=total, desc=what, leave=False)
-        bars[what].total = total
-        bars[what].update(done - bars[what].n)
-
-    try:
-        yield told
-    finally:
-        for bar in bars.values():
-            bar.close()
+        return None
+    return _Bars(tqdm)
 
 
 def _outside() -> int:
@@ -134,7 +137,8 @@ def _outside() -> int:
     return level
 
 
-def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: list[str] | None = None) -> dict[str, _t.Any]:
+def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: list[str] | None = None,
+         gives_json: bool = True) -> dict[str, _t.Any]:
     """Runs a command about these subjects; raises what the program would say."""
     cell = given.pop("cell", None)
     progress = given.pop("progress", None)
@@ -143,23 +147,30 @@ def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: 
     if cell is not None and not isinstance(cell, Cell):
         raise UsageError("cell: must be an object of a class derived from gatewalk.Cell"
                          + (", not the class itself" if isinstance(cell, type) else ""))
+    words: list[str] = []
     with _contextlib.ExitStack() as stack:
-        words: list[str] = []
         for subject in subjects:
+            if isinstance(subject, Matrix):
+                words.append(subject._path)
+                continue
             path, overrides = stack.enter_context(_file_of(subject))
             words.append(path)
             words += [f"--set={k}={_word(v)}" for k, v in overrides.items()]
         words += _words_of(given) + (extra or []) + ["--quiet"]
-        if command not in ("build", "passages"):
+        if gives_json:
             words.append("--json=-")
-        told = stack.enter_context(_progress(progress))
+        loaded = [m._core for m in (*subjects, *given.values()) if isinstance(m, Matrix)]
+        bars = _bars(progress)
         warned: list[str] = []
         try:
-            status, result = _core.run(command, words, told=told, warned=warned.append, cell=cell)
+            status, result = _core.run(command, words, told=bars, warned=warned.append, cell=cell, matrices=loaded)
         finally:
+            if bars is not None:
+                bars.close()
             for text in warned:
                 _warnings.warn(text, GatewalkWarning, stacklevel=_outside())
-        result = _without_folder(result, words[0] if words else "")
+    if subjects and not isinstance(subjects[0], Matrix):
+        result = _without_folder(result, words[0])
     if status != 0 and given.get("strict"):
         raise RuntimeError(f"gatewalk {command}: the result's status is not clean")
     return _t.cast("dict[str, _t.Any]", result) if result is not None else {}
@@ -184,7 +195,7 @@ def options(command: str) -> str:
     """
     import subprocess
 
-    code = "import sys; from gatewalk import _core; _core.run(sys.argv[1], ['--help'], told=None, warned=print, cell=None)"
+    code = "import sys; from gatewalk import _core; _core.run(sys.argv[1], ['--help'], told=None, warned=print, cell=None, matrices=[])"
     done = subprocess.run([_sys.executable, "-c", code, command], capture_output=True, text=True, check=False,
                           env={**_os.environ, "PYTHONPATH": _os.pathsep.join(p for p in _sys.path if p)})
     if done.returncode != 0:
@@ -192,7 +203,7 @@ def options(command: str) -> str:
     return done.stdout
 
 
-def predict(subject: _t.Any, *, accuracy: float | None = None, start: _t.Any = None, seed: int | None = None, cell: Cell | None = None,
+def predict(subject: _t.Any, scene: _t.Any = None, *, accuracy: float | None = None, start: _t.Any = None, seed: int | None = None, cell: Cell | None = None,
             progress: bool | None = None, **more: _t.Any) -> Prediction:
     """Where bodies end in a field, and how, with error bars.
 
@@ -200,6 +211,8 @@ def predict(subject: _t.Any, *, accuracy: float | None = None, start: _t.Any = N
     ----------
     subject : Scene, Matrix, path, text or dict
         A scene: trials are run until the bar keeps `accuracy`. A matrix of trees: the same with its runs.
+    scene : Scene, path, text or dict, optional
+        Of a matrix: another scene with the same physics, such as another field; without it the matrix's own.
     accuracy : float, optional
         Of all shares together (total variation, 95 %); 0.02 without it.
     start : tuple or list of tuples, optional
@@ -222,7 +235,7 @@ def predict(subject: _t.Any, *, accuracy: float | None = None, start: _t.Any = N
     SceneError, UsageError, BadFile
         All of them ValueErrors: the key, and what is allowed.
     """
-    return Prediction(_run("predict", [subject], dict(accuracy=accuracy, start=start, seed=seed, cell=cell, progress=progress, **more)))
+    return Prediction(_run("predict", [subject] if scene is None else [subject, scene], dict(accuracy=accuracy, start=start, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def lattice(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
@@ -325,18 +338,21 @@ def trace(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, 
     return Trace(_run("trace", [scene], dict(trials=trials, seed=seed, progress=progress, **more)))
 
 
-def validate(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
-             **more: _t.Any) -> Result:
+def validate(subject: _t.Any, *, observed: _t.Any = None, trials: int | None = None, seed: int | None = None, cell: Cell | None = None,
+             progress: bool | None = None, **more: _t.Any) -> Result:
     """Compares the chain with the full dynamics, or with counts of yours; is the chain Markov?
 
     Parameters
     ----------
     subject : Scene, Matrix, path, text or dict
         A scene. A matrix of recorded runs: one half of the bodies against the other.
+    observed : dict, DataFrame, path, or list of these, optional
+        What an experiment saw: numbers of bodies by ending, ``{"crossed": 3, "trapped": 17}``; or a table with columns
+        trial,ending; ending,count; or gate_x,gate_y,count.
     trials : int, optional
         Bodies of the full dynamics from each start; 100 without it, which shows no error of the chain: take 10 000.
     seed, cell, progress, **more
-        See `predict`; ``**more`` is any option of ``gatewalk validate``: ``matrix=MATRIX``, ``observed="endings.csv"``.
+        See `predict`; ``**more`` is any option of ``gatewalk validate``: ``matrix=MATRIX``.
 
     Returns
     -------
@@ -348,7 +364,13 @@ def validate(subject: _t.Any, *, trials: int | None = None, seed: int | None = N
     SceneError, UsageError, BadFile
         See `predict`.
     """
-    return Result(_run("validate", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
+    with _contextlib.ExitStack() as stack:
+        tables = observed if isinstance(observed, (list, tuple)) else [] if observed is None else [observed]
+        paths = [stack.enter_context(_table_file(table)) for table in tables]
+        data = _run("validate", [subject], dict(observed=paths, trials=trials, seed=seed, cell=cell, progress=progress, **more))
+    if tables:
+        data["observed"]["files"] = [path if isinstance(table, (str, _os.PathLike)) else "a table" for table, path in zip(tables, paths)]
+    return Result(data)
 
 
 def analyze(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
@@ -429,6 +451,58 @@ def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None
     return Result(_run("power", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
 
 
+def landscape(scene: _t.Any, *, spacing: float | None = None, beam: str | None = None, trials: int | None = None, seed: int | None = None,
+              progress: bool | None = None, **more: _t.Any) -> Landscape:
+    """The potential energy of body and beams over a gate, and the way through whose highest point is lowest.
+
+    Parameters
+    ----------
+    spacing : float, optional
+        Of the grid, in m; a twentieth of the body's radius without it.
+    beam : str, optional
+        Beams that resist: "both", "left" or "right".
+    trials : int, optional
+        Also run the gate so often.
+    """
+    import csv
+    import tempfile
+
+    import numpy as np
+
+    with tempfile.TemporaryDirectory() as folder:
+        given = dict(spacing=spacing, beam=beam, trials=trials, seed=seed, progress=progress, **more)
+        data = _run("landscape", [scene], given, [f"--output={folder}"])
+        with open(_os.path.join(folder, "landscape.csv"), encoding="utf-8") as file:
+            names, *rows = [row for row in csv.reader(file) if not row[0].startswith("#")]
+    table = np.array(rows, dtype=float)
+    return Landscape({**data, "table": {name: table[:, k] for k, name in enumerate(names)}})
+
+
+def merge(parts: _t.Sequence[_t.Any], *, progress: bool | None = None) -> Result | Matrix:
+    """One run of the parts that ``gatewalk ... --part FILE`` wrote on several machines: the same bits as of one machine.
+
+    Parameters
+    ----------
+    parts : list of paths
+        All parts of one command.
+
+    Returns
+    -------
+    Result
+        What its command gives; of ``build`` a Matrix.
+    """
+    if isinstance(parts, (str, _os.PathLike)) or not parts:
+        raise UsageError("merge: takes a list of parts")
+    paths = [_os.fspath(part) for part in parts]
+    command = ""
+    with _contextlib.suppress(OSError, ValueError, IndexError, KeyError), open(paths[0], "rb") as file:
+        command = _json.loads(file.read(100_000).split(b"\n")[1])["command"]
+    if command == "build":
+        return _made("merge", paths, dict(progress=progress))
+    kinds: dict[str, type[Result]] = {"predict": Prediction, "lattice": Prediction, "analyze": Analysis, "sweep": Sweep}
+    return kinds.get(command, Result)(_run("merge", paths, dict(progress=progress)))
+
+
 def sample(name: str | None = None) -> str:
     """The text of a sample: a scene, "tracks" with its "cell", "runs", "observed"; without a name what there is.
 
@@ -470,4 +544,4 @@ def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = Non
     return Result(_run("walk", [matrix], dict(seed=seed, progress=progress, **more)))
 
 
-from ._matrix import Matrix, build, from_passages, load, passages  # noqa: E402  (they use _run)
+from ._matrix import Matrix, _made, _table_file, build, from_passages, load, passages  # noqa: E402  (they use _run)

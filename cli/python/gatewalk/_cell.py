@@ -9,6 +9,9 @@ import typing as t
 
 import numpy as np
 
+if t.TYPE_CHECKING:
+    Array = np.ndarray[t.Any, t.Any]
+
 #: What `Cell.pass_` gives as the face of a body that stays, and of one of which nothing is known.
 TRAPPED, BROKEN = -1, -2
 
@@ -47,7 +50,7 @@ class Cell:
     parameters: dict[str, float] = {}
     limits: dict[str, tuple[float, float]] = {}
 
-    def pass_(self, entries: dict[str, np.ndarray], random: types.SimpleNamespace) -> dict[str, np.ndarray]:
+    def pass_(self, entries: dict[str, Array], random: types.SimpleNamespace) -> dict[str, Array]:
         """Carries bodies through, all at once.
 
         Parameters
@@ -78,10 +81,10 @@ class Cell:
         other.parameters = {**self.parameters, key: value}
         return other
 
-    def _passes(self, face: np.ndarray, at: np.ndarray, seed: np.ndarray, noise: np.ndarray,
-                memory: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def _passes(self, face: Array, at: Array, seed: Array, noise: Array,
+                memory: Array) -> tuple[Array, Array, Array, Array]:
         names = [c["name"] for c in self.coordinates]
-        entries: dict[str, np.ndarray] = {"face": face, "memory": memory}
+        entries: dict[str, Array] = {"face": face, "memory": memory}
         entries.update({name: at[:, k] for k, name in enumerate(names)})
         out = self.pass_(entries, types.SimpleNamespace(seed=seed, normals=noise[:, :self.normals], uniforms=noise[:, self.normals:]))
         if not isinstance(out, dict):
@@ -95,7 +98,7 @@ class Cell:
             raise ValueError(f"cell: pass_ gave {', '.join(sorted(unknown))}; it may give {', '.join(wanted)} and memory")
         n = len(face)
 
-        def stacked(keys: list[str]) -> np.ndarray:
+        def stacked(keys: list[str]) -> Array:
             if not keys:
                 return np.zeros((n, 0))
             return np.stack([np.broadcast_to(np.asarray(out[k], dtype=float), (n,)) for k in keys], axis=1)

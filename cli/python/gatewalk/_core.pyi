@@ -14,6 +14,7 @@ def run(
     told: t.Callable[[str, int, int], None] | None,
     warned: t.Callable[[str], t.Any],
     cell: t.Any,
+    matrices: list[Matrix],
 ) -> tuple[int, t.Any]: ...
 def threads(n: int) -> None: ...
 

@@ -30,10 +30,27 @@ class Matrix:
     """
 
     def __init__(self, path: t.Any, _owned: bool = False) -> None:
-        self._path = os.path.abspath(os.fspath(path))
-        self._core = _core.Matrix(self._path)
+        self._file: str = os.path.abspath(os.fspath(path))
+        before = self._stamp()
+        self._core = _core.Matrix(self._file)
+        self._loaded = before
+        _ = self._path
         if _owned:
-            self._gone = weakref.finalize(self, _unlink, self._path, os.getpid())
+            self._gone = weakref.finalize(self, _unlink, self._file, os.getpid())
+
+    def _stamp(self) -> t.Any:
+        try:
+            s = os.stat(self._file)
+        except OSError:
+            return None
+        return s.st_dev, s.st_ino, s.st_size, s.st_mtime_ns, s.st_ctime_ns
+
+    @property
+    def _path(self) -> str:
+        """Its file, which still is what was loaded: commands, copies and `save` must not speak of another one."""
+        if self._stamp() != self._loaded:
+            raise _core.BadFile(f"{self._file}: was changed or removed since it was loaded; gatewalk.load(...) reads it again")
+        return self._file
 
     @property
     def matrix(self) -> t.Any:
@@ -149,7 +166,8 @@ class Matrix:
 
         if axes is None:
             _, axes = plt.subplots(figsize=(3.5, 3.2), constrained_layout=True)
-        dense = np.ma.masked_less_equal(self.matrix.toarray(), 0.0)
+        dense = self.matrix.toarray()
+        dense = np.ma.masked_where(dense <= 0.0, dense)  # type: ignore[no-untyped-call]
         image = axes.imshow(dense, norm=LogNorm(), cmap="viridis", interpolation="nearest")
         axes.figure.colorbar(image, ax=axes, label="probability")
         axes.set_xlabel("to state (last: trapped)")
@@ -212,10 +230,11 @@ def load(path: t.Any) -> Matrix:
     return Matrix(path)
 
 
-def _built(subject: t.Any, given: dict[str, t.Any], words: t.Sequence[str] = ()) -> Matrix:
+def _made(command: str, subjects: list[t.Any], given: dict[str, t.Any], words: t.Sequence[str] = ()) -> Matrix:
+    """What a command writes, as a matrix."""
     name = _temporary()
     try:
-        _run("build", [subject], given, [*words, f"--output={name}", "--force"])
+        _run(command, subjects, given, [*words, f"--output={name}", "--force"], gives_json=False)
         return Matrix(name, _owned=True)
     except BaseException:
         _unlink(name)
@@ -245,7 +264,7 @@ def build(subject: t.Any, *, accuracy: float | None = None, starts: t.Any = None
     SceneError, UsageError, BadFile
         See `predict`.
     """
-    return _built(subject, dict(accuracy=accuracy, starts=starts, seed=seed, cell=cell, progress=progress, **more))
+    return _made("build", [subject], dict(accuracy=accuracy, starts=starts, seed=seed, cell=cell, progress=progress, **more))
 
 
 def _csv_of(table: t.Any) -> str:
@@ -255,9 +274,13 @@ def _csv_of(table: t.Any) -> str:
     return out.getvalue()
 
 
+def _csv_of_counts(counts: t.Mapping[str, t.Any]) -> str:
+    return "ending,count\n" + "".join(f"{ending},{int(n) if n == int(n) else n}\n" for ending, n in counts.items())
+
+
 @contextlib.contextmanager
 def _table_file(table: t.Any) -> t.Iterator[str]:
-    """A file with the table; a path as it is."""
+    """A file with the table, or with counts by ending; a path as it is."""
     if isinstance(table, (str, os.PathLike)):
         yield os.fspath(table)
         return
@@ -268,7 +291,7 @@ def _table_file(table: t.Any) -> t.Iterator[str]:
         else:
             name = os.path.join(folder, "table.csv")
             with open(name, "w", encoding="utf-8") as file:
-                file.write(_csv_of(table))
+                file.write(_csv_of_counts(table) if isinstance(table, t.Mapping) else _csv_of(table))
         try:
             yield name
         except ValueError as error:
@@ -299,7 +322,7 @@ def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
         The line and column of a table that is wrong, and what is allowed.
     """
     with _table_file(table) as name, file_of(cell) as (path, _):
-        return _built(name, dict(more), [f"--cell={path}"])
+        return _made("build", [name], dict(more), [f"--cell={path}"])
 
 
 def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
@@ -331,5 +354,5 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
         columns = ",".join(f"{k}={v}" for k, v in columns.items())
     with _table_file(tracks) as name, file_of(cell) as (path, _), tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "runs.csv")
-        _run("passages", [name], {**more, "columns": columns}, [f"--cell={path}", f"--output={out}"])
+        _run("passages", [name], {**more, "columns": columns}, [f"--cell={path}", f"--output={out}"], gives_json=False)
         return pandas.read_csv(out, comment="#")

@@ -7,6 +7,9 @@ import typing as t
 
 import numpy as np
 
+if t.TYPE_CHECKING:
+    Array = np.ndarray[t.Any, t.Any]
+
 from ._scene import _table_html
 
 
@@ -106,7 +109,7 @@ class Prediction(Result):
             raise ValueError("the field has too many gates for tables: netcdf=FILE writes them")
         return self.starts[0]._data
 
-    def _gates(self) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]:
+    def _gates(self) -> tuple[Array, tuple[Array, Array] | None]:
         first = self._only()
         bars = first.get("final_gates_95")
         return np.asarray(first["final_gates"]), (np.asarray(bars["low"]), np.asarray(bars["high"])) if bars else None
@@ -155,7 +158,7 @@ class Prediction(Result):
         gates = np.asarray(first["final_gates"], dtype=float) / total
         columns = gates.shape[1]
         left = -((columns - 1) // 2) - 0.5
-        shown = np.ma.masked_less_equal(100 * gates, 0.0)
+        shown = np.ma.masked_where(gates <= 0.0, 100 * gates)  # type: ignore[no-untyped-call]
         image = axes[0].imshow(shown, origin="lower", cmap="viridis", extent=(left, left + columns, -0.5, gates.shape[0] - 0.5))
         axes[0].set_xlabel("$i_x$")
         axes[0].set_ylabel("$i_y$")
@@ -221,6 +224,34 @@ class Sweep(Result):
 
         return pandas.DataFrame([{**p["at"], **{k: v for k, v in p.items() if isinstance(v, int) and not isinstance(v, bool)}}
                                  for p in self._data["points"]])
+
+
+class Landscape(Result):
+    """Potential energy over a gate: `passes` with the lowest ways, `table` with a column each of x_m, y_m, elastic_J, total_J."""
+
+    def to_frame(self) -> t.Any:
+        """A pandas.DataFrame: a line per point of the grid."""
+        import pandas
+
+        return pandas.DataFrame(self._data["table"])
+
+    def plot(self, axes: t.Any = None) -> t.Any:
+        """The total energy as a map with the lowest way, by matplotlib."""
+        import matplotlib.pyplot as plt
+
+        if axes is None:
+            _, axes = plt.subplots(figsize=(4.0, 3.5), constrained_layout=True)
+        table = self._data["table"]
+        x, y = np.unique(table["x_m"]), np.unique(table["y_m"])
+        energy = np.ma.masked_invalid(table["total_J"]).reshape(len(y), len(x))  # type: ignore[no-untyped-call]
+        image = axes.pcolormesh(x, y, energy, shading="nearest", cmap="viridis")
+        axes.figure.colorbar(image, ax=axes, label="energy (J)")
+        way = np.asarray(self._data["passes"][0]["from_start"]["way_m"])
+        axes.plot(way[:, 0], way[:, 1], color="white", lw=1.0)
+        axes.set_xlabel("x (m)")
+        axes.set_ylabel("y (m)")
+        axes.set_aspect("equal")
+        return axes
 
 
 class Trace(Result):

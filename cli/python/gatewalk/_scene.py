@@ -66,6 +66,10 @@ def _table_html(rows: t.Iterable[t.Sequence[t.Any]], head: t.Sequence[str]) -> s
     return "<table>" + cells(head, "th") + "".join(cells(row, "td") for row in rows) + "</table>"
 
 
+def _list_html(rows: t.Iterable[str]) -> str:
+    return "<ul>" + "".join(f"<li>{html.escape(row)}</li>" for row in rows) + "</ul>"
+
+
 class Scene:
     """A scene of gates, with every key.
 
@@ -112,6 +116,8 @@ class Scene:
         shown = _run("scene", [self], {})
         self._keys: list[dict[str, t.Any]] = shown["keys"]
         self._toml: str = shown["scene"]
+        #: What its numbers mean, and where they are far from what walks; sentences.
+        self.remarks: list[str] = shown["remarks"]
 
     @property
     def keys(self) -> dict[str, t.Any]:
@@ -145,7 +151,7 @@ class Scene:
 
     def _repr_html_(self) -> str:
         return _table_html(((r["key"], r["value"], r["unit"], r["meaning"], r["source"]) for r in self._keys),
-                           ("key", "value", "unit", "meaning", "from"))
+                           ("key", "value", "unit", "meaning", "from")) + _list_html(self.remarks)
 
 
 @contextlib.contextmanager
