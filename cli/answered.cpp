@@ -214,7 +214,7 @@ void write_page(const Options& options, const Subject& s,
                             {"states", chain.space.size()},
                             {"gate_runs", states.gate_runs},
                             {"asked", s.path},
-                            {"is_matrix", s.file.has_value()},
+                            {"is_matrix", s.file != nullptr},
                             {"can_run", !s.is_recorded() && s.pool.has_value()}},
                   .analysis = shown_of(analysis)};
   const Json made_by = s.made_by(options);

@@ -11,6 +11,7 @@
 #include "cli/cells/program.h"
 #include "cli/loaded_matrix.h"
 #include "cli/render/json.h"
+#include "cli/render/matrix.h"
 #include "cli/render/recorded.h"
 #include "cli/render/text.h"
 #include "dynamics/disc/disc_section.h"
