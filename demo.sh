@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The main job from end to end: installs what is missing, builds, fills the 87 x 88 matrix from
 # single-gate runs, walks the 9 x 9 field, runs the full dynamics for the four starts of the paper's
 # Table IV and prints that table side by side. Results land in demo-out/.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Installs what is missing, builds, runs the tests. ./test.sh [ctest arguments], e.g. -R Impact
 # ./test.sh elsewhere: the tests in other programs and places (Python's wheel, R, Octave, the site of the
 # documentation, packages in a clean root), which need many packages and some minutes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What gatewalk analyze looks at: the chain of a subject, and what its cells' numbers change.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/answered.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The page of an answer, --page: what predict and analyze say, for all starts.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Options that several commands have, as what the libraries take; what is wrong with it is said.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What all commands share: how options are declared and read, and how output is given out.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Every command as a function (commands.def); its arguments are the words behind its name, what it
 /// returns is the exit status.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/exported.h"
 
 #include <filesystem>

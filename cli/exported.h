@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What gatewalk export writes, by the ending of its file's name.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/field_run.h"
 
 #include "cli/arguments.h"

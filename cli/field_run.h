@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Trials of the full dynamics through a field, of a scene or of cells that another program carries
 /// out.

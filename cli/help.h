@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Manual pages and completion for shells, of the commands' own help.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/loaded_matrix.h"
 
 #include "lattice/cells/cell_matrix.h"

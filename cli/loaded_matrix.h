@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Matrix files that stay in memory from one command to the next.
 

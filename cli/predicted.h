@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where bodies end, from runs that are added until an error bar is kept, or from a matrix as it
 /// is: given out as gatewalk predict does.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/subject.h"
 
 #include <cmath>

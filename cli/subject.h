@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What a command is asked about, wherever it comes from: a scene, a matrix of one, cells that
 /// another program carries out, or recorded runs.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What gatewalk validate compares with trials: a chain that is read or built, and an experiment.
 

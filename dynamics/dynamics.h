@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // clang-format off
 /// gatewalk::dynamics: what becomes of a body in one cell; and one kind of cell: a gate of two

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The field's size, where a trial starts in it, and how much of it the full dynamics follows.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/field_costs.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How long trials through the field took, and what work, by how they ended.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Counts + state space -> chain. Also the file that
 /// holds a matrix with everything it came from.

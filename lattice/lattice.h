@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // clang-format off
 /// gatewalk::lattice: a field of gates, walked both ways and compared.

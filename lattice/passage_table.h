@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Passages through cells, many of them: as small as the section allows.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What is asked about, whatever the cells are: which stand where, the field's size, where trials
 /// start.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/reference.h"
 
 #include <tbb/enumerable_thread_specific.h>

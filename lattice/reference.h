@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The reference: trials of bodies through the field, cell by cell, written plainly.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Exact answers of a small absorbing chain over any kind of number: double, long double, exact
 /// fractions (boost::multiprecision::cpp_rational), bounds (enclosure.h).

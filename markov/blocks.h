@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Blocks of cells as the cells of a coarser field: a chain over blocks that is as exact as the one
 /// over cells, and that all solvers take as it is.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/chain.h"
 
 #include <cmath>

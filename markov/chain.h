@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A Markov chain over the states in which a walker enters a cell of a lattice.
 /// One row per input state, one column per output. Where an output leads is data (`Exit`), so the

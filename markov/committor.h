@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How likely walks are to end in one way, from every state of every cell: the committor of their
 /// leaving over the far edge, the same of any other ending, and with a limit of cells; and to enter

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/dense.h"
 
 #include <Eigen/Eigenvalues>

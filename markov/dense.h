@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Eigen's dense factorizations, compiled once for all that use them: each takes seconds.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How walks spread over an endless lattice of cells of one type, where nobody is trapped. Lengths
 /// are in the unit of the lattice, times in that of the draws (without times: draws).

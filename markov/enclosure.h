@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A number that lies between two doubles, with sums, products and quotients rounded outwards.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/explicit_chain.h"
 
 #include <map>

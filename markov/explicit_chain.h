@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A field's chain written down state by state, for programs that know no fields (PRISM, Storm,
 /// anything that reads a sparse matrix).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/field_states.h"
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The walks over a small field, state by state: (cell, input) pairs as one absorbing chain, for
 /// exact answers without limit of cells (absorbing.h).

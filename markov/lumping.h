@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Chains with fewer states: states taken together in groups, and what that costs.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // clang-format off
 /// The public face of gatewalk::markov: a Markov chain that walks over a lattice of cells.

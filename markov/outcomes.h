@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How walks end, told by everything at once: after each first draw, and after visits to each cell.
 

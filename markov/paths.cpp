@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/paths.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The exact distribution of the final cell: what infinitely many walks would give.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/quasi_stationary.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How long walks stay in a row of the field: what sums over more and more moves take.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What walks add up on their way: durations, works. A semi-Markov chain: each draw takes a random
 /// time that depends on the state and on what is drawn.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Monte Carlo walks: what the paper's "Markov Chain Monte Carlo" pseudo-code does, per cell one
 /// draw from the row of Eq. (16)'s matrix.

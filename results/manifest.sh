@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Sourced by the studies: where a result came from. $gatewalk is the program that made it.
 manifest() {
   echo "command: $1"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What becomes of results when the system fails: call number k of write, fsync, fdatasync, rename, ftruncate fails, once
 # and from then on, for every k that a command makes; so does getting memory; /dev/full, a full disk, a folder that cannot
 # be written, little memory. Never a silent success, never a damaged file.

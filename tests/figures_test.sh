@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The pictures of --figure, of every command that has one: made in every format, and read by tests/web/figures_test.mjs.
 #   tests/figures_test.sh GATEWALK SOURCES FOLDER KEPT, where tests/program keeps what studies drew
 set -euo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Runs that are killed at any moment and go on. Sourced behind tests/program/preamble.sh, whose `fail` it uses.
 # shellcheck shell=bash
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Kills every kind of run with -9 at N random moments, 125 each by default, and resumes it: tests/kills.sh GATEWALK ROOT [N]
 n=${3:-125}
 here=$(realpath "$(dirname "$0")")

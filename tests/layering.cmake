@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 cmake_minimum_required(VERSION 3.25)
 
 # Who may include whom, folder by folder: a folder's own files, and those of the folders named. Fails naming

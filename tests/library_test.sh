@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # A project of its own finds the installed libraries and compiles the READMEs' examples with nothing added, and
 # cells that are not ours (tests/library).
 #   library_test.sh BUILD ROOT CXX

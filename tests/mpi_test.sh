@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Ranks of MPI share a run: the bits of one process, on 1 to 4 of them; they stop together, and a run goes on that lost
 # one.   mpi_test.sh GATEWALK ROOT GATEWALK_MPI
 here=$(realpath "$(dirname "$0")")

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What takes too long for every change, each in a build folder of its own (build-odr, build-alone ...):
 #   tests/nightly.sh [odr] [alone] [small] [debug] [clang] [reproducible]      all six without an argument
 # odr    links the whole program with -flto -Wodr: no name may have two definitions. Without optimisation,

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What is installed: Debian packages that lintian finds no error in and whose bytes do not depend on the time, manual
 # pages without warnings, completion in three shells, a consumer that asks pkg-config.   packages_test.sh BUILD ROOT
 set -euo pipefail

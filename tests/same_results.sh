@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Whether two programs of gatewalk write the same results: JSON, CSV, NetCDF, tables, figures and pages of many command
 # lines, byte by byte, but for what names the program itself (version, commit) and what was timed.
 #   tests/same_results.sh [--lines PATTERN] OLD NEW [SCENES]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """JSON as the schemas of cli/schemas promise it: many command lines of every command, validated; a schema that has a
 key no result has any more is told too.   schemas_test.py GATEWALK ROOT"""
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The documentation site: it is built without a warning, its links lead somewhere, nothing comes from outside, nothing
 # is missing, the code of its page for Markov modellers runs, and a browser shows it light, dark, narrow, by keyboard.
 # Then faults are put into it, which must be found.   site_test.sh PROGRAM PYTHONPATH OUT

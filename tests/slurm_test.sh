@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # cli/cluster on a Slurm of four virtual nodes on this machine: parts, one cancelled, one lost with its node, run again,
 # merged: the bits of one run.   slurm_test.sh GATEWALK ROOT; status 77 where Slurm is not installed.
 set -u

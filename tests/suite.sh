@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The tests of one suite, in one process: to start one for each test took some 10 ms times 1350. A test
 # that ends the process, or takes too long, hides no other: those that it left undone run in a process of their own.
 #   tests/suite.sh PROGRAM SUITE [SECONDS]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Writes the tests of a test program for CTest, one for each of its suites. Runs after the program was linked:
 #   cmake -DPROGRAM=... -DMODULE=... -DRUNNER=suite.sh -DOUT=... -P suites.cmake
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The tutorial as it stands: its sh and python blocks run one after the other in an empty folder, and print the lines of the
 # text block that follows ("[...]": anything, on a line of its own any lines).
 #   tutorial_test.sh GATEWALK ROOT [PYTHON]      gatewalk importable by PYTHON

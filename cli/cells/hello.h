@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The first line that a cell program writes: what its cell looks like (PROGRAM.md).
 

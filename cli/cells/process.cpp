@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/cells/process.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Another program that is spoken to line by line: pipes to it, from it and for what it complains
 /// of.

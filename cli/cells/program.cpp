@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/cells/program.h"
 
 #include <algorithm>

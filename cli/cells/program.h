@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A cell that another program simulates, a line per passage: PROGRAM.md has what it reads and
 /// writes.

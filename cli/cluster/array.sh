@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # A gatewalk command in parts, as a job array of Slurm, and a job that merges them:
 #   cli/cluster/array.sh PARTS FOLDER COMMAND ...      e.g. array.sh 100 run1 lattice scene.toml --trials 1e8 --json all.json
 # FOLDER gets the parts and what they print. A part that is stopped (time limit, pre-emption) goes on where it was, by

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # One run of all parts in FOLDER: writes what the command was told to write.   merge.sh FOLDER
 set -euo pipefail
 cd "$1"/..

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Part SLURM_ARRAY_TASK_ID of the command in FOLDER; stopped, it goes on the next time.   part.sh FOLDER
 set -uo pipefail
 folder=$1 i=$SLURM_ARRAY_TASK_ID

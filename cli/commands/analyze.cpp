@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/analysed.h"
 #include "cli/answered.h"
 #include "cli/arguments.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/arguments.h"
 #include "cli/render/choice.h"
 #include "cli/render/gate_runs.h"

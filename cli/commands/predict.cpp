@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/answered.h"
 #include "cli/arguments.h"
 #include "cli/parsers.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/rare.h"
 #include "cli/arguments.h"
 #include "cli/render/choice.h"

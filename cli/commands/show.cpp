@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/command.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/arguments.h"
 #include "cli/commands/recorded.h"
 #include "cli/render/json.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/arguments.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/exchange/explicit_chain.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A field's chain in the formats of model checkers, and as a sparse matrix.
 

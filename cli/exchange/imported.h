@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Matrices that were made elsewhere, as matrix files of cells: their states are numbers.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Arrays of numpy in one file (.npz), as numpy.savez and scipy.sparse.save_npz write them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/exchange/sparse_table.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/exchange/trajectories.h"
 
 namespace gatewalk::cli {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/film/encoder.h"
 
 #include <sys/socket.h>

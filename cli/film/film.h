@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What is drawn of runs, by the page that plays them (replay.h) and in videos (video.h).
 

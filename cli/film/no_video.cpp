@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Built in place of video.cpp and what it needs by -DGATEWALK_VIDEO=OFF.
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/film/painter.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The picture of a film at a time: the body among the beams, with words and bars beside it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where everything is in a film at any time, between its steps too; by the rules of
 /// web/replay.js.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/film/replay.h"
 
 #include "cli/web/embedded.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // clang-format off
 /// A single run to be watched: a page with an animation, made of a film.

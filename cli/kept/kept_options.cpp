@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/kept/kept_options.h"
 
 #include <zlib.h>

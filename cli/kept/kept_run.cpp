@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/kept/kept_run.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A command's finished pieces: kept in a file while it runs, found there when it goes on, put
 /// together from the files of several machines.

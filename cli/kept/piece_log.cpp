@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/kept/piece_log.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Finished pieces of a command's work in a file that only grows: whoever dies while writing leaves
 /// all that was written before.

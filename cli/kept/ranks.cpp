@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/kept/ranks.h"
 
 namespace gatewalk::cli {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Processes of MPI that carry out one command together (mpirun -n 4 gatewalk ...), in builds with
 /// -DGATEWALK_MPI=ON.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Linked in place of ranks.cpp in builds with -DGATEWALK_MPI=ON.
 #include <mpi.h>
 

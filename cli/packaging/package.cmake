@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What `cmake --install` and `cpack -G DEB` install: the program with manual pages, completion, scenes and
 # examples; the libraries with their headers, for CMake and pkg-config; the Python module.
 include(CMakePackageConfigHelpers)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/paper/claims.h"
 
 #include "cli/paper/studies.h"

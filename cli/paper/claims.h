@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The claims of the paper's abstract and of Secs. II and III beside what was found.
 

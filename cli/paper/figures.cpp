@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/paper/figures.h"
 
 #include "cli/terminal/gnuplot.h"

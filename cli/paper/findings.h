@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the studies behind the paper's figures and claims gave: their files, read and checked once.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The report of a reproduction as one page for a browser, with all that it needs inside.
 

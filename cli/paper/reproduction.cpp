@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/paper/reproduction.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The studies behind the paper's figures and claims: which commands are run.
 

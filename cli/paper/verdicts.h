@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// When a claim of the paper counts as reproduced: fewer trials never make a verdict surer.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Builds the wheel: setuptools, and cmake for the part in C++."""
 
 import os

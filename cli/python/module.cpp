@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The Python module gatewalk._core: commands by their words, and matrices.
 
 #include <pybind11/functional.h>

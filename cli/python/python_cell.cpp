@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/python/python_cell.h"
 
 #include <pybind11/numpy.h>

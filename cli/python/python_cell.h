@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A cell that a Python object carries bodies through, many at once.
 

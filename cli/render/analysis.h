@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What a chain says beyond the final gates, as JSON, as a table and as a picture.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/answer_page.h"
 
 #include <zlib.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the page of an answer holds, as JSON: gatewalk predict --page.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/chain_error.h"
 
 #include <algorithm>

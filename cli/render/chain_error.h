@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The chain's error against its cost, as JSON, CSV, a table and a figure.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/choice.h"
 
 #include "cli/render/json.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What run.method = "auto" chose, as JSON and in words.
 

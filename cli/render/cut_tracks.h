@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Tracks cut into passages: as a table, as JSON, and a picture.
 

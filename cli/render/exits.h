@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where along its sides bodies leave a field, as JSON, as a table and as panels of a figure.
 

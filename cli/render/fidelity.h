@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What memory and neighbours change in the final gates, as JSON, CSV, a table and a figure.
 

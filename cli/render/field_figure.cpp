@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/field_figure.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where bodies end, as a NetCDF-4 file: for fields too large for JSON.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/field_runs.h"
 
 #include "cli/render/choice.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Runs of the full dynamics and walks of the chain through the field, as JSON and as tables.
 

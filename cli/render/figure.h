@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the figures of several commands share: text for gnuplot, one look.
 

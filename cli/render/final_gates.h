@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where and how trials, walks and predictions through a field end, as JSON and as tables.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/gate_runs.h"
 
 #include "cli/render/json.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How runs of one gate ended, as JSON and as a table.
 

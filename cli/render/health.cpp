@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/health.h"
 
 #include "cli/render/json.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/json.h"
 
 namespace gatewalk::cli {

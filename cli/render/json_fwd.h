@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// JSON by name only, for headers: nlohmann's own is long to compile.
 

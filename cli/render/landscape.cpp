@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/landscape.h"
 
 #include "cli/render/csv.h"

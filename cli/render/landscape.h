@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The lowest way through a gate over its energy landscape, as JSON, CSV, a table and a figure.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A matrix file: what it keeps beside its counts, and all of it as JSON and as a table.
 

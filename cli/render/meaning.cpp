@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/meaning.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the numbers of a scene mean, in words, and where they are far from what walks.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Is it Markov? What the walks of the full dynamics remember, as JSON and in words.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A result as one table of numbers, for R, MATLAB and spreadsheets.
 

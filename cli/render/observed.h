@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// An experiment's counts beside the model, as JSON and as a table.
 

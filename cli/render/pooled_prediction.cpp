@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/pooled_prediction.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Predictions as accurate as was asked for, as JSON and as tables.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How many trials an experiment needs, as JSON and as tables.
 

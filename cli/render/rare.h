@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Chances of rare events as JSON, as a table and as a picture.
 

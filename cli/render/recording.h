@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Recordings as a table to read, as CSV, NetCDF and JSON.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/scene_figure.h"
 
 #include <algorithm>

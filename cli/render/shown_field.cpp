@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/shown_field.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What results are shown of: the field, its cells' size and types, how entries are told.
 

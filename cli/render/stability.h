@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Maps of where methods break, as JSON, CSV, a table and figures.
 

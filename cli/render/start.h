@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Starts of trials and of chains, as JSON and in words.
 

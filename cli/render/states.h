@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The states of a chain and how well they resolve a scene, as JSON and in words.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/text.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Speed against accuracy of the methods on scenes, as JSON, CSV, a table and a figure.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Builds the documentation site.   cli/site/build.sh PROGRAM PYTHONPATH OUT
 # PROGRAM is the built gatewalk, PYTHONPATH where `import gatewalk` finds the module of the same build. The site lands
 # in OUT/html, what it is made of beside it. Exit status 77: something that it needs is not installed, which is named.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Checks a built site: links and anchors, nothing from outside, nothing missing.
 
     check.py HTML ROOT PROGRAM

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sphinx's settings for the site; prepare.py makes the pages, build.sh starts both."""
 
 import os

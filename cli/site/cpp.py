@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The C++ reference: doxygen's XML of the installed headers, and pages that show it by breathe.
 
 Each header is a group of doxygen's, so that it is shown by itself, with the text at its beginning.

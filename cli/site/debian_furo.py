@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Debian 12's furo as its authors meant it: without a web server its script does not start, a style sheet is looked
 for where only a server of Debian has it, and dark pages are lost for readers whose system is dark. A furo without these
 faults is left as it is."""

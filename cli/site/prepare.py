@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Makes the sources of the documentation site: all pages in one folder, as Sphinx reads them.
 
     prepare.py ROOT PROGRAM SOURCE [NOTEBOOKS]

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Executes the notebooks and writes them as pages: OUT/NAME.md with its pictures in OUT/NAME_files. A number that is not
 # what the notebook says it is (an assertion) ends it with the cell and the error.
 #   cli/site/run_notebooks.sh OUT [NAME...]      gatewalk importable (PYTHONPATH=build/python); PYTHON: which Python

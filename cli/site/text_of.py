@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Pages that are made of other texts: the program's help, CITATION.cff, a list of notebooks."""
 
 import re

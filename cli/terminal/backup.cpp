@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/terminal/backup.h"
 
 #include <sys/stat.h>

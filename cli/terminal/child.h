@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Other programs that work for this one: gnuplot, ffmpeg.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/terminal/interrupt.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Ctrl-C, SIGTERM, SIGHUP and SIGUSR1: the first asks to stop at the next safe point and ends
 /// after a second if none comes, the second ends at once. Files are replaced in one go, so an end

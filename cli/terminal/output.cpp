@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/terminal/output.h"
 
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Long work in pieces: lines that say how far it is, and a place to stop between pieces.
 

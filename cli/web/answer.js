@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page of an answer (gatewalk predict --page): a start that is moved, and what the chain says of it.
 // All numbers were made by the program (cli/render/answer_page.h); the page looks them up.
 'use strict';

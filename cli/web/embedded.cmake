@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Puts the pages and the scenes into `target`: an assembly file takes the bytes in
 # as they are (.incbin), with a table of names that cli/web/embedded.cpp reads.
 

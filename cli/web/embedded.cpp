@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/web/embedded.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Files that the program carries inside, so that it works from anywhere: cli/web's pages, the
 /// scenes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A run of the body among the beams, to be watched: gatewalkReplay(element, film) builds the whole
 // animation inside `element` and answers {play, pause, seek, key}. cli/film/replay.h says what a film holds.
 // All of it lives in a shadow tree, so neither styles nor names can clash with the page around it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The report's animation, and links to claims; all else is there without it.
 'use strict';
 

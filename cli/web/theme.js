@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The switch between light and dark of a page with #theme; without it the page is as the reader's system is.
 'use strict';
 

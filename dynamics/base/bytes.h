@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Results as bytes, to be read again by the same program: numbers as they are in memory.
 

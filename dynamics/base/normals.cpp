@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/base/random.h"
 
 #undef HWY_TARGET_INCLUDE

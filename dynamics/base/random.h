@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Random numbers in named streams: counter-based, so that any can be drawn again alone.
 

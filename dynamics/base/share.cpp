@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/base/share.h"
 
 #include <algorithm>

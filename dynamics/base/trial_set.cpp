@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/base/trial_set.h"
 
 #include <algorithm>

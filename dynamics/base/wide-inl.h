@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers side by side in two vector registers, written as one, for use inside Highway's
 // foreach_target (so no plain include guard). Two registers because a single one waits for itself:
 // the two do not depend on each other. Nothing is fused and nothing is summed over lanes, so that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Long work in pieces that somebody may watch and stop.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A cell that bodies are carried through: what is derived from to simulate any kind of obstacle.
 /// Pools, chains and predictions need only what the cells look like (CellMap); a Cell makes new

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/cells/cell_map.h"
 
 #include <cstdint>

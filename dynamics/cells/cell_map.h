@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What stands where in a field, as data: enough for pools, chains and predictions.
 

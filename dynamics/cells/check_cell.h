@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// For tests of cells of one's own: does a cell keep what Cell promises?
 

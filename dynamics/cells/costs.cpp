@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/cells/costs.h"
 
 namespace gatewalk::dynamics {

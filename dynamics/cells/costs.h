@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What passages through cells take: time first, then what else a section names.
 

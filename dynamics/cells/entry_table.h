@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Entries, many of them, in columns: as small as the section allows.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/cells/quantile_bins.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// State spaces from entries that were seen: bins at their quantiles. Also how well a state space
 /// resolves such entries, whatever it was made from.

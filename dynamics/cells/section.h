@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What a chain knows of a kind of cell, as data: the faces of its border through which bodies
 /// enter, the coordinates of an entry, and what a passage takes. No force, no beam.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/cells/state_space.h"
 
 #include <algorithm>

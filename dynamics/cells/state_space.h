@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The discrete states of the chain: how a body enters a cell, as data. A space is of one of two
 /// kinds: bins on a grid of the entries' coordinates, or the leaves of trees of cuts.

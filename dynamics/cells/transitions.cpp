@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/cells/transitions.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Integer counts of passages from state to state: a matrix before it is divided by anything.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/cells/tree_space.h"
 
 #include <algorithm>

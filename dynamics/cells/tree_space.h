@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// State spaces whose states are the leaves of trees grown over entries that were seen: many small
 /// leaves where bodies enter often, few large ones elsewhere.

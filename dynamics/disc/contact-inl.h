@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // contact.h and the free motion of hybrid.h in all lanes: the same operations in the same order, so
 // that every lane has the bits of the plain functions of the same names.
 #if defined(GATEWALK_DYNAMICS_CONTACT_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Contact of a disc with a hinged beam, as pure functions: where they touch, what a hit does,
 /// what keeps them together. Nothing here knows about time.

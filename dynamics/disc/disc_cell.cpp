@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/disc_cell.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A gate of two hinged, springy beams that a disc pushes through, as a Cell.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How a disc enters a gate: the boundaries and the coordinates there, as a section; a crossing out
 /// of one gate is an entry into the next. And Table III's states of it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Free motion over any short time as power series, for Wide and for double (wide-inl.h): plain code
 // and lanes have the same bits.
 #if defined(GATEWALK_DYNAMICS_FLOW_INL_H_) == defined(HWY_TARGET_TOGGLE)

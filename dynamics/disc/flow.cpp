@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/flow.h"
 
 #include "dynamics/disc/flow-inl.h"

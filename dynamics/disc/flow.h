@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Free motion in closed form: a disc under constant force and linear drag, a damped torsional
 /// spring under constant torque. Exact for any step, so free flight costs one evaluation.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// One run of one gate: flow until an exit, and what was seen on the way.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The potential energy landscape of Sec. II-C: what it costs to stand somewhere in the gate with
 /// both beams deflected forward and in contact, Eqs. (14) and (15). It knows no motion; a body that

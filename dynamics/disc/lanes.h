@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Runs of method `moreau` side by side in the lanes of vector registers (Google Highway: the
 /// instruction set is chosen when the program runs). A lane whose run has ended takes the next one

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The scene of one gate: who pushes, what is in the way, how time is stepped.
 /// Defaults are the paper's field study (Sec. III-C, Tables I and IV) where it says, else the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The lateral random force of Eq. (1): F_rand = Rm N(0,1), drawn at 50 Hz and held in between.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Runs of a gate -> counts: the input-output matrix of Eq. (16).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/runs.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Gate runs by the thousand, whatever asks for them. A trial is one run, or several of which each
 /// depends on how the last one ended (gate after gate through the field).

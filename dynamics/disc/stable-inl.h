@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `stable` does between two looks at the clock, in all lanes: glides, hits, impacts. The same
 // operations in the same order as in methods/stable.cpp and methods/hybrid.{h,cpp}, so that every
 // lane has the bits of the plain method. What is rare is left to that: `failed` lanes have no

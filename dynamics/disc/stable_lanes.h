@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Runs of method `stable` in vector lanes (Google Highway: the instruction set is chosen when the
 /// program runs). Hundreds of runs are in flight; each round takes what they need next in full

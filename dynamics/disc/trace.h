@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// One run in full: every step of the method, with the forces and energies behind it.
 

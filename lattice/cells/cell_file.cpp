@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/cells/cell_file.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// cell.toml: cells that are not ours, recorded or carried out by another program: their section,
 /// which types there are, and the field that is to be predicted.

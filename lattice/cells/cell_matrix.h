@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Matrix files of cells that are not ours: the chain of their runs, the runs, and the cell file;
 /// or a chain that was made elsewhere, without runs.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/cells/cut_tracks.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/cells/local_fit.h"
 
 #include <Eigen/Dense>

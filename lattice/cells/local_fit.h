@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Places and velocities along tracks: polynomials of second degree, each fitted by least squares
 /// to the frames about one (Savitzky and Golay, 1964), and what the fits say of the tracks' noise.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/cells/recorded.h"
 
 #include <fcntl.h>

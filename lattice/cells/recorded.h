@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// runs.csv: passages of bodies through cells, recorded or carried out elsewhere, a line each
 /// (README.md beside it has the format); as a table, and back.

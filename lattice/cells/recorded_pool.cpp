@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/cells/recorded_pool.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the readers of tracks share. Not part of the installed headers.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Tracks from a lab: where bodies were seen, frame by frame, from a table of any columns,
 /// DeepLabCut's CSV or the NetCDF of movement. What a file does not say is asked for, never

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // DeepLabCut's CSV: rows scorer, (individuals,) bodyparts, coords, then a row a frame.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The NetCDF of movement (xarray): position(time, space, keypoints, individuals), its dimensions in
 // any order and, since its version 0.17, without the s; of boxes without key points.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/pool/costed_chain.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A field's chain from one start, with what its draws take and where its states were entered: what
 /// analyses are made of.

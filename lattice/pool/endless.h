@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Cells of one type without end: trials through them, and how bodies spread (diffusion), by a
 /// chain of trees with error bars. How it compares with direct simulation, with hops without memory

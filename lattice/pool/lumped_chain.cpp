@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/pool/lumped_chain.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What it costs to have fewer states: a chain with several of them as one, beside it.
 

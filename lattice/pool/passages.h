@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where walks pass that end in one way, and how likely that is from everywhere.
 

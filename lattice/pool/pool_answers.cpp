@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/pool/pool_answers.h"
 
 #include <tbb/parallel_for.h>

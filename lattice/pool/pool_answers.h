@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the chains of a pool say of starts: that of all its trials, and those of eight groups of
 /// them, behind the error bars.

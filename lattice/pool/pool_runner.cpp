@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/pool/pool_runner.h"
 
 #include <stdexcept>

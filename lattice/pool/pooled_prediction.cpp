@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/pool/pooled_prediction.h"
 
 #include <tbb/parallel_for.h>

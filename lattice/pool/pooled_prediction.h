@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Predictions from the gate runs of full trials, as accurate as is asked for: trials are added
 /// until the error bar says so. A start's answer is the chain's, or its trials' own shares where

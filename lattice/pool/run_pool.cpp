@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/pool/run_pool.h"
 
 #include <algorithm>

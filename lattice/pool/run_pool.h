@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Gate runs of full trials, pooled over all gates of a type, since one is like the other; and the
 /// chain that they make: a start's own first runs are its row, all later runs fill the rows of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/pool/tree_chain.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A chain whose states are trees: how it is made, what its file keeps, and how it serves a start
 /// that it does not know.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The states of a scene's chain: Table III's, those of the scene's table [bins], or made from what
 /// bodies do in the full dynamics.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/chain_answers.h"
 
 #include <tbb/parallel_for.h>

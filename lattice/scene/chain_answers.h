@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What transition matrices of one kind say about the final gates, against the full dynamics. All
 /// seconds are CPU time of one thread.

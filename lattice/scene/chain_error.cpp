@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/chain_error.h"
 
 #include <tbb/parallel_for.h>

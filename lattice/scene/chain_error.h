@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The chain's error against its cost: matrices of coarser and finer bins and of few or many trials
 /// a row, and trees, against the full dynamics, beside direct simulation at the same cost. All

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Impulses of any number of contacts at once: dynamics::unilateral_impulses beyond two.
 

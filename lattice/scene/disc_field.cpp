@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/disc_field.h"
 
 #include <tbb/parallel_for.h>

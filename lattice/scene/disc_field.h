@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Full dynamics of a disc through a field of gates: what only our gate has of it, a start inside a
 /// gate, beams that go on behind the body (field.fidelity), a trial in every step.

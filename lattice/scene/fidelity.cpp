@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/fidelity.h"
 
 #include <tbb/global_control.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What beams that remember, and beams of neighbouring gates, change in the final gates, and what
 /// they cost: the full dynamics at every fidelity under the same noise.

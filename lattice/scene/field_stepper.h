@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// One disc among the beams of many gates: the full dynamics without the paper's "active gate
 /// only".

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/grey_picture.h"
 
 #include <png.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Pictures that are maps: a pixel is a gate, its grey value says of which type.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Matrices with the scene they belong to: building one, taking one from a file.
 

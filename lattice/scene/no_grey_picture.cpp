@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Built in place of grey_picture.cpp by -DGATEWALK_VIDEO=OFF.
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Trials in full, of one gate or through the field: a table with a line for every step, which CSV,
 /// NetCDF, JSON and films all show.

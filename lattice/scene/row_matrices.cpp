@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/row_matrices.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Matrices of rows of a field beside those of its own gates.
 

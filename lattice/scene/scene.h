@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The scene file: everything a run depends on, in TOML, every key optional.
 

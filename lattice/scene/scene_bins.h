@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Table [bins] of a scene: edges of one's own for the states of the chain,
 /// EN_d_m = [-0.2, 0, 0.2], EN_vx_m_per_s, EN_vy_m_per_s, RD_d_m, ...

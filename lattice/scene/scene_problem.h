@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A scene as a problem: its gates as cells, its start as an entry.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/scene_trials.h"
 
 #include "lattice/scene/bins.h"

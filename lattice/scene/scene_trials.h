@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Many trials through a scene's field, whatever its start and fidelity.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// run.method = "auto": the method and setting that a scene can do with; and a check of a scene's
 /// method by a better one.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where trials through the field start: the four starts of the paper's Table IV, or others.
 

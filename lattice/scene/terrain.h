@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Gates of several types in one field: table [terrain] of a scene.
 

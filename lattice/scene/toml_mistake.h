@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What is wrong with a text that is no TOML, in the words of a scene file.
 

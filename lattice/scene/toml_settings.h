@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Keys of a TOML file and of overrides: where they stand, and what their numbers may be.
 

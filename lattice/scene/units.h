@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Keys in other units: "body.radius_cm" for "body.radius_m".
 

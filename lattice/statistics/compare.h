@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How alike two distributions of the final gate are, and how alike they could be at all.
 /// corrcoef and RMSE as in Sec. III-C, over all gates of the field, RMSE in trials per 100.

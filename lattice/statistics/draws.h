@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Counts drawn at once instead of trial by trial: binomial and multinomial, from own samplers (the
 /// standard library's differ between vendors).

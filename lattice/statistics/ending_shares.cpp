@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/statistics/ending_shares.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/statistics/gate_statistics.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What comparisons share: statistics of final gates, which grow with the difference between two
 /// distributions, and draws.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/statistics/gates_ahead.h"
 
 #include <tbb/parallel_for.h>

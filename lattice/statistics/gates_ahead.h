@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The Chapman-Kolmogorov test on plain walks: where they are k gates ahead, against the k-th power
 /// of the kernel of their own runs. The null keeps every state's outcomes and deals them out anew

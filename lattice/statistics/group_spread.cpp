@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/statistics/group_spread.h"
 
 #include <algorithm>

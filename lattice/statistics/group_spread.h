@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How far off a prediction may be that was made from trials: predictions from groups of the
 /// trials, each with states of its own, differ from each other by sampling, and their mean from the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Does a label tell more of a run's outcome than its state does? A conditional permutation test on
 /// plain data: given the states, outcomes are dealt out anew among the runs in the same state. A

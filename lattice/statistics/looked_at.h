@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Several statistics of the same data, judged together by the same draws of the null.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/statistics/matrix_noise.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How far a prediction is to be trusted because its matrix was sampled: what matrices of other
 /// runs would have predicted. The chain's own error (bins, memory) is not in it.

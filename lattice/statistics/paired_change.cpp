@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/statistics/paired_change.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What a change does to the final gates of the same trials under the same noise.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How many trials an experiment needs to show a difference, and what difference so many can show.
 

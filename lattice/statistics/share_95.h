@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What a predicted share may be: one rule for endings, gates and chances, also of those that none
 /// or all of the trials show.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What a chain says beyond the final gates: how long bodies take and what work, how likely each
 /// start is to end in one way, which ways there lead, and what would change that most.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/study/body_memory.h"
 
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Does what a body did before matter beyond how it enters? Of recorded runs, body by body.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/study/experiment.h"
 
 #include <tbb/parallel_for.h>

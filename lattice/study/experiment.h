@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How many trials an experiment needs to tell a scene from its prediction, or two scenes apart.
 

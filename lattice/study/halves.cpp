@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/study/halves.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Does one half of the bodies predict the other? Of runs that cannot be made again: the chain of
 /// one half against what the other half did, and the other way round.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Is it Markov? Whether where a body is in the chain says all of what comes next: the walks of the
 /// full dynamics through the chain's states, asked for memory.

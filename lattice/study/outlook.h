@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What a chain says of every start and of every cell: how bodies end that start in each of its
 /// states, and how those end that come to each cell.

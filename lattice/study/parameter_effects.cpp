@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/study/parameter_effects.h"
 
 #include <algorithm>

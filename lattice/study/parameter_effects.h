@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How the chance of an ending answers to the numbers of a scene.
 

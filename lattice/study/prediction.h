@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Exact predictions from matrices, with what the sampling of the matrices leaves open.
 

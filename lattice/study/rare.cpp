@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/study/rare.h"
 
 #include <algorithm>

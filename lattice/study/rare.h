@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How likely a body is to get far into a field, where direct simulation would never see it:
 /// importance splitting of full trials (Villen-Altamirano 1991; Glasserman et al. 1999) with the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/study/trials.h"
 
 #include <utility>

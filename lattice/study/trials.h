@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Many trials through the field, and many walks, watched and checked.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/study/validation.h"
 
 #include <tbb/global_control.h>

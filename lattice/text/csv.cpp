@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/text/csv.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Files of values between commas (RFC 4180), as spreadsheets write them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/formats/counts.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Counts on disk: one NetCDF-4 (HDF5) file that MATLAB, Python, R and Octave open as it is.
 ///

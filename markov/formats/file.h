@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Files that are replaced as a whole: a reader never sees half of one.
 

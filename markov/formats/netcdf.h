@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Writing and reading NetCDF-4 on an image in memory: HDF5 1.10 crashes at exit after a write that
 /// failed, and files are replaced as a whole. Not part of the installed headers.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 

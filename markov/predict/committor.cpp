@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/committor.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/predict/large_totals.h"
 
 #include <Random123/philox.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What walks through a large field add up (markov/totals.h), and what all totals share.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/predict/layout.h"
 
 #ifdef __linux__

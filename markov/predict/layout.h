@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where the cells of a field lie in planes (stencil.h), and the stencils that move mass between
 /// them.

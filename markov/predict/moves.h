@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How walks go on that lead to no row below: what solutions row by row are made of.
 

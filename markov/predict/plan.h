@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the solvers by steps (by_steps.cpp) and by rows (by_rows.cpp) share: prepared chains, and
 /// what has ended of the walks from one start.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <klu.h>
 
 #include <algorithm>

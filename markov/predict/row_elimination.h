@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Visits in a row of equal cells, of walks that move to the neighbour at the right or the left
 /// until they end or leave the row: a quasi-birth-death chain with one level per column. Solved by

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/predict/row_sum.h"
 
 #include <algorithm>

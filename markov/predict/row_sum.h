@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Linear equations of one row of equal cells, several columns side by side in vector registers.
 

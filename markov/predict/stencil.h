@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A stencil applied to many cells at once, in vector registers (Google Highway: the instruction
 /// set is chosen when the program runs; the same bits with any).

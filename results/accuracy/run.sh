@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Speed against accuracy of every method: the six scenes with 10^5 trials per setting, and, apart,
 # overdamped beams with 1000, where most methods are slow or fail.
 #   results/accuracy/run.sh [GATEWALK]      about an hour on two cores

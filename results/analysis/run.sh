@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Times, work and derivatives of gatewalk analyze beside the full dynamics.
 #   results/analysis/run.sh [GATEWALK]      about 25 minutes on two cores, needs python3
 # Writes summary.txt, manifest.txt.

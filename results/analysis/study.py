@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Whether gatewalk analyze is right: chain beside full dynamics.
 
 study.py GATEWALK DIR: writes summary.txt into DIR. Scenes A, C and M of results/tree, and the mixed

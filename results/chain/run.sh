@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The chain's error against its cost, beside direct simulation at the same cost.
 #   results/chain/run.sh [GATEWALK]      about 3 minutes on two cores
 # Writes chain.csv, chain.json, chain.svg, manifest.txt.

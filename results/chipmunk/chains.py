@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Chains and their predictions: chains.py GATEWALK PROGRAM DIR [KIND...]
 
 Writes DIR/chain.csv, a line per kind of pool, seed and start: endings with their 95 % intervals, the bar of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the scripts of this study share."""
 import os, random, subprocess
 from pathlib import Path

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Both engines without a chain: engines.py GATEWALK PROGRAM DIR SOURCE
 
 Writes DIR/engines.csv, trials through the field from the start of cell.toml, and DIR/gates.csv, how bodies

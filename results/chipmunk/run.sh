@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The gate in another engine, Debian's Chipmunk, as a cell program: both engines side by side, and whether a chain's
 # bars hold at 300 starts.
 #   results/chipmunk/run.sh [BUILD]      BUILD: with tests and libchipmunk-dev

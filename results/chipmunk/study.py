@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """The tables of this study from direct.csv, chain.csv, cost.csv and gates.csv: study.py DIR
 
 Writes held.csv (how often bars hold) and summary.txt. An interval of the chain is Jeffreys' of so many

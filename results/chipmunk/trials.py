@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Direct trials from each of the starts: trials.py GATEWALK PROGRAM DIR LAYERS
 
 Adds lines to DIR/direct.csv, a line per start and layer of 100 trials: counts of endings and of final

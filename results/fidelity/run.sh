@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What beams that remember, and beams of neighbouring gates, change in the final gates, and their cost.
 #   results/fidelity/run.sh [GATEWALK]      about 4 minutes on two cores
 # Writes fidelity.csv, fidelity.json, fidelity.svg, manifest.txt.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Which propulsion and random force did the paper use in its field? It does not say.
 # For F_prop 5..9 N x Rm 10..60 N: the four corrcoef and RMSE of Table IV, exact chain (100 runs per
 # row) against 100 trials of the full dynamics, mean and sd over many repeats (15 blocks of 100 trials

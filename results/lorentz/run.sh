@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What must a chain remember? The diffusion coefficient of the periodic Lorentz gas by chains of trees, beside
 # direct simulation, hops without memory and with one step of it.
 #   results/lorentz/run.sh [BUILD]      BUILD: with tests; about 5 minutes on two cores

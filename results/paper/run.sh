@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Every figure, table and number of the paper, with verdicts.
 #   results/paper/run.sh [GATEWALK]      about 4 minutes on two cores
 # Writes a CSV, an SVG and a PDF per figure, claims.csv, report.json (the page's data), manifest.txt.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The pictures of the READMEs, each by the command that stands beside it there. how.svg alone is drawn by
 # hand.
 #   results/pictures/make.sh [GATEWALK]

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What does Python cost? A call of gw.predict beside the library's own time for it, and a passage through a cell written in
 # numpy beside the same cell in C++, each on one thread.
 #   results/python/run.sh [BUILD]      BUILD: with tests and -DGATEWALK_PYTHON=ON; about half a minute

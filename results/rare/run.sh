@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The chance to enter rows 1 to 40 of the paper's field: by direct simulation, by splitting, by the chain alone.
 #   results/rare/run.sh [GATEWALK]      about 6 minutes on two cores
 # Writes rare.csv (a line per row), rare.json (of splitting), rare.svg, manifest.txt.

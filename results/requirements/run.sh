@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Which method meets which of requirements 1 to 17, with the figures that the tests measured.
 #   results/requirements/run.sh [GATEWALK [FOLDER]]      about 10 minutes on two cores
 # GATEWALK_LONG=0: with the counts of ordinary tests, about 2 minutes.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What threads, ranks of MPI, parts and checkpoints cost and save on this machine.
 #   results/scaling/run.sh [BUILD]      BUILD: with tests and libopenmpi-dev
 # Writes runs.csv, summary.txt, manifest.txt.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """What more threads, ranks, parts and checkpoints cost and save: scaling.py GATEWALK GATEWALK_MPI SCENE DIR
 
 Writes DIR/runs.csv (a line per run: what, seconds of wall and of CPU, peak memory in MB) and DIR/summary.txt. Runs that

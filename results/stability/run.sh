@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Where each method breaks: five maps.
 #   results/stability/run.sh [GATEWALK]      15 seconds on two cores
 # Writes stability.csv, stability.json, a figure per map, manifest.txt.

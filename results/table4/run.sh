@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Table IV with 10 000 trials per start, the converged single-gate figures, and the health of 10^5
 # runs of method stable at each random force.
 #   results/table4/run.sh [GATEWALK]      about 2 minutes on two cores

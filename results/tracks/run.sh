@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Do predictions from tracks keep what they promise? Bodies whose truth is known, as a camera sees them.
 #   results/tracks/run.sh [BUILD]      BUILD: with tests; about 9 minutes on two cores, needs python3
 # Writes truth.json, predict.json, validate.json, many.csv, coverage.csv, summary.txt, halves.svg, manifest.txt.

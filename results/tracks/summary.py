@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Says how often bars held: python3 summary.py DIR, with truth.json, many.csv, predict.json and validate.json in it.
 Writes coverage.csv and prints the page's table."""
 import csv, json, math, sys

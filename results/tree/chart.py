@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Draws tree.svg in DIR from the points.csv and summary.txt that study.py wrote there (gnuplot)."""
 import csv, math, re, subprocess, sys
 from collections import defaultdict

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Chains of trees: error against cost beside direct simulation, and whether their error bars hold.
 #   results/tree/run.sh [GATEWALK]      about 20 minutes on two cores (40 without truth.json), needs python3, gnuplot
 # Writes points.csv, summary.txt, tree.svg, manifest.txt.

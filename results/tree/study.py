@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """How accurate chains of trees are, at what cost, and whether their error bars hold.
 
 study.py GATEWALK DIR [SCENE...]: writes points.csv and summary.txt into DIR; points of scenes that are

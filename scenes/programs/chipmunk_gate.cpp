@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The gate of scenes/field.toml as a cell program whose contacts are Chipmunk's: a disc pushes
 // through two hinged, springy beams. Needs no part of gatewalk: c++ -O2 chipmunk_gate.cpp
 // -lchipmunk. An entry is an entry of gatewalk's own gate; a body carries its exact place and the

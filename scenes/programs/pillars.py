@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """A walker of 1 m/s whose heading drifts, among round pillars in the middle of square cells of 1 m."""
 import json, math, random, sys
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Made-up runs in the form of recorded ones: python3 scenes/tracks/make_runs.py > scenes/tracks/runs.csv
 A point walks straight through square cells of 0.1 m, turns a little wherever it enters one, and is now and then trapped
 or lost from sight."""

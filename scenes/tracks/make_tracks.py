@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Made-up tracks: python3 scenes/tracks/make_tracks.py > scenes/tracks/tracks.csv
 Points walk through square cells of 0.1 m, as seen by a camera above: ten frames a second, a place in mm that is off by
 0.3 mm. They turn a little all the time, and now and then stay where they are. Every number follows from the seed."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # chain.R FOLDER: walks by the package markovchain on the 3 x 3 field that chain_bench wrote, as lines of
 # task,tool,field,seconds,walks,difference,floor (see chain_scipy.py). Not on 9 x 9: its class is a dense
 # matrix, 7209 states take minutes to construct.

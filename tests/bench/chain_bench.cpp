@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// chain_bench MATRIX FOLDER [Google Benchmark's options]
 /// The chain of a matrix file, one thread: walks, exact prediction of 13 gates, and without limit.
 /// Writes to FOLDER what chain_scipy.py and chain.R need to do the same: the kernel and its exits,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """chain_scipy.py FOLDER: the work of chain_bench by numpy and scipy, one thread.
 
 FOLDER is what chain_bench wrote. Prints task,tool,field,seconds,walks,difference,floor: the best of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <chipmunk/chipmunk.h>
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// cost_bench STUDY ...: one measurement a process, so that its peak of memory is its own. Prints
 /// lines of CSV; run.sh writes the headers.
 ///   size trials METHOD N THREADS | size rows FACTOR THREADS | size lattice METHOD N THREADS

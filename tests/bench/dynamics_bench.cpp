@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One gate from rest, condition A and B, by our methods and by general engines, one thread. Every
 /// repetition runs other trials, the same ones for everybody: same seed, same random force.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What must a chain remember? The diffusion coefficient of the periodic Lorentz gas by chains of
 // trees, beside direct simulation, hops without memory, and hops with one step of it.
 //   lorentz DIR     writes lorentz.csv, leaves.csv and seconds.csv; see results/lorentz/README.md

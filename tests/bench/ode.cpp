@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <ode/ode.h>
 
 #include <array>

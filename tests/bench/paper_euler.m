@@ -1,3 +1,4 @@
+% SPDX-License-Identifier: MIT
 % octave paper_euler.m [TRIALS]: the paper's scheme as its text gives it (ours: dynamics/disc/methods/paper.cpp),
 % one gate from rest, a plain loop. Prints condition,trials,seconds,steps,traversed,exited,trapped.
 1;

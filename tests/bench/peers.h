@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The same gate in general physics engines, each written as its manual says: a disc, two rods of
 /// their own mass on hinges, springs and dampers there, no gravity, no friction, beams that do not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// program_bench COMMAND TRIALS THREADS IN_FLIGHT...: what a passage through a cell program costs,
 /// by how many are under way at a time. Prints lines of CSV:
 /// in_flight,passages,wall_us,own_cpu_us,its_cpu_us, a passage each. With tests/cells/echo.cpp,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What Python's functions call, timed in C++; tests/bench/python_bench.py runs it.
 ///   python_bench predict MATRIX.nc TIMES   milliseconds of the library's prediction from runs and
 ///                                          matrices in memory, and of the command's whole: a line

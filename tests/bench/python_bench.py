@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a call from Python costs beyond the library's own time, and what a passage through a cell in numpy costs beside C++.
 
 Usage: python_bench.py PYTHON_BENCH CELLS.toml FOLDER        (gatewalk importable; FOLDER gets calls.csv and passages.csv)

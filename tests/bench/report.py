@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """report.py WORK FOLDER: what run.sh measured, as dynamics.csv, chain.csv and the tables of speed.md.
 
 Dynamics: the median of the interleaved rounds, CPU time. Chain: the best of the rounds.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # gatewalk's speed beside its peers, and its cost against size. No part of the tests.
 #   tests/bench/run.sh [FOLDER]      under 10 minutes on two quiet cores, without building
 # Installs the peers (Debian 12), builds into build-bench/, writes to FOLDER (results/speed): CSV files,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What is measured: the paper's single gate in two conditions, and its field.
 

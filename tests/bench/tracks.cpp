@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies with a known truth, as a camera sees them: do predictions and halves from their tracks
 // keep what they promise?
 //   tracks_study film CELL.toml TRACKS.csv   one film, as a table of places in millimetres

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A cell program that does next to nothing: what is left is what speaking to a program costs.
 // Bodies go straight on, one in four to the right or left; every hundredth is trapped; its seed is
 // its luck.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Small films, made by hand: the body goes straight ahead and pushes the beams aside.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/final_gates.h"
 
 #include <gtest/gtest.h>

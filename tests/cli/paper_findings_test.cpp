@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/paper/findings.h"
 #include "cli/render/json.h"
 

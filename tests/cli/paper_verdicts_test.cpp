@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/paper/verdicts.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/quantity.h"
 
 #include <gtest/gtest.h>

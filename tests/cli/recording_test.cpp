@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/recording.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/paper/page.h"
 #include "cli/render/json.h"
 

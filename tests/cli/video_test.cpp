@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/film/video.h"
 
 #include <gtest/gtest.h>

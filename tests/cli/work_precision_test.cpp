@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/render/work_precision.h"
 
 #include <gtest/gtest.h>

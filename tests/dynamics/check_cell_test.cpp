@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/cells/check_cell.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/contact.h"
 
 #include <gtest/gtest.h>

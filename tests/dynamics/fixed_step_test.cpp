@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `moreau` and `penalty` share: fixed steps, no constraint mode, contacts that overlap.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/study/meaning.h"
 
 #include <gtest/gtest.h>

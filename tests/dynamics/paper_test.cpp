@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/methods/paper.h"
 
 #include <gtest/gtest.h>

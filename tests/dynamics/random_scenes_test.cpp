@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scenes of anybody: units over 12 orders of magnitude each, proportions around the paper's. Every
 // method must end, and either be right or say that it may not be.
 

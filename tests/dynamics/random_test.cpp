@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/base/random.h"
 #include "dynamics/disc/random_force.h"
 

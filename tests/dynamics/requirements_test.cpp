@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Requirements that ask the same of `event` and `stable`, at the settings that a scene gets which
 // says nothing.
 

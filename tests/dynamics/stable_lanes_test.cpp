@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/stable_lanes.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/disc_section.h"
 
 #include <gtest/gtest.h>

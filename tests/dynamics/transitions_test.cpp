@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/row_trials.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/base/work.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The packages in a root of Debian 12 that has nothing else: they install with what they say they need, and run.
 # Two minutes, as root, with a network.   clean_root_test.sh BUILD ROOT
 set -euo pipefail

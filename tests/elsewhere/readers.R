@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What an R user does with gatewalk's files: markovchain, ncdf4.
 suppressPackageStartupMessages({library(markovchain); library(ncdf4)})
 states <- read.csv("field.states.csv", stringsAsFactors = FALSE)

@@ -1,3 +1,4 @@
+% SPDX-License-Identifier: MIT
 % What an Octave or MATLAB user does with gatewalk's files.
 pkg load netcdf
 t = dlmread('field.mtx', ' ', 3, 0);

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a Python user without gatewalk does with its files: scipy, xarray, h5py."""
 import csv
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Chains and matrix files in other programs: scipy, R (markovchain, ncdf4), Octave. Each absorbs the field's chain
 # itself and must find the endings that gatewalk predicts; each reads the matrix file as it is.
 #   readers_test.sh GATEWALK ROOT scipy|r|octave

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The chain's error against its cost: truths, answers and summaries by hand, and what is charted.
 #include "lattice/scene/chain_error.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/statistics/compare.h"
 
 #include <gtest/gtest.h>

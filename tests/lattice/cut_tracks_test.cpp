@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tracks of known ways, cut at the borders of cells.
 #include "lattice/cells/cut_tracks.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/statistics/draws.h"
 
 #include <gtest/gtest.h>

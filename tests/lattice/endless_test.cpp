@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/pool/endless.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/exits.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How many trials an experiment needs, of a prediction made by hand.
 #include "lattice/study/experiment.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What memory and neighbours change: counts and verdicts by hand, and the trials that are compared.
 #include "lattice/scene/fidelity.h"
 #include "tests/support/disc_fields.h"

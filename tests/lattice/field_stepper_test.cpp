@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/field_stepper.h"
 
 #include <gtest/gtest.h>

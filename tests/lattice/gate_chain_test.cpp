@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/gate_chain.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One half of the bodies against the other: no finding where nothing is amiss, however trials are
 // watched; planted differences and memories are found.
 #include "lattice/study/halves.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A cell that is not ours: the periodic Lorentz gas.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the sampling of a matrix does: intervals that cover, and one test of trials and matrix
 // together.
 #include "lattice/statistics/matrix_noise.h"

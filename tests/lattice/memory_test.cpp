@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Is it Markov? Tests of independence and of gates ahead on synthetic chains: by hand, how often
 // they raise a false alarm, and how small a memory they find.
 #include "lattice/study/memory.h"

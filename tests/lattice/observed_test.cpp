@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An experiment's counts: read, refused, and held against the model.
 #include "lattice/study/observed.h"
 

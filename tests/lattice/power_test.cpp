@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Powers by hand, by enumeration, and by the very tests that they are of.
 #include "lattice/statistics/power.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Predictions from matrices of two outcomes, by hand.
 #include "lattice/study/prediction.h"
 #include "tests/support/disc_fields.h"

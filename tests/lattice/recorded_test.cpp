@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tables of recorded runs: read, refused by line and column, written so that they read back the
 // same, and fast.
 #include "lattice/cells/recorded.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lattice/scene/recording.h"
 
 #include <gtest/gtest.h>

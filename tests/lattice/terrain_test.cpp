@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Gates of several types in one field: table [terrain], and what runs and chains make of it.
 #include "lattice/scene/terrain.h"
 

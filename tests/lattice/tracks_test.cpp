@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files of tracks: read for what they say, refused for what they do not.
 #include "lattice/cells/tracks.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The chain against the full dynamics: findings by hand, and what a validation is made of.
 #include "lattice/study/validation.h"
 

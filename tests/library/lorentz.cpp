@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "lorentz_cell.h"
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// A cell that is not ours, as an example: the periodic Lorentz gas. A point of speed 1 flies among
 /// hard discs of radius 1 on a triangular lattice, with gaps between neighbours. A cell is a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One body of tests for all kinds of number: exact fractions say what is right, doubles must be
 /// within some roundings of it, enclosures must hold it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/diffusion.h"
 
 #include <gtest/gtest.h>

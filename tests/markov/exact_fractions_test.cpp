@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// All solvers of predictions without limit against exact fractions of integer counts: 3 x 3 cells
 /// of five states.
 

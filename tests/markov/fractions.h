@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Exact fractions, and what it means that another kind of number is right. Boost's cpp_rational
 /// needs no library (mpq_rational: GMP), and its fractions here are made in a blink.

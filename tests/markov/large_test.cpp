@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Large fields without limit: 301 x 301 cells in a usual run. 1001 x 1001 and a million walks:
 ///     GATEWALK_LONG=1 build/tests/markov_tests --gtest_filter='LargeField.*'
 

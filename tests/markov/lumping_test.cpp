@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/lumping.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/outcomes.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/predict.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One body of tests for all solvers of exact predictions: closed forms that can be checked by
 /// hand, and each solver against the others within the errors they state.
 

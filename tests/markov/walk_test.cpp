@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "markov/walk.h"
 
 #include <Random123/philox.h>

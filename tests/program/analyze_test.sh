@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # analyze: from a scene and from its file.   analyze_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

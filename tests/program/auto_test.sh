@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # run.method = "auto": what was chosen is named, on what evidence, and is the same everywhere.   auto_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What an output replaces is kept, whatever it is, and where is said in one line; --force keeps nothing.   backups_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Other bins than the paper's: recorded in the file, taken by every command.   bins_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

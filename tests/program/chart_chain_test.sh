@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # chart-chain: errors of a chain against its cost.   chart_chain_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # chart-field, and what fidelities need.   chart_field_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # chart: speed against accuracy of the methods.   chart_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Endings and their intervals, in every result about a field.   endings_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

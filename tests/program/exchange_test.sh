@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Chains to and from other programs: what is written is read back the same; an own matrix answers like ours; errors
 # name the place.   exchange_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"

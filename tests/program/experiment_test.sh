@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # validate --observed: the counts of an experiment.   experiment_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

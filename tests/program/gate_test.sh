@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # gate: counts, methods, warnings, a better method beside.   gate_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # No output may be an input, under whatever name.   inputs_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Signals: status 130, a clear word, the old files unchanged.   interrupt_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # landscape: the grid and its passes, in any units.   landscape_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # predict: large fields, and rows of other gates.   large_field_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

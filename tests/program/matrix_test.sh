@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # build, show, walk, predict: a matrix of the paper's bins.   matrix_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Matrix files that earlier versions wrote are read, and give what they gave.   old_files_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 files=$(dirname "$scenes")/tests/files

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What cannot be written is said before the work; files keep their modes; pipes work.   outputs_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # --shard, --first-trial, merge: parts of a run make the bits of one.   parts_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # passages: tracks from a lab become recorded runs.   passages_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

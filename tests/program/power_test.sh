@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # power: how many trials.   power_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What every part of the command line's contract starts with: sourced with GATEWALK ROOT [KEEP] in $1 to $3.
 # KEEP: a folder for what other tests look at.
 # shellcheck shell=bash

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # rare: the chance of every row.   rare_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

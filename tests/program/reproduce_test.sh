@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # reproduce: everything is there, what is done is not done again.   reproduce_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

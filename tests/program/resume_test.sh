@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # --checkpoint, --resume, --max-time: what is done is not lost, and what goes on gives the bits of a run that was never
 # stopped.   resume_test.sh GATEWALK ROOT
 here=$(realpath "$(dirname "$0")")

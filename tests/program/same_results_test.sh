@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # same_results.sh finds no difference where there is none, and all that there are.   same_results_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

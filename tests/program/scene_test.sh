@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # scene: every key with its source; nothing of the user's is lost.   scene_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

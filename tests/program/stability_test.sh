@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # stability: maps of where methods break.   stability_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # --strict: status 1 for a result that is not clean.   strict_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # sweep: a point is what gate gives for its keys.   sweep_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # trace: the trials that gate and lattice count.   trace_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Chains of trees: as accurate as asked for, one file for all commands.   trees_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Help, wrong use, and the command that was meant.   usage_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

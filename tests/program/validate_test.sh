@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # validate: the chain beside the full dynamics.   validate_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

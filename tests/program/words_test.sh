@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # One word for one thing; large fields; which states.   words_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

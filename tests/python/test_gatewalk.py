@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The Python module against the program: GATEWALK and ROOT say where the program and the checkout are."""
 
 import atexit

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # `pip install .` without a network, into an environment of its own.   wheel_test.sh BUILD ROOT PYTHON
 set -euo pipefail
 build=$(realpath "$1") root=$(realpath "$2") python=$3

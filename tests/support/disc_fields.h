@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Fields of our own gates, for tests of what takes any cells.
 

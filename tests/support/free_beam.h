@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Scene S1 for methods that step through free motion: a beam let go, against its closed form.
 

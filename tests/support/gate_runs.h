@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Runs by whatever carries them out, compared to the last bit.
 

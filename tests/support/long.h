@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// The full counts of the requirements take minutes. GATEWALK_LONG=1 asks for them:
 ///     GATEWALK_LONG=1 build/tests/dynamics_tests --gtest_filter='*Event*:*NearSingular*'

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What is known of the periodic Lorentz gas (tests/library/lorentz_cell.h), and its direct
 /// simulation by code of its own.

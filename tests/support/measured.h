@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What a test measured of a requirement, with the bound that the requirement sets. It goes into
 /// the test's entry of --gtest_output=json, from where results/requirements/run.sh makes its table.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Whole runs of a scene and of its mirror image, to be compared bit for bit.
 

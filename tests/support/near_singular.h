@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Starts beside a beam at which a formula of contact is close to singular.
 

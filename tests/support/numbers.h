@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Numbers that several tests need: round-off, and test data that is the same everywhere.
 

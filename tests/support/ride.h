@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// One gate's state carried by a method, with everything that a test looks at afterwards.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Work on a given number of threads, more than the machine has if need be.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Scenes rescaled by powers of 4: no rounding changes, so every number of theirs must be that of
 /// the scene they come from, times the power of its unit.

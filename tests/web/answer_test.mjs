@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // node answer_test.mjs GATEWALK ROOT FOLDER: the page of an answer as a reader sees it, and whether it says what
 // the program says; in Debian's Chromium without a network. Pages and pictures of them are left in FOLDER.
 import assert from 'node:assert/strict';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A page in Debian's Chromium without any network: what it asks for or complains about is a fault.
 import {createRequire} from 'node:module';
 import {resolve} from 'node:path';

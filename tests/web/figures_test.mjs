@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // node figures_test.mjs FOLDER|FILE.svg...: can the figures be read where they are printed 3.5 inches wide? No text
 // overlaps another, a frame or a legend's lines, none is cut off or below 6 points, and series can be told apart by
 // who sees no red and green, and in grey. Of figures in a FOLDER, just drawn, also: numbers of an axis stand close to

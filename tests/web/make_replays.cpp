@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // make_replays FOLDER: the replay pages that replay_test.mjs looks at.
 
 #include <iostream>

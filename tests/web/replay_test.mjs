@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // node replay_test.mjs FOLDER: the pages of make_replays as a reader sees them, in Debian's Chromium, without
 // a network.
 import assert from 'node:assert/strict';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // node report_test.mjs REPORT.html [FOLDER]: is the report whole, in a browser without network, on a desktop and on
 // a phone, light and dark? Into FOLDER it saves what it sees.
 import assert from 'node:assert/strict';

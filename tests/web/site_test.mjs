@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The documentation site as a reader sees it, from files, without network: light, dark, wide, narrow, by keyboard.
 //   node site_test.mjs HTML
 import {join} from 'node:path';

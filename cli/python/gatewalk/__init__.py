@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Locomotion through cluttered obstacles: short runs of single gates, chained over a field.
 
 Commands of the program ``gatewalk`` as functions, with the same numbers to the last bit and the same errors. Options of a

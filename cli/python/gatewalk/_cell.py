@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Cells of one's own, in numpy."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Matrices: built, saved, read, and asked."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What commands give: the program's JSON, with numpy arrays, tables and pictures."""
 
 from __future__ import annotations

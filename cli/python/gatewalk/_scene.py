@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Scenes: a file, a text or a dict, and keys that are set."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/methods/event.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// `event`: event-driven. Motion is cut at events only: a change of the random force, a hit, the
 /// end of a contact, the way out of the gate.

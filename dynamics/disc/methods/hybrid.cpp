@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/methods/hybrid.h"
 
 namespace gatewalk::dynamics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the methods share that follow free motion, hits and constraints apart (`stable`, `event`):
 /// the laws at a moment of impact and the way back onto a constraint.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How fixed-step methods walk through a spell of constant force.
 

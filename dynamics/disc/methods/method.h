@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What every time-stepping method is: something that carries a gate's state through a spell of
 /// constant force. One file per method; `make_method` is the only list of them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/methods/moreau.h"
 
 #include "dynamics/disc/methods/march.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// `moreau`: Moreau-Jean time stepping with theta = 1/2 (Moreau 1988; Jean, Comput. Methods Appl.
 /// Mech. Engrg. 177, 1999). Nothing is searched for inside a step: contacts that overlap at the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// `paper`: the paper's scheme as its text gives it, faults included. Explicit Euler; overlapping
 /// and closing contacts get the collision law, left beam first, then right; a hit with |dP| below

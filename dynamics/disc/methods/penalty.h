@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// `penalty`: what most simulation engines do. A spring and a damper in every contact, each by
 /// itself, and semi-implicit (symplectic) Euler for all motion: velocities from the forces at the

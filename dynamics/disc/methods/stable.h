@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// `stable`: hits found inside the step, both beams resolved together, constraints without drift.
 ///

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// How wrong a method is on a scene: its trials against those of a reference under the same noise.
 ///

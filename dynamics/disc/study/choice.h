@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// run.method = "auto": the cheapest method and setting that a scene can do with.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// What the numbers of a scene amount to: how fast its body is, how far noise shakes it sideways,
 /// what holds it, how long it may take. All of it follows from the scene in closed form, but for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Where each method breaks: maps over two numbers of the scene, every point a few short trials,
 /// judged by the worst that they showed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// One word for how far a method can be trusted on a scene: the worst that its runs showed.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "dynamics/disc/study/work_precision.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 /// Speed against accuracy on one scene: every method over its own settings, the time of a trial on
 /// one thread, and the error against a reference under the same noise (accuracy.h).
