@@ -142,7 +142,7 @@ void check_page(const Options& options, const Subject& s) {
   refuse(options, {"row"}, "beside --page");
   if (!has_pages())
     throw UsageError("--page: needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
-  if (s.file && !s.pool && !s.scene)
+  if (s.foreign)
     throw UsageError("--page: " + s.path +
                      " was made elsewhere: a page is of a scene, or of a matrix of gatewalk build");
   const lattice::FieldParams& field = s.problem.field;

@@ -8,6 +8,7 @@
 #include "cli/exchange/imported.h"
 #include "cli/exchange/trajectories.h"
 #include "cli/render/json.h"
+#include "cli/render/matrix.h"
 #include "cli/render/version.h"
 #include "cli/terminal/output.h"
 #include "cli/walked.h"
@@ -65,6 +66,11 @@ std::vector<std::string> files_beside(const Options& options, ExportForm form) {
         throw UsageError(file + ", which is written beside -o " + output +
                          ", is an input: give -o another name");
     }
+    for (const char* other : {"json", "csv"})
+      if (options.has(other) && std::filesystem::weakly_canonical(options.text(other)) ==
+                                    std::filesystem::weakly_canonical(file))
+        throw UsageError("--" + std::string(other) + " " + options.text(other) +
+                         ": is written beside -o " + output + ": give it another name");
     try {
       require_writable(file);
     } catch (const std::runtime_error& e) {
@@ -94,7 +100,8 @@ std::string export_field(const Options& options, ExportForm form, Json& json) {
     options.write(stem_of(output) + ".lab", files.labels);
     options.write(output, files.transitions);
   } else {
-    const std::vector<std::string> names = lattice::state_names(walked.space);
+    const std::vector<std::string> names =
+        s.foreign ? lattice::state_names(*s.file) : lattice::state_names(walked.space);
     const std::vector<std::string> all = names_of(chain, names);
     write_table(options, form, table_of(chain), all, all, states_csv(chain, names));
   }
@@ -114,10 +121,13 @@ std::string export_gate(const Options& options, ExportForm form, Json& json) {
   if (options.has("type") && type == file.types.end())
     throw UsageError("--type " + options.text("type") + ": " + path + " has no such type");
   const dynamics::Transitions& t = options.has("type") ? type->second : file.transitions;
-  SparseTable table =
+  if (const Json states = recorded(file, path, "state_space");
+      options.has("counts") && states.is_object() && states.value("probabilities", Json()) == true)
+    throw UsageError("--counts: " + path + " was made of probabilities, and has no counts");
+  const SparseTable table =
       options.has("counts") ? table_of(t.counts()) : table_of(lattice::make_chain(t).matrix());
-  const std::vector<std::string> names = lattice::state_names(t.space);
-  write_table(options, form, table, names, names, states_csv(t.space));
+  const std::vector<std::string> names = lattice::state_names(file);
+  write_table(options, form, table, names, names, states_csv(file));
   json = {{"states", t.space.size()}, {"transitions", table.entries.size()}};
   json["made_by"] = to_json(options.provenance());
   return std::to_string(t.space.size()) + " states of one gate, " +

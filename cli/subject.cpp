@@ -10,6 +10,7 @@
 
 #include "cli/arguments.h"
 #include "cli/cells/program.h"
+#include "cli/exchange/imported.h"
 #include "cli/loaded_matrix.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
@@ -234,6 +235,20 @@ Subject open_program(const Options& options, const std::string& path) {
 
 namespace {
 
+/// Of a chain that was made elsewhere a start is a state, by its name or number.
+void put_foreign_starts(Subject& s, const Options& options) {
+  s.given = options.has("start");
+  for (const std::string& text : options.texts("start")) {
+    const auto start = foreign_start(*s.file, text);
+    if (!start)
+      throw UsageError("--start " + text + ": " + s.path +
+                       " has no such state; gatewalk show --rows lists them");
+    s.starts.emplace_back(start);
+  }
+  if (s.starts.empty()) s.starts.push_back(s.cells->start);
+  s.problem.start = s.entries().front();
+}
+
 Subject open_recorded(const Options& options, const std::string& path) {
   lattice::CellMatrix m = read_cell_matrix(options, path, options.overrides());
   refuse(options, {"gate-runs"},
@@ -245,8 +260,11 @@ Subject open_recorded(const Options& options, const std::string& path) {
             .pool = std::move(m.pool),
             .problem = std::move(m.problem)};
   if (!s.pool) {
-    put_starts(s, options, s.cells->start, StartsFrom::any_face);
-    s.problem.start = s.entries().front();
+    const Json states = recorded(*s.file, path, "state_space");
+    if (!states.is_object() || states.value("bins", Json()) != "imported")
+      throw markov::BadFile(path + ": its runs are missing");
+    s.foreign = true;
+    put_foreign_starts(s, options);
     return s;
   }
   s.how = accuracy_of(options);
@@ -351,7 +369,7 @@ std::vector<dynamics::Transitions> Subject::matrices() const {
 lattice::CountedField Subject::counted() const {
   lattice::CountedField field = lattice::counted_field(problem.map(), matrices());
   const Json states = recorded(*file, path, "state_space");
-  field.exact = states.is_object() && states.value("probabilities", false);
+  field.exact = states.is_object() && states.value("probabilities", Json()) == true;
   return field;
 }
 

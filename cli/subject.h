@@ -32,6 +32,7 @@ struct Subject {
   lattice::AccuracyOptions how{};             // of trees: as asked for, else as the file was made
   std::vector<Start> starts{};                // those given, else its own
   bool given = false;                         // --start was
+  bool foreign = false;                       // a chain that was made elsewhere
   std::optional<lattice::Settled> settled{};  // the method chosen for the scene
   [[nodiscard]] bool is_recorded() const { return problem.is_recorded(); }
   [[nodiscard]] ShownField shown() const { return scene ? ShownField(*scene) : ShownField(*cells); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -259,7 +260,6 @@ void add_states(markov::CountsFile& out, const StateSpace& space) {
   out.arrays[face].whole = true;
   for (const Face& f : section.faces) out.arrays[face].codes.push_back(f.name);
   for (int s = 0; s < space.size(); ++s) out.arrays[face].values.push_back(space.face(s));
-  out.state_names = state_names(space);
   for (std::size_t c = 0; c < section.coordinates.size(); ++c)
     for (const std::size_t side : {0, 1}) {
       const Coordinate& coordinate = section.coordinates[c];
@@ -274,12 +274,15 @@ void add_states(markov::CountsFile& out, const StateSpace& space) {
 /// Tables that do not belong to the state space.
 std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays,
                                           const Section& section) {
+  std::set<std::string> own{kOpenBins, kPointBoundary, std::string(kStates) + "face"};
+  for (const Coordinate& c : section.coordinates)
+    own.insert({point_array(c), kStates + c.name + "_low", kStates + c.name + "_high"});
+  for (const Face& face : section.faces) {
+    for (const Coordinate& c : section.coordinates) own.insert(edges_array(face, c));
+    for (const char* name : {kTreeAxis, kTreeCut, kTreeSeen}) own.insert(tree_array(face, name));
+  }
   std::erase_if(arrays, [&](const markov::NamedArray& a) {
-    const bool of_face =
-        std::any_of(section.faces.begin(), section.faces.end(),
-                    [&](const Face& face) { return a.name.starts_with(face.name + "_"); });
-    return of_face || a.name == kOpenBins || a.name.starts_with("point_") ||
-           a.name.starts_with(kStates) || a.name.starts_with(kCountCosts);
+    return own.contains(a.name) || a.name.starts_with(kCountCosts);
   });
   return arrays;
 }
@@ -311,6 +314,10 @@ std::vector<std::string> state_names(const StateSpace& space) {
   return names;
 }
 
+std::vector<std::string> state_names(const MatrixFile& file) {
+  return file.state_names.empty() ? state_names(file.transitions.space) : file.state_names;
+}
+
 std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
   const bool any = std::any_of(map.types.begin(), map.types.end(),
                                [](const CellMap::Type& type) { return type.symmetric; });
@@ -333,6 +340,7 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
   }
   out.exits = exits_of(t.space);
   add_states(out, t.space);
+  out.state_names = state_names(file);
   out.arrays.insert(out.arrays.end(), file.arrays.begin(), file.arrays.end());
   const Section& section = t.space.section();
   for (std::size_t f = 0; f < section.faces.size(); ++f)
@@ -384,6 +392,7 @@ MatrixFile read_matrix(const std::string& path, const SectionOf& section_of) {
     if (in.exits != exits_of(space))
       throw markov::BadFile(path + ": exits are not those of its states");
     MatrixFile file{transitions_of(space, in), in.text, others_in(in.arrays, section)};
+    if (in.state_names != state_names(space)) file.state_names = in.state_names;
     read_costs(in, "", path, file.transitions);
     for (const auto& [name, of_type] : in.types) {
       const auto at = file.types.emplace(name, transitions_of(space, of_type)).first;

@@ -50,10 +50,14 @@ struct MatrixFile {
   std::map<std::string, std::string> text;
   std::vector<markov::NamedArray> arrays{};              // beside those of the state space
   std::map<std::string, dynamics::Transitions> types{};  // of other gates in the field, by name
+  std::vector<std::string> state_names{};  // (n + 1), of a chain that was made elsewhere; else none
 };
 
 /// A name for each of the n + 1 outputs: face and number from 0, "EN_0"; the last one "trapped".
 [[nodiscard]] std::vector<std::string> state_names(const dynamics::StateSpace& space);
+struct MatrixFile;
+/// Those of a file: its own ones, if it has any.
+[[nodiscard]] std::vector<std::string> state_names(const MatrixFile& file);
 
 /// What readers of a file's counts must know of those of trees, where mirror images are counted;
 /// empty where there is nothing.

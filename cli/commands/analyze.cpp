@@ -66,7 +66,9 @@ int run_analyze(const Arguments& arguments) {
   Subject s = open_subject(options, "matrix");
   check_page(options, s);
   if (s.is_recorded())
-    refuse(options, {"trials", "step"}, "for " + s.path + ", whose runs were recorded");
+    refuse(options, {"trials", "step"},
+           "for " + s.path +
+               (s.foreign ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
   how.lumping = lumping_of(options, s.problem.map().section);
   s.settle(options);
   const auto of_file = runs_of_file(options, s);

@@ -37,6 +37,12 @@ int run_export(const Arguments& arguments) {
   (void)files_beside(options, form);
   const bool sparse =
       form == ExportForm::matrix_market || form == ExportForm::csv || form == ExportForm::npz;
+  if (form == ExportForm::trajectories) {
+    refuse(options, {"start", "set"}, "for trajectories, which are the trials as they were run");
+    if (!options.text("scene").empty())
+      throw UsageError(
+          "SCENE has no meaning for trajectories, which are the trials as they were run");
+  }
   if (!options.has("gate")) {
     refuse(options, {"counts", "type"}, "without --gate");
   } else {

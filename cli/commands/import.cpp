@@ -60,13 +60,14 @@ int run_import(const Arguments& arguments) {
   Json space = {{"bins", "imported"}, {"states", t.space.size()}};
   if (matrix.probabilities) space["probabilities"] = true;
   Json made_by = to_json(options.provenance());
-  lattice::MatrixFile file{std::move(t),
-                           {{"title", "gatewalk counts of a chain from elsewhere"},
-                            {"state_space", space.dump()},
-                            {"program", "gatewalk " + made_by.at("version").get<std::string>()},
-                            {"commit", made_by.at("commit")},
-                            {"command", options.canonical()},
-                            {lattice::kCellText, lattice::to_toml(cells)}}};
+  const lattice::MatrixFile file =
+      matrix_file(std::move(t), states,
+                  {{"title", "gatewalk counts of a chain from elsewhere"},
+                   {"state_space", space.dump()},
+                   {"program", "gatewalk " + made_by.at("version").get<std::string>()},
+                   {"commit", made_by.at("commit")},
+                   {"command", options.canonical()},
+                   {lattice::kCellText, lattice::to_toml(cells)}});
   const std::string output = options.text("output");
   options.keep_old(output);
   lattice::write_matrix(output, file);
@@ -77,8 +78,8 @@ int run_import(const Arguments& arguments) {
   const dynamics::StateSpace& by_face = file.transitions.space;
   for (std::size_t k = 0; k < states.size(); ++k)
     if (by_face.index_of(entry_of(states, k, by_face.section())).state != static_cast<int>(k)) {
-      options.warn("states of one face stand together in " + output + ": the number that " +
-                   options.text("states") + " gives each is its coordinate \"state\"");
+      options.warn("states of one face stand together in " + output +
+                   ", in another order than in " + options.text("states"));
       break;
     }
   if (matrix.probabilities)

@@ -63,15 +63,14 @@ int run_predict(const Arguments& arguments) {
   if (!s.file || s.is_recorded() || (s.cells && no_runs))
     refuse(options, {"first-runs"},
            "for " + s.path + ": it is for a matrix of a scene, or (above 0) of a cell program");
-  const bool is_foreign = s.file && s.cells && !s.pool;  // made elsewhere
-  if (!s.file || (!s.scene && !is_foreign)) {
+  if (!s.file || (!s.scene && !s.foreign)) {
     refuse(options, {"row"}, "for " + s.path + ": it is for a matrix of a scene");
     if (by_solver)
       throw UsageError("--solver has no meaning for " + s.path + ": it is for a matrix of a scene");
   }
-  if (is_foreign) refuse(options, {"row"}, "for " + s.path + ": it is for a matrix of a scene");
+  if (s.foreign) refuse(options, {"row"}, "for " + s.path + ": it is for a matrix of a scene");
   if (s.file && s.scene) warn_of_range(options, *s.file, s.path, s.entries());
-  if (s.file && (is_foreign || (s.scene && as_it_is))) {
+  if (s.file && (s.foreign || (s.scene && as_it_is))) {
     const std::string why = "for " + s.path +
                             ", which keeps no gate runs that could be added to (or " +
                             "--row, --solver, --first-runs 0 asks for the matrix as it is)";

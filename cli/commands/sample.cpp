@@ -15,12 +15,16 @@ struct Sample {
   std::string name, file, about;
 };
 
-/// What a file is: the first line of it, a comment, up to a colon.
+/// What a file is: the comment that it begins with, up to the first colon, or the last full stop of
+/// its first line.
 std::string first_words(std::string_view text) {
   text = text.substr(0, text.find('\n'));
-  text = text.substr(0, text.find(':'));
   text.remove_prefix(std::min(text.size(), text.find_first_not_of("# ")));
-  return std::string(text.substr(0, text.find_last_not_of(". ") + 1));
+  if (const std::size_t colon = text.find(": "); colon != text.npos)
+    text = text.substr(0, colon);
+  else if (const std::size_t stop = text.rfind(". "); stop != text.npos)
+    text = text.substr(0, stop);
+  return std::string(text.substr(0, text.find_last_not_of(". :,") + 1));
 }
 
 std::vector<Sample> samples() {

@@ -103,6 +103,7 @@ std::vector<ForeignState> read_states(const std::string& path) {
   std::vector<ForeignState> states;
   std::vector<std::string> columns;
   std::set<std::string> names;
+  std::map<std::string, std::pair<int, int>> moves;  // by face
   for (std::size_t k = 0; k < lines->size(); ++k) {
     const std::string& line = (*lines)[k];
     const auto refuse = [&](const std::string& what) {
@@ -145,9 +146,15 @@ std::vector<ForeignState> read_states(const std::string& path) {
     if (s.name == "trapped" || !names.insert(s.name).second)
       refuse("name \"" + lattice::printable(s.name) + "\" is taken");
     if (s.face.empty()) s.face = name_of_move(s.move_x, s.move_y);
-    for (const ForeignState& other : states)
-      if (other.face == s.face && (other.move_x != s.move_x || other.move_y != s.move_y))
-        refuse("face " + lattice::printable(s.face) + " has another move than before");
+    if (!lattice::is_name(s.face) || s.face == "trapped" || s.face == "lost")
+      refuse("face \"" + lattice::printable(s.face) +
+             "\" must be a name: a letter, then letters, digits and _, neither trapped nor lost");
+    const auto [move, is_new] = moves.try_emplace(s.face, s.move_x, s.move_y);
+    if (move->second != std::pair(s.move_x, s.move_y))
+      refuse("face " + s.face + " has another move than before");
+    if (is_new && moves.size() > dynamics::kMostFaces)
+      refuse("there are more than " + std::to_string(dynamics::kMostFaces) +
+             " faces: states that are entered by one move may share one");
     states.push_back(std::move(s));
     if (states.size() > static_cast<std::size_t>(dynamics::kMostStates))
       refuse("there are more than " + std::to_string(dynamics::kMostStates) + " states");
@@ -156,12 +163,13 @@ std::vector<ForeignState> read_states(const std::string& path) {
   return states;
 }
 
-std::string states_csv(const dynamics::StateSpace& space) {
+std::string states_csv(const lattice::MatrixFile& file) {
+  const dynamics::StateSpace& space = file.transitions.space;
   const dynamics::Section& section = space.section();
   std::string text = "state,name,face,move_x,move_y";
   for (const dynamics::Coordinate& c : section.coordinates)
     text += "," + c.key + "_low," + c.key + "_high";
-  const std::vector<std::string> names = lattice::state_names(space);
+  const std::vector<std::string> names = lattice::state_names(file);
   for (int s = 0; s < space.size(); ++s) {
     const dynamics::Face& face = section.faces[static_cast<std::size_t>(space.face(s))];
     text += "\n" + std::to_string(s) + "," + csv_text(names[static_cast<std::size_t>(s)]) + "," +
@@ -179,9 +187,12 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
   for (const ForeignState& s : states) names.push_back(s.name);
   names.emplace_back("trapped");
   const bool npz = path.ends_with(".npz");
+  std::vector<NumpyArray> arrays;
+  if (npz) arrays = read_npz(path);
   ForeignMatrix matrix;
-  if (path.ends_with(".dtrajs") || (npz && holds_trajectories(path))) {
-    matrix.table = counts_of(path, read_trajectories(path), n);
+  if (path.ends_with(".dtrajs") || (npz && hold_trajectories(arrays))) {
+    matrix.table = counts_of(
+        path, npz ? trajectories_of(path, std::move(arrays)) : read_trajectories(path), n);
     return matrix;
   }
   if (path.ends_with(".mtx"))
@@ -189,7 +200,7 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
   else if (path.ends_with(".csv"))
     matrix.table = read_csv(path, n, names);
   else if (npz)
-    matrix.table = read_sparse_npz(path);
+    matrix.table = table_of(path, arrays);
   else
     throw std::runtime_error(path + ": must end in .mtx, .csv, .npz or .dtrajs");
   SparseTable& table = matrix.table;
@@ -270,6 +281,41 @@ dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
     t.trials[row] += n;
   }
   return t;
+}
+
+lattice::MatrixFile matrix_file(dynamics::Transitions t, const std::vector<ForeignState>& states,
+                                std::map<std::string, std::string> text) {
+  std::vector<double> number(static_cast<std::size_t>(t.space.size()));
+  std::vector<std::string> names(number.size());
+  for (std::size_t s = 0; s < states.size(); ++s) {
+    const auto at =
+        static_cast<std::size_t>(t.space.index_of(entry_of(states, s, t.space.section())).state);
+    number[at] = static_cast<double>(s);
+    names[at] = states[s].name;
+  }
+  names.emplace_back("trapped");
+  lattice::MatrixFile file{std::move(t), std::move(text)};
+  file.arrays.push_back({kForeignNumber, "1", "number of each state in the table it was made of",
+                         std::move(number), "input_state", true});
+  file.state_names = std::move(names);
+  return file;
+}
+
+std::optional<dynamics::Entry> foreign_start(const lattice::MatrixFile& file,
+                                             const std::string& text) {
+  const dynamics::StateSpace& space = file.transitions.space;
+  const std::vector<std::string> names = lattice::state_names(file);
+  for (const markov::NamedArray& array : file.arrays) {
+    if (array.name != kForeignNumber || std::ssize(array.values) != space.size()) continue;
+    for (int s = 0; s < space.size(); ++s) {
+      const auto at = static_cast<std::size_t>(s);
+      if (text != names[at] && text != shortest(array.values[at])) continue;
+      dynamics::Entry entry{space.face(s)};
+      entry.at[0] = array.values[at];
+      return entry;
+    }
+  }
+  return {};
 }
 
 }  // namespace gatewalk::cli

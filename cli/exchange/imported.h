@@ -3,6 +3,8 @@
 /// Matrices that were made elsewhere, as matrix files of cells: their states are numbers.
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +26,7 @@ struct ForeignState {
 /// std::runtime_error naming file and line.
 [[nodiscard]] std::vector<ForeignState> read_states(const std::string& path);
 /// The other way round: of a matrix file, with the low and high of each coordinate.
-[[nodiscard]] std::string states_csv(const dynamics::StateSpace& space);
+[[nodiscard]] std::string states_csv(const lattice::MatrixFile& file);
 
 /// (states x states + 1), the last column: trapped.
 struct ForeignMatrix {
@@ -48,5 +50,13 @@ struct ForeignMatrix {
 [[nodiscard]] dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
                                                    const std::vector<ForeignState>& states,
                                                    const lattice::CellFile& cells);
+/// A file of it, in which states keep their names and numbers.
+[[nodiscard]] lattice::MatrixFile matrix_file(dynamics::Transitions t,
+                                              const std::vector<ForeignState>& states,
+                                              std::map<std::string, std::string> text);
+inline constexpr const char* kForeignNumber = "number_of_state";
+/// The state of such a file by its name or number; none where there is none.
+[[nodiscard]] std::optional<dynamics::Entry> foreign_start(const lattice::MatrixFile& file,
+                                                           const std::string& text);
 
 }  // namespace gatewalk::cli

@@ -14,7 +14,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-constexpr std::size_t kMostBytes = std::size_t{1} << 30, kPrefix = 10;
+constexpr std::size_t kMostBytes = std::size_t{1} << 30, kMostNumbers = kMostBytes / 8,
+                      kPrefix = 10;
 
 template <class T>
 std::string bytes_of(const std::vector<T>& values) {
@@ -117,7 +118,7 @@ NumpyArray array_of(const PackedFile& file, const std::string& path) {
     if (at->str().size() > 10) refuse("is too large");
     array.shape.push_back(std::stoll(at->str()));
     count *= static_cast<std::size_t>(array.shape.back());
-    if (count > kMostBytes) refuse("is too large");
+    if (count > kMostNumbers) refuse("is too large");
   }
   if (found[4] == "True" && array.shape.size() > 1) refuse("is in Fortran's order");
   if (found[3].length() > 9) refuse("is too large");
@@ -147,7 +148,15 @@ std::string npz_of(const std::vector<NumpyArray>& arrays) {
 
 std::vector<NumpyArray> read_npz(const std::string& path) {
   std::vector<NumpyArray> arrays;
-  for (const PackedFile& file : unpack(path, kMostBytes)) arrays.push_back(array_of(file, path));
+  std::size_t numbers = 0;  // 8 bytes each, however they are stored
+  for (const PackedFile& file : unpack(path, kMostBytes)) {
+    arrays.push_back(array_of(file, path));
+    std::size_t count = 1;
+    for (const std::int64_t n : arrays.back().shape) count *= static_cast<std::size_t>(n);
+    if ((numbers += count) > kMostNumbers)
+      throw std::runtime_error(path + ": holds more than " + std::to_string(kMostNumbers) +
+                               " numbers");
+  }
   return arrays;
 }
 

@@ -77,7 +77,9 @@ constexpr double kMostWhole = 9007199254740992.0;  // doubles hold all whole num
 
 }  // namespace
 
-std::string matrix_market_of(const SparseTable& table, const std::string& comment) {
+std::string matrix_market_of(const SparseTable& table, std::string comment) {
+  for (char& c : comment)  // names of files may have anything
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
   std::string text = std::string("%%MatrixMarket matrix coordinate ") +
                      (table.whole ? "integer" : "real") + " general\n% " + comment + "\n" +
                      std::to_string(table.rows) + " " + std::to_string(table.columns) + " " +
@@ -173,11 +175,14 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
     number_of[columns[c]] = static_cast<std::int64_t>(c);
   const auto state = [&](const std::string& text, std::int64_t end, std::size_t line) {
     const auto named = number_of.find(text);
-    std::int64_t s = -1;
-    if (named != number_of.end())
-      s = named->second;
-    else if (!read_number(text, s))
-      s = -1;
+    std::int64_t s = named == number_of.end() ? -1 : named->second, number = -1;
+    if (read_number(text, number)) {
+      if (named != number_of.end() && s != number)
+        refuse(path, line,
+               "\"" + printable(text) + "\" is the name of state " + std::to_string(s) +
+                   " and the number of another: give states names that are no numbers");
+      s = number;
+    }
     if (s < 0 || s >= end)
       refuse(path, line,
              "there is no state \"" + printable(text) + "\"" +
@@ -186,6 +191,7 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
   };
   const std::vector<std::string> lines = lines_of_file(path);
   std::vector<std::size_t> line_of;
+  std::size_t columns_given = 0;
   int from = -1, to = -1, value = -1;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     if (lines[k].empty() || lines[k].starts_with('#')) continue;
@@ -200,12 +206,20 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
         if (is_count || name == "probability") value = static_cast<int>(f);
         table.whole = table.whole || is_count;
       }
-      if (from < 0 || to < 0 || value < 0)
-        refuse(path, k + 1, "must name the columns: from,to,count or from,to,probability");
+      const auto times = [&](const char* name) {
+        return std::count(fields->begin(), fields->end(), name);
+      };
+      if (times("from") != 1 || times("to") != 1 || times("count") + times("probability") != 1)
+        refuse(path, k + 1,
+               "must name the columns, each once: from,to,count or from,to,probability");
+      columns_given = fields->size();
       continue;
     }
+    if (fields->size() != columns_given)
+      refuse(path, k + 1,
+             "has " + std::to_string(fields->size()) + " fields, not " +
+                 std::to_string(columns_given));
     const auto field = [&](int at) -> const std::string& {
-      if (static_cast<std::size_t>(at) >= fields->size()) refuse(path, k + 1, "has too few fields");
       return (*fields)[static_cast<std::size_t>(at)];
     };
     SparseTable::Entry e{state(field(from), rows, k + 1), state(field(to), table.columns, k + 1),
@@ -219,8 +233,7 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
   return table;
 }
 
-SparseTable read_sparse_npz(const std::string& path) {
-  const std::vector<NumpyArray> arrays = read_npz(path);
+SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arrays) {
   const auto whole = [&](const char* name) -> const std::vector<std::int64_t>& {
     const NumpyArray* const array = find(arrays, name);
     const auto* const values =
@@ -286,23 +299,22 @@ std::string npz_of(const Trajectories& all) {
   return npz_of(arrays);
 }
 
-bool holds_trajectories(const std::string& path) {
-  const std::vector<NumpyArray> arrays = read_npz(path);
-  return !find(arrays, "indptr");
+bool hold_trajectories(const std::vector<NumpyArray>& arrays) { return !find(arrays, "indptr"); }
+
+Trajectories trajectories_of(const std::string& path, std::vector<NumpyArray> arrays) {
+  Trajectories all;
+  for (NumpyArray& array : arrays) {
+    auto* const values = std::get_if<std::vector<std::int64_t>>(&array.values);
+    if (!values || array.shape.size() != 1)
+      throw std::runtime_error(path + ": array " + array.name +
+                               ": a trajectory is one row of whole numbers");
+    all.push_back(std::move(*values));
+  }
+  return all;
 }
 
 Trajectories read_trajectories(const std::string& path) {
   Trajectories all;
-  if (path.ends_with(".npz")) {
-    for (NumpyArray& array : read_npz(path)) {
-      auto* const values = std::get_if<std::vector<std::int64_t>>(&array.values);
-      if (!values || array.shape.size() != 1)
-        throw std::runtime_error(path + ": array " + array.name +
-                                 ": a trajectory is one row of whole numbers");
-      all.push_back(std::move(*values));
-    }
-    return all;
-  }
   const std::vector<std::string> lines = lines_of_file(path);
   for (std::size_t k = 0; k < lines.size(); ++k) {
     if (lines[k].starts_with('#')) continue;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/exchange/npz.h"
+
 namespace gatewalk::cli {
 
 /// Entries in the order of rows, within each of columns; no two at one place.
@@ -31,7 +33,7 @@ template <class Value>
 }
 
 /// Matrix Market's coordinate format, which counts from 1; `comment` on a line of its own.
-[[nodiscard]] std::string matrix_market_of(const SparseTable& table, const std::string& comment);
+[[nodiscard]] std::string matrix_market_of(const SparseTable& table, std::string comment);
 /// from,to,VALUE with the names of rows and columns.
 [[nodiscard]] std::string csv_of(const SparseTable& table, const std::vector<std::string>& rows,
                                  const std::vector<std::string>& columns, const std::string& value);
@@ -45,15 +47,16 @@ template <class Value>
 /// numbers from 0. `columns`: names of outputs, the first `rows` of which are those of the rows.
 [[nodiscard]] SparseTable read_csv(const std::string& path, std::int64_t rows,
                                    const std::vector<std::string>& columns);
-/// Compressed rows, as scipy writes them.
-[[nodiscard]] SparseTable read_sparse_npz(const std::string& path);
+/// Of an .npz: compressed rows, as scipy writes them.
+[[nodiscard]] SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arrays);
 
 /// Sequences of states from 0: a line each, numbers between blanks; or an array each of an .npz.
 using Trajectories = std::vector<std::vector<std::int64_t>>;
 [[nodiscard]] std::string text_of(const Trajectories& all);
 [[nodiscard]] std::string npz_of(const Trajectories& all);
 [[nodiscard]] Trajectories read_trajectories(const std::string& path);
-/// Whether an .npz holds such sequences, and no sparse matrix.
-[[nodiscard]] bool holds_trajectories(const std::string& path);
+/// Of an .npz; and whether it holds such sequences, and no sparse matrix.
+[[nodiscard]] Trajectories trajectories_of(const std::string& path, std::vector<NumpyArray> arrays);
+[[nodiscard]] bool hold_trajectories(const std::vector<NumpyArray>& arrays);
 
 }  // namespace gatewalk::cli

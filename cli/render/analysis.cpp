@@ -393,8 +393,9 @@ std::string table_of(const AnalysedField& f) {
   const lattice::FieldParams& field = f.shown.field;
   std::string table =
       endings_text(f.endings,
-                   f.analysis.by_groups
-                       ? "of all bodies, 95 % intervals that count everything"
+                   f.analysis.by_groups ? "of all bodies, 95 % intervals that count everything"
+                   : std::isnan(f.endings.interval.front().front())
+                       ? "of all bodies; no intervals"
                        : "of all bodies; 95 % intervals that count the sampling of the matrix") +
       limits_text(f.shown) + "\ngates visited  " + with_interval(a.gates, 3) +
       (a.by_groups && std::isnan(a.gates.interval[0])

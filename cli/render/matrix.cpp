@@ -10,6 +10,7 @@
 #include "cli/render/states.h"
 #include "cli/render/text.h"
 #include "lattice/cells/cell_matrix.h"
+#include "lattice/pool/tree_chain.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {
@@ -257,9 +258,10 @@ std::string table_of(const lattice::MatrixFile& file, const std::string& path,
     if (const auto it = file.text.find(key); it != file.text.end())
       out << "  " << padded(key, -20) << it->second << "\n";
   const Json status = recorded_status(file);
-  const std::string faults = status.is_null() && file.text.contains(lattice::kCellText)
-                                 ? "none on record: runs were recorded"
-                                 : faults_recorded(status);
+  const std::string faults =
+      status.is_null() && file.text.contains(lattice::kCellText)
+          ? std::string("none on record") + (lattice::has_runs(file) ? ": runs were recorded" : "")
+          : faults_recorded(status);
   const Json states = recorded(file, path, "state_space");
   if (!states.is_null()) out << "  " << states_line(states);
   out << "  numerical faults    " << (faults.empty() ? "none seen" : faults) << "\n";

@@ -2,6 +2,8 @@
 #include "cli/render/numbers.h"
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "cli/render/csv.h"
 #include "cli/render/json.h"
@@ -18,14 +20,22 @@ std::array<Json, 2> limits_in(const Json& bars) {
   return is_pair ? std::array<Json, 2>{bars[0], bars[1]} : std::array<Json, 2>{};
 }
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 class NumberTable {
  public:
-  NumberTable() { csv_ = "quantity,i,j,value,low_95,high_95\n"; }
+  explicit NumberTable(const Json& result) {
+    csv_ = "quantity,i,j,value,low_95,high_95\n";
+    if (result.contains("walks") && result["walks"].is_number())
+      walks_ = result["walks"].get<double>();
+  }
 
   /// `bars`: what the result says of its limits, of the same form; or "low" and "high" of such.
-  void add(const std::string& name, const Json& json, const Json& bars) {
+  /// `total`: how many were counted, where shares have limits and the numbers are counts.
+  void add(const std::string& name, const Json& json, const Json& bars, double total = kUnknown) {
+    total_ = total;
     if (is_value(json)) return line(name, {}, {}, json, limits_in(bars));
-    if (json.is_object()) return add_object(name, json, bars);
+    if (json.is_object()) return add_object(name, json, bars, total);
     if (!json.is_array()) return;
     for (std::size_t i = 0; i < json.size(); ++i) {
       const Json& x = json[i];
@@ -36,9 +46,9 @@ class NumberTable {
           if (is_value(x[j]))
             line(name, std::to_string(i), std::to_string(j), x[j], limits_at(bars, i, j));
           else
-            add(name + "." + std::to_string(i) + "." + std::to_string(j), x[j], {});
+            add(name + "." + std::to_string(i) + "." + std::to_string(j), x[j], {}, total);
       } else {
-        add(name + "." + std::to_string(i), x, {});
+        add(name + "." + name_of(x, i), x, {}, total);
       }
     }
   }
@@ -73,7 +83,17 @@ class NumberTable {
     return key.ends_with("_95") && object.contains(key.substr(0, key.size() - 3));
   }
 
-  void add_object(const std::string& name, const Json& object, const Json& bars) {
+  /// An element of a list by what the result calls it, else by its number.
+  static std::string name_of(const Json& element, std::size_t i) {
+    for (const char* key : {"key", "name"})
+      if (element.is_object() && element.contains(key) && element[key].is_string())
+        return element[key].get<std::string>();
+    return std::to_string(i);
+  }
+
+  void add_object(const std::string& name, const Json& object, const Json& bars, double total) {
+    for (const char* key : {"trials", "walks"})
+      if (object.contains(key) && object[key].is_number()) total = object[key].get<double>();
     for (const auto& [key, value] : object.items()) {
       if ((name.empty() && (key == "made_by" || key == "format_version")) || is_bars(object, key))
         continue;
@@ -84,27 +104,33 @@ class NumberTable {
         own = object["intervals_95"][key];
       else if (bars.is_object() && bars.contains(key))
         own = bars[key];
-      add(name.empty() ? key : name + "." + key, value, own);
+      add(name.empty() ? key : name + "." + key, value, own, key == "walks" ? walks_ : total);
     }
   }
 
   static std::string shown(const Json& value) {
-    if (value.is_null()) return "";
+    if (value.is_null() || (value.is_number_float() && !std::isfinite(value.get<double>())))
+      return "";
     return value.is_boolean() ? (value.get<bool>() ? "1" : "0") : value.dump();
   }
   void line(const std::string& name, const std::string& i, const std::string& j, const Json& value,
-            const std::array<Json, 2>& limits) {
+            std::array<Json, 2> limits) {
+    // The limits of a count are those of its share.
+    for (Json& limit : limits)
+      if (value.is_number_integer() && limit.is_number_float())
+        limit = std::isnan(total_) ? Json() : Json(limit.get<double>() * total_);
     csv_ += csv_text(name) + "," + i + "," + j + "," + shown(value) + "," + shown(limits[0]) + "," +
             shown(limits[1]) + "\n";
   }
 
+  double total_ = kUnknown, walks_ = kUnknown;
   std::string csv_;
 };
 
 }  // namespace
 
 std::string table_of_numbers(const Json& result) {
-  NumberTable table;
+  NumberTable table(result);
   table.add("", result, {});
   return std::move(table).text();
 }

@@ -51,7 +51,9 @@ std::string limits_text(const ShownField& shown) {
 
 std::string too_few_gates(const ShownField& shown) {
   const lattice::FieldParams& field = shown.field;
-  if (field.max_gates == 0 || field.max_gates >= field.rows) return "";
+  int longest = 1;  // rows in one move
+  for (const dynamics::Face& face : shown.map.section.faces) longest = std::max(longest, face.di_y);
+  if (field.max_gates == 0 || field.max_gates >= (field.rows + longest - 1) / longest) return "";
   return "nobody can cross: field.max_gates = " + std::to_string(field.max_gates) +
          " is less than field.rows = " + std::to_string(field.rows);
 }

@@ -124,7 +124,7 @@ std::string states_line(const Json& j) {
   if (j.at("bins") == "tree") return tree_line(j);
   if (j.at("bins") == "imported")
     return "states: " + j.at("states").dump() + ", of a chain from elsewhere" +
-           (j.value("probabilities", false) ? ", given as probabilities" : "") + "\n";
+           (j.value("probabilities", Json()) == true ? ", given as probabilities" : "") + "\n";
   const Json &r = j.at("resolution"), &pilot = j.at("pilot"),
              &unresolved = r.at("unresolved_variance");
   const std::string kind = j.at("bins");

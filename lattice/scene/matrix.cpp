@@ -68,6 +68,7 @@ void put_matrices(MatrixFile& file, const Scene& scene,
                   std::vector<dynamics::Transitions> matrices) {
   const std::vector<int> types = gate_types(scene);
   file.types.clear();
+  file.state_names.clear();
   for (std::size_t i = 0; i < types.size(); ++i)
     file.types.emplace(scene.terrain->types[i].name, matrices[static_cast<std::size_t>(types[i])]);
   file.transitions = std::move(matrices.front());

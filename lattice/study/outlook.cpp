@@ -142,13 +142,16 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
                             const MeanOfRuns& first) -> std::array<double, 2> {
     if (kernels.empty()) return {kUnknown, kUnknown};
     const double share = means(state, end);
-    if (share <= kShareRounding) {  // a run more may go another way, and then end so
-      const double more = interval_of_share(0.0, n)[1] * follows.col(end).maxCoeff();
+    // A run more may go another way, and then end so: of less than one run's worth nothing is seen.
+    const double more = interval_of_share(0.0, n)[1] * follows.col(end).maxCoeff();
+    if (share <= kShareRounding)
       return {0.0, std::min(1.0, more + interval_of_share(0.0, bodies)[1])};
-    }
     std::vector<double> groups;
     for (const EndTable& k : kernels) groups.push_back(k(state, end));
-    return share_95(share, groups, {n, gate_runs}, first.half_width(share, squares(state, end)));
+    auto [low, high] =
+        share_95(share, groups, {n, gate_runs}, first.half_width(share, squares(state, end)));
+    if (share * n < 1.0) high = std::max(high, std::min(1.0, share + more));
+    return {low, high};
   };
   for (int& state : out.of_leaf)  // where nobody ever entered
     if (state >= 0 && runs[static_cast<std::size_t>(state)] == 0) state = -1;

@@ -54,7 +54,19 @@ for command in predict analyze "walk --walks 1000" "show --rows"; do
   for matrix in own steps; do "$gatewalk" ${command%% *} $matrix.nc $(printf '%s' "${command#"${command%% *}"}") --json $matrix.json --quiet 2>/dev/null || fail "$command $matrix.nc"; done
   [ "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' own.json)" = "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' steps.json)" ] || fail "$command: steps are not their counts"
 done
-expect 0 'crossed       0.00' "$gatewalk" predict own.nc --start right:1 --set field.rows=30
+# A start is a state, by its name or number, and answers as one that import was told.
+for start in 0 1 2; do
+  "$gatewalk" import own.csv --states s.csv --start $start --set field.rows=2 --set field.columns=3 -o from.nc --force --quiet >/dev/null 2>&1
+  "$gatewalk" predict from.nc --json from.json --quiet
+  for text in $start "$(sed -n "s/^$start,\([a-z_]*\),.*/\1/p" s.csv)"; do
+    "$gatewalk" predict own.nc --start "$text" --json start.json --quiet
+    [ "$(jq -c .starts[0].endings start.json)" = "$(jq -c .endings from.json)" ] || fail "--start $text: another answer"
+  done
+done
+expect 2 'has no such state' "$gatewalk" predict own.nc --start 3
+"$gatewalk" export own.nc --gate --counts -o named.csv --quiet >/dev/null
+[ "$(sort named.csv)" = "$(sed 's/^up_again,1,/up_again,aside,/' own.csv | sort)" ] || fail "names of states are lost: $(cat named.csv)"
+
 expect 2 'has no \[start\]' bash -c "'$gatewalk' import own.csv --states s.csv -o nowhere.nc && '$gatewalk' predict nowhere.nc"
 
 # Trials as trajectories: a trial ends as it ended, and its counts are those of its runs.
@@ -74,7 +86,9 @@ wrong 'w.csv: row 0 (from 0) sums to 0.9: probabilities' w.csv 'from,to,probabil
 wrong 'w.csv:2: there is no state "sideways"' w.csv 'from,to,count\nsideways,up,1\n'
 wrong 'w.csv:3: has the same row and column as line 2' w.csv 'from,to,count\n0,1,1\nup,aside,2\n'
 wrong 'w.csv: row 0, column 1 (from 0): -1 is no count' w.csv 'from,to,count\n0,1,-1\n'
-wrong 'w.csv:1: must name the columns: from,to,count' w.csv 'a,b,c\n'
+wrong 'w.csv:1: must name the columns, each once: from,to,count' w.csv 'a,b,c\n'
+wrong 'w.csv:1: must name the columns, each once' w.csv 'from,to,count,probability\n0,1,10,1\n'
+wrong 'w.csv:2: has 4 fields, not 3' w.csv 'from,to,count\n0,1,1,500\n'
 wrong 'w.mtx:1: must be "%%MatrixMarket' w.mtx '%%MatrixMarket matrix array real general\n'
 wrong 'w.mtx:3: row and column must lie in 1 to 3' w.mtx '%%MatrixMarket matrix coordinate integer general\n3 3 1\n4 1 2\n'
 wrong 'has 1 entries, not 2 as it says' w.mtx '%%MatrixMarket matrix coordinate integer general\n3 3 2\n1 1 2\n'
@@ -89,6 +103,16 @@ printf 'state,move_x,move_y\n0,0,1\n2,0,1\n' >s2.csv
 expect 2 's2.csv:3: state must be 1' "$gatewalk" import own.csv --states s2.csv -o no.nc
 printf 'state,move_x,move_y\n0,0,0\n' >s2.csv
 expect 2 's2.csv:2: the move must lead to another cell' "$gatewalk" import own.csv --states s2.csv -o no.nc
+printf 'state,move_x,move_y,name\n0,0,1,1\n1,0,1,0\n' >s2.csv
+printf 'from,to,count\n0,1,3\n' >n.csv
+expect 2 'is the name of state 1 and the number of another' "$gatewalk" import n.csv --states s2.csv -o no.nc
+printf 'state,move_x,move_y,face\n0,0,1,a b\n' >s2.csv
+expect 2 's2.csv:2: face "a b" must be a name' "$gatewalk" import own.csv --states s2.csv -o no.nc
+{ echo state,move_x,move_y; for k in $(seq 0 64); do echo "$k,$((k + 1)),1"; done; } >s2.csv
+expect 2 's2.csv:66: there are more than 64 faces' "$gatewalk" import own.csv --states s2.csv -o no.nc
+expect 2 'was made of probabilities, and has no counts' "$gatewalk" export q.nc --gate --counts -o no.csv
+expect 2 'for trajectories' "$gatewalk" export tree.nc -o no.dtrajs --set field.rows=2
+expect 2 'is written beside -o' "$gatewalk" export p.nc --gate -o z.mtx --csv z.states.csv
 expect 2 'missing --states' "$gatewalk" import own.csv -o no.nc
 expect 2 'are the same file' "$gatewalk" import own.csv --states s.csv -o s.csv
 expect 2 'cannot be written' "$gatewalk" export p.nc -o /nowhere/at/all.mtx

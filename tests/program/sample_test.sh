@@ -45,7 +45,16 @@ csv_value() { awk -F, -v key="$1" '$1","$2","$3 == key { print $4","$5","$6 }' p
   fail "exits: $(csv_value exits.crossed.4.share,,)"
 "$gatewalk" gate "$scenes/field.toml" --csv - --quiet >gate.csv
 "$gatewalk" gate "$scenes/field.toml" --json gate.json --quiet
-grep -qx "trapped,,,$(jq -r '[.trapped, .intervals_95.trapped[]] | map(tostring) | join(",")' gate.json)" gate.csv || fail "$(cat gate.csv)"
+# Limits of a count are those of its share, times the trials.
+awk -F, -v t="$(jq .trapped gate.json)" -v a="$(jq '.intervals_95.trapped[0] * .trials' gate.json)" -v b="$(jq '.intervals_95.trapped[1] * .trials' gate.json)" \
+  '$1 == "trapped" { found = 1; ok = $4 == t && ($5 - a) ^ 2 + ($6 - b) ^ 2 < 1e-12 } END { exit !(found && ok) }' gate.csv || fail "$(cat gate.csv)"
+for command in "gate $scenes/field.toml" "lattice $scenes/field.toml --trials 50" "validate $scenes/field.toml --trials 50 --accuracy 0.2" "walk walk.nc"; do
+  [ -e walk.nc ] || paper_matrix walk.nc
+  # shellcheck disable=SC2086
+  "$gatewalk" $command --csv limits.csv --quiet >/dev/null 2>&1
+  awk -F, 'NR > 1 && $5 != "" { n++; if (!($5 <= $4 + 1e-12 && $4 <= $6 + 1e-12)) { print; bad = 1 } } END { exit bad || !n }' limits.csv || fail "$command: limits beside other numbers"
+  grep -q ',null\|,-\?nan' limits.csv && fail "$command: words among numbers"
+done
 expect 2 'only one thing can go to standard output' "$gatewalk" gate "$scenes/field.toml" --csv - --json -
 holds '.format_version == 1 and (keys_unsorted[0] == "format_version")' gate.json
 finish

@@ -44,7 +44,7 @@ class Matrix:
             s = os.stat(self._file)
         except OSError:
             return None
-        return s.st_dev, s.st_ino, s.st_size, s.st_mtime_ns, s.st_ctime_ns
+        return s.st_dev, s.st_ino, s.st_size, s.st_mtime_ns
 
     @property
     def _path(self) -> str:

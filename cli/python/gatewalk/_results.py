@@ -110,6 +110,12 @@ class Prediction(Result):
             raise ValueError("the field has too many gates for tables: netcdf=FILE writes them")
         return self.starts[0]._data
 
+    def _limits(self, first: dict[str, t.Any]) -> dict[str, tuple[float, float]]:
+        """95 % intervals of `endings`: of lattice's numbers of bodies those of their shares, times the trials."""
+        trials = self._data.get("trials", 1)
+        none = float("nan")
+        return {k: tuple(none if x is None else trials * x for x in limits) for k, limits in first.get("endings_95", {}).items()}
+
     def _gates(self) -> tuple[Array, tuple[Array, Array] | None]:
         first = self._only()
         bars = first.get("final_gates_95")
@@ -131,7 +137,7 @@ class Prediction(Result):
             data["final_gates_95"] = (("bound", *place), np.stack(bars), unit)
         data["endings"] = (("ending",), np.array(list(first["endings"].values()), dtype=float), unit)
         if "endings_95" in first:
-            data["endings_95"] = (("ending", "bound"), np.array(list(first["endings_95"].values()), dtype=float), unit)
+            data["endings_95"] = (("ending", "bound"), np.array(list(self._limits(first).values()), dtype=float), unit)
         coordinates = {"i_y": ("i_y", np.arange(rows), {"long_name": "row of gates, from the start's side"}),
                        "i_x": ("i_x", np.arange(columns) - (columns - 1) // 2, {"long_name": "column of gates"}),
                        "ending": list(first["endings"])}
@@ -144,7 +150,7 @@ class Prediction(Result):
         import pandas
 
         first = self._only()
-        low_high = np.array([first.get("endings_95", {}).get(k, (np.nan, np.nan)) for k in first["endings"]], dtype=float)
+        low_high = np.array([self._limits(first).get(k, (np.nan, np.nan)) for k in first["endings"]], dtype=float)
         return pandas.DataFrame({"value": list(first["endings"].values()), "low_95": low_high[:, 0], "high_95": low_high[:, 1]},
                                 index=pandas.Index(list(first["endings"]), name="ending"))
 
@@ -180,7 +186,7 @@ class Prediction(Result):
         if len(self.starts) > 1:
             return [("starts", str(len(self.starts)))]
         first = self.starts[0]._data
-        bars = first.get("endings_95", {})
+        bars = self._limits(first)
         lines = [(k.replace("_", " "), f"{v:.4g}" + (f" [{bars[k][0]:.3g}, {bars[k][1]:.3g}]" if k in bars else ""))
                  for k, v in first["endings"].items()]
         if first.get("error_95") is not None:
