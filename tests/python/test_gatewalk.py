@@ -21,6 +21,8 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pandas
+import scipy.sparse
 
 import gatewalk as gw
 
@@ -285,6 +287,33 @@ class Elsewhere(unittest.TestCase):
             matrix.save(Path(folder) / "x.sta")
             with self.assertRaisesRegex(gw.UsageError, "x.sta, .* is an input"):
                 gw.load(Path(folder) / "x.sta").export(Path(folder) / "x.tra")
+
+    def test_chains_from_elsewhere(self):
+        states = {"state": [0, 1, 2], "move_x": [0, 1, 0], "move_y": [1, 0, 1], "name": ["up", "aside", "again"]}
+        counts = np.array([[5, 3, 0, 2], [0, 0, 4, 0], [1, 0, 0, 0]])
+        field = dict(start=0, set={"field.rows": 2, "field.columns": 5, "field.max_gates": 0})
+        dense = gw.from_counts(counts, states, **field)
+        sparse = gw.from_counts(scipy.sparse.csr_matrix(counts), pandas.DataFrame(states), **field)
+        steps = gw.from_counts([[0] * 6 + [1, 2, 0], [0, 1, 2], [0, 1, 2], [1, 2], [0, 3], [0, 3]], states, **field)
+        for other in (sparse, steps):
+            self.assertEqual(dense.predict(), other.predict())
+        with tempfile.TemporaryDirectory() as folder:  # and back
+            path = Path(folder) / "counts.npz"
+            dense.export(path, gate=True, counts=True)
+            # states of one face stand together: up, again, aside
+            np.testing.assert_array_equal(scipy.sparse.load_npz(path).toarray(), counts[[0, 2, 1]][:, [0, 2, 1, 3]])
+        shares = gw.from_counts(counts / counts.sum(axis=1, keepdims=True), states, **field)
+        self.assertTrue(math.isnan(shares.predict().endings_95["crossed"][0]))
+        with self.assertRaisesRegex(gw.UsageError, "the chain: is 2 x 2; of 3 states it must be 3 x 4"):
+            gw.from_counts(counts[:2, :2], states)
+
+    def test_limits_of_counts_are_counts(self):
+        seen = gw.lattice(FIELD, trials=50)
+        frame = seen.to_frame()
+        self.assertTrue((frame.low_95 <= frame.value).all() and (frame.value <= frame.high_95).all())
+        self.assertGreater(frame.high_95.max(), 1.0)
+        data = seen.to_xarray()
+        self.assertTrue((data.endings_95.sel(bound="low") <= data.endings).all())
 
 
 class Scenes(unittest.TestCase):

@@ -33,7 +33,7 @@ from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
 
 __version__: str = _core.version
 __all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError",
-           "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "from_passages", "gate", "landscape", "lattice", "load", "merge",
+           "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "from_counts", "from_passages", "gate", "landscape", "lattice", "load", "merge",
            "options", "passages", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
 
 
@@ -545,4 +545,4 @@ def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = Non
     return Result(_run("walk", [matrix], dict(seed=seed, progress=progress, **more)))
 
 
-from ._matrix import Matrix, _made, _table_file, build, from_passages, load, passages  # noqa: E402  (they use _run)
+from ._matrix import Matrix, _made, _table_file, build, from_counts, from_passages, load, passages  # noqa: E402  (they use _run)

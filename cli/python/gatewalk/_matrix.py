@@ -131,7 +131,13 @@ class Matrix:
         return predict(self, **more)
 
     def export(self, path: t.Any, **more: t.Any) -> Result:
-        """Writes the field's chain for other programs: path ends in .umb (PRISM, Storm), .drn (Storm) or .tra (PRISM).
+        """Writes the chain for other programs, by the ending of `path`.
+
+        Parameters
+        ----------
+        path : path
+            Of the whole field: .umb (PRISM, Storm), .drn (Storm), .tra (PRISM), .mtx, .csv, .npz; with ``gate=True`` (and
+            ``counts=True``) .mtx, .csv, .npz of one gate; .dtrajs or .dtrajs.npz: the states that each trial went through.
 
         Returns
         -------
@@ -324,6 +330,69 @@ def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
     """
     with _table_file(table) as name, file_of(cell) as (path, _):
         return _made("build", [name], dict(more), [f"--cell={path}"])
+
+
+@contextlib.contextmanager
+def _chain_file(chain: t.Any) -> t.Iterator[str]:
+    """A file with a sparse or dense matrix, or with trajectories; a path as it is."""
+    if isinstance(chain, (str, os.PathLike)):
+        yield os.fspath(chain)
+        return
+    import numpy as np
+    from scipy.sparse import csr_matrix, issparse, save_npz
+
+    with tempfile.TemporaryDirectory() as folder:
+        if issparse(chain) or (isinstance(chain, np.ndarray) and chain.ndim == 2):
+            name = os.path.join(folder, "chain.npz")
+            save_npz(name, csr_matrix(chain))
+        else:
+            name = os.path.join(folder, "chain.dtrajs")
+            with open(name, "w", encoding="utf-8") as file:
+                file.writelines(" ".join(str(int(state)) for state in one) + "\n" for one in chain)
+        try:
+            yield name
+        except ValueError as error:
+            if type(error) not in OWN_ERRORS:
+                raise
+            raise type(error)(str(error).replace(name, "the chain")) from error.__cause__
+
+
+def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more: t.Any) -> Matrix:
+    """Makes a matrix of a Markov chain from elsewhere.
+
+    Parameters
+    ----------
+    chain : scipy.sparse matrix, numpy array of shape (n, n) or (n, n + 1), list of trajectories, or path
+        Of one cell: whole numbers are counts, others probabilities; the last of n + 1 columns is trapped. Of a list each
+        element is a trajectory, a sequence of states, whose last may be n: trapped.
+    states : pandas.DataFrame, dict of lists, or path
+        ``state`` (0, 1, ...), ``move_x``, ``move_y``: by which move from cell to cell each is entered; ``name``, ``face``.
+    start : int, optional
+        The state in which walks start.
+    **more
+        Any option of ``gatewalk import``, "-" written "_".
+
+    Returns
+    -------
+    Matrix
+
+    Raises
+    ------
+    UsageError
+        What is wrong in the chain or the states, and where.
+
+    Examples
+    --------
+    >>> import gatewalk as gw, numpy as np
+    >>> up = gw.from_counts(np.array([[6, 4]]), {"state": [0], "move_x": [0], "move_y": [1]}, start=0, set={"field.rows": 2, "field.columns": 1})
+    >>> round(up.predict().endings["crossed"], 12)
+    0.36
+    """
+    import pandas
+
+    table = states if isinstance(states, (str, os.PathLike)) or hasattr(states, "to_csv") else pandas.DataFrame(states)
+    with _chain_file(chain) as name, _table_file(table) as path:
+        return _made("import", [name], dict(more), [f"--states={path}", *([] if start is None else [f"--start={start}"])])
 
 
 def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:

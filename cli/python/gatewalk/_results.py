@@ -114,7 +114,8 @@ class Prediction(Result):
         """95 % intervals of `endings`: of lattice's numbers of bodies those of their shares, times the trials."""
         trials = self._data.get("trials", 1)
         none = float("nan")
-        return {k: tuple(none if x is None else trials * x for x in limits) for k, limits in first.get("endings_95", {}).items()}
+        return {k: (none, none) if low is None or high is None else (trials * low, trials * high)
+                for k, (low, high) in first.get("endings_95", {}).items()}
 
     def _gates(self) -> tuple[Array, tuple[Array, Array] | None]:
         first = self._only()
