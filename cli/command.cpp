@@ -15,6 +15,7 @@
 #include <map>
 #include <optional>
 
+#include "cli/arguments.h"
 #include "cli/kept/kept_options.h"
 #include "cli/kept/ranks.h"
 #include "cli/render/json.h"
@@ -86,7 +87,7 @@ using Strings = std::vector<std::string>;
 /// The map that a file names, if it is a scene. (What a pipe holds is read only once.)
 std::string map_named_in(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return "";
+  if (!std::filesystem::is_regular_file(path, error) || is_matrix(path)) return "";
   try {
     return lattice::map_file_in(lattice::scene_text(path),
                                 std::filesystem::path(path).parent_path().string());

@@ -49,8 +49,11 @@ const Command* find_command(const std::string& name) {
   std::cerr << "gatewalk: no command '" << name << "'";
   std::vector<std::string> names;
   for (const Command& c : commands()) names.emplace_back(c.name);
-  if (const std::string meant = lattice::meant_name(name, names); !meant.empty())
-    std::cerr << "; did you mean " << meant << "?";
+  if (name.starts_with('-')) names = {"--help", "--version"};
+  if (const std::string meant = lattice::meant_name(name, names); !meant.empty()) {
+    std::cerr << "; did you mean " << meant << "?\n";
+    return nullptr;
+  }
   std::cerr << "\n\n";
   print_help(std::cerr);
   return nullptr;

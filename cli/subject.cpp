@@ -241,8 +241,7 @@ void put_foreign_starts(Subject& s, const Options& options) {
   for (const std::string& text : options.texts("start")) {
     const auto start = foreign_start(*s.file, text);
     if (!start)
-      throw UsageError("--start " + text + ": " + s.path +
-                       " has no such state; gatewalk show --rows lists them");
+      throw UsageError("--start " + text + ": " + s.path + " has no state of that name or number");
     s.starts.emplace_back(start);
   }
   if (s.starts.empty()) s.starts.push_back(s.cells->start);
@@ -273,6 +272,13 @@ Subject open_recorded(const Options& options, const std::string& path) {
   put_starts(s, options, s.cells->start, StartsFrom::any_face_or_seen);
   s.problem.start = s.starts.front().value_or(s.problem.start);
   for (const std::string& text : doubts(*s.pool, s.problem)) options.warn(text);
+  const dynamics::Transitions& seen =
+      s.matrices()[static_cast<std::size_t>(s.problem.start_type())];
+  for (const Start& start : s.starts)
+    if (start && seen.trials[static_cast<std::size_t>(seen.space.index_of(*start).state)] == 0)
+      throw UsageError(
+          title_of(s.problem.map().section, start) +
+          ": nobody was seen to enter so, and what would become of such a body is not known");
   for (const Start& start : s.starts)
     if (start && s.file->transitions.space.index_of(*start).beyond)
       options.warn(title_of(s.problem.map().section, start) +

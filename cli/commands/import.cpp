@@ -38,7 +38,8 @@ int run_import(const Arguments& arguments) {
   options.positional("file", "the matrix or the trajectories", true);
   options.input_file("states", "the table of states");
   options.main_output_file("MATRIX.nc", "the matrix file to write", Options::Content::binary);
-  options.add_count("start", "STATE", "the state in which walks start (from 0)");
+  options.add_text("start", "STATE",
+                   "the state in which walks start: its name, or its number from 0");
   options.add_number("width", "M", "width of a cell, m (default: 1)");
   options.add_number("length", "M", "its length along the way, m (default: 1)");
   if (!options.parse(arguments)) return kFine;
@@ -52,9 +53,12 @@ int run_import(const Arguments& arguments) {
                                          number_within(options, "length", 1.0, 1e-9, 1e9)),
                                options.text("states"), options.overrides());
   if (options.has("start")) {
-    const auto start = static_cast<std::size_t>(
-        options.count("start", 0, static_cast<std::int64_t>(states.size()) - 1));
-    cells.start = entry_of(states, start, cells.map.section);
+    const std::string start = options.text("start");
+    std::size_t k = 0;
+    while (k < states.size() && start != states[k].name && start != std::to_string(k)) ++k;
+    if (k == states.size())
+      throw UsageError("--start " + start + ": " + options.text("states") + " has no such state");
+    cells.start = entry_of(states, k, cells.map.section);
   }
   dynamics::Transitions t = transitions_of(matrix, states, cells);
   Json space = {{"bins", "imported"}, {"states", t.space.size()}};

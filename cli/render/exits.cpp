@@ -79,7 +79,7 @@ std::string table_of(const FieldExits& exits, const ShownField& shown) {
               padded(digits(bounds[i] / metre.size) + " to " + digits(bounds[i + 1] / metre.size) +
                          " " + metre.name,
                      -18) +
-              with_interval(e.share[i], e.interval[i]) + "\n";
+              " " + with_interval(e.share[i], e.interval[i]) + "\n";
     }
   }
   return text.empty() ? "" : "where they leave along each side, % of all\n" + text;

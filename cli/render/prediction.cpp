@@ -47,7 +47,11 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
                          "or a resampled matrix failed") +
       limits_text(of.shown) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
       "departed " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(s.exits, of.shown) +
-      "start: " + text_of(space.section(), space.range(s.start.start.input)) + "\n";
+      "start: " +
+      (of.matrix.state_names.empty()
+           ? text_of(space.section(), space.range(s.start.start.input))
+           : of.matrix.state_names[static_cast<std::size_t>(s.start.start.input)]) +
+      "\n";
   if (f.unsampled > 0.0)
     table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)

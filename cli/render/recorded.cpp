@@ -86,8 +86,8 @@ Json to_json(const lattice::LostBounds& bounds) {
 std::string table_of(const lattice::LostBounds& bounds) {
   if (!(bounds.lost > 0.0)) return "";
   std::string text = percent(bounds.lost, 1.0, 2) +
-                     " of the passages were lost from sight and are left out. If "
-                     "all of these bodies had been trapped, or all had left:\n";
+                     " of the passages were lost from sight and are left out, which no interval "
+                     "counts. If all of these bodies had been trapped, or all had left:\n";
   for (const EndingName& e : kEndingNames) {
     const auto at = static_cast<std::size_t>(e.ending);
     text += padded(e.name, -11) + padded(percents(bounds.final[0].endings[at]), 7) + " %, " +

@@ -153,11 +153,18 @@ class Answer {
     };
     for (const f of this.faces) f.seen.forEach(([low, high], axis) => { add(axis, low); add(axis, high); });
     for (const s of this.data.starts) s.at?.forEach((x, axis) => add(axis, x));
-    return ranges.map(([low, high]) => {
-      if (!(high > low)) return [low - 1, low + 1];
+    return ranges.map(([low, high], axis) => {
+      const wall = this.wall(axis);
+      if (!(high > low)) return [Math.max(low - 1, -wall), Math.min(low + 1, wall)];
       const step = 10 ** Math.floor(Math.log10((high - low) / 20));
-      return [Math.floor(low / step) * step, Math.ceil(high / step) * step].map((x) => Number(x.toPrecision(12)));
+      return [Math.max(Math.floor(low / step) * step, -wall), Math.min(Math.ceil(high / step) * step, wall)]
+          .map((x) => Number(x.toPrecision(12)));
     });
+  }
+
+  /** A disc starts inside its gate: no further from the middle than this. */
+  wall(axis) {
+    return this.data.gate && axis === 0 ? this.data.cell_m[0] / 2 : Infinity;
   }
 
   /** A step of a field, so that some hundred make its range. */
@@ -253,8 +260,9 @@ class Answer {
           'aria-describedby': `unit-${axis}`,
         oninput: (e) => {
           const x = e.target.value === '' ? NaN : Number(e.target.value);
-          e.target.setAttribute('aria-invalid', String(!Number.isFinite(x)));
-          if (!Number.isFinite(x)) return;
+          const inside = Math.abs(x) <= this.wall(axis);  // false of NaN
+          e.target.setAttribute('aria-invalid', String(!inside));
+          if (!inside) return;
           const at = [...this.start.at];
           at[axis] = x;
           this.move(at);
@@ -631,7 +639,7 @@ class Drawing {
         element('svg:circle', {class: 'joint', cx: this.px(x), cy: this.py(gate.joint_y_m), r: 5}));
     }
     svg.append(text(this.px(0), 14,
-        `${plain(width)} m wide, ${plain(length)} m long; beams ${plain(beam)} m, disc ${plain(gate.radius_m)} m in radius`),
+        `${plain(width)} x ${plain(length)} m; beams ${plain(beam)} m; radius ${plain(gate.radius_m)} m`),
       text(this.px(0), h - 6, `arrow: the way of ${plain(this.seconds)} s at this speed`));
     this.disc = element('svg:circle', {class: 'disc', r: this.radius * this.scale});
     this.discRing = element('svg:circle', {class: 'ring', r: this.radius * this.scale + 4});

@@ -298,7 +298,8 @@ def _table_file(table: t.Any) -> t.Iterator[str]:
         else:
             name = os.path.join(folder, "table.csv")
             with open(name, "w", encoding="utf-8") as file:
-                file.write(_csv_of_counts(table) if isinstance(table, t.Mapping) else _csv_of(table))
+                counts = table.to_dict() if getattr(table, "ndim", 2) == 1 else table  # a Series
+                file.write(_csv_of_counts(counts) if isinstance(counts, t.Mapping) else _csv_of(counts))
         try:
             yield name
         except ValueError as error:

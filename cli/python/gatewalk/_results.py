@@ -83,7 +83,7 @@ class Prediction(Result):
     Attributes
     ----------
     endings, endings_95 : dict
-        Shares of all bodies by ending (lattice: numbers of bodies); their 95 % intervals.
+        Shares of all bodies by ending (lattice: numbers of bodies); 95 % intervals of the shares (`to_frame`: of the numbers).
     final_gates, trapped_gates, departed_gates : array, shape (rows, columns)
         Shares (lattice: numbers) by the gate bodies end in, row 0 the one they enter by; of those trapped there, and of those
         that left the field from there.

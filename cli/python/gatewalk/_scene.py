@@ -128,6 +128,8 @@ class Scene:
     @staticmethod
     def _value(row: dict[str, t.Any]) -> t.Any:
         text = row["value"]
+        if isinstance(text, str) and text.startswith('"'):
+            return json.loads(text)
         for kind in (int, float):
             with contextlib.suppress(ValueError, TypeError):
                 return kind(text)
