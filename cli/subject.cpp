@@ -272,8 +272,8 @@ Subject open_recorded(const Options& options, const std::string& path) {
   put_starts(s, options, s.cells->start, StartsFrom::any_face_or_seen);
   s.problem.start = s.starts.front().value_or(s.problem.start);
   for (const std::string& text : doubts(*s.pool, s.problem)) options.warn(text);
-  const dynamics::Transitions& seen =
-      s.matrices()[static_cast<std::size_t>(s.problem.start_type())];
+  const std::vector<dynamics::Transitions> matrices = s.matrices();
+  const auto& seen = matrices[static_cast<std::size_t>(s.problem.start_type())];
   for (const Start& start : s.starts)
     if (start && seen.trials[static_cast<std::size_t>(seen.space.index_of(*start).state)] == 0)
       throw UsageError(

@@ -24,6 +24,8 @@ for name in tracks runs observed; do "$gatewalk" sample $name -o $name.csv; done
 expect 0 'in 48 trials' "$gatewalk" passages tracks.csv --cell cell.toml -o passages.csv --fps 10 --metres-per-unit 0.001 \
   --fastest 0.4 --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y
 expect 0 '48 bodies' "$gatewalk" build passages.csv --cell cell.toml -o passages.nc
+expect 2 'nobody was seen to enter so' "$gatewalk" predict passages.nc --start N:0.01,0,-0.15
+expect 0 'crossed' "$gatewalk" predict passages.nc --start W:0.01,0.1,0.1
 expect 0 '12 bodies' "$gatewalk" build runs.csv --cell cell.toml -o runs.nc
 expect 0 'observed' "$gatewalk" validate "$scenes/field.toml" --observed observed.csv --trials 200 --accuracy 0.2
 
