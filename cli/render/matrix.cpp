@@ -192,8 +192,13 @@ std::string summary_table(const lattice::MatrixFile& file, const std::string& pa
                            std::to_string(t.space.size() + 1) + " matrix, ";
   if (t.space.has_trees())
     return size + std::to_string(total.nonzeros) + " nonzeros\n" + types_table(file, "");
-  if (!file.state_names.empty())  // of a chain that was made elsewhere
-    return size + std::to_string(total.nonzeros) + " nonzeros\n";
+  if (const Json states = recorded(file, path, "state_space");
+      states.is_object() && states.value("bins", Json()) == "imported")
+    return size +
+           (states.value("probabilities", Json()) == true
+                ? std::string("probabilities, ")
+                : std::to_string(total.runs) + " counted steps, ") +
+           std::to_string(total.nonzeros) + " nonzeros\n";
   return size + std::to_string(total.runs) + " gate runs, " + std::to_string(total.nonzeros) +
          " nonzeros, " + percent(total.clamped_share(), 1.0) +
          " of the crossings clamped into the nearest bin\n" + types_table(file, "");

@@ -48,7 +48,7 @@ END
 printf 'from,to,count\nup,up,5\nup,aside,3\nup,trapped,2\naside,up_again,4\nup_again,1,1\n' >own.csv
 expect 0 'states of one face stand together' "$gatewalk" import own.csv --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o own.nc
 printf '0 0 0 0 0 0 1 2 1\n0 1 2\n0 1 2\n1 2\n0 3\n0 3\n' >own.dtrajs
-expect 0 '15 gate runs' "$gatewalk" import own.dtrajs --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o steps.nc
+expect 0 '15 counted steps' "$gatewalk" import own.dtrajs --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o steps.nc
 for command in predict analyze "walk --walks 1000" "show --rows"; do
   # shellcheck disable=SC2086
   for matrix in own steps; do "$gatewalk" ${command%% *} $matrix.nc $(printf '%s' "${command#"${command%% *}"}") --json $matrix.json --quiet 2>/dev/null || fail "$command $matrix.nc"; done
@@ -63,7 +63,7 @@ for start in 0 1 2; do
     [ "$(jq -c .starts[0].endings start.json)" = "$(jq -c .endings from.json)" ] || fail "--start $text: another answer"
   done
 done
-expect 2 'has no such state' "$gatewalk" predict own.nc --start 3
+expect 2 'has no state of that name or number' "$gatewalk" predict own.nc --start 3
 "$gatewalk" export own.nc --gate --counts -o named.csv --quiet >/dev/null
 [ "$(sort named.csv)" = "$(sed 's/^up_again,1,/up_again,aside,/' own.csv | sort)" ] || fail "names of states are lost: $(cat named.csv)"
 
