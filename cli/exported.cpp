@@ -53,7 +53,7 @@ ExportForm export_form(const std::string& output) {
                    ": must end in .umb, .drn, .tra, .mtx, .csv, .npz, .dtrajs or .dtrajs.npz");
 }
 
-std::vector<std::string> files_beside(const Options& options, ExportForm form) {
+void check_files_beside(const Options& options, ExportForm form) {
   const std::string output = options.text("output"), stem = stem_of(output);
   std::vector<std::string> files;
   if (form == ExportForm::prism) files = {stem + ".sta", stem + ".lab"};
@@ -77,7 +77,6 @@ std::vector<std::string> files_beside(const Options& options, ExportForm form) {
       throw UsageError(std::string("beside -o: ") + e.what());
     }
   }
-  return files;
 }
 
 std::string export_field(const Options& options, ExportForm form, Json& json) {

@@ -3,7 +3,6 @@
 /// What gatewalk export writes, by the ending of its file's name.
 
 #include <string>
-#include <vector>
 
 #include "cli/command.h"
 #include "cli/render/json_fwd.h"
@@ -14,8 +13,9 @@ enum class ExportForm { umb, drn, prism, matrix_market, csv, npz, trajectories }
 
 /// Throws UsageError naming the endings that there are.
 [[nodiscard]] ExportForm export_form(const std::string& output);
-/// Files that are written beside it. Throws UsageError where one is an input.
-[[nodiscard]] std::vector<std::string> files_beside(const Options& options, ExportForm form);
+/// Throws UsageError where a file that is written beside it is an input or another output, or
+/// cannot be written.
+void check_files_beside(const Options& options, ExportForm form);
 
 /// Writes the files, and says in `json` and the text what they hold.
 [[nodiscard]] std::string export_field(const Options& options, ExportForm form, Json& json);

@@ -72,7 +72,9 @@ std::string edges_array(const Face& face, const Coordinate& coordinate) {
 }
 
 // Tables of a face's tree: by node, in preorder, but the last one: low and high by coordinate.
-std::string tree_array(const Face& face, const char* name) { return face.name + "_tree_" + name; }
+std::string tree_array(const Face& face, const std::string& name) {
+  return face.name + "_tree_" + name;
+}
 constexpr const char *kTreeAxis = "axis", *kTreeCut = "cut", *kTreeSeen = "seen";
 
 // Only a space that is open, or has points, has these.
@@ -109,7 +111,7 @@ std::vector<Entry> points_in(const markov::CountsFile& in, const Section& sectio
 }
 
 void add_tree(markov::CountsFile& out, const Section& section, const Face& face, const Tree& tree) {
-  const auto add = [&](const char* name, const std::string& unit, const std::string& meaning,
+  const auto add = [&](const std::string& name, const std::string& unit, const std::string& meaning,
                        std::vector<double> values) {
     out.arrays.push_back({tree_array(face, name), unit,
                           face.name + ": " + meaning +
@@ -323,8 +325,8 @@ std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
                                [](const CellMap::Type& type) { return type.symmetric; });
   if (!space.has_trees() || !any) return "";
   return "count: a run of a gate that is its own mirror image is counted twice, as it was and as "
-         "its "
-         "mirror image: a posterior from these counts would be too narrow by the square root of 2. "
+         "its mirror image: a posterior from these counts would be too narrow by the square root "
+         "of 2. "
          "Rows with few runs are those of several neighbouring states together. run_* has each run "
          "once.";
 }

@@ -4,7 +4,6 @@
 #include "cli/render/choice.h"
 #include "cli/render/json.h"
 #include "cli/render/matrix.h"
-#include "cli/render/prediction.h"
 #include "cli/render/states.h"
 #include "cli/render/text.h"
 #include "cli/subject.h"

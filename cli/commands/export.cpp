@@ -34,7 +34,7 @@ int run_export(const Arguments& arguments) {
   options.add_seed("seed of trials of a start that a matrix of trees does not know");
   if (!options.parse(arguments)) return kFine;
   const ExportForm form = export_form(options.text("output"));
-  (void)files_beside(options, form);
+  check_files_beside(options, form);
   const bool sparse =
       form == ExportForm::matrix_market || form == ExportForm::csv || form == ExportForm::npz;
   if (form == ExportForm::trajectories) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include "cli/command.h"
 #include "cli/exchange/imported.h"
 #include "cli/parsers.h"
@@ -79,13 +81,10 @@ int run_import(const Arguments& arguments) {
   json["matrix"] = output;
   json["made_by"] = made_by;
   options.give_out(json, summary_table(file, output));
-  const dynamics::StateSpace& by_face = file.transitions.space;
-  for (std::size_t k = 0; k < states.size(); ++k)
-    if (by_face.index_of(entry_of(states, k, by_face.section())).state != static_cast<int>(k)) {
-      options.warn("states of one face stand together in " + output +
-                   ", in another order than in " + options.text("states"));
-      break;
-    }
+  const std::vector<int> places = places_of(states, file.transitions.space);
+  if (!std::is_sorted(places.begin(), places.end()))
+    options.warn("states of one face stand together in " + output + ", in another order than in " +
+                 options.text("states"));
   if (matrix.probabilities)
     options.warn(path +
                  " has probabilities: nothing says how certain they are, so that predictions "

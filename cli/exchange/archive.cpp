@@ -4,7 +4,6 @@
 #include <archive.h>
 #include <archive_entry.h>
 
-#include <array>
 #include <memory>
 #include <stdexcept>
 
@@ -17,7 +16,7 @@ void check(struct archive* archive, int rc, const std::string& what) {
   throw std::runtime_error(what + ": " + (reason ? reason : "unknown error"));
 }
 
-using Reader = std::unique_ptr<struct archive, int (*)(struct archive*)>;
+using Archive = std::unique_ptr<struct archive, int (*)(struct archive*)>;
 
 la_ssize_t append(struct archive*, void* to, const void* bytes, std::size_t count) {
   static_cast<std::string*>(to)->append(static_cast<const char*>(bytes), count);
@@ -27,7 +26,7 @@ la_ssize_t append(struct archive*, void* to, const void* bytes, std::size_t coun
 }  // namespace
 
 std::string pack(Packing how, const std::vector<PackedFile>& files) {
-  const Reader archive(archive_write_new(), archive_write_free);
+  const Archive archive(archive_write_new(), archive_write_free);
   if (!archive) throw std::bad_alloc();
   const auto ok = [&](int rc) { check(archive.get(), rc, "cannot pack"); };
   if (how == Packing::tar) {
@@ -59,7 +58,7 @@ std::string pack(Packing how, const std::vector<PackedFile>& files) {
 }
 
 std::vector<PackedFile> unpack(const std::string& path, std::size_t most_bytes) {
-  const Reader archive(archive_read_new(), archive_read_free);
+  const Archive archive(archive_read_new(), archive_read_free);
   if (!archive) throw std::bad_alloc();
   constexpr std::size_t kBlock = 1 << 16;
   check(archive.get(), archive_read_support_format_zip(archive.get()), path);

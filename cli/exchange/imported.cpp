@@ -252,6 +252,14 @@ dynamics::Entry entry_of(const std::vector<ForeignState>& states, std::size_t st
   return entry;
 }
 
+std::vector<int> places_of(const std::vector<ForeignState>& states,
+                           const dynamics::StateSpace& space) {
+  std::vector<int> places;
+  for (std::size_t s = 0; s < states.size(); ++s)
+    places.push_back(space.index_of(entry_of(states, s, space.section())).state);
+  return places;
+}
+
 dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
                                      const std::vector<ForeignState>& states,
                                      const lattice::CellFile& cells) {
@@ -269,9 +277,7 @@ dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
     edges.push_back(before + 0.5);
   }
   dynamics::Transitions t(dynamics::StateSpace(section, std::move(bins)));
-  std::vector<int> place;
-  for (std::size_t s = 0; s < states.size(); ++s)
-    place.push_back(t.space.index_of(entry_of(states, s, section)).state);
+  std::vector<int> place = places_of(states, t.space);
   place.push_back(t.space.trapped());
   for (const SparseTable::Entry& e : matrix.table.entries) {
     if (e.value == 0.0) continue;
@@ -287,9 +293,9 @@ lattice::MatrixFile matrix_file(dynamics::Transitions t, const std::vector<Forei
                                 std::map<std::string, std::string> text) {
   std::vector<double> number(static_cast<std::size_t>(t.space.size()));
   std::vector<std::string> names(number.size());
+  const std::vector<int> place = places_of(states, t.space);
   for (std::size_t s = 0; s < states.size(); ++s) {
-    const auto at =
-        static_cast<std::size_t>(t.space.index_of(entry_of(states, s, t.space.section())).state);
+    const auto at = static_cast<std::size_t>(place[s]);
     number[at] = static_cast<double>(s);
     names[at] = states[s].name;
   }

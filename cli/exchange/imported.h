@@ -46,6 +46,9 @@ struct ForeignMatrix {
 /// The place of a state among entries.
 [[nodiscard]] dynamics::Entry entry_of(const std::vector<ForeignState>& states, std::size_t state,
                                        const dynamics::Section& section);
+/// By state: its number in the state space, in which those of one face stand together.
+[[nodiscard]] std::vector<int> places_of(const std::vector<ForeignState>& states,
+                                         const dynamics::StateSpace& space);
 /// The matrix by states of `cells`.
 [[nodiscard]] dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
                                                    const std::vector<ForeignState>& states,

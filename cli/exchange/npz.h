@@ -20,8 +20,7 @@ struct NumpyArray {
 
 /// Whole numbers and yes or no become std::int64_t, others double, bytes and characters a string.
 /// Throws std::runtime_error naming the file and the array for anything else, Fortran's order among
-/// it, and above 2^27
-/// numbers or 1 GiB.
+/// it, and above 2^27 numbers or 1 GiB.
 [[nodiscard]] std::vector<NumpyArray> read_npz(const std::string& path);
 
 }  // namespace gatewalk::cli

@@ -33,18 +33,17 @@ class NumberTable {
   /// `bars`: what the result says of its limits, of the same form; or "low" and "high" of such.
   /// `total`: how many were counted, where shares have limits and the numbers are counts.
   void add(const std::string& name, const Json& json, const Json& bars, double total = kUnknown) {
-    total_ = total;
-    if (is_value(json)) return line(name, {}, {}, json, limits_in(bars));
+    if (is_value(json)) return line(name, {}, {}, json, limits_in(bars), total);
     if (json.is_object()) return add_object(name, json, bars, total);
     if (!json.is_array()) return;
     for (std::size_t i = 0; i < json.size(); ++i) {
       const Json& x = json[i];
       if (is_value(x)) {
-        line(name, std::to_string(i), {}, x, limits_at(bars, i));
+        line(name, std::to_string(i), {}, x, limits_at(bars, i), total);
       } else if (x.is_array()) {
         for (std::size_t j = 0; j < x.size(); ++j)
           if (is_value(x[j]))
-            line(name, std::to_string(i), std::to_string(j), x[j], limits_at(bars, i, j));
+            line(name, std::to_string(i), std::to_string(j), x[j], limits_at(bars, i, j), total);
           else
             add(name + "." + std::to_string(i) + "." + std::to_string(j), x[j], {}, total);
       } else {
@@ -56,8 +55,9 @@ class NumberTable {
   [[nodiscard]] std::string text() && { return std::move(csv_); }
 
  private:
-  static Json at(const Json& json, std::size_t i) {
-    return json.is_array() && i < json.size() ? json[i] : Json();
+  static const Json& at(const Json& json, std::size_t i) {
+    static const Json kNone;
+    return json.is_array() && i < json.size() ? json[i] : kNone;
   }
   static std::array<Json, 2> limits_at(const Json& bars, std::size_t i) {
     if (bars.is_object() && bars.contains("low") && bars.contains("high"))
@@ -92,7 +92,7 @@ class NumberTable {
   }
 
   void add_object(const std::string& name, const Json& object, const Json& bars, double total) {
-    for (const char* key : {"trials", "walks"})
+    for (const char* key : {"walks", "trials"})  // of both: but for what is called so, the trials
       if (object.contains(key) && object[key].is_number()) total = object[key].get<double>();
     for (const auto& [key, value] : object.items()) {
       if ((name.empty() && (key == "made_by" || key == "format_version")) || is_bars(object, key))
@@ -114,16 +114,16 @@ class NumberTable {
     return value.is_boolean() ? (value.get<bool>() ? "1" : "0") : value.dump();
   }
   void line(const std::string& name, const std::string& i, const std::string& j, const Json& value,
-            std::array<Json, 2> limits) {
+            std::array<Json, 2> limits, double total) {
     // The limits of a count are those of its share.
     for (Json& limit : limits)
       if (value.is_number_integer() && limit.is_number_float())
-        limit = std::isnan(total_) ? Json() : Json(limit.get<double>() * total_);
+        limit = std::isnan(total) ? Json() : Json(limit.get<double>() * total);
     csv_ += csv_text(name) + "," + i + "," + j + "," + shown(value) + "," + shown(limits[0]) + "," +
             shown(limits[1]) + "\n";
   }
 
-  double total_ = kUnknown, walks_ = kUnknown;
+  double walks_ = kUnknown;  // of the result
   std::string csv_;
 };
 

@@ -50,7 +50,7 @@ csv_value() { awk -F, -v key="$1" '$1","$2","$3 == key { print $4","$5","$6 }' p
 # Limits of a count are those of its share, times the trials.
 awk -F, -v t="$(jq .trapped gate.json)" -v a="$(jq '.intervals_95.trapped[0] * .trials' gate.json)" -v b="$(jq '.intervals_95.trapped[1] * .trials' gate.json)" \
   '$1 == "trapped" { found = 1; ok = $4 == t && ($5 - a) ^ 2 + ($6 - b) ^ 2 < 1e-12 } END { exit !(found && ok) }' gate.csv || fail "$(cat gate.csv)"
-for command in "gate $scenes/field.toml" "lattice $scenes/field.toml --trials 50" "validate $scenes/field.toml --trials 50 --accuracy 0.2" "walk walk.nc"; do
+for command in "gate $scenes/field.toml" "lattice $scenes/field.toml --trials 50" "validate $scenes/field.toml --trials 50 --walks 700 --accuracy 0.2" "walk walk.nc"; do
   [ -e walk.nc ] || paper_matrix walk.nc
   # shellcheck disable=SC2086
   "$gatewalk" $command --csv limits.csv --quiet >/dev/null 2>&1

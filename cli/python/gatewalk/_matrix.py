@@ -14,7 +14,7 @@ import weakref
 from . import _core, _run
 from ._cell import Cell
 from ._results import Analysis, Prediction, Result
-from ._scene import OWN_ERRORS, file_of
+from ._scene import called, file_of
 
 
 def _unlink(path: str, owner: int | None = None) -> None:
@@ -300,12 +300,8 @@ def _table_file(table: t.Any) -> t.Iterator[str]:
             with open(name, "w", encoding="utf-8") as file:
                 counts = table.to_dict() if getattr(table, "ndim", 2) == 1 else table  # a Series
                 file.write(_csv_of_counts(counts) if isinstance(counts, t.Mapping) else _csv_of(counts))
-        try:
+        with called(name, "the table"):
             yield name
-        except ValueError as error:
-            if type(error) not in OWN_ERRORS:
-                raise
-            raise type(error)(str(error).replace(name, "the table")) from error.__cause__
 
 
 def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
@@ -350,12 +346,8 @@ def _chain_file(chain: t.Any) -> t.Iterator[str]:
             name = os.path.join(folder, "chain.dtrajs")
             with open(name, "w", encoding="utf-8") as file:
                 file.writelines(" ".join(str(int(state)) for state in one) + "\n" for one in chain)
-        try:
+        with called(name, "the chain"):
             yield name
-        except ValueError as error:
-            if type(error) not in OWN_ERRORS:
-                raise
-            raise type(error)(str(error).replace(name, "the chain")) from error.__cause__
 
 
 def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more: t.Any) -> Matrix:

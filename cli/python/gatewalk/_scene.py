@@ -158,6 +158,17 @@ class Scene:
 
 
 @contextlib.contextmanager
+def called(name: str, words: str) -> t.Iterator[None]:
+    """Errors about a file that means nothing to anybody call it so."""
+    try:
+        yield
+    except ValueError as error:
+        if type(error) not in OWN_ERRORS:
+            raise
+        raise type(error)(str(error).replace(name, words)) from error.__cause__
+
+
+@contextlib.contextmanager
 def file_of(subject: t.Any) -> t.Iterator[tuple[str, dict[str, t.Any]]]:
     """A file that a command can read, and the keys set on top of it; a text is written to a folder of its own."""
     path = getattr(subject, "_path", None)
@@ -169,12 +180,8 @@ def file_of(subject: t.Any) -> t.Iterator[tuple[str, dict[str, t.Any]]]:
         return
     text = subject._text if isinstance(subject, Scene) else _toml(subject) if isinstance(subject, t.Mapping) else str(subject)
     name = _file_of_text(t.cast(str, text))
-    try:
+    with called(name, "scene.toml"):
         yield name, getattr(subject, "_set", {})
-    except ValueError as error:  # the folder means nothing to anybody
-        if type(error) not in OWN_ERRORS:
-            raise
-        raise type(error)(str(error).replace(name, "scene.toml")) from error.__cause__
 
 
 _folders: dict[int, str] = {}  # by process: a forked one makes its own
