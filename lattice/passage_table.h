@@ -42,16 +42,23 @@ class PassageTable {
     numbers_.insert(numbers_.end(), costs, costs + costs_);
   }
   /// All those of another table of the same section.
-  void append(const PassageTable& other) {
-    if (other.empty()) return;
+  void append(const PassageTable& other) { append(other, 0, other.size()); }
+  /// Rows begin to end of it.
+  void append(const PassageTable& other, std::size_t begin, std::size_t end) {
+    if (begin == end) return;
     if (empty()) {
       coordinates_ = other.coordinates_;
       costs_ = other.costs_;
     }
     if (coordinates_ != other.coordinates_ || costs_ != other.costs_)
       throw std::logic_error("passages of another section");
-    kinds_.insert(kinds_.end(), other.kinds_.begin(), other.kinds_.end());
-    numbers_.insert(numbers_.end(), other.numbers_.begin(), other.numbers_.end());
+    const auto at = [](const auto& from, std::size_t i) {
+      return from.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    const std::size_t each = coordinates_ + costs_;
+    kinds_.insert(kinds_.end(), at(other.kinds_, begin), at(other.kinds_, end));
+    numbers_.insert(numbers_.end(), at(other.numbers_, each * begin),
+                    at(other.numbers_, each * end));
   }
   [[nodiscard]] CellPassage operator[](std::size_t i) const {
     CellPassage passage{kinds_[i].fate, kinds_[i].type, {kinds_[i].face}, {}};

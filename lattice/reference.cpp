@@ -34,6 +34,17 @@ void FieldTrials::append(const FieldTrials& more) {
   passages.append(more.passages);
 }
 
+void FieldTrials::append(const FieldTrials& from, std::size_t at) {
+  final_gates.push_back(from.final_gates[at]);
+  endings.push_back(from.endings[at]);
+  costs.push_back(from.costs[at]);
+  if (!from.bodies.empty()) bodies.push_back(from.bodies[at]);
+  if (!keep_passages) return;
+  passages.append(from.passages, static_cast<std::size_t>(at == 0 ? 0 : from.passed[at - 1]),
+                  static_cast<std::size_t>(from.passed[at]));
+  passed.push_back(std::ssize(passages));
+}
+
 void FieldTally::count(Eigen::Index gate, std::optional<markov::Ending> ending) {
   const bool is_trapped = ending == markov::Ending::trapped,
              is_cut_off = ending == markov::Ending::cut_off;

@@ -69,6 +69,8 @@ struct FieldTrials {
   [[nodiscard]] std::vector<dynamics::Entry> entries() const;
   /// All those of others, with their passages if these keep any.
   void append(const FieldTrials& more);
+  /// One of them.
+  void append(const FieldTrials& from, std::size_t at);
 };
 
 /// Trials, and what each did.

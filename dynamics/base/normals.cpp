@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "dynamics/base/points.h"
 #include "dynamics/base/random.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -40,6 +41,22 @@ void Random::normals(Normals& out) {
     angle[i] = uniform();
   }
   HWY_DYNAMIC_DISPATCH(box_muller)(radius.data(), angle.data(), kPairs, out.data());
+}
+
+std::array<double, kPointDimensions> normals_of(const Point& point) {
+  constexpr std::size_t kPairs = 16;  // the fewest that box_muller takes
+  std::array<double, kPairs> radius, angle;
+  radius.fill(0.5);
+  angle.fill(0.5);
+  for (std::size_t i = 0; 2 * i < kPointDimensions; ++i) {
+    radius[i] = point[2 * i];
+    angle[i] = point[2 * i + 1];
+  }
+  std::array<double, 2 * kPairs> all;
+  HWY_DYNAMIC_DISPATCH(box_muller)(radius.data(), angle.data(), kPairs, all.data());
+  std::array<double, kPointDimensions> normals;
+  std::copy_n(all.begin(), kPointDimensions, normals.begin());
+  return normals;
 }
 
 }  // namespace gatewalk::dynamics

@@ -29,7 +29,9 @@ enum class Purpose : std::uint64_t {
   memory = 6,
   terrain = 7,
   rare = 8,
-  sensitivity = 9
+  sensitivity = 9,
+  points = 10,
+  first_points = 11
 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.

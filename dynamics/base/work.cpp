@@ -12,13 +12,14 @@ void PieceSize::measured(std::int64_t count, double seconds) {
   constexpr std::int64_t kMost = std::int64_t{1} << 40;
   const std::int64_t ceiling = std::min(kMost, 4 * size_);
   const double wanted = static_cast<double>(count) * kSeconds / seconds;  // inf if too quick to see
-  size_ = wanted < static_cast<double>(ceiling) ? std::max<std::int64_t>(1, std::llround(wanted))
-                                                : ceiling;
+  size_ = wanted < static_cast<double>(ceiling)
+              ? std::max<std::int64_t>(least_, std::llround(wanted))
+              : ceiling;
 }
 
 void Work::in_pieces(std::string_view what, std::int64_t total,
-                     const std::function<void(TrialRange)>& run) const {
-  PieceSize size;
+                     const std::function<void(TrialRange)>& run, std::int64_t together) const {
+  PieceSize size(together);
   for (std::int64_t done = 0; done < total;) {
     tell(what, done, total);
     const std::int64_t count = std::min(size.get(), total - done);
@@ -33,7 +34,7 @@ void Work::in_pieces(std::string_view what, std::int64_t total,
 void Work::in_pieces_of(const Stage& stage, const Steps& steps) const {
   const std::int64_t total = stage.items.count, end = stage.items.first + total;
   if (kept) kept->begin(stage);
-  PieceSize size;
+  PieceSize size(ranks ? 1 : stage.together);
   for (std::int64_t at = stage.items.first; at < end;) {
     tell(stage.what, at - stage.items.first, total);
     const auto next = kept ? kept->next(at) : KeptPieces::Next{{at, end - at}, {}};

@@ -18,14 +18,15 @@
 namespace gatewalk::dynamics {
 
 /// How many items to do before looking up again: about 0.3 s of work, learnt from the pieces so
-/// far. Starts with a single item and grows at most fourfold at a time.
+/// far. Starts with `least` items and grows at most fourfold at a time.
 class PieceSize {
  public:
+  explicit PieceSize(std::int64_t least = 1) : least_(least), size_(least) {}
   [[nodiscard]] std::int64_t get() const { return size_; }
   void measured(std::int64_t count, double seconds);
 
  private:
-  std::int64_t size_ = 1;
+  std::int64_t least_, size_;
 };
 
 /// Items of work that are done in one go, or in pieces: trials, by their numbers. Several stages
@@ -34,6 +35,7 @@ struct Stage {
   std::string_view what;
   TrialRange items;
   std::int64_t before = 0, of = items.count;
+  std::int64_t together = 1;  // fewest of a piece, where one process does them all
 };
 
 /// Finished pieces that are kept: a run that was stopped goes on where it was, and runs on several
@@ -83,10 +85,10 @@ struct Work {
   Ranks* ranks = nullptr;
 
   /// Calls run(range) for consecutive ranges that cover [0, total) exactly once, as long as
-  /// PieceSize says. The ranges depend on the machine's speed, so results must not depend
-  /// on how [0, total) is cut.
+  /// PieceSize says, of `together` at least. The ranges depend on the machine's speed, so results
+  /// must not depend on how [0, total) is cut.
   void in_pieces(std::string_view what, std::int64_t total,
-                 const std::function<void(TrialRange)>& run) const;
+                 const std::function<void(TrialRange)>& run, std::int64_t together = 1) const;
 
   /// The same of work whose pieces can be kept: what run(range) returns goes to take(T), in the
   /// order of the ranges, and so do the pieces that are kept already. `none`: a T of no items. A
@@ -96,9 +98,12 @@ struct Work {
                       const std::type_identity_t<std::function<T(TrialRange)>>& run,
                       const std::type_identity_t<std::function<void(T)>>& take) const {
     if (!kept && !ranks) {
-      in_pieces(stage.what, stage.items.count, [&](TrialRange range) {
-        take(run({stage.items.first + range.first, range.count}));
-      });
+      in_pieces(
+          stage.what, stage.items.count,
+          [&](TrialRange range) {
+            take(run({stage.items.first + range.first, range.count}));
+          },
+          stage.together);
       return;
     }
     const auto take_bytes = [&](std::string_view bytes) {

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "dynamics/base/points.h"
 #include "dynamics/base/random.h"
 #include "dynamics/cells/cell_map.h"
 #include "dynamics/cells/costs.h"
@@ -38,7 +39,7 @@ struct Passage {
 /// force: one object of the cell's own, copied as bytes. The chain forgets it.
 class Carried {
  public:
-  static constexpr std::size_t kMostBytes = 512;
+  static constexpr std::size_t kMostBytes = 768;
   template <class T>
   T& put(const T& value) {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -91,6 +92,11 @@ class Cell {
   virtual void forget(Body& body) const { begin(body); }
   /// Memory is kept; the noise from now on is another one.
   virtual void fork(Body& body, const Random& random) const { body.random = random; }
+  /// Whether lay_noise() does anything.
+  [[nodiscard]] virtual bool lays_noise() const { return false; }
+  /// The noise of the passage to come is laid by this point: uniform points make the noise that
+  /// there is without them, points that are evenly spread spread it evenly. Memory is kept.
+  virtual void lay_noise(Body&, const Point&) const {}
   /// The number that names a start in its trials' streams: other starts, other noise. By default
   /// from its face and numbers, each in its scale.
   [[nodiscard]] virtual std::uint64_t stream_of(const Entry& start) const;

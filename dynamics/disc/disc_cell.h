@@ -40,6 +40,10 @@ class DiscCell : public Cell {
   void forget(Body& body) const override;
   /// The draw in force is held on; those after it are of another sequence.
   void fork(Body& body, const Random& random) const override;
+  [[nodiscard]] bool lays_noise() const override { return true; }
+  /// By the slowest parts of the force, over as long as a body takes from rest through a gate
+  /// without beams.
+  void lay_noise(Body& body, const Point& point) const override;
   [[nodiscard]] std::uint64_t stream_of(const Entry& start) const override;
 
   /// Those of gate_param_table that are what a scene is, not how it is computed.
@@ -54,6 +58,7 @@ class DiscCell : public Cell {
   GateParams p_;
   Section section_;
   std::unique_ptr<const Method> method_;
+  int block_;  // draws, of RandomForce::lay
 };
 
 }  // namespace gatewalk::dynamics

@@ -2,10 +2,13 @@
 #pragma once
 /// The lateral random force of Eq. (1): F_rand = Rm N(0,1), drawn at 50 Hz and held in between.
 
+#include "dynamics/base/points.h"
 #include "dynamics/base/random.h"
 #include "dynamics/disc/params.h"
 
 namespace gatewalk::dynamics {
+
+inline constexpr std::size_t kSlowBlocks = std::tuple_size_v<Random::Normals>;
 
 /// The held force. It goes on across gates: its clock is the body's, not the gate's.
 class RandomForce {
@@ -24,10 +27,7 @@ class RandomForce {
   /// Force in force now (N), for another left() seconds > 0. Draws when the last one has run out.
   [[nodiscard]] double value() {
     if (left_ <= kSliver * hold_) {
-      if (used_ == normals_.size()) {
-        random_.normals(normals_);
-        used_ = 0;
-      }
+      if (used_ == normals_.size()) draw();
       normal_ = normals_[used_++];
       value_ = scale_ * normal_;
       left_ = hold_;
@@ -40,7 +40,13 @@ class RandomForce {
   void go_on_with(Random random) {
     random_ = random;
     used_ = normals_.size();
+    next_block_ = kSlowBlocks;
   }
+  /// The draw in force is held on. Of those after it, kSlowBlocks times `block` (a power of 2, at
+  /// most 32), the slowest parts are laid by the point: their means over blocks, and of these the
+  /// slowest cosine modes (DCT-II), as many as a point has numbers. The rest of them is drawn, so
+  /// that by uniform points all are independent standard normals.
+  void lay(const Point& point, int block);
   /// Drops the rest of the hold: the next draw of the sequence comes now.
   void drop_hold() { left_ = 0.0; }
 
@@ -56,6 +62,12 @@ class RandomForce {
   double value_ = 0.0;
   Random::Normals normals_{};
   std::size_t used_ = normals_.size();
+  // Laid: of each block's normals the sum over the root of their number.
+  std::array<double, kSlowBlocks> slow_{};
+  std::size_t next_block_ = kSlowBlocks;
+  std::size_t block_ = 1;
+
+  void draw();
 };
 
 }  // namespace gatewalk::dynamics

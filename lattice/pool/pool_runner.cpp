@@ -9,6 +9,8 @@ namespace {
 
 using namespace dynamics;
 
+static_assert(kArrays == kTrialGroups);  // error bars by independent arrays
+
 // Numbers of first trials, so that no other command runs these: full ones, those through one gate,
 // scattered ones.
 constexpr std::int64_t kFullOwn = std::int64_t{1} << 41, kFirstOwn = std::int64_t{1} << 42,
@@ -18,39 +20,26 @@ constexpr std::int64_t kFullOwn = std::int64_t{1} << 41, kFirstOwn = std::int64_
 
 PoolRunner::PoolRunner(const Problem& problem, std::uint64_t seed, std::int64_t most_runs,
                        const Work& work)
-    : problem_(problem), seed_(seed), most_runs_(most_runs), work_(work) {}
+    : problem_(problem),
+      seed_(seed),
+      most_runs_(most_runs),
+      work_(work),
+      lays_noise_(lays_noise(problem.cells)) {}
 
 void PoolRunner::run_full(StartTrials& s, std::int64_t count) {
-  const std::int64_t done = std::ssize(s.full.final_gates);
-  run("full trials", count, true, s.full, [&](TrialRange range, FieldTrials& each) {
-    return run_field(problem_.cells, problem_.field, s.start, seed_,
-                     {kFullOwn + done + range.first, range.count}, &each);
-  });
+  run({"full trials", true, kFullOwn, [&s](std::int64_t) { return s.start; }, true}, count, s.full);
 }
 
 void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
-  FieldParams one_gate = problem_.field;
-  one_gate.max_gates = 1;
-  const std::int64_t done = std::ssize(s.first.final_gates);
-  run("first runs", count, false, s.first, [&](TrialRange range, FieldTrials& each) {
-    return run_field(problem_.cells, one_gate, s.start, seed_,
-                     {kFirstOwn + done + range.first, range.count}, &each);
-  });
+  run({"first runs", false, kFirstOwn, [&s](std::int64_t) { return s.start; }, true}, count,
+      s.first);
 }
 
 void PoolRunner::run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count) {
-  const std::int64_t done = std::ssize(s.starts);
-  run("scattered trials", count, true, s.each, [&](TrialRange range, FieldTrials& each) {
-    const std::int64_t first = done + range.first;
-    const Cell& cell = problem_.cells.at(problem_.field.start_column(), 0);
-    return run_field(
-        problem_.cells, problem_.field,
-        [&](std::int64_t i, Body& body) {
-          begin_trial(cell, drawn(starts, first + i), seed_, kScatteredOwn + first + i, body);
-        },
-        {kScatteredOwn + first, range.count}, &each);
-  });
-  for (std::int64_t i = done; i < std::ssize(s.each.final_gates); ++i)
+  run({"scattered trials", true, kScatteredOwn, [&](std::int64_t i) { return drawn(starts, i); },
+       false},
+      count, s.each);
+  for (std::int64_t i = std::ssize(s.starts); i < std::ssize(s.each.final_gates); ++i)
     s.starts.push_back(drawn(starts, i));
 }
 
@@ -70,36 +59,107 @@ void PoolRunner::finish() {
     problem_.check(std::max(trials_, gate_runs / 10), seed_, health, work_);
 }
 
-void PoolRunner::run(const char* what, std::int64_t count, bool through_field, FieldTrials& all,
-                     const std::function<FieldTally(TrialRange, FieldTrials&)>& carry_out) {
+std::optional<FirstPoints> PoolRunner::points_of(const Begun& begun) const {
+  if (!lays_noise_ || !begun.alike) return {};
+  const Cell& cell = problem_.cells.at(problem_.field.start_column(), 0);
+  return FirstPoints(seed_, cell.stream_of(begun.start(0)), begun.numbers);
+}
+
+void PoolRunner::run(const Begun& begun, std::int64_t count, FieldTrials& all) {
   const Stopwatch watch;
   const auto most = static_cast<double>(most_runs_ - gate_runs);
   count = std::max<std::int64_t>(
-      kLeastTrials,
-      static_cast<std::int64_t>(std::min(static_cast<double>(count),
-                                         most / (through_field ? gates_per_trial() : 1.0) + 1.0)));
-  work_.in_kept_pieces(
-      {what, {0, count}},
-      RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},
-      [&](TrialRange range) {
-        FieldTrials each{.final_gates = {}, .keep_passages = true};
-        FieldTally tally = carry_out(range, each);
-        return RunTrials{std::move(tally), std::move(each)};
-      },
-      [&](const RunTrials& piece) {
-        all.append(piece.each);
-        const Health& of = piece.tally.health;
-        health += of;
-        gate_runs += of.runs;
-        if (!through_field) return;
-        trials_ += piece.tally.trials;
-        trial_runs_ += of.runs;
-      });
+      kLeastTrials, static_cast<std::int64_t>(
+                        std::min(static_cast<double>(count),
+                                 most / (begun.through_field ? gates_per_trial() : 1.0) + 1.0)));
+  if (lays_noise_ && begun.through_field && count >= kLeastEven)
+    run_even(begun, count, all);
+  else
+    run_plain(begun, count, all);
   seconds += watch.seconds();
   if (health.broken > 0)
     throw std::runtime_error("prediction: " + std::to_string(health.broken) +
                              " gate runs stopped being finite numbers; try method stable or a "
                              "smaller run.step_s");
+}
+
+void PoolRunner::run_plain(const Begun& begun, std::int64_t count, FieldTrials& all) {
+  FieldParams field = problem_.field;
+  if (!begun.through_field) field.max_gates = 1;
+  const auto points = points_of(begun);
+  const Cell& cell = problem_.cells.at(field.start_column(), 0);
+  const std::int64_t done = std::ssize(all.final_gates);
+  work_.in_kept_pieces(
+      {begun.what, {0, count}},
+      RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},
+      [&](TrialRange range) {
+        FieldTrials each{.final_gates = {}, .keep_passages = true};
+        const std::int64_t first = done + range.first;
+        FieldTally tally = run_field(
+            problem_.cells, field,
+            [&](std::int64_t i, Body& body) {
+              begin_trial(cell, begun.start(first + i), seed_, begun.numbers + first + i, body);
+              if (points) cell.lay_noise(body, (*points)(first + i));
+            },
+            {begun.numbers + first, range.count}, &each);
+        return RunTrials{std::move(tally), std::move(each)};
+      },
+      [&](const RunTrials& piece) {
+        all.append(piece.each);
+        this->count(begun, piece.tally);
+      });
+}
+
+void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& all) {
+  // Of a large round not all are kept at once.
+  constexpr std::int64_t kMostOfArray = std::int64_t{1} << 14;
+  const std::int64_t batches = 1 + (count - 1) / (kArrays * kMostOfArray),
+                     of_array = 1 + (count - 1) / (kArrays * batches),
+                     done = std::ssize(all.final_gates);
+  const auto points = points_of(begun);
+  FieldTrials got{.final_gates = {}, .keep_passages = true};  // array by array
+  work_.in_kept_pieces(
+      {begun.what, {0, kArrays * batches}, 0, kArrays * batches, kArrays},
+      RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},
+      [&](TrialRange items) {
+        RunTrials piece{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}};
+        for (std::int64_t at = items.first; at < items.first + items.count;) {
+          const std::int64_t batch = at / kArrays, array = at % kArrays,
+                             some = std::min(kArrays - array, items.first + items.count - at);
+          const EvenTrials trials{done + batch * kArrays * of_array,
+                                  of_array,
+                                  static_cast<int>(array),
+                                  static_cast<int>(some),
+                                  begun.numbers,
+                                  points ? &*points : nullptr,
+                                  begun.start};
+          piece.tally += run_even_field(
+              problem_.cells, problem_.field, trials, seed_, &piece.each, [&](std::int64_t ended) {
+                work_.tell(begun.what, at * of_array + ended, kArrays * batches * of_array);
+              });
+          at += some;
+        }
+        return piece;
+      },
+      [&](const RunTrials& piece) {
+        this->count(begun, piece.tally);
+        got.append(piece.each);
+        const auto each = static_cast<std::size_t>(of_array), of_batch = kArrays * each;
+        if (got.final_gates.size() % of_batch != 0) return;
+        for (std::size_t batch = 0; batch < got.final_gates.size(); batch += of_batch)
+          for (std::size_t i = 0; i < of_batch; ++i)  // in the order of their numbers
+            all.append(got, batch + i % kArrays * each + i / kArrays);
+        got = {.final_gates = {}, .keep_passages = true};
+      });
+}
+
+void PoolRunner::count(const Begun& begun, const FieldTally& tally) {
+  const Health& of = tally.health;
+  health += of;
+  gate_runs += of.runs;
+  if (!begun.through_field) return;
+  trials_ += tally.trials;
+  trial_runs_ += of.runs;
 }
 
 }  // namespace gatewalk::lattice

@@ -6,9 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "dynamics/base/work.h"
+#include "lattice/even_trials.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"
@@ -26,6 +28,11 @@ class PoolRunner {
   /// would take, about, but for the least of a call.
   PoolRunner(const Problem& problem, std::uint64_t seed, std::int64_t most_runs,
              const dynamics::Work& work);
+
+  /// Noise is laid by points where cells can do that (even_trials.h): that of the first passages
+  /// from a start, and in rounds of kLeastEven trials or more that of all. Such a round is of a
+  /// multiple of kArrays trials, as few as are asked for.
+  static constexpr std::int64_t kLeastEven = 4096;
 
   /// Full trials from the start; runs through its first gate only; trials from anywhere in a range.
   /// At least kLeastTrials are run whatever `count`. Throws std::runtime_error when a run broke.
@@ -51,13 +58,25 @@ class PoolRunner {
   dynamics::Health health;
 
  private:
-  void run(const char* what, std::int64_t count, bool through_field, FieldTrials& all,
-           const std::function<FieldTally(dynamics::TrialRange, FieldTrials&)>& carry_out);
+  /// Trials that are begun.
+  struct Begun {
+    const char* what;
+    bool through_field;
+    std::int64_t numbers;  // added to a trial's number it names the trial's stream
+    std::function<dynamics::Entry(std::int64_t i)> start;
+    bool alike;  // the same for all
+  };
+  void run(const Begun& begun, std::int64_t count, FieldTrials& all);
+  void run_plain(const Begun& begun, std::int64_t count, FieldTrials& all);
+  void run_even(const Begun& begun, std::int64_t count, FieldTrials& all);
+  void count(const Begun& begun, const FieldTally& tally);
+  [[nodiscard]] std::optional<FirstPoints> points_of(const Begun& begun) const;
 
   const Problem& problem_;
   std::uint64_t seed_;
   std::int64_t most_runs_;
   const dynamics::Work& work_;
+  bool lays_noise_;
   std::int64_t trials_ = 0, trial_runs_ = 0;  // through the field
 };
 

@@ -51,19 +51,6 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   std::tie(c.floor_total_variation, c.floor_total_variation_95) = mean_and_95(tv);
 }
 
-/// `n` draws from shares whose running sums are `cumulative`, as counts.
-Eigen::VectorXd drawn_counts(const std::vector<double>& cumulative, std::int64_t n,
-                             Random& random) {
-  Eigen::VectorXd counts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cumulative.size()));
-  for (std::int64_t i = 0; i < n; ++i) {
-    const double u = random.uniform() * cumulative.back();
-    // First place whose cumulative share exceeds u: never one of share zero.
-    const auto place = std::upper_bound(cumulative.begin(), cumulative.end() - 1, u);
-    counts[place - cumulative.begin()] += 1.0;
-  }
-  return counts;
-}
-
 /// Two samples, whose trials are dealt out anew for the null of a permutation test. Of more than
 /// kMostDealt together, both are drawn from the pooled shares instead.
 class TwoSamples {
@@ -192,13 +179,10 @@ std::int64_t trials_for(const CellProbabilities& p, double total_variation) {
 
 CellCounts sampled(const CellProbabilities& p, std::int64_t trials, std::uint64_t seed,
                    std::uint64_t replicate) {
-  std::vector<double> cumulative(p.size());
-  std::partial_sum(p.data(), p.data() + p.size(), cumulative.begin());
   Random random(Purpose::comparison, {seed, kSamples, replicate});
-  const Eigen::VectorXd counts = drawn_counts(cumulative, trials, random);
   CellCounts cells(p.rows(), p.cols());
-  for (Eigen::Index i = 0; i < cells.size(); ++i)
-    cells.data()[i] = static_cast<std::int64_t>(counts[i]);
+  const auto size = static_cast<std::size_t>(p.size());
+  multinomial(trials, {p.data(), size}, {cells.data(), size}, random);
   return cells;
 }
 
@@ -290,15 +274,10 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
   const Support support = affordable_support_of(a + exact);
   const Eigen::VectorXd expected = on_support(exact, support);
   const double rare = rare_share(expected, n);
-  std::vector<double> cumulative(support.gates.size());
-  std::partial_sum(expected.begin(), expected.end(), cumulative.begin());
   const Statistics seen = statistics(on_support(a, support), expected, expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kExactDraws, static_cast<std::uint64_t>(k)});
-    if (n > kMostDealt)
-      return statistics(drawn_shares(expected, n, random), expected, expected, rare, support);
-    return statistics(drawn_counts(cumulative, n, random) / static_cast<double>(n), expected,
-                      expected, rare, support);
+    return statistics(drawn_shares(expected, n, random), expected, expected, rare, support);
   });
   return c;
 }

@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Matrix files that earlier versions wrote are read, and give what they gave.   old_files_test.sh GATEWALK ROOT
+# Matrix files that earlier versions wrote are read, and what they hold gives what it gave, without new runs.   old_files_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 files=$(dirname "$scenes")/tests/files
 shopt -s nullglob
 for packed in "$files"/version_*/*.nc.gz; do
   gunzip -c "$packed" >old.nc
-  "$gatewalk" predict old.nc --json new.json --quiet 2>/dev/null || fail "$packed: not read"
+  few=(--accuracy 0.9)
+  [[ $packed != */bins.nc.gz ]] || few=()
+  "$gatewalk" predict old.nc "${few[@]}" --json new.json --quiet 2>/dev/null || fail "$packed: not read"
   jq -cS '{endings, final_gates} + (.starts // [] | if length > 0 then {starts: map({endings, final_gates})} else {} end)' new.json |
     cmp -s - "${packed%.nc.gz}.json" || fail "$packed: another answer than it gave"
 done
