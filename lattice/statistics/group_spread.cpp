@@ -13,6 +13,8 @@
 namespace gatewalk::lattice {
 namespace {
 
+using dynamics::Random;
+
 /// Of what states of a group (eight times as large) cost more than the whole one's, the part that
 /// the whole one's cost too, which is no chance and adds to it in full: as if that cost went with
 /// the power 0.4 of their size, 1 / (8^0.4 - 1). (2/3 where outcomes vary smoothly with the entry,
@@ -97,6 +99,63 @@ double relative_half_width(double whole, const std::vector<double>& groups) {
   return kQuantile * error + kBiasLeft * bias;
 }
 
+/// How errors of many gates are large together. A sum of squares of errors of covariance C varies
+/// as one of r = (tr C)^2 / tr C^2 independent ones (Satterthwaite). Errors drawn as few groups
+/// differ seem to be of fewer than they are.
+struct TogetherLarge {
+  double in_groups = 1.0;  // r of the covariance that the groups show
+  double in_truth = 1.0;   // r of the true one, estimated as without bias as the groups can
+
+  TogetherLarge(const std::vector<markov::FinalDistribution>& groups,
+                const CellProbabilities& mean) {
+    const double n = static_cast<double>(groups.size()) - 1.0;
+    double trace = 0.0, squares = 0.0;
+    for (const auto& a : groups)
+      for (const auto& b : groups) {
+        const double product = ((a.final_cells - mean) * (b.final_cells - mean)).sum() / n;
+        squares += product * product;
+        if (&a == &b) trace += product;
+      }
+    if (!(trace > 0.0)) return;
+    constexpr double kMost = 1000.0;  // as good as endlessly many
+    in_groups = trace * trace / squares;
+    const double of_truth = (squares - trace * trace / n) * n * n / ((n - 1.0) * (n + 2.0));
+    in_truth = of_truth > 0.0 ? std::clamp(trace * trace / of_truth, 1.0, kMost) : kMost;
+  }
+};
+
+/// Wilson and Hilferty's approximation, good to a few per cent from 7 degrees on.
+double chi_squared(double freedom, Random& random) {
+  const double part = 2.0 / (9.0 * freedom);
+  const double root = 1.0 - part + std::sqrt(part) * random.normal();
+  return freedom * std::max(1e-3, root * root * root);
+}
+
+/// Weights of the groups' deviations (their standard error taken out) for a draw of an error.
+std::vector<double> drawn_weights(const TogetherLarge& together, std::size_t groups,
+                                  Random& random) {
+  std::vector<double> weights;
+  double mean = 0.0, squares = 0.0;
+  for (std::size_t g = 0; g < groups; ++g) {
+    weights.push_back(random.normal());
+    mean += weights.back() / static_cast<double>(groups);
+  }
+  for (double& w : weights) {
+    w -= mean;
+    squares += w * w;
+  }
+  const double n = static_cast<double>(groups) - 1.0;
+  // On a sphere they make a sum of squares of variance (1 + 2 / in_groups) / (1 + 2 / n) - 1, by
+  // its mean; what is left to 2 / in_truth is drawn, and so is how much the groups show too little.
+  const double more =
+      (1.0 + 2.0 / together.in_truth) * (1.0 + 2.0 / n) / (1.0 + 2.0 / together.in_groups) - 1.0;
+  const double size = more > 1e-3 ? chi_squared(2.0 / more, random) * more / 2.0 : 1.0;
+  const double freedom = n * together.in_truth;
+  const double times = std::sqrt(n / squares * size * freedom / chi_squared(freedom, random));
+  for (double& w : weights) w *= times;
+  return weights;
+}
+
 }  // namespace
 
 Mean95 mean_95(double whole, const std::vector<double>& groups) {
@@ -153,12 +212,15 @@ Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
   for (const auto& g : groups_) mean += g.final_cells / n;
   const CellProbabilities biased = whole_.final_cells + kBiasLeft * (mean - whole_.final_cells);
   const double scale = 1.0 / std::sqrt(n * (n - 1.0));
+  const TogetherLarge together(groups_, mean);
   Error95 e =
       error_of_draws(draws_for(mean.size() * std::ssize(groups_)), whole_.final_cells, [&](int k) {
-        dynamics::Random random(dynamics::Purpose::resampling,
-                                {seed, kGroupDraws, static_cast<std::uint64_t>(k)});
+        Random random(dynamics::Purpose::resampling,
+                      {seed, kGroupDraws, static_cast<std::uint64_t>(k)});
         CellProbabilities drawn = biased;
-        for (const auto& g : groups_) drawn += scale * random.normal() * (g.final_cells - mean);
+        const std::vector<double> weights = drawn_weights(together, groups_.size(), random);
+        for (std::size_t g = 0; g < groups_.size(); ++g)
+          drawn += scale * weights[g] * (groups_[g].final_cells - mean);
         return drawn;
       });
   count_unseen(e, whole_.final_cells, trials);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <numeric>
 
 #include "dynamics/base/random.h"
@@ -138,12 +139,34 @@ TEST(GroupSpread, SamplingAndBiasByHand) {
   const std::vector<markov::FinalDistribution> biased(8, of_shares(0.4, 0.6));
   EXPECT_NEAR(GroupSpread(whole, biased).error(1000, 1).total_variation, 0.075, 1e-12);
   EXPECT_NEAR(GroupSpread(whole, biased).endings_95(100).interval[0][0], 0.425, 0.002);
-  // +-0.1 in turn: a standard error of 0.1 / sqrt(7), whose |error| has its 95 % point at 1.96.
+  // +-0.1 in turn: a standard error of 0.1 / sqrt(7), as eight groups tell it of two gates that
+  // vary as one: Student's t with 7 degrees of freedom.
   std::vector<markov::FinalDistribution> spread;
   for (int k = 0; k < 8; ++k) spread.push_back(of_shares(k % 2 ? 0.4 : 0.6, k % 2 ? 0.6 : 0.4));
   EXPECT_NEAR(GroupSpread(whole, spread).error(1000, 1).total_variation,
-              1.96 * 0.1 / std::sqrt(7.0), 0.01);
+              2.36 * 0.1 / std::sqrt(7.0), 0.01);
   EXPECT_THROW(GroupSpread(whole, {whole}), std::invalid_argument);
+}
+
+// Many gates that vary by themselves tell together how much: as if it were known.
+TEST(GroupSpread, ManyGatesMakeManyDegreesOfFreedom) {
+  constexpr Eigen::Index kGates = 400;
+  markov::FinalDistribution whole;
+  whole.final_cells = CellProbabilities::Constant(1, kGates, 1.0 / kGates);
+  whole.mean_steps = 5.0;
+  std::vector<double> told;
+  for (std::uint64_t k = 0; k < 40; ++k) {
+    Random random(Purpose::resampling, {5, 6, k});
+    std::vector<markov::FinalDistribution> groups(8, whole);
+    for (auto& g : groups)
+      for (Eigen::Index i = 0; i < kGates; ++i) g.final_cells.data()[i] += 1e-4 * random.normal();
+    const double spread = 1e-4 / std::sqrt(8.0);  // of the mean of eight
+    told.push_back(GroupSpread(whole, groups).error(1'000'000, k).total_variation /
+                   (0.5 * kGates * spread * std::sqrt(2.0 / std::numbers::pi)));
+  }
+  // The groups' mean is off by as much again, of which the bar has three quarters.
+  const double all = std::hypot(1.0, 0.75);
+  for (const double t : told) EXPECT_NEAR(t, all, 0.2 * all);
 }
 
 // 1.0 less rounding is all of them: 160 trials cannot tell 100 % from 99 %.
