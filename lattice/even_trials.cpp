@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "dynamics/base/work.h"
@@ -26,8 +27,8 @@ Point FirstPoints::operator()(std::int64_t i) const {
 }
 
 bool lays_noise(const CellField& cells) {
-  return std::all_of(cells.cells.begin(), cells.cells.end(),
-                     [](const auto& cell) { return cell->lays_noise(); });
+  return !cells.cells.empty() && std::all_of(cells.cells.begin(), cells.cells.end(),
+                                             [](const auto& cell) { return cell->lays_noise(); });
 }
 
 namespace {
@@ -201,6 +202,8 @@ FieldTally run_even_field(const CellField& cells, const FieldParams& field,
                           const std::function<void(std::int64_t)>& tick) {
   constexpr std::int64_t kFew = 1024;  // fewer at once leave lanes idle
   cells.map.require_fits(field.columns, field.rows);
+  if (cells.cells.size() != cells.map.types.size())
+    throw std::invalid_argument("field: there are no cells to run, only what was recorded");
   Arrays arrays(cells, field, trials, seed);
   PieceSize size(kFew);
   while (arrays.any()) {

@@ -50,7 +50,9 @@ struct EvenTrials {
 /// and the noise of their passages is laid by the points of a scramble in this order. Each trial
 /// alone is as those of run_field are; means over an array have less variance. `each` gets them
 /// array by array. Same result for any number of threads, whatever arrays are run
-/// together. `tick(trials that have ended)` is called a few times a second; it may throw to stop.
+/// together. The tally numbers trials
+/// array by array, and does not count moves between gates. `tick(trials that have ended)` is called
+/// a few times a second; it may throw to stop.
 [[nodiscard]] FieldTally run_even_field(const dynamics::CellField& cells, const FieldParams& field,
                                         const EvenTrials& trials, std::uint64_t seed,
                                         FieldTrials* each,

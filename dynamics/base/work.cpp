@@ -15,6 +15,7 @@ void PieceSize::measured(std::int64_t count, double seconds) {
   size_ = wanted < static_cast<double>(ceiling)
               ? std::max<std::int64_t>(least_, std::llround(wanted))
               : ceiling;
+  size_ -= size_ % least_;
 }
 
 void Work::in_pieces(std::string_view what, std::int64_t total,

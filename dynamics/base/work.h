@@ -18,7 +18,7 @@
 namespace gatewalk::dynamics {
 
 /// How many items to do before looking up again: about 0.3 s of work, learnt from the pieces so
-/// far. Starts with `least` items and grows at most fourfold at a time.
+/// far. A multiple of `least`, with which it starts; grows at most fourfold at a time.
 class PieceSize {
  public:
   explicit PieceSize(std::int64_t least = 1) : least_(least), size_(least) {}

@@ -111,13 +111,12 @@ void PoolRunner::run_plain(const Begun& begun, std::int64_t count, FieldTrials& 
 }
 
 void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& all) {
-  // Of a large round not all are kept at once.
-  constexpr std::int64_t kMostOfArray = std::int64_t{1} << 14;
-  const std::int64_t batches = 1 + (count - 1) / (kArrays * kMostOfArray),
+  const std::int64_t batches = 1 + (count - 1) / (kArrays * most_of_array),
                      of_array = 1 + (count - 1) / (kArrays * batches),
                      done = std::ssize(all.final_gates);
   const auto points = points_of(begun);
   FieldTrials got{.final_gates = {}, .keep_passages = true};  // array by array
+  std::size_t ordered = 0;                                    // of them, in `all` already
   work_.in_kept_pieces(
       {begun.what, {0, kArrays * batches}, 0, kArrays * batches, kArrays},
       RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},
@@ -135,7 +134,7 @@ void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& a
                                   begun.start};
           piece.tally += run_even_field(
               problem_.cells, problem_.field, trials, seed_, &piece.each, [&](std::int64_t ended) {
-                work_.tell(begun.what, at * of_array + ended, kArrays * batches * of_array);
+                work_.tell(begun.what, at + ended / of_array, kArrays * batches);
               });
           at += some;
         }
@@ -145,11 +144,12 @@ void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& a
         this->count(begun, piece.tally);
         got.append(piece.each);
         const auto each = static_cast<std::size_t>(of_array), of_batch = kArrays * each;
-        if (got.final_gates.size() % of_batch != 0) return;
-        for (std::size_t batch = 0; batch < got.final_gates.size(); batch += of_batch)
+        for (; got.final_gates.size() - ordered >= of_batch; ordered += of_batch)
           for (std::size_t i = 0; i < of_batch; ++i)  // in the order of their numbers
-            all.append(got, batch + i % kArrays * each + i / kArrays);
+            all.append(got, ordered + i % kArrays * each + i / kArrays);
+        if (ordered < got.final_gates.size()) return;
         got = {.final_gates = {}, .keep_passages = true};
+        ordered = 0;
       });
 }
 

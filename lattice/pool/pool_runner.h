@@ -56,6 +56,8 @@ class PoolRunner {
   std::int64_t gate_runs = 0;
   double seconds = 0.0;
   dynamics::Health health;
+  /// Larger rounds are several, one after the other: not all trials are in memory at once.
+  std::int64_t most_of_array = std::int64_t{1} << 14;
 
  private:
   /// Trials that are begun.

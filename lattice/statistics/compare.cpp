@@ -182,7 +182,8 @@ CellCounts sampled(const CellProbabilities& p, std::int64_t trials, std::uint64_
   Random random(Purpose::comparison, {seed, kSamples, replicate});
   CellCounts cells(p.rows(), p.cols());
   const auto size = static_cast<std::size_t>(p.size());
-  multinomial(trials, {p.data(), size}, {cells.data(), size}, random);
+  const CellProbabilities weights = p.max(0.0);  // rounding may leave less
+  multinomial(trials, {weights.data(), size}, {cells.data(), size}, random);
   return cells;
 }
 

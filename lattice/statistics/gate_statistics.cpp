@@ -73,7 +73,8 @@ Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
 
 Eigen::VectorXd drawn_shares(const Eigen::VectorXd& p, std::int64_t n, dynamics::Random& random) {
   std::vector<std::int64_t> counts(static_cast<std::size_t>(p.size()));
-  multinomial(n, {p.data(), counts.size()}, counts, random);
+  const Eigen::VectorXd weights = p.cwiseMax(0.0);  // rounding may leave less
+  multinomial(n, {weights.data(), counts.size()}, counts, random);
   Eigen::VectorXd drawn(p.size());
   for (Eigen::Index i = 0; i < p.size(); ++i)
     drawn[i] = static_cast<double>(counts[static_cast<std::size_t>(i)]) / static_cast<double>(n);

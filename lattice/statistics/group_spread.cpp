@@ -119,8 +119,10 @@ struct TogetherLarge {
     if (!(trace > 0.0)) return;
     constexpr double kMost = 1000.0;  // as good as endlessly many
     in_groups = trace * trace / squares;
-    const double of_truth = (squares - trace * trace / n) * n * n / ((n - 1.0) * (n + 2.0));
-    in_truth = of_truth > 0.0 ? std::clamp(trace * trace / of_truth, 1.0, kMost) : kMost;
+    // Of a covariance from n degrees of freedom, normally: E (tr C)^2 and E tr C^2 are mixtures.
+    const double by = n / ((n - 1.0) * (n + 2.0)), of_truth = by * (n * squares - trace * trace),
+                 trace_of_truth = by * ((n + 1.0) * trace * trace - 2.0 * squares);
+    in_truth = of_truth > 0.0 ? std::clamp(trace_of_truth / of_truth, 1.0, kMost) : kMost;
   }
 };
 

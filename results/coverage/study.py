@@ -4,8 +4,8 @@
 
 Each kind of interval is a row: of predictions from a scene's own start, of predictions from starts that a
 chain was not built with, of the full dynamics. Truth: 10^6 full trials of another seed (of unseen starts
-150 000, of results/tree), whose own noise is allowed for: an interval holds the truth where the truth's
-interval of one standard error overlaps it, a bar where it does with both in squares. Rare: shares of which
+150 000 or 40 000, of results/tree), whose own noise is allowed for: added in squares to the half of the
+interval on the truth's side, or to the bar. Rare: shares of which
 fewer than ten trials are expected in what the answer was made from; an interval of such a share can only
 say "at most", and should hold more often.
 """
@@ -68,13 +68,13 @@ class Count:
             self.of[key] += 1
             self.held[key] += holds
 
-    def share(self, row, scene, p, interval, trials, truth_trials=TRUTH_TRIALS):
+    def share(self, row, scene, p, answer, interval, trials, truth_trials=TRUTH_TRIALS):
         """An interval of a share. Impossible ones, never seen in the truth, are not counted."""
         if p == 0.0:
             return
-        noise = math.sqrt(p * (1 - p) / truth_trials)
+        noise = 1.96 * math.sqrt(p * (1 - p) / truth_trials)
         self.add(row + (" (rare)" if p * trials < 10 else ""), scene,
-                 interval[0] - noise <= p <= interval[1] + noise)
+                 abs(p - answer) <= math.hypot(interval[p > answer] - answer, noise))
 
 
 def tv(p, q):
@@ -92,11 +92,9 @@ def corrcoef(p, q):
 
 
 def gates_of(count, what, scene, j, truth, trials, truth_trials=TRUTH_TRIALS):
-    # final_gates_95: low and high maps
-    low, high = (flat(j["final_gates_95"][k]) for k in (0, 1)) if isinstance(j["final_gates_95"], list) else (
-        flat(j["final_gates_95"]["low"]), flat(j["final_gates_95"]["high"]))
-    for p, a, b in zip(truth, low, high):
-        count.share(f"{what}: a final gate", scene, p, (a, b), trials, truth_trials)
+    low, high = (flat(j["final_gates_95"][side]) for side in ("low", "high"))
+    for p, own, a, b in zip(truth, flat(j["final_gates"]), low, high):
+        count.share(f"{what}: a final gate", scene, p, own, (a, b), trials, truth_trials)
 
 
 def noise_tv(p, trials):
@@ -112,15 +110,16 @@ def predicted(count, scene, truth):
             trials = j["first_runs"]
             answer, p = flat(j["final_gates"]), truth["final_gates"]
             count.add("predict: total variation", scene, tv(answer, p) <= math.hypot(j["error_95"], noise_tv(p, TRUTH_TRIALS)))
-            count.add("predict: RMSE", scene, rmse(answer, p) <= j["rmse_per_100_95"])
+            noise = 100 * math.sqrt(sum(x * (1 - x) for x in p) / TRUTH_TRIALS / len(p))
+            count.add("predict: RMSE", scene, rmse(answer, p) <= math.hypot(j["rmse_per_100_95"], noise))
             if j["corrcoef_95"] is not None:
                 count.add("predict: corrcoef", scene, corrcoef(answer, p) >= j["corrcoef_95"])
             for e, interval in j["endings_95"].items():
-                count.share(f"predict: {e}", scene, truth["endings"][e], interval, trials)
+                count.share(f"predict: {e}", scene, truth["endings"][e], j["endings"][e], interval, trials)
             gates_of(count, "predict", scene, j, p, trials)
             for side, places in j["exits"].items():
                 for q, place in zip(truth["exits"][side], places):
-                    count.share("predict: where they leave", scene, q, place["interval_95"], trials)
+                    count.share("predict: where they leave", scene, q, place["share"], place["interval_95"], trials)
 
 
 def simulated(count, scene, truth):
@@ -130,10 +129,10 @@ def simulated(count, scene, truth):
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for j in pool.map(one, range(1, LATTICE_SEEDS + 1)):
             for e, interval in j["endings_95"].items():
-                count.share(f"lattice: {e}", scene, truth["endings"][e], interval, LATTICE_TRIALS)
+                count.share(f"lattice: {e}", scene, truth["endings"][e], j["endings"][e] / LATTICE_TRIALS, interval, LATTICE_TRIALS)
             for side, places in j["exits"].items():
                 for q, place in zip(truth["exits"][side], places):
-                    count.share("lattice: where they leave", scene, q, place["interval_95"], LATTICE_TRIALS)
+                    count.share("lattice: where they leave", scene, q, place["share"], place["interval_95"], LATTICE_TRIALS)
 
 
 def unseen(count):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws tree.svg in DIR from the points.csv and summary.txt that study.py wrote there (gnuplot)."""
+"""Draws tree.svg and runs.svg in DIR from the points.csv and summary.txt that study.py wrote there (gnuplot)."""
 import csv, math, re, subprocess, sys
 from collections import defaultdict
 from pathlib import Path
@@ -67,4 +67,39 @@ eval key_at(298, 260)
     subprocess.run(["gnuplot"], input=script, text=True, check=True)
 
 
+SCENES = {"A": "A", "B": "B", "C": "C", "M": "unlike beams", "R": "robot"}
+
+
+def runs():
+    """Error against gate runs, of the chain and of direct simulation with as small errors."""
+    text = (OUT / "summary.txt").read_text()
+    data, plots = [], []
+    for i, (scene, name) in enumerate(SCENES.items(), 1):
+        line = re.search(rf"^{scene}: slope (\S+); (.*)$", text, re.M)
+        points = [p.split() for p in line.group(2).split(", ")]
+        data.append(f"${scene} << EOD\n" + "".join(f"{n} {e} {d}\n" for n, e, d in points) + "EOD")
+        plots.append(f"${scene} using 3:2 with lines dt 2 lw 1.2 lc rgb colour[{i}] notitle, "
+                     f"${scene} using 1:2 with linespoints pt 7 lc rgb colour[{i}] title '{name}: {line.group(1)}'")
+    script = f"""
+call '{Path(__file__).parent.parent / "look.gp"}' 300
+set output '{OUT / "runs.svg"}'
+array colour[5] = [first, second, third, fourth, "#7f7f7f"]
+set logscale xy
+set format xy '%g'
+set grid lt -1 lw 0.2
+set pointsize 0.7
+eval panel(82, 340, 20, 240)
+set xlabel 'gate runs'
+set ylabel 'total variation'
+eval key_at(352, 20)
+eval text('Solid: the chain, with', 352, 150).\" font ',12'\"
+eval text('its slope. Dashed: direct', 352, 166).\" font ',12'\"
+eval text('simulation, -0.5.', 352, 182).\" font ',12'\"
+{chr(10).join(data)}
+plot {", ".join(plots)}
+"""
+    subprocess.run(["gnuplot"], input=script, text=True, check=True)
+
+
 main()
+runs()

@@ -3,7 +3,7 @@
 """How accurate chains of trees are, at what cost, and whether their error bars hold.
 
 study.py GATEWALK DIR [SCENE...]: writes points.csv and summary.txt into DIR; points of scenes that are
-not named stay. One thread; method moreau, whose runs are the cheapest, so that chains and bars weigh
+not named stay (-: of all, the summary is made again). One thread; method moreau, whose runs are the cheapest, so that chains and bars weigh
 the most. Truth: the final gates of many full trials of other seeds, whose noise is taken out of errors
 in squares; truth.json in DIR keeps them, and those that it lacks are run (another half an hour for all).
 """
@@ -214,6 +214,24 @@ def summary(rows):
             lines.append(f"{scene} asked {accuracy}: geometric mean {geometric(ratios[scene, accuracy, 'moreau']):.1f} "
                          f"({geometric(ratios[scene, accuracy, 'stable']):.1f}), least "
                          f"{min(ratios[scene, accuracy, 'moreau']):.1f} ({min(ratios[scene, accuracy, 'stable']):.1f})")
+    lines += ["", "ERROR AGAINST GATE RUNS, one start. slope: of the logarithms, by least squares, each start with a",
+              "height of its own (direct simulation: -0.5); then gate runs and errors by accuracy asked, means over",
+              "starts, and the gate runs of direct simulation for these errors"]
+    for scene in SCENES:
+        points = {}  # start, accuracy: log runs, log error, log runs of direct simulation
+        for (kind, s, start, accuracy), g in groups.items():
+            if kind == "tree" and s == scene:
+                error = g[0]["truth"].clean(mean(r["error"] for r in g))
+                points[start, accuracy] = [math.log(x) for x in (
+                    mean(r["gate_runs"] for r in g), error, g[0]["truth"].gate_runs_for(error))]
+        if not points:
+            continue
+        starts = {start for start, _ in points}
+        centre = {s: [mean(p[i] for (start, _), p in points.items() if start == s) for i in (0, 1)] for s in starts}
+        off = [[p[i] - centre[start][i] for i in (0, 1)] for (start, _), p in points.items()]
+        slope = sum(x * y for x, y in off) / sum(x * x for x, _ in off)
+        by = [[math.exp(mean(points[s, a][i] for s in starts)) for i in range(3)] for a in PLAN[scene]["seeds"]]
+        lines.append(f"{scene}: slope {slope:.2f}; " + ", ".join(f"{n:.0f} {e:.4f} {d:.0f}" for n, e, d in by))
     tree = [r for r in rows if r["kind"] == "tree"]
     lines += ["", f"error bars hold in {100 * covered(tree):.1f} % of {len(tree)} answers, by accuracy: " +
               ", ".join(f"{a}: {100 * covered([r for r in tree if r['accuracy'] == a]):.1f} %" for a in PLAN["A"]["seeds"])]
@@ -278,7 +296,7 @@ def kept_rows(scenes):
 
 def main():
     OUT.mkdir(parents=True, exist_ok=True)
-    scenes = sys.argv[3:] or list(SCENES)
+    scenes = [] if sys.argv[3:] == ["-"] else sys.argv[3:] or list(SCENES)
     kept = OUT / "truth.json"
     if kept.exists():
         TRUTHS.update(json.loads(kept.read_text()))

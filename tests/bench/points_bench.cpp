@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
   const Scene scene = read_scene(argv[1], std::vector<std::string>(argv + 2, argv + argc));
   const Problem problem = problem_of(scene);
   for (const std::int64_t trials : {512, 2048, 8192}) first_gate(problem, trials, 32);
-  for (const std::int64_t trials : {2048, 8192}) field(problem, trials, 24);
+  for (const std::int64_t trials : {4096, 16384}) field(problem, trials, 16);
   cost(problem, true, 16384);
   cost(problem, false, 16384);
 }

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
 #include "lattice/pool/pool_runner.h"
+#include "lattice/pool/pooled_prediction.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/statistics/compare.h"
 #include "tests/support/threads.h"
@@ -72,17 +74,32 @@ TEST(EvenTrials, AreTheSameInAnyCompanyOnAnyThreads) {
   EXPECT_EQ(together.tally.trials, 1600);
 }
 
-// The law of a trial does not know of the others.
+// The law of a trial does not know of the others: means of arrays, which are independent, lie about
+// the shares of plain trials.
 TEST(EvenTrials, EndAsPlainOnesDo) {
-  const Scene scene = calm_scene();
-  const lattice::Problem problem = problem_of(scene);
-  const FieldTally plain = run_field(problem.cells, problem.field, problem.start, 8, {0, 20'000});
-  // One trial of each of many small sets: these do not depend on each other.
-  FieldTally even(problem.field);
-  for (std::int64_t set = 0; set < 10; ++set)
-    even += run(problem, {.first = 1600 * set, .of_array = 200, .numbers = set << 40}).tally;
-  EXPECT_EQ(even.trials, 16'000);
-  EXPECT_GT(compare(even.final_gates, plain.final_gates, 400, 1).p_energy, 0.01);
+  const lattice::Problem problem = problem_of(calm_scene());
+  constexpr std::int64_t kPlain = 40'000, kOfArray = 64, kSets = 25;
+  const CellProbabilities plain =
+      shares(run_field(problem.cells, problem.field, problem.start, 8, {0, kPlain}).final_gates);
+  CellProbabilities mean = CellProbabilities::Zero(9, 9), squares = mean;
+  constexpr double kMeans = kArrays * kSets;
+  for (std::int64_t set = 0; set < kSets; ++set) {
+    const Ran ran = run(problem, {.first = 512 * set, .of_array = kOfArray, .numbers = set << 40});
+    for (std::size_t a = 0; a < kArrays; ++a) {
+      CellCounts counts = CellCounts::Zero(9, 9);
+      for (std::size_t j = 0; j < kOfArray; ++j)
+        ++counts.data()[ran.each.final_gates[a * kOfArray + j]];
+      mean += shares(counts) / kMeans;
+      squares += shares(counts).square() / kMeans;
+    }
+  }
+  for (Eigen::Index i = 0; i < mean.size(); ++i) {
+    const double p = plain.data()[i], m = mean.data()[i];
+    if (p < 0.01) continue;
+    const double variance =
+        (squares.data()[i] - m * m) / kMeans + p * (1.0 - p) / static_cast<double>(kPlain);
+    EXPECT_NEAR(m, p, 3.5 * std::sqrt(variance)) << i;
+  }
 }
 
 /// Sum of the standard deviations of the shares of final gates, squared.
@@ -160,6 +177,27 @@ TEST(EvenTrials, OfARunnerAreTheSameInPieces) {
   work.kept = &kept;
   EXPECT_TRUE(same(whole, trials_of(work)));
   EXPECT_GT(kept.bytes(), std::size_t{100'000});
+}
+
+// Trials from anywhere, in a field of two types, in several batches.
+TEST(EvenTrials, OfSeveralBatchesAreTheSameInPieces) {
+  const Scene scene = read_scene(std::string(GATEWALK_SCENES) + "/mixed.toml",
+                                 {"run.method=moreau", "run.step_s=0.01"});
+  const lattice::Problem problem = problem_of(scene);
+  const auto trials_of = [&](const Work& work) {
+    ScatteredTrials s;
+    PoolRunner runner(problem, 4, 1 << 30, work);
+    runner.most_of_array = 200;
+    runner.run_scattered(s, usual_range(problem), PoolRunner::kLeastEven);
+    EXPECT_EQ(s.starts.size(), s.each.final_gates.size());
+    return s.each;
+  };
+  const FieldTrials whole = trials_of({});
+  EXPECT_EQ(std::ssize(whole.final_gates), 3 * 8 * 171);
+  InThrees kept;
+  Work work;
+  work.kept = &kept;
+  EXPECT_TRUE(same(whole, trials_of(work)));
 }
 
 TEST(EvenTrials, ARunnerCanBeStopped) {
