@@ -67,7 +67,7 @@ eval key_at(298, 260)
     subprocess.run(["gnuplot"], input=script, text=True, check=True)
 
 
-SCENES = {"A": "A", "B": "B", "C": "C", "M": "unlike beams", "R": "robot"}
+SCENES = {"A": "A", "B": "B", "C": "C", "M": "unlike", "R": "robot"}
 
 
 def runs():
@@ -85,16 +85,19 @@ call '{Path(__file__).parent.parent / "look.gp"}' 300
 set output '{OUT / "runs.svg"}'
 array colour[5] = [first, second, third, fourth, "#7f7f7f"]
 set logscale xy
-set format xy '%g'
+set xrange [2e3:2e6]
+set yrange [0.004:0.04]
+set format x '10^{{%T}}'
+set ytics (0.004, 0.01, 0.02, 0.04)
 set grid lt -1 lw 0.2
 set pointsize 0.7
-eval panel(82, 340, 20, 240)
+eval panel(96, 350, 20, 240)
 set xlabel 'gate runs'
-set ylabel 'total variation'
-eval key_at(352, 20)
-eval text('Solid: the chain, with', 352, 150).\" font ',12'\"
-eval text('its slope. Dashed: direct', 352, 166).\" font ',12'\"
-eval text('simulation, -0.5.', 352, 182).\" font ',12'\"
+set ylabel 'total variation' offset 1.6,0
+eval key_at(362, 20)
+eval text('Solid: the chain, with', 362, 150).\" font ',12'\"
+eval text('its slope. Dashed:', 362, 166).\" font ',12'\"
+eval text('direct simulation, -0.5.', 362, 182).\" font ',12'\"
 {chr(10).join(data)}
 plot {", ".join(plots)}
 """
