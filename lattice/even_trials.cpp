@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <span>
-#include <stdexcept>
 #include <utility>
 
 #include "dynamics/base/work.h"
@@ -202,8 +201,7 @@ FieldTally run_even_field(const CellField& cells, const FieldParams& field,
                           const std::function<void(std::int64_t)>& tick) {
   constexpr std::int64_t kFew = 1024;  // fewer at once leave lanes idle
   cells.map.require_fits(field.columns, field.rows);
-  if (cells.cells.size() != cells.map.types.size())
-    throw std::invalid_argument("field: there are no cells to run, only what was recorded");
+  require_cells(cells);
   Arrays arrays(cells, field, trials, seed);
   PieceSize size(kFew);
   while (arrays.any()) {

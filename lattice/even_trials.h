@@ -3,7 +3,6 @@
 /// Trials whose noise is laid by points that are evenly spread: less chance in the same runs
 /// (randomised quasi-Monte Carlo).
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -22,7 +21,7 @@ inline constexpr int kArrays = 8;
 /// sequence.
 class FirstPoints {
  public:
-  /// `numbers`: names the trials, as in TrialNumbers.
+  /// `numbers`: of the trials' streams, as EvenTrials has them.
   FirstPoints(std::uint64_t seed, std::uint64_t stream, std::int64_t numbers);
   [[nodiscard]] dynamics::Point operator()(std::int64_t i) const;
 

@@ -152,13 +152,17 @@ struct Moves {
 
 }  // namespace
 
+void require_cells(const CellField& cells) {
+  if (cells.cells.size() != cells.map.types.size())
+    throw std::invalid_argument("field: there are no cells to run, only what was recorded");
+}
+
 FieldTally run_field(const CellField& cells, const FieldParams& field, const BeginTrial& begin,
                      TrialRange range, FieldTrials* each, const StateSpace* space, Memory memory) {
   const CellMap& map = cells.map;
   map.require_fits(field.columns, field.rows);
   const std::size_t types = map.types.size();
-  if (cells.cells.size() != types)
-    throw std::invalid_argument("field: there are no cells to run, only what was recorded");
+  require_cells(cells);
   const bool keep_passages = each != nullptr && each->keep_passages;
   std::vector<RunningTrial> trials;
   for (std::int64_t i = 0; i < range.count; ++i) trials.emplace_back(field);

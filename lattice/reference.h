@@ -110,6 +110,9 @@ using BeginTrial = std::function<void(std::int64_t i, dynamics::Body& body)>;
 void begin_trial(const dynamics::Cell& cell, const dynamics::Entry& start, std::uint64_t seed,
                  std::int64_t trial, dynamics::Body& body);
 
+/// Throws std::invalid_argument where there are no cells to run.
+void require_cells(const dynamics::CellField& cells);
+
 /// Runs trials `range` through the field, in which each cell is fresh whenever a body enters, and
 /// may be entered again. Trials in cells of one type are run together. `space` only counts what its
 /// bins would have clamped. What each trial did is appended to `each`, if given. On all threads of

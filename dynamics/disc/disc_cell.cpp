@@ -29,9 +29,9 @@ std::vector<const ParamInfo*> physical_params() {
   return infos;
 }
 
-/// The fewest draws of a block, a power of 2, for kSlowBlocks of them to last as long as a body
-/// takes through the gate: pushed from rest without beams, then drag; that much was seen to serve
-/// from fields that are run through to fields where many stay.
+/// Draws of a block: the least power of 2 for which kSlowBlocks of them last as long as a body
+/// takes from rest through the gate, were there no beams (about: without drag, and as if drag were
+/// all).
 int block_of(const GateParams& p) {
   const double way = p.run.traverse_y;
   const double seconds =

@@ -30,8 +30,8 @@ class PoolRunner {
              const dynamics::Work& work);
 
   /// Noise is laid by points where cells can do that (even_trials.h): that of the first passages
-  /// from a start, and in rounds of kLeastEven trials or more that of all. Such a round is of a
-  /// multiple of kArrays trials, as few as are asked for.
+  /// from a start, and in rounds of kLeastEven trials or more that of all. There `count` is rounded
+  /// up, for arrays of one size.
   static constexpr std::int64_t kLeastEven = 4096;
 
   /// Full trials from the start; runs through its first gate only; trials from anywhere in a range.

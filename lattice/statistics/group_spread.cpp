@@ -99,15 +99,15 @@ double relative_half_width(double whole, const std::vector<double>& groups) {
   return kQuantile * error + kBiasLeft * bias;
 }
 
-/// How errors of many gates are large together. A sum of squares of errors of covariance C varies
-/// as one of r = (tr C)^2 / tr C^2 independent ones (Satterthwaite). Errors drawn as few groups
-/// differ seem to be of fewer than they are.
-struct TogetherLarge {
+/// How many independent errors the errors of all gates are worth. A sum of squares of normal errors
+/// of covariance C varies as one of r = (tr C)^2 / tr C^2 independent ones (Satterthwaite). Of few
+/// groups, errors that are many look like fewer.
+struct IndependentErrors {
   double in_groups = 1.0;  // r of the covariance that the groups show
-  double in_truth = 1.0;   // r of the true one, estimated as without bias as the groups can
+  double in_truth = 1.0;   // r of the true one, estimated
 
-  TogetherLarge(const std::vector<markov::FinalDistribution>& groups,
-                const CellProbabilities& mean) {
+  IndependentErrors(const std::vector<markov::FinalDistribution>& groups,
+                    const CellProbabilities& mean) {
     const double n = static_cast<double>(groups.size()) - 1.0;
     double trace = 0.0, squares = 0.0;
     for (const auto& a : groups)
@@ -119,7 +119,8 @@ struct TogetherLarge {
     if (!(trace > 0.0)) return;
     constexpr double kMost = 1000.0;  // as good as endlessly many
     in_groups = trace * trace / squares;
-    // Of a covariance from n degrees of freedom, normally: E (tr C)^2 and E tr C^2 are mixtures.
+    // The groups' covariance S has E (tr S)^2 = (tr C)^2 + 2 tr C^2 / n and
+    // E tr S^2 = (1 + 1 / n) tr C^2 + (tr C)^2 / n; solved for C.
     const double by = n / ((n - 1.0) * (n + 2.0)), of_truth = by * (n * squares - trace * trace),
                  trace_of_truth = by * ((n + 1.0) * trace * trace - 2.0 * squares);
     in_truth = of_truth > 0.0 ? std::clamp(trace_of_truth / of_truth, 1.0, kMost) : kMost;
@@ -134,7 +135,7 @@ double chi_squared(double freedom, Random& random) {
 }
 
 /// Weights of the groups' deviations (their standard error taken out) for a draw of an error.
-std::vector<double> drawn_weights(const TogetherLarge& together, std::size_t groups,
+std::vector<double> drawn_weights(const IndependentErrors& independent, std::size_t groups,
                                   Random& random) {
   std::vector<double> weights;
   double mean = 0.0, squares = 0.0;
@@ -150,9 +151,10 @@ std::vector<double> drawn_weights(const TogetherLarge& together, std::size_t gro
   // On a sphere they make a sum of squares of variance (1 + 2 / in_groups) / (1 + 2 / n) - 1, by
   // its mean; what is left to 2 / in_truth is drawn, and so is how much the groups show too little.
   const double more =
-      (1.0 + 2.0 / together.in_truth) * (1.0 + 2.0 / n) / (1.0 + 2.0 / together.in_groups) - 1.0;
+      (1.0 + 2.0 / independent.in_truth) * (1.0 + 2.0 / n) / (1.0 + 2.0 / independent.in_groups) -
+      1.0;
   const double size = more > 1e-3 ? chi_squared(2.0 / more, random) * more / 2.0 : 1.0;
-  const double freedom = n * together.in_truth;
+  const double freedom = n * independent.in_truth;
   const double times = std::sqrt(n / squares * size * freedom / chi_squared(freedom, random));
   for (double& w : weights) w *= times;
   return weights;
@@ -214,13 +216,13 @@ Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
   for (const auto& g : groups_) mean += g.final_cells / n;
   const CellProbabilities biased = whole_.final_cells + kBiasLeft * (mean - whole_.final_cells);
   const double scale = 1.0 / std::sqrt(n * (n - 1.0));
-  const TogetherLarge together(groups_, mean);
+  const IndependentErrors independent(groups_, mean);
   Error95 e =
       error_of_draws(draws_for(mean.size() * std::ssize(groups_)), whole_.final_cells, [&](int k) {
         Random random(dynamics::Purpose::resampling,
                       {seed, kGroupDraws, static_cast<std::uint64_t>(k)});
         CellProbabilities drawn = biased;
-        const std::vector<double> weights = drawn_weights(together, groups_.size(), random);
+        const std::vector<double> weights = drawn_weights(independent, groups_.size(), random);
         for (std::size_t g = 0; g < groups_.size(); ++g)
           drawn += scale * weights[g] * (groups_[g].final_cells - mean);
         return drawn;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Do 95 % intervals hold the truth 95 times in 100? Counted over many seeds, for each kind of interval by itself.
-#   results/coverage/run.sh [GATEWALK]      about 15 minutes on two cores (5 more without truth.json), needs python3
+#   results/coverage/run.sh [GATEWALK]      about 10 minutes on two cores (4 more without truth.json), needs python3
 # Writes coverage.csv, manifest.txt; truth.json if it is not there.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

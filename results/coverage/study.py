@@ -5,42 +5,30 @@
 Each kind of interval is a row: of predictions from a scene's own start, of predictions from starts that a
 chain was not built with, of the full dynamics. Truth: 10^6 full trials of another seed (of unseen starts
 150 000 or 40 000, of results/tree), whose own noise is allowed for: added in squares to the half of the
-interval on the truth's side, or to the bar. Rare: shares of which
-fewer than ten trials are expected in what the answer was made from; an interval of such a share can only
-say "at most", and should hold more often.
+interval on the truth's side, or to the bar. Rare: shares of which fewer than ten trials are expected in
+what the answer was made from; an interval of such a share can only say "at most", and should hold more
+often.
 """
-import csv, json, math, os, subprocess, sys, tempfile
+import csv, importlib.util, json, math, os, sys, tempfile
 from collections import defaultdict
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-GATEWALK, OUT = sys.argv[1], Path(sys.argv[2])
+OUT = Path(sys.argv[2])
 ROOT = Path(__file__).resolve().parents[2]
-FIELD = [str(ROOT / "scenes/field.toml"), "--set", "run.method=moreau"]
+spec = importlib.util.spec_from_file_location("tree", ROOT / "results/tree/study.py")
+tree = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(tree)
+run, flat, tv, noise_tv = tree.run, tree.flat, tree.tv, tree.expected_tv
+
 SCENES = {
-    "A": FIELD,
-    "B": FIELD + ["--set", "forces.propulsion_N=8", "--set", "forces.random_N=10"],
-    "C": FIELD + ["--set", "forces.propulsion_N=8.5", "--set", "forces.random_N=25",
-                  "--set", "beams.stiffness_left_Nm_per_rad=300",
-                  "--set", "beams.stiffness_right_Nm_per_rad=450"],
-    "robot": [str(ROOT / "scenes/robot.toml"), "--set", "run.method=moreau"],
+    **{s: tree.SCENES[s] for s in "ABC"},
+    "robot": tree.SCENES["R"],
     "mixed": [str(ROOT / "scenes/mixed.toml"), "--set", "run.method=moreau"],
 }
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 200, 0.04
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 5, "B": 3, "C": 5, "R": 8, "M": 3}  # chains of results/tree's scenes, 24 starts each
-
-
-def run(*words):
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "out.json"
-        subprocess.run([GATEWALK, *map(str, words), "--json", out, "--threads", "1", "--quiet"], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        return json.loads(out.read_text())
-
-
-def flat(grid):
-    return [x for row in grid for x in row]
+UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 10, "M": 6}  # chains of results/tree's scenes, 24 starts each
 
 
 def truth_of(scene):
@@ -77,10 +65,6 @@ class Count:
                  abs(p - answer) <= math.hypot(interval[p > answer] - answer, noise))
 
 
-def tv(p, q):
-    return 0.5 * sum(abs(a - b) for a, b in zip(p, q))
-
-
 def rmse(p, q):
     return 100 * math.sqrt(sum((a - b) ** 2 for a, b in zip(p, q)) / len(p))
 
@@ -95,10 +79,6 @@ def gates_of(count, what, scene, j, truth, trials, truth_trials=TRUTH_TRIALS):
     low, high = (flat(j["final_gates_95"][side]) for side in ("low", "high"))
     for p, own, a, b in zip(truth, flat(j["final_gates"]), low, high):
         count.share(f"{what}: a final gate", scene, p, own, (a, b), trials, truth_trials)
-
-
-def noise_tv(p, trials):
-    return 0.5 * sum(math.sqrt(2 * x * (1 - x) / (math.pi * trials)) for x in p)
 
 
 def predicted(count, scene, truth):
@@ -137,18 +117,14 @@ def simulated(count, scene, truth):
 
 def unseen(count):
     """As results/tree has them, its truth of 150 000 trials (40 000 of M and R)."""
-    sys.argv = ["study.py", GATEWALK, str(OUT)]
-    text = (ROOT / "results/tree/study.py").read_text().split("def summary(rows):")[0]
-    tree = {"__file__": str(ROOT / "results/tree/study.py"), "__name__": "tree"}
-    exec(compile(text, "results/tree/study.py", "exec"), tree)
     truths = json.loads((ROOT / "results/tree/truth.json").read_text())
 
     def one(work):
         scene, seed = work
-        starts = tree["hundred"](scene)[:tree["KNOWN"]]
+        starts = tree.hundred(scene)[:tree.KNOWN]
         with tempfile.TemporaryDirectory() as folder:
             matrix = Path(folder) / "m.nc"
-            run("build", *tree["SCENES"][scene], "--accuracy", 0.06, "--starts", "all", "--seed", seed, "-o", matrix)
+            run("build", *tree.SCENES[scene], "--accuracy", 0.06, "--starts", "all", "--seed", seed, "-o", matrix)
             words = [w for s in starts for w in ("--start", ",".join(map(str, s)))]
             return scene, starts, run("predict", matrix, *words, "--seed", seed)
 
@@ -186,4 +162,5 @@ def main():
                             *(f"{100 * count.held[row, s] / count.of[row, s]:.1f}" if count.of[row, s] else "" for s in names)])
 
 
-main()
+if __name__ == "__main__":
+    main()

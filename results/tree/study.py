@@ -317,4 +317,5 @@ def main():
     (OUT / "summary.txt").write_text(summary(rows))
 
 
-main()
+if __name__ == "__main__":
+    main()
