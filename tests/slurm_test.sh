@@ -55,7 +55,17 @@ CommunicationParameters=NoInAddrAny
 NodeName=n[1-4] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 4))] CPUs=1 RealMemory=500 State=UNKNOWN
 PartitionName=all Nodes=n[1-4] Default=YES MaxTime=60 State=UP
 C
-export SLURM_CONF=$D/slurm.conf GATEWALK=$gatewalk
+# The program of the jobs: while "held" is there, parts 1 and 2 stop in the middle, so that they are surely lost there.
+cat >held.sh <<H
+#!/bin/sh
+if [ -e $D/held ]; then
+  case "\$*" in *"--shard 1/8"* | *"--shard 2/8"*) exec timeout --signal=STOP 0.5 $gatewalk "\$@" ;; esac
+fi
+exec $gatewalk "\$@"
+H
+chmod 755 held.sh
+touch held
+export SLURM_CONF=$D/slurm.conf GATEWALK=$D/held.sh
 /usr/sbin/slurmctld -c || exit 1
 for n in 1 2 3 4; do /usr/sbin/slurmd -N n$n || exit 1; done
 for _ in $(seq 60); do [ "$(sinfo -h -o %T -N 2>/dev/null | grep -c idle)" = 4 ] && break; sleep 0.5; done
@@ -63,19 +73,19 @@ for _ in $(seq 60); do [ "$(sinfo -h -o %T -N 2>/dev/null | grep -c idle)" = 4 ]
 
 command=(lattice "$root/scenes/field.toml" --trials 24000 --seed 4 --json all.json)
 "$gatewalk" "${command[@]}" --quiet && mv all.json one.json
-running() { squeue -h -t R -r -j "$1" 2>/dev/null | wc -l; }
 left() { squeue -h -r -j "$1" 2>/dev/null | wc -l; }
 waited() { for _ in $(seq 240); do "$@" && return; sleep 0.25; done; fail "waited too long: $*"; }
-four() { [ "$(running "$array")" = 4 ]; }
+started() { pgrep -f -- "--shard 1/8 --part $D" && pgrep -f -- "--shard 2/8 --part $D"; } >/dev/null
 ended() { [ "$(left "$array")" = 0 ]; }
 merged() { [ "$(left "$merge")" = 0 ]; }
 
 read -r array merge < <("$root/cli/cluster/array.sh" 8 run1 "${command[@]}")
-waited four
+waited started
 scancel "${array}_1"                   # by somebody
 pkill -KILL -f -- "--shard 2/8 --part $D" # and one whose node is lost with all that runs on it
 waited ended
 waited merged
+rm held
 [ ! -e all.json ] || fail "merged, and parts were missing"
 "$gatewalk" merge run1/part*[0-9] -o x.json >said.txt 2>&1 && fail "merge of too few parts"
 grep -q ' --shard 1/8, 2/8 and --resume' said.txt || fail "merge does not name parts 1 and 2: $(cat said.txt)"
