@@ -74,16 +74,16 @@ def runs():
     """Error against gate runs, of the chain and of direct simulation with as small errors."""
     text = (OUT / "summary.txt").read_text()
     data, plots = [], []
-    for i, (scene, name) in enumerate(SCENES.items(), 1):
+    looks = ["lc rgb first", "lc rgb second", "lc rgb third", "lc rgb fourth", "lt -1"]
+    for look, (scene, name) in zip(looks, SCENES.items()):
         line = re.search(rf"^{scene}: slope (\S+); (.*)$", text, re.M)
         points = [p.split() for p in line.group(2).split(", ")]
         data.append(f"${scene} << EOD\n" + "".join(f"{n} {e} {d}\n" for n, e, d in points) + "EOD")
-        plots.append(f"${scene} using 3:2 with lines dt 2 lw 1.2 lc rgb colour[{i}] notitle, "
-                     f"${scene} using 1:2 with linespoints pt 7 lc rgb colour[{i}] title '{name}: {line.group(1)}'")
+        plots.append(f"${scene} using 3:2 with lines {look} dt 2 lw 1.2 notitle, "
+                     f"${scene} using 1:2 with linespoints {look} pt 7 title '{name}: {line.group(1)}'")
     script = f"""
 call '{Path(__file__).parent.parent / "look.gp"}' 300
 set output '{OUT / "runs.svg"}'
-array colour[5] = [first, second, third, fourth, "#7f7f7f"]
 set logscale xy
 set xrange [2e3:2e6]
 set yrange [0.004:0.04]
