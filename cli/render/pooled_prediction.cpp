@@ -32,6 +32,7 @@ void add_to(Json& json, const lattice::StartAnswer& a, const ShownField& shown) 
   json["unseen_entries"] = a.unseen;
   json["full_trials"] = a.trials;
   json["first_runs"] = a.first_runs;
+  json["own_trials"] = cli::to_json(a.own_trials);
   json["direct_seconds"] = std::isfinite(a.direct_seconds) ? Json(a.direct_seconds) : Json();
 }
 
@@ -49,6 +50,7 @@ std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
              " in total variation of the final gates, corrcoef at least " +
              fixed(a.error.corrcoef, 4) + ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
              " per 100, each 95 times in 100 (sampling, states and memory)\n";
+  table += own_trials_text(cli::to_json(a.own_trials));
   if (a.from_trials) table += "the trials' own shares: they are more certain here than the chain\n";
   if (!a.from_trials && a.unseen > 0.0)
     table += "the error counts " + percent(a.unseen, 1.0, 2) +
@@ -74,6 +76,23 @@ Json direct_seconds(const lattice::PooledPrediction& p) {
 }
 
 }  // namespace
+
+Json to_json(const std::optional<lattice::OwnTrials>& own) {
+  if (!own) return nullptr;
+  return {{"trials", own->trials},
+          {"total_variation", own->total_variation},
+          {"chance_total_variation", own->chance_total_variation},
+          {"p", own->p},
+          {"differs", own->differs}};
+}
+
+std::string own_trials_text(const Json& own) {
+  if (own.is_null()) return "";
+  return "check: its " + own.at("trials").dump() + " full trials themselves are " +
+         fixed(own.at("total_variation"), 4) + " away, chance makes " +
+         fixed(own.at("chance_total_variation"), 4) + " (" + p_words(own.at("p")) + ")" +
+         (own.at("differs") == true ? ": the chain errs" : "") + "\n";
+}
 
 Json to_json(const lattice::PooledPrediction& p, const ShownField& shown, double accuracy,
              bool given) {

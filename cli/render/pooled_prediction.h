@@ -2,6 +2,7 @@
 #pragma once
 /// Predictions as accurate as was asked for, as JSON and as tables.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,10 @@ namespace gatewalk::cli {
                            double accuracy, bool given);
 [[nodiscard]] std::string table_of(const lattice::PooledPrediction& prediction,
                                    const ShownField& shown, bool given);
+
+/// What a chain's own full trials say of it; null where there are none.
+[[nodiscard]] Json to_json(const std::optional<lattice::OwnTrials>& own);
+/// The same as a line, of that JSON; empty where it is null.
+[[nodiscard]] std::string own_trials_text(const Json& own);
 
 }  // namespace gatewalk::cli

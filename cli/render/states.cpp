@@ -5,6 +5,7 @@
 
 #include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/pooled_prediction.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
 
@@ -79,7 +80,8 @@ std::string tree_line(const Json& j) {
   if (const auto& range = j.at("range"); !range.is_null())
     text += "for starts d " + text_of_range(range.at("d_m")) + " m, vx " +
             text_of_range(range.at("vx_m_per_s")) + " m/s, vy " +
-            text_of_range(range.at("vy_m_per_s")) + " m/s\n";
+            text_of_range(range.at("vy_m_per_s")) + " m/s\n" +
+            own_trials_text(range.value("own_trials", Json()));
   if (const double bias = j.at("states_bias").get<double>(); bias > 0.0)
     text += "fewer states than the runs allow: total variation " + fixed(bias, 4) +
             " of the final gates\n";
@@ -114,6 +116,7 @@ Json to_json(const lattice::TreeChain& c, double accuracy) {
     range["tried_on_starts"] = c.range->tried_on;
     range["kernel_error_95"] = c.range->kernel_error_95;
     range["worst_kernel_error_95"] = c.range->worst_kernel_error_95;
+    range["own_trials"] = cli::to_json(c.range->own_trials);
   }
   j["states_bias"] = c.states_bias;
   return j;

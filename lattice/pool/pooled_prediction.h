@@ -11,6 +11,7 @@
 
 #include "dynamics/base/work.h"
 #include "lattice/exits.h"
+#include "lattice/pool/own_trials.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/statistics/group_spread.h"
 
@@ -51,6 +52,7 @@ struct StartAnswer {
   FieldExits exits{};
   std::array<CellProbabilities, 2> gates_95;  // low, high
   std::int64_t trials = 0, first_runs = 0;    // full ones; those through the first gate
+  std::optional<OwnTrials> own_trials{};      // of a chain's answer, where there are full ones
   double direct_seconds = 0.0;  // of direct simulation for the same error bar; NaN where nothing
                                 // was run that would tell
 };
@@ -105,7 +107,8 @@ struct PooledRange {
   /// their own, and get them when they are predicted.
   double kernel_error_95 = 0.0, worst_kernel_error_95 = 0.0;
   bool reached = true;
-  std::int64_t gate_runs = 0;  // made now
+  std::optional<OwnTrials> own_trials{};  // all of them, against the chain (make_tree_chain)
+  std::int64_t gate_runs = 0;             // made now
   double seconds = 0.0;
   dynamics::Health health;
 };

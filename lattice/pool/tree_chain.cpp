@@ -87,6 +87,14 @@ TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, co
                   .range = std::move(range)};
   if (options.most_states)
     limit_states(chain, problem, *options.most_states, options.accuracy.seed);
+  if (chain.range) {
+    const auto row =
+        first_row(chain.kernel, problem.map(), chain.pool, PoolStart{}, problem.start_type());
+    const auto answer =
+        answers_of(chain.kernel, problem.map(), {row}, problem.field, options.accuracy.seed);
+    chain.range->own_trials = own_trials(chain.pool.scattered.each, problem.field,
+                                         answer.final.front(), 1, options.accuracy.seed);
+  }
   chain.transitions = transitions_with(problem, chain.pool, chain.kernel);
   if (chain.range) chain.transitions.front().health += chain.range->health;
   if (chain.prediction) chain.transitions.front().health += chain.prediction->health;

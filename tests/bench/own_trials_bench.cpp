@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+/// Are wrong chains found out by the full trials that they were made from
+/// (lattice/pool/own_trials.h)?
+///   own_trials_bench FIRST CHAINS ACCURACY TRUTH SCENE [KEY=VALUE ...]
+///   own_trials_bench FIRST CHAINS ACCURACY MEMORY
+/// makes so many pools of trials from seed FIRST on, as `predict --accuracy` does, and of each a
+/// chain as it should be and chains that are broken on purpose. TRUTH: a file with the true shares
+/// of the final gates. MEMORY, 0 to 1: bodies of cells that keep turning to one side, which no
+/// state shows. Prints lines "how,accuracy,trials,error,p,differs": total variation from the truth,
+/// p-value and verdict.
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dynamics/base/random.h"
+#include "dynamics/cells/cell.h"
+#include "lattice/pool/pool_answers.h"
+#include "lattice/pool/pooled_prediction.h"
+#include "lattice/scene/scene_problem.h"
+
+namespace {
+
+using namespace gatewalk;
+using namespace gatewalk::lattice;
+using dynamics::CellMap;
+using dynamics::Random;
+
+/// Of each kind of breakage a mild and a strong one: the share of the leaves that it is done to.
+constexpr double kMild = 0.1, kStrong = 0.4;
+
+/// A square: bodies go on, turn left or right, or are trapped. They are born to turn to one side
+/// rather than to the other.
+class Handed : public dynamics::Cell {
+ public:
+  explicit Handed(double memory) : memory_(memory) {
+    section_.faces = {{"S", 0, 1, 0, 0, "from below", {}},
+                      {"R", -1, 0, 2, 0, "from the right", {}},
+                      {"L", 1, 0, 1, 0, "from the left", {}}};
+    section_.coordinates = {{"s", "s", "1", "place", 1.0}};
+  }
+  [[nodiscard]] const dynamics::Section& section() const override { return section_; }
+  void begin(dynamics::Body& body) const override {
+    body.carried.put<double>(body.random.uniform() < 0.5 ? memory_ : -memory_);
+  }
+  [[nodiscard]] dynamics::Passage pass(dynamics::Body& body) const override {
+    constexpr double kTrapped = 0.1, kTurn = 0.25;
+    const double turns_left = kTurn * (1.0 + body.carried.as<double>());
+    const double u = body.random.uniform();
+    if (u < kTrapped) return {dynamics::Fate::trapped, body.entry, {}};
+    body.entry.face = u < kTrapped + turns_left ? 1 : u < kTrapped + 2.0 * kTurn ? 2 : 0;
+    body.entry.at[0] = body.random.uniform();
+    return {dynamics::Fate::left, body.entry, {}};
+  }
+
+ private:
+  dynamics::Section section_;
+  double memory_;
+};
+
+class Study {
+ public:
+  Study(const Problem& problem, const CellProbabilities& truth, std::uint64_t seed, double accuracy,
+        const char* usual)
+      : problem_(problem), truth_(truth), seed_(seed), accuracy_(accuracy) {
+    (void)predict_pooled(problem, pool_, {problem.start}, {.accuracy = accuracy, .seed = seed});
+    say(usual, kernel_of(problem.map(), pool_), problem.map());
+  }
+
+  void break_it() {
+    const Kernel right = kernel_of(problem_.map(), pool_);
+    for (const double part : {kMild, kStrong}) {
+      const auto done = [&](const char* how, const auto& use) {
+        say(how, changed(right, part, use), problem_.map());
+      };
+      done("leaves merged", [](Row& a, Row& b) { a = b = Row(a + b); });
+      done("rows swapped", [](Row& a, Row& b) { std::swap(a, b); });
+    }
+    if (right.counts.size() > 1) {  // a gate of one type taken for one of another
+      Kernel wrong = right;
+      std::swap(wrong.counts[0], wrong.counts[1]);
+      say("types mislabelled", wrong, problem_.map());
+    }
+    CellMap mirrored = problem_.map();
+    bool is_wrong = false;
+    for (auto& type : mirrored.types) is_wrong = !std::exchange(type.symmetric, true) || is_wrong;
+    if (is_wrong) say("a mirror that is none", kernel_of(mirrored, pool_), mirrored);
+  }
+
+ private:
+  using Row = Eigen::Matrix<std::int64_t, 1, Eigen::Dynamic>;
+
+  void say(const char* how, const Kernel& kernel, const CellMap& map) const {
+    const StartTrials& s = pool_.starts.front();
+    const auto row = first_row(kernel, map, pool_, s, problem_.start_type());
+    const auto chain = answers_of(kernel, map, {row}, problem_.field, seed_).final.front();
+    const OwnTrials own = own_trials(s.full, problem_.field, chain, 1, seed_);
+    std::printf("%s,%g,%lld,%.5f,%.4f,%d\n", how, accuracy_, static_cast<long long>(own.trials),
+                total_variation(chain.final_cells, truth_), own.p, own.differs);
+  }
+
+  /// Something done to the rows of `part` of the leaves, each with another leaf of its face.
+  template <class Use>
+  Kernel changed(const Kernel& right, double part, const Use& use) const {
+    Kernel wrong = right;
+    Random random(dynamics::Purpose::resampling, {seed_, 77, 0});
+    std::vector<std::pair<int, int>> pairs;
+    for (int leaf = 0; leaf < right.space.size(); ++leaf) {
+      const auto other = static_cast<int>(random.uniform() * right.space.size());
+      if (random.uniform() < part && other != leaf &&
+          right.space.face(other) == right.space.face(leaf))
+        pairs.emplace_back(leaf, other);
+    }
+    for (markov::Counts& counts : wrong.counts) {
+      std::vector<Row> rows;
+      for (int leaf = 0; leaf < counts.rows(); ++leaf) rows.emplace_back(counts.row(leaf));
+      for (const auto& [a, b] : pairs)
+        use(rows[static_cast<std::size_t>(a)], rows[static_cast<std::size_t>(b)]);
+      std::vector<Eigen::Triplet<std::int64_t>> entries;
+      for (int leaf = 0; leaf < counts.rows(); ++leaf)
+        for (int out = 0; out < counts.cols(); ++out)
+          if (const auto n = rows[static_cast<std::size_t>(leaf)][out]; n > 0)
+            entries.emplace_back(leaf, out, n);
+      counts.setFromTriplets(entries.begin(), entries.end());
+    }
+    return wrong;
+  }
+
+  const Problem& problem_;
+  const CellProbabilities& truth_;
+  std::uint64_t seed_;
+  double accuracy_;
+  RunPool pool_;
+};
+
+Problem handed(double memory) {
+  Problem problem;
+  problem.cells.cells = {std::make_shared<Handed>(memory)};
+  problem.cells.map = {problem.cells.cells.front()->section(), {{false}}, 0, {}};
+  problem.start = {0, {0.5}};
+  problem.width = problem.length = 1.0;
+  problem.types = {"handed"};
+  return problem;
+}
+
+CellProbabilities shares_by_trials(const Problem& problem) {
+  constexpr std::int64_t kTrials = 1'000'000;
+  return shares(
+      run_field(problem.cells, problem.field, problem.start, 9001, {0, kTrials}).final_gates);
+}
+
+CellProbabilities read_shares(const char* path, const FieldParams& field) {
+  CellProbabilities p(field.rows, field.columns);
+  std::ifstream in(path);
+  for (Eigen::Index i = 0; i < p.size(); ++i)
+    if (!(in >> p.data()[i])) throw std::runtime_error(std::string(path) + ": too few shares");
+  return p;
+}
+
+int study(int argc, char** argv) {
+  if (argc < 5) return std::fprintf(stderr, "see the comment in own_trials_bench.cpp\n"), 2;
+  const auto first = std::stoull(argv[1]), chains = std::stoull(argv[2]);
+  const double accuracy = std::stod(argv[3]);
+  const bool remembers = argc == 5;
+  const double memory = remembers ? std::stod(argv[4]) : 0.0;
+  const Problem problem =
+      remembers ? handed(memory)
+                : problem_of(read_scene(argv[5], std::vector<std::string>(argv + 6, argv + argc)));
+  const CellProbabilities truth =
+      remembers ? shares_by_trials(problem) : read_shares(argv[4], problem.field);
+  for (auto seed = first; seed < first + chains; ++seed) {
+    Study one(problem, truth, seed, accuracy, memory > 0.0 ? "memory planted" : "right");
+    if (!remembers) one.break_it();
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return study(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
