@@ -14,11 +14,13 @@ trap 'rm -rf "$scratch"' EXIT
 one() { # NAME FIRST CHAINS ACCURACY SCENE-OR-MEMORY [KEY=VALUE ...]
   local name=$1 numbers=("$2" "$3" "$4") what=("${@:5}")
   if [ -f "$root/scenes/$5.toml" ]; then
-    jq -r ".$name.final_gates[]" "$root/results/coverage/truth.json" >"$scratch/$name.truth"
     what=("$scratch/$name.truth" "$root/scenes/$5.toml" run.method=moreau "${@:6}")
   fi
   "$build/tests/own_trials_bench" "${numbers[@]}" "${what[@]}" | sed "s/^/$name,/" >"$(mktemp "$scratch/XXXXXX.csv")"
 }
+for name in A B C mixed robot; do
+  jq -r ".$name.final_gates[]" "$root/results/coverage/truth.json" >"$scratch/$name.truth"
+done
 export -f one
 export build root scratch
 B="field forces.propulsion_N=8 forces.random_N=10"

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -76,8 +77,11 @@ class Study {
       const auto done = [&](const char* how, const auto& use) {
         say(how, changed(right, part, use), problem_.map());
       };
-      done("leaves merged", [](Row& a, Row& b) { a = b = Row(a + b); });
-      done("rows swapped", [](Row& a, Row& b) { std::swap(a, b); });
+      done("leaves merged", [](Sources& a, Sources& b) {
+        a.insert(b.begin(), b.end());
+        b = a;
+      });
+      done("rows swapped", [](Sources& a, Sources& b) { std::swap(a, b); });
     }
     if (right.counts.size() > 1) {  // a gate of one type taken for one of another
       Kernel wrong = right;
@@ -91,7 +95,8 @@ class Study {
   }
 
  private:
-  using Row = Eigen::Matrix<std::int64_t, 1, Eigen::Dynamic>;
+  /// The leaves whose runs make a row.
+  using Sources = std::set<std::size_t>;
 
   void say(const char* how, const Kernel& kernel, const CellMap& map) const {
     const StartTrials& s = pool_.starts.front();
@@ -107,23 +112,23 @@ class Study {
   Kernel changed(const Kernel& right, double part, const Use& use) const {
     Kernel wrong = right;
     Random random(dynamics::Purpose::resampling, {seed_, 77, 0});
-    std::vector<std::pair<int, int>> pairs;
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
     for (int leaf = 0; leaf < right.space.size(); ++leaf) {
       const auto other = static_cast<int>(random.uniform() * right.space.size());
       if (random.uniform() < part && other != leaf &&
           right.space.face(other) == right.space.face(leaf))
         pairs.emplace_back(leaf, other);
     }
+    std::vector<Sources> sources(static_cast<std::size_t>(right.space.size()));
+    for (std::size_t leaf = 0; leaf < sources.size(); ++leaf) sources[leaf] = {leaf};
+    for (const auto& [a, b] : pairs) use(sources[a], sources[b]);
     for (markov::Counts& counts : wrong.counts) {
-      std::vector<Row> rows;
-      for (int leaf = 0; leaf < counts.rows(); ++leaf) rows.emplace_back(counts.row(leaf));
-      for (const auto& [a, b] : pairs)
-        use(rows[static_cast<std::size_t>(a)], rows[static_cast<std::size_t>(b)]);
       std::vector<Eigen::Triplet<std::int64_t>> entries;
-      for (int leaf = 0; leaf < counts.rows(); ++leaf)
-        for (int out = 0; out < counts.cols(); ++out)
-          if (const auto n = rows[static_cast<std::size_t>(leaf)][out]; n > 0)
-            entries.emplace_back(leaf, out, n);
+      for (std::size_t leaf = 0; leaf < sources.size(); ++leaf)
+        for (const std::size_t source : sources[leaf])
+          for (markov::Counts::InnerIterator it(counts, static_cast<Eigen::Index>(source)); it;
+               ++it)
+            entries.emplace_back(static_cast<int>(leaf), static_cast<int>(it.col()), it.value());
       counts.setFromTriplets(entries.begin(), entries.end());
     }
     return wrong;
