@@ -103,12 +103,24 @@ class PassageTable {
   template <class Archive>
   friend void each_part(Archive& archive, PassageTable& table) {
     archive(table.coordinates_, table.costs_, table.kinds_, table.numbers_);
+    if constexpr (Archive::reads) table.require_whole();
   }
 
   [[nodiscard]] Rows rows() const { return {*this, 0, size()}; }
   [[nodiscard]] Rows rows(std::size_t begin, std::size_t end) const { return {*this, begin, end}; }
 
  private:
+  /// Throws std::runtime_error for a table that no passages make.
+  void require_whole() const {
+    const bool is_sized = coordinates_ <= dynamics::kMostCoordinates &&
+                          costs_ <= dynamics::kMostCosts &&
+                          numbers_.size() == kinds_.size() * (coordinates_ + costs_);
+    if (!is_sized || std::any_of(kinds_.begin(), kinds_.end(), [](const Kind& kind) {
+          return kind.fate > dynamics::Fate::broken || kind.face >= dynamics::kMostFaces;
+        }))
+      throw std::runtime_error("a kept piece has passages that there are not");
+  }
+
   std::size_t coordinates_ = 0, costs_ = 0;
   struct Kind {
     dynamics::Fate fate;

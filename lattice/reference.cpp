@@ -45,6 +45,24 @@ void FieldTrials::append(const FieldTrials& from, std::size_t at) {
   passed.push_back(std::ssize(passages));
 }
 
+void require_whole(const RunTrials& piece, const std::vector<std::uint8_t>& endings,
+                   std::uint8_t broken) {
+  const FieldTrials& each = piece.each;
+  bool is_whole = each.final_gates.size() == endings.size() &&
+                  each.costs.size() == endings.size() &&
+                  (each.passed.empty() ? each.passages.empty()
+                                       : each.passed.size() == endings.size() &&
+                                             each.passed.back() == std::ssize(each.passages));
+  for (const std::int32_t gate : each.final_gates)
+    is_whole = is_whole && gate >= 0 && gate < piece.tally.final_gates.size();
+  for (const std::uint8_t ending : endings)
+    is_whole = is_whole && (ending < markov::kEndings || ending == broken);
+  std::int64_t before = 0;
+  for (const std::int64_t passed : each.passed)
+    is_whole = is_whole && passed >= std::exchange(before, passed);
+  if (!is_whole) throw std::runtime_error("a kept piece has trials that there are not");
+}
+
 void FieldTally::count(Eigen::Index gate, std::optional<markov::Ending> ending) {
   const bool is_trapped = ending == markov::Ending::trapped,
              is_cut_off = ending == markov::Ending::cut_off;

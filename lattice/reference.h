@@ -78,6 +78,9 @@ struct RunTrials {
   FieldTally tally;
   FieldTrials each;
 };
+/// Throws std::runtime_error for a piece that was read and that no trials make.
+void require_whole(const RunTrials& piece, const std::vector<std::uint8_t>& endings,
+                   std::uint8_t broken);
 /// As a piece is kept (dynamics/base/bytes.h).
 template <class Archive>
 void each_part(Archive& archive, RunTrials& piece) {
@@ -89,6 +92,7 @@ void each_part(Archive& archive, RunTrials& piece) {
   archive(each.final_gates, endings, each.costs, each.passages, each.passed, tally.held,
           tally.entries, tally.clamped, tally.health);
   if constexpr (Archive::reads) {
+    require_whole(piece, endings, kBroken);
     tally.trials = tally.held.count();
     for (std::size_t i = 0; i < endings.size(); ++i) {
       auto& ending = each.endings.emplace_back();

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # What takes too long for every change, each in a build folder of its own (build-odr, build-alone ...):
-#   tests/nightly.sh [odr] [alone] [small] [debug] [clang] [reproducible]      all six without an argument
+#   tests/nightly.sh [odr] [alone] [small] [debug] [clang] [reproducible] [fuzz]      all seven without an argument
 # odr    links the whole program with -flto -Wodr: no name may have two definitions. Without optimisation,
 #        which inlines functions before their types are compared. Two definitions within one batch of
 #        sources are an error of the compiler; the linker compares the batches.
@@ -13,6 +13,8 @@
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
 # reproducible  the sources of the last commit, built in two folders of other names: the packages have the
 #        same bytes.
+# fuzz   every reader is handed input of any kind, SECONDS_EACH=60 seconds a target, by libFuzzer with clang's
+#        sanitizers (tests/fuzz/run.sh): executions by target, no finding.
 # What a step prints is in nightly-STEP.log; of one that fails the end is shown.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -108,11 +110,13 @@ reproducible() {
   rm -rf "$work"
 }
 
-[ $# -gt 0 ] || set -- odr alone small debug clang reproducible
+fuzz() { tests/fuzz/run.sh; }
+
+[ $# -gt 0 ] || set -- odr alone small debug clang reproducible fuzz
 for step in "$@"; do
-  case $step in odr | alone | small | debug | clang | reproducible) ;; *) echo "no step '$step': odr, alone, small, debug, clang, reproducible" >&2; exit 2 ;; esac
+  case $step in odr | alone | small | debug | clang | reproducible | fuzz) ;; *) echo "no step '$step': odr, alone, small, debug, clang, reproducible, fuzz" >&2; exit 2 ;; esac
 done
-case " $* " in *" clang "*) packages+=(clang) ;; esac
+case " $* " in *" clang "* | *" fuzz "*) packages+=(clang) ;; esac
 case " $* " in *" reproducible "*) packages+=(pybind11-dev python3-dev python3-numpy) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac
 if command -v apt-get >/dev/null; then install_missing; fi

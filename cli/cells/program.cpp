@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "cli/cells/answer.h"
 #include "cli/cells/hello.h"
 #include "cli/cells/process.h"
 
@@ -22,18 +23,6 @@ using namespace dynamics;
 constexpr std::size_t kMostInFlight = 4096;
 constexpr std::size_t kMostOut = std::size_t{1} << 16;  // bytes that wait to be read
 constexpr std::string_view kNoMemory = "-";
-
-/// What a body carries: the program's own words.
-struct Memory {
-  std::uint16_t length;
-  char text[480];
-  [[nodiscard]] std::string_view words() const { return {text, length}; }
-};
-Memory memory_of(std::string_view words) {
-  Memory memory{static_cast<std::uint16_t>(words.size()), {}};
-  std::copy(words.begin(), words.end(), memory.text);
-  return memory;
-}
 
 template <class Number>
 void append(std::string& line, Number x) {
@@ -57,7 +46,7 @@ void append_passage(std::string& line, const Hello& hello, std::uint64_t id, Bod
   for (std::size_t k = 0; k < hello.section.coordinates.size(); ++k) append(line, body.entry.at[k]);
   append_noise(line, hello, body.random);
   line += ' ';
-  line += body.carried.as<Memory>().words();
+  line += body.carried.as<CarriedWords>().words();
   line += '\n';
 }
 
@@ -75,100 +64,6 @@ std::size_t parameter_of(const Hello& hello, const Cell::Number& wanted) {
     all += (k > 0 ? ", " : ", but ") + p.number.key;
   }
   throw std::invalid_argument("cell program: it has no parameter '" + wanted.key + "'" + all);
-}
-
-/// The words of a line, as far as an answer has any.
-struct Words {
-  static constexpr std::size_t kMost = 4 + kMostCoordinates + kMostCosts;
-  std::array<std::string_view, kMost> word;
-  std::size_t count = 0;  // of all
-};
-Words words_of(std::string_view line) {
-  Words words;
-  for (std::size_t at = 0; (at = line.find_first_not_of(" \t", at)) != line.npos;) {
-    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
-    if (words.count < Words::kMost) words.word[words.count] = line.substr(at, end - at);
-    ++words.count;
-    at = end;
-  }
-  return words;
-}
-
-template <class Number>
-bool read_number(std::string_view word, Number& x) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-  return error == std::errc() && end == word.data() + word.size();
-}
-
-/// An answer that is none: what is wrong with it.
-struct WrongAnswer {
-  std::string what;
-};
-
-double finite(std::string_view word, const std::string& name) {
-  double x = 0.0;
-  if (!read_number(word, x) || !std::isfinite(x))
-    throw WrongAnswer{name + " '" + excerpt(word, 40) + "' is not a finite number"};
-  return x;
-}
-
-/// What words an answer has, for a message.
-std::string form_of(const Section& section, std::string_view fate) {
-  std::string form = "ID " + std::string(fate);
-  if (fate == "left") {
-    form += " FACE";
-    for (const Coordinate& c : section.coordinates) form += ' ' + c.name;
-  }
-  for (const CostInfo& c : section.costs) form += ' ' + c.key;
-  return fate == "left" ? form + " MEMORY" : form;
-}
-
-void require_count(const Words& words, std::size_t count, const Section& section,
-                   std::string_view fate) {
-  if (words.count == count) return;
-  throw WrongAnswer{"it has " + std::to_string(words.count) + " words, not " +
-                    std::to_string(count) + ": " + form_of(section, fate)};
-}
-
-Costs read_costs(const Words& words, std::size_t at, const Section& section) {
-  Costs costs{};
-  for (std::size_t c = 0; c < section.costs.size(); ++c)
-    costs[c] = finite(words.word[at + c], section.costs[c].key);
-  if (costs[0] < 0.0) throw WrongAnswer{section.costs[0].key + " is negative"};
-  return costs;
-}
-
-/// Moves the body on. Throws WrongAnswer.
-Passage read_answer(const Words& words, const Section& section, Body& body) {
-  const std::string_view fate = words.word[1];
-  const std::size_t coordinates = section.coordinates.size(), costs = section.costs.size();
-  if (fate == "broken") {
-    if (words.count != 2) throw WrongAnswer{"a broken passage has no more words: ID broken"};
-    return {Fate::broken, {}, {}};
-  }
-  if (fate == "trapped") {
-    require_count(words, 2 + costs, section, fate);
-    return {Fate::trapped, {}, read_costs(words, 2, section)};
-  }
-  if (fate != "left") throw WrongAnswer{"its second word must be left, trapped or broken"};
-  require_count(words, 4 + coordinates + costs, section, fate);
-  Passage passage{Fate::left, {}, {}};
-  const auto face = std::find_if(section.faces.begin(), section.faces.end(),
-                                 [&](const Face& f) { return f.name == words.word[2]; });
-  if (face == section.faces.end())
-    throw WrongAnswer{"there is no face '" + excerpt(words.word[2], 40) +
-                      "' to enter the next cell by, but " + names_of(section.faces)};
-  passage.next.face = static_cast<int>(face - section.faces.begin());
-  for (std::size_t k = 0; k < coordinates; ++k)
-    passage.next.at[k] = finite(words.word[3 + k], section.coordinates[k].name);
-  passage.costs = read_costs(words, 3 + coordinates, section);
-  const std::string_view memory = words.word[3 + coordinates + costs];
-  if (memory.size() > sizeof Memory::text)
-    throw WrongAnswer{"its memory has " + std::to_string(memory.size()) + " bytes; at most " +
-                      std::to_string(sizeof Memory::text) + " are carried"};
-  body.entry = passage.next;
-  body.carried.put(memory_of(memory));
-  return passage;
 }
 
 }  // namespace
@@ -219,7 +114,7 @@ const Section& ProgramCell::section() const { return program_->hello.section; }
 
 bool ProgramCell::is_symmetric() const { return program_->hello.symmetric; }
 
-void ProgramCell::begin(Body& body) const { body.carried.put(memory_of(kNoMemory)); }
+void ProgramCell::begin(Body& body) const { body.carried.put(carried_words(kNoMemory)); }
 
 std::vector<Cell::Number> ProgramCell::numbers() const {
   std::vector<Number> all;
@@ -311,9 +206,9 @@ void ProgramCell::carry_out(const NextPassage& next, Health& health, std::int64_
     process.exchange();
     while (const auto line = process.line()) {
       try {
-        const Words words = words_of(*line);
+        const AnswerWords words = answer_words(*line);
         std::uint64_t id = 0;
-        const bool is_id = read_number(words.word[0], id);
+        const bool is_id = number_in(words.word[0], id);
         const std::size_t at = id % kMostInFlight;
         if (!is_id || at >= slots.size() || slots[at].id != id)
           throw WrongAnswer{"its first word is not the id of a passage that is under way"};

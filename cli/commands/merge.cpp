@@ -83,7 +83,7 @@ int run_merge(const Arguments& arguments) {
 
   const std::vector<std::string> parts = options.texts("part");
   std::vector<Json> heads;
-  for (const std::string& part : parts) heads.push_back(Json::parse(piece_head(part)));
+  for (const std::string& part : parts) heads.push_back(head_in(part));
   const std::string name = heads.front().at("command");
   const Command* const command = command_named(name);
   if (!command)

@@ -219,6 +219,11 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
                                (table.whole ? " is no count" : " is no probability"));
   matrix.probabilities = !table.whole;
   if (matrix.probabilities) in_steps(path, table);
+  double sum = 0.0;
+  for (const SparseTable::Entry& e : table.entries) sum += e.value;
+  if (sum > std::ldexp(1.0, 62))
+    throw std::runtime_error(path + ": its counts add up to " + shortest(sum) +
+                             ", more than a matrix may have");
   return matrix;
 }
 

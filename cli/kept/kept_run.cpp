@@ -18,6 +18,47 @@ namespace {
 
 using dynamics::TrialRange;
 
+constexpr std::int64_t kMostParts = 1'000'000;
+
+/// Throws markov::BadFile unless a head has all that a run writes there.
+Json checked_head(const std::string& path, const std::string& text) {
+  const Json head = Json::parse(text, nullptr, false);
+  const auto require = [&](bool is_right, const char* key) {
+    if (!is_right)
+      throw markov::BadFile(path + ": its second line, which says what the command was, has no " +
+                            key + " as a run writes it");
+  };
+  require(head.is_object(), "object");
+  const auto is_list = [&](const char* key, const auto& is_one) {
+    const auto at = head.find(key);
+    return at != head.end() && at->is_array() && std::all_of(at->begin(), at->end(), is_one);
+  };
+  const auto is_text = [](const Json& value) { return value.is_string(); };
+  const auto is_whole = [](const Json& value, std::int64_t low, std::int64_t high) {
+    return value.is_number_integer() && value.get<double>() >= static_cast<double>(low) &&
+           value.get<double>() <= static_cast<double>(high);
+  };
+  for (const char* key : {"version", "commit", "command", "main_output"})
+    require(head.contains(key) && head.at(key).is_string(), key);
+  for (const char* key : {"words", "outputs", "others"}) require(is_list(key, is_text), key);
+  require(is_list("inputs",
+                  [&](const Json& input) {
+                    return input.is_object() && input.contains("file") && is_text(input.at("file"));
+                  }),
+          "inputs");
+  require(head.contains("scene") && (head.at("scene").is_null() || is_text(head.at("scene"))),
+          "scene");
+  if (const auto shard = head.find("shard"); shard != head.end())
+    require(shard->is_array() && shard->size() == 2 && is_whole((*shard)[1], 1, kMostParts) &&
+                is_whole((*shard)[0], 1, (*shard)[1].get<std::int64_t>()),
+            "shard");
+  if (head.contains("first_trial"))
+    require(is_whole(head.at("first_trial"), 0, kMostCount) && head.contains("trials") &&
+                is_whole(head.at("trials"), 1, kMostCount),
+            "first_trial and trials");
+  return head;
+}
+
 std::int64_t end_of(TrialRange items) { return items.first + items.count; }
 
 std::string shown(TrialRange items) {
@@ -83,6 +124,10 @@ std::string difference(const Json& there, const Json& here) {
 
 }  // namespace
 
+Json head_of(const PieceFile& file) { return checked_head(file.path(), file.head()); }
+
+Json head_in(const std::string& path) { return checked_head(path, piece_head(path)); }
+
 Shard shard_of(const std::string& text) {
   Shard shard;
   const auto slash = text.find('/');
@@ -90,11 +135,10 @@ Shard shard_of(const std::string& text) {
     const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), n);
     return read.ec == std::errc() && read.ptr == digits.data() + digits.size();
   };
-  constexpr std::int64_t kMost = 1'000'000;
   const std::string_view all = text;
   if (slash == text.npos || !number(all.substr(0, slash), shard.number) ||
       !number(all.substr(slash + 1), shard.of) || shard.number < 1 || shard.of < shard.number ||
-      shard.of > kMost)
+      shard.of > kMostParts)
     throw UsageError("--shard " + text +
                      ": must be I/N, part I of N, such as 3/8: I from 1 to N, N at most 1e6");
   return shard;
@@ -121,7 +165,7 @@ KeptRun::KeptRun(KeptPlan plan) : plan_(std::move(plan)) {
 void KeptRun::read(std::size_t number) {
   const PieceFile& file = files_[number];
   const std::string& path = file.path();
-  const Json head = Json::parse(file.head());
+  const Json head = head_of(file);
   const bool goes_on = plan_.parts.empty();
   const std::string differs = difference(head, plan_.head);
   if (!differs.empty())
@@ -164,13 +208,13 @@ void KeptRun::read(std::size_t number) {
 }
 
 void KeptRun::check_parts() const {
-  const Json first = Json::parse(files_.front().head());
+  const Json first = head_of(files_.front());
   const std::int64_t of = first.contains("shard") ? first["shard"][1].get<std::int64_t>() : 0;
   std::set<std::int64_t> missing, to_do;
   for (std::int64_t i = 1; i <= of; ++i) missing.insert(i);
   std::string unfinished;
   for (const PieceFile& file : files_) {
-    const Json head = Json::parse(file.head());
+    const Json head = head_of(file);
     const std::string name = name_of_part(head);
     if (head.contains("shard") != (of > 0) || (of > 0 && head["shard"][1] != of))
       throw UsageError(file.path() + ": is " + name + ", and " + files_.front().path() + " is " +
@@ -229,7 +273,11 @@ std::optional<dynamics::KeptPieces::Next> KeptRun::next(std::int64_t at) {
   const auto there = pieces.lower_bound(at);
   if (there != pieces.end() && there->first == at) {
     const Found& found = there->second;
-    return Next{found.record.items, files_[found.file].bytes_of(found.record)};
+    const PieceFile& file = files_[found.file];
+    if (end_of(found.record.items) > end_of(own_))
+      throw markov::BadFile(file.path() + ": has " + shown(found.record.items) + " of " + what_ +
+                            ", which has none from " + std::to_string(end_of(own_)) + " on");
+    return Next{found.record.items, file.bytes_of(found.record)};
   }
   const std::int64_t end =
       there == pieces.end() ? end_of(own_) : std::min(end_of(own_), there->first);
@@ -301,8 +349,7 @@ void KeptRun::done() {
 
 std::vector<std::pair<std::string, std::string>> part_names(const std::vector<std::string>& parts) {
   std::vector<std::pair<std::string, std::string>> names;
-  for (const std::string& part : parts)
-    names.emplace_back(part, name_of_part(Json::parse(piece_head(part))));
+  for (const std::string& part : parts) names.emplace_back(part, name_of_part(head_in(part)));
   return names;
 }
 

@@ -105,6 +105,12 @@ class KeptRun : public dynamics::KeptPieces {
   dynamics::Stopwatch since_start_;
 };
 
+/// What the command was whose pieces a file holds: all that a run writes there. Throws
+/// markov::BadFile where anything is missing or of another kind.
+[[nodiscard]] Json head_of(const PieceFile& file);
+/// The same, of its first lines alone.
+[[nodiscard]] Json head_in(const std::string& path);
+
 /// Which part each of these files holds.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> part_names(
     const std::vector<std::string>& parts);

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -92,6 +93,10 @@ PieceFile::PieceFile(const std::string& path) : path_(path), head_(piece_head(pa
     if (head.mark != kMark || head.own_check != crc_of(checked_part(head))) break;
     const std::uint64_t at = end_ + sizeof head;
     if (head.bytes > size - at) break;
+    if (head.first < 0 || head.count < 0 ||
+        head.first > std::numeric_limits<std::int64_t>::max() - head.count)
+      throw markov::BadFile(path + ": has items that there are not, at byte " +
+                            std::to_string(end_));
     records_.push_back({head.stage, {head.first, head.count}, at, head.bytes, head.check});
     end_ = at + head.bytes;
   }

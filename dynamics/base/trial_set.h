@@ -3,7 +3,9 @@
 /// Which trials a tally holds.
 
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <stdexcept>
 #include <vector>
 
 namespace gatewalk::dynamics {
@@ -37,7 +39,12 @@ class TrialSet {
     for (const auto& [first, end] : set.ends_) ranges.push_back({first, end - first});
     archive(ranges);
     if constexpr (Archive::reads)
-      for (const TrialRange& range : ranges) set.add(range);
+      for (const TrialRange& range : ranges) {
+        if (range.first < 0 || range.count < 0 ||
+            range.first > std::numeric_limits<std::int64_t>::max() - range.count)
+          throw std::runtime_error("a kept piece has trials that there are not");
+        set.add(range);
+      }
   }
 
  private:

@@ -62,6 +62,13 @@ RowTrials row_trials(const StateSpace& space, const GateParams& p, std::uint64_t
 }
 
 void add(Transitions& t, const RowTrials& trials) {
+  const std::int64_t arrivals = std::ssize(trials.arrivals), each = runs_per_trial(t.space);
+  const bool fit =
+      each > 0 ? arrivals % each == 0 && trials.trials == arrivals / each : arrivals == 0;
+  if (!fit || std::any_of(trials.arrivals.begin(), trials.arrivals.end(), [&](const Arrival& a) {
+        return a.column < -1 || a.column > t.space.size() || a.clamped < 0 || a.clamped > 1;
+      }))
+    throw std::runtime_error("a kept piece has trials of other states");
   t.health += trials.health;
   auto next = trials.arrivals.begin();
   for (int row = 0; row < t.space.size(); ++row) {

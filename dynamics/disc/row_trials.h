@@ -34,7 +34,8 @@ void each_part(Archive& archive, RowTrials& t) {
 /// TBB arena; the same for any number of them.
 [[nodiscard]] RowTrials row_trials(const StateSpace& space, const GateParams& p, std::uint64_t seed,
                                    TrialRange range, const Entries& entries = {});
-/// A broken run is counted in `health` and in no column; the caller decides.
+/// A broken run is counted in `health` and in no column; the caller decides. Throws
+/// std::runtime_error for trials, of a piece that was kept, that are not of this state space.
 void add(Transitions& t, const RowTrials& trials);
 /// Both.
 void add_trials(Transitions& t, const GateParams& p, std::uint64_t seed, TrialRange range,

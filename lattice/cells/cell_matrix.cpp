@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "dynamics/disc/disc_section.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/matrix.h"
 
@@ -73,7 +74,10 @@ MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices, CellFil
 }
 
 MatrixFile read_any_matrix(const std::string& path) {
-  return is_of_cells(path) ? read_file(path) : read_matrix(path);
+  return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
+    return text.contains(kCellText) ? cells_in(text, path, {}).map.section
+                                    : dynamics::disc_section();
+  });
 }
 
 }  // namespace gatewalk::lattice

@@ -97,6 +97,9 @@ class Between {
 
 int cell_at(double place, double size) { return static_cast<int>(std::floor(place / size)); }
 
+/// As far from the origin as that, and no further from frame to frame, in cells.
+constexpr double kMostCells = 1e6, kMostCellsAtOnce = 1000.0;
+
 /// Adds the crossings of the borders k size of one axis: whoever is further than `margin` over a
 /// border has crossed it, where it last did so. Returns how often borders were crossed in all.
 std::int64_t add_crossings(const SmoothPath& path, bool is_x, double size, double margin,
@@ -143,6 +146,7 @@ class Cutter {
       throw std::invalid_argument(file_.source + ": " + e.what() + " (--fastest " +
                                   rounded(options_.fastest) + " m/s)");
     }
+    for (const TrackPiece& piece : cut_.pieces) require_near(piece);
     // Five standard deviations of a place of the path: seldom passed by noise alone.
     cut_.hysteresis = 5.0 * cut_.noise.place * std::sqrt(place_gain(cut_.noise.window));
     if (cut_.hysteresis > 0.25 * std::min(cell_.width, cell_.length))
@@ -206,6 +210,26 @@ class Cutter {
         begin = i;
       }
     }
+  }
+
+  /// Throws std::invalid_argument for a body that is, or goes at once, too far to be among cells.
+  void require_near(const TrackPiece& piece) const {
+    const Track& track = *piece.track;
+    const auto cells = [&](std::size_t i) {
+      return std::array{track.x[i] / cell_.width, track.y[i] / cell_.length};
+    };
+    for (std::size_t i = piece.begin; i < piece.end; ++i)
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double at = cells(i)[axis], before = cells(std::max(i, piece.begin + 1) - 1)[axis];
+        if (std::abs(at) <= kMostCells && std::abs(at - before) <= kMostCellsAtOnce) continue;
+        throw std::invalid_argument(
+            file_.source + ": body " + printable(track.body) + " is at (" + rounded(track.x[i]) +
+            ", " + rounded(track.y[i]) + ") m at " + rounded(track.time[i]) + " s, over " +
+            (std::abs(at) <= kMostCells
+                 ? rounded(kMostCellsAtOnce) + " cells from where it was a frame before"
+                 : rounded(kMostCells) + " cells from the origin") +
+            " (are --metres-per-unit, --fps and --fastest right?)");
+      }
   }
 
   /// What --window asks for, in frames.

@@ -153,6 +153,12 @@ TrackNoise noise_of(const std::vector<TrackPiece>& pieces, double interval,
     return 2 * longer >= frames;
   };
   TrackNoise best;
+  const auto known = [](const TrackNoise& noise) {
+    if (noise.window == 0)
+      throw std::invalid_argument(
+          "times and places are too near to each other, or too far, to tell velocities");
+    return noise;
+  };
   double least = std::numeric_limits<double>::infinity();
   const auto try_window = [&](int w, const Left& left) {
     const auto [noise, bias] = velocity_errors(w, interval, left, variance);
@@ -163,7 +169,7 @@ TrackNoise noise_of(const std::vector<TrackPiece>& pieces, double interval,
   if (window) {
     try_window(*window,
                left_by_fits(pieces, static_cast<std::size_t>(*window)).value_or(*shortest));
-    return best;
+    return known(best);
   }
   // Each is longer by a seventh or so than the one before. Where fits leave much more than noise
   // the ways are no parabolas, nor cubes.
@@ -172,7 +178,7 @@ TrackNoise noise_of(const std::vector<TrackPiece>& pieces, double interval,
     if (w > kLeastWindow && (!most_are_as_long(w) || !left || left->all > 2.0 * variance)) break;
     try_window(w, *left);
   }
-  return best;
+  return known(best);
 }
 
 }  // namespace gatewalk::lattice

@@ -13,6 +13,9 @@ namespace gatewalk::lattice {
 /// A number; NaN for an empty field or one that says so; none for anything else, infinity too.
 [[nodiscard]] std::optional<double> coordinate_in(std::string_view text);
 
+/// Whether it can be the number of a frame: a whole one, up to 1e12.
+[[nodiscard]] bool is_frame(double number);
+
 /// `"text"`, fit for a message.
 [[nodiscard]] std::string in_quotes(const std::string& text);
 

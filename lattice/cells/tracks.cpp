@@ -34,6 +34,11 @@ std::optional<double> coordinate_in(std::string_view text) {
   return value;
 }
 
+bool is_frame(double number) {
+  constexpr double kMost = 1e12;  // all of them have different times
+  return number == std::floor(number) && std::abs(number) <= kMost;
+}
+
 void Lacking::refuse() const {
   if (!text_.empty())
     throw std::invalid_argument(path_ + " does not say, and is not taken to mean, " + text_);
@@ -275,7 +280,7 @@ class LongTable {
             number_of(fields, kX),
             number_of(fields, kY),
             column_[kConfidence] != kNoColumn ? number_of(fields, kConfidence) : 0.0};
-    if (std::isnan(row.when) || (when == kFrame && row.when != std::floor(row.when)))
+    if (std::isnan(row.when) || (when == kFrame && !is_frame(row.when)))
       refuse("column " + printable(header_[column_[when]]) + ": " +
              in_quotes(fields[column_[when]]) +
              (when == kFrame ? " is no whole number" : " is no time"));

@@ -41,7 +41,7 @@ class WideTable {
     double last = -std::numeric_limits<double>::infinity();
     for (std::vector<std::string> row; next(row);) {
       const auto frame = coordinate_in(row[0]);
-      if (!frame || *frame != std::floor(*frame))
+      if (!frame || !is_frame(*frame))
         refuse("the frame " + in_quotes(row[0]) + " is no whole number");
       if (*frame <= last)
         refuse("frame " + shortest(*frame) + " comes behind frame " + shortest(last));

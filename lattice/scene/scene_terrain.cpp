@@ -64,6 +64,10 @@ std::string path_of(const TerrainSetting& given) {
 }
 
 std::vector<MapRow> rows_of_file(const TerrainSetting& given, const std::string& path) {
+  std::error_code none;
+  if (std::filesystem::is_character_file(path, none) || std::filesystem::is_block_file(path, none))
+    throw SceneError(given.where() + ": terrain.map_file: " + path +
+                     " is a device: must be a file, whose end can be read");
   const auto lines = lines_of(path);
   if (!lines)
     throw SceneError(given.where() + ": terrain.map_file: " + path +

@@ -251,6 +251,8 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
   };
   const auto rows = static_cast<std::size_t>(options.row);
   const auto take = [&](const SplitPiece& piece) {
+    if (piece.entered.size() % rows != 0)
+      throw std::runtime_error("a kept piece has trials to other rows");
     result.health += piece.health;
     for (auto at = piece.entered.begin(); at != piece.entered.end();
          at += static_cast<std::ptrdiff_t>(rows))

@@ -668,6 +668,13 @@ void write_counts(const std::string& path, const CountsFile& file) {
 }
 
 std::optional<std::string> text_of_counts(const std::string& path, const std::string& name) {
+  try {
+    const InputFile opened(path);
+    check_kind(opened);
+    if (!has_its_checksum(opened)) return {};
+  } catch (const std::runtime_error&) {
+    return {};
+  }
   int nc = -1;
   if (nc_open(path.c_str(), NC_NOWRITE, &nc) != NC_NOERR) return {};
   std::optional<std::string> found;

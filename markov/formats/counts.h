@@ -80,8 +80,8 @@ void write_counts(const std::string& path, const CountsFile& file);
 /// refused.
 [[nodiscard]] CountsFile read_counts(const std::string& path);
 
-/// One of the texts of a file; none where it has none, or is not ours. Looks at nothing else: the
-/// checksum is not taken.
+/// One of the texts of a file; none where it has none, is not ours, or was altered: the checksum is
+/// taken before HDF5 sees the file. Looks at nothing else.
 [[nodiscard]] std::optional<std::string> text_of_counts(const std::string& path,
                                                         const std::string& name);
 

@@ -401,6 +401,15 @@ TEST_F(ChainIo, EveryAlteredByteIsRefused) {
   EXPECT_TRUE(same(read_counts(path()), example()));
 }
 
+TEST_F(ChainIo, NoTextIsTakenFromAnAlteredFile) {
+  write_counts(path(), example());
+  EXPECT_EQ(text_of_counts(path(), "seed"), "1");
+  std::string bytes = bytes_of(path());
+  bytes.back() = static_cast<char>(bytes.back() ^ 1);  // far from the text
+  put_bytes(path(), bytes);
+  EXPECT_EQ(text_of_counts(path(), "seed"), std::nullopt);
+}
+
 TEST_F(ChainIo, RefusesWhatIsNoFileOfOurs) {
   expect_complaint(path("missing"), "cannot open: No such file");
   expect_complaint(fs::path(path()).parent_path().string(), "not a regular file");

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace gatewalk::fuzz {
+
+/// Reads a matrix file, and what it holds, as commands do.
+void use_matrix(const std::string& path);
+
+}  // namespace gatewalk::fuzz
