@@ -133,7 +133,7 @@ coverage() {
   for module in "${modules[@]}"; do
     gcovr --root . --add-tracefile build-coverage/coverage.json --filter "$module/" --txt
     gcovr --root . --add-tracefile build-coverage/coverage.json --filter "$module/" --json-summary |
-      jq -r --arg module "$module" '[$module, .line_percent, .branch_percent] | join(",")' >>$out/coverage.csv
+      jq -r --arg name "$module" '[$name, .line_percent, .branch_percent] | join(",")' >>$out/coverage.csv
   done
   cat $out/coverage.csv
   awk -F, 'NR > 1 && ($2 < 95 || $3 < 90) { print $1 ": too little is run"; few = 1 } END { exit few }' $out/coverage.csv
