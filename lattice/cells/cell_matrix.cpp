@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "dynamics/disc/disc_section.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/matrix.h"
 
@@ -75,8 +74,7 @@ MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices, CellFil
 
 MatrixFile read_any_matrix(const std::string& path) {
   return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
-    return text.contains(kCellText) ? cells_in(text, path, {}).map.section
-                                    : dynamics::disc_section();
+    return text.contains(kCellText) ? cells_in(text, path, {}).map.section : scene_section();
   });
 }
 

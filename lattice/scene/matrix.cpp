@@ -10,13 +10,15 @@
 
 namespace gatewalk::lattice {
 
+const dynamics::Section& scene_section() { return dynamics::disc_section(); }
+
 MatrixFile read_matrix(const std::string& path) {
   return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
     if (text.contains("cell"))
       throw markov::BadFile(
           path +
           ": is a chain of recorded runs, or of another program's cells, and not of a scene");
-    return dynamics::disc_section();
+    return scene_section();
   });
 }
 

@@ -12,6 +12,9 @@
 
 namespace gatewalk::lattice {
 
+/// The section of matrices of scenes: a disc in its gate.
+[[nodiscard]] const dynamics::Section& scene_section();
+
 /// As read_matrix, of any cells.
 [[nodiscard]] MatrixFile read_matrix(const std::string& path);
 
