@@ -111,19 +111,18 @@ void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int6
   }
 }
 
-void warn_of(const Options& options, const lattice::OwnTrials& own) {
-  if (own.differs)
+void warn_of(const Options& options, const std::optional<lattice::OwnTrials>& own) {
+  if (own && own->differs())
     options.warn(
-        "the full trials end otherwise than their chain says: " + fixed(own.total_variation, 4) +
+        "the full trials end otherwise than their chain says: " + fixed(own->total_variation, 4) +
         " in total variation of the final gates, where chance makes " +
-        fixed(own.chance_total_variation, 4) + " (" + p_words(own.p) +
-        "). Bodies may remember more from gate to gate than the states hold: trust gatewalk "
-        "lattice, and see gatewalk validate");
+        fixed(own->chance_total_variation, 4) + " (" + p_words(own->p) +
+        "). Bodies may remember more from gate to gate than the states hold: trust "
+        "gatewalk lattice");
 }
 
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy) {
-  for (const lattice::StartAnswer& a : prediction.starts)
-    if (a.own_trials) warn_of(options, *a.own_trials);
+  warn_of(options, prediction.own_trials);
   if (prediction.reached) return;
   double worst = 0.0;
   for (const lattice::StartAnswer& a : prediction.starts)

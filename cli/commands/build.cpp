@@ -58,7 +58,7 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
   const int status = give_out(options, scene, {chain.transitions, bins, space, settled, {}},
                               lattice::arrays_of(chain.pool, chain.kernel.space.section()));
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
-  if (chain.range && chain.range->own_trials) warn_of(options, *chain.range->own_trials);
+  warn_of(options, chain.own_trials);
   if (how.accuracy.trials) return status;
   if (chain.prediction) warn_of(options, *chain.prediction, how.accuracy.accuracy);
   if (chain.range && !chain.range->reached)

@@ -95,6 +95,7 @@ int build_program(const Options& options) {
   const Json states = to_json(chain, s.how.accuracy);
   give_out(options, std::move(chain.transitions), *s.cells, chain.pool, states, to_json(health),
            "gatewalk counts of passages through cells that another program carries out");
+  warn_of(options, chain.own_trials);
   if (!how.accuracy.trials) warn_of(options, *chain.prediction, s.how.accuracy);
   return status_of(options, health);
 }

@@ -32,7 +32,6 @@ void add_to(Json& json, const lattice::StartAnswer& a, const ShownField& shown) 
   json["unseen_entries"] = a.unseen;
   json["full_trials"] = a.trials;
   json["first_runs"] = a.first_runs;
-  json["own_trials"] = cli::to_json(a.own_trials);
   json["direct_seconds"] = std::isfinite(a.direct_seconds) ? Json(a.direct_seconds) : Json();
 }
 
@@ -50,7 +49,6 @@ std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
              " in total variation of the final gates, corrcoef at least " +
              fixed(a.error.corrcoef, 4) + ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
              " per 100, each 95 times in 100 (sampling, states and memory)\n";
-  table += own_trials_text(cli::to_json(a.own_trials));
   if (a.from_trials) table += "the trials' own shares: they are more certain here than the chain\n";
   if (!a.from_trials && a.unseen > 0.0)
     table += "the error counts " + percent(a.unseen, 1.0, 2) +
@@ -83,7 +81,7 @@ Json to_json(const std::optional<lattice::OwnTrials>& own) {
           {"total_variation", own->total_variation},
           {"chance_total_variation", own->chance_total_variation},
           {"p", own->p},
-          {"differs", own->differs}};
+          {"differs", own->differs()}};
 }
 
 std::string own_trials_text(const Json& own) {
@@ -107,6 +105,7 @@ Json to_json(const lattice::PooledPrediction& p, const ShownField& shown, double
   json["accuracy"] = accuracy;
   json["reached"] = p.reached;
   json["error_95"] = worst_error(p);
+  json["own_trials"] = to_json(p.own_trials);
   json["gate_runs"] = p.gate_runs;
   json["states"] = p.states;
   json["nonzeros"] = p.nonzeros;
@@ -123,6 +122,7 @@ std::string table_of(const lattice::PooledPrediction& p, const ShownField& shown
     table += (k > 0 ? "\n" : "") +
              (given ? title_of(shown.map.section, start_of(p.starts[k])) + "\n" : "") +
              table_of(p.starts[k], shown);
+  table += own_trials_text(to_json(p.own_trials));
   const Json direct = direct_seconds(p);
   table += std::to_string(p.gate_runs) + " gate runs, " + std::to_string(p.states) + " states, " +
            fixed(p.seconds, 2) + " s";

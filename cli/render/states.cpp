@@ -80,12 +80,11 @@ std::string tree_line(const Json& j) {
   if (const auto& range = j.at("range"); !range.is_null())
     text += "for starts d " + text_of_range(range.at("d_m")) + " m, vx " +
             text_of_range(range.at("vx_m_per_s")) + " m/s, vy " +
-            text_of_range(range.at("vy_m_per_s")) + " m/s\n" +
-            own_trials_text(range.value("own_trials", Json()));
+            text_of_range(range.at("vy_m_per_s")) + " m/s\n";
   if (const double bias = j.at("states_bias").get<double>(); bias > 0.0)
     text += "fewer states than the runs allow: total variation " + fixed(bias, 4) +
             " of the final gates\n";
-  return text +
+  return text + own_trials_text(j.value("own_trials", Json())) +
          "a row has few runs and is noisy by itself: a prediction averages over all of them\n";
 }
 
@@ -116,9 +115,9 @@ Json to_json(const lattice::TreeChain& c, double accuracy) {
     range["tried_on_starts"] = c.range->tried_on;
     range["kernel_error_95"] = c.range->kernel_error_95;
     range["worst_kernel_error_95"] = c.range->worst_kernel_error_95;
-    range["own_trials"] = cli::to_json(c.range->own_trials);
   }
   j["states_bias"] = c.states_bias;
+  j["own_trials"] = cli::to_json(c.own_trials);
   return j;
 }
 

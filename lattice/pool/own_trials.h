@@ -6,30 +6,36 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "lattice/reference.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {
 
-/// Hausman's test (1978): where the chain is right it is the better estimate of the same shares
-/// from the same runs, and the difference has at most the variance of the trials' own shares. So
-/// the p-value of as many draws from the chain's answer (Judgement: final gates and endings) is
-/// rather too large than too small.
+/// In the manner of Hausman's test (1978): where the chain is right it is the better estimate of
+/// the same shares from the same runs, so that the difference varies less than the trials' own
+/// shares would. The p-value is that of as many draws from the chain's answer (Judgement: final
+/// gates and endings): rather too large than too small.
 struct OwnTrials {
-  static constexpr double kLevel = 0.01;  // of all that are looked at together
+  static constexpr double kLevel = 0.01;
 
   std::int64_t trials = 0;
   double total_variation = 0.0;         // of the final gates
   double chance_total_variation = 0.0;  // mean over the draws
   double p = 1.0;
-  bool differs = false;
+
+  [[nodiscard]] bool differs() const { return p <= kLevel; }
 };
 
-/// `chain`: its answer for the bodies of these trials. `looked_at`: so many answers are tested
-/// together.
-[[nodiscard]] OwnTrials own_trials(const FieldTrials& trials, const FieldParams& field,
-                                   const markov::FinalDistribution& chain, std::int64_t looked_at,
-                                   std::uint64_t seed);
+/// Trials of one start, or of a range, and the chain's exact answer for their bodies.
+struct TrialsAndChain {
+  const FieldTrials& trials;
+  const markov::FinalDistribution& chain;
+};
+
+/// All together, in one test. None: there are no trials.
+[[nodiscard]] std::optional<OwnTrials> own_trials(const std::vector<TrialsAndChain>& all,
+                                                  const FieldParams& field, std::uint64_t seed);
 
 }  // namespace gatewalk::lattice

@@ -172,24 +172,24 @@ class PredictionRun {
     result_.reached = open_.empty();
     result_.gate_runs = runner_.gate_runs;
     result_.run_seconds = runner_.seconds;
+    result_.own_trials = look_at_own_trials();
     result_.seconds = watch_.seconds();
     tbb::parallel_for(std::size_t{0}, result_.starts.size(), [&](std::size_t k) {
       result_.starts[k].direct_seconds = direct_seconds(result_.starts[k], runner_, options_.seed);
     });
-    look_at_own_trials();
     runner_.finish();
     result_.health = runner_.health;
     return std::move(result_);
   }
 
  private:
-  void look_at_own_trials() {
-    const auto has = [](const StartAnswer& a) { return a.trials > 0 && !a.from_trials; };
-    const auto looked_at = std::count_if(result_.starts.begin(), result_.starts.end(), has);
+  [[nodiscard]] std::optional<OwnTrials> look_at_own_trials() const {
+    if (by_walks_) return {};
+    std::vector<TrialsAndChain> of;
     for (std::size_t k = 0; k < result_.starts.size(); ++k)
-      if (StartAnswer& a = result_.starts[k]; has(a))
-        a.own_trials = own_trials(pool_.starts[places_[k]].full, problem_.field, a.final, looked_at,
-                                  options_.seed);
+      if (const StartAnswer& a = result_.starts[k]; a.trials > 0 && !a.from_trials)
+        of.push_back({pool_.starts[places_[k]].full, a.final});
+    return own_trials(of, problem_.field, options_.seed);
   }
 
   [[nodiscard]] std::vector<std::size_t> all() const {

@@ -52,14 +52,15 @@ struct StartAnswer {
   FieldExits exits{};
   std::array<CellProbabilities, 2> gates_95;  // low, high
   std::int64_t trials = 0, first_runs = 0;    // full ones; those through the first gate
-  std::optional<OwnTrials> own_trials{};      // of a chain's answer, where there are full ones
   double direct_seconds = 0.0;  // of direct simulation for the same error bar; NaN where nothing
                                 // was run that would tell
 };
 
 struct PooledPrediction {
   std::vector<StartAnswer> starts;
-  bool reached = true;         // all answers are as accurate as was asked for
+  bool reached = true;  // all answers are as accurate as was asked for
+  /// The full trials of all starts whose answer is the chain's, and exact, against the chain.
+  std::optional<OwnTrials> own_trials{};
   std::int64_t gate_runs = 0;  // made now
   int states = 0;
   std::int64_t nonzeros = 0;
@@ -107,8 +108,7 @@ struct PooledRange {
   /// their own, and get them when they are predicted.
   double kernel_error_95 = 0.0, worst_kernel_error_95 = 0.0;
   bool reached = true;
-  std::optional<OwnTrials> own_trials{};  // all of them, against the chain (make_tree_chain)
-  std::int64_t gate_runs = 0;             // made now
+  std::int64_t gate_runs = 0;  // made now
   double seconds = 0.0;
   dynamics::Health health;
 };

@@ -60,6 +60,26 @@ std::vector<Transitions> transitions_with(const Problem& problem, const RunPool&
   return transitions_of(kernel, map, problem.field, starts, own_rows(problem, pool, kernel));
 }
 
+/// All full trials of the pool against the chain as it is.
+std::optional<OwnTrials> look_at_own_trials(const TreeChain& chain, const Problem& problem,
+                                            std::uint64_t seed) {
+  const RunPool& pool = chain.pool;
+  std::vector<const FieldTrials*> trials;
+  std::vector<std::vector<std::int64_t>> rows;
+  const auto add = [&](const FieldTrials& of, const PoolStart& start) {
+    if (of.final_gates.empty()) return;
+    trials.push_back(&of);
+    rows.push_back(first_row(chain.kernel, problem.map(), pool, start, problem.start_type()));
+  };
+  add(pool.scattered.each, PoolStart{});
+  for (const StartTrials& s : pool.starts) add(s.full, s);
+  const KernelAnswers said = answers_of(chain.kernel, problem.map(), rows, problem.field, seed);
+  if (said.walks > 0) return {};
+  std::vector<TrialsAndChain> all;
+  for (std::size_t i = 0; i < trials.size(); ++i) all.push_back({*trials[i], said.final[i]});
+  return own_trials(all, problem.field, seed);
+}
+
 }  // namespace
 
 TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, const Work& work) {
@@ -87,14 +107,8 @@ TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, co
                   .range = std::move(range)};
   if (options.most_states)
     limit_states(chain, problem, *options.most_states, options.accuracy.seed);
-  if (chain.range) {
-    const auto row =
-        first_row(chain.kernel, problem.map(), chain.pool, PoolStart{}, problem.start_type());
-    const auto answer =
-        answers_of(chain.kernel, problem.map(), {row}, problem.field, options.accuracy.seed);
-    chain.range->own_trials = own_trials(chain.pool.scattered.each, problem.field,
-                                         answer.final.front(), 1, options.accuracy.seed);
-  }
+  chain.own_trials = look_at_own_trials(chain, problem, options.accuracy.seed);
+  if (chain.prediction) chain.prediction->own_trials = {};  // that was before states were limited
   chain.transitions = transitions_with(problem, chain.pool, chain.kernel);
   if (chain.range) chain.transitions.front().health += chain.range->health;
   if (chain.prediction) chain.transitions.front().health += chain.prediction->health;

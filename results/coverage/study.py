@@ -28,7 +28,7 @@ SCENES = {
 }
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 200, 0.04
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 30, "B": 15, "C": 30, "R": 60, "M": 20}  # chains of results/tree's scenes, 24 starts each
+UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 10, "M": 6}  # chains of results/tree's scenes, 24 starts each
 
 
 def truth_of(scene):

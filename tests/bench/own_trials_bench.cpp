@@ -102,9 +102,9 @@ class Study {
     const StartTrials& s = pool_.starts.front();
     const auto row = first_row(kernel, map, pool_, s, problem_.start_type());
     const auto chain = answers_of(kernel, map, {row}, problem_.field, seed_).final.front();
-    const OwnTrials own = own_trials(s.full, problem_.field, chain, 1, seed_);
+    const OwnTrials own = *own_trials({{s.full, chain}}, problem_.field, seed_);
     std::printf("%s,%g,%lld,%.5f,%.4f,%d\n", how, accuracy_, static_cast<long long>(own.trials),
-                total_variation(chain.final_cells, truth_), own.p, own.differs);
+                total_variation(chain.final_cells, truth_), own.p, own.differs());
   }
 
   /// Something done to the rows of `part` of the leaves, each with another leaf of its face.

@@ -44,34 +44,51 @@ FinalDistribution trapped_with(double left) {
 
 TEST(OwnTrials, ByHand) {
   const FieldParams field{.columns = 2, .rows = 1};
+  const auto half = trapped_with(0.5);
+  const auto of = [&](std::int64_t left) {
+    const FieldTrials trials = trapped_in(left, 100 - left);
+    return own_trials({{trials, half}}, field, 1).value();
+  };
   // 45 of 100 where 50 are said: |45 - 50| or more of Binomial(100, 1/2) has the chance 0.3682.
-  const OwnTrials alike = own_trials(trapped_in(45, 55), field, trapped_with(0.5), 1, 1);
+  const OwnTrials alike = of(45);
   EXPECT_EQ(alike.trials, 100);
   EXPECT_NEAR(alike.total_variation, 0.05, 1e-12);
-  EXPECT_NEAR(alike.chance_total_variation, 0.0398, 0.006);  // E|X - 50| / 100
-  EXPECT_NEAR(alike.p, 0.3682, 0.09);
-  EXPECT_FALSE(alike.differs);
-  // 38 or fewer, 62 or more: 0.0210, not below 1 %. 35, 65: 0.0035.
-  EXPECT_FALSE(own_trials(trapped_in(38, 62), field, trapped_with(0.5), 1, 1).differs);
-  EXPECT_TRUE(own_trials(trapped_in(34, 66), field, trapped_with(0.5), 1, 1).differs);
-  // Of a hundred answers one is as far off now and then.
-  EXPECT_FALSE(own_trials(trapped_in(34, 66), field, trapped_with(0.5), 100, 1).differs);
-  EXPECT_TRUE(own_trials(trapped_in(25, 75), field, trapped_with(0.5), 100, 1).differs);
+  EXPECT_NEAR(alike.chance_total_variation, 0.0398, 0.003);  // E|X - 50| / 100
+  EXPECT_NEAR(alike.p, 0.3682, 0.05);
+  EXPECT_FALSE(alike.differs());
+  // 38 or fewer, 62 or more: 0.0210. 35, 65: 0.0035.
+  EXPECT_FALSE(of(38).differs());
+  EXPECT_TRUE(of(34).differs());
+}
+
+// 40 trials of which a quarter is said to end left, 60 of which three quarters are: 55 in all.
+TEST(OwnTrials, OfSeveralStartsTogether) {
+  const FieldParams field{.columns = 2, .rows = 1};
+  const FieldTrials few = trapped_in(10, 30), many = trapped_in(45, 15), none;
+  const auto quarter = trapped_with(0.25), most = trapped_with(0.75);
+  const OwnTrials right = own_trials({{few, quarter}, {many, most}}, field, 1).value();
+  EXPECT_EQ(right.trials, 100);
+  EXPECT_NEAR(right.total_variation, 0.0, 1e-12);
+  EXPECT_EQ(right.p, 1.0);
+  EXPECT_NEAR(own_trials({{few, most}, {many, quarter}}, field, 1)->total_variation, 0.1, 1e-12);
+  EXPECT_FALSE(own_trials({{none, most}}, field, 1).has_value());
 }
 
 TEST(OwnTrials, RightChainsAreLeftAlone) {
   const Scene scene = unlike_beams();
-  int alarms = 0;
+  int alarms = 0, checked = 0;
   constexpr int kSeeds = 25;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     RunPool pool;
     const auto p = predict_pooled(problem_of(scene), pool, {entry_of(scene.start)},
                                   {.accuracy = 0.1, .seed = seed});
-    ASSERT_TRUE(p.starts[0].own_trials || p.starts[0].from_trials) << seed;
-    if (!p.starts[0].own_trials) continue;
-    EXPECT_EQ(p.starts[0].own_trials->trials, p.starts[0].trials);
-    alarms += p.starts[0].own_trials->differs;
+    ASSERT_NE(p.own_trials.has_value(), p.starts[0].from_trials) << seed;
+    if (!p.own_trials) continue;
+    EXPECT_EQ(p.own_trials->trials, p.starts[0].trials);
+    alarms += p.own_trials->differs();
+    ++checked;
   }
+  EXPECT_GE(checked, kSeeds - 3);
   EXPECT_LE(alarms, 1);
 }
 
@@ -91,23 +108,28 @@ TEST(OwnTrials, AMirrorThatIsNoneIsFoundOut) {
   CellMap mirrored = problem.map();
   ASSERT_FALSE(mirrored.types[0].symmetric);
   mirrored.types[0].symmetric = true;
-  EXPECT_FALSE(own_trials(s.full, problem.field, answer_by(problem.map()), 1, 1).differs);
-  EXPECT_TRUE(own_trials(s.full, problem.field, answer_by(mirrored), 1, 1).differs);
+  const auto right = answer_by(problem.map()), wrong = answer_by(mirrored);
+  EXPECT_FALSE(own_trials({{s.full, right}}, problem.field, 1)->differs());
+  EXPECT_TRUE(own_trials({{s.full, wrong}}, problem.field, 1)->differs());
 }
 
-// One state for each face cannot be right; the trials say so.
+// One state for each face cannot be right; the trials say so, from a range of starts and from one.
 TEST(OwnTrials, StatesThatAreTooFewAreFoundOut) {
   const Problem problem = problem_of(unlike_beams());
-  const auto made = [&](std::optional<int> most) {
-    return make_tree_chain(
-        problem,
-        {.accuracy = {.trials = 4000}, .range = usual_range(problem), .most_states = most});
-  };
-  const auto right = made({}).range->own_trials, wrong = made(5).range->own_trials;
-  ASSERT_TRUE(right && wrong);
-  EXPECT_EQ(right->trials, 4000);
-  EXPECT_FALSE(right->differs) << right->p;
-  EXPECT_TRUE(wrong->differs) << wrong->p;
+  for (const bool all : {true, false}) {
+    TreeOptions options{.accuracy = {.trials = 4000}};
+    if (all)
+      options.range = usual_range(problem);
+    else
+      options.starts = {problem.start};
+    const auto right = make_tree_chain(problem, options).own_trials;
+    options.most_states = 5;
+    const auto wrong = make_tree_chain(problem, options).own_trials;
+    ASSERT_TRUE(right && wrong);
+    EXPECT_GE(right->trials, 4000);
+    EXPECT_FALSE(right->differs()) << right->p;
+    EXPECT_TRUE(wrong->differs()) << wrong->p;
+  }
 }
 
 }  // namespace
