@@ -38,9 +38,9 @@ void read_as(std::string_view bytes, const std::string& ending) {
     require(!matrix->probabilities || sum == 0 || sum >= std::int64_t{1} << 20,
             "probabilities are counts of a fine step");
   }
+  if (matrix->probabilities) return;  // in steps, which are more than counts may be
   cli::SparseTable table = matrix->table;
   std::erase_if(table.entries, [](const auto& e) { return e.value == 0.0; });
-  table.whole = true;  // of steps, if it is of probabilities
   const std::string market = cli::matrix_market_of(table, "again");
   require(same(cli::read_foreign(file_of(market, ".again.mtx"), states).table, table),
           "a matrix that was written and read is the same");
