@@ -98,7 +98,7 @@ class Between {
 int cell_at(double place, double size) { return static_cast<int>(std::floor(place / size)); }
 
 /// As far from the origin as that, and no further from frame to frame, in cells.
-constexpr double kMostCells = 1e6, kMostCellsAtOnce = 1000.0;
+constexpr double kMostCells = 1e9, kMostCellsAtOnce = 1000.0;
 
 /// Adds the crossings of the borders k size of one axis: whoever is further than `margin` over a
 /// border has crossed it, where it last did so. Returns how often borders were crossed in all.
@@ -228,7 +228,7 @@ class Cutter {
             (std::abs(at) <= kMostCells
                  ? rounded(kMostCellsAtOnce) + " cells from where it was a frame before"
                  : rounded(kMostCells) + " cells from the origin") +
-            " (are --metres-per-unit, --fps and --fastest right?)");
+            " (are --metres-per-unit, --origin, --fps and --fastest right?)");
       }
   }
 

@@ -283,7 +283,7 @@ class LongTable {
     if (std::isnan(row.when) || (when == kFrame && !is_frame(row.when)))
       refuse("column " + printable(header_[column_[when]]) + ": " +
              in_quotes(fields[column_[when]]) +
-             (when == kFrame ? " is no whole number" : " is no time"));
+             (when == kFrame ? " is no whole number of at most 10^12" : " is no time"));
     const auto known =
         bodies_.try_emplace(name, static_cast<std::int32_t>(file_.tracks.size())).first;
     row.body = known->second;

@@ -42,7 +42,7 @@ class WideTable {
     for (std::vector<std::string> row; next(row);) {
       const auto frame = coordinate_in(row[0]);
       if (!frame || !is_frame(*frame))
-        refuse("the frame " + in_quotes(row[0]) + " is no whole number");
+        refuse("the frame " + in_quotes(row[0]) + " is no whole number of at most 10^12");
       if (*frame <= last)
         refuse("frame " + shortest(*frame) + " comes behind frame " + shortest(last));
       last = *frame;
