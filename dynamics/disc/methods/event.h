@@ -48,6 +48,9 @@ class EventMethod final : public Method {
   /// |theta| (rad) of a beam where it turned between the two states `dt` apart, 0 if it did not.
   [[nodiscard]] double swing(Side side, const GateState& before, const GateState& s,
                              double dt) const;
+  /// Takes `s`, outside dt after `start` in free flight, back to the moment of leaving; returns how
+  /// long after `start` that is.
+  double leave(const GateState& start, GateState& s, double force_x, double dt) const;
   [[nodiscard]] GateState flown(const GateState& s, double force_x, double dt) const;
 
   const GateParams& p_;
