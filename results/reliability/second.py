@@ -39,6 +39,10 @@ def compared(a, b):
     return square, len(a) - 1, tv, floor
 
 
+def chance(square, freedom):
+    return chi2.sf(square, freedom) if freedom > 0 else None
+
+
 def gate(scene):
     ours = json.loads((FOLDER / f"{scene}.gate.json").read_text())
     ours = [ours["trapped"], ours["traversed"], ours["exited_left"], ours["exited_right"]]
@@ -46,7 +50,7 @@ def gate(scene):
     for line in lines(f"{scene}.gate.csv"):
         theirs[int(line["ending"])] = int(line["runs"])
     square, freedom, tv, floor = compared(theirs, ours)
-    return "gate: endings", sum(theirs), sum(ours), tv, floor, chi2.sf(square, freedom)
+    return "gate: endings", sum(theirs), sum(ours), tv, floor, chance(square, freedom)
 
 
 def matrix(name):
@@ -65,7 +69,7 @@ def chain(scene):
     rows = [compared(a, b) for a, b in zip(theirs, ours)]
     square, freedom, tv, floor = (sum(r[i] for r in rows) for i in range(4))
     return ("chain: 87 rows of the matrix (mean)", int(theirs.sum()), int(ours.sum()), tv / 87, floor / 87,
-            chi2.sf(square, freedom))
+            chance(square, freedom))
 
 
 def predicted(scene):
@@ -93,10 +97,10 @@ def field(scene):
         theirs[int(line["row"]), int(line["column"])] += int(line["trials"])
         endings[int(line["ending"])] += int(line["trials"])
     square, freedom, tv, floor = compared(theirs.ravel(), ours)
-    yield "field: final gates", int(theirs.sum()), int(ours.sum()), tv, floor, chi2.sf(square, freedom)
+    yield "field: final gates", int(theirs.sum()), int(ours.sum()), tv, floor, chance(square, freedom)
     names = ["trapped", "crossed", "left_side", "right_side", "cut_off"]
     square, freedom, tv, floor = compared(endings, [report["endings"][e] for e in names])
-    yield "field: endings", int(theirs.sum()), int(ours.sum()), tv, floor, chi2.sf(square, freedom)
+    yield "field: endings", int(theirs.sum()), int(ours.sum()), tv, floor, chance(square, freedom)
 
 
 table = csv.writer(sys.stdout, lineterminator="\n")
