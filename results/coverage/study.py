@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""How often 95 % intervals hold the truth: study.py GATEWALK DIR.
+"""How often 95 % intervals hold the truth: study.py GATEWALK DIR [COMMAND...].
 
 Each kind of interval is a row: of predictions from a scene's own start, of predictions from starts that a
-chain was not built with, of the full dynamics. Truth: 10^6 full trials of another seed (of unseen starts
-150 000 or 40 000, of results/tree), whose own noise is allowed for: added in squares to the half of the
+chain was not built with, of the full dynamics, and of what else prints intervals: analyze, validate, power, rare,
+build. With commands named, only their rows are made anew; the others stay. Truth: 10^6 full trials of another
+seed (of unseen starts 150 000 or 40 000, of results/tree), whose own noise is allowed for: added in squares to the half of the
 interval on the truth's side, or to the bar. Rare: shares of which fewer than ten trials are expected in
 what the answer was made from; an interval of such a share can only say "at most", and should hold more
 often.
@@ -28,7 +29,10 @@ SCENES = {
 }
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 200, 0.04
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 10, "M": 6}  # chains of results/tree's scenes, 24 starts each
+UNSEEN = {"A": 20, "B": 10, "C": 20, "R": 40, "M": 10}  # chains of results/tree's scenes, 24 starts each
+SEEDS_OF = {"analyze": 80, "validate": 60, "power": 4, "rare": 40, "build": 80}  # of each scene
+VALIDATE_TRIALS, RARE_ROW, RARE_RUNS = 1000, 6, 100_000
+COSTS = ("time_s", "forward_m", "work_J", "random_work_J", "lost_J")
 
 
 def truth_of(scene):
@@ -44,7 +48,25 @@ def truth_of(scene):
     return {"endings": {e: mean([p["endings"][e] / (n // 4) for p in parts]) for e in parts[0]["endings"]},
             "final_gates": [mean(x) / (n // 4) for x in zip(*(flat(p["final_gates"]) for p in parts))],
             "exits": {side: [mean([p["exits"][side][i]["share"] for p in parts])
-                             for i in range(len(parts[0]["exits"][side]))] for side in parts[0]["exits"]}}
+                             for i in range(len(parts[0]["exits"][side]))] for side in parts[0]["exits"]},
+            "costs": {e: pooled([p["costs"][e] for p in parts]) for e in parts[0]["costs"]},
+            "rows": rows_of(scene)}
+
+
+def pooled(parts):
+    """Mean and standard error of each cost over all trials of these parts."""
+    n = sum(p["trials"] for p in parts)
+    def one(cost):
+        mean = sum(p["trials"] * p[f"mean_{cost}"] for p in parts) / n
+        squares = sum(p["trials"] * (p[f"sd_{cost}"] ** 2 + (p[f"mean_{cost}"] - mean) ** 2) for p in parts)
+        return {"mean": mean, "error": math.sqrt(squares / n / n)}
+    return {cost: one(cost) for cost in COSTS} if n else None
+
+
+def rows_of(scene):
+    """The chance to enter each row, without limit of gates, by 10^6 direct trials."""
+    j = run("rare", *SCENES[scene], "--row", RARE_ROW, "--split-trials", 8, "--trials", TRUTH_TRIALS, "--seed", 9009)
+    return [r["direct_entered"] / TRUTH_TRIALS for r in j["rows"]]
 
 
 class Count:
@@ -89,7 +111,8 @@ def predicted(count, scene, truth):
         for j in pool.map(one, range(1, SEEDS + 1)):
             trials = j["first_runs"]
             answer, p = flat(j["final_gates"]), truth["final_gates"]
-            count.add("predict: total variation", scene, tv(answer, p) <= math.hypot(j["error_95"], noise_tv(p, TRUTH_TRIALS)))
+            count.add("predict: total variation", scene,
+                      tv(answer, p) <= math.hypot(j["error_95"], noise_tv(p, TRUTH_TRIALS)))
             noise = 100 * math.sqrt(sum(x * (1 - x) for x in p) / TRUTH_TRIALS / len(p))
             count.add("predict: RMSE", scene, rmse(answer, p) <= math.hypot(j["rmse_per_100_95"], noise))
             if j["corrcoef_95"] is not None:
@@ -109,10 +132,12 @@ def simulated(count, scene, truth):
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for j in pool.map(one, range(1, LATTICE_SEEDS + 1)):
             for e, interval in j["endings_95"].items():
-                count.share(f"lattice: {e}", scene, truth["endings"][e], j["endings"][e] / LATTICE_TRIALS, interval, LATTICE_TRIALS)
+                count.share(f"lattice: {e}", scene, truth["endings"][e], j["endings"][e] / LATTICE_TRIALS, interval,
+                            LATTICE_TRIALS)
             for side, places in j["exits"].items():
                 for q, place in zip(truth["exits"][side], places):
-                    count.share("lattice: where they leave", scene, q, place["share"], place["interval_95"], LATTICE_TRIALS)
+                    count.share("lattice: where they leave", scene, q, place["share"], place["interval_95"],
+                                LATTICE_TRIALS)
 
 
 def unseen(count):
@@ -137,29 +162,120 @@ def unseen(count):
                 count.add("predict, unseen start: total variation", scene,
                           tv(answer, p) <= math.hypot(a["error_95"], noise_tv(p, t["trials"])))
                 noise = 100 * math.sqrt(sum(x * (1 - x) for x in p) / t["trials"] / len(p))
-                count.add("predict, unseen start: RMSE", scene, rmse(answer, p) <= math.hypot(a["rmse_per_100_95"], noise))
+                count.add("predict, unseen start: RMSE", scene,
+                          rmse(answer, p) <= math.hypot(a["rmse_per_100_95"], noise))
                 gates_of(count, "predict, unseen start", scene, a, p, a["first_runs"], t["trials"])
 
 
+def endings_of(count, what, scene, shares, intervals, truth, trials):
+    for e, interval in intervals.items():
+        count.share(f"{what}: {e}", scene, truth["endings"][e], shares[e], interval, trials)
+
+
+def mean_of(count, row, scene, answer, interval, truth):
+    """An interval of a mean, where there is one and the truth is known well enough."""
+    p, noise = truth["mean"], 1.96 * truth["error"]
+    if interval and noise <= 0.05 * abs(p):
+        count.add(row, scene, abs(p - answer) <= math.hypot(interval[p > answer] - answer, noise))
+
+
+def analyzed(count, scene, truth):
+    for j in each("analyze", scene, "--accuracy", ACCURACY, "--runs", 0, "--paths", 1):
+        shares = {e: x["probability"] for e, x in j["endings"].items()}
+        runs = j["gate_runs"]
+        endings_of(count, "analyze", scene, shares, {e: x["interval_95"] for e, x in j["endings"].items()}, truth, runs)
+        for cost, key in zip(COSTS, ("seconds", None, "work_J", "random_work_J", "lost_J")):
+            if key:
+                mean_of(count, f"analyze: mean {cost}", scene, j[f"expected_{key}"], j[f"expected_{key}_95"],
+                        truth["costs"]["all"][cost])
+        for e, own in j["by_ending"].items():
+            if e == "all" or not truth["costs"].get(e) or own.get("mean_time_s") is None:
+                continue
+            rare = " (rare)" if truth["endings"][e] * runs < 100 else ""
+            for cost in COSTS:
+                mean_of(count, f"analyze: mean {cost} of an ending{rare}", scene, own[f"mean_{cost}"],
+                        own[f"mean_{cost}_95"], truth["costs"][e][cost])
+
+
+def validated(count, scene, truth):
+    start = ("--start", "0,0,15") if scene in "ABC" else ()
+    for j in each("validate", scene, "--accuracy", ACCURACY, "--trials", VALIDATE_TRIALS, "--null-draws", 199, *start):
+        own = j["starts"][0]
+        for kind, key, n in (("trials", "dynamics", VALIDATE_TRIALS), ("walks", "walks", VALIDATE_TRIALS),
+                             ("chain", "exact", j["matrix"]["gate_runs"])):
+            intervals = own["endings_95"][key]
+            shares = {e: x / (1 if key == "exact" else VALIDATE_TRIALS) for e, x in own["endings"][key].items()}
+            # Walks are of this chain: their truth is what it says exactly.
+            of = {"endings": own["endings"]["exact"]} if key == "walks" else truth
+            endings_of(count, f"validate, {kind}", scene, shares, intervals, of, n)
+        count.add("validate: right chain not doubted (level 5 %)", scene, own["trials_and_matrix"]["p"] > 0.05)
+
+
+def powered(count, scene, truth):
+    """Its intervals are those of predict, number by number, which is all that is looked at."""
+    for seed in range(1, SEEDS_OF["power"] + 1):
+        power, predict = (run(c, *SCENES[scene], "--accuracy", ACCURACY, "--seed", seed) for c in ("power", "predict"))
+        count.add("power: as predict's to the last bit", scene, power["endings_95"] == predict["endings_95"])
+
+
+def rare(count, scene, truth):
+    for j in each("rare", scene, "--row", RARE_ROW, "--gate-runs", RARE_RUNS):
+        for row, p in zip(j["rows"], truth["rows"]):
+            count.share("rare: the chance of a row", scene, p, row["probability"], row["interval_95"],
+                        j["split_trials"])
+
+
+def built(count, scene, truth):
+    with tempfile.TemporaryDirectory() as folder:
+        def one(seed):
+            matrix = Path(folder) / f"{seed}.nc"
+            said = run("build", *SCENES[scene], "--accuracy", ACCURACY, "--seed", seed, "-o", matrix)
+            answer = run("predict", matrix)
+            matrix.unlink()
+            return said, answer
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            for said, answer in pool.map(one, range(1, SEEDS_OF["build"] + 1)):
+                count.add("build: total variation", scene, tv(flat(answer["final_gates"]), truth["final_gates"]) <=
+                          math.hypot(said["state_space"]["error_95"][0], noise_tv(truth["final_gates"], TRUTH_TRIALS)))
+
+
+def each(command, scene, *options):
+    def one(seed):
+        return run(command, *SCENES[scene], *options, "--seed", seed)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        yield from pool.map(one, range(1, SEEDS_OF[command] + 1))
+
+
+COMMANDS = {"predict": predicted, "lattice": simulated, "analyze": analyzed, "validate": validated, "power": powered,
+            "rare": rare, "build": built, "unseen": None}
+
+
 def main():
+    commands = sys.argv[3:] or list(COMMANDS)
     path = OUT / "truth.json"
     truths = json.loads(path.read_text()) if path.exists() else {}
     for scene in SCENES:
-        if scene not in truths:
+        if "rows" not in truths.get(scene, {}):
             truths[scene] = truth_of(scene)
             path.write_text(json.dumps(truths))
     count = Count()
-    for scene in SCENES:
-        predicted(count, scene, truths[scene])
-        simulated(count, scene, truths[scene])
-    unseen(count)
+    for command in commands:
+        if command == "unseen":
+            unseen(count)
+        else:
+            for scene in SCENES:
+                COMMANDS[command](count, scene, truths[scene])
     names = [*SCENES, "M", "R", "all"]
-    with open(OUT / "coverage.csv", "w", newline="") as file:
+    share = lambda key: f"{100 * count.held[key] / count.of[key]:.1f}" if count.of[key] else ""
+    rows = {row: [row, count.of[row, "all"], *(share((row, s)) for s in names)] for row in {row for row, _ in count.of}}
+    path = OUT / "coverage.csv"
+    if path.exists() and sys.argv[3:]:
+        with open(path, newline="") as file:
+            rows = {r[0]: r for r in list(csv.reader(file))[1:]} | rows
+    with open(path, "w", newline="") as file:
         table = csv.writer(file)
         table.writerow(["interval", "answers", *(f"{s}_percent" for s in names)])
-        for row in sorted({row for row, _ in count.of}):
-            table.writerow([row, count.of[row, "all"],
-                            *(f"{100 * count.held[row, s] / count.of[row, s]:.1f}" if count.of[row, s] else "" for s in names)])
+        table.writerows(rows[row] for row in sorted(rows))
 
 
 if __name__ == "__main__":

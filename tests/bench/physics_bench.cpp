@@ -109,16 +109,16 @@ void work_is_energy(const std::string& method, double tolerance, double step, do
 // ---- Free flight: drift, diffusion and work of the held force ----
 
 void free_flight(const std::string& method, double drag, std::int64_t trials) {
-  constexpr double kSeconds = 2.0, kAside = 3.0;
+  constexpr double kAside = 3.0, kFlight = 2.0;
   GateParams p = test::without_beams({});
   p.forces.drag = drag;
   p.run.method = method;
   p.run.step = default_step(p);
-  p.run.time_limit = kSeconds;
+  p.run.time_limit = kFlight;
   p.run.traverse_y = 1e5 * p.body.radius;
   const auto by = make_method(p);
   const BodyState start{.x = 0.0, .y = 0.0, .vx = kAside, .vy = 15.0};
-  const test::FreeFlight exact = test::free_flight(p, start.x, start.vx, kSeconds);
+  const test::FreeFlight exact = test::free_flight(p, start.x, start.vx, kFlight);
   // Centred on the exact means, so that squares lose nothing.
   const auto sum = sums<10>(trials, [&](std::int64_t trial) -> std::array<double, 10> {
     RandomForce force = gate_force(p, 2, trial);
@@ -143,18 +143,27 @@ void free_flight(const std::string& method, double drag, std::int64_t trials) {
   said("variance of place", z(sum[2], sum[6], exact.var_x));
   said("variance of velocity (diffusion)", z(sum[3], sum[7], exact.var_v));
   said("covariance of both", z(sum[4], sum[8], exact.cov));
-  said("mean work of the random force", z(sum[5], sum[9], 0.0));
+  // Euler's steps give F^2 h^2 / 2M too little or too much work each: for these methods the share
+  // that they miss is told, which is of the order of step by hold.
+  if (method == "paper" || method == "penalty")
+    line({"free flight", setting, "share of the mean work of the random force missed", "-"},
+         std::abs(sum[5] / n) / exact.mean_work, trials);
+  else
+    said("mean work of the random force", z(sum[5], sum[9], 0.0));
 }
 
 // ---- Order of convergence, through hits and held contacts ----
 
+// Long enough to be held by a beam; in flights and at hits `event` and `stable` make no error at
+// all. Later meetings with the beams stretch errors without bound.
+constexpr double kSeconds = 4.0;
+
 void order(const std::string& method, double first, double factor, int halvings, double least) {
-  GateParams p = test::study(10.0);
+  GateParams p = test::study(50.0);
   p.forces.random = 0.0;
-  p.run.time_limit = 2.0;  // one meeting with the beams: later ones stretch errors without bound
+  p.run.time_limit = kSeconds;
   std::vector<BodyState> starts, exact;
-  for (int x = -19; x < 20; x += 2)
-    starts.push_back({static_cast<double>(x) + 0.37, 5.0, 0.3, 12.0});
+  for (int i = 0; i < 400; ++i) starts.push_back({-19.0 + 0.095 * i, 5.0, 0.3, 12.0});
   const auto ends = [&](const GateParams& q) {
     const auto by = make_method(q);
     std::vector<BodyState> all;
@@ -191,7 +200,7 @@ void order(const std::string& method, double first, double factor, int halvings,
   std::snprintf(setting, sizeof setting, "%s from %g to %g %s", method.c_str(), first,
                 first / std::pow(factor, halvings), method == "event" ? "m" : "s");
   const auto cases = static_cast<std::int64_t>(starts.size() * lengths.size());
-  line({"convergence", setting, "order of the error in place after 2 s", "-", least, true}, slope,
+  line({"convergence", setting, "order of the error in place after 4 s", "-", least, true}, slope,
        cases);
   line({"convergence", setting, "geometric mean of that error at the finest", "m"},
        std::exp(errors.back()), cases);
@@ -249,8 +258,8 @@ int main(int count, char** words) {
     if (method != "auto")
       for (const double drag : {0.0, 0.06}) free_flight(std::string(method), drag, trials);
   order("event", 1e-2, 10.0, 4, 0.9);
-  order("stable", 0.02, 2.0, 5, 1.8);
-  order("moreau", 0.004, 2.0, 5, 0.9);
+  order("stable", 0.005, 2.0, 5, 1.7);
+  order("moreau", 0.001, 2.0, 5, 0.9);
   order("penalty", 0.004, 2.0, 5, kNoLimit);
   order("paper", 0.004, 2.0, 5, kNoLimit);
   for (const double gap : {0.05, 0.2, 0.3}) lorentz_gas(gap, 10 * trials);
