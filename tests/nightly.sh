@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # What takes too long for every change, each in a build folder of its own (build-odr, build-alone ...):
-#   tests/nightly.sh [odr] [alone] [small] [debug] [clang] [reproducible] [fuzz] [coverage]      all without an argument
+#   tests/nightly.sh [odr] [alone] [small] [debug] [clang] [address] [thread] [reproducible] [fuzz] [coverage]
+# All without an argument.
 # odr    links the whole program with -flto -Wodr: no name may have two definitions. Without optimisation,
 #        which inlines functions before their types are compared. Two definitions within one batch of
 #        sources are an error of the compiler; the linker compares the batches.
@@ -11,6 +12,10 @@
 # debug  g++ with the checks of the standard library, of Eigen and of TBB: unit tests. -Og, with which those
 #        of the dynamics take three to four times as long as in a Release build.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
+# address  all tests but those of Python, with the sanitizers of addresses and undefined behaviour (g++): no finding.
+#        What is forgiven is in tests/sanitizers, with its reason.
+# thread the same with the sanitizer of threads, and with a TBB built with it too, from Debian's sources: what that
+#        library synchronises cannot be seen otherwise.
 # reproducible  the sources of the last commit, built in two folders of other names: the packages have the
 #        same bytes.
 # fuzz   every reader is handed input of any kind, SECONDS_EACH=60 seconds a target, by libFuzzer with clang's
@@ -94,6 +99,34 @@ clang() {
   ctest --test-dir build-clang --output-on-failure -j "$(nproc)" -E "$web"
 }
 
+address() { sanitized address; }
+thread() {
+  local tbb=$PWD/build-thread-tbb
+  if [ ! -f "$tbb/lib/libtbb.so" ]; then
+    mkdir -p "$tbb/apt/parts" "$tbb/lists/partial"
+    sed 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' /etc/apt/sources.list.d/debian.sources >"$tbb/apt/parts/debian.sources"
+    (cd "$tbb" && sources=(-o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourceparts=$tbb/apt/parts" -o "Dir::State::lists=$tbb/lists") &&
+      apt-get "${sources[@]}" update && apt-get "${sources[@]}" source onetbb)
+    cmake -S "$tbb"/onetbb-* -B "$tbb/build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_STRICT=OFF -DTBB_TEST=OFF \
+      -DTBBMALLOC_BUILD=OFF -DCMAKE_INSTALL_PREFIX="$tbb" -DCMAKE_INSTALL_LIBDIR=lib
+    cmake --build "$tbb/build"
+    cmake --install "$tbb/build"
+  fi
+  export LD_LIBRARY_PATH=$tbb/lib
+  sanitized thread -DCMAKE_PREFIX_PATH="$tbb"
+}
+sanitized() {
+  local kind=$1
+  shift
+  cmake -S . -B "build-$kind" -G Ninja -DCMAKE_CXX_COMPILER=g++ -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1' \
+    -DGATEWALK_SANITIZE="$kind" -DBUILD_TESTING=ON "$@"
+  cmake --build "build-$kind"
+  # SANITIZED: shell tests leave out what bounds a program's memory, of which these need terabytes of addresses.
+  export SANITIZED=1 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS="suppressions=$PWD/tests/sanitizers/leaks.txt"
+  export TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/sanitizers/races.txt"
+  ctest --test-dir "build-$kind" --output-on-failure -j "$(nproc)" -LE elsewhere
+}
+
 reproducible() {
   local work commit folder
   work=$(mktemp -d)
@@ -143,7 +176,7 @@ coverage() {
   awk -F, 'NR > 1 && ($2 < 95 || $3 < 90) { print $1 ": too little is run"; few = 1 } END { exit few }' $out/coverage.csv
 }
 
-steps=(odr alone small debug clang reproducible fuzz coverage)
+steps=(odr alone small debug clang address thread reproducible fuzz coverage)
 [ $# -gt 0 ] || set -- "${steps[@]}"
 for step in "$@"; do
   case " ${steps[*]} " in *" $step "*) ;; *) echo "no step '$step': ${steps[*]}" >&2; exit 2 ;; esac
@@ -152,6 +185,8 @@ case " $* " in *" clang "* | *" fuzz "*) packages+=(clang) ;; esac
 case " $* " in *" reproducible "*) packages+=(pybind11-dev python3-dev python3-numpy) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac
 case " $* " in *" coverage "*) packages+=(gcovr jq libgtest-dev) ;; esac
+case " $* " in *" thread "*) packages+=(dpkg-dev) ;; esac
+case " $* " in *" debug "* | *" address "* | *" thread "*) packages+=(libgtest-dev jq netcdf-bin) ;; esac
 if command -v apt-get >/dev/null; then install_missing; fi
 failed=0
 for step in "$@"; do

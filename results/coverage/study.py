@@ -49,7 +49,8 @@ def truth_of(scene):
             "final_gates": [mean(x) / (n // 4) for x in zip(*(flat(p["final_gates"]) for p in parts))],
             "exits": {side: [mean([p["exits"][side][i]["share"] for p in parts])
                              for i in range(len(parts[0]["exits"][side]))] for side in parts[0]["exits"]},
-            "costs": {e: pooled([p["costs"][e] for p in parts]) for e in parts[0]["costs"]},
+            "costs": {e: pooled([p["costs"][e] for p in parts if e in p["costs"]])
+                      for e in sorted({e for p in parts for e in p["costs"]})},
             "rows": rows_of(scene)}
 
 

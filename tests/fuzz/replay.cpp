@@ -29,7 +29,7 @@ constexpr double kMostSeconds = 1.0;  // of the processor, for one input
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;
-#ifndef __SANITIZE_ADDRESS__
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   constexpr rlim_t kMostBytes = rlim_t{2} << 30;
   const rlimit limit{kMostBytes, kMostBytes};
   (void)setrlimit(RLIMIT_AS, &limit);
