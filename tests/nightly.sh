@@ -12,7 +12,7 @@
 # debug  g++ with the checks of the standard library, of Eigen and of TBB: unit tests. -Og, with which those
 #        of the dynamics take three to four times as long as in a Release build.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
-# address  all tests but those of Python, with the sanitizers of addresses and undefined behaviour (g++): no finding.
+# address  all tests but those of Python, with the sanitizers of addresses and undefined behaviour (clang): no finding.
 #        What is forgiven is in tests/sanitizers, with its reason.
 # thread the same with the sanitizer of threads, and with a TBB built with it too, from Debian's sources: what that
 #        library synchronises cannot be seen otherwise.
@@ -107,7 +107,7 @@ thread() {
     sed 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' /etc/apt/sources.list.d/debian.sources >"$tbb/apt/parts/debian.sources"
     (cd "$tbb" && sources=(-o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourceparts=$tbb/apt/parts" -o "Dir::State::lists=$tbb/lists") &&
       apt-get "${sources[@]}" update && apt-get "${sources[@]}" source onetbb)
-    cmake -S "$tbb"/onetbb-* -B "$tbb/build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_STRICT=OFF -DTBB_TEST=OFF \
+    cmake -S "$tbb"/onetbb-* -B "$tbb/build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_STRICT=OFF -DTBB_TEST=OFF \
       -DTBBMALLOC_BUILD=OFF -DCMAKE_INSTALL_PREFIX="$tbb" -DCMAKE_INSTALL_LIBDIR=lib
     cmake --build "$tbb/build"
     cmake --install "$tbb/build"
@@ -118,7 +118,7 @@ thread() {
 sanitized() {
   local kind=$1
   shift
-  cmake -S . -B "build-$kind" -G Ninja -DCMAKE_CXX_COMPILER=g++ -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1' \
+  cmake -S . -B "build-$kind" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1' \
     -DGATEWALK_SANITIZE="$kind" -DBUILD_TESTING=ON "$@"
   cmake --build "build-$kind"
   # SANITIZED: shell tests leave out what bounds a program's memory, of which these need terabytes of addresses.
@@ -181,7 +181,7 @@ steps=(odr alone small debug clang address thread reproducible fuzz coverage)
 for step in "$@"; do
   case " ${steps[*]} " in *" $step "*) ;; *) echo "no step '$step': ${steps[*]}" >&2; exit 2 ;; esac
 done
-case " $* " in *" clang "* | *" fuzz "*) packages+=(clang) ;; esac
+case " $* " in *" clang "* | *" fuzz "* | *" address "* | *" thread "*) packages+=(clang) ;; esac
 case " $* " in *" reproducible "*) packages+=(pybind11-dev python3-dev python3-numpy) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac
 case " $* " in *" coverage "*) packages+=(gcovr jq libgtest-dev) ;; esac
