@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: MIT
 # Whether two programs of gatewalk write the same results: JSON, CSV, NetCDF, tables, figures and pages of many command
 # lines, byte by byte, but for what names the program itself (version, commit) and what was timed.
-#   tests/same_results.sh [--lines PATTERN] OLD NEW [SCENES]
-# OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds.
+#   tests/same_results.sh [--lines PATTERN] [--hashes FILE] OLD NEW [SCENES]
+# OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds;
+# FILE: gets a hash of what OLD writes for each line.
 # Status 1: some differ; 2: nothing was compared.
 # To see that it finds what it should, change a constant in a copy of the sources, say kQuantile in
 # lattice/statistics/group_spread.cpp, and compare the programs.
 set -euf
-pattern=.
-if [ "${1-}" = --lines ]; then
-  pattern=$2
+pattern=. hashes=
+while [ "${1-}" = --lines ] || [ "${1-}" = --hashes ]; do
+  if [ "$1" = --lines ]; then pattern=$2; else hashes=$(realpath "$2"); fi
   shift 2
-fi
+done
 for tool in jq ncdump; do command -v $tool >/dev/null || { echo "$tool is missing" >&2; exit 2; }; done
 old=$(realpath "$1") new=$(realpath "$2")
 scenes=$(realpath "${3:-$(dirname "$0")/../scenes}")
@@ -237,6 +238,10 @@ compare() {  # NUMBER of the line
     done
     cmp -s old.plain new.plain || differ+=("$file"$'\n'"$(diff old.plain new.plain | head -n 6 | cut -c1-300)")
   done < <(cd old && find . -type f | sort)
+  if [ -n "$hashes" ]; then
+    find old -type f | sort | while read -r file; do echo "$file"; plain "$command" "$file"; done | sha256sum |
+      sed "s/^\(.\{16\}\).*/\1,\"$line\"/" >"$work/$1.hash"
+  fi
   if [ ${#differ[@]} = 0 ]; then
     echo same >"$work/$1.verdict"
   else
@@ -244,9 +249,12 @@ compare() {  # NUMBER of the line
   fi
   rm -r "$here"
 }
-export old new work timed nameless
+export old new work timed nameless hashes
 export -f compare plain
 seq "$(wc -l <"$work/lines")" | xargs -P "$(nproc)" -I{} bash -c 'set -euf; compare {}' || true
+if [ -n "$hashes" ]; then
+  { echo hash,line; for number in $(seq "$(wc -l <"$work/lines")"); do cat "$work/$number.hash"; done; } >"$hashes"
+fi
 same=$(find "$work" -maxdepth 1 -name '*.verdict' | wc -l)
 other=$(($(wc -l <"$work/lines") - same))
 echo "$same command lines with the same results, $other with others"

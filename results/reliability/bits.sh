@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# The same bits? The program by other compilers, optimisation, instruction sets, processors, threads and ranks beside
+# the release build, over the command lines of tests/same_results.sh that LINES finds.
+#   [BUILD=build] [LINES=...] results/reliability/bits.sh [VARIANT...]      without names all, an hour on two cores
+# Writes bits.csv: variant, lines that are the same, lines that differ; bits.txt; golden.csv: a hash for each line.
+# Rows of variants that are not named stay.
+# gcc-O0 ... clang-O3: compilers.   threads-1, -2, -32.   ranks-2, -4: MPI (gatewalk_mpi of a build with tests).
+# avx2, sse2: without AVX-512, without AVX2 too, in qemu; libm: glibc's sin, exp, log without fused multiply-add.
+# arm64, s390x: cross-compiled, with Debian's libraries for them, in qemu; s390x has the other order of bytes.
+set -euo pipefail
+root=$(realpath "$(dirname "$0")/../..")
+build=$(realpath "${BUILD:-$root/build}")
+gatewalk=$build/gatewalk
+out=$root/results/reliability
+work=$root/build-bits
+some='gate (field.toml --trials|single|soft|stiff|robot|own|over)|sweep own|build (field.toml --trials|own|mixed)'
+some+='|walk (own|mixed)|predict (matrix.nc --json|own|mixed.nc --set terrain|robot|field.toml --accuracy|map)'
+some+='|lattice (field.toml --trials|own|map|mixed)|analyze tree.nc --runs|rare mixed|validate own'
+some+='|power field.toml --accuracy 0.1 --trials'
+lines=${LINES:-"^0 ($some)"}
+. "$root/results/manifest.sh"
+. "$root/.ci/prepare"
+mkdir -p "$work"
+hwcaps=glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA,-FMA4
+all=(gcc-O0 gcc-O1 gcc-O2 gcc-O3 clang-O2 clang-O3 threads-1 threads-2 threads-32 ranks-2 ranks-4 avx2 sse2 libm arm64 s390x)
+[ $# -gt 0 ] || set -- "${all[@]}"
+packages+=(jq netcdf-bin qemu-user clang g++-aarch64-linux-gnu g++-s390x-linux-gnu)
+install_missing
+
+program() { # FOLDER [CMAKE-OPTION...]
+  cmake -S "$root" -B "$work/$1" -G Ninja -DBUILD_TESTING=OFF "${@:2}" >"$work/$1.log" 2>&1 &&
+    cmake --build "$work/$1" --target gatewalk >>"$work/$1.log" 2>&1 || { tail "$work/$1.log" >&2; return 1; }
+}
+compiled() { program "$1" -DCMAKE_CXX_COMPILER="$2" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="$3 -DNDEBUG"; }
+wrapped() { # NAME WORDS: a program that runs them before the arguments; {} is the program
+  printf '#!/bin/sh\nexec %s\n' "$2" >"$work/$1.sh"
+  chmod +x "$work/$1.sh"
+}
+# Debian's libraries for another architecture, unpacked into a folder.
+libraries() { # ARCHITECTURE
+  local folder=$work/$1-root options
+  [ ! -e "$folder/done" ] || return 0
+  mkdir -p "$folder"/apt/{parts,lists/partial,cache/archives/partial}
+  : >"$folder/apt/status"
+  cp /etc/apt/sources.list.d/debian.sources "$folder/apt/parts"
+  options=(-o "APT::Architecture=$1" -o "APT::Architectures=$1" -o APT::Sandbox::User=root
+    -o "Dir::State::lists=$folder/apt/lists" -o "Dir::State::status=$folder/apt/status" -o "Dir::Cache=$folder/apt/cache" -o Dir::Etc::sourcelist=/dev/null
+    -o "Dir::Etc::sourceparts=$folder/apt/parts")
+  apt-get "${options[@]}" update >"$work/$1-apt.log"
+  apt-get "${options[@]}" install --download-only -y --no-install-recommends libeigen3-dev libsuitesparse-dev \
+    libboost-program-options-dev libnetcdf-dev libtbb-dev libhwy-dev librandom123-dev libtomlplusplus-dev \
+    nlohmann-json3-dev zlib1g-dev libarchive-dev >>"$work/$1-apt.log"
+  local deb
+  for deb in "$folder"/apt/cache/archives/*.deb; do dpkg-deb -x "$deb" "$folder"; done
+  touch "$folder/done"
+}
+crossed() { # ARCHITECTURE PROCESSOR
+  libraries "$1"
+  program "$1" -DCMAKE_BUILD_TYPE=Release -DGATEWALK_VIDEO=OFF -DGATEWALK_PAGES=OFF -DCMAKE_SYSTEM_NAME=Linux \
+    -DCMAKE_SYSTEM_PROCESSOR="$2" -DCMAKE_CXX_COMPILER="$2-linux-gnu-g++" -DCMAKE_ASM_COMPILER="$2-linux-gnu-gcc" \
+    -DCMAKE_SYSROOT="$work/$1-root" -DCMAKE_LIBRARY_ARCHITECTURE="$2-linux-gnu" \
+    -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER \
+    -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY \
+    -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY
+  wrapped "$1" "qemu-$2 -L '$work/$1-root' '$work/$1/gatewalk' \"\$@\""
+}
+made() { # VARIANT: makes it, and says where the program is
+  local option=-${1##*-}
+  case $1 in
+    gcc-*) compiled "$1" g++ "$option" && echo "$work/$1/gatewalk" ;;
+    clang-*) compiled "$1" clang++ "$option" && echo "$work/$1/gatewalk" ;;
+    threads-*) wrapped "$1" "'$gatewalk' \"\$@\" --threads ${1#threads-}" ;;
+    ranks-*) wrapped "$1" "mpirun --allow-run-as-root --oversubscribe -n ${1#ranks-} '$build/tests/gatewalk_mpi' \"\$@\"" ;;
+    avx2) wrapped "$1" "qemu-x86_64 -cpu Haswell '$gatewalk' \"\$@\" 2>/dev/null" ;;
+    sse2) wrapped "$1" "qemu-x86_64 -cpu Nehalem '$gatewalk' \"\$@\" 2>/dev/null" ;;
+    libm) wrapped "$1" "env GLIBC_TUNABLES=$hwcaps '$gatewalk' \"\$@\"" ;;
+    arm64) crossed arm64 aarch64 ;;
+    s390x) crossed s390x s390x ;;
+    *) echo "no variant '$1': ${all[*]}" >&2; return 2 ;;
+  esac
+  [ ! -e "$work/$1.sh" ] || echo "$work/$1.sh"
+}
+table=$out/bits.csv
+[ -e "$table" ] || echo "variant,same,differ" >"$table"
+failed=0
+for variant in "$@"; do
+  other=$(made "$variant" | tail -n 1)
+  [ -n "$other" ] || exit 1
+  "$root/tests/same_results.sh" --lines "$lines" "$gatewalk" "$other" >"$work/$variant.result" || failed=1
+  row=$variant,$(sed -n 's/^\([0-9]*\) command lines with the same results, \([0-9]*\) with others$/\1,\2/p' \
+    "$work/$variant.result")
+  { grep -v "^$variant," "$table"; echo "$row"; } >"$table.new"
+  mv "$table.new" "$table"
+  echo "$row"
+  grep '^DIFFERS' "$work/$variant.result" | cut -c1-300 || true
+done
+"$root/tests/same_results.sh" --lines "$lines" --hashes "$out/golden.csv" "$gatewalk" "$gatewalk"
+manifest "results/reliability/bits.sh" >"$out/bits.txt"
+{
+  echo "date: $(date -I)"
+  for program in g++ clang++ qemu-x86_64; do "$program" --version | head -n 1; done
+} >>"$out/bits.txt"
+exit $failed
