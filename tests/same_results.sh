@@ -194,7 +194,7 @@ tree field.toml --accuracy 0.1
 mixed mixed.toml --set run.method=moreau --bins paper --trials 3
 END
 
-# What a file says but for what may differ: who made it, and what was timed. Where a table consists of times, its words
+# What a file says but for what may differ: who made it, on how many threads, and what was timed. Where a table consists of times, its words
 # stay; its other numbers are in the JSON beside it. What chart-chain charts depends on the times, and so do verdicts of
 # reproduce: of it the results of the studies and the tables of the figures but for speed are compared.
 plain() {  # COMMAND FILE
@@ -210,7 +210,7 @@ plain() {  # COMMAND FILE
     *) cat "$2" ;;
   esac
 }
-timed='^(seconds|(run|direct|chain)_seconds|(micro)?seconds_per_trial|speed_ratio|(build|exact|walks_[0-9]+)_s'
+timed='^(threads|seconds|(run|direct|chain)_seconds|(micro)?seconds_per_trial|speed_ratio|(build|exact|walks_[0-9]+)_s'
 timed+='|one_thread_s_per_.*|chain_pays_.*|summary|direct_simulation)$'
 nameless='walk(if type == "object" then del(.version, .commit, .program, .machine) |
   with_entries(select(.key | test($timed) | not)) else . end)'

@@ -5,7 +5,7 @@
 Each kind of interval is a row: of predictions from a scene's own start, of predictions from starts that a
 chain was not built with, of the full dynamics, and of what else prints intervals: analyze, validate, power, rare,
 build. With commands named, only their rows are made anew; the others stay. Truth: 10^6 full trials of another
-seed (of unseen starts 150 000 or 40 000, of results/tree), whose own noise is allowed for: added in squares to the half of the
+seed (of costs and rows 100 000, of unseen starts 150 000 or 40 000, of results/tree), whose own noise is allowed for: added in squares to the half of the
 interval on the truth's side, or to the bar. Rare: shares of which fewer than ten trials are expected in
 what the answer was made from; an interval of such a share can only say "at most", and should hold more
 often.
@@ -29,9 +29,9 @@ SCENES = {
 }
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 200, 0.04
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 20, "B": 10, "C": 20, "R": 40, "M": 10}  # chains of results/tree's scenes, 24 starts each
-SEEDS_OF = {"analyze": 80, "validate": 60, "power": 4, "rare": 40, "build": 80}  # of each scene
-VALIDATE_TRIALS, RARE_ROW, RARE_RUNS = 1000, 6, 100_000
+UNSEEN = {"A": 16, "B": 8, "C": 16, "R": 30, "M": 8}  # chains of results/tree's scenes, 24 starts each
+SEEDS_OF = {"analyze": 40, "validate": 30, "power": 2, "rare": 35, "build": 40}  # of each scene
+VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 6, 100_000, 100_000
 COSTS = ("time_s", "forward_m", "work_J", "random_work_J", "lost_J")
 
 
@@ -48,26 +48,16 @@ def truth_of(scene):
     return {"endings": {e: mean([p["endings"][e] / (n // 4) for p in parts]) for e in parts[0]["endings"]},
             "final_gates": [mean(x) / (n // 4) for x in zip(*(flat(p["final_gates"]) for p in parts))],
             "exits": {side: [mean([p["exits"][side][i]["share"] for p in parts])
-                             for i in range(len(parts[0]["exits"][side]))] for side in parts[0]["exits"]},
-            "costs": {e: pooled([p["costs"][e] for p in parts if e in p["costs"]])
-                      for e in sorted({e for p in parts for e in p["costs"]})},
-            "rows": rows_of(scene)}
+                             for i in range(len(parts[0]["exits"][side]))] for side in parts[0]["exits"]}}
 
 
-def pooled(parts):
-    """Mean and standard error of each cost over all trials of these parts."""
-    n = sum(p["trials"] for p in parts)
-    def one(cost):
-        mean = sum(p["trials"] * p[f"mean_{cost}"] for p in parts) / n
-        squares = sum(p["trials"] * (p[f"sd_{cost}"] ** 2 + (p[f"mean_{cost}"] - mean) ** 2) for p in parts)
-        return {"mean": mean, "error": math.sqrt(squares / n / n)}
-    return {cost: one(cost) for cost in COSTS} if n else None
-
-
-def rows_of(scene):
-    """The chance to enter each row, without limit of gates, by 10^6 direct trials."""
-    j = run("rare", *SCENES[scene], "--row", RARE_ROW, "--split-trials", 8, "--trials", TRUTH_TRIALS, "--seed", 9009)
-    return [r["direct_entered"] / TRUTH_TRIALS for r in j["rows"]]
+def more_truth_of(scene):
+    """Costs by ending, and the chance to enter each row without limit of gates, by fewer trials."""
+    costs = run("lattice", *SCENES[scene], "--trials", MORE_TRUTH_TRIALS, "--seed", 9008)["costs"]
+    rows = run("rare", *SCENES[scene], "--row", RARE_ROW, "--split-trials", 8, "--trials", MORE_TRUTH_TRIALS, "--seed", 9009)
+    return {"costs": {e: {c: {"mean": own[f"mean_{c}"], "error": own[f"sd_{c}"] / math.sqrt(own["trials"])} for c in COSTS}
+                      for e, own in costs.items()},
+            "rows": [r["direct_entered"] / MORE_TRUTH_TRIALS for r in rows["rows"]]}
 
 
 class Count:
@@ -223,7 +213,7 @@ def rare(count, scene, truth):
     for j in each("rare", scene, "--row", RARE_ROW, "--gate-runs", RARE_RUNS):
         for row, p in zip(j["rows"], truth["rows"]):
             count.share("rare: the chance of a row", scene, p, row["probability"], row["interval_95"],
-                        j["split_trials"])
+                        j["split_trials"], MORE_TRUTH_TRIALS)
 
 
 def built(count, scene, truth):
@@ -256,9 +246,13 @@ def main():
     path = OUT / "truth.json"
     truths = json.loads(path.read_text()) if path.exists() else {}
     for scene in SCENES:
-        if "rows" not in truths.get(scene, {}):
+        if scene not in truths:
             truths[scene] = truth_of(scene)
-            path.write_text(json.dumps(truths))
+    lacking = [scene for scene in SCENES if "rows" not in truths[scene]]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for scene, more in zip(lacking, pool.map(more_truth_of, lacking)):
+            truths[scene].update(more)
+    path.write_text(json.dumps(truths))
     count = Count()
     for command in commands:
         if command == "unseen":
