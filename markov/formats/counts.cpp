@@ -132,10 +132,12 @@ void check_content(const CountsFile& file) {
   validate(file.exits, file.counts.rows(), file.counts.cols());
   check_rows(file);
   std::set<std::string> taken = kOwnVariables;
-  std::map<std::string, std::size_t> lengths{
-      {"input_state", file.trials.size()},
-      {"output_state", file.exits.size()},
-      {"nonzero", static_cast<std::size_t>((file.counts.coeffs() != 0).count())}};
+  std::size_t nonzero = 0;
+  for (std::int64_t row = 0; row < file.counts.rows(); ++row)
+    for (Counts::InnerIterator it(file.counts, row); it; ++it) nonzero += it.value() != 0;
+  std::map<std::string, std::size_t> lengths{{"input_state", file.trials.size()},
+                                             {"output_state", file.exits.size()},
+                                             {"nonzero", nonzero}};
   for (const NamedArray& array : file.arrays) {
     check_name(array.name, taken);
     taken.insert(array.name);

@@ -5,7 +5,8 @@
 Each kind of interval is a row: of predictions from a scene's own start, of predictions from starts that a
 chain was not built with, of the full dynamics, and of what else prints intervals: analyze, validate, power, rare,
 build. With commands named, only their rows are made anew; the others stay. Truth: 10^6 full trials of another
-seed (of costs and rows 100 000, of unseen starts 150 000 or 40 000, of results/tree), whose own noise is allowed for: added in squares to the half of the
+seed (of costs and rows 100 000, of unseen starts 150 000 or 40 000, of results/tree), whose own noise is allowed
+for: added in squares to the half of the
 interval on the truth's side, or to the bar. Rare: shares of which fewer than ten trials are expected in
 what the answer was made from; an interval of such a share can only say "at most", and should hold more
 often.
@@ -29,7 +30,7 @@ SCENES = {
 }
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 200, 0.04
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 16, "B": 8, "C": 16, "R": 30, "M": 8}  # chains of results/tree's scenes, 24 starts each
+UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 10, "M": 6}  # chains of results/tree's scenes, 24 starts each
 SEEDS_OF = {"analyze": 40, "validate": 30, "power": 2, "rare": 35, "build": 40}  # of each scene
 VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 6, 100_000, 100_000
 COSTS = ("time_s", "forward_m", "work_J", "random_work_J", "lost_J")
@@ -54,9 +55,11 @@ def truth_of(scene):
 def more_truth_of(scene):
     """Costs by ending, and the chance to enter each row without limit of gates, by fewer trials."""
     costs = run("lattice", *SCENES[scene], "--trials", MORE_TRUTH_TRIALS, "--seed", 9008)["costs"]
-    rows = run("rare", *SCENES[scene], "--row", RARE_ROW, "--split-trials", 8, "--trials", MORE_TRUTH_TRIALS, "--seed", 9009)
-    return {"costs": {e: {c: {"mean": own[f"mean_{c}"], "error": own[f"sd_{c}"] / math.sqrt(own["trials"])} for c in COSTS}
-                      for e, own in costs.items()},
+    rows = run("rare", *SCENES[scene], "--row", RARE_ROW, "--split-trials", 8, "--trials", MORE_TRUTH_TRIALS,
+               "--seed", 9009)
+    mean_and_error = lambda own, c: {"mean": own[f"mean_{c}"], "error": own[f"sd_{c}"] / math.sqrt(own["trials"])}
+    return {"costs": {e: {c: mean_and_error(own, c) for c in COSTS}
+                      for e, own in costs.items() if own["trials"] >= 30},
             "rows": [r["direct_entered"] / MORE_TRUTH_TRIALS for r in rows["rows"]]}
 
 

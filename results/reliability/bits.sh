@@ -56,12 +56,18 @@ libraries() { # ARCHITECTURE
     nlohmann-json3-dev zlib1g-dev libarchive-dev >>"$work/$1-apt.log"
   local deb
   for deb in "$folder"/apt/cache/archives/*.deb; do dpkg-deb -x "$deb" "$folder"; done
+  local link
+  find "$folder/usr" "$folder/lib" -type l -lname '/*' | while read -r link; do ln -sfn "$folder$(readlink "$link")" "$link"; done
+  # There libraries have absolute paths.
+  sed -i "s#;\(/usr/lib/\)#;$folder\1#g" "$folder"/usr/lib/*/cmake/netCDF/netCDFTargets.cmake
   touch "$folder/done"
 }
+# math.h of the C++ library, which the folder's own would hide.
 crossed() { # ARCHITECTURE PROCESSOR
   libraries "$1"
   program "$1" -DCMAKE_BUILD_TYPE=Release -DGATEWALK_VIDEO=OFF -DGATEWALK_PAGES=OFF -DCMAKE_SYSTEM_NAME=Linux \
     -DCMAKE_SYSTEM_PROCESSOR="$2" -DCMAKE_CXX_COMPILER="$2-linux-gnu-g++" -DCMAKE_ASM_COMPILER="$2-linux-gnu-gcc" \
+    -DCMAKE_CXX_FLAGS="-include /usr/$2-linux-gnu/include/c++/$("$2-linux-gnu-g++" -dumpversion)/math.h" \
     -DCMAKE_SYSROOT="$work/$1-root" -DCMAKE_LIBRARY_ARCHITECTURE="$2-linux-gnu" \
     -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER \
     -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY \

@@ -272,6 +272,19 @@ TEST_F(ChainIo, SameContentSameBytes) {
   EXPECT_EQ(bytes_of(path("a")), bytes_of(path("b")));
 }
 
+// Room for more between the rows holds no counts.
+TEST_F(ChainIo, NumbersOfCountsMayComeWithAMatrixThatHasGaps) {
+  CountsFile file = example();
+  file.counts.makeCompressed();
+  const auto nonzero = static_cast<std::size_t>((file.counts.coeffs() != 0).count());
+  file.arrays = {{"of_counts", "1", "", std::vector<double>(nonzero, 0.5), "nonzero"}};
+  write_counts(path("a"), file);
+  file.counts.reserve(Eigen::VectorXi::Constant(87, 4));
+  EXPECT_FALSE(file.counts.isCompressed());
+  write_counts(path("b"), file);
+  EXPECT_EQ(bytes_of(path("a")), bytes_of(path("b")));
+}
+
 TEST_F(ChainIo, ChecksumIsTheDocumentedOne) {
   EXPECT_EQ(crc64("123456789"), 0x995dc9bbdf1939faU);
   write_counts(path(), example());
