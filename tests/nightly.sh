@@ -13,7 +13,8 @@
 #        of the dynamics take three to four times as long as in a Release build.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
 # address  all tests but those of Python, with the sanitizers of addresses and undefined behaviour (clang): no finding.
-#        What is forgiven is in tests/sanitizers, with its reason.
+#        What is forgiven is in tests/sanitizers, with its reason. Lanes are not instrumented (dynamics/CMakeLists.txt),
+#        nor compiled for AVX2 and AVX-512: that takes compilers hours. Their plain references are.
 # thread the same with the sanitizer of threads, and with a TBB built with it too, from Debian's sources: what that
 #        library synchronises cannot be seen otherwise.
 # reproducible  the sources of the last commit, built in two folders of other names: the packages have the

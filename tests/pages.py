@@ -4,8 +4,8 @@
 
 Blocks of sh and python run as a whole, and print the lines of the text block that follows. In a block without a kind
 whose first line begins with "$ " each such line is a command, and what is printed (errors too) are the lines up to the
-next; it fails if and only if that begins with "gatewalk: " and ends there. "[...]": anything, on a line of its own any
-lines. A file that is shown by cat and is not there is made.
+next, where there are any; it is refused (status 2) if and only if they are one line that begins with "gatewalk: ".
+"[...]": anything, on a line of its own any lines. A file that is shown by cat and is not there is made.
 """
 import contextlib, io, os, re, subprocess, sys, traceback
 

@@ -239,8 +239,9 @@ compare() {  # NUMBER of the line
     cmp -s old.plain new.plain || differ+=("$file"$'\n'"$(diff old.plain new.plain | head -n 6 | cut -c1-300)")
   done < <(cd old && find . -type f | sort)
   if [ -n "$hashes" ]; then
-    find old -type f | sort | while read -r file; do echo "$file"; plain "$command" "$file"; done | sha256sum |
-      sed "s/^\(.\{16\}\).*/\1,\"$line\"/" >"$work/$1.hash"
+    local hash
+    hash=$(find old -type f | sort | while read -r file; do echo "$file"; plain "$command" "$file"; done | sha256sum)
+    printf '%s,"%s"\n' "${hash:0:16}" "$line" >"$work/$1.hash"
   fi
   if [ ${#differ[@]} = 0 ]; then
     echo same >"$work/$1.verdict"

@@ -11,7 +11,8 @@ build=${BUILD:-$root/build}
 gatewalk=$build/gatewalk
 out=$root/results/reliability
 . "$root/results/manifest.sh"
-"$build/tests/physics_bench" "${TRIALS:-1000000}" >"$out/physics.new" || failed=1
+"$build/tests/physics_bench" "${TRIALS:-1000000}" >"$out/physics.new" || failed=$?
+[ "${failed:-0}" -le 1 ] || exit "$failed"  # it crashed
 mv "$out/physics.new" "$out/physics.csv"
 manifest "TRIALS=${TRIALS:-1000000} results/reliability/physics.sh" >"$out/physics.txt"
 echo "date: $(date -I)" >>"$out/physics.txt"

@@ -37,7 +37,7 @@ one() {
     "$work/$name.ours.csv" >"$work/$name.numbers.csv"
   second predict "$work/$name.numbers.csv" 2 5 "$work/$name.again.csv"
 }
-export -f one manifest
+export -f one
 export root gatewalk runs trials step work scene
 printf '%s\0' A "" "" \
   B "forces.propulsion_N=8 forces.random_N=10" "propulsion=8 random=10" \

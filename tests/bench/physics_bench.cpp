@@ -258,7 +258,7 @@ int main(int count, char** words) {
     if (method != "auto")
       for (const double drag : {0.0, 0.06}) free_flight(std::string(method), drag, trials);
   order("event", 1e-2, 10.0, 4, 0.9);
-  order("stable", 0.005, 2.0, 5, 1.7);
+  order("stable", 0.005, 2.0, 5, 1.8);
   order("moreau", 0.001, 2.0, 5, 0.9);
   order("penalty", 0.004, 2.0, 5, kNoLimit);
   order("paper", 0.004, 2.0, 5, kNoLimit);

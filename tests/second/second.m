@@ -34,7 +34,7 @@ counts_file = "";
 if strcmp(what, "predict") counts_file = words{2}; words(2) = []; end
 [n, seed, file] = deal(str2double(words{2}), str2double(words{3}), words{4});
 p = scene_of(words(5:end)');
-randn("twister", seed); rand("twister", seed + 1);
+randn("twister", seed); rand("twister", seed + 1); randp("twister", seed + 2);
 fresh = @(n) deal(zeros(1, n), repmat(p.hold, 1, n));  % a draw at once
 switch what
   case "gate"
