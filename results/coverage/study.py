@@ -6,8 +6,7 @@ Each kind of interval is a row: of predictions from a scene's own start, of pred
 chain was not built with, of the full dynamics, and of what else prints intervals: analyze, validate, power, rare,
 build. With commands named, only their rows are made anew; the others stay. Truth: 10^6 full trials of another
 seed (of costs and rows 100 000, of unseen starts 150 000 or 40 000, of results/tree), whose own noise is allowed
-for: added in squares to the half of the
-interval on the truth's side, or to the bar. Rare: shares of which fewer than ten trials are expected in
+for: added in squares to the half of the interval on the truth's side, or to the bar. Rare: shares of which fewer than ten trials are expected in
 what the answer was made from; an interval of such a share can only say "at most", and should hold more
 often.
 """
