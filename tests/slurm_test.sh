@@ -85,6 +85,7 @@ scancel "${array}_1"                   # by somebody
 pkill -KILL -f -- "--shard 2/8 --part $D" # and one whose node is lost with all that runs on it
 waited ended
 waited merged
+pkill -KILL -f -- "--shard [12]/8 --part $D" # a tracker by parents loses a stopped child; the cgroups of a cluster do not
 rm held
 [ ! -e all.json ] || fail "merged, and parts were missing"
 "$gatewalk" merge run1/part*[0-9] -o x.json >said.txt 2>&1 && fail "merge of too few parts"
