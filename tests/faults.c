@@ -1,5 +1,5 @@
 /* Loaded before libc: call number FAULT_AT of FAULT_CALL fails with FAULT_ERRNO, and with FAULT_EVER all after it.
-   "malloc" stands for all that give memory. */
+   "malloc" stands for all that give memory, "open" for all that open a file, "spawn" for all that start a process. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -38,6 +38,9 @@ int posix_memalign(void **to, size_t at, size_t size) {
 #define REAL(name) __typeof__(&name) real = (__typeof__(&name))dlsym(RTLD_NEXT, #name)
 
 #include <fcntl.h>
+#include <pthread.h>
+#include <spawn.h>
+#include <stdarg.h>
 #include <unistd.h>
 ssize_t write(int file, const void *bytes, size_t size) {
   REAL(write);
@@ -58,4 +61,50 @@ int rename(const char *from, const char *to) {
 int ftruncate(int file, off_t size) {
   REAL(ftruncate);
   return fails("ftruncate") ? -1 : real(file, size);
+}
+static mode_t mode_of(int flags, va_list more) { return flags & O_CREAT ? va_arg(more, mode_t) : 0; }
+#define OPEN(name)                               \
+  int name(const char *path, int flags, ...) {   \
+    REAL(name);                                  \
+    va_list more;                                \
+    va_start(more, flags);                       \
+    const mode_t mode = mode_of(flags, more);    \
+    va_end(more);                                \
+    return fails("open") ? -1 : real(path, flags, mode); \
+  }
+#define OPENAT(name)                                    \
+  int name(int folder, const char *path, int flags, ...) { \
+    REAL(name);                                         \
+    va_list more;                                       \
+    va_start(more, flags);                              \
+    const mode_t mode = mode_of(flags, more);           \
+    va_end(more);                                       \
+    return fails("open") ? -1 : real(folder, path, flags, mode); \
+  }
+#define FOPEN(name)                                   \
+  FILE *name(const char *path, const char *mode) {    \
+    REAL(name);                                       \
+    return fails("open") ? NULL : real(path, mode);   \
+  }
+OPEN(open)
+OPEN(open64)
+OPENAT(openat)
+OPENAT(openat64)
+FOPEN(fopen)
+FOPEN(fopen64)
+#define SPAWN(name)                                                                                                \
+  int name(pid_t *id, const char *file, const posix_spawn_file_actions_t *actions, const posix_spawnattr_t *attributes, \
+           char *const words[], char *const environment[]) {                                                       \
+    REAL(name);                                                                                                    \
+    return fails("spawn") ? atoi(getenv("FAULT_ERRNO")) : real(id, file, actions, attributes, words, environment); \
+  }
+SPAWN(posix_spawn)
+SPAWN(posix_spawnp)
+pid_t fork(void) {
+  REAL(fork);
+  return fails("spawn") ? -1 : real();
+}
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*body)(void *), void *argument) {
+  REAL(pthread_create);
+  return fails("thread") ? EAGAIN : real(thread, attributes, body, argument);
 }

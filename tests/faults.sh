@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What becomes of results when the system fails: call number k of write, fsync, fdatasync, rename, ftruncate fails, once
-# and from then on, for every k that a command makes; so does getting memory; /dev/full, a full disk, a folder that cannot
-# be written, little memory. Never a silent success, never a damaged file.
+# What becomes of results when the system fails: call number k of write, fsync, fdatasync, rename, ftruncate, opening a
+# file, starting a process or a thread fails, once and from then on, for every k that a command makes; so does getting
+# memory; of every command but stability, chart-chain and reproduce, which take minutes and write as chart does. /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files,
+# few processes, no locale, no HOME, closed outputs. Never a silent success, never a damaged file.
 #   faults.sh GATEWALK ROOT [MOST]    at most MOST values of k each; of memory, which is asked for 10^5 times, k grows by fifths
 here=$(realpath "$(dirname "$0")")
 most=${3:-12}
@@ -10,65 +11,83 @@ most=${3:-12}
 . "$here/killed.sh"
 cc -shared -fPIC -O1 -o faults.so "$here/faults.c" -ldl || exit 1
 runs=0
-is_old() { cmp -s "$1" <(echo old); }
+# What charts time is not the same twice.
+untimed() { sed -E 's/[0-9.]+(e[-+]?[0-9]+)?/N/g; s/ +/ /g' "$1"; }
+same() {
+  case $1 in
+    */out/chart.*) cmp -s <(untimed "$1") <(untimed "$2") ;;
+    *.json) cmp -s <(plain "$1" | grep -v '"machine"') <(plain "$2" | grep -v '"machine"') ;;  # known from a file
+    *) cmp -s "$1" "$2" ;;
+  esac || fail "$2 is not $1, of a run without a fault"
+}
+# each_old FILE..., each_whole FILE...: all as before the run; those that are not as before are as after a whole one.
+each_old() { for f in "$@"; do cmp -s "$f" <(echo old) || return 1; done; }
+each_whole() { for f in "$@"; do each_old "$f" || same "one/$f" "$f"; done; }
+kept() { "$gatewalk" "$1" --help | grep -q -e ' --checkpoint'; }
 
-# survives OUTPUT COMMAND...: an old output stays as it was, or the new one is whole; a status of 0 means that it is new.
+# survives OUTPUTS COMMAND...: an old output stays as it was, or the new one is whole; a status of 0 means that all are new.
 survives() {
-  local output=$1 call k ever error status
+  local outputs call k ever error status keep=()
+  read -r -a outputs <<<"$1"
   shift
-  rm -f "$output"
+  ! kept "$1" || keep=(--checkpoint pieces)
+  rm -rf "${outputs[@]}" one && mkdir one
   "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
-  mv "$output" "one-$output"
-  for call in write fsync fdatasync rename ftruncate; do
+  for f in "${outputs[@]}"; do mkdir -p "$(dirname "one/$f")" && mv "$f" "one/$f"; done
+  # once K: the command, with the call that fails; sets status.
+  once() {
+    for f in "${outputs[@]}"; do echo old >"$f"; done
+    rm -rf seen pieces
+    runs=$((runs + 1))
+    timeout -s KILL 120 env LD_PRELOAD=./faults.so FAULT_CALL=$call FAULT_AT="$1" ${ever:+FAULT_EVER=1} FAULT_ERRNO="$error" FAULT_SEEN=seen \
+      "$gatewalk" "${command[@]}" --quiet --force "${keep[@]}" >/dev/null 2>err.txt
+    status=$?
+  }
+  resumed() {  # what was kept serves
+    [ -e pieces ] || return 0
+    "$gatewalk" "${command[@]}" --quiet --force --checkpoint pieces --resume >/dev/null 2>err.txt ||
+      fail "not resumed after $call $k: ${command[*]} ($(cat err.txt))"
+    for f in "${outputs[@]}"; do same "one/$f" "$f"; done
+  }
+  local command=("$@")
+  for call in write fsync fdatasync rename ftruncate open spawn thread; do
     for ever in "" 1; do
+      case $call:$ever in open:*) error=24 ;; spawn:*) error=11 ;; *:) error=28 ;; *) error=5 ;; esac  # EMFILE EAGAIN ENOSPC EIO
       for k in $(seq "$most"); do
-        for error in 28 5; do  # ENOSPC, EIO
-          echo old >"$output"
-          rm -f seen pieces
-          env LD_PRELOAD=./faults.so FAULT_CALL=$call FAULT_AT="$k" ${ever:+FAULT_EVER=1} FAULT_ERRNO=$error FAULT_SEEN=seen \
-            "$gatewalk" "$@" --quiet --force --checkpoint pieces >/dev/null 2>err.txt
-          status=$?
-          runs=$((runs + 1))
-          if [ $status = 0 ]; then
-            same "one-$output" "$output"
-            [ ! -e seen ] || [ $call = fdatasync ] || [ $call = ftruncate ] || fail "$call $k failed ($error), and status 0: $*"
-          else
-            is_old "$output" || same "one-$output" "$output"
-            grep -q '^gatewalk: ' err.txt || fail "$call $k failed without a word: $* ($(cat err.txt))"
-            [ $status = 1 ] || fail "$call $k failed: status $status: $* ($(cat err.txt))"
-          fi
-          # What was kept serves.
-          if [ -e pieces ]; then
-            "$gatewalk" "$@" --quiet --force --checkpoint pieces --resume >/dev/null 2>err.txt || fail "not resumed after $call $k: $* ($(cat err.txt))"
-            same "one-$output" "$output"
-          fi
-        done
+        once "$k"
+        [ $status != 137 ] || fail "$call $k failed, and no end: $*"
+        if [ $status = 0 ]; then
+          for f in "${outputs[@]}"; do same "one/$f" "$f"; done
+          # A library may open a file or start a process that it can do without; a result that is not on the disk is none.
+          case $call in write | fsync | rename) [ ! -e seen ] || fail "$call $k failed ($error), and status 0: $*" ;; esac
+        else
+          each_whole "${outputs[@]}"
+          grep -q '^gatewalk: ' err.txt || fail "$call $k failed without a word: $* ($(cat err.txt))"
+          [ $status = 1 ] || { [[ $call = @(open|spawn) ]] && [ $status = 2 ]; } || fail "$call $k failed: status $status: $* ($(cat err.txt))"
+        fi
+        compgen -G '.gatewalk-*' >/dev/null && fail "$call $k failed, and temporary files stay: $* ($(echo .gatewalk-*))" && rm -rf .gatewalk-*
+        resumed
         [ -e seen ] || break  # there are no more such calls
       done
     done
   done
   # Libraries may crash without memory: that is no success, and no file is damaged either.
+  call=malloc error=12
   for ever in "" 1; do
     for ((k = 1000; k < 1000000; k += k / 5)); do
-      echo old >"$output"
-      rm -f seen pieces
-      env LD_PRELOAD=./faults.so FAULT_CALL=malloc FAULT_AT="$k" ${ever:+FAULT_EVER=1} FAULT_ERRNO=12 FAULT_SEEN=seen \
-        "$gatewalk" "$@" --quiet --force --checkpoint pieces >/dev/null 2>err.txt
-      status=$?
+      once $k
       [ -e seen ] || break
-      runs=$((runs + 1))
       case $status in
-        0) same "one-$output" "$output" ;;
-        1) grep -q '^gatewalk: ' err.txt || fail "without memory $k: no words: $*" ;;
+        0) for f in "${outputs[@]}"; do same "one/$f" "$f"; done ;;
+        1 | 2) grep -q '^gatewalk: ' err.txt || fail "without memory $k: no words: $*" ;;
         *) crashes=$((crashes + 1)) ;;
       esac
-      [ $status = 0 ] || is_old "$output" || same "one-$output" "$output"
-      [ -e pieces ] || continue
-      "$gatewalk" "$@" --quiet --force --checkpoint pieces --resume >/dev/null 2>err.txt || fail "not resumed after memory $k: $* ($(cat err.txt))"
-      same "one-$output" "$output"
+      [ $status = 0 ] || each_whole "${outputs[@]}"
+      resumed
     done
   done 2>/dev/null  # the shell's own words about crashes
-  rm -f "$output" pieces
+  rm -rf "${outputs[@]}" pieces .gatewalk-*
+  echo "$runs runs: $1"
 }
 crashes=0
 survives gate.json gate "${field[@]}" --trials 2000 --json gate.json
@@ -76,8 +95,32 @@ survives sweep.csv sweep "$scenes/single_gate.toml" --vary forces.propulsion_N=6
 survives bins.nc build "${field[@]}" --bins paper --trials 10 -o bins.nc
 survives tree.nc build "${field[@]}" --accuracy 0.1 -o tree.nc
 survives lattice.json lattice "${field[@]}" --trials 500 --json lattice.json
-survives predict.json predict "${field[@]}" --accuracy 0.1 --json predict.json
-
+survives 'predict.json predict.svg' predict "${field[@]}" --accuracy 0.1 --json predict.json --figure predict.svg
+survives analyze.json analyze "${field[@]}" --set run.method=moreau --accuracy 0.2 --runs 100 --json analyze.json
+survives rare.json rare "${field[@]}" --set run.method=moreau --row 4 --gate-runs 4000 --json rare.json
+survives validate.json validate "${field[@]}" --bins paper --matrix-trials 3 --trials 60 --null-draws 99 --json validate.json
+survives power.json power "${field[@]}" --accuracy 0.1 --trials 60 --json power.json
+survives scene.json scene "$scenes/mixed.toml" --json scene.json
+survives new.toml scene "$scenes/mixed.toml" --new -o new.toml
+survives 'trace.json trace.csv trace.nc trace.html' trace "${field[@]}" --trials 4 --csv trace.csv --netcdf trace.nc --replay trace.html --json trace.json
+survives trace.gif trace "$scenes/soft_left.toml" --set run.time_limit_s=0.3 --video trace.gif
+survives 'out/landscape.csv out/landscape.json' landscape "$scenes/soft_left.toml" -o out
+"$gatewalk" build "${field[@]}" --bins paper --trials 10 -o m.nc --quiet >/dev/null || fail "no matrix"
+survives 'show.json show.csv' show m.nc --json show.json --csv show.csv
+survives 'walk.json walk.nc' walk m.nc --walks 2000 --json walk.json --netcdf walk.nc
+survives 'm.tra m.sta m.lab' export m.nc -o m.tra
+"$gatewalk" export m.nc --gate --counts -o m.mtx --quiet || fail "nothing to import"
+survives imported.nc import m.mtx --states m.states.csv --start 0 -o imported.nc
+for i in 1 2; do "$gatewalk" lattice "${field[@]}" --trials 200 --shard $i/2 --part part$i --quiet || fail "no part"; done
+survives merged.json merge part1 part2 -o merged.json
+survives sample.toml sample robot -o sample.toml
+"$gatewalk" sample cell -o cell.toml && "$gatewalk" sample tracks -o tracks.csv || fail "no tracks"
+survives 'runs.csv runs.json' passages tracks.csv --cell cell.toml --fps 10 --metres-per-unit 0.001 --fastest 0.4 \
+  --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y -o runs.csv --json runs.json
+"$gatewalk" sample runs -o recorded.csv || fail "no recorded runs"
+survives recorded.nc build recorded.csv --cell cell.toml -o recorded.nc
+survives 'out/fidelity.csv out/fidelity.json' chart-field "${field[@]}" --trials 5 -o out
+survives 'out/chart.csv out/chart.json' chart "$scenes/soft_left.toml" --trials 20 --repeats 1 --methods stable,moreau -o out
 # Full and forbidden places.
 one=(lattice "${field[@]}" --trials 100 --quiet)
 expect 1 'cannot be written: No space left' "$gatewalk" "${one[@]}" --json /dev/full
@@ -95,6 +138,27 @@ mkdir small && mount -t tmpfs -o size=256k none small 2>/dev/null && {
 }
 mkdir forbidden && chmod 500 forbidden
 [ -w forbidden ] || expect 2 'Permission denied' "$gatewalk" "${one[@]}" --json forbidden/x.json
+# A machine that gives little: the same result, or a word.
+"$gatewalk" "${one[@]}" --json one.json --force || fail "${one[*]}"
+poor() { # WORDS...: before the program
+  rm -f new.json
+  "$@" "$gatewalk" "${one[@]}" --json new.json 2>err.txt
+  case $? in
+    0) same one.json new.json ;;
+    1 | 2) grep -q '^gatewalk: ' err.txt && [ ! -e new.json ] || fail "$*: $(cat err.txt)" ;;
+    *) fail "$*: status $?: $(cat err.txt)" ;;
+  esac
+}
+limited() { (ulimit "$1" "$2" && shift 2 && "$@"); }
+closed() { (exec "$@" <&- >&-); }
+poor env -i
+poor env LC_ALL=xx_YY.UTF-8 LANG=nothing
+poor env -u HOME TMPDIR=/nowhere
+poor closed
+for files in 4 6 8 12 20; do poor limited -n $files; done
+for size in 0 1 4; do poor limited -f $size; done  # blocks of 1 KB: what a quota does
+for seconds in 0 1; do poor limited -t $seconds; done 2>/dev/null
+for stack in 64 256 1024; do poor limited -s $stack; done 2>/dev/null
 # Little memory: said, with what would help; the old file stays.
 echo old >big.nc
 (ulimit -v 400000; "$gatewalk" build "${field[@]}" --accuracy 0.001 --starts all -o big.nc --force --quiet --threads 1 >/dev/null 2>err.txt; [ $? = 1 ]) || fail "out of memory: another status"

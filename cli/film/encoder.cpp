@@ -66,7 +66,7 @@ std::string Encoder::finish() {
     if (interrupted()) throw Interrupted{};
     ::usleep(5'000);
   }
-  return ffmpeg_.output();
+  return ffmpeg_.output(true);  // its status is 0 also when a write failed
 }
 
 Encoder::Sockets::Sockets() {

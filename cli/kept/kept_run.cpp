@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"
 #include "markov/formats/counts.h"
@@ -23,10 +24,18 @@ constexpr std::int64_t kMostParts = 1'000'000;
 /// Throws markov::BadFile unless a head has all that a run writes there.
 Json checked_head(const std::string& path, const std::string& text) {
   const Json head = Json::parse(text, nullptr, false);
+  // Another commit may have written other keys.
+  const std::string commit =
+      head.is_object() && head.contains("commit") && head.at("commit").is_string()
+          ? head.at("commit").get<std::string>()
+          : kCommit;
   const auto require = [&](bool is_right, const char* key) {
     if (!is_right)
-      throw markov::BadFile(path + ": its second line, which says what the command was, has no " +
-                            key + " as a run writes it");
+      throw markov::BadFile(
+          path + ": its second line, which says what the command was, has no " + key +
+          " as a run writes it" +
+          (commit == kCommit ? std::string()
+                             : "; commit " + commit + " wrote it, and this is " + kCommit));
   };
   require(head.is_object(), "object");
   const auto is_list = [&](const char* key, const auto& is_one) {

@@ -31,8 +31,8 @@ class Child {
 
   [[nodiscard]] bool runs();
   /// Waits for its end: what it has written to standard output. Throws std::runtime_error with its
-  /// own words when it failed.
-  [[nodiscard]] std::string output();
+  /// own words when it failed, or complained where it must not.
+  [[nodiscard]] std::string output(bool complaints_are_failures = false);
 
  private:
   [[noreturn]] void fail(const std::string& what, int error) const;

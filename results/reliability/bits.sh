@@ -7,7 +7,7 @@
 # if it is not there, else compared: to be removed where results change on purpose.
 # Rows of variants that are not named stay.
 # gcc-O0 ... clang-O3: compilers.   threads-1, -2, -32.   ranks-2, -4: MPI (gatewalk_mpi of a build with tests).
-# avx2, sse2: without AVX-512, without AVX2 too, in qemu; libm: glibc's sin, exp, log without fused multiply-add.
+# avx2, sse2: compiled without AVX-512, without AVX2 too; libm: glibc's sin, exp, log without fused multiply-add.
 # arm64, s390x: cross-compiled, with Debian's libraries for them, in qemu; s390x has the other order of bytes.
 set -euo pipefail
 shopt -s inherit_errexit  # what makes a variant may not go on after an error
@@ -41,6 +41,10 @@ program() { # FOLDER [CMAKE-OPTION...]
   fi
 }
 compiled() { program "$1" -DCMAKE_CXX_COMPILER="$2" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="$3 -DNDEBUG"; }
+release() { # FOLDER SETS
+  program "$1" -DCMAKE_BUILD_TYPE=Release -DGATEWALK_WITHOUT_HWY="$2"
+  echo "$work/$1/gatewalk"
+}
 wrapped() { # NAME WORDS: a program that runs them before the arguments; {} is the program
   printf '#!/bin/sh\nexec %s\n' "$2" >"$work/$1.sh"
   chmod +x "$work/$1.sh"
@@ -91,8 +95,8 @@ made() { # VARIANT: makes it, and says where the program is
       echo "$work/$1/gatewalk" ;;
     threads-*) wrapped "$1" "'$gatewalk' \"\$@\" --threads ${1#threads-}" ;;
     ranks-*) wrapped "$1" "$mpirun ${1#ranks-} '$build/tests/gatewalk_mpi' \"\$@\"" ;;
-    avx2) wrapped "$1" "qemu-x86_64 -cpu Haswell '$gatewalk' \"\$@\" 2>/dev/null" ;;
-    sse2) wrapped "$1" "qemu-x86_64 -cpu Nehalem '$gatewalk' \"\$@\" 2>/dev/null" ;;
+    avx2) release avx2 HWY_AVX3 ;;
+    sse2) release sse2 'HWY_AVX3|HWY_AVX2' ;;
     libm) wrapped "$1" "env GLIBC_TUNABLES=$hwcaps '$gatewalk' \"\$@\"" ;;
     arm64) crossed arm64 aarch64 ;;
     s390x) crossed s390x s390x ;;

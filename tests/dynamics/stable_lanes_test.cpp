@@ -105,6 +105,12 @@ std::vector<Scene> scenes() {
   p.forces.drag = 0.0;
   add("symmetric, no force at random", p, {});
   p = {};
+  p.forces.random = 0.0;
+  p.beams.length = p.beams.joint_x;  // the tips meet, and neither gives way: both hits are one
+  p.beams.mass = 1e17;
+  p.run.time_limit = 5.0;
+  add("a wall of both beams", p);
+  p = {};
   p.forces.drag = 2.0;  // beyond the power series of free motion
   p.forces.propulsion = 60.0;
   add("wading", p);

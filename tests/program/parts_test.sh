@@ -129,6 +129,12 @@ part=(rare "${field[@]}" --row 4 --split-trials 2000 --shard 2/2 --part late --q
 status=75
 for _ in $(seq 20); do "$gatewalk" "${part[@]}" --max-time 1s --resume >/dev/null 2>&1; status=$?; [ $status = 75 ] || break; done
 [ $status = 0 ] || fail "part 2 under --max-time: status $status"
+# A part that another commit wrote, with other keys.
+"$gatewalk" "${one[@]}" --trials 300 --shard 1/2 --part older --quiet 2>/dev/null
+sed -n 2p older | sed 's/"commit":"[^"]*"/"commit":"older"/; s/"main_output"/"output"/' | tr -d '\n' >head.txt
+check=$(gzip -c head.txt | tail -c 8 | od -An -tx4 -N4 | tr -d ' ')
+{ echo "gatewalk pieces 1 l $(stat -c %s head.txt) $check"; cat head.txt; echo; } >older
+expect 2 'has no main_output as a run writes it; commit older wrote it, and this is ' "$gatewalk" merge older
 # Wrong use.
 expect 2 'must be I/N' "$gatewalk" "${one[@]}" --shard 0/3 --part x
 expect 2 'must be I/N' "$gatewalk" "${one[@]}" --shard 4/3 --part x
