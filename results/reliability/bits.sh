@@ -3,7 +3,7 @@
 # The same bits? The program by other compilers, optimisation, instruction sets, processors, threads and ranks beside
 # the release build, over the command lines of tests/same_results.sh that LINES finds.
 #   [BUILD=build] [LINES=...] results/reliability/bits.sh [VARIANT...]      without names all, an hour on two cores
-# Writes bits.csv: variant, lines that are the same, lines that differ; bits.txt. golden.csv has a hash for each line, written
+# Writes bits.csv: variant, lines that are the same, lines that differ, commit, date; bits.txt, of the last command. golden.csv has a hash for each line, written
 # if it is not there, else compared: to be removed where results change on purpose.
 # Rows of variants that are not named stay.
 # gcc-O0 ... clang-O3: compilers.   threads-1, -2, -32.   ranks-2, -4: MPI (gatewalk_mpi of a build with tests).
@@ -105,7 +105,7 @@ made() { # VARIANT: makes it, and says where the program is
   [ ! -e "$work/$1.sh" ] || echo "$work/$1.sh"
 }
 table=$out/bits.csv
-[ -e "$table" ] || echo "variant,same,differ" >"$table"
+[ -e "$table" ] || echo "variant,same,differ,program,date" >"$table"
 failed=0
 for variant in "$@"; do
   other=$(made "$variant" | tail -n 1)
@@ -113,7 +113,7 @@ for variant in "$@"; do
   "$root/tests/same_results.sh" --lines "$lines" "$gatewalk" "$other" >"$work/$variant.result" || failed=1
   grep -q 'command lines with the same' "$work/$variant.result" || { echo "$variant: nothing was compared"; exit 1; }
   row=$variant,$(sed -n 's/^\([0-9]*\) command lines with the same results, \([0-9]*\) with others$/\1,\2/p' \
-    "$work/$variant.result")
+    "$work/$variant.result"),$("$gatewalk" --version | sed 's/.*(\(.*\))/\1/'),$(date -I)
   { grep -v "^$variant," "$table"; echo "$row"; } >"$table.new"
   mv "$table.new" "$table"
   echo "$row"

@@ -107,9 +107,11 @@ std::vector<Scene> scenes() {
   p = {};
   p.forces.random = 0.0;
   p.beams.length = p.beams.joint_x;  // the tips meet, and neither gives way: both hits are one
-  p.beams.mass = 1e17;
   p.run.time_limit = 5.0;
+  p.beams.mass = 1e17;
   add("a wall of both beams", p);
+  p.beams.mass = 1e15;  // these share one impulse, not one takes it all
+  add("a wall that hardly gives way", p);
   p = {};
   p.forces.drag = 2.0;  // beyond the power series of free motion
   p.forces.propulsion = 60.0;

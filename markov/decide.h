@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// Which of several chains to draw from, cell by cell and state by state, so that walks end as well
+/// as they can: a Markov decision process over a field (Puterman 1994, chapters 4 and 7).
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "markov/chain.h"
+
+namespace gatewalk::markov {
+
+/// What a walk gains, the more the better. Costs are negative.
+struct Gains {
+  std::array<double, kEndings> ending{};  // once, by Ending; a walk that never ends gains nothing
+  /// [action][type of cell][input]: the mean of a draw. Empty: draws gain nothing.
+  std::vector<std::vector<std::vector<double>>> draw;
+};
+
+struct DecideOptions {
+  /// Cells a walk may visit before it is cut off; 0: no limit.
+  int max_cells = 0;
+  /// Without limit: what a further sweep may change, of the largest gain, and sweeps of the field
+  /// before that; else std::runtime_error.
+  double tolerance = 1e-15;
+  int max_sweeps = 1'000'000;
+};
+
+/// For each cell and state what to draw from, and what that gains from there on.
+struct Decisions {
+  Field field;
+  int inputs = 0, max_cells = 0;
+  /// (max(1, max_cells) x cells x inputs), cells as row * columns + column: the number of an
+  /// action; with a limit of cells by the number of draws made before. Where several are as good,
+  /// the first of them.
+  std::vector<std::uint16_t> action;
+  std::vector<double> value;  // (cells x inputs) before the first draw
+  int sweeps = 0;             // of the field; with a limit as many as that
+
+  [[nodiscard]] std::size_t at(int column, int row, int input, int draws = 0) const {
+    const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(field.columns) +
+                      static_cast<std::size_t>(column);
+    const std::size_t cells =
+        static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows);
+    return (static_cast<std::size_t>(max_cells > 0 ? draws : 0) * cells + cell) *
+               static_cast<std::size_t>(inputs) +
+           static_cast<std::size_t>(input);
+  }
+};
+
+/// The best that can be done, and how. actions[a] is the field's chain under action a; all have the
+/// same inputs, outputs may differ. With a limit of cells exact but for rounding, by backward
+/// induction: decisions know how many draws are left. Without, by value iteration, row by row from
+/// the far end, in which an action is only left for a better one: so that no decisions circle for
+/// ever where all ways look alike. Memory: 24 bytes for each cell and state, and with a limit 2 for
+/// each draw that it may have made.
+/// Throws std::invalid_argument where actions, field and gains cannot belong together; without
+/// limit also unless all endings gain at least 0 and either no draw gains anything, or every draw
+/// costs something: else to circle for ever may be the best.
+[[nodiscard]] Decisions decide(const std::vector<FieldChain>& actions, const Field& field,
+                               const Gains& gains, const DecideOptions& options = {});
+
+/// The chain of walks that are decided so: of decisions that know no draws, or after so many draws.
+/// Throws std::invalid_argument unless they are of these actions.
+[[nodiscard]] FieldChain decided(const std::vector<FieldChain>& actions, const Decisions& decisions,
+                                 int draws = 0);
+
+}  // namespace gatewalk::markov
