@@ -1,42 +1,53 @@
 // SPDX-License-Identifier: MIT
 #include "markov/decide.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 namespace gatewalk::markov {
 namespace {
 
-/// Values of all cells and states, within a border of cells beyond the field, whose values are
-/// those of leaving it.
+/// Columns that are worked on at a time, in registers.
+constexpr int kBlock = 8;
+using Block = std::array<double, kBlock>;
+
+/// Values of all cells and states: of each row of cells and each input the columns side by side,
+/// within a border of cells beyond the field, whose values are those of leaving it.
 class Plane {
  public:
   Plane(const Field& field, int inputs, int border)
       : field_(field),
         inputs_(inputs),
         border_(border),
-        pitch_(static_cast<std::ptrdiff_t>(field.columns) + 2 * border),
+        pitch_((static_cast<std::ptrdiff_t>(field.columns) + kBlock - 1) / kBlock * kBlock +
+               2 * border),
         values_(static_cast<std::size_t>(pitch_ * (field.rows + 2 * border) * inputs)) {}
 
-  [[nodiscard]] double* cell(std::ptrdiff_t column, std::ptrdiff_t row) {
-    return values_.data() + ((row + border_) * pitch_ + column + border_) * inputs_;
+  /// Column 0.
+  [[nodiscard]] double* columns(std::ptrdiff_t row, int input) {
+    return values_.data() + ((row + border_) * inputs_ + input) * pitch_ + border_;
   }
-  /// From a cell's values to those of an exit.
+  /// From a row's columns for input 0 to those of an exit.
   [[nodiscard]] std::ptrdiff_t step(const Exit& exit) const {
-    return (exit.di_y * pitch_ + exit.di_x) * inputs_ + exit.next_input;
+    return (static_cast<std::ptrdiff_t>(exit.di_y) * inputs_ + exit.next_input) * pitch_ +
+           exit.di_x;
   }
   void fill(const std::array<double, kEndings>& gains, double inside) {
     for (std::ptrdiff_t row = -border_; row < field_.rows + border_; ++row)
-      for (std::ptrdiff_t column = -border_; column < field_.columns + border_; ++column) {
-        const bool out = column < 0 || column >= field_.columns || row < 0 || row >= field_.rows;
-        std::fill_n(
-            cell(column, row), inputs_,
-            out ? gains[static_cast<std::size_t>(edge_before(field_, column, row))] : inside);
-      }
+      for (int input = 0; input < inputs_; ++input)
+        for (std::ptrdiff_t column = -border_; column < pitch_ - border_; ++column) {
+          const bool out = column < 0 || column >= field_.columns || row < 0 || row >= field_.rows;
+          columns(row, input)[column] =
+              out ? gains[static_cast<std::size_t>(edge_before(field_, column, row))] : inside;
+        }
   }
 
  private:
@@ -75,10 +86,15 @@ struct Rows {
     first.push_back(moves.size());
   }
 
-  [[nodiscard]] double value(int input, const double* here) const {
+  /// Of some columns; `here`: the first of them, for input 0.
+  [[nodiscard]] Block value(int input, const double* here) const {
     const auto i = static_cast<std::size_t>(input);
-    double sum = at_once[i];
-    for (std::size_t m = first[i]; m < first[i + 1]; ++m) sum += moves[m].p * here[moves[m].step];
+    Block sum;
+    sum.fill(at_once[i]);
+    for (std::size_t m = first[i]; m < first[i + 1]; ++m) {
+      const double* const from = here + moves[m].step;
+      for (std::size_t k = 0; k < kBlock; ++k) sum[k] += moves[m].p * from[k];
+    }
     return sum;
   }
 };
@@ -139,8 +155,9 @@ class Decider {
           const DecideOptions& options)
       : actions_(actions),
         options_(options),
-        scale_(scale_of(gains)),
-        plane_(field, actions.front().inputs(), widest_move(actions)),
+        rounding_(options.tolerance * scale_of(gains)),
+        widest_(widest_move(actions)),
+        plane_(field, actions.front().inputs(), widest_),
         rows_(actions.size()) {
     for (std::size_t a = 0; a < actions.size(); ++a)
       for (std::size_t type = 0; type < actions[a].chains().size(); ++type)
@@ -151,36 +168,57 @@ class Decider {
     d_.max_cells = options.max_cells;
     size_ = static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows) *
             static_cast<std::size_t>(d_.inputs);
-    d_.action.resize(size_ * static_cast<std::size_t>(std::max(1, options.max_cells)));
     d_.value.resize(size_);
     plane_.fill(gains.ending, options.max_cells > 0
                                   ? gains.ending[static_cast<std::size_t>(Ending::cut_off)]
                                   : 0.0);
   }
 
+  /// From the last draw to the first. Where nothing near a row of cells has changed since the draw
+  /// before, it stays as it is.
   Decisions limited() {
+    const auto draws_in_all = static_cast<std::size_t>(options_.max_cells);
+    d_.action.resize(size_ * draws_in_all);
+    const int rows = d_.field.rows;
+    Plane next = plane_;
+    std::vector<char> changed(static_cast<std::size_t>(rows), 1), changes(changed);
     for (int draws = options_.max_cells - 1; draws >= 0; --draws) {
       std::uint16_t* const chosen = d_.action.data() + static_cast<std::size_t>(draws) * size_;
-      each_cell([&](std::size_t at, int column, int row) {
-        const double* const here = plane_.cell(column, row);
-        for (int input = 0; input < d_.inputs; ++input) {
-          const auto [action, value] = best(column, row, input, here, 0, no_value());
-          chosen[at + static_cast<std::size_t>(input)] = action;
-          d_.value[at + static_cast<std::size_t>(input)] = value;
+      tbb::parallel_for(0, rows, [&](int row) {
+        const auto near = changed.begin() + std::max(0, row - widest_);
+        const auto behind = changed.begin() + std::min(rows, row + widest_ + 1);
+        char& of_row = changes[static_cast<std::size_t>(row)];
+        of_row = std::find(near, behind, 1) != behind;
+        if (!of_row) {
+          std::copy_n(chosen + size_ + d_.at(0, row, 0), d_.field.columns * d_.inputs,
+                      chosen + d_.at(0, row, 0));
+          return;
         }
-      });
-      if (draws > 0)
-        each_cell([&](std::size_t at, int column, int row) {
-          std::copy_n(d_.value.data() + at, d_.inputs, plane_.cell(column, row));
+        of_row = draws == options_.max_cells - 1;
+        each_block([&](int input, int column, int count) {
+          const double* const before = plane_.columns(row, input) + column;
+          const Choices best =
+              choose(row, column, count, input, plane_.columns(row, 0) + column, {});
+          for (int k = 0; k < count; ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            chosen[d_.at(column + k, row, input)] = best.action[at];
+            next.columns(row, input)[column + k] = best.value[at];
+            if (best.value[at] != before[k]) of_row = 1;
+          }
         });
+      });
+      std::swap(plane_, next);
+      // Rows that were left out have the same values in both.
+      std::swap(changed, changes);
     }
     d_.sweeps = options_.max_cells;
-    return std::move(d_);
+    return result();
   }
 
   /// Values rise from 0, or fall where draws cost. Most moves lead ahead: each row of the field is
   /// done for itself, from the far end, before all are done together.
   Decisions unlimited() {
+    d_.action.resize(size_);
     for (int row = d_.field.rows - 1; row >= 0; --row)
       while (sweep(row, true))
         while (sweep(row, false)) {
@@ -193,74 +231,104 @@ class Decider {
     while (sweep_all(true))
       while (sweep_all(false)) {
       }
-    each_cell([&](std::size_t at, int column, int row) {
-      std::copy_n(plane_.cell(column, row), d_.inputs, d_.value.data() + at);
-    });
     d_.sweeps = static_cast<int>(sweeps_ / d_.field.rows + 1);
-    return std::move(d_);
+    return result();
   }
 
  private:
-  struct Choice {
-    std::uint16_t action;
-    double value;
+  struct Choices {
+    std::array<std::uint16_t, kBlock> action{};
+    Block value{};
   };
-  static constexpr double no_value() { return -std::numeric_limits<double>::infinity(); }
 
-  /// The first action that is better than `action` is, or than all before it, by more than
-  /// rounding.
-  Choice best(int column, int row, int input, const double* here, std::uint16_t action,
-              double value) const {
-    for (std::size_t a = 0; a < actions_.size(); ++a) {
-      const auto type = static_cast<std::size_t>(actions_[a].type_of(column, row));
-      const double gain = rows_[a][type].value(input, here);
-      if (gain > value + options_.tolerance * scale_ || value == no_value()) {
-        action = static_cast<std::uint16_t>(a);
-        value = gain;
-      }
+  [[nodiscard]] std::size_t type_of(std::size_t action, int column, int row) const {
+    return static_cast<std::size_t>(actions_[action].type_of(column, row));
+  }
+
+  /// What an action gains in each of some columns.
+  [[nodiscard]] Block gained(std::size_t action, int row, int column, int count, int input,
+                             const double* here) const {
+    const std::size_t type = type_of(action, column, row);
+    Block gains = rows_[action][type].value(input, here);
+    for (int k = 1; k < count; ++k)
+      if (const std::size_t other = type_of(action, column + k, row); other != type)
+        gains[static_cast<std::size_t>(k)] =
+            rows_[action][other].value(input, here)[static_cast<std::size_t>(k)];
+    return gains;
+  }
+
+  /// In each column the first action that is better than the one there, or than all before it, by
+  /// more than rounding.
+  [[nodiscard]] Choices choose(int row, int column, int count, int input, const double* here,
+                               std::optional<Choices> kept) const {
+    Choices best;
+    if (kept)
+      best = *kept;
+    else
+      best.value = gained(0, row, column, count, input, here);
+    for (std::size_t a = kept ? 0 : 1; a < actions_.size(); ++a) {
+      const Block gains = gained(a, row, column, count, input, here);
+      for (std::size_t k = 0; k < kBlock; ++k)
+        if (gains[k] > best.value[k] + rounding_) {
+          best.action[k] = static_cast<std::uint16_t>(a);
+          best.value[k] = gains[k];
+        }
     }
-    return {action, value};
+    return best;
   }
 
   template <class Do>
-  void each_cell(const Do& what) {
-    std::size_t at = 0;
-    for (int row = 0; row < d_.field.rows; ++row)
-      for (int column = 0; column < d_.field.columns; ++column) {
-        what(at, column, row);
-        at += static_cast<std::size_t>(d_.inputs);
-      }
+  void each_block(const Do& what) const {
+    for (int input = 0; input < d_.inputs; ++input)
+      for (int column = 0; column < d_.field.columns; column += kBlock)
+        what(input, column, std::min(kBlock, d_.field.columns - column));
   }
 
-  /// Once there and back over a row, each value from the newest of all others; whether any changed.
-  /// Improves decisions, or only finds what those that there are gain, which takes less time.
+  /// Each value of a row from the newest of all others, but within a block of columns; whether any
+  /// changed. Improves decisions, or only finds what those that there are gain, which takes less
+  /// time.
   bool sweep(int row, bool improves) {
     if (++sweeps_ / d_.field.rows > options_.max_sweeps)
       throw std::runtime_error("decisions are not found in " + std::to_string(options_.max_sweeps) +
                                " sweeps of the field: walks can circle almost for ever");
     bool changes = false;
-    const int columns = d_.field.columns;
-    for (int i = 0; i < 2 * columns; ++i) {
-      const int column = i < columns ? i : 2 * columns - 1 - i;
-      double* const here = plane_.cell(column, row);
-      std::uint16_t* const chosen = d_.action.data() + d_.at(column, row, 0);
-      for (int input = 0; input < d_.inputs; ++input) {
-        const auto type = static_cast<std::size_t>(actions_[chosen[input]].type_of(column, row));
-        const double kept = rows_[chosen[input]][type].value(input, here);
-        const Choice choice = improves ? best(column, row, input, here, chosen[input], kept)
-                                       : Choice{chosen[input], kept};
-        if (std::abs(choice.value - here[input]) <= options_.tolerance * scale_) continue;
-        here[input] = choice.value;
-        chosen[input] = choice.action;
+    each_block([&](int input, int column, int count) {
+      const double* const here = plane_.columns(row, 0) + column;
+      double* const values = plane_.columns(row, input) + column;
+      Choices now;
+      for (int k = 0; k < count; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        now.action[at] = d_.action[d_.at(column + k, row, input)];
+      }
+      const std::uint16_t first = now.action[0];
+      now.value = gained(first, row, column, count, input, here);
+      for (int k = 1; k < count; ++k)
+        if (const auto at = static_cast<std::size_t>(k); now.action[at] != first)
+          now.value[at] = gained(now.action[at], row, column, count, input, here)[at];
+      if (improves) now = choose(row, column, count, input, here, now);
+      for (int k = 0; k < count; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        if (std::abs(now.value[at] - values[k]) <= rounding_) continue;
+        values[k] = now.value[at];
+        d_.action[d_.at(column + k, row, input)] = now.action[at];
         changes = true;
       }
-    }
+    });
     return changes;
+  }
+
+  Decisions result() {
+    for (int row = 0; row < d_.field.rows; ++row)
+      for (int input = 0; input < d_.inputs; ++input)
+        for (int column = 0; column < d_.field.columns; ++column)
+          d_.value[d_.at(column, row, input)] = plane_.columns(row, input)[column];
+    return std::move(d_);
   }
 
   const std::vector<FieldChain>& actions_;
   DecideOptions options_;
-  double scale_;
+  double rounding_;
+  int widest_;
   Plane plane_;
   std::vector<std::vector<Rows>> rows_;  // by action and type of cell
   Decisions d_;

@@ -14,7 +14,8 @@
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
 # address  all tests but those of Python, with the sanitizers of addresses and undefined behaviour (clang): no finding.
 #        What is forgiven is in tests/sanitizers, with its reason. Lanes are not instrumented (dynamics/CMakeLists.txt),
-#        nor compiled for AVX2 and AVX-512: that takes compilers hours. Their plain references are.
+#        nor compiled for AVX2 and AVX-512: that takes compilers hours. Their plain references are; and a program whose
+#        lanes are, without optimisation, must have the same results over some command lines.
 # thread the same with the sanitizer of threads, and with a TBB built with it too, from Debian's sources: what that
 #        library synchronises cannot be seen otherwise.
 # reproducible  the sources of the last commit, built in two folders of other names: the packages have the
@@ -100,7 +101,19 @@ clang() {
   ctest --test-dir build-clang --output-on-failure -j "$(nproc)" -E "$web"
 }
 
-address() { sanitized address; }
+address() {
+  sanitized address
+  local source objects=()
+  for source in lanes stable_lanes; do
+    (cd build-address && eval "$(ninja -t compdb | jq -r ".[] | select(.file | endswith(\"disc/$source.cpp\")).command" |
+      sed "s/ -O1 / -O0 /; s/ -fno-sanitize=all / /; s# -MD -MT .* -o [^ ]*# -o $source.o#")")
+    objects+=("$source.o")
+  done
+  (cd build-address && eval "$(ninja -t commands gatewalk | tail -n 1 | cut -d '&' -f 3 |
+    sed "s# -o gatewalk # -o gatewalk_lanes -Wl,-z,muldefs ${objects[*]} #")")
+  tests/same_results.sh --lines '^0 (gate (field.toml --tr|soft_left.toml --set run.method=moreau|robot|own|undamped|overdamped)|lattice (own|map))' \
+    build-address/gatewalk build-address/gatewalk_lanes
+}
 thread() {
   local tbb=$PWD/build-thread-tbb
   if [ ! -f "$tbb/lib/libtbb.so" ]; then
