@@ -16,18 +16,18 @@ namespace gatewalk::markov {
 namespace {
 
 /// Columns that are worked on at a time, in registers.
-constexpr int kBlock = 8;
-using Block = std::array<double, kBlock>;
+constexpr int kColumns = 8;
+using ColumnValues = std::array<double, kColumns>;
 
 /// Values of all cells and states: of each row of cells and each input the columns side by side,
 /// within a border of cells beyond the field, whose values are those of leaving it.
-class Plane {
+class ValuePlane {
  public:
-  Plane(const Field& field, int inputs, int border)
+  ValuePlane(const Field& field, int inputs, int border)
       : field_(field),
         inputs_(inputs),
         border_(border),
-        pitch_((static_cast<std::ptrdiff_t>(field.columns) + kBlock - 1) / kBlock * kBlock +
+        pitch_((static_cast<std::ptrdiff_t>(field.columns) + kColumns - 1) / kColumns * kColumns +
                2 * border),
         values_(static_cast<std::size_t>(pitch_ * (field.rows + 2 * border) * inputs)) {}
 
@@ -58,7 +58,7 @@ class Plane {
 };
 
 /// The rows of an action's chain for cells of one type.
-struct Rows {
+struct ActionRows {
   struct Move {
     double p;
     std::ptrdiff_t step;
@@ -67,8 +67,8 @@ struct Rows {
   std::vector<std::size_t> first;  // (inputs + 1)
   std::vector<Move> moves;
 
-  Rows(const Chain& chain, const Gains& gains, const std::vector<double>* draw,
-       const Plane& plane) {
+  ActionRows(const Chain& chain, const Gains& gains, const std::vector<double>* draw,
+             const ValuePlane& plane) {
     const auto gain = [&](Ending e) { return gains.ending[static_cast<std::size_t>(e)]; };
     for (int input = 0; input < chain.inputs(); ++input) {
       first.push_back(moves.size());
@@ -87,13 +87,13 @@ struct Rows {
   }
 
   /// Of some columns; `here`: the first of them, for input 0.
-  [[nodiscard]] Block value(int input, const double* here) const {
+  [[nodiscard]] ColumnValues value(int input, const double* here) const {
     const auto i = static_cast<std::size_t>(input);
-    Block sum;
+    ColumnValues sum;
     sum.fill(at_once[i]);
     for (std::size_t m = first[i]; m < first[i + 1]; ++m) {
       const double* const from = here + moves[m].step;
-      for (std::size_t k = 0; k < kBlock; ++k) sum[k] += moves[m].p * from[k];
+      for (std::size_t k = 0; k < kColumns; ++k) sum[k] += moves[m].p * from[k];
     }
     return sum;
   }
@@ -108,8 +108,8 @@ int widest_move(const std::vector<FieldChain>& actions) {
   return widest;
 }
 
-void check(const std::vector<FieldChain>& actions, const Field& field, const Gains& gains,
-           const DecideOptions& options) {
+void check_actions(const std::vector<FieldChain>& actions, const Field& field, const Gains& gains,
+                   const DecideOptions& options) {
   const auto require = [](bool holds, const std::string& what) {
     if (!holds) throw std::invalid_argument(what);
   };
@@ -180,7 +180,7 @@ class Decider {
     const auto draws_in_all = static_cast<std::size_t>(options_.max_cells);
     d_.action.resize(size_ * draws_in_all);
     const int rows = d_.field.rows;
-    Plane next = plane_;
+    ValuePlane next = plane_;
     std::vector<char> changed(static_cast<std::size_t>(rows), 1), changes(changed);
     for (int draws = options_.max_cells - 1; draws >= 0; --draws) {
       std::uint16_t* const chosen = d_.action.data() + static_cast<std::size_t>(draws) * size_;
@@ -237,8 +237,8 @@ class Decider {
 
  private:
   struct Choices {
-    std::array<std::uint16_t, kBlock> action{};
-    Block value{};
+    std::array<std::uint16_t, kColumns> action{};
+    ColumnValues value{};
   };
 
   [[nodiscard]] std::size_t type_of(std::size_t action, int column, int row) const {
@@ -246,10 +246,10 @@ class Decider {
   }
 
   /// What an action gains in each of some columns.
-  [[nodiscard]] Block gained(std::size_t action, int row, int column, int count, int input,
-                             const double* here) const {
+  [[nodiscard]] ColumnValues gained(std::size_t action, int row, int column, int count, int input,
+                                    const double* here) const {
     const std::size_t type = type_of(action, column, row);
-    Block gains = rows_[action][type].value(input, here);
+    ColumnValues gains = rows_[action][type].value(input, here);
     for (int k = 1; k < count; ++k)
       if (const std::size_t other = type_of(action, column + k, row); other != type)
         gains[static_cast<std::size_t>(k)] =
@@ -267,8 +267,8 @@ class Decider {
     else
       best.value = gained(0, row, column, count, input, here);
     for (std::size_t a = kept ? 0 : 1; a < actions_.size(); ++a) {
-      const Block gains = gained(a, row, column, count, input, here);
-      for (std::size_t k = 0; k < kBlock; ++k)
+      const ColumnValues gains = gained(a, row, column, count, input, here);
+      for (std::size_t k = 0; k < kColumns; ++k)
         if (gains[k] > best.value[k] + rounding_) {
           best.action[k] = static_cast<std::uint16_t>(a);
           best.value[k] = gains[k];
@@ -280,8 +280,8 @@ class Decider {
   template <class Do>
   void each_block(const Do& what) const {
     for (int input = 0; input < d_.inputs; ++input)
-      for (int column = 0; column < d_.field.columns; column += kBlock)
-        what(input, column, std::min(kBlock, d_.field.columns - column));
+      for (int column = 0; column < d_.field.columns; column += kColumns)
+        what(input, column, std::min(kColumns, d_.field.columns - column));
   }
 
   /// Each value of a row from the newest of all others, but within a block of columns; whether any
@@ -329,8 +329,8 @@ class Decider {
   DecideOptions options_;
   double rounding_;
   int widest_;
-  Plane plane_;
-  std::vector<std::vector<Rows>> rows_;  // by action and type of cell
+  ValuePlane plane_;
+  std::vector<std::vector<ActionRows>> rows_;  // by action and type of cell
   Decisions d_;
   std::size_t size_ = 0;  // cells x inputs
   std::int64_t sweeps_ = 0;
@@ -340,7 +340,7 @@ class Decider {
 
 Decisions decide(const std::vector<FieldChain>& actions, const Field& field, const Gains& gains,
                  const DecideOptions& options) {
-  check(actions, field, gains, options);
+  check_actions(actions, field, gains, options);
   Decider decider(actions, field, gains, options);
   return options.max_cells > 0 ? decider.limited() : decider.unlimited();
 }
