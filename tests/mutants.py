@@ -11,8 +11,7 @@ So the build folder is only read. The tests that KERNELS names first run first, 
 the first that fails, within five times the processor time that they take without a mutant.
 
 A mutant is killed (a test fails, also by its time limit), survives, does not compile, or is the same machine code.
-Survivors that change no result are told, with the reason, in results/reliability/survivors.tsv: source, mutated line,
-reason. Writes results/reliability/mutants.csv (rows of other sources are kept) and mutants.txt.
+Survivors that change no result are told, with the reason, in results/reliability/survivors.tsv: source, change, reason. Writes results/reliability/mutants.csv (rows of other sources are kept) and mutants.txt.
 Exit status: 0; 1 where fewer than 90 % of those compiled are killed, or a survivor has no reason.
 --only runs mutants whose mutated line holds TEXT, writes nothing. The choice follows from seed and source alone.
 """
@@ -33,12 +32,12 @@ KERNELS = {
     "dynamics/disc/stable-inl.h": {"dynamics": "StableLanes.*:Stable.*"},
     "dynamics/disc/stable_lanes.cpp": {"dynamics": "StableLanes.*:Stable.*"},
     "dynamics/base/points.cpp": {"dynamics": "Points.*", "lattice": "EvenTrials.*"},
-    "dynamics/base/work.cpp": {"dynamics": "KeptPieces.*:Pieces.*:PieceSize.*:Work.*"},
+    "dynamics/base/work.cpp": {"dynamics": "KeptPieces.*:Pieces.*:PieceSize.*:Work.*:Ranks.*"},
     "dynamics/cells/tree_space.cpp": {"dynamics": "TreeSpace.*", "lattice": TREES},
     "markov/predict/row_elimination.cpp": {"markov": "RowElimination.*:LargeField.*:Predictor.*"},
     "markov/predict/by_rows.cpp": {"markov": "RowSum.*:Exact.*:Predictor.*:LargeField.*:Outcomes.*"},
     "markov/predict/by_steps.cpp": {"markov": "Exact.*:Predictor.*:Adjoint.*:Outcomes.*"},
-    "lattice/even_trials.cpp": {"lattice": "EvenTrials.*:RunPool.*"},
+    "lattice/even_trials.cpp": {"lattice": "EvenTrials.*:RunPool.*", "cli": "ProgramCell.*"},
     "lattice/pool/passages.cpp": {"lattice": "Analysis.*:Costs.*:Terrain.*"},
     "lattice/pool/pooled_prediction.cpp": {"lattice": TREES},
     "lattice/pool/run_pool.cpp": {"lattice": TREES},
@@ -239,8 +238,8 @@ def kernel(source, options, build, pool, reasons, work):
         operator, line, mutated, text, old = mutant
         result, why, _ = attempt(f"m{number:04d}", text)
         shutil.rmtree(work / f"m{number:04d}")
-        if result == "survived" and (source, mutated) in reasons:
-            result, why = "explained", reasons[source, mutated]
+        if result == "survived" and (source, f"{old} => {mutated}") in reasons:
+            result, why = "explained", reasons[source, f"{old} => {mutated}"]
         print(f"{source}:{line}: {operator}: {old}  =>  {mutated}: {result} {why}", flush=True)
         return [source, line, operator, f"{old} => {mutated}", result, why]
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <barrier>
 #include <map>
+#include <numeric>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "dynamics/base/bytes.h"
@@ -98,6 +102,75 @@ TEST(KeptPieces, OnlyWhatIsMissingIsRun) {
   carry_out();
   EXPECT_EQ(taken.size(), 12u);
   EXPECT_TRUE(run.empty());
+}
+
+/// Threads in place of processes.
+struct Meeting {
+  explicit Meeting(int size) : all(static_cast<std::size_t>(size)), here(size) {}
+  std::vector<std::string> all;
+  std::int64_t of_first = 0;
+  std::barrier<> here;
+};
+class ThreadAsRank : public Ranks {
+ public:
+  ThreadAsRank(Meeting& meeting, int rank) : meeting_(meeting), rank_(rank) {}
+  [[nodiscard]] int rank() const override { return rank_; }
+  [[nodiscard]] int size() const override { return static_cast<int>(meeting_.all.size()); }
+  [[nodiscard]] std::int64_t of_first(std::int64_t number) override {
+    if (rank_ == 0) meeting_.of_first = number;
+    meeting_.here.arrive_and_wait();
+    const std::int64_t first = meeting_.of_first;
+    meeting_.here.arrive_and_wait();
+    return first;
+  }
+  [[nodiscard]] std::vector<std::string> all(const std::string& own) override {
+    meeting_.all[static_cast<std::size_t>(rank_)] = own;
+    meeting_.here.arrive_and_wait();
+    const std::vector<std::string> all = meeting_.all;
+    meeting_.here.arrive_and_wait();
+    return all;
+  }
+  void stop_if_asked() override {}
+
+ private:
+  Meeting& meeting_;
+  int rank_;
+};
+
+// However fast each is: every rank takes each item once, in order, and each is run by one of them.
+TEST(Ranks, EachTakesAllItemsAndRunsItsOwn) {
+  for (const int size : {1, 2, 3}) {
+    using Numbers = std::vector<std::int64_t>;
+    Meeting meeting(size);
+    std::vector<Numbers> taken(static_cast<std::size_t>(size)), run(taken);
+    std::vector<std::thread> threads;
+    for (int rank = 0; rank < size; ++rank)
+      threads.emplace_back([&, rank] {
+        ThreadAsRank ranks(meeting, rank);
+        Work work;
+        work.ranks = &ranks;
+        const auto at = static_cast<std::size_t>(rank);
+        work.in_kept_pieces(
+            {"numbers", {7, 1000}}, Numbers{},
+            [&](TrialRange range) {
+              Numbers piece;
+              for (std::int64_t i = 0; i < range.count; ++i) piece.push_back(range.first + i);
+              run[at].insert(run[at].end(), piece.begin(), piece.end());
+              return piece;
+            },
+            [&](const Numbers& piece) {
+              taken[at].insert(taken[at].end(), piece.begin(), piece.end());
+            });
+      });
+    for (std::thread& thread : threads) thread.join();
+    Numbers all(1000), together;
+    std::iota(all.begin(), all.end(), 7);
+    for (const Numbers& of_rank : taken) EXPECT_EQ(of_rank, all);
+    for (const Numbers& of_rank : run)
+      together.insert(together.end(), of_rank.begin(), of_rank.end());
+    std::sort(together.begin(), together.end());
+    EXPECT_EQ(together, all);
+  }
 }
 
 }  // namespace

@@ -234,6 +234,26 @@ TEST(Predictor, CellsThatDifferAreThePlainReference) {
 }
 
 // Equal chains are prepared twice here, and drawn from in turn: not a bit changes.
+// Longer than a register, so that whole registers are of one type, and of none.
+TEST(Predictor, LongStretchesOfATypeAreThePlainReference) {
+  constexpr int kColumns = 45;
+  std::vector<Chain> chains;
+  for (const std::uint64_t seed : {1, 2})
+    chains.push_back(Chain::from_counts(lattice_counts(seed), never_down()));
+  std::vector<int> types;
+  for (int cell = 0; cell < 4 * kColumns; ++cell)
+    types.push_back(cell % kColumns < 20 + 3 * (cell / kColumns) ? 0 : 1);
+  const FieldChain chain = FieldChain::by_cell(chains, kColumns, types);
+  const Field field{kColumns, 4};
+  for (const Start& start : {Start{4, 0, 12}, Start{22, 0, 12}, Start{40, 1, 30}}) {
+    const FinalDistribution plain = propagate(chain, field, start);
+    for (const RowMethod method : kMethods)
+      expect_near(predict(chain, field, {start}, {.solver = Solver::rows, .row_method = method})[0],
+                  plain, 1e-11);
+    expect_near(predict(chain, field, {start}, {.solver = Solver::steps})[0], plain, 1e-11);
+  }
+}
+
 TEST(Predictor, EqualChainsInTurnHaveTheBitsOfOne) {
   for (const auto& exits : {never_down(), leaps()}) {
     const Chain chain = with_gaps(5, exits);
