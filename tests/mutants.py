@@ -11,7 +11,8 @@ So the build folder is only read. The tests that KERNELS names first run first, 
 the first that fails, within five times the processor time that they take without a mutant.
 
 A mutant is killed (a test fails, also by its time limit), survives, does not compile, or is the same machine code.
-Survivors that change no result are told, with the reason, in results/reliability/survivors.tsv: source, change, reason. Writes results/reliability/mutants.csv (rows of other sources are kept) and mutants.txt.
+Survivors that change no result are told, with the reason, in results/reliability/survivors.tsv: source, change,
+reason. Writes results/reliability/mutants.csv (rows of other sources are kept) and mutants.txt.
 Exit status: 0; 1 where fewer than 90 % of those compiled are killed, or a survivor has no reason.
 --only runs mutants whose mutated line holds TEXT, writes nothing. The choice follows from seed and source alone.
 """
@@ -281,7 +282,8 @@ def main():
     manifest = f". {ROOT}/results/manifest.sh; gatewalk={build.folder}/gatewalk; manifest 'tests/mutants.py'"
     summary = (f"{output_of('bash', '-c', manifest)}date: {time.strftime('%Y-%m-%d')}\n"
                f"mutants: {len(rows)} of {len({row[0] for row in rows})} sources; "
-               f"{', '.join(f'{n} {r}' for r, n in number.items())}\nkilled of those compiled: {100 * share:.1f} %\n")
+               f"{', '.join(f'{n} {r}' for r, n in number.items())}\nkilled of those compiled: {100 * share:.1f} %, "
+               f"of those that change a result: {100 * number['killed'] / max(1, compiled - number['explained']):.1f} %\n")
     (OUT / "mutants.txt").write_text(summary)
     print(summary)
     return int(share < 0.9 or number["survived"] > 0)
