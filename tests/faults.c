@@ -1,5 +1,6 @@
 /* Loaded before libc: call number FAULT_AT of FAULT_CALL fails with FAULT_ERRNO, and with FAULT_EVER all after it.
-   "malloc" stands for all that give memory, to gatewalk and not to gnuplot, which draws on without; "open" for all that open a file, "spawn" for all that start a process. */
+   "malloc" stands for all that give memory, to gatewalk and not to gnuplot, which draws on without; "open" for all that
+   open a file, "spawn" for all that start a process. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 # What becomes of results when the system fails: call number k of write, fsync, fdatasync, rename, ftruncate, opening a
 # file, starting a process or a thread fails, once and from then on, for every k that a command makes; so does getting
-# memory; of every command but stability, chart-chain and reproduce, which take minutes and write as chart does. /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files,
-# few processes, no locale, no HOME, closed outputs. Never a silent success, never a damaged file.
+# memory; of every command but stability, chart-chain and reproduce, which take minutes and write as chart does.
+# /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files, no locale, no HOME, closed
+# outputs. Never a silent success, never a damaged file.
 #   faults.sh GATEWALK ROOT [MOST]    at most MOST values of k each; of memory, which is asked for 10^5 times, k grows by fifths
 here=$(realpath "$(dirname "$0")")
 most=${3:-12}
