@@ -19,31 +19,55 @@ namespace {
 constexpr int kColumns = 8;
 using ColumnValues = std::array<double, kColumns>;
 
+/// How far moves lead, of those that stay in a field.
+struct Reach {
+  int columns = 0, rows = 0;
+};
+/// A move beyond the field's size leads over the same edge as one of that size.
+Exit within(const Field& field, Exit exit) {
+  exit.di_x = std::clamp(exit.di_x, -field.columns, field.columns);
+  exit.di_y = std::clamp(exit.di_y, -field.rows, field.rows);
+  return exit;
+}
+Reach reach_of(const std::vector<FieldChain>& actions, const Field& field) {
+  Reach reach;
+  for (const FieldChain& action : actions)
+    for (const Chain& chain : action.chains())
+      for (const Exit& any : chain.exits()) {
+        const Exit exit = within(field, any);
+        reach.columns = std::max(reach.columns, std::abs(exit.di_x));
+        reach.rows = std::max(reach.rows, std::abs(exit.di_y));
+      }
+  return reach;
+}
+
 /// Values of all cells and states: of each row of cells and each input the columns side by side,
 /// within a border of cells beyond the field, whose values are those of leaving it.
 class ValuePlane {
  public:
-  ValuePlane(const Field& field, int inputs, int border)
+  ValuePlane(const Field& field, int inputs, const Reach& reach)
       : field_(field),
         inputs_(inputs),
-        border_(border),
+        reach_(reach),
         pitch_((static_cast<std::ptrdiff_t>(field.columns) + kColumns - 1) / kColumns * kColumns +
-               2 * border),
-        values_(static_cast<std::size_t>(pitch_ * (field.rows + 2 * border) * inputs)) {}
+               2 * static_cast<std::ptrdiff_t>(reach.columns)),
+        values_(static_cast<std::size_t>(
+            pitch_ * inputs * (static_cast<std::ptrdiff_t>(field.rows) + 2 * reach.rows))) {}
 
   /// Column 0.
   [[nodiscard]] double* columns(std::ptrdiff_t row, int input) {
-    return values_.data() + ((row + border_) * inputs_ + input) * pitch_ + border_;
+    return values_.data() + ((row + reach_.rows) * inputs_ + input) * pitch_ + reach_.columns;
   }
   /// From a row's columns for input 0 to those of an exit.
-  [[nodiscard]] std::ptrdiff_t step(const Exit& exit) const {
+  [[nodiscard]] std::ptrdiff_t step(const Exit& any) const {
+    const Exit exit = within(field_, any);
     return (static_cast<std::ptrdiff_t>(exit.di_y) * inputs_ + exit.next_input) * pitch_ +
            exit.di_x;
   }
   void fill(const std::array<double, kEndings>& gains, double inside) {
-    for (std::ptrdiff_t row = -border_; row < field_.rows + border_; ++row)
+    for (std::ptrdiff_t row = -reach_.rows; row < field_.rows + reach_.rows; ++row)
       for (int input = 0; input < inputs_; ++input)
-        for (std::ptrdiff_t column = -border_; column < pitch_ - border_; ++column) {
+        for (std::ptrdiff_t column = -reach_.columns; column < pitch_ - reach_.columns; ++column) {
           const bool out = column < 0 || column >= field_.columns || row < 0 || row >= field_.rows;
           columns(row, input)[column] =
               out ? gains[static_cast<std::size_t>(edge_before(field_, column, row))] : inside;
@@ -52,7 +76,8 @@ class ValuePlane {
 
  private:
   Field field_;
-  int inputs_, border_;
+  int inputs_;
+  Reach reach_;
   std::ptrdiff_t pitch_;
   std::vector<double> values_;
 };
@@ -99,15 +124,6 @@ struct ActionRows {
   }
 };
 
-int widest_move(const std::vector<FieldChain>& actions) {
-  int widest = 0;
-  for (const FieldChain& action : actions)
-    for (const Chain& chain : action.chains())
-      for (const Exit& exit : chain.exits())
-        widest = std::max({widest, std::abs(exit.di_x), std::abs(exit.di_y)});
-  return widest;
-}
-
 void check_actions(const std::vector<FieldChain>& actions, const Field& field, const Gains& gains,
                    const DecideOptions& options) {
   const auto require = [](bool holds, const std::string& what) {
@@ -119,7 +135,6 @@ void check_actions(const std::vector<FieldChain>& actions, const Field& field, c
     require(action.inputs() == actions.front().inputs(), "actions have chains of other inputs");
     validate(action, field, {}, options.max_cells);
   }
-  require(widest_move(actions) <= 10'000, "a move leads over more than 10000 cells");
   require(options.tolerance > 0.0 && options.max_sweeps > 0,
           "tolerance and max_sweeps must be positive");
   for (const double gain : gains.ending)
@@ -134,19 +149,37 @@ void check_actions(const std::vector<FieldChain>& actions, const Field& field, c
       require(std::ssize(of_type) == actions[a].inputs(), "gains of draws: one for each input");
       for (const double gain : of_type)
         require(std::isfinite(gain) && (options.max_cells > 0 || gain < 0.0),
-                "without limit of cells each draw must cost something, or none must gain anything");
+                "without limit of cells each draw must cost something, or there must be no gains "
+                "of draws");
     }
   }
 }
 
-/// The largest gain of an ending or a draw: what rounding is measured by.
-double scale_of(const Gains& gains) {
-  double scale = std::numeric_limits<double>::min();
-  for (const double gain : gains.ending) scale = std::max(scale, std::abs(gain));
+/// The largest gain of an ending or a draw.
+double largest(const Gains& gains) {
+  double most = 0.0;
+  for (const double gain : gains.ending) most = std::max(most, std::abs(gain));
   for (const auto& of_action : gains.draw)
     for (const auto& of_type : of_action)
-      for (const double gain : of_type) scale = std::max(scale, std::abs(gain));
-  return scale;
+      for (const double gain : of_type) most = std::max(most, std::abs(gain));
+  return most;
+}
+
+/// Of a value: what the sum over a row may be off by, and what rows may lack or have too much.
+double rounding_of(const std::vector<FieldChain>& actions) {
+  double most = 0.0;
+  for (const FieldChain& action : actions)
+    for (const Chain& chain : action.chains())
+      for (int input = 0; input < chain.inputs(); ++input) {
+        double sum = 0.0, terms = 2.0;
+        for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
+          sum += it.value();
+          terms += 1.0;
+        }
+        const double off = chain.is_sampled(input) ? std::abs(sum - 1.0) : 0.0;
+        most = std::max(most, off + terms * std::numeric_limits<double>::epsilon());
+      }
+  return most;
 }
 
 class Decider {
@@ -155,9 +188,12 @@ class Decider {
           const DecideOptions& options)
       : actions_(actions),
         options_(options),
-        rounding_(options.tolerance * scale_of(gains)),
-        widest_(widest_move(actions)),
-        plane_(field, actions.front().inputs(), widest_),
+        costs_(!gains.draw.empty()),
+        rounding_(rounding_of(actions)),
+        tolerance_(std::max(options.tolerance, rounding_)),
+        least_(costs_ ? largest(gains) : 0.0),
+        reach_(reach_of(actions, field)),
+        plane_(field, actions.front().inputs(), reach_),
         rows_(actions.size()) {
     for (std::size_t a = 0; a < actions.size(); ++a)
       for (std::size_t type = 0; type < actions[a].chains().size(); ++type)
@@ -185,16 +221,16 @@ class Decider {
     for (int draws = options_.max_cells - 1; draws >= 0; --draws) {
       std::uint16_t* const chosen = d_.action.data() + static_cast<std::size_t>(draws) * size_;
       tbb::parallel_for(0, rows, [&](int row) {
-        const auto near = changed.begin() + std::max(0, row - widest_);
-        const auto behind = changed.begin() + std::min(rows, row + widest_ + 1);
+        const auto near = changed.begin() + std::max(0, row - reach_.rows);
+        const auto behind = changed.begin() + std::min(rows, row + reach_.rows + 1);
         char& of_row = changes[static_cast<std::size_t>(row)];
         of_row = std::find(near, behind, 1) != behind;
         if (!of_row) {
-          std::copy_n(chosen + size_ + d_.at(0, row, 0), d_.field.columns * d_.inputs,
-                      chosen + d_.at(0, row, 0));
+          std::copy(chosen + size_ + d_.at(0, row, 0), chosen + size_ + d_.at(0, row + 1, 0),
+                    chosen + d_.at(0, row, 0));
           return;
         }
-        of_row = draws == options_.max_cells - 1;
+        of_row = 0;
         each_block([&](int input, int column, int count) {
           const double* const before = plane_.columns(row, input) + column;
           const Choices best =
@@ -215,13 +251,15 @@ class Decider {
     return result();
   }
 
-  /// Values rise from 0, or fall where draws cost. Most moves lead ahead: each row of the field is
-  /// done for itself, from the far end, before all are done together.
+  /// Most moves lead ahead: each row of the field is done for itself, from the far end, before all
+  /// are done together. Without costs values rise from 0, and decisions are worth at least what is
+  /// known of them: what they are worth in full is found before they are improved again. Where
+  /// draws cost, decisions may circle, whose value falls for ever: each sweep improves them.
   Decisions unlimited() {
     d_.action.resize(size_);
     for (int row = d_.field.rows - 1; row >= 0; --row)
       while (sweep(row, true))
-        while (sweep(row, false)) {
+        while (!costs_ && sweep(row, false)) {
         }
     const auto sweep_all = [&](bool improves) {
       bool changes = false;
@@ -229,7 +267,7 @@ class Decider {
       return changes;
     };
     while (sweep_all(true))
-      while (sweep_all(false)) {
+      while (!costs_ && sweep_all(false)) {
       }
     d_.sweeps = static_cast<int>(sweeps_ / d_.field.rows + 1);
     return result();
@@ -266,10 +304,12 @@ class Decider {
       best = *kept;
     else
       best.value = gained(0, row, column, count, input, here);
+    const double share = kept ? tolerance_ : rounding_, least = kept ? least_ : 0.0;
     for (std::size_t a = kept ? 0 : 1; a < actions_.size(); ++a) {
       const ColumnValues gains = gained(a, row, column, count, input, here);
       for (std::size_t k = 0; k < kColumns; ++k)
-        if (gains[k] > best.value[k] + rounding_) {
+        if (gains[k] - best.value[k] >
+            share * std::max({std::abs(gains[k]), std::abs(best.value[k]), least})) {
           best.action[k] = static_cast<std::uint16_t>(a);
           best.value[k] = gains[k];
         }
@@ -308,9 +348,12 @@ class Decider {
       if (improves) now = choose(row, column, count, input, here, now);
       for (int k = 0; k < count; ++k) {
         const auto at = static_cast<std::size_t>(k);
-        if (std::abs(now.value[at] - values[k]) <= rounding_) continue;
+        std::uint16_t& action = d_.action[d_.at(column + k, row, input)];
+        const double size = std::max({std::abs(now.value[at]), std::abs(values[k]), least_});
+        if (action == now.action[at] && std::abs(now.value[at] - values[k]) <= tolerance_ * size)
+          continue;
         values[k] = now.value[at];
-        d_.action[d_.at(column + k, row, input)] = now.action[at];
+        action = now.action[at];
         changes = true;
       }
     });
@@ -327,8 +370,11 @@ class Decider {
 
   const std::vector<FieldChain>& actions_;
   DecideOptions options_;
-  double rounding_;
-  int widest_;
+  bool costs_;        // of draws
+  double rounding_;   // share of a value
+  double tolerance_;  // the same, of a change
+  double least_;      // value of which it is the share at least
+  Reach reach_;
   ValuePlane plane_;
   std::vector<std::vector<ActionRows>> rows_;  // by action and type of cell
   Decisions d_;
@@ -346,9 +392,15 @@ Decisions decide(const std::vector<FieldChain>& actions, const Field& field, con
 }
 
 FieldChain decided(const std::vector<FieldChain>& actions, const Decisions& d, int draws) {
-  if (actions.empty() || actions.front().inputs() != d.inputs ||
-      (draws != 0 && (draws < 0 || draws >= d.max_cells)))
-    throw std::invalid_argument("decisions are of other actions");
+  const auto require = [](bool holds) {
+    if (!holds) throw std::invalid_argument("decisions are of other actions");
+  };
+  require(!actions.empty() && (draws == 0 || (draws > 0 && draws < d.max_cells)));
+  for (const FieldChain& action : actions) {
+    require(action.inputs() == d.inputs);
+    validate(action, d.field, {}, 0);
+  }
+  require(d.action.size() == d.at(0, d.field.rows, 0, std::max(1, d.max_cells) - 1));
   // Outputs of all actions side by side: a cell's chain has each row from the action chosen there.
   std::vector<Chain> chains;
   std::vector<int> types;
@@ -371,8 +423,7 @@ FieldChain decided(const std::vector<FieldChain>& actions, const Decisions& d, i
       }
       std::vector<Eigen::Triplet<double>> entries;
       for (int input = 0; input < d.inputs; ++input) {
-        if (chosen[input] >= actions.size())
-          throw std::invalid_argument("decisions are of other actions");
+        require(chosen[input] < actions.size());
         const Chain& chain = actions[chosen[input]].at(column, row);
         for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it)
           entries.emplace_back(input, begin[chosen[input]] + static_cast<int>(it.col()),

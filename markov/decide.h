@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "markov/chain.h"
@@ -22,8 +21,9 @@ struct Gains {
 struct DecideOptions {
   /// Cells a walk may visit before it is cut off; 0: no limit.
   int max_cells = 0;
-  /// Without limit: what a further sweep may change, of the largest gain, and sweeps of the field
-  /// before that; else std::runtime_error.
+  /// Without limit: the least share of a value by which a sweep over the field changes it (where
+  /// draws cost, of the largest gain at least), and how many sweeps there may be before nothing
+  /// does; else std::runtime_error. Not below what rounding makes of a draw.
   double tolerance = 1e-15;
   int max_sweeps = 1'000'000;
 };
@@ -33,8 +33,8 @@ struct Decisions {
   Field field;
   int inputs = 0, max_cells = 0;
   /// (max(1, max_cells) x cells x inputs), cells as row * columns + column: the number of an
-  /// action; with a limit of cells by the number of draws made before. Where several are as good,
-  /// the first of them.
+  /// action; with a limit of cells by the number of draws made before. Of several that are as good
+  /// but for rounding the first, without limit the first that was found.
   std::vector<std::uint16_t> action;
   std::vector<double> value;  // (cells x inputs) before the first draw
   int sweeps = 0;             // of the field; with a limit as many as that
@@ -51,19 +51,21 @@ struct Decisions {
 };
 
 /// The best that can be done, and how. actions[a] is the field's chain under action a; all have the
-/// same inputs, outputs may differ. With a limit of cells exact but for rounding, by backward
-/// induction: decisions know how many draws are left. Without, by value iteration, row by row from
-/// the far end, in which an action is only left for a better one: so that no decisions circle for
-/// ever where all ways look alike. Memory: 24 bytes for each cell and state, and with a limit 2 for
-/// each draw that it may have made.
+/// same inputs, outputs may differ.
+/// With a limit of cells: backward induction, exact but for rounding; decisions know how many draws
+/// are left. Without: value iteration, row by row from the far end, then all rows together; a value
+/// lacks at most some tolerance times the draws of a walk. There an action is left only for one
+/// that is better by more than rounding, so that no decisions circle for ever where all ways look
+/// alike. Memory: the values, in a border as wide as moves reach, twice with a limit; 10 bytes for
+/// each cell and state, and with a limit 2 more for each draw.
 /// Throws std::invalid_argument where actions, field and gains cannot belong together; without
-/// limit also unless all endings gain at least 0 and either no draw gains anything, or every draw
-/// costs something: else to circle for ever may be the best.
+/// limit also unless all endings gain at least 0 and Gains::draw is empty or every draw costs
+/// something: else to circle for ever may be the best.
 [[nodiscard]] Decisions decide(const std::vector<FieldChain>& actions, const Field& field,
                                const Gains& gains, const DecideOptions& options = {});
 
 /// The chain of walks that are decided so: of decisions that know no draws, or after so many draws.
-/// Throws std::invalid_argument unless they are of these actions.
+/// Throws std::invalid_argument unless they can be of these actions.
 [[nodiscard]] FieldChain decided(const std::vector<FieldChain>& actions, const Decisions& decisions,
                                  int draws = 0);
 

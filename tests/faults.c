@@ -1,6 +1,6 @@
 /* Loaded before libc: call number FAULT_AT of FAULT_CALL fails with FAULT_ERRNO, and with FAULT_EVER all after it.
    "malloc" stands for all that give memory, to gatewalk and not to gnuplot, which draws on without; "open" for all that
-   open a file, "spawn" for all that start a process. */
+   open a file to read it, "create" to write it, "spawn" for all that start a process. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -43,6 +43,7 @@ int posix_memalign(void **to, size_t at, size_t size) {
 #include <pthread.h>
 #include <spawn.h>
 #include <stdarg.h>
+#include <sys/mman.h>
 #include <unistd.h>
 ssize_t write(int file, const void *bytes, size_t size) {
   REAL(write);
@@ -64,7 +65,10 @@ int ftruncate(int file, off_t size) {
   REAL(ftruncate);
   return fails("ftruncate") ? -1 : real(file, size);
 }
-static mode_t mode_of(int flags, va_list more) { return flags & O_CREAT ? va_arg(more, mode_t) : 0; }
+static mode_t mode_of(int flags, va_list more) {
+  return flags & O_CREAT || (flags & O_TMPFILE) == O_TMPFILE ? va_arg(more, mode_t) : 0;
+}
+static const char *kind_of(int writes) { return writes ? "create" : "open"; }
 #define OPEN(name)                               \
   int name(const char *path, int flags, ...) {   \
     REAL(name);                                  \
@@ -72,7 +76,7 @@ static mode_t mode_of(int flags, va_list more) { return flags & O_CREAT ? va_arg
     va_start(more, flags);                       \
     const mode_t mode = mode_of(flags, more);    \
     va_end(more);                                \
-    return fails("open") ? -1 : real(path, flags, mode); \
+    return fails(kind_of(flags & (O_WRONLY | O_RDWR))) ? -1 : real(path, flags, mode); \
   }
 #define OPENAT(name)                                    \
   int name(int folder, const char *path, int flags, ...) { \
@@ -81,12 +85,12 @@ static mode_t mode_of(int flags, va_list more) { return flags & O_CREAT ? va_arg
     va_start(more, flags);                              \
     const mode_t mode = mode_of(flags, more);           \
     va_end(more);                                       \
-    return fails("open") ? -1 : real(folder, path, flags, mode); \
+    return fails(kind_of(flags & (O_WRONLY | O_RDWR))) ? -1 : real(folder, path, flags, mode); \
   }
 #define FOPEN(name)                                   \
   FILE *name(const char *path, const char *mode) {    \
     REAL(name);                                       \
-    return fails("open") ? NULL : real(path, mode);   \
+    return fails(kind_of(strpbrk(mode, "wa+") != NULL)) ? NULL : real(path, mode);   \
   }
 OPEN(open)
 OPEN(open64)
@@ -94,6 +98,10 @@ OPENAT(openat)
 OPENAT(openat64)
 FOPEN(fopen)
 FOPEN(fopen64)
+int memfd_create(const char *name, unsigned flags) {
+  REAL(memfd_create);
+  return fails("create") ? -1 : real(name, flags);
+}
 #define SPAWN(name)                                                                                                \
   int name(pid_t *id, const char *file, const posix_spawn_file_actions_t *actions, const posix_spawnattr_t *attributes, \
            char *const words[], char *const environment[]) {                                                       \

@@ -8,7 +8,7 @@ Needs a Release build of the last sources with its tests (gatewalk, *_tests). Of
 with -O1 and without ccache, and linked before the build's own objects: the linker takes the first definition of a name
 (-z muldefs; the libraries are position-independent code, in which g++ inlines no function that another may replace).
 So the build folder is only read. The tests that KERNELS names first run first, then all others of the program, up to
-the first that fails, within five times the processor time that they take without a mutant.
+the first that fails, within ten times the processor time that they take without a mutant.
 
 A mutant is killed (a test fails, also by its time limit), survives, does not compile, or is the same machine code.
 Survivors that change no result are told, with the reason, in results/reliability/survivors.tsv: source, change,
@@ -195,7 +195,7 @@ def test(program, filters, binary, folder):
         calls = [f"{ROOT}/tests/program/{program}_test.sh ./{binary.name} {ROOT} {folder}/kept"]
     for call, name in zip(calls, filters or [program]):
         key = program, "others" if name.startswith("-") else name
-        status, output, seconds = run(call, 5 * usual[key] + 5 if key in usual else 3000, folder)
+        status, output, seconds = run(call, 10 * usual[key] + 10 if key in usual else 3000, folder)
         usual.setdefault(key, seconds)
         if status != 0:
             if status is None:

@@ -104,9 +104,11 @@ clang() {
 address() {
   sanitized address
   local source objects=()
+  rm -f build-address/{lanes.o,stable_lanes.o,gatewalk_lanes}
   for source in lanes stable_lanes; do
     (cd build-address && eval "$(ninja -t compdb | jq -r ".[] | select(.file | endswith(\"disc/$source.cpp\")).command" |
       sed "s/ -O1 / -O0 /; s/ -fno-sanitize=all / /; s# -MD -MT .* -o [^ ]*# -o $source.o#")")
+    nm "build-address/$source.o" | grep -q __asan_report  # it is instrumented
     objects+=("$source.o")
   done
   (cd build-address && eval "$(ninja -t commands gatewalk | tail -n 1 | cut -d '&' -f 3 |

@@ -20,6 +20,7 @@ std::vector<std::string> ffmpeg_command(VideoFormat format, const std::string& t
                                         double frames_per_second) {
   std::vector<std::string> command{
       "ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+      "-xerror",  // else its status is 0 also when a write failed
       // Pictures as cairo keeps them, without a header.
       "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
       std::to_string(kPictureWidth) + "x" + std::to_string(kPictureHeight), "-framerate",
@@ -66,7 +67,7 @@ std::string Encoder::finish() {
     if (interrupted()) throw Interrupted{};
     ::usleep(5'000);
   }
-  return ffmpeg_.output(true);  // its status is 0 also when a write failed
+  return ffmpeg_.output();
 }
 
 Encoder::Sockets::Sockets() {

@@ -86,15 +86,15 @@ bool Child::runs() {
   return id_ != 0;
 }
 
-std::string Child::output(bool complaints_are_failures) {
+std::string Child::output() {
   collect(0);
-  std::string words, text;
-  if (!read_all(errors_.get(), words)) fail("its words cannot be read", errno);
-  words.erase(words.find_last_not_of(" \t\n") + 1);
-  words.erase(0, words.find_first_not_of(" \t\n"));
-  if (!WIFEXITED(status_) || WEXITSTATUS(status_) != 0 ||
-      (complaints_are_failures && !words.empty()))
-    throw std::runtime_error(name_ + " failed: " + (words.empty() ? "it said nothing" : words));
+  std::string text;
+  if (!WIFEXITED(status_) || WEXITSTATUS(status_) != 0) {
+    if (!read_all(errors_.get(), text)) fail("its words cannot be read", errno);
+    text.erase(text.find_last_not_of(" \t\n") + 1);
+    text.erase(0, text.find_first_not_of(" \t\n"));
+    throw std::runtime_error(name_ + " failed: " + (text.empty() ? "it said nothing" : text));
+  }
   if (!read_all(out_.get(), text)) fail("its output cannot be read", errno);
   return text;
 }

@@ -13,8 +13,8 @@ namespace gatewalk::cli {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// A file without a name: nothing to clean up, and unlike a pipe it never blocks or breaks. Throws
-/// std::runtime_error when there can be none.
+/// A file without a name, in memory: nothing to clean up, and unlike a pipe it never blocks or
+/// breaks. Throws std::runtime_error when there can be none.
 [[nodiscard]] File scratch_file();
 
 /// A program that runs beside this one, without a shell and in a process group of its own, so that
@@ -31,8 +31,8 @@ class Child {
 
   [[nodiscard]] bool runs();
   /// Waits for its end: what it has written to standard output. Throws std::runtime_error with its
-  /// own words when it failed, or complained where it must not.
-  [[nodiscard]] std::string output(bool complaints_are_failures = false);
+  /// own words when it failed.
+  [[nodiscard]] std::string output();
 
  private:
   [[noreturn]] void fail(const std::string& what, int error) const;

@@ -3,8 +3,9 @@
 # The same bits? The program by other compilers, optimisation, instruction sets, processors, threads and ranks beside
 # the release build, over the command lines of tests/same_results.sh that LINES finds.
 #   [BUILD=build] [LINES=...] results/reliability/bits.sh [VARIANT...]      without names all, an hour on two cores
-# Writes bits.csv: variant, lines that are the same, lines that differ, commit, date; bits.txt, of the last command. golden.csv has a hash for each line, written
-# if it is not there, else compared: to be removed where results change on purpose.
+# Writes bits.csv: variant, lines that are the same, lines that differ, commit, date; bits.txt, of the last command.
+# golden.csv has a hash for each line, written if it is not there, else compared: to be removed where results change on
+# purpose.
 # Rows of variants that are not named stay.
 # gcc-O0 ... clang-O3: compilers.   threads-1, -2, -32.   ranks-2, -4: MPI (gatewalk_mpi of a build with tests).
 # avx2, sse2: compiled without AVX-512, without AVX2 too; libm: glibc's sin, exp, log without fused multiply-add.
@@ -86,6 +87,7 @@ crossed() { # ARCHITECTURE PROCESSOR
 }
 made() { # VARIANT: makes it, and says where the program is
   local option=-${1##*-}
+  rm -f "$work/$1.sh"
   case $1 in
     gcc-*)
       compiled "$1" g++ "$option"

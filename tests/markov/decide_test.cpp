@@ -209,11 +209,93 @@ TEST(Decide, DoesNotCircleWhereAllWaysLookAlike) {
   EXPECT_EQ(*std::max_element(none.value.begin(), none.value.end()), 0.0);
 }
 
-// Of actions that are as good the first is taken, whatever rounding says.
+/// The same chain with its outputs in another order, so that sums are rounded otherwise.
+Chain reversed(const Chain& chain) {
+  const int outputs = chain.outputs();
+  Probabilities p(chain.inputs(), outputs);
+  for (int input = 0; input < chain.inputs(); ++input)
+    for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it)
+      p.coeffRef(input, outputs - 1 - it.col()) = it.value();
+  std::vector<Exit> exits(chain.exits().rbegin(), chain.exits().rend());
+  return Chain::from_probabilities(std::move(p), std::move(exits));
+}
+
+// Of actions that are as good but for rounding the first is taken.
 TEST(Decide, TakesTheFirstOfEqualActions) {
-  const std::vector<FieldChain> one = nine_actions();
-  const Decisions best = decide({one[3], one[3], one[3]}, Field{}, crossing());
+  const Chain one = nine_actions()[3].chains()[0];
+  Gains gains = crossing();
+  for (const int limit : {0, 13}) {
+    const Decisions best = decide({one, reversed(one), one}, Field{}, gains, {.max_cells = limit});
+    EXPECT_EQ(*std::max_element(best.action.begin(), best.action.end()), 0) << limit;
+  }
+  gains.draw.assign(3, {std::vector<double>(87, -0.01)});
+  const Decisions best = decide({one, reversed(one), one}, Field{}, gains);
   EXPECT_EQ(*std::max_element(best.action.begin(), best.action.end()), 0);
+}
+
+// To circle costs little at first.
+TEST(Decide, LeavesACheapCircle) {
+  const FieldChain ahead(
+      Chain::from_probabilities(matrix(2, 1, {{0, 0, 1.0}, {1, 0, 1.0}}), {{0, 0, 1}}));
+  Gains gains = crossing();
+  gains.draw = {{{-0.01, -0.01}}, {{-2.0, -2.0}}};
+  const std::vector<FieldChain> actions{closed(), ahead};
+  const Decisions best = decide(actions, {2, 1}, gains);
+  EXPECT_EQ(best.action[best.at(0, 0, 0)], 1);
+  EXPECT_NEAR(best.value[best.at(0, 0, 0)], -1.0, 1e-12);
+  // The better action has the value that was there to begin with.
+  const FieldChain trapped(
+      Chain::from_probabilities(matrix(2, 1, {{0, 0, 1.0}, {1, 0, 1.0}}), {{}}));
+  gains.draw = {{{-1.0, -1.0}}, {{-1.0, -1.0}}};
+  const Decisions free = decide({trapped, ahead}, {1, 1}, gains);
+  EXPECT_EQ(free.action[0], 1);
+  EXPECT_EQ(free.value[0], 0.0);
+}
+
+// Chances that are next to nothing are found, and what to do for them.
+TEST(Decide, FindsRareChances) {
+  const std::vector<FieldChain> actions{few({{0, 0, 0.001}, {0, 4, 0.999}, {1, 4, 1.0}}),
+                                        few({{0, 0, 0.002}, {0, 4, 0.998}, {1, 4, 1.0}})};
+  const Field field{1, 20};
+  const Decisions best = decide(actions, field, crossing());
+  EXPECT_NEAR(best.value[best.at(0, 0, 0)] / std::pow(0.002, 20), 1.0, 1e-12);
+  EXPECT_EQ(best.action[best.at(0, 0, 0)], 1);
+}
+
+// Rows that no longer change keep their decisions; moves lead over several cells, and each edge and
+// ending gains something else.
+TEST(Decide, WithALongLimitIsPlainPropagation) {
+  test::Words words(21);
+  std::vector<FieldChain> actions;
+  for (int a = 0; a < 3; ++a) {
+    Counts counts = test::lattice_counts(static_cast<std::uint64_t>(a) + 40);
+    test::empty_row(counts, 17);
+    actions.emplace_back(
+        Chain::from_counts(counts, a == 2 ? test::leaps() : test::lattice_exits()));
+  }
+  Gains gains;
+  for (std::size_t e = 0; e < kEndings; ++e) gains.ending[e] = 0.1 * words.below(10) + 0.05;
+  const Field field{4, 12};
+  constexpr int kLimit = 80;
+  const Decisions best = decide(actions, field, gains, {.max_cells = kLimit});
+  // Far from its end a limit means nothing: decisions for ever have the same value.
+  const Decisions endless = decide(actions, field, gains);
+  const FieldChain first = decided(actions, best), always = decided(actions, endless);
+  for (const int input : {0, 17, 40}) {
+    const Start start{1, 0, input};
+    const auto gained = [&](const FieldChain& chain) {
+      const FinalDistribution d = propagate(chain, field, start);
+      double sum = 0.0;
+      for (std::size_t e = 0; e < kEndings; ++e) sum += gains.ending[e] * d.endings[e];
+      return sum;
+    };
+    EXPECT_NEAR(gained(always), endless.value[endless.at(1, 0, input)], 1e-10);
+    EXPECT_NEAR(gained(first), best.value[best.at(1, 0, input)], 1e-7);
+    EXPECT_NEAR(best.value[best.at(1, 0, input)], endless.value[endless.at(1, 0, input)], 1e-7);
+  }
+  // What is done after the first draws, too.
+  const FieldChain later = decided(actions, best, 5);
+  EXPECT_EQ(propagate(later, field, {1, 3, 0}).endings, propagate(first, field, {1, 3, 0}).endings);
 }
 
 TEST(Decide, TypesOfCellsHaveActionsOfTheirOwn) {
@@ -253,6 +335,10 @@ TEST(Decide, RefusesWhatHasNoAnswer) {
   const Decisions best = decide(actions, field, crossing());
   EXPECT_THROW((void)decided(nine_actions(), best), std::invalid_argument);
   EXPECT_THROW((void)decided({actions[0]}, best), std::invalid_argument);
+  EXPECT_THROW((void)decided({actions[0], nine_actions()[0]}, best), std::invalid_argument);
+  const Chain one = random_chain(words);
+  EXPECT_THROW((void)decided({actions[0], FieldChain::by_row({one}, {0, 0})}, best),
+               std::invalid_argument);
 }
 
 }  // namespace

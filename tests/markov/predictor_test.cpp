@@ -233,7 +233,6 @@ TEST(Predictor, CellsThatDifferAreThePlainReference) {
   }
 }
 
-// Equal chains are prepared twice here, and drawn from in turn: not a bit changes.
 // Longer than a register, so that whole registers are of one type, and of none.
 TEST(Predictor, LongStretchesOfATypeAreThePlainReference) {
   constexpr int kColumns = 45;
@@ -254,6 +253,7 @@ TEST(Predictor, LongStretchesOfATypeAreThePlainReference) {
   }
 }
 
+// Equal chains are prepared twice here, and drawn from in turn: not a bit changes.
 TEST(Predictor, EqualChainsInTurnHaveTheBitsOfOne) {
   for (const auto& exits : {never_down(), leaps()}) {
     const Chain chain = with_gaps(5, exits);
@@ -365,6 +365,14 @@ TEST(Predictor, RefusesMovesBeyondAnyField) {
 }
 
 // A limit far beyond the walks costs no steps: it is as none.
+// Which steps may be done without a limit means nothing with one.
+TEST(Predictor, LimitOfCellsIsNoLimitOfSteps) {
+  const Chain chain = Chain::from_counts(lattice_counts(5), lattice_exits());
+  const Field field{30, 30};
+  expect_near(predict(chain, field, {{15, 0, 12}}, {.max_cells = 60, .max_steps = 3})[0],
+              propagate(chain, field, {15, 0, 12}, {.max_cells = 60}), 1e-13);
+}
+
 TEST(Predictor, StopsBeforeALimitThatNobodyReaches) {
   const Chain chain = with_gaps(1, never_down());
   const Predictor predictor(chain);
