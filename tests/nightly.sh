@@ -138,7 +138,7 @@ sanitized() {
     -DGATEWALK_SANITIZE="$kind" -DBUILD_TESTING=ON "$@"
   cmake --build "build-$kind"
   # SANITIZED: shell tests leave out what bounds a program's memory, of which these need terabytes of addresses.
-  export SANITIZED=1 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS="suppressions=$PWD/tests/sanitizers/leaks.txt"
+  export SANITIZED=1 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS="print_suppressions=0:suppressions=$PWD/tests/sanitizers/leaks.txt"
   export TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/sanitizers/races.txt"
   ctest --test-dir "build-$kind" --output-on-failure -j "$(nproc)" -LE elsewhere
 }

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -29,11 +30,10 @@ constexpr double kMostSeconds = 1.0;  // of the processor, for one input
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   constexpr rlim_t kMostBytes = rlim_t{2} << 30;
   const rlimit limit{kMostBytes, kMostBytes};
-  (void)setrlimit(RLIMIT_AS, &limit);
-#endif
+  // Sanitizers need terabytes of addresses.
+  if (std::getenv("SANITIZED") == nullptr) (void)setrlimit(RLIMIT_AS, &limit);
   if (argc < 2) {
     std::cerr << "usage: fuzz_replay CORPUS [TARGET]\n";
     return 2;
