@@ -16,7 +16,7 @@ runs=0
 untimed() { sed -E 's/[0-9.]+(e[-+]?[0-9]+)?/N/g; s/ +/ /g' "$1"; }
 same() {
   case $1 in
-    */out/chart.*) cmp -s <(untimed "$1") <(untimed "$2") ;;
+    */out/*) cmp -s <(untimed "$1") <(untimed "$2") ;;
     *.json) cmp -s <(plain "$1" | grep -v '"machine"') <(plain "$2" | grep -v '"machine"') ;;  # known from a file
     *) cmp -s "$1" "$2" ;;
   esac || fail "$2 is not $1, of a run without a fault"

@@ -15,6 +15,7 @@
 #include "dynamics/base/random.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/gate_statistics.h"
+#include "lattice/statistics/log_gamma.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -157,7 +158,7 @@ double expected_total_variation(const CellProbabilities& p, std::int64_t trials)
     const double m = std::floor(n * share) + 1.0;
     // (1-p) m P(X = m) = n C(n-1, m-1) p^m (1-p)^(n-m+1), with n C(n-1, m-1) = n! / ((m-1)! (n-m)!)
     sum += 2.0 / n *
-           std::exp(std::lgamma(n + 1.0) - std::lgamma(m) - std::lgamma(n - m + 1.0) +
+           std::exp(log_gamma(n + 1.0) - log_gamma(m) - log_gamma(n - m + 1.0) +
                     m * std::log(share) + (n - m + 1.0) * std::log1p(-share));
   }
   return 0.5 * sum;

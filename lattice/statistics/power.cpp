@@ -13,6 +13,7 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/statistics/gate_statistics.h"
+#include "lattice/statistics/log_gamma.h"
 #include "lattice/statistics/looked_at.h"
 
 namespace gatewalk::lattice {
@@ -106,8 +107,8 @@ Likely likely(std::int64_t n, double p) {
 }
 
 double log_choose(std::int64_t n, std::int64_t k) {
-  return std::lgamma(static_cast<double>(n) + 1.0) - std::lgamma(static_cast<double>(k) + 1.0) -
-         std::lgamma(static_cast<double>(n - k) + 1.0);
+  return log_gamma(static_cast<double>(n) + 1.0) - log_gamma(static_cast<double>(k) + 1.0) -
+         log_gamma(static_cast<double>(n - k) + 1.0);
 }
 
 /// Of `total` among two samples of n each: the chance that one of them has at most k.
