@@ -108,6 +108,33 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
   }
 }
 
+TEST(RunPool, AStartWithoutRunsHasThoseOfItsLeaf) {
+  const Scene scene = fast_scene();
+  const CellMap map = FieldGates(scene.gate).map();
+  RunPool pool;
+  pool.starts.push_back(some_trials(scene, 150));
+  const Kernel kernel = kernel_of(map, pool, 7);
+  const auto sums = cost_sums(kernel, map, pool);
+  const markov::Counts& counts = kernel.counts.front();
+  for (std::size_t i = 0; i < 20; ++i) {
+    const CellPassage first = pool.starts[0].full.of_trial(i).front();
+    if (first.fate != Fate::left) continue;
+    const Entry entry = first.entry;
+    const PoolStart start{entry};
+    const int leaf = kernel.space.index_of(entry).state;
+    std::vector<std::int64_t> row(static_cast<std::size_t>(counts.cols()), 0);
+    std::vector<CostSums> costs(row.size());
+    for (auto k = counts.outerIndexPtr()[leaf]; k < counts.outerIndexPtr()[leaf + 1]; ++k) {
+      const auto output = static_cast<std::size_t>(counts.innerIndexPtr()[k]);
+      row[output] = counts.valuePtr()[k];
+      costs[output] = sums[0][static_cast<std::size_t>(k)];
+    }
+    EXPECT_EQ(first_row(kernel, map, pool, start, 0), row);
+    EXPECT_EQ(first_cost_sums(kernel, sums, map, pool, start, 0), costs);
+    EXPECT_GT(counts.row(leaf).sum(), 0);
+  }
+}
+
 TEST(RunPool, AStartInTheMiddleHasMirrorImagesInItsRow) {
   const Scene scene = fast_scene();
   RunPool pool;
