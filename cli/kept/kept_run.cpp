@@ -31,11 +31,11 @@ Json checked_head(const std::string& path, const std::string& text) {
           : kCommit;
   const auto require = [&](bool is_right, const char* key) {
     if (!is_right)
-      throw markov::BadFile(
-          path + ": its second line, which says what the command was, has no " + key +
-          " as a run writes it" +
-          (commit == kCommit ? std::string()
-                             : "; commit " + commit + " wrote it, and this is " + kCommit));
+      throw markov::BadFile(path + ": its second line, which says what the command was, has no " +
+                            key + " as a run writes it" +
+                            (commit == kCommit
+                                 ? std::string()
+                                 : "; commit " + commit + " wrote it, and this is " + kCommit));
   };
   require(head.is_object(), "object");
   const auto is_list = [&](const char* key, const auto& is_one) {
