@@ -108,7 +108,7 @@ address() {
   for source in lanes stable_lanes; do
     (cd build-address && eval "$(ninja -t compdb | jq -r ".[] | select(.file | endswith(\"disc/$source.cpp\")).command" |
       sed "s/ -O1 / -O0 /; s/ -fno-sanitize=all / /; s# -MD -MT .* -o [^ ]*# -o $source.o#")")
-    nm "build-address/$source.o" | grep -q __asan_report  # it is instrumented
+    nm "build-address/$source.o" | grep __asan_report >/dev/null  # it is instrumented
     objects+=("$source.o")
   done
   (cd build-address && eval "$(ninja -t commands gatewalk | tail -n 1 | cut -d '&' -f 3 |
