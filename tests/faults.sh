@@ -80,7 +80,8 @@ survives() {
       once $k
       [ -e seen ] || break
       case $status in
-        0) for f in "${outputs[@]}"; do same "one/$f" "$f"; done ;;
+        # Without memory for its configuration fontconfig takes other letters, and says so.
+        0) grep -q '^Fontconfig error' err.txt || for f in "${outputs[@]}"; do same "one/$f" "$f"; done ;;
         1 | 2) grep -q '^gatewalk: ' err.txt || fail "without memory $k: no words: $*" ;;
         *) crashes=$((crashes + 1)) ;;
       esac

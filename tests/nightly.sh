@@ -22,8 +22,8 @@
 #        same bytes.
 # fuzz   every reader is handed input of any kind, SECONDS_EACH=60 seconds a target, by libFuzzer with clang's
 #        sanitizers (tests/fuzz/run.sh): executions by target, no finding.
-# coverage  which lines and branches of dynamics, markov and lattice their unit tests run (gcov, gcovr; branches to
-#        exceptions only do not count): results/reliability/coverage.csv; the log lists the lines that none runs.
+# coverage  which lines and branches of dynamics, markov and lattice the ordinary tests run (clang; a branch is a condition,
+#        true or false): results/reliability/coverage.csv; the log lists what none runs.
 #        Fails under 95 % of lines or 90 % of branches.
 # Whether tests see a mistake in a line that they run: tests/mutants.py.
 # What a step prints is in nightly-STEP.log; of one that fails the end is shown.
@@ -166,27 +166,25 @@ reproducible() {
 fuzz() { tests/fuzz/run.sh; }
 
 coverage() {
-  local modules=(dynamics markov lattice) module core running=() cores out=results/reliability
-  cmake -S . -B build-coverage -G Ninja -DCMAKE_CXX_COMPILER=g++ -DCMAKE_CXX_COMPILER_LAUNCHER= -DCMAKE_BUILD_TYPE=Debug \
-    -DCMAKE_CXX_FLAGS_DEBUG='-Og --coverage' -DBUILD_TESTING=ON
-  CCACHE_DISABLE=1 cmake --build build-coverage --target "${modules[@]/%/_tests}"
-  find build-coverage -name '*.gcda' -delete
-  # Counts are not atomic: each process has one core.
-  cores=$(nproc)
-  for ((core = 0; core < cores; ++core)); do
-    for module in "${modules[@]}"; do
-      GTEST_TOTAL_SHARDS=$cores GTEST_SHARD_INDEX=$core taskset -c "$core" "build-coverage/tests/${module}_tests" --gtest_brief=1
-    done &
-    running+=($!)
-  done
-  for core in "${running[@]}"; do wait "$core"; done
-  gcovr --root . --object-directory build-coverage -j "$cores" --gcov-ignore-parse-errors --exclude-throw-branches \
-    --exclude-unreachable-branches "${modules[@]/#/--filter=}" --json build-coverage/coverage.json build-coverage
+  local module binary objects=() out=results/reliability all=build-coverage/all.profdata
+  # Vectorised sources for one instruction set only: each is the same source.
+  cmake -S . -B build-coverage -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_FLAGS_DEBUG='-O1 -fprofile-instr-generate -fcoverage-mapping -DHWY_COMPILE_ONLY_STATIC' -DBUILD_TESTING=ON
+  cmake --build build-coverage
+  rm -rf build-coverage/profiles
+  export LLVM_PROFILE_FILE=$PWD/build-coverage/profiles/%4m.profraw
+  ctest --test-dir build-coverage --output-on-failure -j "$(nproc)" -LE elsewhere -E "$web|^(schemas|slurm|mpi|python)$" --timeout 3000
+  llvm-profdata merge -sparse build-coverage/profiles/*.profraw -o $all
+  for binary in build-coverage/tests/*_tests; do objects+=(-object "$binary"); done
   echo "module,lines_percent,branches_percent" >$out/coverage.csv
-  for module in "${modules[@]}"; do
-    gcovr --root . --add-tracefile build-coverage/coverage.json --filter "$module/" --txt
-    gcovr --root . --add-tracefile build-coverage/coverage.json --filter "$module/" --json-summary |
-      jq -r --arg name "$module" '[$name, .line_percent, .branch_percent] | join(",")' >>$out/coverage.csv
+  for module in dynamics markov lattice; do
+    llvm-cov export build-coverage/gatewalk "${objects[@]}" -instr-profile $all "$PWD/$module" >build-coverage/$module.json
+    # Lines, and conditions that were never true, or never false.
+    jq -r '.data[0].files[] | .filename as $f | (.segments[] | select(.[2] == 0 and .[3] and .[4]) | "\($f):\(.[0]): not run"),
+      (.branches[] | select((.[4] == 0) != (.[5] == 0)) | "\($f):\(.[0]): never \(if .[4] == 0 then "true" else "false" end)")' \
+      build-coverage/$module.json | sort -u
+    jq -r --arg name "$module" '.data[0].totals | [$name, (.lines.percent, .branches.percent | . * 10 | round / 10)] | join(",")' \
+      build-coverage/$module.json >>$out/coverage.csv
   done
   cat $out/coverage.csv
   awk -F, 'NR > 1 && ($2 < 95 || $3 < 90) { print $1 ": too little is run"; few = 1 } END { exit few }' $out/coverage.csv
@@ -197,10 +195,10 @@ steps=(odr alone small debug clang address thread reproducible fuzz coverage)
 for step in "$@"; do
   case " ${steps[*]} " in *" $step "*) ;; *) echo "no step '$step': ${steps[*]}" >&2; exit 2 ;; esac
 done
-case " $* " in *" clang "* | *" fuzz "* | *" address "* | *" thread "*) packages+=(clang) ;; esac
+case " $* " in *" clang "* | *" fuzz "* | *" address "* | *" thread "* | *" coverage "*) packages+=(clang) ;; esac
 case " $* " in *" reproducible "*) packages+=(pybind11-dev python3-dev python3-numpy) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac
-case " $* " in *" coverage "*) packages+=(gcovr jq libgtest-dev) ;; esac
+case " $* " in *" coverage "*) packages+=(llvm jq libgtest-dev netcdf-bin) ;; esac
 case " $* " in *" thread "*) packages+=(dpkg-dev) ;; esac
 case " $* " in *" debug "* | *" address "* | *" thread "*) packages+=(libgtest-dev jq netcdf-bin) ;; esac
 if command -v apt-get >/dev/null; then install_missing; fi

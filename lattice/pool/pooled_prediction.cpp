@@ -476,9 +476,8 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
       errors.push_back(GroupSpread(said.whole.final[k], said.kernels[k])
                            .error(pool.trials(), options.seed)
                            .total_variation);
-    std::sort(errors.begin(), errors.end());
-    result.kernel_error_95 = errors[errors.size() / 2];
-    result.worst_kernel_error_95 = errors.back();
+    result.kernel_error_95 = median(errors);
+    result.worst_kernel_error_95 = *std::max_element(errors.begin(), errors.end());
     result.reached = result.kernel_error_95 <= options.accuracy;
     if (result.reached || !runner.may_go_on() || options.trials) break;
     // To try a large pool costs more than its runs: after the last step it is not tried again, and

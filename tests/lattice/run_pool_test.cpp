@@ -135,6 +135,41 @@ TEST(RunPool, AStartWithoutRunsHasThoseOfItsLeaf) {
   }
 }
 
+TEST(RunPool, CostsOfRunsThatTheKernelHasNotAreRefused) {
+  const Scene scene = fast_scene();
+  const CellMap map = FieldGates(scene.gate).map();
+  RunPool few, more;
+  few.starts.push_back(some_trials(scene, 3));
+  more.starts.push_back(some_trials(scene, 30));
+  const Kernel kernel = kernel_of(map, few, 1);
+  EXPECT_NO_THROW((void)cost_sums(kernel, map, few));
+  EXPECT_THROW((void)cost_sums(kernel, map, more), std::invalid_argument);
+}
+
+// Row by row what chain_of divides, trapped bodies among them.
+TEST(RunPool, TransitionsAreTheCounts) {
+  const Scene scene = fast_scene();
+  const CellMap map = FieldGates(scene.gate).map();
+  RunPool pool;
+  pool.starts.push_back(some_trials(scene, 50));
+  const Kernel kernel = kernel_of(map, pool, 7);
+  const int n = kernel.space.size();
+  std::vector<std::int64_t> first(static_cast<std::size_t>(n) + 1, 0);
+  first[1] = 4;
+  first[static_cast<std::size_t>(kernel.space.trapped())] = 3;
+  const auto all = transitions_of(kernel, map, scene.field, {entry_of(kStart)}, {first});
+  ASSERT_EQ(all.size(), 1U);
+  const Transitions& t = all[0];
+  ASSERT_EQ(t.space.size(), n + 1);
+  EXPECT_EQ(t.trials.back(), 7);
+  EXPECT_EQ(t.rows.back(), (std::map<int, std::int64_t>{{1, 4}, {t.space.trapped(), 3}}));
+  for (int row = 0; row < n; ++row) {
+    std::int64_t sum = 0;
+    for (markov::Counts::InnerIterator it(kernel.counts[0], row); it; ++it) sum += it.value();
+    EXPECT_EQ(t.trials[static_cast<std::size_t>(row)], sum) << row;
+  }
+}
+
 TEST(RunPool, AStartInTheMiddleHasMirrorImagesInItsRow) {
   const Scene scene = fast_scene();
   RunPool pool;
@@ -509,6 +544,17 @@ TEST(PooledPrediction, OfManyStartsSharesTheirRuns) {
             .gate_runs;
   }
   EXPECT_LT(one.gate_runs, 6 * alone);  // of four starts: together they take less
+}
+
+TEST(PooledPrediction, OfARangeHasTheTrialsThatWereAsked) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  const StartRange range{0, {{{0, 1}, {-1, 1}, {10, 12}}}};
+  const auto p =
+      pool_range(problem_of(scene), pool, range, {.accuracy = 1e-3, .trials = 40, .seed = 2});
+  EXPECT_FALSE(p.reached);
+  EXPECT_EQ(pool.scattered.starts.size(), 40U);
+  EXPECT_LE(p.kernel_error_95, p.worst_kernel_error_95);
 }
 
 TEST(PooledPrediction, RefusesNonsense) {
