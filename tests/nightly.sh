@@ -179,11 +179,16 @@ coverage() {
   echo "module,lines_percent,branches_percent" >$out/coverage.csv
   for module in dynamics markov lattice; do
     llvm-cov export build-coverage/gatewalk "${objects[@]}" -instr-profile $all "$PWD/$module" >build-coverage/$module.json
-    # Lines, and conditions that were never true, or never false.
-    jq -r '.data[0].files[] | .filename as $f | (.segments[] | select(.[2] == 0 and .[3] and .[4]) | "\($f):\(.[0]): not run"),
-      (.branches[] | select((.[4] == 0) != (.[5] == 0)) | "\($f):\(.[0]): never \(if .[4] == 0 then "true" else "false" end)")' \
+    # A condition of a template is one, whatever it is made for.
+    jq '[.data[0].files[] | .filename as $file | [.branches | group_by(.[:4])[] |
+      {at: "\($file):\(.[0][0])", true: (map(.[4]) | add), false: (map(.[5]) | add)}]] | add' \
+      build-coverage/$module.json >build-coverage/$module-branches.json
+    jq -r '.data[0].files[] | .filename as $file | .segments[] | select(.[2] == 0 and .[3] and .[4]) | "\($file):\(.[0]): not run"' \
       build-coverage/$module.json | sort -u
-    jq -r --arg name "$module" '.data[0].totals | [$name, (.lines.percent, .branches.percent | . * 10 | round / 10)] | join(",")' \
+    jq -r '.[] | select((.true == 0) != (.false == 0)) | "\(.at): never \(if .true == 0 then "true" else "false" end)"' \
+      build-coverage/$module-branches.json | sort -u
+    jq -r --arg name "$module" --slurpfile of build-coverage/$module-branches.json '[$name, .data[0].totals.lines.percent,
+      ($of[0] | 100 * (map((.true, .false) | select(. > 0)) | length) / (2 * length))] | join(",")' \
       build-coverage/$module.json >>$out/coverage.csv
   done
   cat $out/coverage.csv

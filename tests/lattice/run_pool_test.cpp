@@ -164,8 +164,13 @@ TEST(RunPool, TransitionsAreTheCounts) {
   EXPECT_EQ(t.trials.back(), 7);
   EXPECT_EQ(t.rows.back(), (std::map<int, std::int64_t>{{1, 4}, {t.space.trapped(), 3}}));
   for (int row = 0; row < n; ++row) {
+    std::map<int, std::int64_t> counts;
     std::int64_t sum = 0;
-    for (markov::Counts::InnerIterator it(kernel.counts[0], row); it; ++it) sum += it.value();
+    for (markov::Counts::InnerIterator it(kernel.counts[0], row); it; ++it) {
+      counts[it.col() == n ? t.space.trapped() : static_cast<int>(it.col())] = it.value();
+      sum += it.value();
+    }
+    EXPECT_EQ(t.rows[static_cast<std::size_t>(row)], counts) << row;
     EXPECT_EQ(t.trials[static_cast<std::size_t>(row)], sum) << row;
   }
 }
