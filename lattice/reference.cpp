@@ -97,13 +97,13 @@ FieldTally& FieldTally::operator+=(const FieldTally& o) {
 }
 
 std::optional<Entry> RunningTrial::follow(const CellMap& map, const FieldParams& field,
-                                          const Passage& passage, bool keep_passages) {
+                                          const Passage& passage, bool keep_passages, int type) {
   ++cells_;
   for (std::size_t c = 0; c < map.section.costs.size(); ++c) costs_[c] += passage.costs[c];
   if (keep_passages) {
     passages_.begin(map.section);
-    passages_.push_back({passage.fate, static_cast<std::uint8_t>(map.type_of(column_, row_)),
-                         passage.next, passage.costs});
+    passages_.push_back(
+        {passage.fate, static_cast<std::uint8_t>(type), passage.next, passage.costs});
   }
   if (passage.fate == Fate::trapped) ending_ = markov::Ending::trapped;
   if (passage.fate != Fate::left) return {};
@@ -176,7 +176,8 @@ void require_cells(const CellField& cells) {
 }
 
 FieldTally run_field(const CellField& cells, const FieldParams& field, const BeginTrial& begin,
-                     TrialRange range, FieldTrials* each, const StateSpace* space, Memory memory) {
+                     TrialRange range, FieldTrials* each, const StateSpace* space, Memory memory,
+                     const TypeChoice& choice) {
   const CellMap& map = cells.map;
   map.require_fits(field.columns, field.rows);
   const std::size_t types = map.types.size();
@@ -185,11 +186,19 @@ FieldTally run_field(const CellField& cells, const FieldParams& field, const Beg
   std::vector<RunningTrial> trials;
   for (std::int64_t i = 0; i < range.count; ++i) trials.emplace_back(field);
 
+  const auto type_at = [&](std::int64_t i, const Entry& entry) {
+    const RunningTrial& t = trials[static_cast<std::size_t>(i)];
+    if (!choice.type) return static_cast<std::size_t>(map.type_of(t.column(), t.row()));
+    const int type = choice.type({t.column(), t.row(), t.passed(), range.first + i}, entry);
+    if (type < 0 || type >= std::ssize(cells.cells))
+      throw std::invalid_argument("field: a body is to meet a type of cell that there is not");
+    return static_cast<std::size_t>(type);
+  };
   // In waves, the trials in cells of one type together. A trial goes on while the type stays the
   // same; else it waits for the next wave of its own.
   std::vector<Wave> waves(types);
   for (std::int64_t i = 0; i < range.count; ++i)
-    waves[static_cast<std::size_t>(map.type_of(field.start_column(), 0))].trials.push_back(i);
+    waves[type_at(i, choice.start)].trials.push_back(i);
   Health health;
   tbb::enumerable_thread_specific<Moves> moves;  // sums: any order will do
   for (bool more = true; more;) {
@@ -212,14 +221,14 @@ FieldTally run_field(const CellField& cells, const FieldParams& field, const Beg
           [&](Body& body, const Passage& passage) {
             const std::int64_t i = wave[static_cast<std::size_t>(body.trial)];
             RunningTrial& t = trials[static_cast<std::size_t>(i)];
-            const auto entry = t.follow(map, field, passage, keep_passages);
+            const auto entry = t.follow(map, field, passage, keep_passages, static_cast<int>(type));
             if (!entry) return false;
             Moves& here = moves.local();
             const auto face = static_cast<std::size_t>(entry->face);
             ++here.entries[face];
             if (space != nullptr) here.clamped[face] += space->index_of(*entry).clamped;
             if (memory == Memory::dropped) cell.forget(body);
-            const auto next = static_cast<std::size_t>(map.type_of(t.column(), t.row()));
+            const std::size_t next = type_at(i, *entry);
             if (next == type) return true;
             t.waiting = std::make_unique<Body>(body);
             const std::lock_guard lock(waves[next].mutex);

@@ -106,6 +106,18 @@ void each_part(Archive& archive, RunTrials& piece) {
 /// kept, as in the model, or dropped: bodies without memory from cell to cell.
 enum class Memory : std::uint8_t { kept, dropped };
 
+/// Where a body is in a field, how many cells it has been carried through, and the trial's number.
+struct Place {
+  std::int32_t column = 0, row = 0, passed = 0;
+  std::int64_t trial = 0;
+};
+/// Which of a field's types of cells a body meets that enters there, where its map does not say.
+/// All trials begin by `start`.
+struct TypeChoice {
+  dynamics::Entry start{};
+  std::function<int(const Place& place, const dynamics::Entry& entry)> type{};  // empty: the map's
+};
+
 /// Puts the body of trial number i of a range, from 0, there, as it enters its first cell.
 using BeginTrial = std::function<void(std::int64_t i, dynamics::Body& body)>;
 
@@ -121,12 +133,12 @@ void require_cells(const dynamics::CellField& cells);
 /// may be entered again. Trials in cells of one type are run together. `space` only counts what its
 /// bins would have clamped. What each trial did is appended to `each`, if given. On all threads of
 /// the current TBB arena, same result for any number of them. Throws std::invalid_argument where
-/// the cells' map is not of this field, or has no cells to run.
+/// the cells' map is not of this field, or has no cells to run, and for a `choice` of none of them.
 [[nodiscard]] FieldTally run_field(const dynamics::CellField& cells, const FieldParams& field,
                                    const BeginTrial& begin, dynamics::TrialRange range,
                                    FieldTrials* each = nullptr,
                                    const dynamics::StateSpace* space = nullptr,
-                                   Memory memory = Memory::kept);
+                                   Memory memory = Memory::kept, const TypeChoice& choice = {});
 /// The same from one start.
 [[nodiscard]] FieldTally run_field(const dynamics::CellField& cells, const FieldParams& field,
                                    const dynamics::Entry& start, std::uint64_t seed,
@@ -139,17 +151,24 @@ class RunningTrial {
  public:
   explicit RunningTrial(const FieldParams& field) : column_(field.start_column()) {}
 
-  /// Takes a passage through the cell where the trial is. The entry into the next cell; none when
-  /// the trial ends here. Passages are kept if asked for.
+  /// Takes a passage through the cell where the trial is, of this type. The entry into the next
+  /// cell; none when the trial ends here. Passages are kept if asked for.
   [[nodiscard]] std::optional<dynamics::Entry> follow(const dynamics::CellMap& map,
                                                       const FieldParams& field,
                                                       const dynamics::Passage& passage,
-                                                      bool keep_passages);
+                                                      bool keep_passages, int type);
+  [[nodiscard]] std::optional<dynamics::Entry> follow(const dynamics::CellMap& map,
+                                                      const FieldParams& field,
+                                                      const dynamics::Passage& passage,
+                                                      bool keep_passages) {
+    return follow(map, field, passage, keep_passages, map.type_of(column_, row_));
+  }
   void add_to(FieldTally& tally) const;
   void add_to(FieldTrials& each, const FieldParams& field) const;
 
   [[nodiscard]] std::int32_t column() const { return column_; }
   [[nodiscard]] std::int32_t row() const { return row_; }
+  [[nodiscard]] std::int32_t passed() const { return cells_; }
   [[nodiscard]] const std::optional<markov::Ending>& ending() const { return ending_; }
 
   /// The body, while it waits for cells of another type.

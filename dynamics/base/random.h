@@ -31,7 +31,8 @@ enum class Purpose : std::uint64_t {
   rare = 8,
   sensitivity = 9,
   points = 10,
-  first_points = 11
+  first_points = 11,
+  plan = 12
 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/study/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <typeinfo>
+#include <utility>
+
+#include "dynamics/base/share.h"
+#include "lattice/gate_chain.h"
+#include "lattice/pool/run_pool.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+/// What a body that enters there does.
+using ActionChoice = std::function<int(const Place& place, const Entry& entry)>;
+
+bool same_kinds(const CellField& a, const CellField& b) {
+  return std::equal(a.cells.begin(), a.cells.end(), b.cells.begin(), b.cells.end(),
+                    [](const auto& x, const auto& y) {
+                      const Cell &one = *x, &other = *y;
+                      return typeid(one) == typeid(other);
+                    });
+}
+
+void require_actions(const std::vector<Action>& actions) {
+  const auto require = [](bool fits, const std::string& what) {
+    if (!fits) throw std::invalid_argument("plan: " + what);
+  };
+  require(actions.size() >= 2, "needs two actions at least");
+  const Problem& first = actions.front().problem;
+  for (const auto& [name, p] : actions) {
+    require_cells(p.cells);
+    require(p.map().section == first.map().section && same_kinds(p.cells, first.cells) &&
+                p.width == first.width && p.length == first.length,
+            "action " + name + " has cells of another kind");
+    require(
+        p.map().columns == first.map().columns && p.map().type_of_cell == first.map().type_of_cell,
+        "action " + name + " has another map");
+    require(p.field.columns == first.field.columns && p.field.rows == first.field.rows &&
+                p.field.max_gates == first.field.max_gates,
+            "action " + name + " has another field");
+    require(p.start == first.start, "action " + name + " starts elsewhere");
+  }
+  require(actions.size() * first.map().types.size() <= 256,
+          "more than 256 pairs of an action and a type of cell");
+}
+
+bool crossed(const std::optional<markov::Ending>& ending) {
+  return ending == markov::Ending::far_edge;
+}
+
+Crossings crossings_of(const FieldTrials& trials) {
+  return {std::count_if(trials.endings.begin(), trials.endings.end(), crossed),
+          std::ssize(trials.endings)};
+}
+
+Gain gain_over(const FieldTrials& with, const FieldTrials& without) {
+  double more = 0.0, less = 0.0;
+  for (std::size_t i = 0; i < with.endings.size(); ++i) {
+    more += crossed(with.endings[i]) && !crossed(without.endings[i]);
+    less += crossed(without.endings[i]) && !crossed(with.endings[i]);
+  }
+  const auto n = static_cast<double>(with.endings.size());
+  const double p = (more + 1.0) / (n + 2.0), q = (less + 1.0) / (n + 2.0),
+               half = kNormal95 * std::sqrt((p + q - (p - q) * (p - q)) / (n + 2.0));
+  return {(more - less) / n, {p - q - half, p - q + half}};
+}
+
+class Planner {
+ public:
+  Planner(const std::vector<Action>& actions, const PlanOptions& options, const Work& work)
+      : actions_(actions),
+        first_(actions.front().problem),
+        cells_(cells_of(actions)),
+        stream_(first_.cells.at(first_.field.start_column(), 0).stream_of(first_.start)),
+        options_(options),
+        work_(work),
+        count_(static_cast<std::int64_t>(
+            std::ceil(std::pow(kNormal95 / (2.0 * options.accuracy), 2.0)))) {}
+
+  [[nodiscard]] Plan carry_out() {
+    add(run([&](const Place& at, const Entry&) { return any(at); }, actions() * count_ / 2));
+    std::optional<Plan> best;
+    for (;;) {
+      // Small leaves tell ways to enter apart, large ones know better what each action does there.
+      std::vector<Plan> plans;
+      for (const int times : {1, 8, 64}) plans.push_back(choose(times * options_.per_leaf));
+      for (int a = 0; a < actions(); ++a) plans.push_back(always(a, plans[2]));
+      if (best) plans.push_back(std::move(*best));
+      ++rounds_;
+      std::vector<FieldTrials> trials;
+      std::vector<std::int64_t> counts;
+      const std::int64_t first = next_;
+      for (const Plan& plan : plans) {
+        next_ = first;  // the same trials
+        trials.push_back(run(choice_of(plan), count_));
+        counts.push_back(crossings_of(trials.back()).crossed);
+      }
+      const auto most = std::max_element(counts.begin(), counts.end());
+      const auto gained = static_cast<double>(*most - counts.back());
+      const bool settled =
+          rounds_ > 1 && gained <= 0.5 * options_.accuracy * static_cast<double>(count_);
+      const auto winner = static_cast<std::size_t>(most - counts.begin());
+      add(trials[winner]);
+      best = std::move(plans[winner]);
+      best->settled = settled;
+      if (settled || gate_runs_ >= options_.most_runs) break;
+      add(run(
+          [&](const Place& at, const Entry& entry) {
+            return word(at, 1) % kTries == 0 ? any(at) : best->policy.action(at, entry);
+          },
+          count_));
+    }
+    judge(*best);
+    return std::move(*best);
+  }
+
+ private:
+  static constexpr std::uint64_t kTries = 4;   // other actions are tried: once in so many cells
+  static constexpr double kMostBytes = 8.0e9;  // of decisions
+
+  [[nodiscard]] int actions() const { return static_cast<int>(actions_.size()); }
+  /// Chance that the noise of the trial knows nothing of.
+  [[nodiscard]] std::uint64_t word(const Place& at, std::uint64_t what) const {
+    return Random(Purpose::plan, {options_.seed, 2 * static_cast<std::uint64_t>(at.passed) + what,
+                                  static_cast<std::uint64_t>(at.trial)})
+        .word();
+  }
+  [[nodiscard]] int any(const Place& at) const {
+    return static_cast<int>(word(at, 0) % static_cast<std::uint64_t>(actions()));
+  }
+  [[nodiscard]] static ActionChoice choice_of(const Plan& plan) {
+    return [&plan](const Place& at, const Entry& entry) { return plan.policy.action(at, entry); };
+  }
+
+  [[nodiscard]] FieldTrials run(const ActionChoice& choice, std::int64_t count) {
+    const TypeChoice type{first_.start, [&](const Place& at, const Entry& entry) {
+                            return first_.map().type_of(at.column, at.row) * actions() +
+                                   choice(at, entry);
+                          }};
+    FieldTrials all{.final_gates = {}, .keep_passages = true};
+    work_.in_kept_pieces(
+        {"trials of a plan", {next_, count}},
+        RunTrials{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}},
+        [&](TrialRange range) {
+          RunTrials piece{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}};
+          piece.tally = run_field(
+              cells_, first_.field,
+              [&](std::int64_t i, Body& body) {
+                const std::int64_t trial = range.first + i;
+                const Place start{first_.field.start_column(), 0, 0, trial};
+                body.entry = first_.start;
+                body.random = Random(Purpose::field,
+                                     {options_.seed, stream_, static_cast<std::uint64_t>(trial)});
+                cells_.cells[static_cast<std::size_t>(type.type(start, first_.start))]->begin(body);
+              },
+              range, &piece.each, nullptr, Memory::kept, type);
+          return piece;
+        },
+        [&](const RunTrials& piece) {
+          all.append(piece.each);
+          health_ += piece.tally.health;
+        });
+    next_ += count;
+    gate_runs_ += std::ssize(all.passages);
+    if (health_.broken > 0)
+      throw std::runtime_error("plan: " + std::to_string(health_.broken) +
+                               " gate runs stopped being finite numbers; try method stable or a "
+                               "smaller run.step_s");
+    return all;
+  }
+
+  /// Of several runs of the same trials one only: a run that is twice in a leaf says nothing new.
+  void add(const FieldTrials& trials) {
+    pool_.scattered.starts.insert(pool_.scattered.starts.end(), trials.final_gates.size(),
+                                  first_.start);
+    pool_.scattered.each.append(trials);
+  }
+
+  [[nodiscard]] double bytes_of(const StateSpace& space) const {
+    return 2.0 * std::max(1, first_.field.max_gates) * first_.field.columns * first_.field.rows *
+           space.size();
+  }
+
+  [[nodiscard]] Plan choose(int per_leaf) const {
+    Kernel kernel = kernel_of(cells_.map, pool_, per_leaf);
+    if (bytes_of(kernel.space) > kMostBytes) return choose(2 * per_leaf);
+    std::vector<markov::FieldChain> chains;
+    for (std::size_t a = 0; a < actions_.size(); ++a) {
+      std::vector<markov::Chain> of_types;
+      for (std::size_t t = 0; t < first_.map().types.size(); ++t)
+        of_types.push_back(markov::Chain::from_counts(kernel.counts[t * actions_.size() + a],
+                                                      exits_of(kernel.space)));
+      chains.push_back(field_chain(first_.map(), std::move(of_types)));
+    }
+    markov::Gains gains;
+    gains.ending[static_cast<std::size_t>(markov::Ending::far_edge)] = 1.0;
+    markov::Decisions best = markov::decide(chains, {first_.field.columns, first_.field.rows},
+                                            gains, {.max_cells = first_.field.max_gates});
+    const double says = best.value[best.at(first_.field.start_column(), 0,
+                                           kernel.space.index_of(first_.start).state)];
+    return {.policy = {std::move(kernel.space), std::move(best)}, .chain_says = says};
+  }
+
+  [[nodiscard]] static Plan always(int action, const Plan& like) {
+    Plan plan = like;
+    auto& actions = plan.policy.decisions.action;
+    std::fill(actions.begin(), actions.end(), static_cast<std::uint16_t>(action));
+    plan.chain_says = std::nan("");
+    return plan;
+  }
+
+  /// By trials that nothing was chosen by.
+  void judge(Plan& plan) {
+    const std::int64_t first = next_;
+    const FieldTrials own = run(choice_of(plan), count_);
+    plan.crossings = crossings_of(own);
+    plan.usage = usage_of(own);
+    for (int a = 0; a < actions(); ++a) {
+      next_ = first;
+      const FieldTrials alone = run([a](const Place&, const Entry&) { return a; }, count_);
+      plan.alone.push_back(crossings_of(alone));
+      plan.gains.push_back(gain_over(own, alone));
+    }
+    for (const Action& a : actions_)
+      if (a.problem.check)
+        a.problem.check(gate_runs_ / (10 * std::ssize(actions_)), options_.seed, health_, work_);
+    plan.rounds = rounds_;
+    plan.gate_runs = gate_runs_;
+    plan.health = health_;
+  }
+
+  [[nodiscard]] std::vector<double> usage_of(const FieldTrials& trials) const {
+    const FieldParams& field = first_.field;
+    const std::size_t cells =
+        static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows);
+    std::vector<double> usage(actions_.size() * cells, 0.0);
+    for (std::size_t i = 0; i < trials.passed.size(); ++i) {
+      int column = field.start_column(), row = 0;
+      for (const CellPassage& passage : trials.of_trial(i)) {
+        usage[static_cast<std::size_t>(passage.type % actions()) * cells +
+              static_cast<std::size_t>(row * field.columns + column)] +=
+            1.0 / static_cast<double>(trials.passed.size());
+        const Face& move = first_.map().section.faces[static_cast<std::size_t>(passage.entry.face)];
+        column += move.di_x;
+        row += move.di_y;
+      }
+    }
+    return usage;
+  }
+
+  const std::vector<Action>& actions_;
+  const Problem& first_;
+  CellField cells_;
+  std::uint64_t stream_;
+  const PlanOptions& options_;
+  const Work& work_;
+  std::int64_t count_;                         // trials of a plan in a round
+  std::int64_t next_ = std::int64_t{1} << 44;  // no other command has trials of such numbers
+  RunPool pool_;
+  int rounds_ = 0;
+  std::int64_t gate_runs_ = 0;
+  Health health_;
+};
+
+}  // namespace
+
+CellField cells_of(const std::vector<Action>& actions) {
+  require_actions(actions);
+  CellField field{actions.front().problem.map(), {}};
+  field.map.types.clear();
+  for (int& type : field.map.type_of_cell) type *= static_cast<int>(actions.size());
+  for (std::size_t t = 0; t < actions.front().problem.map().types.size(); ++t)
+    for (const Action& a : actions) {
+      field.map.types.push_back(a.problem.map().types[t]);
+      field.cells.push_back(a.problem.cells.cells[t]);
+    }
+  return field;
+}
+
+int Policy::action(const Place& place, const Entry& entry) const {
+  if (place.column < 0 || place.column >= decisions.field.columns || place.row < 0 ||
+      place.row >= decisions.field.rows || place.passed < 0 ||
+      (decisions.max_cells > 0 && place.passed >= decisions.max_cells))
+    throw std::out_of_range("policy: is not made for this place");
+  return decisions
+      .action[decisions.at(place.column, place.row, space.index_of(entry).state, place.passed)];
+}
+
+std::array<double, 2> Crossings::interval_95() const { return share_interval(crossed, trials); }
+
+Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options, const Work& work) {
+  if (!(options.accuracy >= 0.001 && options.accuracy < 0.5))
+    throw std::invalid_argument("plan: accuracy must lie in [0.001, 0.5)");
+  if (options.per_leaf < 1 || options.per_leaf > 1'000'000)
+    throw std::invalid_argument("plan: leaves of 1 to 1000000 entries");
+  return Planner(actions, options, work).carry_out();
+}
+
+}  // namespace gatewalk::lattice

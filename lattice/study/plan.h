@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// What a body should do on its way: which of several actions to take in each cell, by how it
+/// enters, so that it crosses the field as often as it can. An action is the field as it is while a
+/// body takes it: other forces, stiffer joints, or cells of another kind.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dynamics/base/work.h"
+#include "dynamics/cells/cell.h"
+#include "dynamics/cells/state_space.h"
+#include "lattice/problem.h"
+#include "lattice/reference.h"
+#include "markov/decide.h"
+
+namespace gatewalk::lattice {
+
+/// What a body may do. All have the same section, field, map and start, and cells of the same kinds
+/// that differ in nothing that bodies carry with them: of discs, the body and the gate's measures.
+struct Action {
+  std::string name;
+  Problem problem;
+};
+
+/// All types of cells with all actions: number type * actions + action. Throws
+/// std::invalid_argument unless the actions belong together, and for more than 256 of these.
+[[nodiscard]] dynamics::CellField cells_of(const std::vector<Action>& actions);
+
+/// An action for each cell and state, and where the field limits the cells for each number of cells
+/// passed.
+struct Policy {
+  dynamics::StateSpace space;
+  markov::Decisions decisions;
+
+  /// Throws std::out_of_range for a place that it is not made for.
+  [[nodiscard]] int action(const Place& place, const dynamics::Entry& entry) const;
+};
+
+struct PlanOptions {
+  double accuracy = 0.02;  // half of the widest interval that a chance to cross may have
+  std::int64_t most_runs = 20'000'000;  // gate runs to choose by, about
+  int per_leaf = dynamics::kEntriesPerLeaf;
+  std::uint64_t seed = 1;
+};
+
+/// Trials that crossed the field, of so many.
+struct Crossings {
+  std::int64_t crossed = 0, trials = 0;
+  [[nodiscard]] double share() const {
+    return static_cast<double>(crossed) / static_cast<double>(trials);
+  }
+  [[nodiscard]] std::array<double, 2> interval_95() const;  // Jeffreys'
+};
+
+/// By how much one chance is above another, of the same trials in both.
+struct Gain {
+  double difference = 0.0;
+  std::array<double, 2> interval_95{};  // Bonett and Price 2012
+};
+
+struct Plan {
+  Policy policy;
+  /// Chance to cross by the chain that it was chosen by, too good where that takes chance for
+  /// skill; NaN where nothing crossed oftener than one action alone.
+  double chain_says = 0.0;
+  /// New trials in full, none of which it was chosen by: of the policy, and of each action alone,
+  /// under the same noise as far as bodies take the same ways.
+  Crossings crossings{};
+  std::vector<Crossings> alone{};
+  std::vector<Gain> gains{};    // over each action alone
+  std::vector<double> usage{};  // (actions x cells) how often it is taken there, per trial
+  int rounds = 0;               // of trials and choosing again
+  bool settled = false;         // the last round gained no more than half of the accuracy
+  std::int64_t gate_runs = 0;   // of all
+  dynamics::Health health{};    // the same
+};
+
+/// Trials in which bodies try all actions fill a matrix for each over common states. The best
+/// policies for these (markov/decide.h), with leaves of three sizes, are carried out in full,
+/// beside each action alone and the best so far, all with the same trials; these are added, and so
+/// on until a round gains little or there are no more runs. The same on any number of threads.
+/// Throws std::invalid_argument as cells_of, for fewer than two actions and for an accuracy outside
+/// [0.001, 0.5), and std::runtime_error when a run broke, and as markov::decide.
+[[nodiscard]] Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options,
+                             const dynamics::Work& work = {});
+
+}  // namespace gatewalk::lattice

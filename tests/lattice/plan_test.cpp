@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/study/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lattice/reference.h"
+#include "lattice/scene/scene.h"
+#include "lattice/scene/scene_problem.h"
+#include "tests/support/threads.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+constexpr double kGood = 0.95, kBad = 0.2;
+constexpr int kRows = 5;
+
+/// A lane of cells: a body enters at a place in [-1, 1], and gets through by chance: `left` where
+/// the place is below 0, else `right`. Anywhere in the next one.
+Action lane(std::string name, double left, double right, FieldParams field = {1, kRows, 0}) {
+  Section section;
+  section.faces = {{"S", 0, 1, 0, 1, "from below", {}}};
+  section.coordinates = {{"x", "x", "1", "place", 1.0}};
+  const auto cell = std::make_shared<FunctionCell>(section, [=](Body& body) {
+    const double chance = body.entry.at[0] < 0.0 ? left : right;
+    const Fate fate = body.random.uniform() < chance ? Fate::left : Fate::trapped;
+    body.entry = {0, {2.0 * body.random.uniform() - 1.0}};
+    return Passage{fate, body.entry};
+  });
+  Problem problem;
+  problem.cells = CellField::uniform(cell);
+  problem.field = field;
+  problem.start = {0, {-0.5}};
+  return {std::move(name), std::move(problem)};
+}
+std::vector<Action> two_ways(FieldParams field = {1, kRows, 0}) {
+  return {lane("left", kGood, kBad, field), lane("right", kBad, kGood, field)};
+}
+
+bool holds(const std::array<double, 2>& interval, double value) {
+  return interval[0] <= value && value <= interval[1];
+}
+
+TEST(Plan, EachBodyTakesTheActionThatItsEntryAsksFor) {
+  for (const int limit : {0, kRows + 1}) {
+    const Plan plan = make_plan(two_ways({1, kRows, limit}), {.accuracy = 0.01, .seed = 3});
+    EXPECT_TRUE(plan.settled) << limit;
+    const double best = std::pow(kGood, kRows);
+    EXPECT_TRUE(holds(plan.crossings.interval_95(), best)) << plan.crossings.share();
+    EXPECT_NEAR(plan.chain_says, best, 0.02);
+    EXPECT_EQ(plan.crossings.trials, 9604);
+    const double either = 0.5 * (kGood + kBad);
+    for (const auto& [action, first] : {std::pair{0U, kGood}, {1U, kBad}}) {
+      const double alone = first * std::pow(either, kRows - 1);
+      EXPECT_TRUE(holds(plan.alone[action].interval_95(), alone)) << action;
+      EXPECT_TRUE(holds(plan.gains[action].interval_95, best - alone)) << action;
+      EXPECT_NEAR(plan.gains[action].difference,
+                  plan.crossings.share() - plan.alone[action].share(), 1e-12);
+    }
+    for (int row = 0; row < kRows; ++row)
+      for (const double x : {-0.9, -0.5, -0.1, 0.1, 0.9}) {
+        EXPECT_EQ(plan.policy.action({0, row, row}, {0, {x}}), x < 0.0 ? 0 : 1) << row << ' ' << x;
+      }
+    ASSERT_EQ(plan.usage.size(), 2U * kRows);
+    EXPECT_NEAR(plan.usage[0], 1.0, 1e-12);  // at the start
+    for (int row = 1; row < kRows; ++row) {
+      EXPECT_NEAR(plan.usage[static_cast<std::size_t>(row)], 0.5 * std::pow(kGood, row), 0.02);
+      EXPECT_NEAR(plan.usage[static_cast<std::size_t>(kRows + row)], 0.5 * std::pow(kGood, row),
+                  0.02);
+    }
+  }
+}
+
+TEST(Plan, WhereAllActionsAreAlikeNothingIsGained) {
+  const Plan plan = make_plan({lane("one", 0.9, 0.9), lane("other", 0.9, 0.9)}, {.seed = 5});
+  for (const Gain& gain : plan.gains) {
+    EXPECT_EQ(gain.difference, 0.0);  // the same noise
+    EXPECT_TRUE(holds(gain.interval_95, 0.0));
+  }
+}
+
+// In every other row what is left is right.
+TEST(Plan, TypesOfCellsAreToldApart) {
+  std::vector<Action> actions = two_ways();
+  const std::vector<Action> others{lane("", kBad, kGood), lane("", kGood, kBad)};
+  for (std::size_t a = 0; a < 2; ++a) {
+    CellField& cells = actions[a].problem.cells;
+    cells.cells.push_back(others[a].problem.cells.cells[0]);
+    cells.map.types.push_back({});
+    cells.map.columns = 1;
+    for (int row = 0; row < kRows; ++row) cells.map.type_of_cell.push_back(row % 2);
+  }
+  const Plan plan = make_plan(actions, {.seed = 6});
+  EXPECT_TRUE(holds(plan.crossings.interval_95(), std::pow(kGood, kRows)));
+  for (int row = 0; row < kRows; ++row)
+    for (const double x : {-0.5, 0.5})
+      EXPECT_EQ(plan.policy.action({0, row, row}, {0, {x}}), (x > 0.0) != (row % 2 == 1)) << row;
+  EXPECT_THROW((void)plan.policy.action({0, kRows, 0}, {0, {0.5}}), std::out_of_range);
+  EXPECT_THROW((void)plan.policy.action({1, 0, 0}, {0, {0.5}}), std::out_of_range);
+}
+
+// To try again until the last cell, and there to rush.
+TEST(Plan, KnowsHowManyCellsAreLeft) {
+  const auto action = [](std::string name, double ahead, Fate else_) {
+    Section section;
+    section.faces = {{"S", 0, 1, 0, 0, "from below", {}}, {"W", 1, 0, kNoMirror, 0, "", {}}};
+    section.coordinates = {{"x", "x", "1", "place", 1.0}};
+    const auto cell = std::make_shared<FunctionCell>(section, [=](Body& body) {
+      const bool goes_on = body.random.uniform() < ahead;
+      body.entry = {goes_on ? 0 : 1, {body.random.uniform()}};
+      return Passage{goes_on ? Fate::left : else_, body.entry};
+    });
+    Problem problem;
+    problem.cells = CellField::uniform(cell);
+    problem.field = {9, 1, 3};
+    problem.start = {0, {0.5}};
+    return Action{std::move(name), std::move(problem)};
+  };
+  const std::vector<Action> actions{action("try", 0.5, Fate::left),
+                                    action("rush", 0.7, Fate::trapped)};
+  const Plan plan = make_plan(actions, {.accuracy = 0.01, .seed = 7});
+  EXPECT_TRUE(holds(plan.crossings.interval_95(), 0.925)) << plan.crossings.share();
+  EXPECT_TRUE(holds(plan.alone[0].interval_95(), 0.875));
+  EXPECT_TRUE(holds(plan.alone[1].interval_95(), 0.7));
+  EXPECT_EQ(plan.policy.action({4, 0, 0}, {0, {0.5}}), 0);
+  EXPECT_EQ(plan.policy.action({5, 0, 1}, {1, {0.5}}), 0);
+  EXPECT_EQ(plan.policy.action({6, 0, 2}, {1, {0.5}}), 1);
+}
+
+/// The paper's field: push hard, or gently.
+std::vector<Action> pushes() {
+  std::vector<Action> actions;
+  for (const auto& [name, push] : {std::pair{"gently", 6.0}, {"hard", 8.0}}) {
+    Scene scene;
+    scene.gate.forces.propulsion = push;
+    scene.gate.forces.random = 30.0;
+    scene.gate.run.method = "moreau";
+    scene.gate.run.step = 0.02;
+    scene.field.columns = scene.field.rows = 3;
+    actions.push_back({name, problem_of(scene)});
+  }
+  return actions;
+}
+
+TEST(Plan, TheSameOnAnyThreads) {
+  const auto run = [] { return make_plan(pushes(), {.accuracy = 0.05, .seed = 2}); };
+  const Plan one = test::on_threads(1, run), three = test::on_threads(3, run);
+  EXPECT_EQ(one.crossings.crossed, three.crossings.crossed);
+  EXPECT_EQ(one.rounds, three.rounds);
+  EXPECT_EQ(one.policy.decisions.action, three.policy.decisions.action);
+  EXPECT_EQ(one.usage, three.usage);
+  EXPECT_EQ(one.gate_runs, three.gate_runs);
+}
+
+TEST(Plan, AnActionAloneIsThatField) {
+  const std::vector<Action> actions = pushes();
+  for (const int a : {0, 1}) {
+    const Problem& p = actions[static_cast<std::size_t>(a)].problem;
+    FieldTrials chosen, own;
+    const CellField cells = cells_of(actions);
+    (void)run_field(cells, p.field,
+                    [&](std::int64_t i, Body& body) {
+                      begin_trial(p.cells.at(p.field.start_column(), 0), p.start, 4, i, body);
+                    },
+                    {0, 300}, &chosen, nullptr, Memory::kept,
+                    {p.start, [a](const Place&, const Entry&) { return a; }});
+    (void)run_field(p.cells, p.field, p.start, 4, {0, 300}, &own);
+    EXPECT_EQ(chosen.final_gates, own.final_gates);
+    EXPECT_EQ(chosen.endings, own.endings);
+  }
+}
+
+TEST(Plan, RefusesWhatDoesNotBelongTogether) {
+  const auto refused = [](std::vector<Action> actions, const PlanOptions& options = {}) {
+    EXPECT_THROW((void)make_plan(actions, options), std::invalid_argument);
+  };
+  refused({lane("one", 0.5, 0.5)});
+  refused({lane("one", 0.5, 0.5), lane("other", 0.5, 0.5, {3, kRows, 0})});
+  refused({lane("one", 0.5, 0.5), lane("other", 0.5, 0.5, {1, kRows, 9})});
+  refused({lane("one", 0.5, 0.5), pushes()[0]});
+  std::vector<Action> elsewhere = two_ways();
+  elsewhere[1].problem.start.at[0] = 0.5;
+  refused(elsewhere);
+  std::vector<Action> many(257, lane("many", 0.5, 0.5));
+  refused(many);
+  std::vector<Action> wider = pushes();
+  wider[1].problem.width *= 2.0;
+  refused(wider);
+  refused(two_ways(), {.accuracy = 0.0});
+  refused(two_ways(), {.per_leaf = 0});
+  refused(two_ways(), {.accuracy = 0.5});
+  refused(two_ways(), {.accuracy = std::nan("")});
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
