@@ -658,9 +658,27 @@ TEST(TreeChain, DamagedRunsAreRefused) {
       if (other.name == array.name) other.values.pop_back();
     EXPECT_THROW((void)pool_of(bad, problem_of(scene), "x.nc"), markov::BadFile) << array.name;
   }
-  for (markov::NamedArray& array : file.arrays)
-    if (array.name == "run_boundary") array.values[0] = 7.0;
-  EXPECT_THROW((void)pool_of(file, problem_of(scene), "x.nc"), markov::BadFile);
+  const auto refused = [&](const std::string& name, auto damage) {
+    MatrixFile bad = file;
+    for (markov::NamedArray& array : bad.arrays)
+      if (array.name == name) damage(array.values);
+    EXPECT_THROW((void)pool_of(bad, problem_of(scene), "x.nc"), markov::BadFile) << name;
+  };
+  for (const char* name : {"trial_kind", "trial_runs", "run_ending", "run_boundary"})
+    for (const double x : {0.5, -1.0, 1e6})
+      refused(name, [x](std::vector<double>& values) { values[0] = x; });
+  refused("run_boundary", [](std::vector<double>& values) { values[0] = 7.0; });
+  refused("trial_runs", [](std::vector<double>& values) { values.back() += 1.0; });
+}
+
+// What a range took is not taken from its starts: bodies from this one enter as no others do.
+TEST(TreeChain, StartsBesideARangeGetTrialsOfTheirOwn) {
+  const Problem problem = problem_of(fast_scene());
+  const TreeChain chain = make_tree_chain(problem, {.accuracy = {.accuracy = 0.1},
+                                                    .starts = {entry_of({0, 0, 0, 45})},
+                                                    .range = usual_range(problem)});
+  EXPECT_TRUE(chain.prediction->reached);
+  EXPECT_GT(chain.prediction->starts[0].trials, 100);
 }
 
 }  // namespace
