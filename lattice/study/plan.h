@@ -12,6 +12,7 @@
 #include "dynamics/base/work.h"
 #include "dynamics/cells/cell.h"
 #include "dynamics/cells/state_space.h"
+#include "dynamics/cells/tree_space.h"
 #include "lattice/problem.h"
 #include "lattice/reference.h"
 #include "markov/decide.h"
