@@ -191,7 +191,10 @@ class Planner {
 
   [[nodiscard]] Plan choose(int per_leaf) const {
     Kernel kernel = kernel_of(cells_.map, pool_, per_leaf);
-    if (bytes_of(kernel.space) > kMostBytes) return choose(2 * per_leaf);
+    if (bytes_of(kernel.space) > kMostBytes)
+      throw std::runtime_error(
+          "plan: decisions for so many cells, states and gates do not fit into memory; a smaller "
+          "field.max_gates (0: no limit), or larger leaves, need less");
     std::vector<markov::FieldChain> chains;
     for (std::size_t a = 0; a < actions_.size(); ++a) {
       std::vector<markov::Chain> of_types;
@@ -263,7 +266,7 @@ class Planner {
   const PlanOptions& options_;
   const Work& work_;
   std::int64_t count_;                         // trials of a plan in a round
-  std::int64_t next_ = std::int64_t{1} << 44;  // no other command has trials of such numbers
+  std::int64_t next_ = std::int64_t{1} << 50;  // trials of such numbers no other command has
   RunPool pool_;
   int rounds_ = 0;
   std::int64_t gate_runs_ = 0;
@@ -288,8 +291,9 @@ CellField cells_of(const std::vector<Action>& actions) {
 int Policy::action(const Place& place, const Entry& entry) const {
   if (place.column < 0 || place.column >= decisions.field.columns || place.row < 0 ||
       place.row >= decisions.field.rows || place.passed < 0 ||
-      (decisions.max_cells > 0 && place.passed >= decisions.max_cells))
-    throw std::out_of_range("policy: is not made for this place");
+      (decisions.max_cells > 0 && place.passed >= decisions.max_cells) || entry.face < 0 ||
+      entry.face >= std::ssize(space.trees()))
+    throw std::out_of_range("policy: is not made for this place, or this way to enter");
   return decisions
       .action[decisions.at(place.column, place.row, space.index_of(entry).state, place.passed)];
 }
@@ -301,6 +305,7 @@ Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options, c
     throw std::invalid_argument("plan: accuracy must lie in [0.001, 0.5)");
   if (options.per_leaf < 1 || options.per_leaf > 1'000'000)
     throw std::invalid_argument("plan: leaves of 1 to 1000000 entries");
+  require_actions(actions);
   return Planner(actions, options, work).carry_out();
 }
 

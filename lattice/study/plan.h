@@ -20,7 +20,8 @@
 namespace gatewalk::lattice {
 
 /// What a body may do. All have the same section, field, map and start, and cells of the same kinds
-/// that differ in nothing that bodies carry with them: of discs, the body and the gate's measures.
+/// that differ in nothing that bodies carry with them, which is not checked: of discs, the body and
+/// the gate's measures.
 struct Action {
   std::string name;
   Problem problem;
@@ -65,7 +66,7 @@ struct Gain {
 struct Plan {
   Policy policy;
   /// Chance to cross by the chain that it was chosen by, too good where that takes chance for
-  /// skill; NaN where nothing crossed oftener than one action alone.
+  /// skill; NaN where one action alone crossed oftest.
   double chain_says = 0.0;
   /// New trials in full, none of which it was chosen by: of the policy, and of each action alone,
   /// under the same noise as far as bodies take the same ways.
@@ -82,9 +83,11 @@ struct Plan {
 /// Trials in which bodies try all actions fill a matrix for each over common states. The best
 /// policies for these (markov/decide.h), with leaves of three sizes, are carried out in full,
 /// beside each action alone and the best so far, all with the same trials; these are added, and so
-/// on until a round gains little or there are no more runs. The same on any number of threads.
-/// Throws std::invalid_argument as cells_of, for fewer than two actions and for an accuracy outside
-/// [0.001, 0.5), and std::runtime_error when a run broke, and as markov::decide.
+/// on until a round gains little or there are no more runs; one round there always is. Where the
+/// field does not limit the cells, bodies must not circle for ever. The same on any number of
+/// threads. Throws std::invalid_argument as cells_of, for fewer than two actions and for an
+/// accuracy outside [0.001, 0.5), and std::runtime_error when a run broke, where decisions do not
+/// fit into memory, and as markov::decide.
 [[nodiscard]] Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options,
                              const dynamics::Work& work = {});
 
