@@ -49,6 +49,10 @@ ssize_t write(int file, const void *bytes, size_t size) {
   REAL(write);
   return file > 2 && fails("write") ? -1 : real(file, bytes, size);
 }
+ssize_t read(int file, void *bytes, size_t size) {
+  REAL(read);
+  return fails("read") ? -1 : real(file, bytes, size);
+}
 int fsync(int file) {
   REAL(fsync);
   return fails("fsync") ? -1 : real(file);

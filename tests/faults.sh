@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What becomes of results when the system fails: call number k of write, fsync, fdatasync, rename, ftruncate, opening and
+# What becomes of results when the system fails: call number k of read, write, fsync, fdatasync, rename, ftruncate, opening and
 # creating a file, starting a process or a thread fails, once and from then on, for every k that a command makes; so does
 # getting memory; of every command but stability, chart-chain and reproduce, which take minutes and write as chart does.
 # /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files, no locale, no HOME, closed
@@ -21,17 +21,22 @@ same() {
     *) cmp -s "$1" "$2" ;;
   esac || fail "$2 is not $1, of a run without a fault (${call-} ${k-}${ever:+ and after it})"
 }
+# whole_film ONE OTHER: as wide, high and long, to its last byte (the trailer of a GIF).
+frames_of() { ffprobe -v error -count_frames -show_entries stream=width,height,nb_read_frames -of csv "$1"; }
+whole_film() {
+  [ "$(tail -c 1 "$2")" = ";" ] && [ "$(frames_of "$1")" = "$(frames_of "$2")" ] || fail "$2 is no whole film (${call-} ${k-})"
+}
 # each_old FILE..., each_whole FILE...: all as before the run; those that are not as before are as after a whole one.
 each_old() { for f in "$@"; do cmp -s "$f" <(echo old) || return 1; done; }
 each_whole() { for f in "$@"; do each_old "$f" || same "one/$f" "$f"; done; }
-has_checkpoint() { "$gatewalk" "$1" --help | grep -q -e ' --checkpoint'; }
+has_checkpoint() { [[ $* != "build recorded"* ]] && "$gatewalk" "$1" --help | grep -q -e ' --checkpoint'; }  # no runs are made of recorded ones
 
 # survives OUTPUTS COMMAND...: an old output stays as it was, or the new one is whole; a status of 0 means that all are new.
 survives() {
   local outputs call k ever error status left keep=()
   read -r -a outputs <<<"$1"
   shift
-  ! has_checkpoint "$1" || keep=(--checkpoint pieces)
+  ! has_checkpoint "$@" || keep=(--checkpoint pieces)
   rm -rf "${outputs[@]}" one && mkdir one
   "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
   for f in "${outputs[@]}"; do mkdir -p "$(dirname "one/$f")" && mv "$f" "one/$f"; done
@@ -51,7 +56,7 @@ survives() {
     for f in "${outputs[@]}"; do same "one/$f" "$f"; done
   }
   local command=("$@")
-  for call in write fsync fdatasync rename ftruncate open create spawn thread; do
+  for call in read write fsync fdatasync rename ftruncate open create spawn thread; do
     for ever in "" 1; do
       case $call:$ever in open:* | create:*) error=24 ;; spawn:*) error=11 ;; *:) error=28 ;; *) error=5 ;; esac  # EMFILE EAGAIN ENOSPC EIO
       for k in $(seq "$most"); do
@@ -64,7 +69,7 @@ survives() {
         else
           each_whole "${outputs[@]}"
           grep -q '^gatewalk: ' err.txt || fail "$call $k failed without a word: $* ($(cat err.txt))"
-          [ $status = 1 ] || { [[ $call = @(open|create|spawn) ]] && [ $status = 2 ]; } || fail "$call $k failed: status $status: $* ($(cat err.txt))"
+          [ $status = 1 ] || { [[ $call = @(read|open|create|spawn) ]] && [ $status = 2 ]; } || fail "$call $k failed: status $status: $* ($(cat err.txt))"
         fi
         left=$(find . -name '.gatewalk-*')
         [ -z "$left" ] || { fail "$call $k failed, and temporary files stay: $* ($left)"; find . -name '.gatewalk-*' -delete; }
@@ -80,9 +85,13 @@ survives() {
       once $k
       [ -e seen ] || break
       case $status in
-        # Without memory for its configuration fontconfig takes other letters, and says so.
+        # Without memory for its configuration fontconfig takes other letters, and seldom says so.
         0) for f in "${outputs[@]}"; do
-          [[ $f = *.@(gif|svg|html) ]] && grep -q '^Fontconfig error' err.txt || same "one/$f" "$f"
+          case $f in
+            *.gif) whole_film "one/$f" "$f" ;;
+            *.@(svg|html)) grep -q '^Fontconfig error' err.txt || same "one/$f" "$f" ;;
+            *) same "one/$f" "$f" ;;
+          esac
         done ;;
         1 | 2) grep -q '^gatewalk: ' err.txt || fail "without memory $k: no words: $*" ;;
         *) crashes=$((crashes + 1)) ;;

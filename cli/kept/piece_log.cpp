@@ -83,6 +83,7 @@ std::string piece_head(const std::string& path) {
 
 PieceFile::PieceFile(const std::string& path) : path_(path), head_(piece_head(path)) {
   std::ifstream in(path, std::ios::binary);
+  in.exceptions(std::ios_base::badbit);  // what cannot be read is no end
   end_ = first_line(head_).size() + head_.size() + 1;
   in.seekg(0, std::ios::end);
   const auto size = static_cast<std::uint64_t>(in.tellg());

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "cli/render/csv.h"
 #include "cli/render/final_gates.h"
@@ -14,6 +13,7 @@
 #include "cli/render/quantity.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -324,7 +324,7 @@ std::string csv_of(const ChainErrorChart& chart) {
 }
 
 std::string table_of(const ChainErrorChart& chart) {
-  std::ostringstream out;
+  lattice::TextStream out;
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     const FieldTruth& truth = chart.truths[s];
     out << (s == 0 ? "" : "\n") << "S" << name_of(truth).substr(1) << ": " << truth.tally.trials

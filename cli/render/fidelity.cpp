@@ -2,7 +2,6 @@
 #include "cli/render/fidelity.h"
 
 #include <limits>
-#include <sstream>
 
 #include "cli/render/csv.h"
 #include "cli/render/final_gates.h"
@@ -12,6 +11,7 @@
 #include "cli/render/quantity.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -144,7 +144,7 @@ std::string csv_of(const FidelityStudy& study) {
 }
 
 std::string table_of(const FidelityStudy& study) {
-  std::ostringstream out;
+  lattice::TextStream out;
   const auto step = [](const FidelityVariant& v) {
     return step_text(v) + " (" + v.scene.gate.run.method + ")";
   };

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "lattice/statistics/compare.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -188,7 +188,7 @@ Json by_name(const Values& values, bool back) {
 
 std::string percents(double share) {
   if (!(share > 0.0 && share < 5e-5)) return fixed(100.0 * share, 2);
-  std::ostringstream text;
+  lattice::TextStream text;
   text.precision(2);
   text << 100.0 * share;
   return text.str();

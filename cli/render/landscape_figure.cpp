@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "cli/render/figure.h"
 #include "cli/render/landscape.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -21,7 +21,7 @@ double ceiling_of(const Landscape& l) {
 }
 
 std::string short_energy(double joules, const Sized& unit) {
-  std::ostringstream text;
+  lattice::TextStream text;
   text.precision(3);
   text << joules / unit.size << " " << unit.name;
   return text.str();

@@ -2,7 +2,6 @@
 #include "cli/render/matrix.h"
 
 #include <array>
-#include <sstream>
 
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
@@ -11,6 +10,7 @@
 #include "cli/render/text.h"
 #include "lattice/cells/cell_matrix.h"
 #include "lattice/pool/tree_chain.h"
+#include "lattice/text/text_stream.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {
@@ -42,7 +42,7 @@ std::vector<double> outcome_shares(const Transitions& t, int row) {
 }
 
 std::string row_table(const Transitions& t) {
-  std::ostringstream out;
+  lattice::TextStream out;
   const Section& section = t.space.section();
   out << "\n  in  from";
   for (const Coordinate& c : section.coordinates) {
@@ -68,7 +68,7 @@ std::string row_table(const Transitions& t) {
 }
 
 std::string outputs_table(const Transitions& t, int row) {
-  std::ostringstream out;
+  lattice::TextStream out;
   out << "\n  outputs of input " << row + 1 << "\n";
   for (const auto& [column, count] : t.rows[row]) {
     out << padded(std::to_string(column + 1), 6) << padded(std::to_string(count), 9) << "  ";
@@ -249,7 +249,7 @@ std::string table_of(const lattice::MatrixFile& file, const std::string& path,
   const int n = t.space.size();
   const auto total = t.totals();
   const double cells = static_cast<double>(n) * (n + 1);
-  std::ostringstream out;
+  lattice::TextStream out;
   out << path << "\n"
       << "  size                " << n << " inputs x " << n + 1 << " outputs (the last: trapped)\n"
       << "  gate runs           " << gate_runs_of(file, path)

@@ -182,6 +182,7 @@ std::vector<std::string> remarks(const Meaning& m, const lattice::Scene& scene) 
   constexpr std::size_t kText = 12;  // where sentences begin
   std::vector<std::string> all;
   std::istringstream lines(meaning_text(m, scene));
+  lines.exceptions(std::ios_base::badbit);
   std::string about;
   std::getline(lines, about);  // an empty line, and the heading
   std::getline(lines, about);

@@ -3,13 +3,13 @@
 
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -181,7 +181,7 @@ Json to_json(const MemoryStudy& study) {
 }
 
 std::string text_of(const MemoryStudy& study) {
-  std::ostringstream out;
+  lattice::TextStream out;
   out << "\nIs it Markov? " << study.runs << " gate runs of " << study.walks
       << " trials from all starts, in the states of the chain; p for four questions together.\n";
   for (int k = 0; k < lattice::kQuestions; ++k)

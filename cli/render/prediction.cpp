@@ -2,7 +2,6 @@
 #include "cli/render/prediction.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "cli/render/exits.h"
 #include "cli/render/final_gates.h"
@@ -11,6 +10,7 @@
 #include "cli/render/scene.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -56,7 +56,7 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
     table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)
     table += "still walking when the sum was stopped: " + percent(f.remainder, 1.0, 6) + "\n";
-  std::ostringstream bound;
+  lattice::TextStream bound;
   bound.precision(2);
   bound << "The chain's own error (bins, memory, and with bins from a pilot where its rows start) "
            "is not in the intervals:\n"

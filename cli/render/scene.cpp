@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "cli/render/json.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
 #include "lattice/scene/scene_bins.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -62,7 +62,7 @@ std::string scene_line(const lattice::Scene& scene) {
   const auto& gate = scene.gate;
   const auto& start = scene.start;
   const auto number = [](double x) {
-    std::ostringstream text;
+    lattice::TextStream text;
     text << x;
     return text.str();
   };
@@ -127,7 +127,9 @@ std::string commented(const lattice::Scene& scene) {
   std::string table;
   std::size_t width = 0;
   const auto leaf = [](const lattice::KeyInfo& k) { return k.key.substr(k.key.find('.') + 1); };
-  const auto of_terrain = [](const lattice::KeyInfo& k) { return k.key.starts_with("terrain."); };
+  const auto of_terrain = [](const lattice::KeyInfo& k) {
+    return k.key.starts_with("terrain.") || k.key.starts_with("actions.");
+  };
   for (lattice::KeyInfo& k : keys) {
     if (k.source == "derived") k.value = digits(std::stod(k.value));  // nobody reads them back
     if (!of_terrain(k)) width = std::max(width, leaf(k).size() + k.value.size() + 5);
@@ -145,6 +147,7 @@ std::string commented(const lattice::Scene& scene) {
   }
   if (scene.bins) text += "\n" + lattice::bins_toml(*scene.bins);
   if (scene.terrain) text += "\n" + lattice::terrain_toml(*scene.terrain, scene.field);
+  text += lattice::gates_toml("actions", scene.actions);
   if (!scene.sweep.empty()) text += "\n[sweep]\n";
   for (const lattice::Variation& v : scene.sweep)
     text += "\"" + v.key + "\" = \"" + v.values + "\"\n";

@@ -2,11 +2,11 @@
 #include "cli/render/stability.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "cli/render/csv.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -73,7 +73,7 @@ std::string table_of(const std::vector<FinishedMap>& maps) {
     if (std::any_of(maps.begin(), maps.end(),
                     [v](const FinishedMap& m) { return m.count(static_cast<Verdict>(v)) > 0; }))
       seen.push_back(static_cast<Verdict>(v));
-  std::ostringstream out;
+  lattice::TextStream out;
   out << "Points of each map by the worst that their " << dynamics::kTrialsPerPoint
       << " trials showed\n\n"
       << padded("", -35);

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <sstream>
 
 #include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -38,7 +38,7 @@ Json to_json(const dynamics::Section& section, const dynamics::StateRange& range
 
 std::string title_of(const dynamics::Section& section, const Start& start) {
   if (!start) return "start: all entries that were seen first";
-  std::ostringstream title;
+  lattice::TextStream title;
   title << "start";
   if (start->face != 0) title << " " << section.faces[static_cast<std::size_t>(start->face)].name;
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {

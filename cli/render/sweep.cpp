@@ -2,7 +2,6 @@
 #include "cli/render/sweep.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "cli/render/choice.h"
 #include "cli/render/csv.h"
@@ -11,6 +10,7 @@
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "dynamics/base/share.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -65,7 +65,7 @@ Json to_json(const std::vector<SweepAxis>& axes, const std::vector<SweepPoint>& 
 }
 
 std::string csv_of(const std::vector<SweepAxis>& axes, const std::vector<SweepPoint>& points) {
-  std::ostringstream out;
+  lattice::TextStream out;
   out.precision(8);
   for (const SweepAxis& axis : axes) out << axis.key << ',';
   out << "method,trials";

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 
 #include "cli/render/exits.h"
 #include "cli/render/final_gates.h"
@@ -13,6 +12,7 @@
 #include "cli/render/start.h"
 #include "cli/render/states.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -118,7 +118,7 @@ std::string with_sd(const lattice::MeanAndSd& m) {
 
 /// How trials ended, by the dynamics and by the chain, and the verdicts.
 std::string endings_table(const lattice::Validation& v, const StartTexts& labels) {
-  std::ostringstream out;
+  lattice::TextStream out;
   // Each column as wide as its widest cell: "17.61 [16.87, 18.37]*".
   std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
   for (const lattice::StartValidation& r : v.starts)
@@ -168,7 +168,7 @@ std::string endings_table(const lattice::Validation& v, const StartTexts& labels
 std::string table4_table(const lattice::Validation& v,
                          const std::vector<lattice::PaperStart>& starts, const StartTexts& labels,
                          bool like_table4) {
-  std::ostringstream out;
+  lattice::TextStream out;
   const std::string blank(labels.header.size(), ' ');
   out << "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean "
          "(sd) over\n"
@@ -194,7 +194,7 @@ std::string table4_table(const lattice::Validation& v,
 
 /// Of all trials.
 std::string final_gates_table(const lattice::Validation& v, const StartTexts& labels) {
-  std::ostringstream out;
+  lattice::TextStream out;
   out << "\nFinal gates of all " << v.trials
       << " trials per start. Floor: chance in these trials (and walks) alone; matrix:\n"
          "total variation (TV) that the sampling of the matrix alone makes; chance: that both "
@@ -228,7 +228,7 @@ std::string exits_table(const lattice::Validation& v, const StartTexts& labels) 
 }
 
 std::string seconds_table(const lattice::Validation& v, const StartTexts& labels) {
-  std::ostringstream out;
+  lattice::TextStream out;
   out << "\nSeconds: " << v.trials << " trials and " << v.walks << " walks on " << v.threads
       << (v.threads == 1 ? " thread" : " threads") << ", one exact prediction on one.\n"
       << "\n"

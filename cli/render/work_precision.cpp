@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 
 #include "cli/render/csv.h"
 #include "cli/render/figure.h"
@@ -12,6 +11,7 @@
 #include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -47,7 +47,7 @@ std::string csv_of(const WeakError& e, double limit) {
 
 std::string csv_of(const ChartPoint& p, const WorkPrecision& chart) {
   const dynamics::Health& h = p.health;
-  std::ostringstream out;
+  lattice::TextStream out;
   out << csv_text(chart.label) << ',' << p.setting.method << ',' << p.setting.key << ','
       << digits(p.setting.value) << ',' << (p.setting.usual ? 1 : 0) << ','
       << dynamics::name_of(p.verdict) << ',' << h.runs << ',';
@@ -174,7 +174,7 @@ std::string line_of(const ChartPoint& p, const WorkPrecision& chart) {
 
 std::string reference_text(const WorkPrecision& chart) {
   const dynamics::Reference& r = chart.reference;
-  std::ostringstream out;
+  lattice::TextStream out;
   const auto share = [&](Outcome outcome) {
     return percent(static_cast<double>(r[outcome]), static_cast<double>(chart.trials));
   };

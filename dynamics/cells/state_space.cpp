@@ -258,6 +258,7 @@ StateSpace refined(const StateSpace& space, double factor) {
 
 std::string text_of(const std::array<double, 2>& range) {
   std::ostringstream text;
+  text.exceptions(std::ios_base::badbit);
   if (range[0] == range[1])
     text << range[0];
   else
@@ -268,6 +269,7 @@ std::string text_of(const std::array<double, 2>& range) {
 std::string behind_number(const std::string& unit) {
   std::string text;
   std::istringstream words(unit == "1" ? "" : unit);
+  words.exceptions(std::ios_base::badbit);
   for (std::string word; words >> word;)
     text += word.ends_with("-1") ? "/" + word.substr(0, word.size() - 2) : " " + word;
   return text;

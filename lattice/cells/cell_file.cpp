@@ -5,7 +5,6 @@
 #include <cctype>
 #include <filesystem>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "lattice/scene/toml_settings.h"
 #include "lattice/scene/units.h"
 #include "lattice/text/edit_distance.h"
+#include "lattice/text/text_stream.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
@@ -523,7 +523,7 @@ Terrain types_as_terrain(const CellFile& file) {
 }
 
 std::string quoted_toml(const std::string& text) {
-  std::ostringstream out;
+  TextStream out;
   out << toml::value<std::string>(text);
   return out.str();
 }

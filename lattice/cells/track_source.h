@@ -2,6 +2,7 @@
 #pragma once
 /// What the readers of tracks share. Not part of the installed headers.
 
+#include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ namespace gatewalk::lattice {
 
 /// `"text"`, fit for a message.
 [[nodiscard]] std::string in_quotes(const std::string& text);
+
+/// The next line; false at the end. Throws std::invalid_argument where the file cannot be read on.
+[[nodiscard]] bool next_line_of(std::istream& in, const std::string& path, std::string& text);
 
 /// Refuses what the file does not say and the user did not: names all options that are missing.
 class Lacking {

@@ -39,6 +39,13 @@ bool is_frame(double number) {
   return number == std::floor(number) && std::abs(number) <= kMost;
 }
 
+bool next_line_of(std::istream& in, const std::string& path, std::string& text) try {
+  in.exceptions(std::ios_base::badbit);  // else what cannot be read looks like the end
+  return static_cast<bool>(std::getline(in, text));
+} catch (const std::ios_base::failure&) {
+  throw std::invalid_argument(path + ": cannot be read on: " + std::strerror(EIO));
+}
+
 void Lacking::refuse() const {
   if (!text_.empty())
     throw std::invalid_argument(path_ + " does not say, and is not taken to mean, " + text_);
@@ -205,7 +212,7 @@ class LongTable {
 
   /// Comments and empty lines are left out.
   bool next_line(std::istream& in, std::string& text) {
-    while (std::getline(in, text)) {
+    while (next_line_of(in, file_.source, text)) {
       if (++line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
       if (text.ends_with('\r')) text.pop_back();
       const std::size_t first = text.find_first_not_of(" \t");

@@ -65,7 +65,7 @@ class WideTable {
   bool next(std::vector<std::string>& row) {
     std::string text;
     do {
-      if (!std::getline(in_, text)) return false;
+      if (!next_line_of(in_, file_.source, text)) return false;
       if (++line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
       if (text.ends_with('\r')) text.pop_back();
     } while (text.empty());

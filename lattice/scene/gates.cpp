@@ -2,12 +2,12 @@
 #include "lattice/scene/gates.h"
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "dynamics/disc/disc_cell.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kMostGatesOfReach = 3.0;
 
 void validate(const dynamics::GateParams& p, const FieldParams& field) {
   if (field.fidelity == Fidelity::active) return;
-  std::ostringstream text;
+  TextStream text;
   if (p.run.method != "moreau") {
     text
         << "field.fidelity = \"" << name_of(field.fidelity)

@@ -140,7 +140,7 @@ std::string_view closest_table(std::string_view name) {
   name = name.substr(0, kLongestCompared);
   std::vector<std::string_view> tables;
   for (const SceneKey& key : scene_keys()) tables.push_back(table_of(key.key));
-  tables.insert(tables.end(), {kSweepTable, kBinsTable, kTerrainTable});
+  tables.insert(tables.end(), {kSweepTable, kBinsTable, kTerrainTable, kActionsTable});
   return *std::min_element(tables.begin(), tables.end(),
                            [&](std::string_view a, std::string_view b) {
                              return edit_distance(name, a) < edit_distance(name, b);
@@ -190,7 +190,8 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
     const std::string table_name(table_key.str());
     const std::string table_origin = origin(table_node.source().begin.line);
     const toml::table* table = table_node.as_table();
-    if (table_name == kSweepTable || table_name == kBinsTable || table_name == kTerrainTable)
+    if (table_name == kSweepTable || table_name == kBinsTable || table_name == kTerrainTable ||
+        table_name == kActionsTable)
       continue;  // read apart
     if (!is_table(table_name)) {
       throw SceneError(table_origin + ": unknown " +
@@ -277,7 +278,7 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
   documents.push_back(std::move(read.document));
   const Settings added = settings_of(documents.back(), [&read](std::size_t) { return read.begin; });
   if (added.empty() && !documents.back().contains(kBinsTable) &&
-      !documents.back().contains(kTerrainTable))
+      !documents.back().contains(kTerrainTable) && !documents.back().contains(kActionsTable))
     throw SceneError(read.begin + ": sets no key");
   for (const auto& [key, setting] : added) settings[key] = setting;
 }
@@ -366,38 +367,49 @@ void check_gate(const Scene& scene, const Settings& settings) {
   check(scene, settings, [&] { require_runnable(scene.gate); });
 }
 
-/// The same for the types of the terrain.
-void check_types(const Scene& scene) {
-  for (const Terrain::Type& type : scene.terrain->types) try {
+/// The same for types of the terrain, or actions; `table` has them.
+void check_types(const Scene& scene, const std::vector<Terrain::Type>& types,
+                 const std::string& table) {
+  for (const Terrain::Type& type : types) try {
       require_runnable(gate_of(scene, type));
     } catch (const dynamics::InvalidParameter& error) {
       std::string origin = scene.source;
       for (const Terrain::Key& key : type.keys)
         if (std::strstr(error.what(), key.name.c_str())) origin = key.origin;
-      throw SceneError(origin + ": terrain.types." + type.name + ": " + error.what());
+      throw SceneError(origin + ": " + table + "." + type.name + ": " + error.what());
     }
 }
 
-/// Table [terrain] of the file and of the overrides.
+/// Tables [terrain] and [actions] of the file and of the overrides.
 void read_terrain(Scene& scene, const toml::table& document, const Origin& origin,
                   const std::deque<toml::table>& override_documents,
                   const std::vector<std::string>& overrides) {
-  TerrainSettings settings;
-  add_terrain(settings, document, origin,
+  TerrainSettings terrain, actions;
+  add_terrain(terrain, document, origin,
               std::filesystem::path(scene.source).parent_path().string());
-  for (std::size_t i = 0; i < overrides.size(); ++i)
-    add_terrain(
-        settings, override_documents[i],
-        [given = printable(overrides[i])](std::size_t) { return "--set " + given; }, "");
-  scene.terrain =
-      terrain_of(settings, scene.field,
-                 [&](std::string_view name, const TerrainSetting& given, const std::string& shown) {
-                   Scene other = scene;
-                   const SceneKey& key = *find_key(name);
-                   assign(key, {given.value, given.where(), given.spelled}, other, shown);
-                   return *std::get<double*>(key.slot(other));
-                 });
-  if (scene.terrain) check_types(scene);
+  add_actions(actions, document, origin);
+  for (std::size_t i = 0; i < overrides.size(); ++i) {
+    const Origin of_override = [given = printable(overrides[i])](std::size_t) {
+      return "--set " + given;
+    };
+    add_terrain(terrain, override_documents[i], of_override, "");
+    add_actions(actions, override_documents[i], of_override);
+  }
+  const TypeValue value = [&](std::string_view name, const TerrainSetting& given,
+                              const std::string& shown) {
+    Scene other = scene;
+    const SceneKey& key = *find_key(name);
+    assign(key, {given.value, given.where(), given.spelled}, other, shown);
+    return *std::get<double*>(key.slot(other));
+  };
+  scene.terrain = terrain_of(terrain, scene.field, value);
+  scene.actions = actions_in(actions, value);
+  if (scene.terrain) check_types(scene, scene.terrain->types, "terrain.types");
+  for (const Terrain::Type& action : scene.actions) {
+    const Scene taken = with_action(scene, action);
+    check_types(taken, {{action.name, {}}}, std::string(kActionsTable));
+    if (taken.terrain) check_types(taken, taken.terrain->types, "actions." + action.name);
+  }
 }
 
 /// What depends on gate, field and start.
@@ -582,7 +594,7 @@ std::string to_toml(const Scene& scene) {
   }
   if (scene.bins) text += "\n" + bins_toml(*scene.bins);
   if (scene.terrain) text += "\n" + terrain_toml(*scene.terrain, scene.field);
-  return text;
+  return text + gates_toml(kActionsTable, scene.actions);
 }
 
 std::vector<KeyInfo> describe(const Scene& scene) {
@@ -601,16 +613,19 @@ std::vector<KeyInfo> describe(const Scene& scene) {
     if (scene.derived.contains(key.key)) info.source = "derived";
     all.push_back(std::move(info));
   }
-  if (!scene.terrain) return all;
-  for (const Terrain::Type& type : scene.terrain->types)
-    for (const Terrain::Key& own : type.keys) {
-      KeyInfo info = *std::find_if(all.begin(), all.end(),
-                                   [&](const KeyInfo& k) { return k.key == own.name; });
-      info.key = "terrain.types." + type.name + "." + own.name;
-      info.value = toml_float(own.value);
-      info.source = own.origin;
-      all.push_back(std::move(info));
-    }
+  const auto add = [&](const std::string& table, const std::vector<Terrain::Type>& types) {
+    for (const Terrain::Type& type : types)
+      for (const Terrain::Key& own : type.keys) {
+        KeyInfo info = *std::find_if(all.begin(), all.end(),
+                                     [&](const KeyInfo& k) { return k.key == own.name; });
+        info.key = table + "." + type.name + "." + own.name;
+        info.value = toml_float(own.value);
+        info.source = own.origin;
+        all.push_back(std::move(info));
+      }
+  };
+  if (scene.terrain) add("terrain.types", scene.terrain->types);
+  add(std::string(kActionsTable), scene.actions);
   return all;
 }
 

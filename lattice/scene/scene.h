@@ -38,6 +38,8 @@ struct Scene {
   std::vector<Variation> sweep;    // table [sweep], in the order of the file
   std::optional<SceneBins> bins;   // table [bins], the chain's states
   std::optional<Terrain> terrain;  // table [terrain], gates of other types
+  /// Table [actions]: what a body may do, the gates as they are then (study/plan.h).
+  std::vector<Terrain::Type> actions;
 };
 
 /// A scene that cannot be used. what() reads
@@ -67,7 +69,8 @@ struct KeyInfo {
   std::string range, meaning;
   std::string source;  // "x.toml:12", "--set ...", "derived" or "paper"
 };
-/// Every key of the scene, in the order of to_toml; then those of [terrain], but no map.
+/// Every key of the scene, in the order of to_toml; then those of [terrain], but no map, and of
+/// [actions].
 [[nodiscard]] std::vector<KeyInfo> describe(const Scene& scene);
 /// The keys that the override `given` sets, however it is spelled. Throws SceneError.
 [[nodiscard]] std::vector<std::string> keys_set_by(const std::string& given);

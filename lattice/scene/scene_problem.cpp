@@ -3,31 +3,49 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
 
 namespace gatewalk::lattice {
 
-Problem problem_of(const Scene& scene) {
-  Problem problem{.cells = gates_of(scene).cells(),
+namespace {
+
+/// Of gates with these names.
+Problem problem_of(const Scene& scene, const FieldGates& gates, std::vector<std::string> names) {
+  Problem problem{.cells = gates.cells(),
                   .field = scene.field,
                   .start = own_start(scene).entry(),
                   .width = scene.gate.gate_width(),
                   .length = scene.gate.gate_length(),
-                  .types = {std::string(kOwnGate)},
+                  .types = std::move(names),
                   .source = scene.source,
                   .check = {}};
   problem.field.fidelity = Fidelity::active;
-  const std::vector<int> types = gate_types(scene);
-  for (std::size_t i = 0; i < types.size(); ++i)
-    if (types[i] >= std::ssize(problem.types))
-      problem.types.push_back(scene.terrain->types[i].name);
   problem.check = [scene](std::int64_t trials, std::uint64_t seed, dynamics::Health& health,
                           const dynamics::Work& work) {
     check_outcomes(scene, RunsFrom::everywhere, seed, trials, health, work);
   };
   return problem;
+}
+
+}  // namespace
+
+Problem problem_of(const Scene& scene) {
+  std::vector<std::string> names{std::string(kOwnGate)};
+  const std::vector<int> types = gate_types(scene);
+  for (std::size_t i = 0; i < types.size(); ++i)
+    if (types[i] >= std::ssize(names)) names.push_back(scene.terrain->types[i].name);
+  return problem_of(scene, gates_of(scene), std::move(names));
+}
+
+Problem problem_with_all_types(const Scene& scene) {
+  std::vector<std::string> names{std::string(kOwnGate)};
+  if (scene.terrain)
+    for (const Terrain::Type& type : scene.terrain->types) names.push_back(type.name);
+  return problem_of(scene, all_gates_of(scene), std::move(names));
 }
 
 Scene up_to_row(const Scene& scene, int row) {

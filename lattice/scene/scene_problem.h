@@ -11,6 +11,10 @@ namespace gatewalk::lattice {
 /// std::invalid_argument as PaperStart::entry.
 [[nodiscard]] Problem problem_of(const Scene& scene);
 
+/// The same with a type of cell for each of the terrain, also those that are alike: scenes that
+/// differ in gates alone have the same map.
+[[nodiscard]] Problem problem_with_all_types(const Scene& scene);
+
 /// The scene with as many rows of gates as there are before `row`, and no limit of gates. Throws
 /// std::invalid_argument where its terrain has fewer, and for a row below 1.
 [[nodiscard]] Scene up_to_row(const Scene& scene, int row);

@@ -204,45 +204,108 @@ std::map<std::string, double> type_shares(const TerrainSettings& settings, const
   return shares;
 }
 
+/// Gates that a table has by name, each with some keys otherwise than the scene.
+struct Group {
+  std::string key, table;        // "types", "terrain.types"
+  std::string one, what, other;  // for messages
+  bool (*may_have)(std::string_view key);
+};
+const Group kTypes{
+    "types.",
+    "terrain.types",
+    "a type's",
+    "types",
+    "all gates of a field have it in common; a type has beams (but their joints), forces and "
+    "contact of its own",
+    may_differ};
+const Group kActions{
+    "actions.",
+    std::string(kActionsTable),
+    "an action's",
+    "actions",
+    "a body cannot choose it; an action has forces and beams (but their joints) of its own",
+    [](std::string_view key) { return may_differ(key) && !key.starts_with("contact."); }};
+
+void add_gate(TerrainSettings& settings, const Group& group, const std::string& name,
+              const toml::node& node, const Origin& origin, const std::string& folder) {
+  const std::string shown = group.table + "." + printable(name);
+  if (!is_name(name))
+    throw SceneError(origin(node.source().begin.line) + ": " + shown + ": " + group.one +
+                     " name must be letters, digits and _, and begin with a letter");
+  const auto add = [&](const std::string& key, const toml::node& value,
+                       const std::string& spelled) {
+    settings.insert_or_assign(key, TerrainSetting{&value, origin, folder, spelled});
+  };
+  const std::string gate = group.key + name;
+  add(gate, node, "");
+  std::map<std::string, std::pair<const toml::node*, std::string>> seen;  // in this document
+  const auto add_key = [&](const std::string& key, const toml::node& value) {
+    const std::string where = origin(value.source().begin.line) + ": " + shown;
+    const std::string known = known_key(key, where);
+    if (!group.may_have(known))
+      throw SceneError(where + "." + key + " is not permitted: " + group.other);
+    if (const auto [other, is_new] = seen.try_emplace(known, &value, key); !is_new)
+      throw SceneError(given_twice(*other->second.first, shown + "." + other->second.second, value,
+                                   shown + "." + key, origin));
+    add(gate + "." + known, value, key);
+  };
+  for (const auto& [table, keys] : table_at(node, shown, origin)) {
+    const std::string of_table(table.str());
+    if (!keys.is_table())
+      add_key(of_table, keys);  // a whole key in quotation marks, or none
+    else
+      for (const auto& [key, value] : *keys.as_table())
+        add_key(of_table + "." + std::string(key.str()), value);
+  }
+}
+
+void add_gates(TerrainSettings& settings, const Group& group, const toml::node& table,
+               const Origin& origin, const std::string& folder) {
+  for (const auto& [name, keys] : table_at(table, group.table, origin))
+    add_gate(settings, group, std::string(name.str()), keys, origin, folder);
+}
+
+std::vector<Terrain::Type> gates_in(const TerrainSettings& settings, const Group& group,
+                                    const TypeValue& value) {
+  std::vector<Terrain::Type> gates;
+  for (const auto& [key, given] : settings) {  // a gate before its keys
+    if (!key.starts_with(group.key)) continue;
+    const std::size_t dot = key.find('.', group.key.size());
+    if (dot == key.npos) {
+      gates.push_back({key.substr(group.key.size()), {}});
+      continue;
+    }
+    const std::string name = key.substr(dot + 1);
+    const double x =
+        value(name, given, group.table + "." + gates.back().name + "." + given.spelled);
+    std::string where = given.where();
+    if (given.spelled != name && !where.starts_with("--set "))
+      where += " (" + given.spelled + shown_value(*given.value) + ")";
+    gates.back().keys.push_back({name, x, where});
+  }
+  if (gates.size() > kMostTypes)
+    throw SceneError(settings.begin()->second.where() + ": more than " +
+                     std::to_string(kMostTypes) + " " + group.what);
+  return gates;
+}
+
 }  // namespace
+
+void add_actions(TerrainSettings& settings, const toml::table& document, const Origin& origin) {
+  if (const toml::node* const actions = document.get(kActionsTable))
+    add_gates(settings, kActions, *actions, origin, "");
+}
+
+std::vector<Terrain::Type> actions_in(const TerrainSettings& settings, const TypeValue& value) {
+  return gates_in(settings, kActions, value);
+}
 
 void add_terrain(TerrainSettings& settings, const toml::table& document, const Origin& origin,
                  const std::string& folder) {
   const toml::node* const terrain = document.get(kTerrainTable);
   if (!terrain) return;
-  const auto add = [&](const std::string& key, const toml::node& node,
-                       const std::string& spelled = "") {
-    settings.insert_or_assign(key, TerrainSetting{&node, origin, folder, spelled});
-  };
-  const auto add_type = [&](const std::string& name, const toml::node& node) {
-    const std::string at = origin(node.source().begin.line);
-    if (!is_name(name))
-      throw SceneError(at + ": terrain.types." + printable(name) +
-                       ": a type's name must be letters, digits and _, and begin with a letter");
-    const std::string type = "types." + name;
-    add(type, node);
-    std::map<std::string, std::pair<const toml::node*, std::string>> seen;  // in this document
-    for (const auto& [table, keys] : table_at(node, "terrain." + type, origin)) {
-      const std::string of_table(table.str());
-      const auto add_key = [&](const std::string& key, const toml::node& value) {
-        const std::string where = origin(value.source().begin.line) + ": terrain." + type;
-        const std::string known = known_key(key, where);
-        if (!may_differ(known))
-          throw SceneError(where + "." + key +
-                           " is not permitted: all gates of a field have it in common; a type has "
-                           "beams (but their joints), forces and contact of its own");
-        if (const auto [other, is_new] = seen.try_emplace(known, &value, key); !is_new)
-          throw SceneError(given_twice(*other->second.first,
-                                       "terrain." + type + "." + other->second.second, value,
-                                       "terrain." + type + "." + key, origin));
-        add(type + "." + known, value, key);
-      };
-      if (!keys.is_table())
-        add_key(of_table, keys);  // a whole key in quotation marks, or none
-      else
-        for (const auto& [key, value] : *keys.as_table())
-          add_key(of_table + "." + std::string(key.str()), value);
-    }
+  const auto add = [&](const std::string& key, const toml::node& node) {
+    settings.insert_or_assign(key, TerrainSetting{&node, origin, folder, ""});
   };
   for (const auto& [key, node] : table_at(*terrain, "terrain", origin)) {
     const std::string name(key.str());
@@ -252,8 +315,7 @@ void add_terrain(TerrainSettings& settings, const toml::table& document, const O
       for (const auto& [type, number] : table_at(node, "terrain." + name, origin))
         add(name + "." + std::string(type.str()), number);
     } else if (name == "types") {
-      for (const auto& [type, keys] : table_at(node, "terrain.types", origin))
-        add_type(std::string(type.str()), keys);
+      add_gates(settings, kTypes, node, origin, folder);
     } else {
       throw SceneError(origin(node.source().begin.line) + ": unknown key terrain." +
                        printable(name) + "; [terrain] has " + kKeys);
@@ -268,23 +330,7 @@ std::optional<Terrain> terrain_of(const TerrainSettings& settings, const FieldPa
                                   const TypeValue& value) {
   if (settings.empty()) return std::nullopt;
   Terrain terrain;
-  for (const auto& [key, given] : settings) {  // a type before its keys
-    if (!key.starts_with("types.")) continue;
-    const std::size_t dot = key.find('.', std::string_view("types.").size());
-    if (dot == key.npos) {
-      terrain.types.push_back({key.substr(key.find('.') + 1), {}});
-      continue;
-    }
-    const std::string name = key.substr(dot + 1);
-    const double x = value(name, given, "terrain." + key.substr(0, dot + 1) + given.spelled);
-    std::string where = given.where();
-    if (given.spelled != name && !where.starts_with("--set "))
-      where += " (" + given.spelled + shown_value(*given.value) + ")";
-    terrain.types.back().keys.push_back({name, x, where});
-  }
-  if (terrain.types.size() > kMostTypes)
-    throw SceneError(settings.begin()->second.where() + ": [terrain] has more than " +
-                     std::to_string(kMostTypes) + " types");
+  terrain.types = gates_in(settings, kTypes, value);
   read_map(terrain, settings, field);
   return terrain;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Reads table [terrain] of a scene.
+/// Reads tables [terrain] and [actions] of a scene.
 
 #include <toml++/toml.h>
 
@@ -8,13 +8,15 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "lattice/scene/terrain.h"
 #include "lattice/scene/toml_settings.h"
 
 namespace gatewalk::lattice {
 
-inline constexpr std::string_view kTerrainTable = "terrain";
+inline constexpr std::string_view kTerrainTable = "terrain", kActionsTable = "actions";
 
 /// One key of the table, as a file or an override gives it; the node must outlive it.
 struct TerrainSetting {
@@ -25,7 +27,7 @@ struct TerrainSetting {
 
   [[nodiscard]] std::string where() const { return origin(value->source().begin.line); }
 };
-/// "map", "random.s", "types.s", "types.s.forces.propulsion_N", ...
+/// "map", "random.s", "types.s", "types.s.forces.propulsion_N", "actions.push", ...
 using TerrainSettings = std::map<std::string, TerrainSetting, std::less<>>;
 
 /// Adds the keys of the table [terrain] of `document`, if it has one: they replace those that are
@@ -45,5 +47,12 @@ void read_map(Terrain& terrain, const TerrainSettings& settings, const FieldPara
 /// fill the field or has a type that there is not, and for shares that are none.
 [[nodiscard]] std::optional<Terrain> terrain_of(const TerrainSettings& settings,
                                                 const FieldParams& field, const TypeValue& value);
+
+/// The same for the table [actions] of `document`: settings of their own. Throws SceneError for
+/// what a body cannot choose.
+void add_actions(TerrainSettings& settings, const toml::table& document, const Origin& origin);
+/// By name. Throws SceneError for more than a hundred.
+[[nodiscard]] std::vector<Terrain::Type> actions_in(const TerrainSettings& settings,
+                                                    const TypeValue& value);
 
 }  // namespace gatewalk::lattice

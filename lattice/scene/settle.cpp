@@ -2,11 +2,11 @@
 #include "lattice/scene/settle.h"
 
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "lattice/scene/bins.h"
 #include "lattice/text/digits.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -66,7 +66,7 @@ std::string derived_keys(const Scene& scene) {
     const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" ||
                              k.key == "contact.impulse_threshold_Ns";
     if (k.source != "derived" || methods_own) continue;
-    std::ostringstream value;  // six digits will do; gatewalk scene shows more
+    TextStream value;  // six digits will do; gatewalk scene shows more
     value << std::stod(k.value);
     all += (all.empty() ? "" : ", ") + k.key + " = " + value.str();
   }

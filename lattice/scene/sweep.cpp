@@ -9,6 +9,7 @@
 
 #include "dynamics/disc/study/accuracy.h"
 #include "lattice/scene/units.h"
+#include "lattice/text/text_stream.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -18,6 +19,7 @@ constexpr std::size_t kMostPoints = 100'000;
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts;
   std::istringstream in(text);
+  in.exceptions(std::ios_base::badbit);
   for (std::string part; std::getline(in, part, at);) parts.push_back(part);
   if (text.ends_with(at)) parts.emplace_back();
   return parts;
@@ -55,7 +57,7 @@ SweepAxis axis_of(const Variation& v) {
     throw SceneError(v.origin + ": '" + v.values + "' holds more than " +
                      std::to_string(kMostPoints) + " values");
   for (int i = 0; i < static_cast<int>(count); ++i) {
-    std::ostringstream text;
+    TextStream text;
     text.precision(15);  // 0.1 * 3 is 0.3
     const double value = from + i * step;
     text << (std::abs(value) < 1e-9 * std::abs(step) ? 0.0 : value);

@@ -49,6 +49,29 @@ GateParams gate_of(const Scene& scene, const Terrain::Type& type) {
   return gate;
 }
 
+Scene with_action(const Scene& scene, const Terrain::Type& action) {
+  Scene taken = scene;
+  taken.gate = gate_of(scene, action);
+  taken.actions.clear();
+  if (taken.terrain)
+    for (Terrain::Type& type : taken.terrain->types)
+      for (const Terrain::Key& key : action.keys) {
+        std::erase_if(type.keys, [&](const Terrain::Key& k) { return k.name == key.name; });
+        type.keys.push_back(key);
+      }
+  return taken;
+}
+
+std::string gates_toml(std::string_view table, const std::vector<Terrain::Type>& gates) {
+  std::string text;
+  for (const Terrain::Type& gate : gates) {
+    text += "\n[" + std::string(table) + "." + gate.name + "]\n";
+    for (const Terrain::Key& key : gate.keys)
+      text += key.name + " = " + toml_float(key.value) + "\n";
+  }
+  return text;
+}
+
 FieldGates gates_of(const Scene& scene) {
   if (!scene.terrain) return scene.gate;
   auto [gates, types] = sorted_out(scene);
@@ -57,6 +80,13 @@ FieldGates gates_of(const Scene& scene) {
   for (int& type : type_of_cell)
     if (type > 0) type = types[static_cast<std::size_t>(type - 1)];
   return FieldGates::by_cell(std::move(gates), scene.field.columns, std::move(type_of_cell));
+}
+
+FieldGates all_gates_of(const Scene& scene) {
+  if (!scene.terrain) return scene.gate;
+  std::vector<GateParams> gates{scene.gate};
+  for (const Terrain::Type& type : scene.terrain->types) gates.push_back(gate_of(scene, type));
+  return FieldGates::by_cell(std::move(gates), scene.field.columns, scene.terrain->type_of_cell);
 }
 
 std::vector<int> gate_types(const Scene& scene) {
@@ -120,12 +150,7 @@ std::string terrain_toml(const Terrain& terrain, const FieldParams& field) {
       shares += (shares.empty() ? "" : ", ") + name + " = " + toml_float(share);
     text += "random = { " + shares + " }\nseed = " + std::to_string(terrain.seed) + "\n";
   }
-  for (const Terrain::Type& type : terrain.types) {
-    text += "\n[terrain.types." + type.name + "]\n";
-    for (const Terrain::Key& key : type.keys)
-      text += key.name + " = " + toml_float(key.value) + "\n";
-  }
-  return text;
+  return text + gates_toml("terrain.types", terrain.types);
 }
 
 }  // namespace gatewalk::lattice

@@ -42,8 +42,15 @@ struct Terrain {
 
 /// The gate of a type: the scene's with the type's keys.
 [[nodiscard]] dynamics::GateParams gate_of(const Scene& scene, const Terrain::Type& type);
+/// The scene while a body takes this action: gates of all types have the keys of the action.
+[[nodiscard]] Scene with_action(const Scene& scene, const Terrain::Type& action);
+/// "\n[terrain.types.s]\n..." for each of them.
+[[nodiscard]] std::string gates_toml(std::string_view table,
+                                     const std::vector<Terrain::Type>& gates);
 /// The gates of the scene's field: its own, then each type that is not like one before.
 [[nodiscard]] FieldGates gates_of(const Scene& scene);
+/// The same with every type of the terrain, in its order, also those that are alike.
+[[nodiscard]] FieldGates all_gates_of(const Scene& scene);
 /// By type of the terrain: which of gates_of(scene).types() it is.
 [[nodiscard]] std::vector<int> gate_types(const Scene& scene);
 

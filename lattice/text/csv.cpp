@@ -16,11 +16,17 @@ std::optional<std::vector<std::string>> lines_of(const std::string& path) {
     errno = EISDIR;
     return {};
   }
+  file.exceptions(std::ios_base::badbit);  // else what cannot be read looks like the end
   std::vector<std::string> lines;
-  for (std::string text; std::getline(file, text);) {
-    if (lines.empty() && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-    if (text.ends_with('\r')) text.pop_back();
-    lines.push_back(text);
+  try {
+    for (std::string text; std::getline(file, text);) {
+      if (lines.empty() && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+      if (text.ends_with('\r')) text.pop_back();
+      lines.push_back(text);
+    }
+  } catch (const std::ios_base::failure&) {
+    errno = EIO;
+    return {};
   }
   return lines;
 }

@@ -15,7 +15,9 @@
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
+#include "lattice/scene/scene_problem.h"
 #include "lattice/statistics/compare.h"
+#include "lattice/study/plan.h"
 #include "lattice/study/prediction.h"
 #include "lattice/study/trials.h"
 #include "lattice/study/validation.h"
@@ -545,6 +547,112 @@ TEST(Terrain, BinsHaveAMatrixForEachType) {
   EXPECT_GT(v.memory.runs, 200);
   EXPECT_THROW((void)validate_chain(problem_of(scene), {matrices[0]}, {start.entry()}, {}),
                std::invalid_argument);
+}
+
+// ---- What a body may do: table [actions]
+
+const std::string kActions = R"([actions.push]
+forces.propulsion_mN = 9000.0
+[actions.soften]
+"beams.stiffness_left_Nm_per_rad" = 300.0
+forces.random_N = 20.0
+[actions.wait]
+)";
+
+TEST(Actions, AreTheSceneWithSomeKeysOtherwise) {
+  const Scene scene = parse_scene(kField + kActions, "x.toml");
+  ASSERT_EQ(scene.actions.size(), 3U);
+  EXPECT_EQ(scene.actions[0].name, "push");
+  const Scene push = with_action(scene, scene.actions[0]),
+              soften = with_action(scene, scene.actions[1]),
+              wait = with_action(scene, scene.actions[2]);
+  EXPECT_EQ(push.gate.forces.propulsion, 9.0);
+  EXPECT_EQ(push.gate.beams.stiffness_left, scene.gate.beams.stiffness_left);
+  EXPECT_EQ(soften.gate.beams.stiffness_left, 300.0);
+  EXPECT_EQ(soften.gate.beams.stiffness_right, scene.gate.beams.stiffness_right);
+  EXPECT_EQ(soften.gate.forces.random, 20.0);
+  EXPECT_TRUE(physics_differences(wait, scene).empty());
+  EXPECT_EQ(physics_differences(push, scene).size(), 1U);
+  // The scene itself stays what it is.
+  EXPECT_TRUE(physics_differences(scene, parse_scene(kField, "x.toml")).empty());
+}
+
+TEST(Actions, ReadBackTheSame) {
+  const Scene scene = parse_scene(kField + kActions, "x.toml");
+  const Scene again = parse_scene(to_toml(scene), "again");
+  EXPECT_EQ(to_toml(again), to_toml(scene));
+  ASSERT_EQ(again.actions.size(), 3U);
+  EXPECT_EQ(with_action(again, again.actions[0]).gate.forces.propulsion, 9.0);
+  const std::vector<KeyInfo> keys = describe(scene);
+  EXPECT_EQ(keys.back().key, "actions.soften.forces.random_N");
+  EXPECT_EQ(keys.back().source, "x.toml:7");
+}
+
+TEST(Actions, OverridesAddAndReplace) {
+  const Scene scene =
+      parse_scene(kField + kActions, "x.toml",
+                  {"actions.push.forces.propulsion_N=7", "actions.rush.forces.propulsion_N = 12"});
+  ASSERT_EQ(scene.actions.size(), 4U);
+  EXPECT_EQ(with_action(scene, scene.actions[0]).gate.forces.propulsion, 7.0);
+  EXPECT_EQ(scene.actions[1].name, "rush");
+  EXPECT_EQ(with_action(scene, scene.actions[1]).gate.forces.propulsion, 12.0);
+}
+
+TEST(Actions, RefuseWhatABodyCannotChoose) {
+  EXPECT_EQ(refusal(kField + "[actions.a]\nfield.rows = 3\n"),
+            "x.toml:4: actions.a.field.rows is not permitted: a body cannot choose it; an action "
+            "has forces and beams (but their joints) of its own");
+  for (const std::string key : {"contact.restitution = 0.5", "beams.joint_x_m = 0.3",
+                                "run.step_s = 0.01", "body.mass_kg = 2.0", "start.x_m = 0.0"})
+    EXPECT_NE(
+        refusal(kField + "[actions.a]\n" + key)
+            .find("x.toml:4: actions.a." + key.substr(0, key.find(' ')) + " is not permitted"),
+        std::string::npos)
+        << refusal(kField + "[actions.a]\n" + key);
+  EXPECT_NE(refusal(kField + "[actions.a]\nforces.propulsion_N = -1.0").find("x.toml:4: actions.a"),
+            std::string::npos);
+  EXPECT_NE(refusal(kField + "[actions.a]\nforces.propulsoin_N = 1.0").find("unknown key"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(kField + "[actions.\"1\"]\n").find("x.toml:3: actions.1: an action's name must"),
+      std::string::npos);
+  EXPECT_NE(refusal(kField + "actions = 3\n").find("x.toml:3: actions = 3 is not permitted"),
+            std::string::npos);
+  EXPECT_NE(refusal(kField, {"actions.a.run.step_s=0.1"}).find("--set actions.a.run.step_s=0.1"),
+            std::string::npos);
+  EXPECT_NE(refusal(kField + "[actions.a]\nforces = { random_N = 1.0, random_mN = 1000.0 }")
+                .find("x.toml:4: actions.a.forces.random"),
+            std::string::npos);
+}
+
+// The action's own number counts in gates of all types, and types that are alike stay apart: the
+// maps of all actions are the same.
+TEST(Actions, GoBeforeTheTypesOfTheTerrain) {
+  const Scene scene = parse_scene(kField + R"([terrain]
+map = ["s.s", "..s"]
+[terrain.types.s]
+forces.propulsion_N = 6.0
+beams.stiffness_left_Nm_per_rad = 200.0
+[terrain.types.t]
+forces.propulsion_N = 6.0
+[actions.push]
+forces.propulsion_N = 9.0
+[actions.wait]
+)",
+                                  "x.toml");
+  std::vector<Action> actions;
+  for (const Terrain::Type& action : scene.actions)
+    actions.push_back({action.name, problem_with_all_types(with_action(scene, action))});
+  const FieldGates push = all_gates_of(with_action(scene, scene.actions[0])),
+                   wait = all_gates_of(with_action(scene, scene.actions[1]));
+  ASSERT_EQ(push.types().size(), 3U);
+  EXPECT_EQ(push.types()[1].forces.propulsion, 9.0);
+  EXPECT_EQ(push.types()[1].beams.stiffness_left, 200.0);
+  EXPECT_EQ(wait.types()[1].forces.propulsion, 6.0);
+  EXPECT_EQ(actions[0].problem.types, (std::vector<std::string>{".", "s", "t"}));
+  const dynamics::CellField cells = cells_of(actions);
+  ASSERT_EQ(cells.map.types.size(), 6U);
+  EXPECT_EQ(cells.map.type_of(2, 0), 2);  // type s, the first action
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
 __version__: str = _core.version
 __all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError",
            "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "from_counts", "from_passages", "gate", "landscape", "lattice", "load", "merge",
-           "options", "passages", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
+           "options", "passages", "plan", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
 
 
 class GatewalkWarning(UserWarning):
@@ -424,6 +424,31 @@ def rare(subject: _t.Any, *, row: int | None = None, accuracy: float | None = No
         See `predict`.
     """
     return Result(_run("rare", [subject], dict(row=row, accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
+
+
+def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
+    """What a body should do in each gate, by how it enters, to cross the field as often as it can.
+
+    Parameters
+    ----------
+    subject : Scene, path, text or dict
+        With two tables ``[actions.NAME]`` at least: keys of forces and beams as they are while a body takes the action.
+    accuracy : float, optional
+        Half of the interval that a chance to cross may have.
+    seed, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk plan``.
+
+    Returns
+    -------
+    Result
+        ``crossed``, ``actions``, ``most_taken`` and more of ``gatewalk plan --json``.
+
+    Raises
+    ------
+    SceneError, UsageError
+        See `predict`.
+    """
+    return Result(_run("plan", [subject], dict(accuracy=accuracy, seed=seed, progress=progress, **more)))
 
 
 def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "cli/render/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "cli/render/choice.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr int kMostPrinted = 40;  // columns and rows of a map in the table
+
+std::size_t cells_in(const PlannedField& p) {
+  return static_cast<std::size_t>(p.shown.field.columns) *
+         static_cast<std::size_t>(p.shown.field.rows);
+}
+
+/// How often an action is taken, per trial: (rows x columns).
+markov::CellProbabilities usage_of(const PlannedField& p, std::size_t action) {
+  markov::CellProbabilities usage(p.shown.field.rows, p.shown.field.columns);
+  const double* from = p.plan.usage.data() + action * cells_in(p);
+  for (Eigen::Index r = 0; r < usage.rows(); ++r)
+    for (Eigen::Index c = 0; c < usage.cols(); ++c) usage(r, c) = *from++;
+  return usage;
+}
+
+/// "+2.7 [1.4, 3.9]", in percentage points.
+std::string gain_text(const lattice::Gain& gain) {
+  const auto points = [](double x) { return fixed(100.0 * x, 2); };
+  return (gain.difference > 0.0 ? "+" : "") + points(gain.difference) + " [" +
+         points(gain.interval_95[0]) + ", " + points(gain.interval_95[1]) + "]";
+}
+
+/// What stands for an action in a map.
+constexpr std::string_view kMarks = "123456789abcdefghijklmnopqrstuvwxyz";
+char mark_of(std::size_t action) { return action < kMarks.size() ? kMarks[action] : ' '; }
+
+/// A mark for each cell, the far row first.
+std::string map_text(const PlannedField& p) {
+  const int columns = p.shown.field.columns, rows = p.shown.field.rows;
+  if (columns > kMostPrinted || rows > kMostPrinted || p.actions.size() > kMarks.size()) return "";
+  const std::vector<MostTaken> most = most_taken(p);
+  std::string text =
+      "\nthe action that is taken most in each gate (.: nobody came), far row first:\n";
+  for (int r = rows; r-- > 0;) {
+    text += padded(std::to_string(r), 4) + " ";
+    for (int c = 0; c < columns; ++c) {
+      const int action = most[static_cast<std::size_t>(r * columns + c)].action;
+      text += {' ', action < 0 ? '.' : mark_of(static_cast<std::size_t>(action))};
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// What the plan gains, in a sentence.
+std::string verdict(const PlannedField& p) {
+  const std::size_t best = best_alone(p.plan);
+  const lattice::Gain& gain = p.plan.gains[best];
+  const std::string& name = p.actions[best];
+  if (p.plan.chain_says != p.plan.chain_says) {
+    const auto taken = std::max_element(p.plan.usage.begin(), p.plan.usage.end());
+    const auto always = static_cast<std::size_t>(taken - p.plan.usage.begin()) / cells_in(p);
+    return "the best that was found is to take " + p.actions[always] + " all the time\n";
+  }
+  if (gain.interval_95[0] > 0.0)
+    return "choosing by the way in gains " + gain_text(gain) + " points over " + name +
+           " all the time\n";
+  return "choosing by the way in is not shown to gain anything over " + name +
+         " all the time: " + gain_text(gain) +
+         " points; a smaller --accuracy\nshows a smaller gain, if there is one\n";
+}
+
+}  // namespace
+
+std::vector<MostTaken> most_taken(const PlannedField& p) {
+  std::vector<MostTaken> most(cells_in(p));
+  for (std::size_t cell = 0; cell < most.size(); ++cell) {
+    double highest = 0.0;
+    for (std::size_t a = 0; a < p.actions.size(); ++a) {
+      const double usage = p.plan.usage[a * most.size() + cell];
+      most[cell].visits += usage;
+      if (usage > highest) {
+        highest = usage;
+        most[cell].action = static_cast<int>(a);
+      }
+    }
+    if (highest > 0.0) most[cell].share = highest / most[cell].visits;
+  }
+  return most;
+}
+
+std::size_t best_alone(const lattice::Plan& plan) {
+  const auto most = std::max_element(plan.alone.begin(), plan.alone.end(),
+                                     [](const lattice::Crossings& a, const lattice::Crossings& b) {
+                                       return a.crossed < b.crossed;
+                                     });
+  return static_cast<std::size_t>(most - plan.alone.begin());
+}
+
+Json to_json(const PlannedField& p) {
+  const lattice::Plan& plan = p.plan;
+  Json json;
+  json["crossed"] = plan.crossings.share();
+  json["interval_95"] = plan.crossings.interval_95();
+  json["trials"] = plan.crossings.trials;
+  json["chain"] = std::isnan(plan.chain_says) ? Json() : Json(plan.chain_says);
+  json["best_alone"] = p.actions[best_alone(plan)];
+  for (std::size_t a = 0; a < p.actions.size(); ++a) {
+    Json action{{"name", p.actions[a]},
+                {"crossed", plan.alone[a].share()},
+                {"interval_95", plan.alone[a].interval_95()},
+                {"gain", plan.gains[a].difference},
+                {"gain_95", plan.gains[a].interval_95},
+                {"taken", grid(usage_of(p, a))}};
+    if (p.methods[a]) action["method"] = to_json(*p.methods[a]);
+    json["actions"].push_back(std::move(action));
+  }
+  const std::vector<MostTaken> most = most_taken(p);
+  for (int r = 0; r < p.shown.field.rows; ++r) {
+    Json row;
+    for (int c = 0; c < p.shown.field.columns; ++c) {
+      const int action = most[static_cast<std::size_t>(r * p.shown.field.columns + c)].action;
+      row.push_back(action < 0 ? Json() : Json(p.actions[static_cast<std::size_t>(action)]));
+    }
+    json["most_taken"].push_back(std::move(row));
+  }
+  json["rounds"] = plan.rounds;
+  json["settled"] = plan.settled;
+  json["gate_runs"] = plan.gate_runs;
+  json["seconds"] = p.seconds;
+  json["status"] = to_json(plan.health);
+  return json;
+}
+
+std::string table_of(const PlannedField& p) {
+  const lattice::Plan& plan = p.plan;
+  std::size_t width = 6;
+  for (const std::string& name : p.actions) width = std::max(width, name.size());
+  const int name_width = -static_cast<int>(width) - 2;
+  std::string table =
+      "chance to cross: " + with_interval(plan.crossings.share(), plan.crossings.interval_95()) +
+      " % of " + std::to_string(plan.crossings.trials) + " trials by which nothing was chosen\n" +
+      verdict(p) + "\neach action all the time, under the same noise:\n\n    " +
+      padded("action", name_width) + padded("crossed, %", 22) +
+      padded("the plan's gain, points", 28) + padded("the plan takes it", 20) + "\n";
+  double all = 0.0;
+  for (const double u : plan.usage) all += u;
+  for (std::size_t a = 0; a < p.actions.size(); ++a)
+    table += std::string("  ") + mark_of(a) + " " + padded(p.actions[a], name_width) +
+             padded(with_interval(plan.alone[a].share(), plan.alone[a].interval_95()), 22) +
+             padded(gain_text(plan.gains[a]), 28) +
+             padded(fixed(100.0 * usage_of(p, a).sum() / all, 1) + " %", 20) + "\n";
+  return table + map_text(p) + std::to_string(plan.gate_runs) + " gate runs in " +
+         std::to_string(plan.rounds) + (plan.rounds == 1 ? " round, " : " rounds, ") +
+         fixed(p.seconds, 1) + " s\n";
+}
+
+}  // namespace gatewalk::cli

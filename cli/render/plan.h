@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// The best actions of a body as JSON, as a table and as a picture.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/render/figure.h"
+#include "cli/render/json_fwd.h"
+#include "cli/render/shown_field.h"
+#include "lattice/scene/settle.h"
+#include "lattice/study/plan.h"
+
+namespace gatewalk::cli {
+
+/// A plan, the field that it is for, and its actions.
+struct PlannedField {
+  ShownField shown;
+  std::vector<std::string> actions;
+  std::vector<std::optional<lattice::Settled>> methods;  // that were chosen for these
+  lattice::Plan plan;
+  double seconds = 0.0;
+};
+
+[[nodiscard]] Json to_json(const PlannedField& p);
+[[nodiscard]] std::string table_of(const PlannedField& p);
+/// Which action is taken most in each cell, and how often bodies cross.
+[[nodiscard]] Figure figure_of(const PlannedField& p);
+
+/// By cell (near row first): the action that is taken most there, and how often a trial takes any;
+/// -1 where none ever came.
+struct MostTaken {
+  int action = -1;
+  double share = 0.0, visits = 0.0;  // of the visits; per trial
+};
+[[nodiscard]] std::vector<MostTaken> most_taken(const PlannedField& p);
+/// The action that alone crosses most often; the first of several.
+[[nodiscard]] std::size_t best_alone(const lattice::Plan& plan);
+
+}  // namespace gatewalk::cli

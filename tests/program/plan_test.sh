@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# plan: which action to take in each gate.   plan_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+actions=(--set actions.slow.forces.propulsion_N=6 --set actions.fast.forces.propulsion_N=9)
+small=("$scenes/field.toml" --set run.method=moreau --set field.rows=3 --accuracy 0.1)
+expect 0 '^chance to cross: [0-9.]* \[[0-9., ]*\] % of 97 trials by which nothing was chosen$' "$gatewalk" plan "${small[@]}" "${actions[@]}" --json plan.json --figure plan.svg
+holds '.crossed > 0 and .interval_95[0] < .crossed and .crossed < .interval_95[1] and .trials == 97 and [.actions[].name] == ["fast", "slow"] and (.best_alone == "fast" or .best_alone == "slow") and (.most_taken | length) == 3 and .most_taken[0][4] != null and .most_taken[0][0] == null' plan.json
+# At the start each trial takes one action.
+holds '[.actions[].taken[0][4]] | add | . > 0.999999 and . < 1.000001' plan.json
+grep -q 'most frequent action' plan.svg || fail "no map of actions"
+# An action all the time is the field with its keys.
+holds '[.actions[] | .crossed - .interval_95[0] > 0 and .gain_95[0] < .gain and .gain < .gain_95[1]] | all' plan.json
+# The same bits on one thread, and from a scene's own tables; what is kept is taken up again.
+{ cat "$scenes/field.toml"; printf '[actions.slow]\nforces.propulsion_N = 6\n[actions.fast]\nforces.propulsion_N = 9\n'; } >own.toml
+"$gatewalk" plan own.toml --set run.method=moreau --set field.rows=3 --accuracy 0.1 --threads 1 --checkpoint kept --quiet --json own.json
+jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' plan.json own.json | grep -q true || fail "plan: other results on one thread"
+"$gatewalk" plan own.toml --set run.method=moreau --set field.rows=3 --accuracy 0.1 --checkpoint kept --resume --quiet --force --json again.json
+jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' plan.json again.json | grep -q true || fail "plan: other results when resumed"
+# Other commands leave the actions alone.
+"$gatewalk" gate own.toml --trials 20 --quiet --json with.json
+"$gatewalk" gate "$scenes/field.toml" --trials 20 --quiet --json without.json
+jq -s '.[0].fates == .[1].fates' with.json without.json | grep -q true || fail "a scene's actions change its gate"
+expect 0 '^actions.fast.forces.propulsion_N  *9.0 ' "$gatewalk" scene own.toml
+# Gates of several types; an action that is the scene as it is.
+expect 0 '^chance to cross: ' "$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.max_gates=30 --set actions.fast.forces.propulsion_N=12 --set actions.wait={} --accuracy 0.2 --json mixed.json
+holds '.most_taken | length == 9' mixed.json
+# What cannot be planned.
+expect 2 'has 0 tables \[actions.NAME\]: a plan needs two at least' "$gatewalk" plan "$scenes/field.toml"
+expect 2 'has 1 tables \[actions.NAME\]' "$gatewalk" plan "$scenes/field.toml" --set actions.a.forces.propulsion_N=9
+expect 2 'accuracy: must lie in \[0.001, 0.5)' "$gatewalk" plan own.toml --accuracy 0.6
+expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15 --start 4,0,15
+expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose it' "$gatewalk" plan own.toml --set actions.a.contact.restitution=0.5
+"$gatewalk" build "$scenes/field.toml" --accuracy 0.2 -o tree.nc --quiet
+expect 2 'is no scene of gates' "$gatewalk" plan tree.nc
+# Nobody can cross.
+expect 0 'none of 25 trials crossed: too rare for a plan' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
+
+finish
