@@ -42,7 +42,9 @@ std::string second_scene(const Options& options, const std::string& name) {
 /// Of a scene, also of a matrix's: it has its path and scene.
 void put_problem(Subject& s, const Options& options) {
   require_active(options, *s.scene);
-  s.problem = lattice::problem_of(*s.scene);
+  lattice::Scene ready = *s.scene;
+  if (ready.gate.run.method == "auto") ready.gate.run.method = "stable";  // settle() chooses one
+  s.problem = lattice::problem_of(ready);
   put_starts(s, options, s.problem.start, StartsFrom::first_face);
   if (s.given) lattice::require_inside(given_starts(options), *s.scene);
   s.problem.start = *s.starts.front();

@@ -23,6 +23,13 @@ expect 0 '^trapped' "$gatewalk" predict auto.nc
 jq -s '.[0].method == .[1].method' auto-validate.json auto-build.json | grep -q true || fail "auto: validate took another method than the matrix"
 "$gatewalk" lattice $auto --trials 20 --json auto-lattice.json --quiet
 jq -s '.[0].method == .[1].method' auto-lattice.json auto-build.json | grep -q true || fail "auto: lattice and build chose differently"
+# Chains of trees.
+for command in predict "analyze --runs 0" "rare --row 2 --gate-runs 4000" power "plan --set field.rows=2 --set actions.a.forces.propulsion_N=9 --set actions.b={}"; do
+  # shellcheck disable=SC2086
+  set -- $command
+  expect 0 '' "$gatewalk" $1 $auto --accuracy 0.2 "${@:2}" --json auto-tree.json
+  holds '(.method // .actions[0].method) | .asked == "auto" and .pilot_starts == 9' auto-tree.json
+done
 # A matrix of a method by name is not what "auto" stands for; nor is one of another tolerance.
 "$gatewalk" build "$scenes/field.toml" --set run.time_limit_s=2 --trials 1 -o named.nc --quiet >/dev/null
 expect 2 'run.method: auto here, stable by name there' "$gatewalk" predict named.nc $auto
