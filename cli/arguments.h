@@ -13,6 +13,7 @@
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
+#include "lattice/study/plan.h"
 
 namespace gatewalk::cli {
 
@@ -79,6 +80,11 @@ void require_active(const Options& options, const lattice::Scene& scene);
 [[nodiscard]] std::optional<lattice::Settled> settle_method(const Options& options,
                                                             lattice::Scene& scene,
                                                             lattice::RunsFrom from);
+/// What a body may do by table [actions] of the scene, started there, each with a method of its own
+/// where the scene leaves it to a pilot; `methods` takes these.
+[[nodiscard]] std::vector<lattice::Action> actions_of(
+    const Options& options, const lattice::Scene& scene, const dynamics::Entry& start,
+    std::vector<std::optional<lattice::Settled>>& methods);
 /// lattice::states_of; warns when auto takes Table III's place.
 [[nodiscard]] lattice::States states_of(const Options& options, const lattice::Scene& scene,
                                         const lattice::BinsChoice& choice,

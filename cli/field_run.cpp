@@ -2,10 +2,12 @@
 #include "cli/field_run.h"
 
 #include "cli/arguments.h"
+#include "cli/exchange/policy_file.h"
 #include "cli/render/json.h"
 #include "cli/subject.h"
 #include "lattice/cells/recorded_pool.h"
 #include "lattice/scene/scene_trials.h"
+#include "lattice/study/plan.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
@@ -62,9 +64,34 @@ FieldRun run_cells(const Options& options) {
   return run;
 }
 
+/// Of bodies that do what a policy says.
+FieldRun run_policy(const Options& options) {
+  refuse(options, {"passages", "cell-file", "cell-program"}, "with --policy");
+  Subject s = open_subject(options, "scene");
+  if (!s.scene || s.file)
+    throw UsageError(s.path + ": is no scene of gates, which a policy is made for");
+  const lattice::Policy policy = read_policy(options.text("policy"), *s.scene);
+  std::vector<std::optional<lattice::Settled>> methods;
+  const std::vector<lattice::Action> actions =
+      actions_of(options, *s.scene, s.problem.start, methods);
+  const lattice::FieldParams& field = s.problem.field;
+  FieldRun run{s.shown(),
+               s.problem.start,
+               s.made_by(options),
+               lattice::FieldCosts(s.bin_of_durations(options)),
+               lattice::ExitCounts(field),
+               RunScene{*s.scene},
+               lattice::FieldTally(field)};
+  run.tally = lattice::policy_trials(actions, policy, options.trial_range(), options.seed(),
+                                     options.work(), lattice::added_to(run.costs, run.exits));
+  options.work().end_part();
+  return run;
+}
+
 }  // namespace
 
 FieldRun field_run(const Options& options) {
+  if (options.has("policy")) return run_policy(options);
   const bool any_cells = has_cell(options) || options.has("passages") || options.has("cell-file");
   return any_cells ? run_cells(options) : run_scene(options);
 }

@@ -39,12 +39,16 @@ std::string second_scene(const Options& options, const std::string& name) {
   return name == "scene" ? "" : options.text("scene");
 }
 
+/// Before settle() chooses a method, if it is to choose one: any that takes every gate will do.
+lattice::Problem unsettled_problem(lattice::Scene scene) {
+  if (scene.gate.run.method == "auto") scene.gate.run.method = "paper";
+  return lattice::problem_of(scene);
+}
+
 /// Of a scene, also of a matrix's: it has its path and scene.
 void put_problem(Subject& s, const Options& options) {
   require_active(options, *s.scene);
-  lattice::Scene ready = *s.scene;
-  if (ready.gate.run.method == "auto") ready.gate.run.method = "stable";  // settle() chooses one
-  s.problem = lattice::problem_of(ready);
+  s.problem = unsettled_problem(*s.scene);
   put_starts(s, options, s.problem.start, StartsFrom::first_face);
   if (s.given) lattice::require_inside(given_starts(options), *s.scene);
   s.problem.start = *s.starts.front();
@@ -322,7 +326,7 @@ std::optional<Subject> versus(const Options& options, const Subject& s) {
     throw UsageError(
         "--versus: field.columns and field.rows must stay: final gates of fields of different "
         "sizes cannot be compared");
-  other.problem = lattice::problem_of(*other.scene);
+  other.problem = unsettled_problem(*other.scene);
   other.starts = {other.problem.start};
   return other;
 }

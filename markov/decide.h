@@ -35,9 +35,9 @@ struct Decisions {
   /// (max(1, max_cells) x cells x inputs), cells as row * columns + column: the number of an
   /// action; with a limit of cells by the number of draws made before. Of several that are as good
   /// but for rounding the first, without limit the first that was found.
-  std::vector<std::uint16_t> action;
-  std::vector<double> value;  // (cells x inputs) before the first draw
-  int sweeps = 0;             // of the field; with a limit as many as that
+  std::vector<std::uint16_t> action{};
+  std::vector<double> value{};  // (cells x inputs) before the first draw
+  int sweeps = 0;               // of the field; with a limit as many as that
 
   [[nodiscard]] std::size_t at(int column, int row, int input, int draws = 0) const {
     const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(field.columns) +

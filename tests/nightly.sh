@@ -13,8 +13,8 @@
 #        of the dynamics take three to four times as long as in a Release build.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
 # address  all tests but those of Python, with the sanitizers of addresses and undefined behaviour (clang): no finding.
-#        What is forgiven is in tests/sanitizers, with its reason. Lanes are not instrumented (dynamics/CMakeLists.txt),
-#        nor compiled for AVX2 and AVX-512: that takes compilers hours. Their plain references are; and a program whose
+#        What is forgiven is in tests/sanitizers, with its reason. Lanes are not instrumented (dynamics/CMakeLists.txt):
+#        that takes compilers hours. Their plain references are; and a program whose
 #        lanes are, without optimisation, must have the same results over some command lines.
 # thread the same with the sanitizer of threads, and with a TBB built with it too, from Debian's sources: what that
 #        library synchronises cannot be seen otherwise.
@@ -107,7 +107,7 @@ address() {
   rm -f build-address/{lanes.o,stable_lanes.o,gatewalk_lanes}
   for source in lanes stable_lanes; do
     (cd build-address && eval "$(ninja -t compdb | jq -r ".[] | select(.file | endswith(\"disc/$source.cpp\")).command" |
-      sed "s/ -O1 / -O0 /; s/ -fno-sanitize=all / /; s# -MD -MT .* -o [^ ]*# -o $source.o#")")
+      sed "s/ -O1 / -O0 /; s/ -fno-sanitize=all -O2\\( -m[^ ]*\\)* / /; s# -MD -MT .* -o [^ ]*# -o $source.o#")")
     nm "build-address/$source.o" | grep __asan_report >/dev/null  # it is instrumented
     objects+=("$source.o")
   done
@@ -168,8 +168,10 @@ fuzz() { tests/fuzz/run.sh; }
 coverage() {
   local module binary objects=() out=results/reliability all=build-coverage/all.profdata
   # Vectorised sources for one instruction set only: each is the same source.
+  local lanes=-O2
+  [ "$(uname -m)" != x86_64 ] || lanes='-O2 -march=x86-64-v3 -maes -mpclmul'
   cmake -S . -B build-coverage -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=Debug \
-    -DCMAKE_CXX_FLAGS_DEBUG='-O1 -fprofile-instr-generate -fcoverage-mapping -DHWY_COMPILE_ONLY_STATIC' -DBUILD_TESTING=ON
+    -DCMAKE_CXX_FLAGS_DEBUG="$lanes -fprofile-instr-generate -fcoverage-mapping -DHWY_COMPILE_ONLY_STATIC" -DBUILD_TESTING=ON
   cmake --build build-coverage
   rm -rf build-coverage/profiles
   export LLVM_PROFILE_FILE=$PWD/build-coverage/profiles/%4m.profraw

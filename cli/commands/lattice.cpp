@@ -29,6 +29,7 @@ int run_lattice(const Arguments& arguments) {
                       "(lattice/cells/README.md)");
   options.output_file("cell-file", "FILE.toml", "write what such a table's cells are (cell.toml)");
   options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
+  options.input_file("policy", "bodies do what this file of gatewalk plan says (FILE.json)");
   options.add_figure("where bodies end, and how");
   if (!options.parse(arguments)) return kFine;
   const dynamics::Stopwatch watch;

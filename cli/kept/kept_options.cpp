@@ -37,6 +37,7 @@ double seconds_of(const std::string& text) {
 /// What a file held.
 Json fingerprint(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
+  in.exceptions(std::ios_base::badbit);  // what cannot be read is no end
   std::vector<char> buffer(std::size_t{1} << 16);
   std::uint64_t bytes = 0;
   uLong check = ::crc32_z(0, nullptr, 0);

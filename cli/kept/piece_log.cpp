@@ -58,6 +58,18 @@ std::string first_line(std::string_view head) {
   throw std::runtime_error(path + ": cannot be written: " + std::strerror(errno));
 }
 
+/// What is read from the file in `read`. Throws std::runtime_error where it cannot be read, which
+/// is neither its end nor damage.
+template <class Read>
+auto read_from(const std::string& path, Read read) try {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw markov::BadFile(path + ": cannot be read: " + std::strerror(errno));
+  in.exceptions(std::ios_base::badbit);
+  return read(in);
+} catch (const std::ios_base::failure&) {
+  throw std::runtime_error(path + ": cannot be read on: " + std::strerror(EIO));
+}
+
 }  // namespace
 
 bool PieceFile::is_one(const std::string& path) {
@@ -69,38 +81,20 @@ bool PieceFile::is_one(const std::string& path) {
 }
 
 std::string piece_head(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw markov::BadFile(path + ": cannot be read: " + std::strerror(errno));
   std::string first, head;
-  if (!std::getline(in, first) || !first.starts_with(kFirstLine))
-    throw markov::BadFile(path +
-                          ": holds no pieces of a run (--part and --checkpoint write such files)");
-  std::getline(in, head);
+  read_from(path, [&](std::istream& in) {
+    if (!std::getline(in, first) || !first.starts_with(kFirstLine))
+      throw markov::BadFile(
+          path + ": holds no pieces of a run (--part and --checkpoint write such files)");
+    std::getline(in, head);
+  });
   if (first + "\n" != first_line(head))
     throw markov::BadFile(path + ": its first lines are damaged, or of another kind of machine");
   return head;
 }
 
 PieceFile::PieceFile(const std::string& path) : path_(path), head_(piece_head(path)) {
-  std::ifstream in(path, std::ios::binary);
-  in.exceptions(std::ios_base::badbit);  // what cannot be read is no end
-  end_ = first_line(head_).size() + head_.size() + 1;
-  in.seekg(0, std::ios::end);
-  const auto size = static_cast<std::uint64_t>(in.tellg());
-  for (RecordHead head{};;) {
-    in.clear();
-    in.seekg(static_cast<std::streamoff>(end_));
-    if (!in.read(reinterpret_cast<char*>(&head), sizeof head)) break;
-    if (head.mark != kMark || head.own_check != crc_of(checked_part(head))) break;
-    const std::uint64_t at = end_ + sizeof head;
-    if (head.bytes > size - at) break;
-    if (head.first < 0 || head.count < 0 ||
-        head.first > std::numeric_limits<std::int64_t>::max() - head.count)
-      throw markov::BadFile(path + ": has items that there are not, at byte " +
-                            std::to_string(end_));
-    records_.push_back({head.stage, {head.first, head.count}, at, head.bytes, head.check});
-    end_ = at + head.bytes;
-  }
+  read_from(path, [&](std::istream& in) { read_records(in); });
   // What was written last may be there in part, as zeros, after the power failed.
   while (!records_.empty()) {
     try {
@@ -113,17 +107,38 @@ PieceFile::PieceFile(const std::string& path) : path_(path), head_(piece_head(pa
   }
 }
 
+void PieceFile::read_records(std::istream& in) {
+  end_ = first_line(head_).size() + head_.size() + 1;
+  in.seekg(0, std::ios::end);
+  const auto size = static_cast<std::uint64_t>(in.tellg());
+  for (RecordHead head{};;) {
+    in.clear();
+    in.seekg(static_cast<std::streamoff>(end_));
+    if (!in.read(reinterpret_cast<char*>(&head), sizeof head)) break;
+    if (head.mark != kMark || head.own_check != crc_of(checked_part(head))) break;
+    const std::uint64_t at = end_ + sizeof head;
+    if (head.bytes > size - at) break;
+    if (head.first < 0 || head.count < 0 ||
+        head.first > std::numeric_limits<std::int64_t>::max() - head.count)
+      throw markov::BadFile(path_ + ": has items that there are not, at byte " +
+                            std::to_string(end_));
+    records_.push_back({head.stage, {head.first, head.count}, at, head.bytes, head.check});
+    end_ = at + head.bytes;
+  }
+}
+
 bool PieceFile::is_finished() const {
   return !records_.empty() && records_.back().stage == kEndStage;
 }
 
 std::string PieceFile::bytes_of(const PieceRecord& record) const {
-  std::ifstream in(path_, std::ios::binary);
-  in.seekg(static_cast<std::streamoff>(record.at));
   std::string bytes(record.bytes, '\0');
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) ||
-      crc_of(bytes) != record.check)
-    throw markov::BadFile(path_ + ": is damaged at byte " + std::to_string(record.at));
+  read_from(path_, [&](std::istream& in) {
+    in.seekg(static_cast<std::streamoff>(record.at));
+    if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) ||
+        crc_of(bytes) != record.check)
+      throw markov::BadFile(path_ + ": is damaged at byte " + std::to_string(record.at));
+  });
   return bytes;
 }
 

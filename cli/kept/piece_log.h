@@ -4,6 +4,7 @@
 /// all that was written before.
 
 #include <cstdint>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,8 @@ class PieceFile {
   [[nodiscard]] std::string bytes_of(const PieceRecord& record) const;
 
  private:
+  void read_records(std::istream& in);
+
   std::string path_, head_;
   std::vector<PieceRecord> records_;
   std::uint64_t end_ = 0;

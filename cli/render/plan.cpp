@@ -64,11 +64,12 @@ std::string verdict(const PlannedField& p) {
   const std::size_t best = best_alone(p.plan);
   const lattice::Gain& gain = p.plan.gains[best];
   const std::string& name = p.actions[best];
-  if (p.plan.chain_says != p.plan.chain_says) {
-    const auto taken = std::max_element(p.plan.usage.begin(), p.plan.usage.end());
-    const auto always = static_cast<std::size_t>(taken - p.plan.usage.begin()) / cells_in(p);
-    return "the best that was found is to take " + p.actions[always] + " all the time\n";
-  }
+  if (const auto& always = p.plan.policy.always)
+    return "the best that was found is to take " + p.actions[static_cast<std::size_t>(*always)] +
+           " all the time\n";
+  if (gain.interval_95[1] < 0.0)
+    return "the plan is worse than " + name + " all the time, " + gain_text(gain) +
+           " points: chosen by chance; a smaller --accuracy helps\n";
   if (gain.interval_95[0] > 0.0)
     return "choosing by the way in gains " + gain_text(gain) + " points over " + name +
            " all the time\n";

@@ -38,8 +38,9 @@ std::string colours_of(const PlannedField& p, const Sheet& sheet, const Box& box
       steps += (steps.empty() ? "" : ", ") + std::to_string(edge) + " '" + colour + "'";
   }
   const auto place = [&](double left, double top) { return sheet.at(left, top); };
-  return "set palette defined (" + steps +
-         ")\nset cbrange [-0.5:" + digits(static_cast<double>(n) - 0.5) + "]\nset cbtics (" + tics +
+  const bool few = p.actions.size() <= kShades.size();
+  return (few ? "set palette defined (" + steps + ")\n" : std::string(kSequential)) +
+         "set cbrange [-0.5:" + digits(static_cast<double>(n) - 0.5) + "]\nset cbtics (" + tics +
          ") scale 0\nset colorbox user origin screen " + place(box.left, box.bottom) +
          " size screen " + digits((box.right - box.left) / Sheet::kWidth) + "," +
          digits((box.bottom - box.top) / sheet.height) + "\n";

@@ -407,8 +407,10 @@ void read_terrain(Scene& scene, const toml::table& document, const Origin& origi
   if (scene.terrain) check_types(scene, scene.terrain->types, "terrain.types");
   for (const Terrain::Type& action : scene.actions) {
     const Scene taken = with_action(scene, action);
-    check_types(taken, {{action.name, {}}}, std::string(kActionsTable));
-    if (taken.terrain) check_types(taken, taken.terrain->types, "actions." + action.name);
+    check_types(taken, {action}, std::string(kActionsTable));
+    if (taken.terrain)
+      check_types(taken, taken.terrain->types,
+                  std::string(kActionsTable) + "." + action.name + " with terrain.types");
   }
 }
 

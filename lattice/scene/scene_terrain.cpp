@@ -206,23 +206,17 @@ std::map<std::string, double> type_shares(const TerrainSettings& settings, const
 
 /// Gates that a table has by name, each with some keys otherwise than the scene.
 struct Group {
-  std::string key, table;        // "types", "terrain.types"
-  std::string one, what, other;  // for messages
+  std::string key, table;  // "types", "terrain.types"
+  std::string one, other;  // for messages
   bool (*may_have)(std::string_view key);
 };
 const Group kTypes{
-    "types.",
-    "terrain.types",
-    "a type's",
-    "types",
+    "types.", "terrain.types", "a type's",
     "all gates of a field have it in common; a type has beams (but their joints), forces and "
     "contact of its own",
     may_differ};
 const Group kActions{
-    "actions.",
-    std::string(kActionsTable),
-    "an action's",
-    "actions",
+    "actions.", std::string(kActionsTable), "an action's",
     "a body cannot choose it; an action has forces and beams (but their joints) of its own",
     [](std::string_view key) { return may_differ(key) && !key.starts_with("contact."); }};
 
@@ -285,7 +279,7 @@ std::vector<Terrain::Type> gates_in(const TerrainSettings& settings, const Group
   }
   if (gates.size() > kMostTypes)
     throw SceneError(settings.begin()->second.where() + ": more than " +
-                     std::to_string(kMostTypes) + " " + group.what);
+                     std::to_string(kMostTypes) + " tables " + group.table + ".NAME");
   return gates;
 }
 

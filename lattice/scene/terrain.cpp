@@ -53,6 +53,10 @@ Scene with_action(const Scene& scene, const Terrain::Type& action) {
   Scene taken = scene;
   taken.gate = gate_of(scene, action);
   taken.actions.clear();
+  for (const Terrain::Key& key : action.keys) {
+    taken.named[key.name] = key.origin;
+    taken.derived.erase(key.name);
+  }
   if (taken.terrain)
     for (Terrain::Type& type : taken.terrain->types)
       for (const Terrain::Key& key : action.keys) {

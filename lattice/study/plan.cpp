@@ -73,13 +73,31 @@ Gain gain_over(const FieldTrials& with, const FieldTrials& without) {
   return {(more - less) / n, {p - q - half, p - q + half}};
 }
 
+/// Trials of the first action's problem in `cells`, those of all actions.
+FieldTally chosen_trials(const CellField& cells, const Problem& first, int actions,
+                         const ActionChoice& choice, std::uint64_t seed, TrialRange range,
+                         FieldTrials& each) {
+  const TypeChoice type{first.start, [&](const Place& at, const Entry& entry) {
+                          return first.map().type_of(at.column, at.row) * actions +
+                                 choice(at, entry);
+                        }};
+  return run_field(
+      cells, first.field,
+      [&](std::int64_t i, Body& body) {
+        const std::int64_t trial = range.first + i;
+        const Place start{first.field.start_column(), 0, 0, trial};
+        begin_trial(*cells.cells[static_cast<std::size_t>(type.type(start, first.start))],
+                    first.start, seed, trial, body);
+      },
+      range, &each, nullptr, Memory::kept, type);
+}
+
 class Planner {
  public:
   Planner(const std::vector<Action>& actions, const PlanOptions& options, const Work& work)
       : actions_(actions),
         first_(actions.front().problem),
         cells_(cells_of(actions)),
-        stream_(first_.cells.at(first_.field.start_column(), 0).stream_of(first_.start)),
         options_(options),
         work_(work),
         count_(static_cast<std::int64_t>(
@@ -104,9 +122,11 @@ class Planner {
         counts.push_back(crossings_of(trials.back()).crossed);
       }
       const auto most = std::max_element(counts.begin(), counts.end());
+      // Rare crossings gain little of all trials, but much beside chance.
       const auto gained = static_cast<double>(*most - counts.back());
-      const bool settled =
-          rounds_ > 1 && gained <= 0.5 * options_.accuracy * static_cast<double>(count_);
+      const bool settled = rounds_ > 1 &&
+                           gained <= 0.5 * options_.accuracy * static_cast<double>(count_) &&
+                           gained <= 2.0 * std::sqrt(static_cast<double>(*most));
       const auto winner = static_cast<std::size_t>(most - counts.begin());
       add(trials[winner]);
       best = std::move(plans[winner]);
@@ -141,27 +161,14 @@ class Planner {
   }
 
   [[nodiscard]] FieldTrials run(const ActionChoice& choice, std::int64_t count) {
-    const TypeChoice type{first_.start, [&](const Place& at, const Entry& entry) {
-                            return first_.map().type_of(at.column, at.row) * actions() +
-                                   choice(at, entry);
-                          }};
     FieldTrials all{.final_gates = {}, .keep_passages = true};
     work_.in_kept_pieces(
         {"trials of a plan", {next_, count}},
         RunTrials{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}},
         [&](TrialRange range) {
           RunTrials piece{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}};
-          piece.tally = run_field(
-              cells_, first_.field,
-              [&](std::int64_t i, Body& body) {
-                const std::int64_t trial = range.first + i;
-                const Place start{first_.field.start_column(), 0, 0, trial};
-                body.entry = first_.start;
-                body.random = Random(Purpose::field,
-                                     {options_.seed, stream_, static_cast<std::uint64_t>(trial)});
-                cells_.cells[static_cast<std::size_t>(type.type(start, first_.start))]->begin(body);
-              },
-              range, &piece.each, nullptr, Memory::kept, type);
+          piece.tally =
+              chosen_trials(cells_, first_, actions(), choice, options_.seed, range, piece.each);
           return piece;
         },
         [&](const RunTrials& piece) {
@@ -191,10 +198,10 @@ class Planner {
 
   [[nodiscard]] Plan choose(int per_leaf) const {
     Kernel kernel = kernel_of(cells_.map, pool_, per_leaf);
-    if (bytes_of(kernel.space) > kMostBytes)
+    if (4.0 * bytes_of(kernel.space) > kMostBytes)  // of three sizes of leaves, and the best so far
       throw std::runtime_error(
           "plan: decisions for so many cells, states and gates do not fit into memory; a smaller "
-          "field.max_gates (0: no limit), or larger leaves, need less");
+          "field.max_gates (0: no limit) needs less");
     std::vector<markov::FieldChain> chains;
     for (std::size_t a = 0; a < actions_.size(); ++a) {
       std::vector<markov::Chain> of_types;
@@ -213,11 +220,11 @@ class Planner {
   }
 
   [[nodiscard]] static Plan always(int action, const Plan& like) {
-    Plan plan = like;
-    auto& actions = plan.policy.decisions.action;
-    std::fill(actions.begin(), actions.end(), static_cast<std::uint16_t>(action));
-    plan.chain_says = std::nan("");
-    return plan;
+    const markov::Decisions& d = like.policy.decisions;
+    return {.policy = {like.policy.space,
+                       {.field = d.field, .inputs = d.inputs, .max_cells = d.max_cells},
+                       action},
+            .chain_says = std::nan("")};
   }
 
   /// By trials that nothing was chosen by.
@@ -262,7 +269,6 @@ class Planner {
   const std::vector<Action>& actions_;
   const Problem& first_;
   CellField cells_;
-  std::uint64_t stream_;
   const PlanOptions& options_;
   const Work& work_;
   std::int64_t count_;                         // trials of a plan in a round
@@ -294,11 +300,34 @@ int Policy::action(const Place& place, const Entry& entry) const {
       (decisions.max_cells > 0 && place.passed >= decisions.max_cells) || entry.face < 0 ||
       entry.face >= std::ssize(space.trees()))
     throw std::out_of_range("policy: is not made for this place, or this way to enter");
+  if (always) return *always;
   return decisions
       .action[decisions.at(place.column, place.row, space.index_of(entry).state, place.passed)];
 }
 
 std::array<double, 2> Crossings::interval_95() const { return share_interval(crossed, trials); }
+
+FieldTally policy_trials(const std::vector<Action>& actions, const Policy& policy,
+                         TrialRange trials, std::uint64_t seed, const Work& work,
+                         const TakeTrials& take) {
+  const CellField cells = cells_of(actions);
+  const Problem& first = actions.front().problem;
+  const auto n = static_cast<int>(actions.size());
+  const ActionChoice choice = [&](const Place& at, const Entry& entry) {
+    const int action = policy.action(at, entry);
+    if (action < 0 || action >= n) throw std::out_of_range("policy: takes an action of others");
+    return action;
+  };
+  FieldTally tally = field_trials(
+      first.field, trials,
+      [&](TrialRange range, FieldTrials& each) {
+        return chosen_trials(cells, first, n, choice, seed, range, each);
+      },
+      work, take);
+  for (const Action& a : actions)
+    if (a.problem.check) a.problem.check(trials.count / n, seed, tally.health, work);
+  return tally;
+}
 
 Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options, const Work& work) {
   if (!(options.accuracy >= 0.001 && options.accuracy < 0.5))

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "dynamics/cells/tree_space.h"
 #include "lattice/problem.h"
 #include "lattice/reference.h"
+#include "lattice/study/trials.h"
 #include "markov/decide.h"
 
 namespace gatewalk::lattice {
@@ -36,6 +38,7 @@ struct Action {
 struct Policy {
   dynamics::StateSpace space;
   markov::Decisions decisions;
+  std::optional<int> always{};  // one action everywhere: then there are no decisions
 
   /// Throws std::out_of_range for a place that it is not made for.
   [[nodiscard]] int action(const Place& place, const dynamics::Entry& entry) const;
@@ -75,9 +78,9 @@ struct Plan {
   std::vector<Gain> gains{};    // over each action alone
   std::vector<double> usage{};  // (actions x cells) how often it is taken there, per trial
   int rounds = 0;               // of trials and choosing again
-  bool settled = false;         // the last round gained no more than half of the accuracy
-  std::int64_t gate_runs = 0;   // of all
-  dynamics::Health health{};    // the same
+  bool settled = false;  // the last round gained less than half of the accuracy, and than chance
+  std::int64_t gate_runs = 0;  // of all
+  dynamics::Health health{};   // the same
 };
 
 /// Trials in which bodies try all actions fill a matrix for each over common states. The best
@@ -90,5 +93,13 @@ struct Plan {
 /// fit into memory, and as markov::decide.
 [[nodiscard]] Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options,
                              const dynamics::Work& work = {});
+
+/// Trials through the field in which bodies do what the policy says; with the noise that
+/// field_trials of these numbers have. Throws std::invalid_argument as cells_of, std::out_of_range
+/// for a policy that is not made for these actions, their field or their start.
+[[nodiscard]] FieldTally policy_trials(const std::vector<Action>& actions, const Policy& policy,
+                                       dynamics::TrialRange trials, std::uint64_t seed,
+                                       const dynamics::Work& work = {},
+                                       const TakeTrials& take = {});
 
 }  // namespace gatewalk::lattice

@@ -179,6 +179,27 @@ TEST(Plan, AnActionAloneIsThatField) {
   }
 }
 
+// In the full dynamics the policy is worth what the plan says.
+TEST(Plan, APolicyRunsWithTheNoiseOfFieldTrials) {
+  const std::vector<Action> actions = pushes();
+  const Plan plan = make_plan(actions, {.accuracy = 0.1, .seed = 2});
+  const FieldTally run = policy_trials(actions, plan.policy, {0, 4000}, 8);
+  const double share =
+      static_cast<double>(run.endings[static_cast<std::size_t>(markov::Ending::far_edge)]) / 4000.0;
+  const auto [low, high] = plan.crossings.interval_95();
+  EXPECT_TRUE(low - 0.03 < share && share < high + 0.03) << low << ' ' << share << ' ' << high;
+  Policy hard = plan.policy;
+  hard.always = 1;
+  const FieldTally always = policy_trials(actions, hard, {0, 500}, 8),
+                   own = field_trials(actions[1].problem, {0, 500}, 8);
+  EXPECT_TRUE((always.final_gates == own.final_gates).all());
+  hard.always = 2;
+  EXPECT_THROW((void)policy_trials(actions, hard, {0, 10}, 8), std::out_of_range);
+  std::vector<Action> longer = actions;
+  for (Action& action : longer) ++action.problem.field.rows;
+  EXPECT_THROW((void)policy_trials(longer, plan.policy, {0, 500}, 8), std::out_of_range);
+}
+
 TEST(Plan, RefusesWhatDoesNotBelongTogether) {
   const auto refused = [](std::vector<Action> actions, const PlanOptions& options = {}) {
     EXPECT_THROW((void)make_plan(actions, options), std::invalid_argument);

@@ -30,6 +30,7 @@ for command in predict "analyze --runs 0" "rare --row 2 --gate-runs 4000" power 
   expect 0 '' "$gatewalk" $1 $auto --accuracy 0.2 "${@:2}" --json auto-tree.json
   holds '(.method // .actions[0].method) | .asked == "auto" and .pilot_starts == 9' auto-tree.json
 done
+expect 0 '' "$gatewalk" power $auto --accuracy 0.2 --versus forces.propulsion_N=9
 # A matrix of a method by name is not what "auto" stands for; nor is one of another tolerance.
 "$gatewalk" build "$scenes/field.toml" --set run.time_limit_s=2 --trials 1 -o named.nc --quiet >/dev/null
 expect 2 'run.method: auto here, stable by name there' "$gatewalk" predict named.nc $auto

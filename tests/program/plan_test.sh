@@ -26,6 +26,28 @@ expect 0 '^actions.fast.forces.propulsion_N  *9.0 ' "$gatewalk" scene own.toml
 # Gates of several types; an action that is the scene as it is.
 expect 0 '^chance to cross: ' "$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.max_gates=30 --set actions.fast.forces.propulsion_N=12 --set actions.wait={} --accuracy 0.2 --json mixed.json
 holds '.most_taken | length == 9' mixed.json
+# The policy is a file, which the full dynamics runs: as often as the plan says, the same at every go.
+{ cat "$scenes/field.toml"; printf '[actions.left]\nbeams.stiffness_left_Nm_per_rad = 200\n[actions.right]\nbeams.stiffness_right_Nm_per_rad = 200\n'; } >sides.toml
+sides=(sides.toml --set run.method=moreau --set field.rows=4 --set field.max_gates=6)
+"$gatewalk" plan "${sides[@]}" --accuracy 0.05 --quiet --json sides.json --policy sides.policy.json
+holds '.chain != null and .actions[0].gain > 0' sides.json
+expect 0 '^crossed' "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 2000 --seed 3 --json run.json
+jq -s '.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' sides.json run.json | grep -q true || fail "the policy crosses less or more often than planned"
+"$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 2000 --seed 3 --threads 1 --quiet --json again.json --force
+cmp -s run.json again.json || fail "a policy runs otherwise on one thread"
+# One action all the time is the scene with its keys.
+"$gatewalk" plan "${small[@]}" "${actions[@]}" --quiet --policy fast.json
+"$gatewalk" lattice "${small[@]:0:5}" "${actions[@]}" --policy fast.json --trials 300 --quiet --json policy.json
+"$gatewalk" lattice "${small[@]:0:5}" --set forces.propulsion_N=9 --trials 300 --quiet --json keys.json
+jq -s '.[0].final_gates == .[1].final_gates and .[0].endings == .[1].endings' policy.json keys.json | grep -q true || fail "one action all the time is not the scene with its keys"
+expect 2 'sides.policy.json: was made for another scene: "columns = 7" here, "columns = 9" there' "$gatewalk" lattice "${sides[@]}" --set field.columns=7 --policy sides.policy.json
+expect 2 'sides.policy.json: was made for another scene: ' "$gatewalk" lattice own.toml --policy sides.policy.json
+for change in '.trees[0].cut[0] = 1e9' '.trees[0].axis[0] = 7' '.action[3] = "0"' '.action[0] |= sub("[01]"; "9")' 'del(.points)' '.action |= .[1:]'; do
+  jq -c "$change" sides.policy.json >bad.json
+  expect 2 '^gatewalk: bad.json: ' "$gatewalk" lattice "${sides[@]}" --policy bad.json
+done
+echo '{}' >bad.json
+expect 2 'bad.json: is no policy that gatewalk plan --policy wrote' "$gatewalk" lattice "${sides[@]}" --policy bad.json
 # What cannot be planned.
 expect 2 'has 0 tables \[actions.NAME\]: a plan needs two at least' "$gatewalk" plan "$scenes/field.toml"
 expect 2 'has 1 tables \[actions.NAME\]' "$gatewalk" plan "$scenes/field.toml" --set actions.a.forces.propulsion_N=9

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "cli/exchange/policy_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "cli/render/json.h"
+#include "dynamics/disc/disc_section.h"
+#include "markov/formats/counts.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr std::string_view kLetters =
+    "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+constexpr double kMostGates = 1e6;
+constexpr int kPolicyFormat = 1;
+
+/// The scene without its start, which a policy does not depend on.
+std::string text_of(lattice::Scene scene) {
+  scene.start = {};
+  return lattice::to_toml(scene);
+}
+
+/// The first line that differs.
+std::string difference(const std::string& here, const std::string& there) {
+  const auto [a, b] = std::mismatch(here.begin(), here.end(), there.begin(), there.end());
+  const auto line = [](const std::string& text, std::string::const_iterator at) {
+    const auto begin = static_cast<std::size_t>(at - text.begin());
+    const std::size_t first = begin == 0 ? 0 : text.rfind('\n', begin - 1) + 1;
+    return text.substr(first, text.find('\n', begin) - first);
+  };
+  return "\"" + line(here, a) + "\" here, \"" + line(there, b) + "\" there";
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(std::string("cannot be read: ") + std::strerror(errno));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
+  const dynamics::Section section = dynamics::disc_section(scene.gate);
+  std::vector<dynamics::Tree> trees;
+  for (const Json& given : json.at("trees")) {
+    const auto axes = given.at("axis").get<std::vector<int>>();
+    const auto cuts = given.at("cut").get<std::vector<double>>();
+    if (axes.size() != cuts.size()) throw std::runtime_error("a tree has other cuts than axes");
+    dynamics::Tree& tree = trees.emplace_back();
+    tree.nodes.clear();
+    for (std::size_t i = 0; i < axes.size(); ++i) tree.nodes.push_back({axes[i], cuts[i]});
+    const auto seen = given.at("seen").get<std::vector<std::array<double, 2>>>();
+    if (seen.size() != section.coordinates.size())
+      throw std::runtime_error("a tree has other coordinates than an entry");
+    std::copy(seen.begin(), seen.end(), tree.seen.begin());
+  }
+  std::vector<dynamics::Entry> points;
+  for (const Json& given : json.at("points")) {
+    dynamics::Entry& point = points.emplace_back();
+    point.face = given.at("face").get<int>();
+    const auto at = given.at("at").get<std::vector<double>>();
+    if (at.size() != section.coordinates.size())
+      throw std::runtime_error("a point has other coordinates than an entry");
+    std::copy(at.begin(), at.end(), point.at.begin());
+  }
+  dynamics::StateSpace space(section, std::move(trees), std::move(points));
+  const lattice::FieldParams& field = scene.field;
+  markov::Decisions decisions{
+      .field = {field.columns, field.rows}, .inputs = space.size(), .max_cells = field.max_gates};
+  const std::size_t actions = scene.actions.size();
+  if (json.contains("always")) {
+    const int always = json.at("always").get<int>();
+    if (always < 0 || static_cast<std::size_t>(always) >= actions)
+      throw std::runtime_error("there is no action number " + std::to_string(always));
+    return {std::move(space), std::move(decisions), always};
+  }
+  const auto cells = static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows),
+             draws = static_cast<std::size_t>(std::max(1, field.max_gates)),
+             states = static_cast<std::size_t>(space.size());
+  const Json& rows = json.at("action");
+  if (rows.size() != draws * cells)
+    throw std::runtime_error("has decisions for " + std::to_string(rows.size()) +
+                             " gates, not for " + std::to_string(draws * cells));
+  for (const Json& given : rows) {
+    const auto& row = given.get_ref<const std::string&>();
+    if (row.size() != states)
+      throw std::runtime_error("a gate has decisions for " + std::to_string(row.size()) +
+                               " ways to enter, not for " + std::to_string(states));
+    for (const char letter : row) {
+      const std::size_t action = kLetters.find(letter);
+      if (action >= actions)
+        throw std::runtime_error("there is no action " + std::string(1, letter));
+      decisions.action.push_back(static_cast<std::uint16_t>(action));
+    }
+  }
+  return {std::move(space), std::move(decisions)};
+}
+
+}  // namespace
+
+void require_file_for(const lattice::Scene& scene) {
+  const lattice::FieldParams& field = scene.field;
+  const double gates =
+      static_cast<double>(field.columns) * field.rows * std::max(1, field.max_gates);
+  if (scene.actions.size() > kLetters.size() || gates > kMostGates)
+    throw std::runtime_error(
+        scene.source + ": a policy is a file for at most " + std::to_string(kLetters.size()) +
+        " actions and " + std::to_string(static_cast<int>(kMostGates)) +
+        " gates (field.columns times field.rows, and times field.max_gates if there is a limit)");
+}
+
+std::string policy_text(const lattice::Policy& policy, const lattice::Scene& scene) {
+  require_file_for(scene);
+  const std::vector<std::uint16_t>& action = policy.decisions.action;
+  Json json{{"policy_format", kPolicyFormat}, {"scene", text_of(scene)}};
+  for (const dynamics::Tree& given : policy.space.trees()) {
+    Json tree{{"axis", Json::array()}, {"cut", Json::array()}};
+    for (std::size_t c = 0; c < policy.space.section().coordinates.size(); ++c)
+      tree["seen"].push_back(given.seen[c]);
+    for (const dynamics::Tree::Node& node : given.nodes) {
+      tree["axis"].push_back(node.axis);
+      tree["cut"].push_back(node.cut);
+    }
+    json["trees"].push_back(std::move(tree));
+  }
+  json["points"] = Json::array();
+  const std::size_t coordinates = policy.space.section().coordinates.size();
+  for (const dynamics::Entry& point : policy.space.points())
+    json["points"].push_back(
+        {{"face", point.face},
+         {"at", std::vector<double>(point.at.begin(),
+                                    point.at.begin() + static_cast<std::ptrdiff_t>(coordinates))}});
+  if (policy.always) {
+    json["always"] = *policy.always;
+    return json.dump(0) + "\n";
+  }
+  const auto states = static_cast<std::size_t>(policy.space.size());
+  json["action"] = Json::array();
+  for (std::size_t at = 0; at < action.size(); at += states) {
+    std::string row(states, ' ');
+    for (std::size_t i = 0; i < states; ++i) row[i] = kLetters[action[at + i]];
+    json["action"].push_back(std::move(row));
+  }
+  return json.dump(0) + "\n";
+}
+
+lattice::Policy read_policy(const std::string& path, const lattice::Scene& scene) try {
+  const Json json = Json::parse(bytes_of(path), nullptr, false);
+  if (!json.is_object() || json.value("policy_format", 0) != kPolicyFormat)
+    throw std::runtime_error("is no policy that gatewalk plan --policy wrote");
+  const std::string own = json.at("scene").get<std::string>(), given = text_of(scene);
+  if (own != given)
+    throw std::runtime_error("was made for another scene: " + difference(given, own));
+  return policy_of(json, scene);
+} catch (const std::runtime_error& e) {
+  throw markov::BadFile(path + ": " + e.what());
+} catch (const Json::exception& e) {
+  throw markov::BadFile(path + ": is damaged: " + e.what());
+} catch (const std::invalid_argument& e) {  // of the state space
+  throw markov::BadFile(path + ": is damaged: " + e.what());
+}
+
+}  // namespace gatewalk::cli
