@@ -46,11 +46,23 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// A whole number from -1 to `most`.
+int number_in(const Json& json, std::size_t most) {
+  if (json.is_number_integer()) {
+    const double number = json.get<double>();
+    if (number >= -1.0 && number <= static_cast<double>(most)) return static_cast<int>(number);
+  }
+  throw std::runtime_error(json.dump(-1, ' ', false, Json::error_handler_t::replace) +
+                           " is no whole number from -1 to " + std::to_string(most));
+}
+
 lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
   const dynamics::Section section = dynamics::disc_section(scene.gate);
   std::vector<dynamics::Tree> trees;
   for (const Json& given : json.at("trees")) {
-    const auto axes = given.at("axis").get<std::vector<int>>();
+    std::vector<int> axes;
+    for (const Json& axis : given.at("axis"))
+      axes.push_back(number_in(axis, section.coordinates.size() - 1));
     const auto cuts = given.at("cut").get<std::vector<double>>();
     if (axes.size() != cuts.size()) throw std::runtime_error("a tree has other cuts than axes");
     dynamics::Tree& tree = trees.emplace_back();
@@ -64,7 +76,7 @@ lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
   std::vector<dynamics::Entry> points;
   for (const Json& given : json.at("points")) {
     dynamics::Entry& point = points.emplace_back();
-    point.face = given.at("face").get<int>();
+    point.face = number_in(given.at("face"), section.faces.size() - 1);
     const auto at = given.at("at").get<std::vector<double>>();
     if (at.size() != section.coordinates.size())
       throw std::runtime_error("a point has other coordinates than an entry");
@@ -76,9 +88,8 @@ lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
       .field = {field.columns, field.rows}, .inputs = space.size(), .max_cells = field.max_gates};
   const std::size_t actions = scene.actions.size();
   if (json.contains("always")) {
-    const int always = json.at("always").get<int>();
-    if (always < 0 || static_cast<std::size_t>(always) >= actions)
-      throw std::runtime_error("there is no action number " + std::to_string(always));
+    const int always = number_in(json.at("always"), actions - 1);
+    if (always < 0) throw std::runtime_error("there is no action number -1");
     return {std::move(space), std::move(decisions), always};
   }
   const auto cells = static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows),
@@ -153,7 +164,8 @@ std::string policy_text(const lattice::Policy& policy, const lattice::Scene& sce
 
 lattice::Policy read_policy(const std::string& path, const lattice::Scene& scene) try {
   const Json json = Json::parse(bytes_of(path), nullptr, false);
-  if (!json.is_object() || json.value("policy_format", 0) != kPolicyFormat)
+  if (!json.is_object() || !json.contains("policy_format") ||
+      json["policy_format"] != kPolicyFormat)
     throw std::runtime_error("is no policy that gatewalk plan --policy wrote");
   const std::string own = json.at("scene").get<std::string>(), given = text_of(scene);
   if (own != given)
