@@ -5,6 +5,8 @@
 here=$(realpath "$(dirname "$0")")
 with_mpi=$(realpath "$3")
 . "$here/program/preamble.sh" "$1" "$2"
+# Open MPI keeps memory to the end, in modules that are gone by then: it cannot be told from ours by name.
+[ -z "${SANITIZED-}" ] || export ASAN_OPTIONS=detect_leaks=0
 . "$here/killed.sh"
 
 # on N COMMAND...: as root too, and on more ranks than there are processors.

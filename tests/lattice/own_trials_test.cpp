@@ -92,6 +92,15 @@ TEST(OwnTrials, RightChainsAreLeftAlone) {
   EXPECT_LE(alarms, 1);
 }
 
+TEST(OwnTrials, TrialsThatAreTheAnswerAreNotCheckedByThemselves) {
+  const Scene scene = read_scene(std::string(GATEWALK_SCENES) + "/walker.toml", {});
+  RunPool pool;
+  const auto p = predict_pooled(problem_of(scene), pool, {entry_of(scene.start)},
+                                {.accuracy = 0.1, .seed = 1});
+  EXPECT_TRUE(p.starts[0].from_trials);
+  EXPECT_FALSE(p.own_trials.has_value());
+}
+
 // Beams of unlike stiffness, counted as if they were mirror images of each other.
 TEST(OwnTrials, AMirrorThatIsNoneIsFoundOut) {
   const Problem problem = problem_of(unlike_beams());
