@@ -70,17 +70,17 @@ FieldRun run_policy(const Options& options) {
   Subject s = open_subject(options, "scene");
   if (!s.scene || s.file)
     throw UsageError(s.path + ": is no scene of gates, which a policy is made for");
-  const lattice::Policy policy = read_policy(options.text("policy"), *s.scene);
   std::vector<std::optional<lattice::Settled>> methods;
   const std::vector<lattice::Action> actions =
       actions_of(options, *s.scene, s.problem.start, methods);
+  const lattice::Policy policy = read_policy(options.text("policy"), *s.scene);
   const lattice::FieldParams& field = s.problem.field;
   FieldRun run{s.shown(),
                s.problem.start,
                s.made_by(options),
                lattice::FieldCosts(s.bin_of_durations(options)),
                lattice::ExitCounts(field),
-               RunScene{*s.scene},
+               std::nullopt,
                lattice::FieldTally(field)};
   run.tally = lattice::policy_trials(actions, policy, options.trial_range(), options.seed(),
                                      options.work(), lattice::added_to(run.costs, run.exits));

@@ -21,6 +21,7 @@ namespace {
 constexpr std::string_view kLetters =
     "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 constexpr double kMostGates = 1e6;
+constexpr std::size_t kMostPoints = 1000;  // a plan has its start
 constexpr int kPolicyFormat = 1;
 
 /// The scene without its start, which a policy does not depend on.
@@ -52,7 +53,7 @@ int number_in(const Json& json, std::size_t most) {
     const double number = json.get<double>();
     if (number >= -1.0 && number <= static_cast<double>(most)) return static_cast<int>(number);
   }
-  throw std::runtime_error(json.dump(-1, ' ', false, Json::error_handler_t::replace) +
+  throw std::runtime_error((json.is_number() ? json.dump() : std::string(json.type_name())) +
                            " is no whole number from -1 to " + std::to_string(most));
 }
 
@@ -74,6 +75,8 @@ lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
     std::copy(seen.begin(), seen.end(), tree.seen.begin());
   }
   std::vector<dynamics::Entry> points;
+  if (json.at("points").size() > kMostPoints)
+    throw std::runtime_error("more than " + std::to_string(kMostPoints) + " points");
   for (const Json& given : json.at("points")) {
     dynamics::Entry& point = points.emplace_back();
     point.face = number_in(given.at("face"), section.faces.size() - 1);

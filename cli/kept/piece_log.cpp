@@ -63,7 +63,7 @@ std::string first_line(std::string_view head) {
 template <class Read>
 auto read_from(const std::string& path, Read read) try {
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw markov::BadFile(path + ": cannot be read: " + std::strerror(errno));
+  if (!in) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
   in.exceptions(std::ios_base::badbit);
   return read(in);
 } catch (const std::ios_base::failure&) {
@@ -81,6 +81,10 @@ bool PieceFile::is_one(const std::string& path) {
 }
 
 std::string piece_head(const std::string& path) {
+  if (!std::ifstream(path, std::ios::binary))
+    throw markov::BadFile(path + ": cannot be read: " + std::strerror(errno));
+  if (std::filesystem::is_directory(path))
+    throw markov::BadFile(path + ": is a folder, and holds no pieces of a run");
   std::string first, head;
   read_from(path, [&](std::istream& in) {
     if (!std::getline(in, first) || !first.starts_with(kFirstLine))

@@ -324,8 +324,10 @@ FieldTally policy_trials(const std::vector<Action>& actions, const Policy& polic
         return chosen_trials(cells, first, n, choice, seed, range, each);
       },
       work, take);
-  for (const Action& a : actions)
-    if (a.problem.check) a.problem.check(trials.count / n, seed, tally.health, work);
+  for (int a = 0; a < n; ++a)
+    if (const auto& check = actions[static_cast<std::size_t>(a)].problem.check;
+        check && policy.always.value_or(a) == a)
+      check(policy.always ? trials.count : trials.count / n + 1, seed, tally.health, work);
   return tally;
 }
 

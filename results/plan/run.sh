@@ -55,9 +55,12 @@ cp "$work/fields.csv" "$work/starts.csv" "$out"
 {
   manifest "STARTS=$starts results/plan/run.sh"
   echo "date: $(date -I)"
-  # The trials of the policy have chance of their own, which widens the interval by little.
-  awk -F, -v n=$trials 'NR > 1 { s = sqrt($6 * (1 - $6) / n); inside += $6 > $4 - s && $6 < $5 + s; all++; gain += $9 > 0; sure += $10 > 0 }
-    END { printf "%d of %d intervals hold what the policy does; %d gain over the best action alone, %d for sure\n", inside, all, gain, sure }' \
-    "$work/starts.csv"
+  # The trials of the policy have chance of their own: the squares of both add up.
+  for table in starts fields; do
+    awk -F, -v n=$trials -v table=$table 'NR > 1 { s = 1.96 * sqrt($6 * (1 - $6) / n); all++; sure += $10 > 0; worse += $11 < 0
+        inside += $6 > $3 - sqrt(($3 - $4) ^ 2 + s ^ 2) && $6 < $3 + sqrt(($5 - $3) ^ 2 + s ^ 2) }
+      END { printf "%s: %d of %d intervals hold what the policy does; for sure better than the best action alone: %d, worse: %d\n",
+        table, inside, all, sure, worse }' "$out/$table.csv"
+  done
 } >"$out/inside.txt"
 cat "$out/inside.txt"
