@@ -30,19 +30,25 @@ FieldRun run_scene(const Options& options) {
   return run;
 }
 
+/// Before any trial.
+FieldRun run_of(const Options& options, const Subject& s) {
+  const lattice::FieldParams& field = s.problem.field;
+  return {s.shown(),
+          s.problem.start,
+          s.made_by(options),
+          lattice::FieldCosts(s.bin_of_durations(options)),
+          lattice::ExitCounts(field),
+          std::nullopt,
+          lattice::FieldTally(field)};
+}
+
 /// Of any cells; writes the tables of --passages and --cell-file.
 FieldRun run_cells(const Options& options) {
   Subject s = open_subject(options, "scene");
   if (s.file) throw UsageError(s.path + ": is a matrix, and bodies are to be run: give a scene");
   s.settle(options);
-  const lattice::FieldParams& field = s.problem.field;
-  FieldRun run{s.shown(),
-               s.problem.start,
-               s.made_by(options),
-               lattice::FieldCosts(s.bin_of_durations(options)),
-               lattice::ExitCounts(field),
-               s.scene ? std::optional(RunScene{*s.scene, s.settled}) : std::nullopt,
-               lattice::FieldTally(field)};
+  FieldRun run = run_of(options, s);
+  if (s.scene) run.scene = RunScene{*s.scene, s.settled};
   lattice::RecordedRuns runs;
   runs.passages.begin(s.problem.map().section);
   const bool keep = options.has("passages");
@@ -74,14 +80,7 @@ FieldRun run_policy(const Options& options) {
   const std::vector<lattice::Action> actions =
       actions_of(options, *s.scene, s.problem.start, methods);
   const lattice::Policy policy = read_policy(options.text("policy"), *s.scene);
-  const lattice::FieldParams& field = s.problem.field;
-  FieldRun run{s.shown(),
-               s.problem.start,
-               s.made_by(options),
-               lattice::FieldCosts(s.bin_of_durations(options)),
-               lattice::ExitCounts(field),
-               std::nullopt,
-               lattice::FieldTally(field)};
+  FieldRun run = run_of(options, s);
   run.tally = lattice::policy_trials(actions, policy, options.trial_range(), options.seed(),
                                      options.work(), lattice::added_to(run.costs, run.exits));
   options.work().end_part();

@@ -83,10 +83,7 @@ int run_rare(const Arguments& arguments) {
     throw UsageError(subject.path + ": is a matrix, and new bodies are to be run: give a scene");
   how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 10001))
                                : subject.problem.field.rows;
-  if (subject.scene)  // refuses before any work
-    (void)lattice::up_to_row(*subject.scene, how.row);
-  else
-    (void)lattice::up_to_row(subject.problem, how.row);
+  if (subject.scene) (void)lattice::up_to_row(*subject.scene, how.row);  // refuses before a pilot
   subject.settle(options);
   const lattice::Problem deep = up_to_row(subject, how.row);
   const lattice::RareEvent event = lattice::rare_event(deep, how, options.work());

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -14,12 +15,24 @@
 
 #include "lattice/study/validation.h"
 #include "lattice/text/csv.h"
+#include "lattice/text/text_stream.h"
 #include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {
 namespace {
 
 using Fields = std::vector<std::string>;
+
+// A file whose reading fails is not one that ends there.
+TEST(Csv, WhatCannotBeReadIsNoEnd) {
+  EXPECT_FALSE(lines_of("/proc/self/mem"));  // its first byte is nobody's
+  EXPECT_EQ(errno, EIO);
+}
+
+TEST(Csv, ATextThatIsCutIsAnError) {
+  TextStream text;
+  EXPECT_THROW(text.setstate(std::ios_base::badbit), std::ios_base::failure);
+}
 
 TEST(Csv, SplitsALine) {
   EXPECT_EQ(csv_fields("a,b"), (Fields{"a", "b"}));
