@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What becomes of results when the system fails: call number k of read, write, fsync, fdatasync, rename, ftruncate, opening and
-# creating a file, starting a process or a thread fails, once and from then on, for every k that a command makes; so does
-# getting memory; of every command but stability, chart-chain and reproduce, which take minutes and write as chart does.
+# What becomes of results when the system fails: call number k of read, write, fsync, fdatasync, rename, ftruncate, link, close,
+# opening and creating a file, starting a process or a thread fails, once and from then on, for every k that a command makes; so
+# does getting memory; of every command but stability, chart-chain and reproduce, which take minutes and write as chart does.
 # /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files, no locale, no HOME, closed
 # outputs. Never a silent success, never a damaged file.
-#   [CALLS=...] faults.sh GATEWALK ROOT [MOST]    of these calls alone; at most MOST values of k each; of memory, which is asked for 10^5 times, k grows by fifths
+#   [CALLS=...] faults.sh GATEWALK ROOT [MOST]    of these calls alone; at most MOST values of k each
+# Memory is asked for 10^5 times: there each k is a fifth larger than the one before.
 here=$(realpath "$(dirname "$0")")
 most=${3:-12}
 . "$here/program/preamble.sh" "$1" "$2"
 . "$here/killed.sh"
+for tool in cc jq ffprobe; do command -v "$tool" >/dev/null || { echo "faults.sh needs $tool" >&2; exit 2; }; done
 cc -shared -fPIC -O1 -o faults.so "$here/faults.c" -ldl || exit 1
-runs=0
+runs=0 kept_old=
+declare -A failed in_library
 # What charts time is not the same twice.
 untimed() { grep -v '"machine"' "$1" | sed -E 's/[0-9.]+(e[-+]?[0-9]+)?/N/g; s/ +/ /g'; }
 same() {
@@ -32,11 +35,13 @@ each_whole() { for f in "$@"; do each_old "$f" || same "one/$f" "$f"; done; }
 has_checkpoint() { [[ $* != "build recorded"* ]] && "$gatewalk" "$1" --help | grep -q -e ' --checkpoint'; }  # no runs are made of recorded ones
 
 # survives OUTPUTS COMMAND...: an old output stays as it was, or the new one is whole; a status of 0 means that all are new.
+# With `begun`, a checkpoint's name, each run goes on from a copy of it; with kept_old=1 old files get another name.
+begun=
 survives() {
-  local outputs call k ever error status left keep=()
+  local outputs call k ever error status left where keep=()
   read -r -a outputs <<<"$1"
   shift
-  ! has_checkpoint "$@" || keep=(--checkpoint pieces)
+  ! has_checkpoint "$@" || keep=(--checkpoint pieces ${begun:+--resume})
   rm -rf "${outputs[@]}" one && mkdir one
   "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
   for f in "${outputs[@]}"; do mkdir -p "$(dirname "one/$f")" && mv "$f" "one/$f"; done
@@ -44,10 +49,15 @@ survives() {
   once() {
     for f in "${outputs[@]}"; do echo old >"$f"; done
     rm -rf seen pieces
+    [ -z "$begun" ] || cp "$begun" pieces
+    rm -f crash ./*.~*~
     runs=$((runs + 1))
-    timeout -s KILL 120 env LD_PRELOAD=./faults.so FAULT_CALL=$call FAULT_AT="$1" ${ever:+FAULT_EVER=1} FAULT_ERRNO="$error" FAULT_SEEN=seen \
-      "$gatewalk" "${command[@]}" --quiet --force "${keep[@]}" >/dev/null 2>err.txt
+    timeout -s KILL 120 env LD_PRELOAD=./faults.so FAULT_CALL=$call FAULT_AT="$1" ${ever:+FAULT_EVER=1} FAULT_ERRNO="$error" FAULT_SEEN=seen FAULT_CRASH=crash \
+      "$gatewalk" "${command[@]}" --quiet $([ -n "$kept_old" ] || echo --force) "${keep[@]}" >/dev/null 2>err.txt
     status=$?
+    [ ! -e seen ] || failed[$call]=$((${failed[$call]-0} + 1))
+    [ $status != 137 ] || fail "$call $1 failed, and no end: ${command[*]}"
+    [ -z "$kept_old" ] || for f in "${outputs[@]}"; do each_old "$f" || each_old "$f.~1~" || fail "$call $1 failed, and $f is lost: ${command[*]}"; done
   }
   resumed() {  # what was kept serves
     [ -e pieces ] || return 0
@@ -56,12 +66,11 @@ survives() {
     for f in "${outputs[@]}"; do same "one/$f" "$f"; done
   }
   local command=("$@")
-  for call in ${CALLS:-read write fsync fdatasync rename ftruncate open create spawn thread}; do
+  for call in ${CALLS:-read write fsync fdatasync rename ftruncate link close open create spawn thread}; do
     for ever in "" 1; do
       case $call:$ever in open:* | create:*) error=24 ;; spawn:*) error=11 ;; *:) error=28 ;; *) error=5 ;; esac  # EMFILE EAGAIN ENOSPC EIO
       for k in $(seq "$most"); do
         once "$k"
-        [ $status != 137 ] || fail "$call $k failed, and no end: $*"
         if [ $status = 0 ]; then
           for f in "${outputs[@]}"; do same "one/$f" "$f"; done
           # A library may open a file or start a process that it can do without; a result that is not on the disk is none.
@@ -69,7 +78,7 @@ survives() {
         else
           each_whole "${outputs[@]}"
           grep -q '^gatewalk: ' err.txt || fail "$call $k failed without a word: $* ($(cat err.txt))"
-          [ $status = 1 ] || { [[ $call = @(read|open|create|spawn) ]] && [ $status = 2 ]; } || fail "$call $k failed: status $status: $* ($(cat err.txt))"
+          [ $status = 1 ] || { [[ $call = @(read|open|close|link|create|spawn) ]] && [ $status = 2 ]; } || fail "$call $k failed: status $status: $* ($(cat err.txt))"
         fi
         left=$(find . -name '.gatewalk-*')
         [ -z "$left" ] || { fail "$call $k failed, and temporary files stay: $* ($left)"; find . -name '.gatewalk-*' -delete; }
@@ -95,7 +104,9 @@ survives() {
           esac
         done ;;
         1 | 2) grep -q '^gatewalk: ' err.txt || fail "without memory $k: no words: $*" ;;
-        *) crashes=$((crashes + 1)) ;;
+        *)  # In whose code?
+          where=$(cat crash 2>/dev/null || echo "status $status")
+          case $where in *.so*) in_library[$where]=$((${in_library[$where]-0} + 1)) ;; *) fail "without memory $k: a crash in $where: $*" ;; esac ;;
       esac
       [ $status = 0 ] || each_whole "${outputs[@]}"
       resumed
@@ -105,7 +116,6 @@ survives() {
   find . -name ".gatewalk-*" -delete
   echo "$runs runs: $1"
 }
-crashes=0
 survives gate.json gate "${field[@]}" --trials 2000 --json gate.json
 survives sweep.csv sweep "$scenes/single_gate.toml" --vary forces.propulsion_N=6,7 --trials 500 --csv sweep.csv
 survives bins.nc build "${field[@]}" --bins paper --trials 10 -o bins.nc
@@ -114,8 +124,11 @@ survives lattice.json lattice "${field[@]}" --trials 500 --json lattice.json
 survives 'predict.json predict.svg' predict "${field[@]}" --accuracy 0.1 --json predict.json --figure predict.svg
 survives analyze.json analyze "${field[@]}" --set run.method=moreau --accuracy 0.2 --runs 100 --json analyze.json
 survives rare.json rare "${field[@]}" --set run.method=moreau --row 4 --gate-runs 4000 --json rare.json
-survives 'plan.json policy.json' plan "${field[@]}" --set run.method=moreau --set field.rows=2 --set actions.a.forces.propulsion_N=6 \
-  --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --json plan.json --policy policy.json
+pushes=("${field[@]}" --set run.method=moreau --set field.rows=2 --set actions.a.forces.propulsion_N=6
+  --set actions.b.forces.propulsion_N=9)
+survives 'plan.json policy.json' plan "${pushes[@]}" --accuracy 0.2 --json plan.json --policy policy.json
+"$gatewalk" plan "${pushes[@]}" --accuracy 0.2 --policy chosen.json --quiet >/dev/null || fail "no policy"
+survives lattice.json lattice "${pushes[@]}" --policy chosen.json --trials 300 --json lattice.json
 survives validate.json validate "${field[@]}" --bins paper --matrix-trials 3 --trials 60 --null-draws 99 --json validate.json
 survives power.json power "${field[@]}" --accuracy 0.1 --trials 60 --json power.json
 survives scene.json scene "$scenes/mixed.toml" --json scene.json
@@ -139,12 +152,32 @@ survives 'runs.csv runs.json' passages tracks.csv --cell cell.toml --fps 10 --me
 survives recorded.nc build recorded.csv --cell cell.toml -o recorded.nc
 survives 'out/fidelity.csv out/fidelity.json' chart-field "${field[@]}" --trials 5 -o out
 survives 'out/chart.csv out/chart.json' chart "$scenes/soft_left.toml" --trials 20 --repeats 1 --methods stable,moreau -o out
+# Runs that go on from what an earlier one kept.
+# halfway COMMAND...: keeps its first piece of work in `begun`.
+halfway() {
+  rm -f begun
+  "$gatewalk" "$@" --checkpoint begun --max-time 0.001s --quiet 2>err.txt
+  [ $? = 75 ] && [ -s begun ] || fail "nothing was kept: $* ($(cat err.txt))"
+  begun=begun
+}
+halfway lattice "${field[@]}" --trials 1000 --json lattice.json
+survives lattice.json lattice "${field[@]}" --trials 1000 --json lattice.json
+halfway build "${field[@]}" --accuracy 0.1 -o tree.nc
+survives tree.nc build "${field[@]}" --accuracy 0.1 -o tree.nc
+begun=
+# Old files get another name.
+kept_old=1
+survives lattice.json lattice "${field[@]}" --trials 200 --json lattice.json
+kept_old=
 # Full and forbidden places.
 one=(lattice "${field[@]}" --trials 100 --quiet)
 expect 1 'cannot be written: No space left' "$gatewalk" "${one[@]}" --json /dev/full
 "$gatewalk" "${one[@]}" --json - >/dev/full 2>err.txt
 [ $? = 1 ] && grep -q 'No space left' err.txt || fail "standard output is full: $(cat err.txt)"
-mkdir small && mount -t tmpfs -o size=256k none small 2>/dev/null && {
+mkdir small
+if ! mount -t tmpfs -o size=256k none small 2>/dev/null; then
+  echo "not tried: a full disk, as nothing can be mounted here"
+else
   "$gatewalk" "${one[@]}" --json one.json
   cp one.json small/old.json
   head -c 300000 /dev/zero >small/fill 2>/dev/null
@@ -153,9 +186,17 @@ mkdir small && mount -t tmpfs -o size=256k none small 2>/dev/null && {
   expect 1 'No space left' "$gatewalk" "${one[@]}" --json new.json --checkpoint small/pieces
   [ ! -e new.json ] || fail "a full disk under the checkpoint: a result without a word"
   umount small
-}
+fi
+# Root may write everywhere but into a folder that is mounted so.
 mkdir forbidden && chmod 500 forbidden
-[ -w forbidden ] || expect 2 'Permission denied' "$gatewalk" "${one[@]}" --json forbidden/x.json
+if [ ! -w forbidden ]; then
+  expect 2 'Permission denied' "$gatewalk" "${one[@]}" --json forbidden/x.json
+elif mount -t tmpfs -o ro none forbidden 2>/dev/null; then
+  expect 2 'Read-only file system' "$gatewalk" "${one[@]}" --json forbidden/x.json
+  umount forbidden
+else
+  echo "not tried: a folder that cannot be written"
+fi
 # A machine that gives little: the same result, or a word.
 "$gatewalk" "${one[@]}" --json one.json --force || fail "${one[*]}"
 poor() { # WORDS...: before the program
@@ -183,5 +224,10 @@ echo old >big.nc
 (ulimit -v 400000; "$gatewalk" build "${field[@]}" --accuracy 0.001 --starts all -o big.nc --force --quiet --threads 1 >/dev/null 2>err.txt; [ $? = 1 ]) || fail "out of memory: another status"
 grep -q 'out of memory' err.txt || fail "out of memory without a word: $(cat err.txt)"
 [ "$(cat big.nc)" = old ] || fail "out of memory: the old file is gone"
-echo "$runs runs with a failing call; without memory $crashes crashed in libraries"
+for call in ${CALLS:-read write fsync fdatasync rename ftruncate link close open create spawn thread malloc}; do
+  [ "${failed[$call]-0}" -gt 0 ] || fail "no $call failed in any run"
+  echo "$call: failed in ${failed[$call]-0} runs"
+done
+for where in "${!in_library[@]}"; do echo "crashed in $where without memory: ${in_library[$where]} runs"; done
+echo "$runs runs"
 finish

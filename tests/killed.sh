@@ -10,7 +10,8 @@ same() {
     *) cmp -s "$1" "$2" ;;
   esac || fail "$2 is not $1, of a run that was never stopped"
 }
-kills=0
+command -v jq >/dev/null || { echo "needs jq" >&2; exit 2; }
+kills=0 resumable=0
 # killed OUTPUT SECONDS KILLS COMMAND...: the command, which writes OUTPUT, in one go; then killed with -9 at a random
 # moment of SECONDS, about what it takes, and resumed, until it was killed KILLS times in all. Each result must be that
 # of the run in one go, no file may be damaged, and the checkpoint goes when the result is there.
@@ -35,6 +36,7 @@ killed() {
     fi
     [ $status = 137 ] || fail "status $status of $* ($(cat err.txt))"
     killed=$((killed + 1))
+    [ ! -s pieces ] || resumable=$((resumable + 1))
     # Killed between the result and the end of the checkpoint: both are whole.
     [ ! -e "$output" ] || { same "one-$output" "$output" && rm -f "$output"; }
   done

@@ -15,5 +15,6 @@ killed predict.json 0.8 "$n" predict "${field[@]}" --accuracy 0.015 --start 0,0,
 killed rare.json 1 "$n" rare "${field[@]}" --set run.method=moreau --row 4 --accuracy 0.1 --json rare.json
 killed validate.json 1 "$n" validate "${field[@]}" --bins paper --matrix-trials 100 --trials 3000 --null-draws 99 --json validate.json
 killed analyze.json 2 "$n" analyze "${field[@]}" --accuracy 0.05 --runs 500 --json analyze.json
-echo "killed $kills times"
+echo "killed $kills times, with work to go on from $resumable times"
+[ $resumable -gt $((kills / 4)) ] || fail "hardly any run was resumed: the moments do not fit this machine"
 finish

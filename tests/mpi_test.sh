@@ -5,15 +5,14 @@
 here=$(realpath "$(dirname "$0")")
 with_mpi=$(realpath "$3")
 . "$here/program/preamble.sh" "$1" "$2"
-# Open MPI keeps memory to the end, in modules that are gone by then: it cannot be told from ours by name.
-[ -z "${SANITIZED-}" ] || export ASAN_OPTIONS=detect_leaks=0
 . "$here/killed.sh"
 
-# on N COMMAND...: as root too, and on more ranks than there are processors.
+# on N COMMAND...: as root too, and on more ranks than there are processors. With a sanitizer, Open MPI keeps memory to the
+# end, in modules that are gone by then: it cannot be told from ours by name.
 on() {
   local n=$1
   shift
-  OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout 120 \
+  env ${SANITIZED:+ASAN_OPTIONS=detect_leaks=0} OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout $((${SANITIZED:+10 *} 120)) \
     mpirun -n "$n" --oversubscribe "$with_mpi" "$@" --quiet --threads 1
 }
 # shared RANKS OUTPUT COMMAND...

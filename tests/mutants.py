@@ -250,6 +250,12 @@ def kernel(source, options, build, pool, reasons, work):
     return rows
 
 
+def write(table, rows):
+    with table.open("w", newline="") as file:
+        head = ["source", "line", "operator", "change", "result", "by"]
+        csv.writer(file, lineterminator="\n").writerows([head, *rows])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=ROOT / "build")
@@ -270,11 +276,13 @@ def main():
                 continue
             rows = [row for row in rows if row[0] != source and row[0] in KERNELS] + new
             rows.sort(key=lambda row: (list(KERNELS).index(row[0]), int(row[1])))
-            with table.open("w", newline="") as file:
-                head = ["source", "line", "operator", "change", "result", "by"]
-                csv.writer(file, lineterminator="\n").writerows([head, *rows])
+            write(table, rows)
     if options.only is not None:
         return 0
+    for row in rows:  # those of earlier runs too
+        if row[4] == "survived" and (row[0], row[3]) in reasons:
+            row[4:] = "explained", reasons[row[0], row[3]]
+    write(table, rows)
     results = "killed", "survived", "explained", "does not compile", "same code"
     number = {r: sum(row[4] == r for row in rows) for r in results}
     compiled = number["killed"] + number["survived"] + number["explained"]

@@ -12,8 +12,8 @@
 # debug  g++ with the checks of the standard library, of Eigen and of TBB: unit tests. -Og, with which those
 #        of the dynamics take three to four times as long as in a Release build.
 # clang  clang++, warnings are errors: unit tests and the command line's contract.
-# address  all tests but those of Python, with the sanitizers of addresses and undefined behaviour (clang): no finding.
-#        What is forgiven is in tests/sanitizers, with its reason. Lanes are not instrumented (dynamics/CMakeLists.txt):
+# address  all tests but those of Python and of pages in a browser, with the sanitizers of addresses and undefined behaviour (clang): no finding.
+#        What is forgiven is in tests/sanitizers (Open MPI's leaks: tests/mpi_test.sh), with its reason. Lanes are not instrumented (dynamics/CMakeLists.txt):
 #        that takes compilers hours. Their plain references are; and a program whose
 #        lanes are, without optimisation, must have the same results over some command lines.
 # thread the same with the sanitizer of threads, and with a TBB built with it too, from Debian's sources: what that
@@ -120,7 +120,10 @@ thread() {
   local tbb=$PWD/build-thread-tbb
   if [ ! -f "$tbb/lib/libtbb.so" ]; then
     mkdir -p "$tbb/apt/parts" "$tbb/lists/partial"
-    sed 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' /etc/apt/sources.list.d/debian.sources >"$tbb/apt/parts/debian.sources"
+    local list
+    for list in /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list; do
+      [ ! -f "$list" ] || sed 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' "$list" >"$tbb/apt/parts/debian.${list##*.}"
+    done
     (cd "$tbb" && sources=(-o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourceparts=$tbb/apt/parts" -o "Dir::State::lists=$tbb/lists") &&
       apt-get "${sources[@]}" update && apt-get "${sources[@]}" source onetbb)
     cmake -S "$tbb"/onetbb-* -B "$tbb/build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_STRICT=OFF -DTBB_TEST=OFF \
@@ -140,7 +143,7 @@ sanitized() {
   # SANITIZED: shell tests leave out what bounds a program's memory, of which these need terabytes of addresses.
   export SANITIZED=1 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS="print_suppressions=0:suppressions=$PWD/tests/sanitizers/leaks.txt"
   export TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/sanitizers/races.txt"
-  ctest --test-dir "build-$kind" --output-on-failure -j "$(nproc)" -LE elsewhere
+  ctest --test-dir "build-$kind" --output-on-failure -j "$(nproc)" -LE elsewhere -E "$web" --timeout 7200
 }
 
 reproducible() {
@@ -205,9 +208,11 @@ done
 case " $* " in *" clang "* | *" fuzz "* | *" address "* | *" thread "* | *" coverage "*) packages+=(clang) ;; esac
 case " $* " in *" reproducible "*) packages+=(pybind11-dev python3-dev python3-numpy) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac
-case " $* " in *" coverage "*) packages+=(llvm jq libgtest-dev netcdf-bin) ;; esac
+case " $* " in *" coverage "*) packages+=(llvm) ;; esac
 case " $* " in *" thread "*) packages+=(dpkg-dev) ;; esac
-case " $* " in *" debug "* | *" address "* | *" thread "*) packages+=(libgtest-dev jq netcdf-bin) ;; esac
+case " $* " in *" debug "* | *" clang "* | *" address "* | *" thread "* | *" coverage "*)  # what tests need
+  packages+=(libgtest-dev jq netcdf-bin ffmpeg libchipmunk-dev libopenmpi-dev openmpi-bin slurmctld slurmd slurm-client munge) ;;
+esac
 if command -v apt-get >/dev/null; then install_missing; fi
 failed=0
 for step in "$@"; do

@@ -36,10 +36,11 @@ C="field forces.propulsion_N=8.5 forces.random_N=25 beams.stiffness_left_Nm_per_
     printf '%s\0' "handed 1 400 $accuracy 0"
     for memory in 0.2 0.3 0.4 0.6; do printf '%s\0' "handed 1 25 $accuracy $memory"; done
   done
-} | xargs -0 -P "$(nproc)" -I{} bash -c 'set -e; one {}'
+} | xargs -0 -P "$(nproc)" -I{} bash -c 'set -eo pipefail; one {}'
 {
   echo "scene,how,accuracy,trials,error,p,differs"
   sort "$scratch"/*.csv
 } >"$here/own_trials.csv"
+[ "$(wc -l <"$here/own_trials.csv")" = 2681 ] || { echo "chains are missing" >&2; exit 1; }
 python3 "$here/summary.py" "$here"
 manifest "results/own_trials/run.sh" >"$here/manifest.txt"

@@ -30,7 +30,7 @@ hwcaps=glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA,-FMA4
 all=(gcc-O0 gcc-O1 gcc-O2 gcc-O3 clang-O2 clang-O3 threads-1 threads-2 threads-32 ranks-2 ranks-4 avx2 sse2 libm)
 all+=(arm64 s390x)
 [ $# -gt 0 ] || set -- "${all[@]}"
-packages+=(jq netcdf-bin qemu-user clang g++-aarch64-linux-gnu g++-s390x-linux-gnu)
+packages+=(jq netcdf-bin openmpi-bin libopenmpi-dev qemu-user clang g++-aarch64-linux-gnu g++-s390x-linux-gnu)
 install_missing
 
 program() { # FOLDER [CMAKE-OPTION...]
@@ -56,7 +56,10 @@ libraries() { # ARCHITECTURE
   [ ! -e "$folder/done" ] || return 0
   mkdir -p "$folder"/apt/{parts,lists/partial,cache/archives/partial}
   : >"$folder/apt/status"
-  cp /etc/apt/sources.list.d/debian.sources "$folder/apt/parts"
+  local list
+  for list in /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list; do
+    [ ! -f "$list" ] || cp "$list" "$folder/apt/parts/debian.${list##*.}"
+  done
   options=(-o "APT::Architecture=$1" -o "APT::Architectures=$1" -o APT::Sandbox::User=root
     -o "Dir::State::lists=$folder/apt/lists" -o "Dir::State::status=$folder/apt/status"
     -o "Dir::Cache=$folder/apt/cache" -o Dir::Etc::sourcelist=/dev/null
@@ -85,6 +88,7 @@ crossed() { # ARCHITECTURE PROCESSOR
     -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY
   wrapped "$1" "qemu-$2 -L '$work/$1-root' '$work/$1/gatewalk' \"\$@\""
 }
+case " $* " in *" ranks-"*) [ -x "$build/tests/gatewalk_mpi" ] || { echo "ranks need a build with tests and MPI" >&2; exit 2; } ;; esac
 made() { # VARIANT: makes it, and says where the program is
   local option=-${1##*-}
   rm -f "$work/$1.sh"

@@ -11,6 +11,7 @@ runs=${RUNS:-100000} trials=${TRIALS:-10000} step=${STEP:-0.0005}
 out=${OUT:-$root/results/reliability}
 . "$root/results/manifest.sh"
 command -v octave-cli >/dev/null || { echo "results/reliability/second.sh needs Octave (package octave)" >&2; exit 77; }
+/usr/bin/python3 -c 'import numpy, scipy' || { echo "results/reliability/second.sh needs SciPy (package python3-scipy)" >&2; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 scene=$root/scenes/field.toml
@@ -45,6 +46,7 @@ printf '%s\0' A "" "" \
   "propulsion=8.5 random=25 k_left=300 k_right=450" |
   xargs -0 -n 3 -P "${CORES:-$(nproc)}" bash -euc 'one "$1" "$2" "$3"' one
 /usr/bin/python3 "$root/results/reliability/second.py" "$work" A B C >"$work/second.csv" || failed=1
+[ "$(wc -l <"$work/second.csv")" -gt 1 ] || exit 1
 cp "$work/second.csv" "$out/second.csv"
 cat "$out/second.csv"
 manifest "RUNS=$runs TRIALS=$trials STEP=$step results/reliability/second.sh" >"$out/second.txt"

@@ -172,6 +172,10 @@ TEST(StableLanes, HaveTheBitsOfThePlainMethodFromAnyStart) {
   }
 }
 
+#if defined(__x86_64__)
+TEST(StableLanes, AreTakenWhereThereAreRegisters) { EXPECT_TRUE(lanes_pay_for_stable()); }
+#endif
+
 // A run's neighbours, and how many they are, change nothing.
 TEST(StableLanes, AreIndependentOfTheirCompany) {
   for (const Scene& scene : scenes()) {

@@ -47,6 +47,14 @@ TEST(Work, PiecesCoverAllOnceAndAreTold) {
   EXPECT_EQ(told.back(), 1000);
 }
 
+TEST(Work, PiecesGrowWhereTheyTakeNoTime) {
+  int pieces = 0;
+  Work{}.in_pieces("runs", 1'000'000'000, [&](TrialRange) {
+    if (++pieces > 1000) throw std::runtime_error("too many");
+  });
+  EXPECT_LT(pieces, 100);
+}
+
 TEST(Work, NobodyNeedsToWatch) {
   int calls = 0;
   Work{}.in_pieces("runs", 0, [&](TrialRange) { ++calls; });

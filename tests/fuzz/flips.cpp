@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One bit of a file is flipped, again and again: a matrix or a file of kept pieces is then refused,
-// or of pieces the last ones are missing and done again. Never is it read as something else.
+// One bit of a file is flipped, again and again: a matrix, a picture or a file of kept pieces is
+// then refused, or of pieces the last ones are missing and done again. A picture may also have the
+// same pixels: its end says nothing. Never is it read as something else.
 //   fuzz_flips FLIPS FILE...   (FILE may be compressed by gzip; a line of CSV each)
 #include <zlib.h>
 
@@ -9,10 +10,12 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/kept/piece_log.h"
 #include "lattice/cells/cell_matrix.h"
+#include "lattice/scene/grey_picture.h"
 #include "markov/formats/counts.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -20,7 +23,7 @@ namespace {
 
 using namespace gatewalk;
 
-enum Fate { refused, cut_short, silent, kFates };
+enum Fate { refused, cut_short, same, silent, kFates };
 
 std::string unpacked(const std::string& path) {
   gzFile file = ::gzopen(path.c_str(), "rb");
@@ -36,6 +39,23 @@ Fate fate_of_matrix(const std::string& path) {
   if (lattice::is_of_cells(path)) return silent;
   // Not read_any_matrix, which looks in a child process what is wrong.
   return fuzz::accepted([&] { return markov::read_counts(path); }) ? silent : refused;
+}
+
+constexpr std::string_view kPng = "\x89PNG\r\n\x1a\n";
+
+/// A picture that is a map, as wide and high as its first lines say.
+lattice::GreyPicture picture_of(const std::string& path, std::string_view whole) {
+  const auto number_at = [&](std::size_t at) {  // of less than 256
+    return static_cast<int>(static_cast<unsigned char>(whole.at(at + 3)));
+  };
+  constexpr std::size_t kWidthAt = 16, kHeightAt = 20;
+  return lattice::read_grey_png(path, number_at(kWidthAt), number_at(kHeightAt));
+}
+
+Fate fate_of_picture(const std::string& path, std::string_view whole,
+                     const lattice::GreyPicture& picture) {
+  const auto found = fuzz::accepted([&] { return picture_of(path, whole); });
+  return !found ? refused : found->grey == picture.grey ? same : silent;
 }
 
 /// What a file of pieces holds.
@@ -66,8 +86,9 @@ Fate fate_of_pieces(const std::string& path, const Pieces& whole) {
 int flip(const std::string& path, int flips) {
   const std::string whole = unpacked(path);
   const std::string copy = fuzz::file_of(whole, ".flipped");
-  const bool is_pieces = cli::PieceFile::is_one(copy);
-  if (!is_pieces) (void)lattice::read_any_matrix(copy);  // it is one
+  const bool is_pieces = cli::PieceFile::is_one(copy), is_picture = whole.starts_with(kPng);
+  const auto picture = is_picture ? picture_of(copy, whole) : lattice::GreyPicture();
+  if (!is_pieces && !is_picture) (void)lattice::read_any_matrix(copy);  // it is one
   const auto pieces = is_pieces ? std::optional(Pieces(copy)) : std::nullopt;
   std::mt19937_64 random(1);
   int fates[kFates] = {};
@@ -76,13 +97,15 @@ int flip(const std::string& path, int flips) {
     std::string bytes = whole;
     bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ (1 << bit % 8));
     (void)fuzz::file_of(bytes, ".flipped");
-    const Fate fate = is_pieces ? fate_of_pieces(copy, *pieces) : fate_of_matrix(copy);
+    const Fate fate = is_pieces    ? fate_of_pieces(copy, *pieces)
+                      : is_picture ? fate_of_picture(copy, whole, picture)
+                                   : fate_of_matrix(copy);
     ++fates[fate];
     if (fate == silent) std::cerr << path << ": bit " << bit << " is not noticed\n";
   }
   std::cout << std::filesystem::path(path).filename().string() << ',' << whole.size() << ','
-            << flips << ',' << fates[refused] << ',' << fates[cut_short] << ',' << fates[silent]
-            << '\n';
+            << flips << ',' << fates[refused] << ',' << fates[cut_short] << ',' << fates[same]
+            << ',' << fates[silent] << '\n';
   return fates[silent];
 }
 
@@ -93,7 +116,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: fuzz_flips FLIPS FILE...\n";
     return 2;
   }
-  std::cout << "file,bytes,flips,refused,cut_short,silent\n";
+  std::cout << "file,bytes,flips,refused,cut_short,same,silent\n";
   int unnoticed = 0;
   for (int i = 2; i < argc; ++i) unnoticed += flip(argv[i], std::stoi(argv[1]));
   return unnoticed == 0 ? 0 : 1;

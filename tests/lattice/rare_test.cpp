@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lattice/study/trials.h"
@@ -104,6 +105,29 @@ TEST(Splitting, WithoutValuesIsPlainTrials) {
   expect_agree(s.rows[1], fast_truth(2), 4.0);
 }
 
+TEST(Splitting, IntervalIsThatOfTheLogarithm) {
+  const auto [low, high] = RowChance{1e-3, 0.1}.interval_95();
+  EXPECT_NEAR(low, 1e-3 * std::exp(-0.196), 1e-8);
+  EXPECT_NEAR(high, 1e-3 * std::exp(0.196), 1e-8);
+  EXPECT_EQ((RowChance{0.9, 0.5}.interval_95()[1]), 1.0);
+}
+
+// As many trials at once as the last ones say are wanted.
+TEST(Splitting, FewRoundsReachTheAccuracy) {
+  dynamics::Work work;
+  int rounds = 0;
+  std::int64_t total = 0;
+  work.told = [&](std::string_view, std::int64_t, std::int64_t of) {
+    rounds += of != total;
+    total = of;
+  };
+  const Splitting s =
+      split(problem_of(fast_scene()), 1.0, equal_worth, {.row = 2, .accuracy = 0.04}, work);
+  EXPECT_TRUE(s.reached);
+  EXPECT_GE(s.trials, 3000);
+  EXPECT_LE(rounds, 4);
+}
+
 TEST(Splitting, IsUnbiasedWhateverTheValues) {
   const Scene scene = fast_scene();
   const Splitting s = split(problem_of(scene), 1.0, wrong_worth,
@@ -195,6 +219,7 @@ TEST(Splitting, RareEventAgreesWithDirectTrialsInAMixedField) {
   const RareEvent e = rare_event(problem_of(scene), {.row = 6, .accuracy = 0.1});
   const RowChance d = mixed_truth(6);
   EXPECT_NEAR(d.probability, 0.018, 0.003);
+  EXPECT_GE(e.pool_runs, 60'000);  // all of its trials, one gate each at the least
   EXPECT_TRUE(e.splitting.reached);
   expect_agree(e.splitting.rows[5], d, 4.0);
   EXPECT_NEAR(e.chain[5] / d.probability, 1.0, 0.4);

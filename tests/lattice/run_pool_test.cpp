@@ -144,6 +144,41 @@ TEST(RunPool, CostsOfRunsThatTheKernelHasNotAreRefused) {
   const Kernel kernel = kernel_of(map, few, 1);
   EXPECT_NO_THROW((void)cost_sums(kernel, map, few));
   EXPECT_THROW((void)cost_sums(kernel, map, more), std::invalid_argument);
+  // Trial by trial: wherever in a row what it adds would be.
+  const auto is_there = [&](const Entry& from, const CellPassage& to) {
+    const int column =
+        to.fate == Fate::trapped ? kernel.space.trapped() : kernel.space.index_of(to.entry).state;
+    return kernel.counts.front().coeff(kernel.space.index_of(from).state, column) > 0;
+  };
+  int refused = 0;
+  for (std::size_t trial = 0; trial < 30; ++trial) {
+    RunPool one;
+    one.starts.push_back({.start = more.starts[0].start});
+    one.starts[0].full.append(more.starts[0].full, trial);
+    const auto runs = more.starts[0].full.of_trial(trial);
+    bool known = true;
+    for (std::size_t k = 1; k < runs.size(); ++k) known &= is_there(runs[k - 1].entry, runs[k]);
+    refused += !known;
+    if (known)
+      EXPECT_NO_THROW((void)cost_sums(kernel, map, one)) << trial;
+    else
+      EXPECT_THROW((void)cost_sums(kernel, map, one), std::invalid_argument) << trial;
+  }
+  EXPECT_GT(refused, 10);
+}
+
+TEST(RunPool, OnlyGatesInWhichNotAllAreTrappedListTheirEndings) {
+  const Scene scene = fast_scene();
+  const markov::FinalDistribution own = shares_of(some_trials(scene, 300).full, scene.field);
+  Eigen::Index listed = 0;
+  for (const markov::CellEndings& c : own.mixed_cells) {
+    const auto& e = c.by_ending;
+    EXPECT_NEAR(std::accumulate(e.begin(), e.end(), 0.0), own.final_cells.data()[c.cell], 1e-12);
+    EXPECT_LT(e.front(), own.final_cells.data()[c.cell]) << c.cell;
+    ++listed;
+  }
+  EXPECT_GT(listed, 0);
+  EXPECT_LT(listed, (own.final_cells > 0.0).count());
 }
 
 // Row by row what chain_of divides, trapped bodies among them.
