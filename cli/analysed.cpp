@@ -7,6 +7,8 @@
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
+#include "cli/render/variance_shares.h"
+#include "lattice/scene/scene_problem.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
@@ -69,6 +71,58 @@ lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subje
   if (!s.pool) return lattice::parameter_effects(s.problem, *c.chain, analysis.target, how, work);
   return lattice::parameter_effects(s.problem, *s.pool, analysis.target, how, s.how.per_leaf,
                                     s.how.most_runs - c.gate_runs, work);
+}
+
+void add_ranges(Options& options) {
+  options.add_texts("over", "KEY=LOW:HIGH",
+                    "a number of the scene and a range: how much of the variance of the target's "
+                    "chance each of these\nmakes, all of them anywhere in their ranges alike "
+                    "(Sobol's first and total indices; at most " +
+                        std::to_string(lattice::kMostVaried) + ";\nmay be repeated)");
+  options.add_count("over-trials", "N", "full trials for that, all together (default: 200000)");
+}
+
+std::optional<lattice::RangedScene> ranges_of(const Options& options, const Subject& s) {
+  const auto given = options.texts("over");
+  if (given.empty()) {
+    if (options.has("over-trials")) throw UsageError("--over-trials: is for --over");
+    return {};
+  }
+  if (!s.scene || s.file)
+    throw UsageError("--over: is for a scene of gates, whose numbers vary; " + s.path + " is none");
+  const auto numbers = static_cast<int>(given.size());
+  if (numbers > lattice::kMostVaried)
+    throw UsageError("--over: at most " + std::to_string(lattice::kMostVaried) +
+                     " numbers can vary");
+  if (options.has("over-trials"))
+    (void)options.count("over-trials", lattice::least_trials_of_shares(numbers));
+  lattice::RangedScene ranged(lattice::scene_text(s.path), s.path, options.overrides(), given,
+                              "--over");
+  for (const lattice::NumberRange& r : ranged.ranges())
+    if (s.scene->gate.run.method == "auto" && r.key.starts_with("run."))
+      throw UsageError("--over " + r.key +
+                       ": varies what run.method = \"auto\" chooses; name a "
+                       "method");
+  return ranged;
+}
+
+SharesAnswer shares_of(const Options& options, const std::optional<lattice::RangedScene>& ranged,
+                       const Subject& s, markov::Ending target) {
+  if (!ranged) return {};
+  lattice::VarianceSharesOptions how{.seed = options.seed()};
+  if (options.has("over-trials")) how.trials = options.count("over-trials");
+  const auto problem_at = [&](const std::vector<double>& point) {
+    lattice::Scene scene = ranged->at(point);
+    if (s.settled) scene.gate.run = s.scene->gate.run;
+    lattice::Problem problem = lattice::problem_of(scene);
+    if (s.given) problem.start = *s.starts.front();
+    return problem;
+  };
+  const RangedShares shares{ranged->ranges(), target,
+                            lattice::variance_shares(static_cast<int>(ranged->ranges().size()),
+                                                     problem_at, target, how, options.work())};
+  return {cli::to_json(shares), table_of(shares),
+          status_of(options, shares.found.health, "at the points of --over ") == kFine};
 }
 
 }  // namespace gatewalk::cli

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "cli/render/json.h"
 #include "cli/subject.h"
 #include "lattice/pool/costed_chain.h"
+#include "lattice/scene/ranges.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/parameter_effects.h"
 #include "lattice/study/prediction.h"
@@ -35,5 +37,20 @@ struct AnalysedSubject {
                                                    const AnalysedSubject& c,
                                                    const lattice::Analysis& analysis,
                                                    const dynamics::Work& work);
+
+/// Declares --over and --over-trials.
+void add_ranges(Options& options);
+/// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
+[[nodiscard]] std::optional<lattice::RangedScene> ranges_of(const Options& options,
+                                                            const Subject& s);
+/// How much of the variance of the target's chance over them each number makes; null without them.
+struct SharesAnswer {
+  Json json;
+  std::string table;
+  bool clean = true;
+};
+[[nodiscard]] SharesAnswer shares_of(const Options& options,
+                                     const std::optional<lattice::RangedScene>& ranged,
+                                     const Subject& s, markov::Ending target);
 
 }  // namespace gatewalk::cli

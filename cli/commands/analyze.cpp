@@ -45,6 +45,7 @@ int run_analyze(const Arguments& arguments) {
       "into how many parts the states of each boundary are cut by d, vx and vy (or what other "
       "cells have), to\nsee what so few states would cost (default: 1 each)");
   options.add_count("paths", "N", "the most frequent ways through the field", "5");
+  add_ranges(options);
   options.add_count("trials", "N", "also run N trials of the full dynamics, to compare");
   options.add_seed();
   options.add_kept();
@@ -70,6 +71,7 @@ int run_analyze(const Arguments& arguments) {
            "for " + s.path +
                (s.foreign ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
   how.lumping = lumping_of(options, s.problem.map().section);
+  const auto ranged = ranges_of(options, s);
   s.settle(options);
   const auto of_file = runs_of_file(options, s);
   AnalysedSubject c = analysed(options, s);
@@ -84,7 +86,6 @@ int run_analyze(const Arguments& arguments) {
                                        [&](const lattice::FieldTrials& each) { costs.add(each); });
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }
-
   const ShownField field = s.shown();
   const AnalysedField shown{field,       s.starts.front(), c.endings,     analysis,
                             effects,     direct,           c.from_trials, c.reached,
@@ -93,15 +94,17 @@ int run_analyze(const Arguments& arguments) {
   json["status"] = c.status;
   json["sensitivities"]["status"] = to_json(effects.health);
   if (!c.method.is_null()) json["method"] = c.method;
+  const SharesAnswer shares = shares_of(options, ranged, s, how.target);
+  json["variance_shares"] = shares.json;
   json["made_by"] = s.made_by(options);
-  options.give_out(json, table_of(shown));
+  options.give_out(json, table_of(shown) + shares.table);
   const bool clean_effects =
       status_of(options, effects.health, "in gates with changed numbers ") == kFine;
   const bool clean =
       clean_effects && (!direct || status_of(options, direct->tally.health) == kFine);
   write_page(options, s, of_file, page_starts(c, s), json);
   options.draw([&] { return figure_of(shown); });
-  return exit_status(options, c.clean && clean);
+  return exit_status(options, c.clean && clean && shares.clean);
 }
 
 }  // namespace gatewalk::cli

@@ -32,7 +32,8 @@ enum class Purpose : std::uint64_t {
   sensitivity = 9,
   points = 10,
   first_points = 11,
-  plan = 12
+  plan = 12,
+  indices = 13
 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.

@@ -164,12 +164,16 @@ std::vector<double> drawn_weights(const IndependentErrors& independent, std::siz
 
 Mean95 mean_95(double whole, const std::vector<double>& groups) {
   if (!groups.empty()) {
-    const auto [mean, error] = spread_of(groups);
-    const double half = kQuantile * error + kBiasLeft * std::abs(mean - whole);
+    const double half =
+        half_width_95(groups) + kBiasLeft * std::abs(spread_of(groups).mean - whole);
     if (half > kShareRounding * std::abs(whole)) return {whole, {whole - half, whole + half}};
   }
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   return {whole, {kUnknown, kUnknown}};
+}
+
+double half_width_95(const std::vector<double>& groups) {
+  return kQuantile * spread_of(groups).error;
 }
 
 std::array<double, 2> middle_95(std::vector<double> drawn, double own) {

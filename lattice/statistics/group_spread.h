@@ -36,6 +36,9 @@ struct Mean95 {
   std::array<double, 2> interval{};
 };
 [[nodiscard]] Mean95 mean_95(double whole, const std::vector<double>& groups);
+/// Half of the 95 % interval of the mean of kTrialGroups numbers that do not depend on each other:
+/// Student's t.
+[[nodiscard]] double half_width_95(const std::vector<double>& groups);
 
 /// Of a prediction from so many trials.
 [[nodiscard]] Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials);

@@ -41,4 +41,23 @@ expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc --accuracy 0.1
 holds '.costs.all | .trials == 500 and .mean_time_s > 0 and .quantiles_time_s[0] < .quantiles_time_s[4]' lattice_costs.json
 holds '([.costs | to_entries[] | select(.key != "all") | .value.trials] | add) == 500' lattice_costs.json
 
+# How much of the variance each number makes over its range.
+over=(analyze "$scenes/field.toml" --set run.method=moreau --set field.rows=2 --accuracy 0.2 --runs 0 --quiet)
+ranges=(--over forces.propulsion_N=4:9 --over beams.mass_kg=0.1:0.11)
+"$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 30000 --json over.json || fail "--over"
+holds '.variance_shares | .of == "crossed" and (.numbers | length) == 2 and .numbers[0].low == 4 and .trials <= 30000' over.json
+holds '.variance_shares.numbers | .[0].first > 0.8 and .[0].total_95[0] > 0.8 and .[1].total < 0.2 and .[1].first_95[0] < 0.05' over.json
+"$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 30000 --threads 1 --json - | jq .variance_shares.numbers >one.json
+jq .variance_shares.numbers over.json | cmp -s - one.json || fail "--over: another number of threads gave another answer"
+"$gatewalk" "${over[@]}" --json - | jq -e '.variance_shares == null' >/dev/null || fail "without --over there are shares"
+expect 0 'it does not vary' "$gatewalk" "${over[@]:0:8}" --runs 0 --over beams.mass_kg=0.1:0.1001 --over-trials 10000
+expect 0 'none of [0-9]* trials ended as' "$gatewalk" "${over[@]:0:8}" --runs 0 --set field.rows=9 --set forces.random_N=0 \
+  --over forces.propulsion_N=0.1:0.2 --over-trials 10000
+expect 2 'must be KEY=LOW:HIGH' "$gatewalk" "${over[@]}" --over forces.propulsion_N=4
+expect 2 "^gatewalk: --over field.rows=[0-9.]* *:\|--over field.rows" "$gatewalk" "${over[@]:0:4}" --over field.rows=3:9
+expect 2 'has no effect: field.rows is varied' "$gatewalk" "${over[@]}" --over field.rows=3:9
+expect 2 'at most 4 numbers' "$gatewalk" "${over[@]}" "${ranges[@]}" --over a=1:2 --over b=1:2 --over c=1:2
+expect 2 'must be at least 4096' "$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 4000
+expect 2 'is for --over' "$gatewalk" "${over[@]}" --over-trials 50000
+expect 2 'is for a scene of gates' "$gatewalk" analyze fast.nc "${ranges[@]}"
 finish

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// How much of the variance of a chance, over ranges of a field's numbers, each of them makes.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "dynamics/base/work.h"
+#include "dynamics/cells/health.h"
+#include "lattice/problem.h"
+#include "lattice/statistics/sobol.h"
+#include "markov/totals.h"
+
+namespace gatewalk::lattice {
+
+struct VarianceSharesOptions {
+  std::int64_t trials = 200'000;  // through the field, all points together: no more than that
+  std::uint64_t seed = 1;
+};
+/// Fewer trials than this make no indices of so many numbers.
+[[nodiscard]] std::int64_t least_trials_of_shares(int numbers);
+
+struct VarianceShares {
+  SobolIndices indices;  // of the chance that a trial ends in the target
+  std::int64_t points = 0, trials = 0;
+  dynamics::Health health;
+  double seconds = 0.0;
+};
+
+/// The field at a point of the unit cube, whose coordinates are the numbers, each in its range.
+using ProblemAt = std::function<Problem(const std::vector<double>& point)>;
+
+/// By full trials, 16 for each of a point's two answers, under the same noise at the points of a
+/// row as far as bodies take the same ways. No chain is made: what trials say has no error but
+/// chance, and the indices leave that out. Throws std::invalid_argument for too few trials, and as
+/// IndexDesign.
+[[nodiscard]] VarianceShares variance_shares(int numbers, const ProblemAt& problem_at,
+                                             markov::Ending target,
+                                             const VarianceSharesOptions& options,
+                                             const dynamics::Work& work = {});
+
+}  // namespace gatewalk::lattice
