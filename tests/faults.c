@@ -2,7 +2,7 @@
    "malloc" stands for all that give memory, to gatewalk and not to gnuplot, which draws on without; "open" for all that
    open a file to read it, "create" to write it, "spawn" for all that start a process. FAULT_SEEN is made where one
    failed. Where gatewalk crashes, FAULT_CRASH has the name of the library, or of the program, that called libc or
-   crashed itself. */
+   crashed itself; also of a library that ends the program by exit(). */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -14,6 +14,8 @@
 #include <sys/types.h>
 
 static int is_gatewalk(void) { return strncmp(program_invocation_short_name, "gatewalk", 8) == 0; }
+static int watches = 0; /* crashes: before that libraries begin, of the program nothing has run */
+static void put_crash(const char *name);
 static int fails(const char *call) {
   static int count = 0;
   const char *wanted = getenv("FAULT_CALL"), *at = getenv("FAULT_AT");
@@ -26,6 +28,7 @@ static int fails(const char *call) {
     int (*open_file)(const char *, int, ...) = (int (*)(const char *, int, ...))dlsym(RTLD_NEXT, "creat");
     (void)open_file(reported, 0600);
   }
+  if (!watches && getenv("FAULT_CRASH")) put_crash("libraries.so as they begin");
   errno = atoi(getenv("FAULT_ERRNO"));
   return 1;
 }
@@ -49,10 +52,17 @@ int posix_memalign(void **to, size_t at, size_t size) {
 #include <spawn.h>
 #include <stdarg.h>
 #include <sys/mman.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 ssize_t write(int file, const void *bytes, size_t size) {
   REAL(write);
   return file > 2 && fails("write") ? -1 : real(file, bytes, size);
+}
+static void put_crash(const char *name) {
+  const int file = (int)syscall(SYS_openat, AT_FDCWD, getenv("FAULT_CRASH"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (file < 0) return;
+  (void)syscall(SYS_write, file, name, strlen(name));
+  (void)syscall(SYS_close, file);
 }
 static void crashed(int number) {
   void *frames[64];
@@ -62,15 +72,22 @@ static void crashed(int number) {
     if (!dladdr(frames[i], &at) || !at.dli_fname) continue;
     const char *slash = strrchr(at.dli_fname, '/'), *name = slash ? slash + 1 : at.dli_fname;
     if (strstr(name, "faults.so") || strncmp(name, "libc.", 5) == 0 || strstr(name, "libstdc++") || strstr(name, "libgcc_s")) continue;
-    REAL(write);
-    const int file = creat(getenv("FAULT_CRASH"), 0600);
-    if (file >= 0) (void)!real(file, name, strlen(name));
+    put_crash(name);
     break;
   }
   signal(number, SIG_DFL);
   raise(number);
 }
+void exit(int status) {
+  REAL(exit);
+  Dl_info at;
+  if (getenv("FAULT_CRASH") && is_gatewalk() && dladdr(__builtin_return_address(0), &at) && strstr(at.dli_fname, ".so"))
+    put_crash(strrchr(at.dli_fname, '/') + 1);
+  real(status);
+  __builtin_unreachable();
+}
 __attribute__((constructor)) static void watch_crashes(void) {
+  watches = 1;
   if (!getenv("FAULT_CRASH") || !is_gatewalk()) return;
   void *frame;
   (void)backtrace(&frame, 1); /* which loads what it needs */

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Do the tests see a mistake? Small mistakes (mutants) are put into the kernels, one at a time, and the tests run.
 
-    tests/mutants.py [--build build] [--per-file 10] [--seed 1] [--jobs 2] [--only TEXT] [SOURCE ...]
+    tests/mutants.py [--build build] [--per-file 10] [--seed 1] [--jobs 2] [--only TEXT] [--survivors] [SOURCE ...]
 
 Needs a Release build of the last sources with its tests (gatewalk, *_tests). Of a mutant only its source is compiled,
 with -O1 and without ccache, and linked before the build's own objects: the linker takes the first definition of a name
@@ -14,9 +14,10 @@ A mutant is killed (a test fails, also by its time limit), survives, does not co
 Survivors that change no result are told, with the reason, in results/reliability/survivors.tsv: source, change,
 reason. Writes results/reliability/mutants.csv (rows of other sources are kept) and mutants.txt.
 Exit status: 0; 1 where fewer than 90 % of those compiled are killed, or a survivor has no reason.
---only runs mutants whose mutated line holds TEXT, writes nothing. The choice follows from seed and source alone.
+--only runs mutants whose mutated line holds TEXT, writes nothing. --survivors runs those again that survived by the
+table: where tests were added. The choice follows from seed and source alone.
 """
-import argparse, csv, json, os, random, re, resource, shutil, signal, subprocess, sys, tempfile, threading, time
+import argparse, csv, json, os, platform, random, re, resource, shutil, signal, subprocess, sys, tempfile, threading, time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -149,7 +150,9 @@ class Build:
         command = re.sub(r" -MD -MT .*", "", command)
         file = overlay / source if (overlay / source).exists() else ROOT / source
         # Vectorised sources for one instruction set only: a third of the time, the same bits.
-        return run(f"{command} -DHWY_COMPILE_ONLY_STATIC -O1 -w -c {file} -o {obj}", 600, self.folder)[0]
+        lanes = source.endswith("lanes.cpp") and platform.machine() == "x86_64"
+        sets = "-march=x86-64-v3 -maes -mpclmul" if lanes else ""
+        return run(f"{command} -DHWY_COMPILE_ONLY_STATIC {sets} -O1 -w -c {file} -o {obj}", 600, self.folder)[0]
 
     def link(self, program, objects, out):
         """Links a test program; `gatewalk` for scripts."""
@@ -205,8 +208,8 @@ def test(program, filters, binary, folder):
     return None
 
 
-def kernel(source, options, build, pool, reasons, work):
-    """Rows of the table of a source."""
+def kernel(source, options, build, pool, reasons, again, work):
+    """Rows of the table of a source; where `again` is given, of mutants in it."""
     sources = INCLUDED.get(source, [source])
 
     def attempt(name, text):
@@ -244,7 +247,8 @@ def kernel(source, options, build, pool, reasons, work):
         print(f"{source}:{line}: {operator}: {old}  =>  {mutated}: {result} {why}", flush=True)
         return [source, line, operator, f"{old} => {mutated}", result, why]
 
-    mutants = [m for m in choose(source, options.per_file, options.seed) if (options.only or "") in m[2]]
+    mutants = [m for m in choose(source, options.per_file, options.seed) if (options.only or "") in m[2]
+               and (again is None or (source, f"{m[4]} => {m[2]}") in again)]
     rows = list(pool.map(one, range(len(mutants)), mutants))
     shutil.rmtree(work / "plain")
     return rows
@@ -263,6 +267,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only")
+    parser.add_argument("--survivors", action="store_true")
     parser.add_argument("sources", nargs="*", choices=[[], *KERNELS])
     options = parser.parse_args()
     build = Build(options.build)
@@ -271,10 +276,15 @@ def main():
     rows = list(csv.reader(table.open()))[1:] if table.exists() else []
     with tempfile.TemporaryDirectory() as work, ThreadPoolExecutor(options.jobs) as pool:
         for source in options.sources or KERNELS:
-            new = kernel(source, options, build, pool, reasons, Path(work))
+            again = {(row[0], row[3]) for row in rows if row[4] in ("survived", "explained")} if options.survivors else None
+            if again is not None and source not in {s for s, _ in again}:
+                continue
+            new = kernel(source, options, build, pool, reasons, again, Path(work))
             if options.only is not None:
                 continue
-            rows = [row for row in rows if row[0] != source and row[0] in KERNELS] + new
+            made = {(row[0], row[3]) for row in new}
+            rows = [row for row in rows if row[0] in KERNELS and (row[0], row[3]) not in made
+                    and (options.survivors or row[0] != source)] + new
             rows.sort(key=lambda row: (list(KERNELS).index(row[0]), int(row[1])))
             write(table, rows)
     if options.only is not None:
@@ -287,7 +297,7 @@ def main():
     number = {r: sum(row[4] == r for row in rows) for r in results}
     compiled = number["killed"] + number["survived"] + number["explained"]
     share = number["killed"] / compiled
-    manifest = f". {ROOT}/results/manifest.sh; gatewalk={build.folder}/gatewalk; manifest 'tests/mutants.py'"
+    manifest = f". {ROOT}/results/manifest.sh; gatewalk={build.folder}/gatewalk; manifest 'tests/mutants.py {' '.join(sys.argv[1:])}'"
     summary = (f"{output_of('bash', '-c', manifest)}date: {time.strftime('%Y-%m-%d')}\n"
                f"mutants: {len(rows)} of {len({row[0] for row in rows})} sources; "
                f"{', '.join(f'{n} {r}' for r, n in number.items())}\nkilled of those compiled: {100 * share:.1f} %, "

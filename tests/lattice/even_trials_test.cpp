@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -212,6 +213,18 @@ TEST(EvenTrials, ARunnerCanBeStopped) {
   PoolRunner runner(problem, 4, 1 << 30, work);
   EXPECT_THROW(runner.run_full(s, PoolRunner::kLeastEven), Stop);
   EXPECT_TRUE(s.full.final_gates.empty());
+}
+
+TEST(EvenTrials, AreOfCellsThatLayNoise) {
+  CellField gates = problem_of(calm_scene()).cells, none;
+  EXPECT_TRUE(lays_noise(gates));
+  EXPECT_FALSE(lays_noise(none));
+  const auto plain = std::make_shared<FunctionCell>(gates.map.section, [](Body& body) {
+    return Passage{Fate::trapped, body.entry};
+  });
+  EXPECT_FALSE(lays_noise(CellField::uniform(plain)));
+  gates.cells.push_back(plain);
+  EXPECT_FALSE(lays_noise(gates));
 }
 
 }  // namespace

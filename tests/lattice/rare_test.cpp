@@ -122,7 +122,7 @@ TEST(Splitting, FewRoundsReachTheAccuracy) {
     total = of;
   };
   const Splitting s =
-      split(problem_of(fast_scene()), 1.0, equal_worth, {.row = 2, .accuracy = 0.04}, work);
+      split(problem_of(fast_scene()), 1.0, equal_worth, {.row = 2, .accuracy = 0.02}, work);
   EXPECT_TRUE(s.reached);
   EXPECT_GE(s.trials, 3000);
   EXPECT_LE(rounds, 4);
