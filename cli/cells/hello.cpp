@@ -10,6 +10,7 @@
 #include <string>
 
 #include "cli/render/json_fwd.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -17,6 +18,12 @@ namespace {
 using Keys = std::initializer_list<std::string_view>;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+
+/// Not empty, without blanks, so that it can stand in a line.
+bool is_word(std::string_view text) {
+  return !text.empty() && std::none_of(text.begin(), text.end(),
+                                       [](unsigned char c) { return c <= ' ' || c == 127; });
+}
 
 /// A table of the line, or of one of its lists: which keys it may have, and what they hold.
 class HelloTable {
@@ -29,7 +36,7 @@ class HelloTable {
       std::string allowed;
       for (const std::string_view k : keys)
         allowed += (allowed.empty() ? "" : ", ") + std::string(k);
-      refuse(where_ + " has no key '" + key + "'; it has " + allowed);
+      refuse(where_ + " has no key '" + lattice::printable(key) + "'; it has " + allowed);
     }
   }
   [[nodiscard]] const Json* find(std::string_view key) const {
@@ -45,13 +52,10 @@ class HelloTable {
     refuse(where_ + ": '" + std::string(key) + "' must be " + must_be);
   }
 
-  /// A word: not empty, without blanks, so that it can stand in a line.
   [[nodiscard]] std::string word(std::string_view key) const {
     const Json& value = at(key);
     const std::string text = value.is_string() ? value.get<std::string>() : "";
-    if (text.empty() ||
-        std::any_of(text.begin(), text.end(), [](unsigned char c) { return c <= ' ' || c == 127; }))
-      refuse_value(key, "a word without blanks");
+    if (!is_word(text)) refuse_value(key, "a word without blanks");
     return text;
   }
   [[nodiscard]] std::string text(std::string_view key, const std::string& otherwise) const {
@@ -172,8 +176,8 @@ void read_costs(const Json& list, dynamics::Section& section) {
 }
 
 Hello::Parameter read_parameter(const std::string& key, const Json& value) {
-  const std::string where = "parameter '" + key + "'";
-  if (key.empty() || key.find_first_of(" \t=") != key.npos)
+  const std::string where = "parameter '" + lattice::printable(key) + "'";
+  if (!is_word(key) || key.find('=') != key.npos)
     refuse(where + " must be a word without blanks and '='");
   constexpr double kAny = std::numeric_limits<double>::max();
   if (!value.is_array()) return {{key, number_of(value, where)}, -kAny, kAny};

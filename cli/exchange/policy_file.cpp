@@ -13,6 +13,7 @@
 
 #include "cli/render/json.h"
 #include "dynamics/disc/disc_section.h"
+#include "lattice/text/toml_text.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {
@@ -36,7 +37,7 @@ std::string difference(const std::string& here, const std::string& there) {
   const auto line = [](const std::string& text, std::string::const_iterator at) {
     const auto begin = static_cast<std::size_t>(at - text.begin());
     const std::size_t first = begin == 0 ? 0 : text.rfind('\n', begin - 1) + 1;
-    return text.substr(first, text.find('\n', begin) - first);
+    return lattice::printable(std::string_view(text).substr(first, text.find('\n', begin) - first));
   };
   return "\"" + line(here, a) + "\" here, \"" + line(there, b) + "\" there";
 }
@@ -110,7 +111,7 @@ lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
     for (const char letter : row) {
       const std::size_t action = kLetters.find(letter);
       if (action >= actions)
-        throw std::runtime_error("there is no action " + std::string(1, letter));
+        throw std::runtime_error("there is no action " + lattice::printable({&letter, 1}));
       decisions.action.push_back(static_cast<std::uint16_t>(action));
     }
   }

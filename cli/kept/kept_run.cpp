@@ -12,6 +12,7 @@
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"
+#include "lattice/text/toml_text.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {
@@ -196,8 +197,9 @@ void KeptRun::read(std::size_t number) {
       const std::string name = file.bytes_of(record);
       const auto [known, is_new] = names_.emplace(record.stage, name);
       if (!is_new && known->second != name)
-        throw UsageError(path + ": its stage " + std::to_string(record.stage) + " is " + name +
-                         ", that of other parts " + known->second);
+        throw UsageError(path + ": its stage " + std::to_string(record.stage) + " is " +
+                         lattice::printable(name) + ", that of other parts " +
+                         lattice::printable(known->second));
       continue;
     }
     // What every part does is taken from one of them.
@@ -269,8 +271,8 @@ void KeptRun::begin(const dynamics::Stage& stage) {
     is_named_ = false;
   } else if (known->second != what_) {
     throw markov::BadFile((files_.empty() ? plan_.file : files_.front().path()) + ": its stage " +
-                          std::to_string(stage_) + " is " + known->second + ", and here " + what_ +
-                          " comes next");
+                          std::to_string(stage_) + " is " + lattice::printable(known->second) +
+                          ", and here " + what_ + " comes next");
   }
 }
 
