@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "cli/cells/process.h"
 #include "cli/render/json_fwd.h"
-#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -36,7 +36,7 @@ class HelloTable {
       std::string allowed;
       for (const std::string_view k : keys)
         allowed += (allowed.empty() ? "" : ", ") + std::string(k);
-      refuse(where_ + " has no key '" + lattice::printable(key) + "'; it has " + allowed);
+      refuse(where_ + " has no key '" + excerpt(key, 60) + "'; it has " + allowed);
     }
   }
   [[nodiscard]] const Json* find(std::string_view key) const {
@@ -176,7 +176,7 @@ void read_costs(const Json& list, dynamics::Section& section) {
 }
 
 Hello::Parameter read_parameter(const std::string& key, const Json& value) {
-  const std::string where = "parameter '" + lattice::printable(key) + "'";
+  const std::string where = "parameter '" + excerpt(key, 60) + "'";
   if (!is_word(key) || key.find('=') != key.npos)
     refuse(where + " must be a word without blanks and '='");
   constexpr double kAny = std::numeric_limits<double>::max();

@@ -142,6 +142,9 @@ std::vector<ForeignState> read_states(const std::string& path) {
              ": they are numbered from 0, in order");
     ForeignState s{field("name"), field("face"), whole("move_x"), whole("move_y")};
     if (s.move_x == 0 && s.move_y == 0) refuse("the move must lead to another cell");
+    constexpr int kFarthest = 1000;  // as in a cell file
+    if (std::abs(s.move_x) > kFarthest || std::abs(s.move_y) > kFarthest)
+      refuse("a move must lead " + std::to_string(kFarthest) + " cells at most");
     if (s.name.empty()) s.name = std::to_string(states.size());
     if (s.name == "trapped" || !names.insert(s.name).second)
       refuse("name \"" + lattice::printable(s.name) + "\" is taken");

@@ -306,7 +306,7 @@ Trajectories trajectories_of(const std::string& path, std::vector<NumpyArray> ar
   for (NumpyArray& array : arrays) {
     auto* const values = std::get_if<std::vector<std::int64_t>>(&array.values);
     if (!values || array.shape.size() != 1)
-      throw std::runtime_error(path + ": array " + array.name +
+      throw std::runtime_error(path + ": array " + printable(array.name) +
                                ": a trajectory is one row of whole numbers");
     all.push_back(std::move(*values));
   }
