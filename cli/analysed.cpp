@@ -98,11 +98,14 @@ std::optional<lattice::RangedScene> ranges_of(const Options& options, const Subj
     (void)options.count("over-trials", lattice::least_trials_of_shares(numbers));
   lattice::RangedScene ranged(lattice::scene_text(s.path), s.path, options.overrides(), given,
                               "--over");
-  for (const lattice::NumberRange& r : ranged.ranges())
+  for (const lattice::NumberRange& r : ranged.ranges()) {
+    if (s.given && r.key.starts_with("start."))
+      throw UsageError("--over " + r.key + ": varies the scene's start, and --start gives another");
     if (s.scene->gate.run.method == "auto" && r.key.starts_with("run."))
       throw UsageError("--over " + r.key +
                        ": varies what run.method = \"auto\" chooses; name a "
                        "method");
+  }
   return ranged;
 }
 
@@ -113,7 +116,12 @@ SharesAnswer shares_of(const Options& options, const std::optional<lattice::Rang
   if (options.has("over-trials")) how.trials = options.count("over-trials");
   const auto problem_at = [&](const std::vector<double>& point) {
     lattice::Scene scene = ranged->at(point);
-    if (s.settled) scene.gate.run = s.scene->gate.run;
+    if (s.settled) {  // the method chosen for the scene as it is
+      const dynamics::RunParams& chosen = s.scene->gate.run;
+      scene.gate.run.method = chosen.method;
+      scene.gate.run.step = chosen.step;
+      scene.gate.run.event_tolerance = chosen.event_tolerance;
+    }
     lattice::Problem problem = lattice::problem_of(scene);
     if (s.given) problem.start = *s.starts.front();
     return problem;

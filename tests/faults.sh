@@ -240,6 +240,7 @@ for call in ${CALLS:-read write fsync fdatasync rename ftruncate link close open
   [ -n "${COMMANDS-}" ] || [ "${failed[$call]-0}" -gt 0 ] || fail "no $call failed in any run"
   echo "$call: failed in ${failed[$call]-0} runs"
 done
+[ $runs -gt 0 ] || fail "no command is $COMMANDS"
 for where in "${!in_library[@]}"; do echo "ended in $where: ${in_library[$where]} runs"; done
 echo "$runs runs"
 finish

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "cli/exchange/archive.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -89,7 +90,7 @@ bool put_numbers(const std::string& type, std::string_view bytes, NumpyArray& ar
 NumpyArray array_of(const PackedFile& file, const std::string& path) {
   const std::string name = file.name.substr(0, file.name.rfind(".npy"));
   const auto refuse = [&](const std::string& why) {
-    throw std::runtime_error(path + ": array " + name + ": " + why);
+    throw std::runtime_error(path + ": array " + lattice::printable(name) + ": " + why);
   };
   const std::string_view bytes = file.bytes;
   if (!bytes.starts_with(kMagic) || bytes.size() < kPrefix + 2) refuse("is none of numpy");

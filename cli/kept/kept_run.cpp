@@ -34,9 +34,9 @@ Json checked_head(const std::string& path, const std::string& text) {
     if (!is_right)
       throw markov::BadFile(path + ": its second line, which says what the command was, has no " +
                             key + " as a run writes it" +
-                            (commit == kCommit
-                                 ? std::string()
-                                 : "; commit " + commit + " wrote it, and this is " + kCommit));
+                            (commit == kCommit ? std::string()
+                                               : "; commit " + lattice::printable(commit) +
+                                                     " wrote it, and this is " + kCommit));
   };
   require(head.is_object(), "object");
   const auto is_list = [&](const char* key, const auto& is_one) {
@@ -177,7 +177,11 @@ void KeptRun::read(std::size_t number) {
   const std::string& path = file.path();
   const Json head = head_of(file);
   const bool goes_on = plan_.parts.empty();
-  const std::string differs = difference(head, plan_.head);
+  std::string differs = difference(head, plan_.head);
+  // What a file holds is shown, and no terminal shall obey it.
+  std::replace_if(
+      differs.begin(), differs.end(),
+      [](unsigned char c) { return (c < ' ' && c != '\n') || c == 127; }, '?');
   if (!differs.empty())
     throw UsageError(
         path + ": is of another run" +
@@ -194,12 +198,11 @@ void KeptRun::read(std::size_t number) {
   for (const PieceRecord& record : file.records()) {
     if (record.stage == kEndStage) continue;
     if (is_name(record)) {
-      const std::string name = file.bytes_of(record);
+      const std::string name = lattice::printable(file.bytes_of(record));
       const auto [known, is_new] = names_.emplace(record.stage, name);
       if (!is_new && known->second != name)
-        throw UsageError(path + ": its stage " + std::to_string(record.stage) + " is " +
-                         lattice::printable(name) + ", that of other parts " +
-                         lattice::printable(known->second));
+        throw UsageError(path + ": its stage " + std::to_string(record.stage) + " is " + name +
+                         ", that of other parts " + known->second);
       continue;
     }
     // What every part does is taken from one of them.
@@ -271,8 +274,8 @@ void KeptRun::begin(const dynamics::Stage& stage) {
     is_named_ = false;
   } else if (known->second != what_) {
     throw markov::BadFile((files_.empty() ? plan_.file : files_.front().path()) + ": its stage " +
-                          std::to_string(stage_) + " is " + lattice::printable(known->second) +
-                          ", and here " + what_ + " comes next");
+                          std::to_string(stage_) + " is " + known->second + ", and here " + what_ +
+                          " comes next");
   }
 }
 

@@ -56,15 +56,17 @@ Json to_json(const RangedShares& shares) {
 std::string table_of(const RangedShares& shares) {
   const lattice::SobolIndices& i = shares.found.indices;
   const auto points = [](double share) { return fixed(100.0 * share, 2); };
-  if (std::isnan(i.mean.interval[0]))
-    return "\nat all points of these ranges " + std::string(i.mean.mean > 0.5 ? "all" : "none") +
-           " of " + std::to_string(shares.found.trials) + " trials ended as \"" +
+  if (shares.found.ended == 0 || shares.found.ended == shares.found.trials)
+    return "\nat all points of these ranges " +
+           std::string(shares.found.ended > 0 ? "all" : "none") + " of " +
+           std::to_string(shares.found.trials) + " trials ended as \"" +
            name_of(shares.target).name + "\": these cannot\ntell what the chance depends on\n";
   std::string table = "\nover these ranges the chance of \"" +
                       std::string(name_of(shares.target).name) + "\" is " + points(i.mean.mean) +
                       " [" + points(i.mean.interval[0]) + ", " + points(i.mean.interval[1]) +
                       "] % on average; ";
-  const double most = std::sqrt(std::max(0.0, i.variance.interval[1]));
+  const double half = 0.5 * (i.variance.interval[1] - i.variance.interval[0]);
+  const double most = std::sqrt(std::max(half, i.variance.interval[1]));
   if (std::isnan(i.first.front().mean))
     table += "it does not vary\nby more than chance: its standard deviation is at most " +
              points(most) + " points (more --over-trials see less)\n";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -67,14 +68,14 @@ VarianceShares variance_shares(int numbers, const ProblemAt& problem_at, markov:
     return a;
   };
   std::vector<double> one, other;
-  work.in_kept_pieces({"points of the ranges", {0, out.points}}, Answers{}, run,
-                      [&](const Answers& a) {
-                        for (const std::int64_t n : a.one)
-                          one.push_back(static_cast<double>(n) / kTrials);
-                        for (const std::int64_t n : a.other)
-                          other.push_back(static_cast<double>(n) / kTrials);
-                        out.health += a.health;
-                      });
+  work.in_kept_pieces(
+      {"points of the ranges", {0, out.points}}, Answers{}, run, [&](const Answers& a) {
+        for (const auto& answers : {a.one, a.other})
+          out.ended += std::accumulate(answers.begin(), answers.end(), std::int64_t{0});
+        for (const std::int64_t n : a.one) one.push_back(static_cast<double>(n) / kTrials);
+        for (const std::int64_t n : a.other) other.push_back(static_cast<double>(n) / kTrials);
+        out.health += a.health;
+      });
   out.indices = sobol_indices(design, one, other);
   out.seconds = watch.seconds();
   return out;

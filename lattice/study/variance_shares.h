@@ -22,8 +22,8 @@ struct VarianceSharesOptions {
 [[nodiscard]] std::int64_t least_trials_of_shares(int numbers);
 
 struct VarianceShares {
-  SobolIndices indices;  // of the chance that a trial ends in the target
-  std::int64_t points = 0, trials = 0;
+  SobolIndices indices;                            // of the chance that a trial ends in the target
+  std::int64_t points = 0, trials = 0, ended = 0;  // so many of the trials in the target
   dynamics::Health health;
   double seconds = 0.0;
 };

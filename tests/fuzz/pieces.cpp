@@ -11,6 +11,7 @@
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/row_trials.h"
 #include "lattice/reference.h"
+#include "lattice/text/toml_text.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace gatewalk::fuzz {
@@ -105,7 +106,7 @@ void go_on(const std::string& path, const cli::PieceFile& file, const cli::Json&
     cli::KeptRun run(plan);
     for (const cli::PieceRecord& record : file.records()) {
       if (!cli::is_name(record) || record.stage == cli::kEndStage) continue;
-      const std::string name = file.bytes_of(record);
+      const std::string name = lattice::printable(file.bytes_of(record));  // a command's own is
       run.begin({name, {0, kItems}});
       std::int64_t at = 0;
       for (int k = 0; k < kMostPieces && at < kItems; ++k) {

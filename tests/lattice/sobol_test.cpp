@@ -106,7 +106,7 @@ TEST(Sobol, IndicesOfKnownFunctions) {
 }
 
 TEST(Sobol, IntervalsHold) {
-  for (const double noise : {0.0, 1.0}) {  // as large as the g-function's own spread
+  for (const double noise : {0.0, 1.0}) {  // more than the g-function's own spread
     const Held i = held(ishigami, known_of_ishigami(), 64, noise),
                g = held(g_function, known_of_g(), 64, noise);
     RecordProperty("ishigami", i.inside), RecordProperty("g", g.inside);

@@ -53,6 +53,7 @@ jq .variance_shares.numbers over.json | cmp -s - one.json || fail "--over: anoth
 expect 0 'it does not vary' "$gatewalk" "${over[@]:0:8}" --runs 0 --over beams.mass_kg=0.1:0.1001 --over-trials 10000
 expect 0 'none of [0-9]* trials ended as' "$gatewalk" "${over[@]:0:8}" --runs 0 --set field.rows=9 --set forces.random_N=0 \
   --over forces.propulsion_N=0.1:0.2 --over-trials 10000
+expect 2 "varies the scene's start" "$gatewalk" "${over[@]}" --start 0,0,15 --over start.vy_m_per_s=10:20
 expect 2 'must be KEY=LOW:HIGH' "$gatewalk" "${over[@]}" --over forces.propulsion_N=4
 expect 2 "^gatewalk: --over field.rows=[0-9.]* *:\|--over field.rows" "$gatewalk" "${over[@]:0:4}" --over field.rows=3:9
 expect 2 'has no effect: field.rows is varied' "$gatewalk" "${over[@]}" --over field.rows=3:9
