@@ -79,7 +79,8 @@ void add_ranges(Options& options) {
                     "chance each of these\nmakes, all of them anywhere in their ranges alike "
                     "(Sobol's first and total indices; at most " +
                         std::to_string(lattice::kMostVaried) + ";\nmay be repeated)");
-  options.add_count("over-trials", "N", "full trials for that, all together (default: 200000)");
+  options.add_count("over-trials", "N",
+                    "full trials for that, at most, all together (default: 200000)");
 }
 
 std::optional<lattice::RangedScene> ranges_of(const Options& options, const Subject& s) {

@@ -66,15 +66,24 @@ static void put_crash(const char *name) {
 }
 static void crashed(int number) {
   void *frames[64];
+  char places[1400] = "gatewalk"; /* and where in the program, for addr2line */
+  size_t used = strlen(places);
   const int n = backtrace(frames, 64);
-  for (int i = 1; i < n; ++i) {
+  const char *library = NULL; /* called last, unless the program was */
+  int own = 0;
+  for (int i = 1; i < n && !library; ++i) {
     Dl_info at;
     if (!dladdr(frames[i], &at) || !at.dli_fname) continue;
     const char *slash = strrchr(at.dli_fname, '/'), *name = slash ? slash + 1 : at.dli_fname;
     if (strstr(name, "faults.so") || strncmp(name, "libc.", 5) == 0 || strstr(name, "libstdc++") || strstr(name, "libgcc_s")) continue;
-    put_crash(name);
-    break;
+    if (!strstr(name, ".so")) {
+      own = 1;
+      used += (size_t)sprintf(places + used, " 0x%zx", (size_t)((char *)frames[i] - (char *)at.dli_fbase) - 1);
+    } else if (!own) {
+      library = name;
+    }
   }
+  put_crash(library ? library : places);
   signal(number, SIG_DFL);
   raise(number);
 }

@@ -249,6 +249,8 @@ def kernel(source, options, build, pool, reasons, again, work):
 
     mutants = [m for m in choose(source, options.per_file, options.seed) if (options.only or "") in m[2]
                and (again is None or (source, f"{m[4]} => {m[2]}") in again)]
+    if again is not None and len({m[4] + m[2] for m in mutants}) < len([s for s, _ in again if s == source]):
+        sys.exit(f"{source} has changed since its rows were made: run it without --survivors")
     rows = list(pool.map(one, range(len(mutants)), mutants))
     shutil.rmtree(work / "plain")
     return rows

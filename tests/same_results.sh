@@ -117,6 +117,7 @@ lines() {
 0 analyze tree.nc --set field.max_gates=0 --set field.columns=41 --set field.rows=20 --runs 0 --json out.json
 0 analyze matrix.nc --runs 100 --json out.json
 0 analyze map.toml --set run.method=moreau --accuracy 0.2 --runs 100 --json out.json
+0 analyze field.toml --set run.method=moreau --accuracy 0.2 --runs 100 --over forces.propulsion_N=6:9 --over-trials 4000 --json out.json
 0 rare field.toml --set run.method=moreau --row 5 --gate-runs 20000 --trials 100 --json out.json --figure out.svg
 0 rare mixed.toml --set run.method=moreau --row 3 --gate-runs 20000 --json out.json
 0 plan field.toml --set run.method=moreau --set field.rows=3 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.1 --json out.json --figure out.svg

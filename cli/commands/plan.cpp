@@ -29,7 +29,9 @@ int run_plan(const Arguments& arguments) {
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
-  options.add_texts("start", "D,VX,VY", "where a body starts (default: the scene's start)");
+  options.add_texts(
+      "start", "D,VX,VY",
+      "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)");
   options.add_number("accuracy", "A",
                      "half of the interval that a chance to cross may have (default: 0.02)");
   options.add_count(

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/../.."
 build=${BUILD:-build-fuzz}
 seconds=${SECONDS_EACH:-60}
 command -v clang++ >/dev/null || { echo "tests/fuzz/run.sh needs clang++ (package clang)" >&2; exit 77; }
-cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
+cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O2 \
   -DGATEWALK_FUZZ=ON -DGATEWALK_PAGES=OFF -DBUILD_TESTING=OFF
 cmake --build "$build" --target fuzz
 [ $# -gt 0 ] || mapfile -t names < <(sed -n 's/^GATEWALK_FUZZ_TARGET(\(.*\))/\1/p' tests/fuzz/targets.def)
