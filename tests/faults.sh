@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # What becomes of results when the system fails: call number k of read, write, fsync, fdatasync, rename, ftruncate, link, close,
-# opening and creating a file, starting a process or a thread fails, once and from then on, for every k that a command makes; so
+# opening and creating a file, starting a process or a thread fails, once and from then on, for the first MOST calls; so
 # does getting memory; of every command but stability, chart-chain and reproduce, which take minutes and write as chart does.
 # /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files, no locale, no HOME, closed
 # outputs. Never a silent success, never a damaged file.
-#   [CALLS=...] [COMMANDS='show|walk'] faults.sh GATEWALK ROOT [MOST]    of these alone; at most MOST values of k each
-# Memory is asked for 10^5 times: there each k is a fifth larger than the one before.
+#   [CALLS=...] [COMMANDS='show|walk'] faults.sh GATEWALK ROOT [MOST]    of these alone; MOST: 12
+# Memory is asked for 10^5 times: there k begins at 1000, and each is a fifth larger than the one before.
 here=$(realpath "$(dirname "$0")")
 most=${3:-12}
 . "$here/program/preamble.sh" "$1" "$2"
@@ -72,6 +72,7 @@ survives() {
     [[ $where != "gatewalk "* ]] || ! addr2line -Cfe "$gatewalk" ${where#gatewalk } | grep -qE 'nlohmann.*(::destroy|::~)' ||
       where="libjson.so, destructors,"
     [ "$call" = malloc ] && [[ $where = lib*.so* ]] || [[ $where = @(libhdf5|libnetcdf|"libraries.so as they begin")* ]] || return 1
+    where="$where where $call failed"
     in_library[$where]=$((${in_library[$where]-0} + 1))
   }
   resumed() {  # what was kept serves
@@ -192,7 +193,7 @@ expect 1 'cannot be written: No space left' "$gatewalk" "${one[@]}" --json /dev/
 [ $? = 1 ] && grep -q 'No space left' err.txt || fail "standard output is full: $(cat err.txt)"
 mkdir small
 if ! mount -t tmpfs -o size=256k none small 2>/dev/null; then
-  echo "not tried: a full disk, as nothing can be mounted here"
+  fail "not tried: a full disk, as nothing can be mounted here"
 else
   "$gatewalk" "${one[@]}" --json one.json
   cp one.json small/old.json
@@ -211,7 +212,7 @@ elif mount -t tmpfs -o ro none forbidden 2>/dev/null; then
   expect 2 'Read-only file system' "$gatewalk" "${one[@]}" --json forbidden/x.json
   umount forbidden
 else
-  echo "not tried: a folder that cannot be written"
+  fail "not tried: a folder that cannot be written"
 fi
 # A machine that gives little: the same result, or a word.
 "$gatewalk" "${one[@]}" --json one.json --force || fail "${one[*]}"

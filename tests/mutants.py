@@ -11,7 +11,7 @@ So the build folder is only read. The tests that KERNELS names first run first, 
 the first that fails, within ten times the processor time that they take without a mutant.
 
 A mutant is killed (a test fails, also by its time limit), survives, does not compile, or is the same machine code.
-Survivors that change no result are told, with the reason, in results/reliability/survivors.tsv: source, change,
+Why the others survive is told in results/reliability/survivors.tsv: source, change,
 reason. Writes results/reliability/mutants.csv (rows of other sources are kept) and mutants.txt.
 Exit status: 0; 1 where fewer than 90 % of those compiled are killed, or a survivor has no reason.
 --only runs mutants whose mutated line holds TEXT, writes nothing. --survivors runs those again that survived by the
@@ -292,7 +292,7 @@ def main():
     if options.only is not None:
         return 0
     for row in rows:  # those of earlier runs too
-        if row[4] == "survived" and (row[0], row[3]) in reasons:
+        if row[4] in ("survived", "explained") and (row[0], row[3]) in reasons:
             row[4:] = "explained", reasons[row[0], row[3]]
     write(table, rows)
     results = "killed", "survived", "explained", "does not compile", "same code"
@@ -302,8 +302,7 @@ def main():
     manifest = f". {ROOT}/results/manifest.sh; gatewalk={build.folder}/gatewalk; manifest 'tests/mutants.py {' '.join(sys.argv[1:])}'"
     summary = (f"{output_of('bash', '-c', manifest)}date: {time.strftime('%Y-%m-%d')}\n"
                f"mutants: {len(rows)} of {len({row[0] for row in rows})} sources; "
-               f"{', '.join(f'{n} {r}' for r, n in number.items())}\nkilled of those compiled: {100 * share:.1f} %, "
-               f"of those that change a result: {100 * number['killed'] / max(1, compiled - number['explained']):.1f} %\n")
+               f"{', '.join(f'{n} {r}' for r, n in number.items())}\nkilled of those compiled: {100 * share:.1f} %\n")
     (OUT / "mutants.txt").write_text(summary)
     print(summary)
     return int(share < 0.9 or number["survived"] > 0)

@@ -209,7 +209,7 @@ steps=(odr alone small debug clang address thread reproducible fuzz coverage)
 for step in "$@"; do
   case " ${steps[*]} " in *" $step "*) ;; *) echo "no step '$step': ${steps[*]}" >&2; exit 2 ;; esac
 done
-case " $* " in *" clang "* | *" fuzz "* | *" address "* | *" thread "* | *" coverage "*) packages+=(clang) ;; esac
+case " $* " in *" clang "* | *" fuzz "* | *" address "* | *" thread "* | *" coverage "*) packages+=(clang libclang-rt-dev) ;; esac
 case " $* " in *" reproducible "*) packages+=(pybind11-dev python3-dev python3-numpy) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac
 case " $* " in *" coverage "*) packages+=(llvm) ;; esac
@@ -225,6 +225,7 @@ for step in "$@"; do
   (set -e; "$step") >"nightly-$step.log" 2>&1
   status=$?
   set -e
+  grep -E '^[0-9]+% tests passed' "nightly-$step.log" || true
   [ $status = 0 ] || { tail -n 40 "nightly-$step.log"; echo "FAILED: $step"; failed=1; }
 done
 exit $failed

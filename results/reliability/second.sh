@@ -10,8 +10,9 @@ gatewalk=${BUILD:-$root/build}/gatewalk
 runs=${RUNS:-100000} trials=${TRIALS:-10000} step=${STEP:-0.0005}
 out=${OUT:-$root/results/reliability}
 . "$root/results/manifest.sh"
-command -v octave-cli >/dev/null || { echo "results/reliability/second.sh needs Octave (package octave)" >&2; exit 77; }
-/usr/bin/python3 -c 'import numpy, scipy' || { echo "results/reliability/second.sh needs SciPy (package python3-scipy)" >&2; exit 77; }
+. "$root/.ci/prepare"
+packages+=(octave python3-numpy python3-scipy)
+! command -v apt-get >/dev/null || install_missing
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 scene=$root/scenes/field.toml

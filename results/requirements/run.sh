@@ -18,8 +18,9 @@ tests=$(dirname "$gatewalk")/tests/dynamics_tests
 suites='Impact.*:Event.*:Stable.*:Paper.*:Moreau.*:Penalty*:Zeno.*:EnergyLedger.*:Mirror.*'
 suites+=':Limits.*:Reversal.*:NearSingular.*:*/Requirement.*:*/FixedStep.Mirror*:*/Gate.LateralSpeedHas*'
 export GATEWALK_LONG=${GATEWALK_LONG:-1}
-# A test that fails is a line of the table.
-"$tests" --gtest_filter="$suites" --gtest_output="json:$work/tests.json" >"$work/log" || true
+# A test that fails is a line of the table too.
+status=0
+"$tests" --gtest_filter="$suites" --gtest_output="json:$work/tests.json" >"$work/log" || status=$?
 [ -s "$work/tests.json" ] || { tail "$work/log" >&2; exit 1; }
 
 chart=$root/results/accuracy/chart.json
@@ -30,3 +31,5 @@ table csv >"$work/requirements.csv"
 table markdown >"$work/requirements.md"
 mv "$work"/requirements.* "$folder"
 manifest "GATEWALK_LONG=$GATEWALK_LONG results/requirements/run.sh" >"$folder/manifest.txt"
+[ $status = 0 ] || grep "FAILED" "$work/log" >&2
+exit $status

@@ -9,7 +9,9 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=${BUILD:-build-fuzz}
 seconds=${SECONDS_EACH:-60}
-command -v clang++ >/dev/null || { echo "tests/fuzz/run.sh needs clang++ (package clang)" >&2; exit 77; }
+. ./.ci/prepare
+packages+=(clang libclang-rt-dev)
+! command -v apt-get >/dev/null || install_missing
 cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O2 \
   -DGATEWALK_FUZZ=ON -DGATEWALK_PAGES=OFF -DBUILD_TESTING=OFF
 cmake --build "$build" --target fuzz
