@@ -225,7 +225,7 @@ for step in "$@"; do
   (set -e; "$step") >"nightly-$step.log" 2>&1
   status=$?
   set -e
-  grep -E '^[0-9]+% tests passed' "nightly-$step.log" || true
+  grep -E '^[0-9]+% tests passed|^[0-9]+ command lines with' "nightly-$step.log" || true
   [ $status = 0 ] || { tail -n 40 "nightly-$step.log"; echo "FAILED: $step"; failed=1; }
 done
 exit $failed
