@@ -2,11 +2,11 @@
 #include "cli/exchange/explicit_chain.h"
 
 #include <array>
-#include <bit>
 #include <charconv>
 
 #include "cli/exchange/archive.h"
 #include "cli/render/json.h"
+#include "cli/render/little_endian.h"
 
 namespace gatewalk::cli {
 
@@ -19,12 +19,6 @@ std::string probability(double p) {
   std::array<char, 32> digits;
   return {digits.data(),
           std::to_chars(digits.data(), digits.data() + digits.size(), p < 1.0 ? p : 1.0).ptr};
-}
-
-template <class T>
-std::string little_endian(const std::vector<T>& numbers) {
-  static_assert(std::endian::native == std::endian::little && sizeof(T) == 8);
-  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)};
 }
 
 /// One bit, of state `only`.
@@ -64,11 +58,12 @@ std::string umb_of(const ExplicitChain& chain, const Json& tool) {
                         {"#observations", 0},
                         {"branch-probability-type", {{"type", "double"}, {"size", 64}}}}},
                       {"annotations", {{"aps", aps}}}};
-  std::vector<PackedFile> files{{"index.json", text_of(index) + "\n"},
-                                {"state-is-initial.bin", one_bit(n, 0)},
-                                {"choice-to-branches.bin", little_endian(chain.first)},
-                                {"branch-to-target.bin", little_endian(chain.target)},
-                                {"branch-to-probability.bin", little_endian(chain.probability)}};
+  std::vector<PackedFile> files{
+      {"index.json", text_of(index) + "\n"},
+      {"state-is-initial.bin", one_bit(n, 0)},
+      {"choice-to-branches.bin", all_little_endian(chain.first)},
+      {"branch-to-target.bin", all_little_endian(chain.target)},
+      {"branch-to-probability.bin", all_little_endian(chain.probability)}};
   for (std::size_t e = 0; e < ending_labels().size(); ++e)
     files.push_back({"annotations/aps/" + ending_labels()[e] + "/states/values.bin",
                      one_bit(n, chain.ends() + static_cast<std::int64_t>(e))});

@@ -1,35 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "cli/exchange/npz.h"
 
-#include <bit>
-#include <cstring>
+#include <algorithm>
 #include <regex>
 #include <stdexcept>
 
 #include "cli/exchange/archive.h"
+#include "cli/render/little_endian.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 namespace {
 
-static_assert(std::endian::native == std::endian::little);
-
 constexpr std::string_view kMagic = "\x93NUMPY";
 constexpr std::size_t kMostBytes = std::size_t{1} << 30, kMostNumbers = kMostBytes / 8,
                       kPrefix = 10;
 
-template <class T>
-std::string bytes_of(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
-}
-
 std::string npy_of(const NumpyArray& array) {
   std::string type = "<f8", data;
   if (const auto* real = std::get_if<std::vector<double>>(&array.values)) {
-    data = bytes_of(*real);
+    data = all_little_endian(*real);
   } else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&array.values)) {
     type = "<i8";
-    data = bytes_of(*whole);
+    data = all_little_endian(*whole);
   } else {
     data = std::get<std::string>(array.values);
     type = "|S" + std::to_string(data.size());
@@ -50,9 +43,9 @@ template <class From, class To>
 void convert(std::string_view bytes, std::vector<To>& values) {
   values.reserve(bytes.size() / sizeof(From));
   for (std::size_t at = 0; at + sizeof(From) <= bytes.size(); at += sizeof(From)) {
-    From value;
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    values.push_back(static_cast<To>(value));
+    BytesOf<From> one;
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), one.size(), one.begin());
+    values.push_back(static_cast<To>(from_little_endian<From>(one)));
   }
 }
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <stdexcept>
 
 #include "cli/render/final_gates.h"
+#include "cli/render/little_endian.h"
 #include "cli/render/text.h"
 #include "lattice/scene/gates.h"
 
@@ -39,9 +39,9 @@ template <class Number>
 std::string packed(const std::vector<Number>& numbers) {
   std::vector<unsigned char> bytes(numbers.size() * sizeof(Number));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    std::array<unsigned char, sizeof(Number)> one;
-    std::memcpy(one.data(), &numbers[i], sizeof(Number));
-    for (std::size_t k = 0; k < sizeof(Number); ++k) bytes[k * numbers.size() + i] = one[k];
+    const BytesOf<Number> one = little_endian(numbers[i]);
+    for (std::size_t k = 0; k < sizeof(Number); ++k)
+      bytes[k * numbers.size() + i] = static_cast<unsigned char>(one[k]);
   }
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<unsigned char> small(size);
