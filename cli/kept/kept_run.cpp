@@ -298,11 +298,12 @@ std::optional<dynamics::KeptPieces::Next> KeptRun::next(std::int64_t at) {
   const TrialRange gap{at, end - at};
   if (!plan_.parts.empty())
     throw UsageError("missing: " + shown(gap) + " of " + what_ + ", which no part has");
-  if (is_late) throw Interrupted{};
+  if (is_late && goes_ahead_) throw Interrupted{};
   return Next{gap, {}};
 }
 
 void KeptRun::keep(TrialRange items, std::string bytes) {
+  goes_ahead_ = true;
   if (!std::exchange(is_named_, true)) write(stage_, {items.first, 0}, what_);
   write(stage_, items, bytes);
 }

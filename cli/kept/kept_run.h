@@ -93,6 +93,8 @@ class KeptRun : public dynamics::KeptPieces {
   std::string what_;
   dynamics::TrialRange own_;  // items of it
   bool is_named_ = false;     // in the file
+  // A piece is done: a time limit ends no run before, or no number of runs would come to an end.
+  bool goes_ahead_ = false;
 
   std::optional<PieceWriter> writer_;
   struct Waiting {

@@ -30,6 +30,14 @@ done
 [ -s pieces ] && [ ! -e long.json ] || fail "stopped: no pieces, or a result"
 expect 75 'kept in pieces' "$gatewalk" "${long[@]}" --checkpoint pieces --resume --max-time 1s
 rm pieces
+# A limit shorter than what a run needs to begin: each does a piece.
+before=0
+for _ in 1 2 3; do
+  expect 75 'kept in pieces' "$gatewalk" "${long[@]}" --checkpoint pieces --resume --max-time 0.000001s
+  [ "$(stat -c %s pieces)" -gt $before ] || fail "--max-time: a run that does nothing"
+  before=$(stat -c %s pieces)
+done
+rm pieces
 # Two runs do not write one file, whatever is asked for.
 "$gatewalk" "${long[@]}" --checkpoint pieces >/dev/null 2>&1 &
 pid=$!
