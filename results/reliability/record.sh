@@ -11,7 +11,7 @@ name=$1
 shift
 printed=$(mktemp)
 trap 'rm -f "$printed"' EXIT
-"$@" 2>/dev/null | tee "$printed"
+"$@" | tee "$printed"
 status=${PIPESTATUS[0]}
 {
   manifest "$*"
