@@ -155,14 +155,17 @@ std::string_view closest_key(std::string_view name) {
     if (!leaf_of(name).empty() && table_of(k.key) == table_of(name) &&
         leaf_of(k.key).starts_with(leaf_of(name)))
       return k.key;
-  const auto distance = [&](const SceneKey& k) {
-    return std::min(edit_distance(name, k.key), 1 + edit_distance(leaf_of(name), leaf_of(k.key)));
-  };
-  const auto& keys = scene_keys();
-  return std::min_element(
-             keys.begin(), keys.end(),
-             [&](const SceneKey& a, const SceneKey& b) { return distance(a) < distance(b); })
-      ->key;
+  std::string_view closest;
+  std::size_t least = name.npos;
+  for (const SceneKey& k : scene_keys()) {
+    const std::size_t distance =
+        std::min(edit_distance(name, k.key), 1 + edit_distance(leaf_of(name), leaf_of(k.key)));
+    if (distance < least) {
+      least = distance;
+      closest = k.key;
+    }
+  }
+  return closest;
 }
 
 /// "the closest known key is body.mass_kg"; both of two beams where `name` does not say which.
@@ -477,13 +480,15 @@ void require_key(const std::string& key, const std::string& origin) {
 std::string known_key(const std::string& given, const std::string& origin) {
   for (const SceneKey& key : scene_keys())
     if (unit_of(given, key.key)) return std::string(key.key);
-  const std::string_view closest = closest_key(given);
-  for (const SceneKey& key : scene_keys())
-    if (const std::string units = units_instead(given, key.key);
-        !units.empty() && !closest.starts_with(given) &&
+  for (const SceneKey& key : scene_keys()) {
+    const std::string units = units_instead(given, key.key);
+    if (units.empty()) continue;
+    const std::string_view closest = closest_key(given);
+    if (!closest.starts_with(given) &&
         edit_distance(given.substr(0, kLongestCompared), closest) > 1)
       throw SceneError(origin + ": unknown key " + printable(given) + ": " + std::string(key.key) +
                        " may end in " + units + " instead");
+  }
   throw SceneError(origin + ": unknown key " + printable(given) + "; " + closest_keys(given));
 }
 

@@ -24,6 +24,8 @@ one() {
   [ ! -f "tests/fuzz/dictionaries/$name.dict" ] || options+=("-dict=tests/fuzz/dictionaries/$name.dict")
   [ "$name" != matrix ] || longest=100000
   mkdir -p "$build/corpus/$name"
+  LSAN_OPTIONS="print_suppressions=0:suppressions=$PWD/tests/sanitizers/fuzz_leaks.txt"
+  export LSAN_OPTIONS
   # What sanitizers keep beside the program's own memory is no part of the 256 MB.
   ASAN_OPTIONS=quarantine_size_mb=16:allocator_may_return_null=0 "$build/tests/fuzz/fuzz_$name" -max_total_time="$seconds" \
     -timeout=1 -rss_limit_mb=512 -malloc_limit_mb=256 -max_len="$longest" -print_final_stats=1 "${options[@]}" \
