@@ -2,24 +2,31 @@
 # SPDX-License-Identifier: MIT
 # Whether two programs of gatewalk write the same results: JSON, CSV, NetCDF, tables, figures and pages of many command
 # lines, byte by byte, but for what names the program itself (version, commit) and what was timed.
-#   tests/same_results.sh [--lines PATTERN] [--hashes FILE] OLD NEW [SCENES]
+#   tests/same_results.sh [--lines PATTERN] [--hashes FILE] [--other-byte-order] OLD NEW [SCENES]
 # OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds;
-# FILE: gets a hash of what OLD writes for each line.
+# FILE: gets a hash of what OLD writes for each line. With --other-byte-order NEW reads matrices that it made itself, as
+# netCDF 4.9 reads only those of its own order (netcdf-c, issue 2670), and h5dump, which reads both, shows them.
 # Status 1: some differ; 2: nothing was compared.
 # To see that it finds what it should, change a constant in a copy of the sources, say kQuantile in
 # lattice/statistics/group_spread.cpp, and compare the programs.
 set -euf
-pattern=. hashes=
-while [ "${1-}" = --lines ] || [ "${1-}" = --hashes ]; do
-  if [ "$1" = --lines ]; then pattern=$2; else hashes=$(realpath "$2"); fi
-  shift 2
+pattern=. hashes='' other_order='' tools=(jq ncdump)
+while [ $# -gt 0 ]; do
+  case $1 in
+    --lines) pattern=$2 ;;
+    --hashes) hashes=$(realpath "$2") ;;
+    --other-byte-order) other_order=yes tools+=(h5dump) ;;
+    *) break ;;
+  esac
+  [ "$1" = --other-byte-order ] || shift
+  shift
 done
-for tool in jq ncdump; do command -v $tool >/dev/null || { echo "$tool is missing" >&2; exit 2; }; done
+for tool in "${tools[@]}"; do command -v $tool >/dev/null || { echo "$tool is missing" >&2; exit 2; }; done
 old=$(realpath "$1") new=$(realpath "$2")
 scenes=$(realpath "${3:-$(dirname "$0")/../scenes}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir "$work/inputs"
+mkdir "$work/inputs" "$work/own"
 
 # The command lines, behind the exit status that each must have; each writes into the folder that it runs in.
 lines() {
@@ -188,6 +195,8 @@ lines >"$work/lines" || { echo "no line has '$pattern'" >&2; exit 2; }
 while read -r name arguments; do
   grep -q -w "$name.nc" "$work/lines" || continue
   "$old" build $arguments -o "$name.nc" --quiet >/dev/null 2>"$work/log" || { cat "$work/log" >&2; exit 2; }
+  [ -n "$other_order" ] || continue
+  "$new" build $arguments -o "$work/own/$name.nc" --quiet >/dev/null 2>"$work/log" || { cat "$work/log" >&2; exit 2; }
 done <<'END'
 matrix field.toml --trials 20
 own own.toml --trials 20
@@ -205,7 +214,7 @@ plain() {  # COMMAND FILE
     reproduce:*.html | reproduce:*.pdf | reproduce:*/stdout.txt) ;;
     *stderr.txt) grep -v -E '^gatewalk: .*: (some [0-9.]+ (s|min|h)|[0-9.]+ %(, .* left)?)$' "$2" || true ;;
     *.json) jq -S --arg timed "$timed" "$nameless" "$2" ;;
-    *.nc) ncdump "$2" | grep -v -E '^[[:space:]]+:(program|version|commit|checksum) = |^netcdf ' ;;
+    *.nc) content "$2" ;;
     chart*.svg | chart-chain:*.txt | chart-chain:*.csv) ;;
     chart*.txt | chart*.csv) sed -E 's/[0-9.]+(e[-+][0-9]+)?/N/g; s/ +/ /g' "$2" ;;
     *.txt) sed -E '/ dynamics\/exact  trial\/walk$/,/^$/d; s/[0-9.]+ s([;,]|$)/... s\1/g' "$2" ;;
@@ -217,6 +226,18 @@ timed+='|one_thread_s_per_.*|chain_pays_.*|summary|direct_simulation)$'
 nameless='walk(if type == "object" then del(.version, .commit, .program, .machine) |
   with_entries(select(.key | test($timed) | not)) else . end)'
 
+content() {  # MATRIX, but for who made it
+  if [ -z "$other_order" ]; then
+    ncdump "$1" | grep -v -E '^[[:space:]]+:(program|version|commit|checksum) = |^netcdf '
+    return
+  fi
+  # Of any byte order, without the places of its parts.
+  h5dump "$1" | sed -E '1d; s/(H5T_[A-Z0-9]+_[IUF][0-9]+)[BL]E/\1/; s/DATASET [0-9]+/DATASET/g' | awk '
+    /ATTRIBUTE "(program|version|commit|checksum)"/ { match($0, /^ */); end = RLENGTH + 1; skip = 1 }
+    !skip { print }
+    skip && match($0, /^ *}/) && RLENGTH == end { skip = 0 }' | grep .
+}
+
 compare() {  # NUMBER of the line
   local wanted line command side file differ=() here=$work/$1
   read -r wanted line < <(sed -n "$1p" "$work/lines")
@@ -224,6 +245,7 @@ compare() {  # NUMBER of the line
   for side in old new; do
     mkdir -p "$here/$side"
     cp -r "$work/inputs/." "$here/$side"
+    [ "$side" = old ] || cp -r "$work/own/." "$here/$side"
     cd "$here/$side"
     local status=0
     "${!side}" $line >stdout.txt 2>stderr.txt || status=$?
@@ -252,8 +274,8 @@ compare() {  # NUMBER of the line
   fi
   rm -r "$here"
 }
-export old new work timed nameless hashes
-export -f compare plain
+export old new work timed nameless hashes other_order
+export -f compare plain content
 seq "$(wc -l <"$work/lines")" | xargs -P "$(nproc)" -I{} bash -c 'set -euf; compare {}' || true
 if [ -n "$hashes" ]; then
   { echo hash,line; for number in $(seq "$(wc -l <"$work/lines")"); do cat "$work/$number.hash"; done; } >"$hashes"
