@@ -301,7 +301,9 @@ class Cutter {
     const bool trapped = cell_.trapped_after && time >= *cell_.trapped_after;
     passage.end = trapped ? CutEnd::trapped : end;
     // Straight through a corner takes no time, and the format has no passage without any.
-    passage.time = trapped ? *cell_.trapped_after : std::max(time, 1e-6 * file_.interval);
+    const double some =
+        1e-6 * std::min(file_.interval, cell_.trapped_after.value_or(file_.interval));
+    passage.time = trapped ? *cell_.trapped_after : std::max(time, some);
     passage.to = to;
     if (passage.end == CutEnd::left) passage.out = out;
     cut_.passages.push_back(passage);

@@ -204,6 +204,8 @@ class RunsReader {
 
   void split(std::string_view line) {
     fields_.clear();
+    if (line.find('\r') != line.npos)
+      lines_.refuse("a carriage return within a line: lines must end in \\n or \\r\\n");
     if (std::memchr(line.data(), '"', line.size())) {
       auto fields = csv_fields(line);
       if (!fields) lines_.refuse("a quotation mark is not closed, or not at a field's end");

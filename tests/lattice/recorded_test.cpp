@@ -278,6 +278,8 @@ TEST_F(Recorded, RefusesByFileLineAndColumn) {
   EXPECT_EQ(refused_as(kHeader), "x.csv: has no passage below the line of its columns");
   EXPECT_EQ(refused_as(kHeader + std::string(2 << 20, 'x')),
             "x.csv:2: is longer than 1048576 bytes");
+  EXPECT_EQ(refused_as(instead(kRuns, "lost,,,,,", "lost,,,\r,,")),
+            "x.csv:7: a carriage return within a line: lines must end in \\n or \\r\\n");
   CellFile of = cells;
   try {
     (void)read_runs(path("none.csv"), of);
