@@ -9,6 +9,7 @@
 #include "cli/arguments.h"
 #include "cli/parsers.h"
 #include "cli/render/analysis.h"
+#include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/web/embedded.h"
