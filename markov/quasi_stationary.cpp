@@ -45,12 +45,15 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
     throw std::invalid_argument("quasi-stationary: one share for each type of cell is needed");
   const auto [kernel, rows] = kernel_of(chain, share);
   const Eigen::Index n = kernel.rows(), block = std::min<Eigen::Index>(kBlock, n);
-  // Any block that is not orthogonal to what is sought: cosines of all kinds of wavelengths.
+  // Any block that is not orthogonal to what is sought: triangular waves, whose lengths have no
+  // common multiple, by operations that are rounded alike on all processors.
+  constexpr double kTurns = 0.11803398874989485;  // (sqrt(5) - 2) / 2
   Eigen::MatrixXd v(n, block);
   for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index k = 0; k < block; ++k)
-      v(i, k) =
-          std::cos(static_cast<double>(k * (2 * i + 1)) * (0.7 + 1.0 / static_cast<double>(n)));
+    for (Eigen::Index k = 0; k < block; ++k) {
+      const double turns = static_cast<double>(k * (2 * i + 1)) * kTurns;
+      v(i, k) = 4.0 * std::abs(turns - std::floor(turns) - 0.5) - 1.0;
+    }
   double first = 0.0, second = 0.0;
   for (int iteration = 0;; ++iteration) {
     if (iteration == kMostIterations)
