@@ -16,6 +16,7 @@
 ///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h),
 ///              how walks spread over an endless lattice (diffusion.h)
 ///   A chain for each action -> which to take in each cell and state, so that walks end best (decide.h)
+///   A chain for each type of cell -> which cells to change (design.h)
 ///   Small fields exactly, in any kind of number (absorbing.h, field_states.h), blocks of cells as
 ///              cells (blocks.h), states taken together (lumping.h)
 /// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
@@ -27,6 +28,7 @@
 #include "markov/chain.h"
 #include "markov/committor.h"
 #include "markov/decide.h"
+#include "markov/design.h"
 #include "markov/diffusion.h"
 #include "markov/field_states.h"
 #include "markov/formats/counts.h"

@@ -80,6 +80,8 @@ lattice mixed.toml --trials 50
 rare field.toml --row 4 --accuracy 0.5
 plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2
 plan field.toml --set field.rows=2 --set run.method=auto --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2
+design mixed.toml --set field.rows=2 --changes 2 --accuracy 0.2
+design mixed.toml --set field.rows=2 --set run.method=auto --types s --least --accuracy 0.2
 validate field.toml --trials 50 --accuracy 0.2
 validate field.toml --trials 50 --bins paper
 validate field.toml --trials 50 --accuracy 0.2 --observed observed.csv

@@ -4,15 +4,12 @@
 #include "cli/exchange/policy_file.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "cli/subject.h"
 #include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
-namespace {
-constexpr std::int64_t kFewCrossings = 30;
-}  // namespace
-
 int run_plan(const Arguments& arguments) {
   Options options(
       "plan SCENE [options]",
@@ -68,14 +65,7 @@ int run_plan(const Arguments& arguments) {
   options.give_out(json, table_of(planned));
   if (options.has("policy"))
     options.write(options.text("policy"), policy_text(planned.plan.policy, *s.scene));
-  if (planned.plan.crossings.crossed == 0)
-    options.warn("none of " + std::to_string(planned.plan.crossings.trials) +
-                 " trials crossed: too rare for a plan; a smaller field.rows asks for less, "
-                 "gatewalk rare says how rare it is");
-  else if (planned.plan.crossings.crossed < kFewCrossings)
-    options.warn("only " + std::to_string(planned.plan.crossings.crossed) + " of " +
-                 std::to_string(planned.plan.crossings.trials) +
-                 " trials crossed: few show what helps; a smaller --accuracy runs more");
+  options.warn(few_crossings(planned.plan.crossings));
   if (!planned.plan.settled)
     options.warn("choosing was not finished after " + std::to_string(planned.plan.gate_runs) +
                  " gate runs; --gate-runs allows more");

@@ -39,6 +39,16 @@ FieldPicture::FieldPicture(std::string name, const markov::WalkTally& tally)
       departed(tally.departed_cells.cast<double>() / static_cast<double>(tally.walks)),
       endings(tally.endings, tally.walks) {}
 
+SmallMap::SmallMap(const markov::CellProbabilities& shown)
+    : map(shown, 101, 101),  // gates, each way
+      columns(static_cast<double>(map.columns.blocks())),
+      rows(static_cast<double>(map.rows.blocks())) {
+  constexpr double kLeft = 58, kTop = 44, kWidest = 300, kHighest = 300;
+  const double cell = std::min(kWidest / columns, kHighest / rows);
+  box = {kLeft, kLeft + std::max(0.3 * kWidest, cell * columns), kTop,
+         kTop + std::max(100.0, cell * rows)};
+}
+
 std::string tics_of(const FieldMap::Span& span, Eigen::Index zero, double length, double apart) {
   std::string list;
   const auto most = std::max<Eigen::Index>(3, static_cast<Eigen::Index>(length / apart));

@@ -37,6 +37,17 @@ struct FieldPicture {
 inline constexpr std::size_t kMostPictures = 8;
 [[nodiscard]] Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& shown);
 
+/// A map of a field at the top left of a sheet, and where it is drawn.
+struct SmallMap {
+  FieldMap map;
+  double columns, rows;  // of blocks
+  Box box{};
+
+  explicit SmallMap(const markov::CellProbabilities& shown);
+  [[nodiscard]] double width() const { return box.right - box.left; }
+  [[nodiscard]] double height() const { return box.bottom - box.top; }
+};
+
 /// Tics of an axis over blocks of gates that is so many points long, named by the gates in the
 /// blocks' middle, counted from `zero`; and its range.
 [[nodiscard]] std::string tics_of(const FieldMap::Span& span, Eigen::Index zero, double length,

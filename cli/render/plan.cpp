@@ -30,13 +30,6 @@ markov::CellProbabilities usage_of(const PlannedField& p, std::size_t action) {
   return usage;
 }
 
-/// "+2.7 [1.4, 3.9]", in percentage points.
-std::string gain_text(const lattice::Gain& gain) {
-  const auto points = [](double x) { return fixed(100.0 * x, 2); };
-  return (gain.difference > 0.0 ? "+" : "") + points(gain.difference) + " [" +
-         points(gain.interval_95[0]) + ", " + points(gain.interval_95[1]) + "]";
-}
-
 /// What stands for an action in a map.
 constexpr std::string_view kMarks = "123456789abcdefghijklmnopqrstuvwxyz";
 char mark_of(std::size_t action) { return action < kMarks.size() ? kMarks[action] : ' '; }
@@ -79,6 +72,23 @@ std::string verdict(const PlannedField& p) {
 }
 
 }  // namespace
+
+std::string gain_text(const lattice::Gain& gain) {
+  const auto points = [](double x) { return fixed(100.0 * x, 2); };
+  return (gain.difference > 0.0 ? "+" : "") + points(gain.difference) + " [" +
+         points(gain.interval_95[0]) + ", " + points(gain.interval_95[1]) + "]";
+}
+
+std::string few_crossings(const lattice::Crossings& c) {
+  constexpr std::int64_t kFew = 30;
+  if (c.crossed >= kFew) return "";
+  if (c.crossed == 0)
+    return "none of " + std::to_string(c.trials) +
+           " trials crossed: too rare to choose by; a smaller field.rows asks for less, gatewalk "
+           "rare says how rare it is";
+  return "only " + std::to_string(c.crossed) + " of " + std::to_string(c.trials) +
+         " trials crossed: few show what helps; a smaller --accuracy runs more";
+}
 
 std::vector<MostTaken> most_taken(const PlannedField& p) {
   std::vector<MostTaken> most(cells_in(p));

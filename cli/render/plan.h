@@ -28,6 +28,12 @@ struct PlannedField {
 /// Which action is taken most in each cell, and how often bodies cross.
 [[nodiscard]] Figure figure_of(const PlannedField& p);
 
+/// "+2.7 [1.4, 3.9]", in percentage points.
+[[nodiscard]] std::string gain_text(const lattice::Gain& gain);
+
+/// That so few trials crossed that they say little; empty where they are not few.
+[[nodiscard]] std::string few_crossings(const lattice::Crossings& c);
+
 /// By cell (near row first): the action that is taken most there, and how often a trial takes any;
 /// -1 where none ever came.
 struct MostTaken {

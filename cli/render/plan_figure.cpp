@@ -12,8 +12,6 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr Eigen::Index kMostEachWay = 101;  // gates, each way
-constexpr double kMapLeft = 58, kWidestMap = 300, kHighestMap = 300;
 /// Those of kSequential.
 constexpr std::array<const char*, 8> kShades{"#440154", "#46327e", "#365c8d", "#277f8e",
                                              "#1fa187", "#4ac16d", "#a0da39", "#fde725"};
@@ -54,13 +52,11 @@ Figure figure_of(const PlannedField& p) {
   for (std::size_t i = 0; i < most.size(); ++i)
     visits(static_cast<Eigen::Index>(i) / visits.cols(),
            static_cast<Eigen::Index>(i) % visits.cols()) = most[i].visits;
-  const FieldMap map(visits, kMostEachWay, kMostEachWay);
-  const auto columns = static_cast<double>(map.columns.blocks()),
-             rows = static_cast<double>(map.rows.blocks());
-  const double cell = std::min(kWidestMap / columns, kHighestMap / rows);
-  const double width = std::max(0.3 * kWidestMap, cell * columns),
-               height = std::max(100.0, cell * rows);
-  const Box box{kMapLeft, kMapLeft + width, 44, 44 + height};
+  const SmallMap place(visits);
+  const FieldMap& map = place.map;
+  const Box& box = place.box;
+  const double width = place.width(), height = place.height(), columns = place.columns,
+               rows = place.rows;
   const TypeMarks types(p.shown);
   const double legend = box.bottom + 52, bars_top = legend + types.legend_height() + 30;
   std::vector<ShareBar> bars{{"plan", p.plan.crossings.share(), p.plan.crossings.interval_95()}};

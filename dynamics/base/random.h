@@ -33,7 +33,8 @@ enum class Purpose : std::uint64_t {
   points = 10,
   first_points = 11,
   plan = 12,
-  indices = 13
+  indices = 13,
+  design = 14
 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.

@@ -14,7 +14,8 @@ namespace gatewalk::lattice {
 namespace {
 
 /// Of gates with these names.
-Problem problem_of(const Scene& scene, const FieldGates& gates, std::vector<std::string> names) {
+Problem problem_of(const Scene& scene, const FieldGates& gates, std::vector<std::string> names,
+                   RunsFrom from) {
   Problem problem{.cells = gates.cells(),
                   .field = scene.field,
                   .start = own_start(scene).entry(),
@@ -24,9 +25,9 @@ Problem problem_of(const Scene& scene, const FieldGates& gates, std::vector<std:
                   .source = scene.source,
                   .check = {}};
   problem.field.fidelity = Fidelity::active;
-  problem.check = [scene](std::int64_t trials, std::uint64_t seed, dynamics::Health& health,
-                          const dynamics::Work& work) {
-    check_outcomes(scene, RunsFrom::everywhere, seed, trials, health, work);
+  problem.check = [scene, from](std::int64_t trials, std::uint64_t seed, dynamics::Health& health,
+                                const dynamics::Work& work) {
+    check_outcomes(scene, from, seed, trials, health, work);
   };
   return problem;
 }
@@ -38,14 +39,14 @@ Problem problem_of(const Scene& scene) {
   const std::vector<int> types = gate_types(scene);
   for (std::size_t i = 0; i < types.size(); ++i)
     if (types[i] >= std::ssize(names)) names.push_back(scene.terrain->types[i].name);
-  return problem_of(scene, gates_of(scene), std::move(names));
+  return problem_of(scene, gates_of(scene), std::move(names), RunsFrom::everywhere);
 }
 
 Problem problem_with_all_types(const Scene& scene) {
   std::vector<std::string> names{std::string(kOwnGate)};
   if (scene.terrain)
     for (const Terrain::Type& type : scene.terrain->types) names.push_back(type.name);
-  return problem_of(scene, all_gates_of(scene), std::move(names));
+  return problem_of(scene, all_gates_of(scene), std::move(names), RunsFrom::all_types);
 }
 
 Scene up_to_row(const Scene& scene, int row) {

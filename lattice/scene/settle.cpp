@@ -75,6 +75,12 @@ std::string derived_keys(const Scene& scene) {
          " leaves out keys, which follow from the others by the paper's proportions: " + all;
 }
 
+namespace {
+FieldGates gates_for(const Scene& scene, RunsFrom from) {
+  return from == RunsFrom::all_types ? all_gates_of(scene) : gates_of(scene);
+}
+}  // namespace
+
 std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t seed,
                                      const dynamics::Work& work) {
   if (scene.gate.run.method != "auto") return {};
@@ -92,7 +98,7 @@ std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t 
         });
   };
   // One method for all types of gates: the one that takes most work of those chosen for each.
-  const FieldGates gates = gates_of(scene);
+  const FieldGates gates = gates_for(scene, from);
   settled.choice = chosen_for(scene.gate);
   for (std::size_t type = 1; type < gates.types().size(); ++type)
     if (dynamics::Choice other = chosen_for(gates.types()[type]);
@@ -104,7 +110,7 @@ std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t 
 
 void check_outcomes(const Scene& scene, RunsFrom from, std::uint64_t seed, std::int64_t trials,
                     dynamics::Health& health, const dynamics::Work& work) {
-  const FieldGates gates = gates_of(scene);
+  const FieldGates gates = gates_for(scene, from);
   for (const dynamics::GateParams& gate :
        from == RunsFrom::start ? std::vector{scene.gate} : gates.types())
     dynamics::check_outcomes(health, gate, pilot_starts(scene, from), seed,

@@ -13,8 +13,9 @@
 
 namespace gatewalk::lattice {
 
-/// Where gate runs begin: at the scene's start, or in states all over the state space too.
-enum class RunsFrom { start, everywhere };
+/// Where gate runs begin: at the scene's start, or in states all over the state space too; there of
+/// all types of gates, whether they stand in the field or not.
+enum class RunsFrom { start, everywhere, all_types };
 
 /// What "auto" became.
 struct Settled {

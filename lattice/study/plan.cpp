@@ -12,6 +12,7 @@
 #include "dynamics/base/share.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/run_pool.h"
+#include "lattice/study/chosen_trials.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -52,44 +53,11 @@ void require_actions(const std::vector<Action>& actions) {
           "more than 256 pairs of an action and a type of cell");
 }
 
-bool crossed(const std::optional<markov::Ending>& ending) {
-  return ending == markov::Ending::far_edge;
-}
-
-Crossings crossings_of(const FieldTrials& trials) {
-  return {std::count_if(trials.endings.begin(), trials.endings.end(), crossed),
-          std::ssize(trials.endings)};
-}
-
-Gain gain_over(const FieldTrials& with, const FieldTrials& without) {
-  double more = 0.0, less = 0.0;
-  for (std::size_t i = 0; i < with.endings.size(); ++i) {
-    more += crossed(with.endings[i]) && !crossed(without.endings[i]);
-    less += crossed(without.endings[i]) && !crossed(with.endings[i]);
-  }
-  const auto n = static_cast<double>(with.endings.size());
-  const double p = (more + 1.0) / (n + 2.0), q = (less + 1.0) / (n + 2.0),
-               half = kNormal95 * std::sqrt((p + q - (p - q) * (p - q)) / (n + 2.0));
-  return {(more - less) / n, {p - q - half, p - q + half}};
-}
-
-/// Trials of the first action's problem in `cells`, those of all actions.
-FieldTally chosen_trials(const CellField& cells, const Problem& first, int actions,
-                         const ActionChoice& choice, std::uint64_t seed, TrialRange range,
-                         FieldTrials& each) {
-  const TypeChoice type{first.start, [&](const Place& at, const Entry& entry) {
-                          return first.map().type_of(at.column, at.row) * actions +
-                                 choice(at, entry);
-                        }};
-  return run_field(
-      cells, first.field,
-      [&](std::int64_t i, Body& body) {
-        const std::int64_t trial = range.first + i;
-        const Place start{first.field.start_column(), 0, 0, trial};
-        begin_trial(*cells.cells[static_cast<std::size_t>(type.type(start, first.start))],
-                    first.start, seed, trial, body);
-      },
-      range, &each, nullptr, Memory::kept, type);
+/// Each action's types of cells behind each other, as cells_of says.
+CellChoice types_of(const Problem& first, int actions, const ActionChoice& choice) {
+  return [&first, actions, choice](const Place& at, const Entry& entry) {
+    return first.map().type_of(at.column, at.row) * actions + choice(at, entry);
+  };
 }
 
 class Planner {
@@ -100,11 +68,13 @@ class Planner {
         cells_(cells_of(actions)),
         options_(options),
         work_(work),
+        trials_("plan", cells_, first_, options.seed, work),
         count_(static_cast<std::int64_t>(
             std::ceil(std::pow(kNormal95 / (2.0 * options.accuracy), 2.0)))) {}
 
   [[nodiscard]] Plan carry_out() {
-    add(run([&](const Place& at, const Entry&) { return any(at); }, actions() * count_ / 2));
+    trials_.add(
+        run([&](const Place& at, const Entry&) { return any(at); }, actions() * count_ / 2));
     std::optional<Plan> best;
     for (;;) {
       // Small leaves tell ways to enter apart, large ones know better what each action does there.
@@ -115,9 +85,9 @@ class Planner {
       ++rounds_;
       std::vector<FieldTrials> trials;
       std::vector<std::int64_t> counts;
-      const std::int64_t first = next_;
+      const std::int64_t first = trials_.next();
       for (const Plan& plan : plans) {
-        next_ = first;  // the same trials
+        trials_.go_back_to(first);
         trials.push_back(run(choice_of(plan), count_));
         counts.push_back(crossings_of(trials.back()).crossed);
       }
@@ -128,11 +98,11 @@ class Planner {
                            gained <= 0.5 * options_.accuracy * static_cast<double>(count_) &&
                            gained <= 2.0 * std::sqrt(static_cast<double>(*most));
       const auto winner = static_cast<std::size_t>(most - counts.begin());
-      add(trials[winner]);
+      trials_.add(trials[winner]);
       best = std::move(plans[winner]);
       best->settled = settled;
-      if (settled || gate_runs_ >= options_.most_runs) break;
-      add(run(
+      if (settled || trials_.gate_runs() >= options_.most_runs) break;
+      trials_.add(run(
           [&](const Place& at, const Entry& entry) {
             return word(at, 1) % kTries == 0 ? any(at) : best->policy.action(at, entry);
           },
@@ -147,11 +117,8 @@ class Planner {
   static constexpr double kMostBytes = 8.0e9;  // of decisions
 
   [[nodiscard]] int actions() const { return static_cast<int>(actions_.size()); }
-  /// Chance that the noise of the trial knows nothing of.
   [[nodiscard]] std::uint64_t word(const Place& at, std::uint64_t what) const {
-    return Random(Purpose::plan, {options_.seed, 2 * static_cast<std::uint64_t>(at.passed) + what,
-                                  static_cast<std::uint64_t>(at.trial)})
-        .word();
+    return trials_.word(Purpose::plan, at, what);
   }
   [[nodiscard]] int any(const Place& at) const {
     return static_cast<int>(word(at, 0) % static_cast<std::uint64_t>(actions()));
@@ -161,34 +128,7 @@ class Planner {
   }
 
   [[nodiscard]] FieldTrials run(const ActionChoice& choice, std::int64_t count) {
-    FieldTrials all{.final_gates = {}, .keep_passages = true};
-    work_.in_kept_pieces(
-        {"trials of a plan", {next_, count}},
-        RunTrials{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}},
-        [&](TrialRange range) {
-          RunTrials piece{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}};
-          piece.tally =
-              chosen_trials(cells_, first_, actions(), choice, options_.seed, range, piece.each);
-          return piece;
-        },
-        [&](const RunTrials& piece) {
-          all.append(piece.each);
-          health_ += piece.tally.health;
-        });
-    next_ += count;
-    gate_runs_ += std::ssize(all.passages);
-    if (health_.broken > 0)
-      throw std::runtime_error("plan: " + std::to_string(health_.broken) +
-                               " gate runs stopped being finite numbers; try method stable or a "
-                               "smaller run.step_s");
-    return all;
-  }
-
-  /// Of several runs of the same trials one only: a run that is twice in a leaf says nothing new.
-  void add(const FieldTrials& trials) {
-    pool_.scattered.starts.insert(pool_.scattered.starts.end(), trials.final_gates.size(),
-                                  first_.start);
-    pool_.scattered.each.append(trials);
+    return trials_.run(types_of(first_, actions(), choice), count);
   }
 
   [[nodiscard]] double bytes_of(const StateSpace& space) const {
@@ -197,7 +137,7 @@ class Planner {
   }
 
   [[nodiscard]] Plan choose(int per_leaf) const {
-    Kernel kernel = kernel_of(cells_.map, pool_, per_leaf);
+    Kernel kernel = kernel_of(cells_.map, trials_.pool(), per_leaf);
     if (4.0 * bytes_of(kernel.space) > kMostBytes)  // of three sizes of leaves, and the best so far
       throw std::runtime_error(
           "plan: decisions for so many cells, states and gates do not fit into memory; a smaller "
@@ -229,22 +169,23 @@ class Planner {
 
   /// By trials that nothing was chosen by.
   void judge(Plan& plan) {
-    const std::int64_t first = next_;
+    const std::int64_t first = trials_.next();
     const FieldTrials own = run(choice_of(plan), count_);
     plan.crossings = crossings_of(own);
     plan.usage = usage_of(own);
     for (int a = 0; a < actions(); ++a) {
-      next_ = first;
+      trials_.go_back_to(first);
       const FieldTrials alone = run([a](const Place&, const Entry&) { return a; }, count_);
       plan.alone.push_back(crossings_of(alone));
       plan.gains.push_back(gain_over(own, alone));
     }
+    plan.rounds = rounds_;
+    plan.gate_runs = trials_.gate_runs();
+    plan.health = trials_.health();
     for (const Action& a : actions_)
       if (a.problem.check)
-        a.problem.check(gate_runs_ / (10 * std::ssize(actions_)), options_.seed, health_, work_);
-    plan.rounds = rounds_;
-    plan.gate_runs = gate_runs_;
-    plan.health = health_;
+        a.problem.check(plan.gate_runs / (10 * std::ssize(actions_)), options_.seed, plan.health,
+                        work_);
   }
 
   [[nodiscard]] std::vector<double> usage_of(const FieldTrials& trials) const {
@@ -271,12 +212,9 @@ class Planner {
   CellField cells_;
   const PlanOptions& options_;
   const Work& work_;
-  std::int64_t count_;                         // trials of a plan in a round
-  std::int64_t next_ = std::int64_t{1} << 50;  // trials of such numbers no other command has
-  RunPool pool_;
+  ChosenTrials trials_;
+  std::int64_t count_;  // trials of a plan in a round
   int rounds_ = 0;
-  std::int64_t gate_runs_ = 0;
-  Health health_;
 };
 
 }  // namespace
@@ -305,8 +243,6 @@ int Policy::action(const Place& place, const Entry& entry) const {
       .action[decisions.at(place.column, place.row, space.index_of(entry).state, place.passed)];
 }
 
-std::array<double, 2> Crossings::interval_95() const { return share_interval(crossed, trials); }
-
 FieldTally policy_trials(const std::vector<Action>& actions, const Policy& policy,
                          TrialRange trials, std::uint64_t seed, const Work& work,
                          const TakeTrials& take) {
@@ -318,10 +254,11 @@ FieldTally policy_trials(const std::vector<Action>& actions, const Policy& polic
     if (action < 0 || action >= n) throw std::out_of_range("policy: takes an action of others");
     return action;
   };
+  const CellChoice types = types_of(first, n, choice);
   FieldTally tally = field_trials(
       first.field, trials,
       [&](TrialRange range, FieldTrials& each) {
-        return chosen_trials(cells, first, n, choice, seed, range, each);
+        return chosen_trials(cells, first, types, seed, range, each);
       },
       work, take);
   for (int a = 0; a < n; ++a)

@@ -4,7 +4,6 @@
 /// enters, so that it crosses the field as often as it can. An action is the field as it is while a
 /// body takes it: other forces, stiffer joints, or cells of another kind.
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 #include "dynamics/cells/tree_space.h"
 #include "lattice/problem.h"
 #include "lattice/reference.h"
+#include "lattice/study/crossings.h"
 #include "lattice/study/trials.h"
 #include "markov/decide.h"
 
@@ -49,21 +49,6 @@ struct PlanOptions {
   std::int64_t most_runs = 20'000'000;  // gate runs to choose by, about
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;
-};
-
-/// Trials that crossed the field, of so many.
-struct Crossings {
-  std::int64_t crossed = 0, trials = 0;
-  [[nodiscard]] double share() const {
-    return static_cast<double>(crossed) / static_cast<double>(trials);
-  }
-  [[nodiscard]] std::array<double, 2> interval_95() const;  // Jeffreys'
-};
-
-/// By how much one chance is above another, of the same trials in both.
-struct Gain {
-  double difference = 0.0;
-  std::array<double, 2> interval_95{};  // Bonett and Price 2012
 };
 
 struct Plan {

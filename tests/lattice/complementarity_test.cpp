@@ -15,18 +15,18 @@ namespace {
 
 using test::Draw;
 
-struct Problem {
+struct Contacts {
   Eigen::MatrixXd w;
   Eigen::VectorXd b;
 };
 
 /// As a disc makes it: W = N N^T / M + diag(l^2 / I), b from velocities of disc and beams, so that
 /// an answer exists whatever the pins do.
-Problem contacts(Draw& draw, int n, bool with_pins) {
+Contacts contacts(Draw& draw, int n, bool with_pins) {
   const double mass = draw.log_uniform(0.1, 10.0), inertia = draw.log_uniform(1.0, 100.0);
   const double vx = draw.uniform(-20, 20), vy = draw.uniform(-20, 20);
   Eigen::MatrixXd normals(n, 2);
-  Problem p{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
+  Contacts p{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
   Eigen::VectorXd own(n);
   for (int i = 0; i < n; ++i) {
     const double angle = draw.uniform(0.0, 2.0 * std::numbers::pi);
@@ -44,7 +44,7 @@ Problem contacts(Draw& draw, int n, bool with_pins) {
 }
 
 /// Every set of contacts in turn: the plain, slow way. The first that fulfils all conditions.
-Eigen::VectorXd by_enumeration(const Problem& p) {
+Eigen::VectorXd by_enumeration(const Contacts& p) {
   const auto n = static_cast<int>(p.b.size());
   const double scale = p.b.cwiseAbs().maxCoeff();
   for (int set = 0; set < (1 << n); ++set) {
@@ -101,7 +101,7 @@ TEST(PushOnly, AContactMayHaveToLeave) {
 TEST(PushOnly, OneAndTwoAreThoseOfTheGate) {
   Draw draw(1);
   for (int run = 0; run < 2000; ++run) {
-    const Problem p = contacts(draw, 1 + run % 2, false);
+    const Contacts p = contacts(draw, 1 + run % 2, false);
     const bool two = run % 2 == 1;
     const auto gate =
         dynamics::unilateral_impulses({p.w(0, 0), two ? p.w(1, 1) : 1.0, two ? p.w(0, 1) : 0.0},
@@ -120,7 +120,7 @@ TEST(PushOnly, AgreesWithEnumeration) {
   int many = 0;
   for (int run = 0; run < 6000; ++run) {
     const int n = 3 + run % 5;
-    const Problem p = contacts(draw, n, run % 3 == 0);
+    const Contacts p = contacts(draw, n, run % 3 == 0);
     const Eigen::VectorXd z = solve_lcp(p.w, p.b), slow = by_enumeration(p);
     const Eigen::VectorXd after = p.w * z + p.b;
     const double scale = p.b.cwiseAbs().maxCoeff();

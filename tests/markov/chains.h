@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "markov/decide.h"
 #include "markov/predict.h"
 
 namespace gatewalk::markov::test {
@@ -226,6 +227,35 @@ inline FinalDistribution propagate_plainly(const Chain& chain, const Field& fiel
   for (const Ending edge : kEdges) d.left_field += d.endings[static_cast<std::size_t>(edge)];
   d.mean_steps = static_cast<double>(draws);
   return d;
+}
+
+inline constexpr auto kFar = static_cast<std::size_t>(Ending::far_edge);
+
+/// A walk gains 1 by crossing.
+inline Gains crossing() {
+  Gains gains;
+  gains.ending[kFar] = 1.0;
+  return gains;
+}
+
+/// Two states, entered from below or from a side; outputs: ahead, right, left, back, trapped.
+inline std::vector<Exit> few_exits() { return {{0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {0, 0, -1}, {}}; }
+inline Chain few(const std::vector<Entry>& entries) {
+  return Chain::from_probabilities(matrix(2, 5, entries), few_exits());
+}
+/// Without the ways back and left nobody comes to a cell again.
+inline Chain random_chain(Words& words, bool comes_back = true) {
+  std::vector<Entry> entries;
+  for (int input = 0; input < 2; ++input) {
+    const int parts[] = {1 + words.below(9), words.below(9), comes_back ? words.below(9) : 0,
+                         comes_back ? words.below(3) : 0, 1 + words.below(3)};
+    int all = 0;
+    for (const int part : parts) all += part;
+    for (int output = 0; output < 5; ++output)
+      if (parts[output] > 0)
+        entries.push_back({input, output, static_cast<double>(parts[output]) / all});
+  }
+  return few(entries);
 }
 
 }  // namespace gatewalk::markov::test

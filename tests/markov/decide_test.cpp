@@ -17,34 +17,10 @@ namespace {
 
 using test::matrix;
 
-constexpr auto kFar = static_cast<std::size_t>(Ending::far_edge);
-
-Gains crossing() {
-  Gains gains;
-  gains.ending[kFar] = 1.0;
-  return gains;
-}
-
-/// Two states, entered from below or from a side; outputs: ahead, right, left, back, trapped.
-std::vector<Exit> few_exits() { return {{0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {0, 0, -1}, {}}; }
-
-Chain few(const std::vector<test::Entry>& entries) {
-  return Chain::from_probabilities(matrix(2, 5, entries), few_exits());
-}
-
-Chain random_chain(test::Words& words) {
-  std::vector<test::Entry> entries;
-  for (int input = 0; input < 2; ++input) {
-    const int parts[] = {1 + words.below(9), words.below(9), words.below(9), words.below(3),
-                         1 + words.below(3)};
-    int all = 0;
-    for (const int part : parts) all += part;
-    for (int output = 0; output < 5; ++output)
-      if (parts[output] > 0)
-        entries.push_back({input, output, static_cast<double>(parts[output]) / all});
-  }
-  return few(entries);
-}
+using test::crossing;
+using test::few;
+using test::kFar;
+using test::random_chain;
 
 /// From column 0 in state 0 to column 1 in state 1, and back, for ever.
 Chain closed() {

@@ -24,7 +24,7 @@ jq -s '.[0].method == .[1].method' auto-validate.json auto-build.json | grep -q 
 "$gatewalk" lattice $auto --trials 20 --json auto-lattice.json --quiet
 jq -s '.[0].method == .[1].method' auto-lattice.json auto-build.json | grep -q true || fail "auto: lattice and build chose differently"
 # Chains of trees.
-for command in predict "analyze --runs 0" "rare --row 2 --gate-runs 4000" power "validate --trials 50" "plan --set field.rows=2 --set actions.a.forces.propulsion_N=9 --set actions.b={}"; do
+for command in predict "analyze --runs 0" "rare --row 2 --gate-runs 4000" power "validate --trials 50" "plan --set field.rows=2 --set actions.a.forces.propulsion_N=9 --set actions.b={}" "design --set field.rows=2 --set terrain.types.s.forces.propulsion_N=9 --set terrain.random.s=0.5"; do
   # shellcheck disable=SC2086
   set -- $command
   expect 0 '' "$gatewalk" $1 $auto --accuracy 0.2 "${@:2}" --json auto-tree.json

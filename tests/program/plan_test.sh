@@ -57,6 +57,6 @@ expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose i
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.2 -o tree.nc --quiet
 expect 2 'is no scene of gates' "$gatewalk" plan tree.nc
 # Nobody can cross.
-expect 0 'none of 25 trials crossed: too rare for a plan' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
+expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
 
 finish

@@ -32,9 +32,9 @@ from ._results import Analysis, Landscape, Prediction, Result, Sweep, Trace
 from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
 
 __version__: str = _core.version
-__all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError",
-           "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "from_counts", "from_passages", "gate", "landscape", "lattice", "load", "merge",
-           "options", "passages", "plan", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
+__all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError", "Sweep",
+           "TRAPPED", "Trace", "UsageError", "analyze", "build", "design", "from_counts", "from_passages", "gate", "landscape", "lattice", "load",
+           "merge", "options", "passages", "plan", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
 
 
 class GatewalkWarning(UserWarning):
@@ -449,6 +449,36 @@ def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = N
         See `predict`.
     """
     return Result(_run("plan", [subject], dict(accuracy=accuracy, seed=seed, progress=progress, **more)))
+
+
+def design(subject: _t.Any, *, changes: int | None = None, types: _t.Any = None, accuracy: float | None = None, seed: int | None = None,
+           progress: bool | None = None, **more: _t.Any) -> Result:
+    """Which gates of a field to change, so that bodies cross it as often, or as rarely, as they can.
+
+    Parameters
+    ----------
+    subject : Scene, path, text or dict
+        With a table ``[terrain]`` of several types of gates.
+    changes : int, optional
+        Gates that may be changed; 1.
+    types : str, optional
+        Names of types that they may become, ``"s,."``; all.
+    accuracy : float, optional
+        Half of the interval that a chance to cross may have.
+    seed, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk design``, such as ``least=True``.
+
+    Returns
+    -------
+    Result
+        ``crossed``, ``before``, ``gain``, ``changes``, ``map`` and more of ``gatewalk design --json``.
+
+    Raises
+    ------
+    SceneError, UsageError
+        See `predict`.
+    """
+    return Result(_run("design", [subject], dict(changes=changes, types=types, accuracy=accuracy, seed=seed, progress=progress, **more)))
 
 
 def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "cli/render/design.h"
+#include "cli/arguments.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/plan.h"
+#include "cli/render/scene.h"
+#include "cli/render/text.h"
+#include "cli/subject.h"
+#include "dynamics/base/work.h"
+#include "lattice/scene/scene_problem.h"
+#include "lattice/text/toml_text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// Types of the terrain by their names, "s,w" or "."; all that there are without names.
+std::vector<int> types_named(const std::string& names, const lattice::Scene& scene) {
+  std::vector<std::string> known{scene.terrain->own};
+  for (const lattice::Terrain::Type& type : scene.terrain->types) known.push_back(type.name);
+  std::vector<int> types;
+  for (std::size_t from = 0; from <= names.size();) {
+    const std::size_t end = std::min(names.find(',', from), names.size());
+    const std::string name = names.substr(from, end - from);
+    const auto at = std::find(known.begin(), known.end(), name);
+    if (at == known.end()) {
+      std::string all;
+      for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
+      throw UsageError("--types: \"" + lattice::printable(name) + "\" is no type of gate of " +
+                       scene.source + ": " + all);
+    }
+    types.push_back(static_cast<int>(at - known.begin()));
+    from = end + 1;
+  }
+  return types;
+}
+
+}  // namespace
+
+int run_design(const Arguments& arguments) {
+  Options options("design SCENE [options]",
+                  "Which gates of a field to change into other types of its table [terrain], so "
+                  "that bodies cross it as\n"
+                  "often as they can. The best map of a chain is run in full, its trials are "
+                  "added, and so on; new trials\n"
+                  "say how often bodies cross it, and the field as it is.",
+                  "gatewalk design scenes/mixed.toml --changes 3 --types s,.");
+  options.scene();
+  options.add_count("changes", "N", "change at most so many gates", "1");
+  options.add_text("types", "A,B",
+                   "into these types of [terrain], . the scene's own (default: all)");
+  options.add_flag("least", "bodies shall cross as rarely as they can");
+  options.add_texts(
+      "start", "D,VX,VY",
+      "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)");
+  options.add_number("accuracy", "A",
+                     "half of the interval that a chance to cross may have (default: 0.02)");
+  options.add_count(
+      "gate-runs", "N",
+      "no new round of choosing after so many gate runs (default: 2e7); one there always is");
+  options.add_seed();
+  options.add_kept();
+  options.add_strict();
+  options.output_file("output", "FILE.toml",
+                      "write the scene with the gates changed, and with the start of --start");
+  options.add_figure("what a change of each gate does, and which are changed");
+  if (!options.parse(arguments)) return kFine;
+  lattice::FieldDesignOptions how{.least = options.has("least"), .seed = options.seed()};
+  if (options.has("accuracy")) how.accuracy = options.number("accuracy");
+  if (!(how.accuracy >= 0.001 && how.accuracy < 0.5))
+    throw UsageError("--accuracy: must lie in [0.001, 0.5)");
+  if (options.has("gate-runs")) how.most_runs = options.count("gate-runs", 1000);
+  Subject s = open_subject(options, "scene");
+  if (!s.scene || s.file)
+    throw UsageError(s.path + ": is no scene of gates, and new bodies are to be run: give a scene");
+  if (!s.scene->terrain || s.scene->terrain->types.empty())
+    throw UsageError(s.path +
+                     ": has one type of gates: a table [terrain.types.NAME] makes another");
+  if (s.starts.size() > 1) throw UsageError("--start: a field is designed for one start");
+  const std::int64_t gates = std::int64_t{s.scene->field.columns} * s.scene->field.rows;
+  const std::int64_t changes = options.count("changes", 1);
+  if (changes > gates)
+    throw UsageError("--changes: the field has " + std::to_string(gates) + " gates");
+  how.most_changes = static_cast<int>(changes);
+  if (options.has("types")) how.become = types_named(options.text("types"), *s.scene);
+  s.settled = settle_method(options, *s.scene, lattice::RunsFrom::all_types);
+  lattice::Problem problem = lattice::problem_with_all_types(*s.scene);
+  problem.start = *s.starts.front();
+  const dynamics::Stopwatch watch;
+  lattice::DesignedField design = lattice::design_field(problem, how, options.work());
+  lattice::Scene changed = with_gates(*s.scene, design.type_of_cell);
+  if (s.given) changed.start = {problem.start.at[0], 0.0, problem.start.at[1], problem.start.at[2]};
+  const DesignedScene designed{
+      *s.scene, std::move(changed), problem.map().section, problem.start,
+      how,      s.settled,          std::move(design),     watch.seconds()};
+  Json json = to_json(designed);
+  json["made_by"] = s.made_by(options);
+  options.give_out(json, table_of(designed));
+  if (options.has("output"))
+    options.write(options.text("output"), lattice::to_toml(designed.after));
+  const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
+  options.warn(few_crossings(with.crossed > without.crossed ? with : without));
+  if (!designed.design.settled)
+    options.warn("choosing was not finished after " + std::to_string(designed.design.gate_runs) +
+                 " gate runs; --gate-runs allows more");
+  options.warn(too_few_gates(s.shown()));
+  const int exit = status_of(options, designed.design.health);
+  options.draw([&] { return figure_of(designed); });
+  return exit;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// Trials in which the type of each cell is chosen when a body enters it, and the runs of those
+/// that something is to be chosen by.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "dynamics/base/work.h"
+#include "lattice/pool/run_pool.h"
+#include "lattice/problem.h"
+#include "lattice/reference.h"
+#include "lattice/study/crossings.h"
+
+namespace gatewalk::lattice {
+
+/// A type of cells, for a body that enters there so.
+using CellChoice = std::function<int(const Place& place, const dynamics::Entry& entry)>;
+
+/// Trials of `first` in cells of these types; with the noise that field_trials of these numbers
+/// have.
+[[nodiscard]] FieldTally chosen_trials(const dynamics::CellField& cells, const Problem& first,
+                                       const CellChoice& choice, std::uint64_t seed,
+                                       dynamics::TrialRange range, FieldTrials& each);
+
+/// Such trials one behind the other, of numbers that trials of a field do not have.
+class ChosenTrials {
+ public:
+  /// What is given outlives it. `name`: of the study, for messages and kept pieces.
+  ChosenTrials(std::string name, const dynamics::CellField& cells, const Problem& first,
+               std::uint64_t seed, const dynamics::Work& work)
+      : name_(std::move(name)), cells_(cells), first_(first), seed_(seed), work_(work) {}
+
+  /// The next `count` of them. Throws std::runtime_error when a run broke.
+  [[nodiscard]] FieldTrials run(const CellChoice& choice, std::int64_t count);
+  [[nodiscard]] std::int64_t next() const { return next_; }
+  /// The trials from that number on once more.
+  void go_back_to(std::int64_t next) { next_ = next; }
+
+  /// Into the pool. Of several runs of the same trials one only: a run that is twice in a leaf says
+  /// nothing new.
+  void add(const FieldTrials& trials);
+  [[nodiscard]] const RunPool& pool() const { return pool_; }
+
+  /// Chance that the noise of the trials knows nothing of.
+  [[nodiscard]] std::uint64_t word(dynamics::Purpose purpose, const Place& at,
+                                   std::uint64_t what) const;
+  [[nodiscard]] std::int64_t gate_runs() const { return gate_runs_; }  // of all
+  [[nodiscard]] const dynamics::Health& health() const { return health_; }
+
+ private:
+  std::string name_;
+  const dynamics::CellField& cells_;
+  const Problem& first_;
+  std::uint64_t seed_;
+  const dynamics::Work& work_;
+  std::int64_t next_ = std::int64_t{1} << 50;
+  RunPool pool_;
+  std::int64_t gate_runs_ = 0;
+  dynamics::Health health_;
+};
+
+}  // namespace gatewalk::lattice
