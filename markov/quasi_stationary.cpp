@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kBlock = 8;  // vectors: the second eigenvalue settles as the ninth one lets it
 constexpr int kMostIterations = 20'000;
-constexpr double kEigenTolerance = 1e-12;  // of the first eigenvalue; of the second its square root
+constexpr double kEigenTolerance = 1e-12;  // of the first eigenvalue's change from step to step
+constexpr double kSecondTolerance = 1e-10;  // the same of the second
 
 struct Kernel {
   Probabilities from_to;  // transposed: left eigenvectors become right ones
@@ -65,7 +66,7 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
     first = moduli[0];
     second = moduli.size() > 1 ? moduli[1] : 0.0;
     if (std::abs(first - was_first) <= kEigenTolerance * first &&
-        std::abs(second - was_second) <= std::sqrt(kEigenTolerance) * first)
+        std::abs(second - was_second) <= kSecondTolerance * first)
       break;
   }
   if (!(first > 0.0)) throw std::runtime_error("quasi-stationary: nobody gets into a second cell");

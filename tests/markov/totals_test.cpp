@@ -327,7 +327,7 @@ TEST(QuasiStationary, IsTheFirstEigenvectorOfTheMatrix) {
   for (const auto& value : solver.eigenvalues()) moduli.push_back(std::abs(value));
   std::sort(moduli.begin(), moduli.end(), std::greater<>());
   EXPECT_NEAR(q.survival, moduli[0], 1e-12);
-  EXPECT_NEAR(q.second, moduli[1], 1e-5);
+  EXPECT_NEAR(q.second, moduli[1], 1e-8);
   const Eigen::Map<const Eigen::VectorXd> states(q.states.data(), 87);
   EXPECT_NEAR(states.sum(), 1.0, 1e-12);
   EXPECT_LT((kernel * states - q.survival * states).cwiseAbs().maxCoeff(), 1e-12);
