@@ -75,6 +75,7 @@ class Designer {
     std::vector<Map> from{own_};
     from.insert(from.end(), options_.from.begin(), options_.from.end());
     for (const Map& map : from) {
+      if (!std::isfinite(solved_of({map}).front())) continue;
       FieldDesign end = search_from(map);
       ++search_;
       FieldDesign& known = optima.try_emplace(end.type_of_cell, std::move(end)).first->second;
@@ -107,9 +108,7 @@ class Designer {
     return key;
   }
   [[nodiscard]] int changes_of(const Map& map) const {
-    int changes = 0;
-    for (std::size_t c = 0; c < cells_; ++c) changes += map[c] != own_[c];
-    return changes;
+    return static_cast<int>(key_of(map).size());
   }
   [[nodiscard]] double gain(Ending e) const { return gains_.ending[static_cast<std::size_t>(e)]; }
   [[nodiscard]] std::size_t at(std::int64_t column, std::int64_t row, int input) const {
@@ -254,8 +253,8 @@ class Designer {
 
   /// Where a search ends that others have come by before, these have ended too.
   FieldDesign search_from(Map map) {
-    double gain = solved_of({map}).front();
-    double error = 0.0;  // the largest of what the gradient said
+    double gain = solved_of({map}).front();  // is known
+    double error = 0.0;                      // the largest of what the gradient said
     std::vector<Map> way;
     for (;;) {
       if (const auto end = ends_.find(key_of(map)); end != ends_.end()) {

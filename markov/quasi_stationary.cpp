@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kBlock = 8;  // vectors: the second eigenvalue settles as the ninth one lets it
 constexpr int kMostIterations = 20'000;
-constexpr double kEigenTolerance = 1e-12;  // of the first eigenvalue's change from step to step
+constexpr double kEigenTolerance = 1e-12;   // of the first eigenvalue's change from step to step
 constexpr double kSecondTolerance = 1e-10;  // the same of the second
 
 struct Kernel {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/design.h"
 #include "cli/arguments.h"
+#include "cli/choosing.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/plan.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
 #include "dynamics/base/work.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/text/toml_text.h"
@@ -50,33 +50,17 @@ int run_design(const Arguments& arguments) {
   options.add_text("types", "A,B",
                    "into these types of [terrain], . the scene's own (default: all)");
   options.add_flag("least", "bodies shall cross as rarely as they can");
-  options.add_texts(
-      "start", "D,VX,VY",
-      "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)");
-  options.add_number("accuracy", "A",
-                     "half of the interval that a chance to cross may have (default: 0.02)");
-  options.add_count(
-      "gate-runs", "N",
-      "no new round of choosing after so many gate runs (default: 2e7); one there always is");
-  options.add_seed();
-  options.add_kept();
-  options.add_strict();
+  add_choosing(options);
   options.output_file("output", "FILE.toml",
                       "write the scene with the gates changed, and with the start of --start");
   options.add_figure("what a change of each gate does, and which are changed");
   if (!options.parse(arguments)) return kFine;
-  lattice::FieldDesignOptions how{.least = options.has("least"), .seed = options.seed()};
-  if (options.has("accuracy")) how.accuracy = options.number("accuracy");
-  if (!(how.accuracy >= 0.001 && how.accuracy < 0.5))
-    throw UsageError("--accuracy: must lie in [0.001, 0.5)");
-  if (options.has("gate-runs")) how.most_runs = options.count("gate-runs", 1000);
-  Subject s = open_subject(options, "scene");
-  if (!s.scene || s.file)
-    throw UsageError(s.path + ": is no scene of gates, and new bodies are to be run: give a scene");
+  lattice::FieldDesignOptions how{.least = options.has("least")};
+  take_choosing(options, how);
+  Subject s = scene_to_run(options, "a field is designed");
   if (!s.scene->terrain || s.scene->terrain->types.empty())
     throw UsageError(s.path +
                      ": has one type of gates: a table [terrain.types.NAME] makes another");
-  if (s.starts.size() > 1) throw UsageError("--start: a field is designed for one start");
   const std::int64_t gates = std::int64_t{s.scene->field.columns} * s.scene->field.rows;
   const std::int64_t changes = options.count("changes", 1);
   if (changes > gates)

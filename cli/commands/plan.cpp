@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/plan.h"
 #include "cli/arguments.h"
+#include "cli/choosing.h"
 #include "cli/exchange/policy_file.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
 #include "dynamics/base/work.h"
 
 namespace gatewalk::cli {
@@ -26,30 +26,14 @@ int run_plan(const Arguments& arguments) {
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
-  options.add_texts(
-      "start", "D,VX,VY",
-      "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)");
-  options.add_number("accuracy", "A",
-                     "half of the interval that a chance to cross may have (default: 0.02)");
-  options.add_count(
-      "gate-runs", "N",
-      "no new round of choosing after so many gate runs (default: 2e7); one there always is");
-  options.add_seed();
-  options.add_kept();
-  options.add_strict();
+  add_choosing(options);
   options.output_file("policy", "FILE.json",
                       "write what to do in each gate, for gatewalk lattice --policy");
   options.add_figure("the actions by gate, and how often bodies cross");
   if (!options.parse(arguments)) return kFine;
-  lattice::PlanOptions how{.seed = options.seed()};
-  if (options.has("accuracy")) how.accuracy = options.number("accuracy");
-  if (!(how.accuracy >= 0.001 && how.accuracy < 0.5))
-    throw UsageError("--accuracy: must lie in [0.001, 0.5)");
-  if (options.has("gate-runs")) how.most_runs = options.count("gate-runs", 1000);
-  Subject s = open_subject(options, "scene");
-  if (!s.scene || s.file)
-    throw UsageError(s.path + ": is no scene of gates, and new bodies are to be run: give a scene");
-  if (s.starts.size() > 1) throw UsageError("--start: a plan is made for one start");
+  lattice::PlanOptions how;
+  take_choosing(options, how);
+  Subject s = scene_to_run(options, "a plan is made");
   if (options.has("policy")) require_file_for(*s.scene);
   std::vector<std::optional<lattice::Settled>> methods;
   const std::vector<lattice::Action> actions =

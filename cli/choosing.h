@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// What commands have in common that choose by rounds of trials in full (plan, design).
+
+#include "cli/arguments.h"
+#include "cli/subject.h"
+
+namespace gatewalk::cli {
+
+inline void add_choosing(Options& options) {
+  options.add_texts(
+      "start", "D,VX,VY",
+      "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)");
+  options.add_number("accuracy", "A",
+                     "half of the interval that a chance to cross may have (default: 0.02)");
+  options.add_count(
+      "gate-runs", "N",
+      "no new round of choosing after so many gate runs (default: 2e7); one there always is");
+  options.add_seed();
+  options.add_kept();
+  options.add_strict();
+}
+
+/// Of lattice::PlanOptions, or others with the same members. Throws UsageError.
+template <class How>
+void take_choosing(const Options& options, How& how) {
+  how.seed = options.seed();
+  if (options.has("accuracy")) how.accuracy = options.number("accuracy");
+  if (!(how.accuracy >= 0.001 && how.accuracy < 0.5))
+    throw UsageError("--accuracy: must lie in [0.001, 0.5)");
+  if (options.has("gate-runs")) how.most_runs = options.count("gate-runs", 1000);
+}
+
+/// A scene of gates with one start; `made` ("a plan is made") is for it. Throws UsageError.
+[[nodiscard]] inline Subject scene_to_run(const Options& options, const std::string& made) {
+  Subject s = open_subject(options, "scene");
+  if (!s.scene || s.file)
+    throw UsageError(s.path + ": is no scene of gates, and new bodies are to be run: give a scene");
+  if (s.starts.size() > 1) throw UsageError("--start: " + made + " for one start");
+  return s;
+}
+
+}  // namespace gatewalk::cli
