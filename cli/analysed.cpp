@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/ranged.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
@@ -83,30 +84,12 @@ void add_ranges(Options& options) {
                     "full trials for that, at most, all together (default: 200000)");
 }
 
-std::optional<lattice::RangedScene> ranges_of(const Options& options, const Subject& s) {
-  const auto given = options.texts("over");
-  if (given.empty()) {
-    if (options.has("over-trials")) throw UsageError("--over-trials: is for --over");
-    return {};
-  }
-  if (!s.scene || s.file)
-    throw UsageError("--over: is for a scene of gates, whose numbers vary; " + s.path + " is none");
-  const auto numbers = static_cast<int>(given.size());
-  if (numbers > lattice::kMostVaried)
-    throw UsageError("--over: at most " + std::to_string(lattice::kMostVaried) +
-                     " numbers can vary");
-  if (options.has("over-trials"))
-    (void)options.count("over-trials", lattice::least_trials_of_shares(numbers));
-  lattice::RangedScene ranged(lattice::scene_text(s.path), s.path, options.overrides(), given,
-                              "--over");
-  for (const lattice::NumberRange& r : ranged.ranges()) {
-    if (s.given && r.key.starts_with("start."))
-      throw UsageError("--over " + r.key + ": varies the scene's start, and --start gives another");
-    if (s.scene->gate.run.method == "auto" && r.key.starts_with("run."))
-      throw UsageError("--over " + r.key +
-                       ": varies what run.method = \"auto\" chooses; name a "
-                       "method");
-  }
+std::optional<lattice::RangedScene> over_of(const Options& options, const Subject& s) {
+  auto ranged = ranges_of(options, s, "over", lattice::kMostVaried);
+  if (!options.has("over-trials")) return ranged;
+  if (!ranged) throw UsageError("--over-trials: is for --over");
+  (void)options.count("over-trials",
+                      lattice::least_trials_of_shares(static_cast<int>(ranged->ranges().size())));
   return ranged;
 }
 
@@ -115,21 +98,10 @@ SharesAnswer shares_of(const Options& options, const std::optional<lattice::Rang
   if (!ranged) return {};
   lattice::VarianceSharesOptions how{.seed = options.seed()};
   if (options.has("over-trials")) how.trials = options.count("over-trials");
-  const auto problem_at = [&](const std::vector<double>& point) {
-    lattice::Scene scene = ranged->at(point);
-    if (s.settled) {  // the method chosen for the scene as it is
-      const dynamics::RunParams& chosen = s.scene->gate.run;
-      scene.gate.run.method = chosen.method;
-      scene.gate.run.step = chosen.step;
-      scene.gate.run.event_tolerance = chosen.event_tolerance;
-    }
-    lattice::Problem problem = lattice::problem_of(scene);
-    if (s.given) problem.start = *s.starts.front();
-    return problem;
-  };
-  const RangedShares shares{ranged->ranges(), target,
-                            lattice::variance_shares(static_cast<int>(ranged->ranges().size()),
-                                                     problem_at, target, how, options.work())};
+  const RangedShares shares{
+      ranged->ranges(), target,
+      lattice::variance_shares(static_cast<int>(ranged->ranges().size()), problem_at(*ranged, s),
+                               target, how, options.work())};
   return {cli::to_json(shares), table_of(shares),
           status_of(options, shares.found.health, "at the points of --over ") == kFine};
 }

@@ -41,8 +41,7 @@ struct AnalysedSubject {
 /// Declares --over and --over-trials.
 void add_ranges(Options& options);
 /// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
-[[nodiscard]] std::optional<lattice::RangedScene> ranges_of(const Options& options,
-                                                            const Subject& s);
+[[nodiscard]] std::optional<lattice::RangedScene> over_of(const Options& options, const Subject& s);
 /// How much of the variance of the target's chance over them each number makes; null without them.
 struct SharesAnswer {
   Json json;

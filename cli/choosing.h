@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What commands have in common that choose by rounds of trials in full (plan, design).
+/// What commands have in common that run a scene in full, round by round (plan, design, fit).
 
 #include "cli/arguments.h"
 #include "cli/subject.h"

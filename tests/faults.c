@@ -7,6 +7,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <execinfo.h>
+#include <setjmp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,7 +65,23 @@ static void put_crash(const char *name) {
   (void)syscall(SYS_write, file, name, strlen(name));
   (void)syscall(SYS_close, file);
 }
+/* Where a library jumped to a place that it never set the stack cannot be walked. */
+static const char *jumped = NULL;
+void __longjmp_chk(jmp_buf to, int value) {
+  static void (*real)(jmp_buf, int) = NULL;
+  if (!real) real = (void (*)(jmp_buf, int))dlsym(RTLD_NEXT, "__longjmp_chk");
+  Dl_info at;
+  if (dladdr(__builtin_return_address(0), &at) && at.dli_fname) jumped = at.dli_fname;
+  real(to, value);
+  __builtin_unreachable();
+}
 static void crashed(int number) {
+  static int walks = 0;
+  if (walks++) {
+    put_crash(jumped && strrchr(jumped, '/') ? strrchr(jumped, '/') + 1 : "unknown");
+    signal(number, SIG_DFL);
+    raise(number);
+  }
   void *frames[64];
   char places[1400] = "gatewalk"; /* and where in the program, for addr2line */
   size_t used = strlen(places);
@@ -100,8 +117,12 @@ __attribute__((constructor)) static void watch_crashes(void) {
   if (!getenv("FAULT_CRASH") || !is_gatewalk()) return;
   void *frame;
   (void)backtrace(&frame, 1); /* which loads what it needs */
+  static char own[1 << 17]; /* where a library called itself until its stack was full */
+  const stack_t stack = {.ss_sp = own, .ss_size = sizeof own};
+  (void)sigaltstack(&stack, NULL);
+  const struct sigaction action = {.sa_handler = crashed, .sa_flags = SA_ONSTACK | SA_NODEFER};
   const int all[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
-  for (unsigned i = 0; i < sizeof all / sizeof *all; ++i) signal(all[i], crashed);
+  for (unsigned i = 0; i < sizeof all / sizeof *all; ++i) (void)sigaction(all[i], &action, NULL);
 }
 ssize_t read(int file, void *bytes, size_t size) {
   REAL(read);

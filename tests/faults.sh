@@ -145,6 +145,8 @@ survives 'plan.json policy.json' plan "${pushes[@]}" --accuracy 0.2 --json plan.
 "$gatewalk" plan "${pushes[@]}" --accuracy 0.2 --policy chosen.json --quiet >/dev/null || fail "no policy"
 survives lattice.json lattice "${pushes[@]}" --policy chosen.json --trials 300 --json lattice.json
 survives 'design.json new.toml' design "$scenes/mixed.toml" --set run.method=moreau --set field.rows=2 --accuracy 0.2 --json design.json -o new.toml
+printf 'ending,count\ncrossed,9\ntrapped,20\nleft side,1\n' >counts.csv
+survives 'fit.json best.toml draws.csv fit.nc' fit "${field[@]}" counts.csv --set run.method=moreau --set field.rows=2 --free forces.propulsion_N=5:9 --trials 12288 --json fit.json -o best.toml --draws draws.csv --inference-data fit.nc
 survives validate.json validate "${field[@]}" --bins paper --matrix-trials 3 --trials 60 --null-draws 99 --json validate.json
 survives power.json power "${field[@]}" --accuracy 0.1 --trials 60 --json power.json
 survives scene.json scene "$scenes/mixed.toml" --json scene.json

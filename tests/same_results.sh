@@ -129,6 +129,7 @@ lines() {
 0 rare mixed.toml --set run.method=moreau --row 3 --gate-runs 20000 --json out.json
 0 plan field.toml --set run.method=moreau --set field.rows=3 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.1 --json out.json --figure out.svg
 0 design mixed.toml --set run.method=moreau --set field.rows=3 --changes 2 --accuracy 0.1 --json out.json --figure out.svg -o out.toml
+0 fit field.toml gates.csv --set run.method=moreau --free forces.propulsion_N=5:9 --free forces.random_N=10:40 --trials 24576 --json out.json --figure out.svg --draws out.csv -o out.toml
 0 validate field.toml --trials 50 --json out.json --quiet
 0 validate field.toml --matrix matrix.nc --start 0,0,15 --trials 80 --walks 300 --memory --json out.json --figure out.svg
 0 validate own.toml --trials 40 --matrix-trials 20 --json out.json --quiet

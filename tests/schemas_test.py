@@ -82,6 +82,8 @@ plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set a
 plan field.toml --set field.rows=2 --set run.method=auto --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2
 design mixed.toml --set field.rows=2 --changes 2 --accuracy 0.2
 design mixed.toml --set field.rows=2 --set run.method=auto --types s --least --accuracy 0.2
+fit field.toml observed.csv --set field.rows=4 --free forces.propulsion_N=5:9 --trials 12288
+fit field.toml observed.csv --set field.rows=4 --set run.method=auto --free forces.propulsion_N=5:9 --free forces.random_N=5:20 --trials 24576
 validate field.toml --trials 50 --accuracy 0.2
 validate field.toml --trials 50 --bins paper
 validate field.toml --trials 50 --accuracy 0.2 --observed observed.csv

@@ -71,7 +71,7 @@ int run_analyze(const Arguments& arguments) {
            "for " + s.path +
                (s.foreign ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
   how.lumping = lumping_of(options, s.problem.map().section);
-  const auto ranged = ranges_of(options, s);
+  const auto ranged = over_of(options, s);
   s.settle(options);
   const auto of_file = runs_of_file(options, s);
   AnalysedSubject c = analysed(options, s);

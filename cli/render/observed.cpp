@@ -183,7 +183,7 @@ std::string who_went_back(const lattice::Observed& observed) {
          std::to_string(observed.went_back + observed.seen.trials()) +
          " trials went back, which no body of the model does: they are left out, and the other " +
          std::to_string(observed.seen.trials()) +
-         " compared. Who gave up in front of a gate is trapped there";
+         " used. Who gave up in front of a gate is trapped there";
 }
 
 std::string too_few_observed(const lattice::Observed& observed) {

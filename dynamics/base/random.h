@@ -34,7 +34,8 @@ enum class Purpose : std::uint64_t {
   first_points = 11,
   plan = 12,
   indices = 13,
-  design = 14
+  design = 14,
+  fit = 15
 };
 
 /// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.

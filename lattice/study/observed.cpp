@@ -94,8 +94,7 @@ CountTable read_table(const std::string& path) {
     throw std::invalid_argument(path + ": has " + std::to_string(size) +
                                 " bytes, more than a table of counts");
   const auto lines = lines_of(path);
-  if (!lines)
-    throw std::invalid_argument("--observed " + path + ": cannot be read: " + std::strerror(errno));
+  if (!lines) throw std::invalid_argument(path + ": cannot be read: " + std::strerror(errno));
   CountTable table{path, {}, {}};
   for (std::size_t i = 0; i < lines->size(); ++i) {
     const std::string& text = (*lines)[i];
@@ -222,6 +221,7 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
   const bool has_gates = table.has("gate_x"), has_endings = table.has("ending");
   CellCounts& gates = observed.seen.final_gates;
   if (has_gates) gates = CellCounts::Zero(field.rows, field.columns);
+  if (has_gates && has_endings) observed.gates_by_ending.fill(gates);
   if (has_endings)  // those that nobody had were not had, but cutting off must be looked for
     for (const EndingName& e : kEndingNames)
       observed.listed[static_cast<std::size_t>(e.ending)] = e.ending != markov::Ending::cut_off;
@@ -232,8 +232,9 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
     if (const auto [first, is_new] = lines.emplace(trial, row.line); !is_new)
       table.refuse(row.line, "trial " + quoted(trial) + " was given in line " +
                                  std::to_string(first->second) + " already");
-    const auto ending = has_endings ? ending_of(table, row) : std::nullopt;
+    std::optional<std::size_t> ending;
     if (has_endings) {
+      ending = ending_of(table, row);
       if (!ending) {
         ++observed.went_back;
         continue;
@@ -243,8 +244,10 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
     }
     if (!has_gates) continue;
     const auto gate = counted_gate(table, row, field);
-    if (ending) require_at_side(table, row, *ending, gate, field);
     ++gates(gate[0], gate[1]);
+    if (!ending) continue;
+    require_at_side(table, row, *ending, gate, field);
+    ++observed.gates_by_ending[*ending](gate[0], gate[1]);
   }
   require_trials(table, static_cast<std::int64_t>(lines.size()) - observed.went_back,
                  observed.went_back);
@@ -259,7 +262,7 @@ Observed read_observed(const std::vector<std::string>& paths, const FieldParams&
     const CountTable table = read_table(path);
     const auto take = [&](std::string& other, const char* what) {
       if (!other.empty())
-        throw std::invalid_argument("--observed " + path + ": " + other + " has " + what +
+        throw std::invalid_argument(path + ": " + other + " has " + what +
                                     " too; at most one file of each is permitted");
       other = path;
     };

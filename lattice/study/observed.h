@@ -20,6 +20,8 @@ namespace gatewalk::lattice {
 struct Observed {
   SeenEndings seen;
   std::array<bool, markov::kEndings> listed{};  // endings that its table has
+  /// By Ending (rows x columns), where lines of trials have both; else empty.
+  std::array<CellCounts, markov::kEndings> gates_by_ending{};
   std::int64_t went_back =
       0;  // of these trials, which `seen` leaves out: the model has no such end
 };

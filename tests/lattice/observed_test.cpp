@@ -117,9 +117,9 @@ TEST_F(CountsFile, OfBothInTwoFiles) {
   EXPECT_EQ(message({gates, other}),
             "g.csv has 10 trials, f.csv 4: both must be of the same trials");
   EXPECT_EQ(message({ends, other}),
-            "--observed f.csv: e.csv has endings too; at most one file of each is permitted");
+            "f.csv: e.csv has endings too; at most one file of each is permitted");
   EXPECT_EQ(message({gates, ends, gates}),
-            "--observed g.csv: g.csv has final gates too; at most one file of each is permitted");
+            "g.csv: g.csv has final gates too; at most one file of each is permitted");
 }
 
 TEST_F(CountsFile, OfTrialsOneLineEach) {
@@ -224,10 +224,8 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
     EXPECT_EQ(refusal(none), "x.csv: has no trial: its counts add up to 0");
   for (const char* empty : {"", "\n\n", "# nothing\n"})
     EXPECT_EQ(refusal(empty), "x.csv: is empty: the first line must be " + kTables);
-  EXPECT_EQ(message({"none.csv"}),
-            "--observed none.csv: cannot be read: No such file or directory");
-  EXPECT_EQ(message({folder_.string()}),
-            "--observed " + folder_.string() + ": cannot be read: Is a directory");
+  EXPECT_EQ(message({"none.csv"}), "none.csv: cannot be read: No such file or directory");
+  EXPECT_EQ(message({folder_.string()}), folder_.string() + ": cannot be read: Is a directory");
 }
 
 // ---- Against the model ----

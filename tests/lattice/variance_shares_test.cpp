@@ -90,8 +90,8 @@ RangedScene ranged(const std::vector<std::string>& ranges,
                    const std::vector<std::string>& overrides = {}) {
   return {"body.mass_kg = 2.0\n", "a.toml", overrides, ranges, "--over"};
 }
-std::string refusal(const std::vector<std::string>& ranges,
-                    const std::vector<std::string>& overrides = {}) {
+std::string refusal_of_ranges(const std::vector<std::string>& ranges,
+                              const std::vector<std::string>& overrides = {}) {
   try {
     (void)ranged(ranges, overrides);
   } catch (const SceneError& e) {
@@ -113,16 +113,20 @@ TEST(RangedScene, RefusesWhatIsNoRange) {
   for (const char* text : {"forces.propulsion_N", "forces.propulsion_N=4",
                            "forces.propulsion_N=4:", "forces.propulsion_N=8:4",
                            "forces.propulsion_N=4:x", "forces.propulsion_N=4:inf", ":", "=:"})
-    EXPECT_EQ(refusal({text}), std::string("--over ") + text +
-                                   ": must be KEY=LOW:HIGH, two numbers, the low one first");
-  EXPECT_NE(refusal({"forces.push=4:8"}).find("--over forces.push=4:8: "), std::string::npos);
-  EXPECT_NE(refusal({"body.radius_m=1:2", "body.radius_cm=100:200"}).find("is varied already"),
+    EXPECT_EQ(
+        refusal_of_ranges({text}),
+        std::string("--over ") + text + ": must be KEY=LOW:HIGH, two numbers, the low one first");
+  EXPECT_NE(refusal_of_ranges({"forces.push=4:8"}).find("--over forces.push=4:8: "),
             std::string::npos);
-  EXPECT_NE(refusal({"body.mass_kg=1:2"}, {"body.mass_kg=3"}).find("--set body.mass_kg=3 has no"),
+  EXPECT_NE(
+      refusal_of_ranges({"body.radius_m=1:2", "body.radius_cm=100:200"}).find("is varied already"),
+      std::string::npos);
+  EXPECT_NE(refusal_of_ranges({"body.mass_kg=1:2"}, {"body.mass_kg=3"})
+                .find("--set body.mass_kg=3 has no"),
             std::string::npos);
   // Beyond what is permitted; between two whole numbers.
-  EXPECT_TRUE(refusal({"body.mass_kg=-1:2"}).starts_with("--over body.mass_kg=-1: "));
-  EXPECT_TRUE(refusal({"field.rows=3:9"}).starts_with("--over field.rows=5.29"));
+  EXPECT_TRUE(refusal_of_ranges({"body.mass_kg=-1:2"}).starts_with("--over body.mass_kg=-1: "));
+  EXPECT_TRUE(refusal_of_ranges({"field.rows=3:9"}).starts_with("--over field.rows=5.29"));
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ jq -r '["ending", "count"], (.endings | to_entries[] | [.key, .value]) | @csv' d
 jq -r '["gate_x", "gate_y", "count"], (.final_gates | to_entries[] | .key as $y | .value | to_entries[] | [.key - 4, $y, .value]) | @csv' departed.json >gates0.csv
 free=(validate "$scenes/field.toml" --matrix m.nc --set field.max_gates=60 --null-draws 199 --trials 1200)
 "$gatewalk" "${free[@]}" --observed back.csv --json lines.json >/dev/null 2>err.txt
-grep -q '^gatewalk: 1 of 61 trials went back, .* left out, and the other 60 compared' err.txt || fail "validate --observed: who went back is not said: $(cat err.txt)"
+grep -q '^gatewalk: 1 of 61 trials went back, .* left out, and the other 60 used' err.txt || fail "validate --observed: who went back is not said: $(cat err.txt)"
 "$gatewalk" "${free[@]}" --observed ends0.csv --observed gates0.csv --json tables.json --quiet
 jq -s 'map(.observed | del(.files, .went_back)) | .[0] == .[1]' lines.json tables.json | grep -q true || fail "validate --observed: lines of trials are not their counts"
 holds '.observed | .trials == 60 and .went_back == 1' lines.json
@@ -80,7 +80,7 @@ refused 'bad.csv: is empty' ''
 expect 2 'ends.csv has 60\|far.csv: ends.csv has endings too' "$gatewalk" "${beside[@]}" --observed ends.csv --observed far.csv
 printf 'ending,count\ncrossed,59\n' >fewer.csv
 expect 2 'gates.csv has 60 trials, fewer.csv 59: both must be of the same trials' "$gatewalk" "${beside[@]}" --observed gates.csv --observed fewer.csv
-expect 2 'observed nosuch.csv: cannot be read: No such file or directory' "$gatewalk" "${beside[@]}" --observed nosuch.csv
+expect 2 'nosuch.csv: cannot be read: No such file or directory' "$gatewalk" "${beside[@]}" --observed nosuch.csv
 expect 2 'belong to one start, --start gives 2' "$gatewalk" "${beside[@]}" --observed ends.csv --start 0,0,15 --start 4,5,10
 expect 2 'are the same file' "$gatewalk" "${beside[@]}" --observed gates.csv --observed ends.csv --json ends.csv
 

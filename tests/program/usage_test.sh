@@ -65,9 +65,9 @@ expect 2 'unknown key beams.stiffness_mNm_per_rad; the closest known keys are be
 "$gatewalk" gate - --trials 20 --seed 4 --json dash.json --quiet <"$scenes/field.toml"
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --seed 4 --json file.json --quiet
 jq -s '(.[0] | del(.made_by)) == (.[1] | del(.made_by)) and .[0].made_by.scene == .[1].made_by.scene' dash.json file.json | grep -q true || fail "a scene from standard input is another one"
-for command in scene sweep landscape trace build predict analyze lattice rare plan design validate power chart chart-field chart-chain; do
+for command in scene sweep landscape trace build predict analyze lattice rare plan design fit validate power chart chart-field chart-chain; do
   more=
-  case $command in landscape | chart | chart-field | chart-chain) more='-o folder' ;; build) more='-o m.nc' ;; sweep) more='--vary forces.random_N=1,2' ;; esac
+  case $command in landscape | chart | chart-field | chart-chain) more='-o folder' ;; build) more='-o m.nc' ;; fit) more='/dev/null --free forces.random_N=1:2' ;; sweep) more='--vary forces.random_N=1,2' ;; esac
   # shellcheck disable=SC2086
   expect 2 '^gatewalk: .*standard input:2: body.mass_kg = -1.* is not permitted' "$gatewalk" $command - $more < <(printf '\nbody.mass_kg = -1\n')
 done

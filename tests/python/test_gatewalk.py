@@ -128,6 +128,22 @@ class SameAsTheProgram(unittest.TestCase):
         self.check(gw.analyze(FIELD, accuracy=0.1, runs=200), "analyze", FIELD, "--accuracy", 0.1, "--runs", 200)
         self.check(gw.rare(FIELD, row=3, accuracy=0.3), "rare", FIELD, "--row", 3, "--accuracy", 0.3)
         self.check(gw.power(FIELD, trials=50), "power", FIELD, "--trials", 50)
+        self.check(gw.analyze(FIELD, accuracy=0.2, runs=0, over={"forces.propulsion_N": (6, 8), "forces.random_N": (30, 60)}, over_trials=4096),
+                   "analyze", FIELD, "--accuracy", 0.2, "--runs", 0, "--over", "forces.propulsion_N=6:8", "--over", "forces.random_N=30:60",
+                   "--over-trials", 4096)
+
+    def test_fit(self):
+        few, free = {"field.rows": 3, "run.method": "moreau"}, {"forces.propulsion_N": (5, 9)}
+        seen = gw.fit(FIELD, {"crossed": 20, "trapped": 60, "left side": 2}, free=free, trials=12288, set=few)
+        low, high = seen["numbers"][0]["interval_95"]
+        self.assertTrue(5 < low < high < 9)
+        with tempfile.TemporaryDirectory() as folder:
+            table = Path(folder) / "counts.csv"
+            table.write_text("ending,count\ncrossed,20\ntrapped,60\nleft side,2\n")
+            self.check(seen, "fit", FIELD, table, "--free", "forces.propulsion_N=5:9", "--trials", 12288, "--set", "field.rows=3", "--set",
+                       "run.method=moreau")
+        with self.assertRaises(gw.UsageError):
+            gw.fit(FIELD, {"crossed": 20, "trapped": 60}, free={"forces.push": (5, 9)})
 
     def test_landscape(self):
         with tempfile.TemporaryDirectory() as folder:

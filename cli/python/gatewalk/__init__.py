@@ -33,8 +33,8 @@ from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
 
 __version__: str = _core.version
 __all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError", "Sweep",
-           "TRAPPED", "Trace", "UsageError", "analyze", "build", "design", "from_counts", "from_passages", "gate", "landscape", "lattice", "load",
-           "merge", "options", "passages", "plan", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
+           "TRAPPED", "Trace", "UsageError", "analyze", "build", "design", "fit", "from_counts", "from_passages", "gate", "landscape", "lattice",
+           "load", "merge", "options", "passages", "plan", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
 
 
 class GatewalkWarning(UserWarning):
@@ -55,7 +55,7 @@ def _word(value: _t.Any) -> str:
 #: Options that a process has no use for, and those that the module itself gives.
 _NOT_HERE = {"quiet", "json", "checkpoint", "resume", "max-time", "shard", "part", "output"}
 #: Options that may be given several times.
-_REPEATED = {"set", "versus", "vary", "start", "row", "bins", "observed"}
+_REPEATED = {"set", "versus", "vary", "start", "row", "bins", "observed", "over", "free"}
 
 
 def _words_of(given: dict[str, _t.Any]) -> list[str]:
@@ -70,6 +70,8 @@ def _words_of(given: dict[str, _t.Any]) -> list[str]:
             raise UsageError("threads: gatewalk.threads(n) sets them, for all that follows")
         if name in ("set", "versus", "vary") and isinstance(value, dict):
             value = [f"{k}={_word(v)}" for k, v in value.items()]
+        if name in ("over", "free") and isinstance(value, dict):
+            value = [f"{k}={low}:{high}" for k, (low, high) in value.items()]
         if name == "start":
             value = value.tolist() if hasattr(value, "tolist") else value
             if not isinstance(value, str) and not len(value):
@@ -479,6 +481,37 @@ def design(subject: _t.Any, *, changes: int | None = None, types: _t.Any = None,
         See `predict`.
     """
     return Result(_run("design", [subject], dict(changes=changes, types=types, accuracy=accuracy, seed=seed, progress=progress, **more)))
+
+
+def fit(subject: _t.Any, observed: _t.Any, *, free: _t.Any, trials: int | None = None, seed: int | None = None,
+        progress: bool | None = None, **more: _t.Any) -> Result:
+    """Which numbers of a scene an experiment speaks for: their posterior.
+
+    Parameters
+    ----------
+    subject : Scene, path, text or dict
+        A scene of gates.
+    observed : dict, DataFrame or path
+        What an experiment saw, as in `validate`; with columns trial,ending,gate_x,gate_y too.
+    free : dict
+        Numbers of the scene and their ranges, ``{"forces.propulsion_N": (5, 9)}``; six at most.
+    trials : int, optional
+        Bodies of the full dynamics, at all points of the ranges together; 400 000.
+    seed, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk fit``, such as ``inference_data="posterior.nc"``, which ArviZ reads.
+
+    Returns
+    -------
+    Result
+        ``numbers`` with their intervals, ``correlation``, ``p`` and more of ``gatewalk fit --json``.
+
+    Raises
+    ------
+    SceneError, UsageError
+        See `predict`.
+    """
+    with _table_file(observed) as path:
+        return Result(_run("fit", [subject, path], dict(free=free, trials=trials, seed=seed, progress=progress, **more)))
 
 
 def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,

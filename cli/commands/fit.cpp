@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "cli/render/fit.h"
+#include "cli/arguments.h"
+#include "cli/choosing.h"
+#include "cli/fitted.h"
+#include "cli/ranged.h"
+#include "cli/render/json.h"
+#include "cli/render/observed.h"
+#include "lattice/scene/scene_problem.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr int kMostScenes = 1000;
+
+std::vector<double> point_of(const Eigen::MatrixXd& draws, Eigen::Index draw) {
+  return {draws.row(draw).begin(), draws.row(draw).end()};
+}
+
+}  // namespace
+
+int run_fit(const Arguments& arguments) {
+  Options options(
+      "fit SCENE COUNTS.csv --free KEY=LOW:HIGH [options]",
+      "Which numbers of the scene an experiment speaks for: their posterior, all of them anywhere "
+      "in their\n"
+      "ranges alike before. The chances of final gates and endings come from full trials at points "
+      "of the\n"
+      "ranges, more and more of them where the counts are likely. Counts: as of validate "
+      "--observed, of one start.",
+      "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
+      "forces.random_N=10:40");
+  options.scene();
+  options.positional("counts",
+                     "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; "
+                     "or trial,ending,gate_x,gate_y)",
+                     true);
+  options.add_texts("free", "KEY=LOW:HIGH",
+                    "a number of the scene and its range (at most " +
+                        std::to_string(lattice::kMostFitted) + "; may be repeated)");
+  options.add_count("trials", "N", "full trials, all points together", "400000");
+  options.add_texts("start", "D,VX,VY", "where bodies started (default: the scene's start)");
+  options.add_seed();
+  options.output_file(
+      "output", "FILE.toml",
+      "write the scene in which the counts are likeliest, with --scenes others too");
+  options.add_count(
+      "scenes", "N",
+      "with -o FILE.toml, write N scenes drawn from the posterior as FILE-1.toml, ...");
+  options.output_file("draws", "FILE.csv", "write the posterior, a line for each draw");
+  options.output_file("inference-data", "FILE.nc", "write it as ArviZ reads it (InferenceData)",
+                      Options::Content::binary);
+  options.add_kept();
+  options.add_strict();
+  options.add_figure("the posterior of each number and of each pair");
+  if (!options.parse(arguments)) return kFine;
+  Subject s = scene_to_run(options, "counts are");
+  const auto ranged = ranges_of(options, s, "free", lattice::kMostFitted);
+  if (!ranged) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
+  const auto numbers = static_cast<int>(ranged->ranges().size());
+  const lattice::FitOptions how{
+      .trials = options.count("trials", lattice::least_trials_of_fit(numbers)),
+      .seed = options.seed()};
+  if (options.has("scenes") && !options.has("output"))
+    throw UsageError("--scenes: needs -o FILE.toml, beside which they are written");
+  std::vector<std::string> scenes;
+  if (options.has("scenes"))
+    scenes = files_of_draws(options, options.count("scenes", 1, kMostScenes));
+  const lattice::Observed observed =
+      lattice::read_observed({options.text("counts")}, s.scene->field);
+  options.warn(who_went_back(observed));
+  options.warn(not_listed(observed, s.scene->field));
+  s.settle(options);
+  const FittedScene fitted{
+      ranged->ranges(), s.scene->field, s.settled,
+      lattice::fit(numbers, problem_at(*ranged, s), observed, how, options.work())};
+  const lattice::Fit& fit = fitted.fit;
+  Json json = to_json(fitted);
+  const Json made_by = s.made_by(options);
+  json["made_by"] = made_by;
+  options.give_out(json, table_of(fitted));
+  if (options.has("draws")) options.write(options.text("draws"), draws_csv(fitted));
+  if (options.has("inference-data"))
+    options.write(options.text("inference-data"), inference_data(fitted, made_by));
+  if (const std::string path = options.text("output"); !path.empty()) {
+    options.write(path, lattice::to_toml(scene_at(*ranged, s, point_of(fit.draws, fit.best))));
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      const auto draw =
+          (2 * static_cast<Eigen::Index>(i) + 1) * fit.draws.rows() / (2 * std::ssize(scenes));
+      options.write(scenes[i], lattice::to_toml(scene_at(*ranged, s, point_of(fit.draws, draw))));
+    }
+  }
+  for (const std::string& warning : warnings_of(fitted)) options.warn(warning);
+  const int exit = status_of(options, fit.health);
+  options.draw([&] { return figure_of(fitted); });
+  return exit;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// A posterior as JSON, as a table, as CSV, as a picture, and as InferenceData.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/render/figure.h"
+#include "cli/render/json_fwd.h"
+#include "lattice/field.h"
+#include "lattice/scene/ranges.h"
+#include "lattice/scene/settle.h"
+#include "lattice/study/fit.h"
+
+namespace gatewalk::cli {
+
+struct FittedScene {
+  std::vector<lattice::NumberRange> ranges;
+  lattice::FieldParams field;
+  std::optional<lattice::Settled> method;  // that was chosen
+  lattice::Fit fit;
+
+  /// Of a number in its unit.
+  [[nodiscard]] double value(std::size_t number, double at) const {
+    return ranges[number].low + at * (ranges[number].high - ranges[number].low);
+  }
+};
+
+[[nodiscard]] Json to_json(const FittedScene& f);
+[[nodiscard]] std::string table_of(const FittedScene& f);
+/// A line for each draw: the numbers in their units, and the log likelihood.
+[[nodiscard]] std::string draws_csv(const FittedScene& f);
+/// Each number's posterior, and that of each pair.
+[[nodiscard]] Figure figure_of(const FittedScene& f);
+/// ArviZ's InferenceData as a NetCDF-4 file: posterior and sample_stats (chain, draw),
+/// posterior_predictive (chain, draw, outcome), observed_data (outcome).
+[[nodiscard]] std::string inference_data(const FittedScene& f, const Json& made_by);
+
+/// What keeps the posterior from being taken at face value; empty if nothing does.
+[[nodiscard]] std::vector<std::string> warnings_of(const FittedScene& f);
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "cli/render/fit.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+constexpr std::size_t kBins = 24;  // of a panel
+
+/// Where the draws of a number lie, in its unit: all but a thousandth at each end, with a margin.
+std::array<double, 2> shown_range(const FittedScene& f, std::size_t k) {
+  std::vector<double> sorted(f.fit.draws.col(static_cast<Eigen::Index>(k)).begin(),
+                             f.fit.draws.col(static_cast<Eigen::Index>(k)).end());
+  std::sort(sorted.begin(), sorted.end());
+  const double low = sorted[sorted.size() / 1000],
+               high = sorted[sorted.size() - 1 - sorted.size() / 1000];
+  const double margin = std::max(0.1 * (high - low), 1e-6);
+  return {f.value(k, std::max(0.0, low - margin)), f.value(k, std::min(1.0, high + margin))};
+}
+
+std::size_t bin_of(double x, const std::array<double, 2>& range) {
+  const double at = (x - range[0]) / (range[1] - range[0]) * static_cast<double>(kBins);
+  return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(kBins) - 1.0));
+}
+double middle(std::size_t bin, const std::array<double, 2>& range) {
+  return range[0] +
+         (static_cast<double>(bin) + 0.5) / static_cast<double>(kBins) * (range[1] - range[0]);
+}
+
+}  // namespace
+
+Figure figure_of(const FittedScene& f) {
+  const std::size_t numbers = f.ranges.size();
+  constexpr double kLeft = 84, kTop = 40, kGap = 10;
+  const double side = std::min(300.0, (488.0 - kLeft + kGap) / static_cast<double>(numbers) - kGap);
+  const Sheet sheet{static_cast<int>(kTop + static_cast<double>(numbers) * (side + kGap) + 60)};
+  std::string out =
+      std::string("set multiplot\n") + kSequential +
+      sheet.text("posterior after " + std::to_string(f.fit.observed) + " trials, with 95 %", 8, 18);
+  std::vector<std::array<double, 2>> ranges;
+  for (std::size_t k = 0; k < numbers; ++k) ranges.push_back(shown_range(f, k));
+  const Eigen::Index draws = f.fit.draws.rows();
+  for (std::size_t down = 0; down < numbers; ++down)
+    for (std::size_t right = 0; right <= down; ++right) {
+      const double left = kLeft + static_cast<double>(right) * (side + kGap),
+                   top = kTop + static_cast<double>(down) * (side + kGap);
+      const std::string name = "$p" + std::to_string(down) + "_" + std::to_string(right);
+      const bool lowest = down + 1 == numbers;
+      // Names of many letters, read from the last dot on where panels are small.
+      const auto axis_name = [&](std::size_t k) {
+        const std::string& key = f.ranges[k].key;
+        return literal(numbers > 2 ? key.substr(key.rfind('.') + 1) : key);
+      };
+      const auto steps = [](const std::array<double, 2>& range) {
+        return digits(tic_step(range[1] - range[0], 2.0));
+      };
+      out += sheet.margins({left, left + side, top, top + side}) + kFrame + "set xrange [" +
+             digits(ranges[right][0]) + ":" + digits(ranges[right][1]) + "]\nset xtics " +
+             steps(ranges[right]) + "\n" + (lowest ? "" : "set format x ''\n") +
+             (lowest ? Sheet::x_axis(axis_name(right)) : "set xlabel\n");
+      if (right == down) {
+        std::vector<double> counts(kBins, 0.0);
+        for (Eigen::Index i = 0; i < draws; ++i)
+          counts[bin_of(f.value(down, f.fit.draws(i, static_cast<Eigen::Index>(down))),
+                        ranges[down])] += 1.0;
+        std::string data;
+        for (std::size_t b = 0; b < kBins; ++b)
+          data += digits(middle(b, ranges[down])) + " " + digits(counts[b]) + "\n";
+        const lattice::FittedNumber& n = f.fit.numbers[down];
+        out += data_block(name, data) + "set border 1\nunset ytics\nset ylabel\nset yrange [0:*]\n";
+        for (const double end : n.interval) {
+          const std::string x = digits(f.value(down, end));
+          out += "set arrow from " + x + ", graph 0 to " + x +
+                 ", graph 1 nohead front dt 2 lw 1.2 lt -1\n";
+        }
+        out += "plot " + name + " using 1:2 with boxes fs solid lc rgb '" + kFirstColour +
+               "'\nunset arrow\n";
+      } else {
+        std::vector<double> counts(kBins * kBins, 0.0);
+        for (Eigen::Index i = 0; i < draws; ++i)
+          counts[bin_of(f.value(down, f.fit.draws(i, static_cast<Eigen::Index>(down))),
+                        ranges[down]) *
+                     kBins +
+                 bin_of(f.value(right, f.fit.draws(i, static_cast<Eigen::Index>(right))),
+                        ranges[right])] += 1.0;
+        std::string data;
+        for (std::size_t b = 0; b < counts.size(); ++b)
+          if (counts[b] > 0.0)
+            data += digits(middle(b % kBins, ranges[right])) + " " +
+                    digits(middle(b / kBins, ranges[down])) + " " + digits(counts[b]) + "\n";
+        const auto half = [](const std::array<double, 2>& range) {
+          return 0.5 * (range[1] - range[0]) / static_cast<double>(kBins);
+        };
+        out += data_block(name, data) + "set yrange [" + digits(ranges[down][0]) + ":" +
+               digits(ranges[down][1]) + "]\nset ytics " + steps(ranges[down]) + "\n" +
+               (right == 0 ? "set format y '%g'\nset ylabel " + axis_name(down) + " offset 0.8,0\n"
+                           : "set format y ''\nset ylabel\n") +
+               "unset colorbox\nplot " + name + cells(half(ranges[right]), half(ranges[down])) +
+               "\n";
+      }
+      out += "unset label\nset format x '%g'\nset format y '%g'\n";
+    }
+  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
+}
+
+}  // namespace gatewalk::cli

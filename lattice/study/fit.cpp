@@ -1,0 +1,593 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/study/fit.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "dynamics/base/points.h"
+#include "lattice/reference.h"
+#include "lattice/statistics/draws.h"
+#include "lattice/statistics/ensemble.h"
+#include "lattice/statistics/outcome_model.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kPoints = 128;          // of a round; of the last one twice as many
+constexpr int kRounds = 10;             // at most, before the last
+constexpr int kParts = 12;              // of the trials: one a round, what is left in the last
+constexpr std::int64_t kLeastEach = 8;  // trials of a point, for each number
+constexpr std::int64_t kFirstTrial = std::int64_t{1} << 51;  // numbers that no other trials have
+constexpr double kLeastShare = 0.01;       // of all trials, in a group of neighbouring gates
+constexpr std::int64_t kFewestAlone = 50;  // trials of a group that is an ending's last
+constexpr double kMostParameters = 600.0;  // of a model of degree 2: what is fitted in a second
+constexpr int kMostDegree = 4;
+constexpr Index kWalkers = 32;  // of a walk
+constexpr Index kWalks = 16;    // each with coefficients of its own
+constexpr int kSteps = 400, kFirstSteps = 200, kEvery = 50;
+constexpr int kBoundsOfEach = 8;    // coefficients of a bound beside the best
+constexpr Index kMostNarrowed = 8;  // a round leaves one point in so many at least
+constexpr double kOutside = 1e-4;   // of the posterior, that a round's points may leave out
+
+/// The outcome of each trial at some points, one point behind the other. -1: a run broke.
+struct PointOutcomes {
+  std::vector<double> points;
+  std::vector<std::int32_t> outcomes;
+  Health health;
+};
+template <class Archive>
+void each_part(Archive& archive, PointOutcomes& p) {
+  archive(p.points, p.outcomes, p.health);
+}
+
+/// Outcomes in an order in which neighbours are alike: by ending, and gates row by row, there and
+/// back again.
+std::vector<std::size_t> neighbours(const FittedOutcomes& of, const FieldParams& field) {
+  std::vector<std::size_t> order;
+  const auto columns = static_cast<std::size_t>(field.columns);
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    if (of.gates == 0) {
+      order.push_back(i);
+      continue;
+    }
+    const std::size_t row = i % of.gates / columns, column = i % columns;
+    order.push_back(row % 2 == 0 ? i : i - column + (columns - 1 - column));
+  }
+  return order;
+}
+
+class Fitter {
+ public:
+  Fitter(int numbers, const ProblemAt& problem_at, const Observed& observed,
+         const FitOptions& options, const Work& work)
+      : numbers_(numbers),
+        problem_at_(problem_at),
+        options_(options),
+        work_(work),
+        field_(problem_at(std::vector<double>(static_cast<std::size_t>(numbers), 0.5)).field) {
+    const SeenEndings& seen = observed.seen;
+    FittedOutcomes& of = fit_.outcomes;
+    const auto require = [](bool holds, const char* what) {
+      if (!holds) throw std::invalid_argument(std::string("fit: ") + what);
+    };
+    const bool both = observed.gates_by_ending[0].size() > 0;
+    require(both || !(seen.has_gates() && seen.has_endings()),
+            "final gates and endings were counted, and not which belong together: give a line for "
+            "each trial, or one of the two");
+    require(seen.has_gates() || seen.has_endings(), "nothing was counted");
+    of.endings = seen.has_endings();
+    if (seen.has_gates()) {
+      require(seen.final_gates.rows() == field_.rows && seen.final_gates.cols() == field_.columns,
+              "counts are of a field of another size");
+      of.gates = static_cast<std::size_t>(seen.final_gates.size());
+    }
+    const auto add = [&](const CellCounts& gates) {
+      seen_.insert(seen_.end(), gates.data(), gates.data() + gates.size());
+    };
+    if (both)
+      for (const CellCounts& gates : observed.gates_by_ending) add(gates);
+    else if (of.endings)
+      seen_.assign(seen.endings.begin(), seen.endings.end());
+    else
+      add(seen.final_gates);
+    fit_.observed = std::accumulate(seen_.begin(), seen_.end(), std::int64_t{0});
+    order_ = neighbours(of, field_);
+  }
+
+  [[nodiscard]] Fit carry_out() {
+    const Stopwatch watch;
+    const std::int64_t each = options_.trials / kParts / kPoints;
+    run(first_points(), each);
+    for (fit_.rounds = 1;; ++fit_.rounds) {
+      learn();
+      // Where half of the points stay another round would be hardly nearer.
+      const bool is_near = narrow() > 0.5 && fit_.misfit <= Fit::kPermittedMisfit;
+      if (is_near || fit_.rounds == kRounds) break;
+      run(new_points(kPoints), each);
+    }
+    run(new_points(2 * kPoints), (options_.trials - fit_.trials) / (2 * kPoints));
+    learn();
+    draw();
+    summarise();
+    const VectorXd best = fit_.draws.row(fit_.best).transpose();
+    if (const Problem problem = problem_at_({best.begin(), best.end()}); problem.check)
+      problem.check(fit_.health.runs / 10, options_.seed, fit_.health, work_);
+    fit_.seconds = watch.seconds();
+    return std::move(fit_);
+  }
+
+ private:
+  /// Where the likelihood of a round's model is not small, whichever of these coefficients it has.
+  struct Bound {
+    std::shared_ptr<const OutcomeModel> model;
+    VectorXd observed;  // (groups)
+    std::vector<std::pair<OutcomeModel::Coefficients, double>> least;
+  };
+
+  [[nodiscard]] static double likelihood(const OutcomeModel& model,
+                                         const OutcomeModel::Coefficients& coefficients,
+                                         const VectorXd& observed, const VectorXd& point) {
+    VectorXd logs;
+    model.log_chances(coefficients, point, logs);
+    return observed.dot(logs);
+  }
+  /// How far the log likelihood may fall before the point is outside.
+  [[nodiscard]] static double margin(const Bound& b, const VectorXd& point) {
+    double most = -HUGE_VAL;
+    for (const auto& [coefficients, least] : b.least)
+      most = std::max(most, likelihood(*b.model, coefficients, b.observed, point) - least);
+    return most;
+  }
+  [[nodiscard]] bool inside(const VectorXd& point) const {
+    if ((point.array() < 0.0).any() || (point.array() > 1.0).any()) return false;
+    return std::all_of(bounds_.begin(), bounds_.end(), [&](const Bound& b) {
+      return std::any_of(b.least.begin(), b.least.end(), [&](const auto& of) {
+        return likelihood(*b.model, of.first, b.observed, point) >= of.second;
+      });
+    });
+  }
+  [[nodiscard]] Random random(std::uint64_t what) const {
+    return {Purpose::fit, {options_.seed, what, static_cast<std::uint64_t>(fit_.rounds)}};
+  }
+
+  [[nodiscard]] MatrixXd first_points() const {
+    Random chance = random(0);
+    const ScrambledPoints points(chance);
+    MatrixXd all(kPoints, numbers_);
+    for (Index i = 0; i < kPoints; ++i) {
+      const Point at = points(static_cast<std::uint32_t>(i));
+      for (Index k = 0; k < numbers_; ++k) all(i, k) = at[static_cast<std::size_t>(k)];
+    }
+    return all;
+  }
+
+  /// Uniform where all bounds hold, from points and draws that are there.
+  [[nodiscard]] MatrixXd new_points(Index count) {
+    Random chance = random(1);
+    MatrixXd from(numbers_, count);
+    const Index known = inside_.cols();
+    for (Index i = 0; i < count; ++i)
+      from.col(i) = i < known ? VectorXd(inside_.col(i)) : VectorXd(draws_.col(i % draws_.cols()));
+    Ensemble walk([this](const VectorXd& at) { return inside(at) ? 0.0 : -HUGE_VAL; },
+                  std::move(from));
+    for (int step = 0; step < kFirstSteps; ++step) walk.step(chance);
+    return walk.walkers().transpose();
+  }
+
+  void run(const MatrixXd& points, std::int64_t each) {
+    const std::string name = "points of round " + std::to_string(fit_.rounds + 1) +
+                             (points.rows() > kPoints ? ", the last" : "");
+    const Index before = points_.rows();
+    points_.conservativeResize(before + points.rows(), numbers_);
+    points_.bottomRows(points.rows()) = points;
+    work_.in_kept_pieces(
+        {name, {0, points.rows()}}, PointOutcomes{},
+        [&](TrialRange range) { return outcomes_at(points, range, each); },
+        [&](const PointOutcomes& done) { take(done, each); });
+    fit_.trials += each * points.rows();
+  }
+
+  [[nodiscard]] PointOutcomes outcomes_at(const MatrixXd& points, TrialRange range,
+                                          std::int64_t each) const {
+    const auto count = static_cast<std::size_t>(range.count);
+    const auto trials = static_cast<std::size_t>(each);
+    PointOutcomes all{{}, std::vector<std::int32_t>(count * trials), {}};
+    for (std::int64_t i = range.first; i < range.first + range.count; ++i)
+      all.points.insert(all.points.end(), points.row(i).begin(), points.row(i).end());
+    std::vector<Health> health(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      const std::int64_t number = range.first + static_cast<std::int64_t>(i);
+      const VectorXd point = points.row(number).transpose();
+      const Problem problem = problem_at_({point.begin(), point.end()});
+      FieldTrials done;
+      health[i] = run_field(problem.cells, problem.field, problem.start, options_.seed,
+                            {kFirstTrial + fit_.trials + number * each, each}, &done)
+                      .health;
+      for (std::size_t t = 0; t < trials; ++t)
+        all.outcomes[i * trials + t] = done.endings[t] ? outcome(done, t) : -1;
+    });
+    for (const Health& h : health) all.health += h;
+    return all;
+  }
+  [[nodiscard]] std::int32_t outcome(const FieldTrials& done, std::size_t trial) const {
+    const FittedOutcomes& of = fit_.outcomes;
+    const auto ending = static_cast<std::size_t>(*done.endings[trial]);
+    const auto gate = static_cast<std::size_t>(done.final_gates[trial]);
+    if (of.gates == 0) return static_cast<std::int32_t>(ending);
+    return static_cast<std::int32_t>(of.endings ? ending * of.gates + gate : gate);
+  }
+
+  /// Points of later rounds follow from earlier ones, by logarithms that other machines may round
+  /// otherwise: what was kept there is not mixed with what is asked here.
+  void take(const PointOutcomes& done, std::int64_t each) {
+    const auto trials = static_cast<std::size_t>(each);
+    const std::size_t count = done.outcomes.size() / trials, first = ends_.size();
+    bool same = done.outcomes.size() == count * trials &&
+                done.points.size() == count * static_cast<std::size_t>(numbers_) &&
+                first + count <= static_cast<std::size_t>(points_.rows());
+    for (std::size_t i = 0; same && i < done.points.size(); ++i)
+      same = done.points[i] == points_(static_cast<Index>(first) + static_cast<Index>(i) / numbers_,
+                                       static_cast<Index>(i) % numbers_);
+    for (const std::int32_t o : done.outcomes)
+      same = same && o >= -1 && o < static_cast<std::int32_t>(order_.size());
+    if (!same)
+      throw std::runtime_error(
+          "fit: kept pieces are of other points than this run's, as another kind of machine may "
+          "make them: begin without them");
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto begin = done.outcomes.begin() + static_cast<std::ptrdiff_t>(i * trials);
+      std::copy_if(begin, begin + each, std::back_inserter(ended_), [](auto o) { return o >= 0; });
+      ends_.push_back(ended_.size());
+    }
+    fit_.health += done.health;
+  }
+
+  /// Of a point's trials.
+  template <class Count>
+  void each_outcome(Index point, const Count& count) const {
+    for (std::size_t i = point == 0 ? 0 : ends_[static_cast<std::size_t>(point) - 1];
+         i < ends_[static_cast<std::size_t>(point)]; ++i)
+      count(static_cast<std::size_t>(ended_[i]));
+  }
+
+  /// The best model of the points where all bounds hold.
+  void learn() {
+    std::vector<Index> at;
+    for (Index i = 0; i < points_.rows(); ++i)
+      if (inside(points_.row(i).transpose())) at.push_back(i);
+    used_ = points_(at, Eigen::all);
+    std::vector<std::int64_t> all(order_.size(), 0);
+    for (const Index point : at) each_outcome(point, [&](std::size_t outcome) { ++all[outcome]; });
+    group(all);
+    const Index groups = std::ssize(fit_.groups);
+    std::vector<Index> group_of(order_.size(), 0);
+    observed_ = VectorXd::Zero(groups);
+    for (Index g = 0; g < groups; ++g) {
+      const OutcomeGroup& group = fit_.groups[static_cast<std::size_t>(g)];
+      observed_[g] = static_cast<double>(group.observed);
+      for (const std::size_t outcome : group.outcomes) group_of[outcome] = g;
+    }
+    OutcomeCounts seen{used_, MatrixXd::Zero(used_.rows(), groups)};
+    for (Index i = 0; i < used_.rows(); ++i)
+      each_outcome(at[static_cast<std::size_t>(i)],
+                   [&](std::size_t outcome) { seen.counts(i, group_of[outcome]) += 1.0; });
+    model_.reset();
+    for (int degree = 1; degree <= kMostDegree; ++degree) {
+      const auto terms = OutcomeModel::terms(numbers_, degree);
+      if (degree > 1 && (2 * terms > used_.rows() ||
+                         static_cast<double>(terms * (groups - 1)) > 2.0 * kMostParameters))
+        break;
+      try {
+        auto next = std::make_shared<const OutcomeModel>(seen, degree);
+        if (!model_ || next->criterion() < model_->criterion()) model_ = std::move(next);
+      } catch (const std::runtime_error&) {
+        if (degree == 1) throw;
+        break;
+      }
+    }
+    fit_.degree = model_->degree();
+    fit_.points = used_.rows();
+    fit_.misfit = std::sqrt(2.0 * static_cast<double>(fit_.observed) * model_->lack_of_fit());
+  }
+
+  /// Neighbours go together until they are enough; trials of different endings only where so few
+  /// end so that nothing could be learnt from them alone.
+  void group(const std::vector<std::int64_t>& all) {
+    const std::int64_t trials = std::accumulate(all.begin(), all.end(), std::int64_t{0});
+    const double share = std::max(
+        kLeastShare, static_cast<double>(OutcomeModel::terms(numbers_, 2)) / kMostParameters);
+    const auto enough = std::max(
+        kFewestAlone, static_cast<std::int64_t>(std::ceil(share * static_cast<double>(trials))));
+    const std::size_t of_ending = std::max<std::size_t>(1, fit_.outcomes.gates);
+    std::int64_t size = 0;   // of the last group
+    std::size_t ending = 0;  // its last one
+    fit_.groups.clear();
+    fit_.never = 0;
+    // Alone where the experiment saw it.
+    const auto is_enough = [&](bool whole_ending) {
+      if (!whole_ending) return size >= enough;
+      return size >= kFewestAlone || (size > 0 && fit_.groups.back().observed > 0);
+    };
+    for (const std::size_t outcome : order_) {
+      if (all[outcome] == 0 && seen_[outcome] == 0) continue;
+      if (all[outcome] == 0) fit_.never += seen_[outcome];
+      if (fit_.groups.empty() || is_enough(outcome / of_ending != ending)) {
+        fit_.groups.emplace_back();
+        size = 0;
+      }
+      ending = outcome / of_ending;
+      fit_.groups.back().outcomes.push_back(outcome);
+      fit_.groups.back().observed += seen_[outcome];
+      size += all[outcome];
+    }
+    if (fit_.groups.size() > 1 && !is_enough(true)) {
+      const OutcomeGroup last = std::move(fit_.groups.back());
+      fit_.groups.pop_back();
+      OutcomeGroup& into = fit_.groups.back();
+      into.outcomes.insert(into.outcomes.end(), last.outcomes.begin(), last.outcomes.end());
+      into.observed += last.observed;
+    }
+    if (fit_.groups.size() < 2)
+      throw std::invalid_argument(
+          "fit: nearly all trials end alike anywhere in the ranges: how they end tells nothing");
+  }
+
+  [[nodiscard]] Ensemble walk_of(const OutcomeModel::Coefficients& coefficients) const {
+    std::vector<std::pair<double, Index>> best;
+    for (Index i = 0; i < used_.rows(); ++i)
+      best.emplace_back(-likelihood(*model_, coefficients, observed_, used_.row(i).transpose()), i);
+    std::sort(best.begin(), best.end());
+    MatrixXd from(numbers_, kWalkers);
+    for (Index i = 0; i < kWalkers; ++i)
+      from.col(i) = used_.row(best[static_cast<std::size_t>(i)].second).transpose();
+    return {[this, coefficients](const VectorXd& at) {
+              return inside(at) ? likelihood(*model_, coefficients, observed_, at) : -HUGE_VAL;
+            },
+            std::move(from)};
+  }
+
+  /// A bound more. How many of the points keep it.
+  [[nodiscard]] double narrow() {
+    Random chance = random(2);
+    Ensemble walk = walk_of(model_->best());
+    double most = -HUGE_VAL;
+    draws_.resize(numbers_, 0);
+    for (int step = 0; step < kFirstSteps + kSteps; ++step) {
+      walk.step(chance);
+      most = std::max(most, walk.log_densities().maxCoeff());
+      if (step < kFirstSteps || step % kEvery != 0) continue;
+      draws_.conservativeResize(numbers_, draws_.cols() + walk.walkers().cols());
+      draws_.rightCols(walk.walkers().cols()) = walk.walkers();
+    }
+    const boost::math::chi_squared squares(numbers_);
+    const double below =
+        2.0 * fit_.misfit + 0.5 * boost::math::quantile(boost::math::complement(squares, kOutside));
+    // But no fewer points than these are kept: what is wrong far from the best is seen later.
+    std::vector<double> likelihoods;
+    for (Index i = 0; i < used_.rows(); ++i)
+      likelihoods.push_back(
+          likelihood(*model_, model_->best(), observed_, used_.row(i).transpose()));
+    std::sort(likelihoods.begin(), likelihoods.end(), std::greater<>());
+    const double least =
+        std::min(most - below, likelihoods[static_cast<std::size_t>(used_.rows() / kMostNarrowed)]);
+    Bound bound{model_, observed_, {{model_->best(), least}}};
+    for (int k = 0; k < kBoundsOfEach; ++k) {
+      auto coefficients = model_->drawn(chance);
+      double greatest = -HUGE_VAL;
+      const auto look = [&](const VectorXd& at) {
+        greatest = std::max(greatest, likelihood(*model_, coefficients, observed_, at));
+      };
+      for (Index i = 0; i < used_.rows(); ++i) look(used_.row(i).transpose());
+      for (Index i = 0; i < draws_.cols(); ++i) look(draws_.col(i));
+      bound.least.emplace_back(std::move(coefficients), greatest - (most - least));
+    }
+    bounds_.push_back(std::move(bound));
+    std::vector<Index> in;
+    for (Index i = 0; i < draws_.cols(); ++i)
+      if (inside(draws_.col(i))) in.push_back(i);
+    draws_ = MatrixXd(draws_(Eigen::all, in));
+    inside_.resize(numbers_, 0);
+    for (Index i = 0; i < used_.rows(); ++i)
+      if (inside(used_.row(i).transpose())) {
+        inside_.conservativeResize(numbers_, inside_.cols() + 1);
+        inside_.rightCols(1) = used_.row(i).transpose();
+      }
+    const double share = static_cast<double>(inside_.cols()) / static_cast<double>(used_.rows());
+    fit_.volume *= share;
+    return share;
+  }
+
+  /// From the posterior, each walk with coefficients that are drawn.
+  void draw() {
+    std::vector<MatrixXd> walked(static_cast<std::size_t>(kWalks));
+    coefficients_.resize(walked.size());
+    tbb::parallel_for(std::size_t{0}, walked.size(), [&](std::size_t w) {
+      Random chance = random(3 + w);
+      coefficients_[w] = model_->drawn(chance);
+      Ensemble walk = walk_of(coefficients_[w]);
+      const Index walkers = walk.walkers().cols();
+      MatrixXd& all = walked[w];
+      all.resize(numbers_, walkers * (kSteps / kEvery));
+      for (int step = 1; step <= kFirstSteps + kSteps; ++step) {
+        walk.step(chance);
+        if (step <= kFirstSteps || step % kEvery != 0) continue;
+        const Index at = walkers * ((step - kFirstSteps) / kEvery - 1);
+        all.middleCols(at, walkers) = walk.walkers();
+      }
+    });
+    const Index of_each = walked[0].cols();
+    fit_.draws.resize(of_each * kWalks, numbers_);
+    fit_.log_likelihoods.resize(of_each * kWalks);
+    for (Index w = 0; w < kWalks; ++w) {
+      fit_.draws.middleRows(w * of_each, of_each) = walked[static_cast<std::size_t>(w)].transpose();
+      fit_.walks.insert(fit_.walks.end(), static_cast<std::size_t>(of_each), w);
+    }
+    for (Index i = 0; i < fit_.draws.rows(); ++i)
+      fit_.log_likelihoods[i] =
+          likelihood(*model_, model_->best(), observed_, fit_.draws.row(i).transpose());
+    fit_.log_likelihoods.maxCoeff(&fit_.best);
+  }
+
+  void summarise() {
+    const Index draws = fit_.draws.rows();
+    const Eigen::RowVectorXd mean = fit_.draws.colwise().mean();
+    const MatrixXd from_mean = fit_.draws.rowwise() - mean;
+    const MatrixXd covariance = from_mean.transpose() * from_mean / static_cast<double>(draws - 1);
+    const VectorXd sd = covariance.diagonal().cwiseSqrt();
+    const VectorXd by_sd = (sd.array() > 0.0).select(sd.cwiseInverse(), 0.0);
+    fit_.correlation = by_sd.asDiagonal() * covariance * by_sd.asDiagonal();
+    fit_.correlation.diagonal().setOnes();
+    Index near = 0;
+    for (Index i = 0; i < draws; ++i)
+      near += std::any_of(bounds_.begin(), bounds_.end(), [&](const Bound& b) {
+        return margin(b, fit_.draws.row(i).transpose()) < 1.0;
+      });
+    fit_.near_bounds = static_cast<double>(near) / static_cast<double>(draws);
+    for (Index k = 0; k < numbers_; ++k) {
+      std::vector<double> sorted(fit_.draws.col(k).begin(), fit_.draws.col(k).end());
+      std::sort(sorted.begin(), sorted.end());
+      const auto at = [&](double share) {
+        return sorted[static_cast<std::size_t>(share * static_cast<double>(draws - 1))];
+      };
+      FittedNumber number{.mean = mean[k], .sd = sd[k], .median = at(0.5)};
+      number.interval = {at(0.025), at(0.975)};
+      number.best = fit_.draws(fit_.best, k);
+      double from_flat = 0.0;  // Kolmogorov's distance of the posterior from the range alone
+      for (std::size_t i = 0; i < sorted.size(); ++i)
+        from_flat = std::max(
+            from_flat, std::abs(sorted[i] - static_cast<double>(i) / static_cast<double>(draws)));
+      constexpr double kHardlyMore = 0.15;
+      number.told = from_flat > kHardlyMore;
+      constexpr double kEdge = 0.02, kOften = 0.05;  // flat draws: 0.02 of all
+      const auto often = [&](auto count) {
+        return number.told && static_cast<double>(count) > kOften * static_cast<double>(draws);
+      };
+      number.goes_on = {
+          often(std::lower_bound(sorted.begin(), sorted.end(), kEdge) - sorted.begin()),
+          often(sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), 1.0 - kEdge))};
+      walks_of(k, number);
+      fit_.numbers.push_back(number);
+    }
+    predict();
+  }
+
+  /// What differs from walk to walk beyond what their length makes, their coefficients make.
+  void walks_of(Index k, FittedNumber& number) {
+    const Index of_each = fit_.draws.rows() / kWalks, half = of_each / 2;
+    VectorXd means(kWalks), differences(kWalks);
+    double within = 0.0;
+    for (Index w = 0; w < kWalks; ++w) {
+      const auto all = fit_.draws.col(k).segment(w * of_each, of_each);
+      means[w] = all.mean();
+      differences[w] = all.head(half).mean() - all.tail(half).mean();
+      within +=
+          (all.array() - means[w]).square().sum() / static_cast<double>((of_each - 1) * kWalks);
+    }
+    const double by_length = differences.squaredNorm() / static_cast<double>(4 * kWalks);
+    const double between = (means.array() - means.mean()).square().sum() / (kWalks - 1.0);
+    if (number.sd > 0.0)
+      number.by_runs = std::max(0.0, between - by_length) / (number.sd * number.sd);
+    // Gelman and Rubin's, of the halves of walks.
+    if (within > 0.0)
+      fit_.mixing = std::max(fit_.mixing, std::sqrt(1.0 + 2.0 * by_length / within));
+  }
+
+  /// Experiments like this one, at each draw.
+  void predict() {
+    const Index draws = fit_.draws.rows(), groups = observed_.size();
+    fit_.predicted.resize(draws, groups);
+    Random chance = random(2 + kWalks + 1);
+    VectorXd logs, mean = VectorXd::Zero(groups);
+    std::vector<std::int64_t> counts(static_cast<std::size_t>(groups));
+    Index further = 0;
+    for (Index i = 0; i < draws; ++i) {
+      const auto walk = static_cast<std::size_t>(fit_.walks[static_cast<std::size_t>(i)]);
+      model_->log_chances(coefficients_[walk], fit_.draws.row(i).transpose(), logs);
+      const VectorXd chances = logs.array().exp();
+      multinomial(fit_.observed, {chances.data(), static_cast<std::size_t>(groups)}, counts,
+                  chance);
+      for (Index g = 0; g < groups; ++g)
+        fit_.predicted(i, g) = static_cast<double>(counts[static_cast<std::size_t>(g)]);
+      const VectorXd expected = (static_cast<double>(fit_.observed) * chances)
+                                    .cwiseMax(std::numeric_limits<double>::min());
+      const auto distance = [&](const VectorXd& n) {
+        return (n - expected).cwiseAbs2().cwiseQuotient(expected).sum();
+      };
+      if (distance(fit_.predicted.row(i).transpose()) >= distance(observed_)) ++further;
+      mean += expected / static_cast<double>(draws);
+    }
+    fit_.p = static_cast<double>(further) / static_cast<double>(draws);
+    for (Index g = 0; g < groups; ++g) {
+      OutcomeGroup& group = fit_.groups[static_cast<std::size_t>(g)];
+      group.expected = mean[g];
+      std::vector<double> sorted(fit_.predicted.col(g).begin(), fit_.predicted.col(g).end());
+      std::sort(sorted.begin(), sorted.end());
+      group.interval = {sorted[static_cast<std::size_t>(draws / 40)],
+                        sorted[static_cast<std::size_t>(draws - 1 - draws / 40)]};
+    }
+  }
+
+  int numbers_;
+  const ProblemAt& problem_at_;
+  const FitOptions& options_;
+  const Work& work_;
+  FieldParams field_;
+  std::vector<std::int64_t> seen_;   // by outcome
+  std::vector<std::size_t> order_;   // of outcomes, neighbours together
+  MatrixXd points_;                  // (points x numbers), all
+  std::vector<std::int32_t> ended_;  // outcomes of their trials, one point behind the other
+  std::vector<std::size_t> ends_;    // of each point's among these
+  std::vector<Bound> bounds_;
+  MatrixXd used_;      // points of the model
+  VectorXd observed_;  // (groups)
+  std::shared_ptr<const OutcomeModel> model_;
+  MatrixXd draws_;   // (numbers x draws), of a round
+  MatrixXd inside_;  // (numbers x points), those of the model that its bound leaves
+  std::vector<OutcomeModel::Coefficients> coefficients_;  // by walk
+  Fit fit_;
+};
+
+}  // namespace
+
+std::size_t FittedOutcomes::size() const {
+  return std::max<std::size_t>(1, gates) * (endings ? markov::kEndings : 1);
+}
+
+std::int64_t least_trials_of_fit(int numbers) { return kLeastEach * kParts * kPoints * numbers; }
+
+bool Fit::settled() const {
+  constexpr double kPermittedMixing = 1.05, kPermittedByRuns = 0.2, kPermittedNear = 0.01;
+  return misfit <= kPermittedMisfit && mixing <= kPermittedMixing &&
+         near_bounds <= kPermittedNear &&
+         std::all_of(numbers.begin(), numbers.end(),
+                     [](const FittedNumber& n) { return n.by_runs <= kPermittedByRuns; });
+}
+
+Fit fit(int numbers, const ProblemAt& problem_at, const Observed& observed,
+        const FitOptions& options, const Work& work) {
+  if (numbers < 1 || numbers > kMostFitted)
+    throw std::invalid_argument("fit: 1 to " + std::to_string(kMostFitted) + " numbers");
+  if (options.trials < least_trials_of_fit(numbers))
+    throw std::invalid_argument("fit: " + std::to_string(numbers) + " numbers need " +
+                                std::to_string(least_trials_of_fit(numbers)) + " trials");
+  return Fitter(numbers, problem_at, observed, options, work).carry_out();
+}
+
+}  // namespace gatewalk::lattice

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/study/fit.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/beta.hpp>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/support/threads.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+constexpr int kLane = 8;
+
+/// A lane whose cells let bodies through by a chance, those of even and of odd rows by another.
+Problem two_lane(double even, double odd) {
+  Section section;
+  section.faces = {{"S", 0, 1, 0, 1, "from below", {}}};
+  section.coordinates = {{"x", "x", "1", "place", 1.0}};
+  Problem problem;
+  problem.cells.map.section = section;
+  for (const double chance : {even, odd}) {
+    problem.cells.cells.push_back(std::make_shared<FunctionCell>(section, [chance](Body& body) {
+      const Fate fate = body.random.uniform() < chance ? Fate::left : Fate::trapped;
+      body.entry = {0, {2.0 * body.random.uniform() - 1.0}};
+      return Passage{fate, body.entry};
+    }));
+    problem.cells.map.types.push_back({});
+  }
+  problem.cells.map.columns = 1;
+  for (int row = 0; row < kLane; ++row) problem.cells.map.type_of_cell.push_back(row % 2);
+  problem.field = {1, kLane, 0};
+  problem.start = {0, {0.5}};
+  return problem;
+}
+
+/// Of trials in that lane.
+Observed experiment(const Problem& problem, std::int64_t trials, std::uint64_t seed) {
+  FieldTrials each;
+  const FieldTally tally =
+      run_field(problem.cells, problem.field, problem.start, seed, {1'000'000'000, trials}, &each);
+  Observed o;
+  o.seen = {tally.final_gates, tally.endings};
+  o.gates_by_ending.fill(CellCounts::Zero(kLane, 1));
+  for (std::size_t i = 0; i < each.endings.size(); ++i)
+    ++o.gates_by_ending[static_cast<std::size_t>(*each.endings[i])](each.final_gates[i], 0);
+  return o;
+}
+
+/// How often bodies met cells of even (0) or odd rows, and how often they went on.
+std::array<std::int64_t, 2> passes(const Observed& o, int odd) {
+  const auto crossed = static_cast<std::size_t>(markov::Ending::far_edge);
+  std::int64_t met = 0, went_on = 0, here = o.seen.trials();
+  for (int row = 0; row < kLane; ++row) {
+    const std::int64_t on =
+        here - (o.seen.final_gates(row, 0) - o.gates_by_ending[crossed](row, 0));
+    if (row % 2 == odd) {
+      met += here;
+      went_on += on;
+    }
+    here = on;
+  }
+  return {met, went_on};
+}
+
+constexpr double kLow = 0.5, kHigh = 0.95;
+double chance_at(double point) { return kLow + point * (kHigh - kLow); }
+
+TEST(Fit, IsTheExactPosteriorOfOneNumber) {
+  const Observed o = experiment(two_lane(0.8, 0.8), 300, 7);
+  const Fit f = fit(
+      1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
+      {.trials = 200'000, .seed = 2});
+  EXPECT_TRUE(f.settled()) << f.misfit << " " << f.mixing << " " << f.numbers[0].by_runs;
+  const auto even = passes(o, 0), odd = passes(o, 1);
+  const double on = static_cast<double>(even[1] + odd[1]),
+               off = static_cast<double>(even[0] + odd[0]) - on;
+  const boost::math::beta_distribution<> exact(on + 1.0, off + 1.0);
+  const double sd = boost::math::standard_deviation(exact);
+  EXPECT_NEAR(chance_at(f.numbers[0].mean), boost::math::mean(exact), 0.25 * sd);
+  EXPECT_NEAR((kHigh - kLow) * f.numbers[0].sd, sd, 0.1 * sd);
+  EXPECT_NEAR(chance_at(f.numbers[0].interval[0]), boost::math::quantile(exact, 0.025), 0.4 * sd);
+  EXPECT_NEAR(chance_at(f.numbers[0].interval[1]), boost::math::quantile(exact, 0.975), 0.4 * sd);
+  EXPECT_TRUE(f.numbers[0].told);
+  EXPECT_EQ(f.observed, 300);
+  EXPECT_GT(f.p, 0.01);
+  std::int64_t grouped = 0;
+  for (const OutcomeGroup& g : f.groups) grouped += g.observed;
+  EXPECT_EQ(grouped, 300);
+}
+
+TEST(Fit, TellsTwoNumbersApart) {
+  const Observed o = experiment(two_lane(0.7, 0.9), 400, 8);
+  const Fit f = fit(
+      2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[1])); }, o,
+      {.trials = 200'000, .seed = 3});
+  EXPECT_TRUE(f.settled()) << f.misfit << " " << f.mixing;
+  for (const int k : {0, 1}) {
+    const auto [met, on] = passes(o, k);
+    const boost::math::beta_distribution<> exact(static_cast<double>(on) + 1.0,
+                                                 static_cast<double>(met - on) + 1.0);
+    const double sd = boost::math::standard_deviation(exact);
+    EXPECT_NEAR(chance_at(f.numbers[static_cast<std::size_t>(k)].mean), boost::math::mean(exact),
+                0.3 * sd);
+    EXPECT_NEAR((kHigh - kLow) * f.numbers[static_cast<std::size_t>(k)].sd, sd, 0.15 * sd);
+  }
+  EXPECT_LT(std::abs(f.correlation(0, 1)), 0.15);
+}
+
+TEST(Fit, SaysWhatTheDataCannotTell) {
+  const Observed o = experiment(two_lane(0.8, 0.8), 300, 9);
+  const Fit f = fit(
+      2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
+      {.trials = 200'000, .seed = 4});
+  EXPECT_TRUE(f.numbers[0].told);
+  EXPECT_FALSE(f.numbers[1].told);  // it changes nothing
+  // Only the product of these is seen.
+  const Fit product = fit(2,
+                          [](const std::vector<double>& x) {
+                            const double both = chance_at(x[0]) * (0.8 + 0.4 * x[1]) / 1.2;
+                            return two_lane(both, both);
+                          },
+                          o, {.trials = 200'000, .seed = 5});
+  EXPECT_LT(product.correlation(0, 1), -0.9);
+}
+
+TEST(Fit, SeesThatNoNumberFits) {
+  const Observed o = experiment(two_lane(0.95, 0.5), 400, 10);
+  const Fit f = fit(
+      1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
+      {.trials = 100'000, .seed = 6});
+  EXPECT_LT(f.p, 0.001);
+  const Observed above = experiment(two_lane(0.98, 0.98), 400, 11);
+  const Fit edge = fit(
+      1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); },
+      above, {.trials = 100'000, .seed = 6});
+  EXPECT_TRUE(edge.numbers[0].goes_on[1]);
+  EXPECT_FALSE(edge.numbers[0].goes_on[0]);
+}
+
+TEST(Fit, RanksOfTheTruthAreUniform) {  // simulation-based calibration (Talts et al. 2018)
+  constexpr int kExperiments = 40, kBins = 5;
+  std::array<std::array<int, kBins>, 2> ranks{};
+  for (int e = 0; e < kExperiments; ++e) {
+    Random random(Purpose::fit, {99, 0, static_cast<std::uint64_t>(e)});
+    const std::vector<double> truth{random.uniform(), random.uniform()};
+    const Observed o = experiment(two_lane(chance_at(truth[0]), chance_at(truth[1])), 60, 1000 + e);
+    const Fit f = fit(
+        2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[1])); },
+        o, {.trials = 25'000, .seed = static_cast<std::uint64_t>(e)});
+    for (const std::size_t k : {0U, 1U}) {
+      const double below =
+          static_cast<double>(
+              (f.draws.col(static_cast<Eigen::Index>(k)).array() < truth[k]).count()) /
+          static_cast<double>(f.draws.rows());
+      ++ranks[k][static_cast<std::size_t>(std::min(kBins - 1.0, kBins * below))];
+    }
+  }
+  for (const auto& of_number : ranks) {
+    double chi_squared = 0.0;
+    for (const int n : of_number)
+      chi_squared += std::pow(n - kExperiments / kBins, 2.0) / (double(kExperiments) / kBins);
+    EXPECT_LT(chi_squared, 18.5);  // p = 0.001 of four degrees of freedom
+  }
+}
+
+TEST(Fit, IsTheSameOnOneThread) {
+  const Observed o = experiment(two_lane(0.7, 0.8), 100, 12);
+  const auto one_fit = [&] {
+    return fit(
+        2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[1])); },
+        o, {.trials = 25'000, .seed = 1});
+  };
+  const Fit many = one_fit();
+  const Fit one = test::on_threads(1, one_fit);
+  EXPECT_EQ(many.draws, one.draws);
+  EXPECT_EQ(many.predicted, one.predicted);
+}
+
+TEST(Fit, RefusesWhatItCannotUse) {
+  const ProblemAt at = [](const std::vector<double>& x) { return two_lane(x[0], x[0]); };
+  Observed o = experiment(two_lane(0.7, 0.8), 100, 13);
+  EXPECT_THROW((void)fit(0, at, o, {}), std::invalid_argument);
+  EXPECT_THROW((void)fit(7, at, o, {}), std::invalid_argument);
+  EXPECT_THROW((void)fit(1, at, o, {.trials = 100}), std::invalid_argument);
+  EXPECT_THROW((void)fit(1, at, {}, {}), std::invalid_argument);
+  o.gates_by_ending = {};  // which belong together?
+  EXPECT_THROW((void)fit(1, at, o, {}), std::invalid_argument);
+  o.seen.endings = {};
+  o.seen.final_gates = CellCounts::Zero(3, 1);
+  EXPECT_THROW((void)fit(1, at, o, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# fit: which numbers of a scene an experiment speaks for.   fit_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+# An experiment whose push is known.
+small=("$scenes/field.toml" --set run.method=moreau --set field.rows=4)
+"$gatewalk" lattice "${small[@]}" --set forces.propulsion_N=7.2 --trials 300 --seed 11 --quiet --json truth.json
+jq -r '"ending,count", (.endings | to_entries[] | select(.key != "broken") | "\(.key),\(.value)")' truth.json >endings.csv
+free=(--free forces.propulsion_N=5:9)
+expect 0 '^forces.propulsion_N  *5 to 9  *[0-9.]*  *[0-9.]*  *\[[0-9.]*, [0-9.]*\]$' "$gatewalk" fit "${small[@]}" endings.csv "${free[@]}" --trials 16384 --json fit.json --figure fit.svg --draws draws.csv --inference-data fit.nc -o best.toml --scenes 2
+holds '.numbers[0] | .key == "forces.propulsion_N" and .interval_95[0] < 7.2 and 7.2 < .interval_95[1] and .told and .sd < 0.6 and .low == 5' fit.json
+holds '.observed == 300 and ([.outcomes[].observed] | add) == 300 and .p > 0.001 and .correlation == [[1]] and .trials <= 16384 and .trials > 15000' fit.json
+grep -q 'posterior after 300 trials' fit.svg || fail "no picture"
+[ "$(wc -l <draws.csv)" = "$(($(jq .draws fit.json) + 1))" ] && [ "$(head -n 1 draws.csv)" = forces.propulsion_N,log_likelihood ] || fail "draws"
+ncdump -h fit.nc | grep -q 'double forces.propulsion_N(chain, draw)' && ncdump -v count fit.nc | grep -q 'group: observed_data' || fail "no InferenceData"
+# The mean of the draws is that of the answer; scenes are written as they are drawn.
+awk -F, 'NR > 1 { sum += $1 } END { print sum / (NR - 1) }' draws.csv >mean.txt
+jq --argjson m "$(cat mean.txt)" -e '.numbers[0].mean - $m | . < 1e-4 and . > -1e-4' fit.json >/dev/null || fail "draws of another mean"
+for f in best.toml best-1.toml best-2.toml; do "$gatewalk" scene $f --quiet --json scene.json || fail "$f is no scene"; done
+! cmp -s best-1.toml best-2.toml || fail "scenes are alike"
+# Lines of trials; two numbers of which one cannot be told; the same on one thread and when resumed.
+printf 'trial,ending,gate_x,gate_y\na,crossed,0,3\nb,trapped,0,1\nc,trapped,0,2\nd,crossed,1,3\ne,left side,-4,2\nf,crossed,0,3\n' >lines.csv
+both=("${free[@]}" --free contact.impulse_threshold_Ns=0.04:0.041 --trials 24576)
+expect 0 '^these data cannot tell contact.impulse_threshold_Ns: ' "$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --checkpoint kept --json two.json --figure two.svg
+same() { jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' "$1" "$2" | grep -q true || fail "$3"; }
+"$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --threads 1 --quiet --json one.json
+same two.json one.json "fit: other results on one thread"
+"$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --checkpoint kept --resume --quiet --force --json again.json
+same two.json again.json "fit: other results when resumed"
+# No number of the range explains them; the likeliest lies beyond its end.
+printf 'gate_x,gate_y,count\n-4,0,50\n4,3,50\n' >odd.csv
+expect 0 'no numbers in these ranges explain the counts' "$gatewalk" fit "${small[@]}" odd.csv "${free[@]}" --trials 16384
+expect 0 'likely to lie beyond 6.5, where its range ends' "$gatewalk" fit "${small[@]}" endings.csv --free forces.propulsion_N=4:6.5 --trials 16384
+# What never happens there is no reason to be sure.
+printf 'ending,count\ncrossed,300\n' >all.csv
+"$gatewalk" fit "${small[@]}" all.csv --free forces.propulsion_N=4:6 --trials 16384 --quiet --json all.json
+holds '.p < 0.001 and .numbers[0].sd > 0.02' all.json
+
+expect 2 'free KEY=LOW:HIGH says which numbers' "$gatewalk" fit "${small[@]}" endings.csv
+expect 2 'free forces.push=4:8: ' "$gatewalk" fit "${small[@]}" endings.csv --free forces.push=4:8
+expect 2 'scenes: needs -o' "$gatewalk" fit "${small[@]}" endings.csv "${free[@]}" --scenes 3
+expect 2 'trials 100: must be at least' "$gatewalk" fit "${small[@]}" endings.csv "${free[@]}" --trials 100
+expect 2 'counts are of one start\|for one start' "$gatewalk" fit "${small[@]}" endings.csv "${free[@]}" --start 0,0,15 --start 4,0,15
+expect 2 'nothing.csv: cannot be read\|cannot be read' "$gatewalk" fit "${small[@]}" nothing.csv "${free[@]}"
+finish
