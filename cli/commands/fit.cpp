@@ -31,14 +31,19 @@ int run_fit(const Arguments& arguments) {
       "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
       "forces.random_N=10:40");
   options.scene();
-  options.positional("counts",
-                     "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; "
-                     "or trial,ending,gate_x,gate_y)",
-                     true);
+  options.positional(
+      "counts",
+      "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; or, for both, "
+      "trial,ending,gate_x,gate_y)",
+      true);
   options.add_texts("free", "KEY=LOW:HIGH",
                     "a number of the scene and its range (at most " +
                         std::to_string(lattice::kMostFitted) + "; may be repeated)");
-  options.add_count("trials", "N", "full trials, all points together", "400000");
+  options.add_count("trials", "N",
+                    "full trials, all points together; " +
+                        std::to_string(lattice::least_trials_of_fit(1)) +
+                        " or more for each number",
+                    "400000");
   options.add_texts("start", "D,VX,VY", "where bodies started (default: the scene's start)");
   options.add_seed();
   options.output_file(
@@ -58,6 +63,11 @@ int run_fit(const Arguments& arguments) {
   const auto ranged = ranges_of(options, s, "free", lattice::kMostFitted);
   if (!ranged) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
   const auto numbers = static_cast<int>(ranged->ranges().size());
+  const std::vector<double> middle(ranged->ranges().size(), 0.5);
+  for (const std::string& text :
+       lattice::keys_without_effect(ranged->at(middle), lattice::RunsFrom::everywhere))
+    for (const lattice::NumberRange& r : ranged->ranges())
+      if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
   const lattice::FitOptions how{
       .trials = options.count("trials", lattice::least_trials_of_fit(numbers)),
       .seed = options.seed()};

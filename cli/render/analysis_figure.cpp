@@ -54,7 +54,7 @@ void add_visits(Script& out, const AnalysedField& f) {
   const TypeMarks types(f.shown);
   const TypeMarks::Drawn marks =
       types.on(map, (box.right - box.left) / columns, (box.bottom - box.top) / lines, "visits");
-  out.text += types.legend(out.sheet, box.bottom + 52, !marks.data.empty()) + marks.data +
+  out.text += types.legend(out.sheet, box.bottom + 52, marks.fits) + marks.data +
               data_block("$visits", rows) + data_block("$paths", paths) + out.sheet.margins(box) +
               kSequential + "set cbrange " + scale.range() + "\n" + kFrame + "set xrange " +
               range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +

@@ -66,7 +66,7 @@ Figure figure_of(const DesignedScene& d) {
           "\nset cbtics autofreq scale 0\nset colorbox user origin screen " +
           sheet.at(box.right + 12, box.bottom) + " size screen " + digits(10.0 / Sheet::kWidth) +
           "," + digits((box.bottom - box.top) / sheet.height) + "\n" +
-          types.legend(sheet, legend, !marks.data.empty()) + "plot $gains" + cells() +
+          types.legend(sheet, legend, marks.fits) + "plot $gains" + cells() +
           ", $changed using 1:($3 > 0 ? $2 : NaN) with points pt 4 lw 2 ps " +
           digits(std::clamp(0.09 * std::min(width / columns, height / rows), 0.4, 2.4)) +
           " lc rgb '#d55e00' notitle" + marks.plot + "\nunset label\nunset colorbox\n" +

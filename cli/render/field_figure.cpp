@@ -136,7 +136,7 @@ std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
                     sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
                     scale.colours(sheet, plan.colours());
   const TypeMarks::Drawn marks = types.on(map, plan.cell_width, plan.cell_height, data.substr(1));
-  out += types.legend(sheet, plan.legend(), !marks.data.empty()) + marks.data + image(data);
+  out += types.legend(sheet, plan.legend(), marks.fits) + marks.data + image(data);
   if (plan.cell_width >= 26 && plan.cell_height >= 15)
     out += ", '' using 1:2:4:" + ink(std::sqrt(scale.most())) +
            " with labels tc rgb variable font ',12'";

@@ -16,7 +16,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr double kTogether = 0.95;  // a correlation, from which on two numbers are not told apart
+constexpr double kTogether = 0.9;  // a correlation, from which on two numbers are not told apart
 constexpr double kUnexplained = 0.01;  // p, below which no number of the ranges explains the counts
 constexpr std::size_t kMostShown = 3;  // groups of outcomes that differ most
 
@@ -109,17 +109,17 @@ Json to_json(const FittedScene& f) {
 
 std::string table_of(const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
-  std::string table = padded("", 34) + padded("range", 20) + padded("best", 10) +
-                      padded("median", 10) + padded("95 % interval", 24) + "\n";
+  std::string table = padded("", 34) + padded("range", 18) + padded("best", 12) +
+                      padded("median", 12) + padded("95 % interval", 26) + "\n";
   for (std::size_t k = 0; k < f.ranges.size(); ++k) {
     const lattice::NumberRange& r = f.ranges[k];
     const lattice::FittedNumber& n = fit.numbers[k];
     table +=
         padded(r.key, -34) +
-        padded(lattice::shortest(r.low) + " to " + lattice::shortest(r.high), 20) +
-        padded(in_range(f, k, n.best), 10) + padded(in_range(f, k, n.median), 10) +
+        padded(lattice::shortest(r.low) + " to " + lattice::shortest(r.high), 18) +
+        padded(in_range(f, k, n.best), 12) + padded(in_range(f, k, n.median), 12) +
         padded("[" + in_range(f, k, n.interval[0]) + ", " + in_range(f, k, n.interval[1]) + "]",
-               24) +
+               26) +
         "\n";
   }
   for (std::size_t k = 0; k < f.ranges.size(); ++k) {
@@ -164,12 +164,17 @@ std::vector<std::string> warnings_of(const FittedScene& f) {
       if (n.goes_on[end])
         warn(f.ranges[k].key + " is likely to lie beyond " +
              lattice::shortest(end == 0 ? f.ranges[k].low : f.ranges[k].high) +
-             ", where its range ends: a wider range tells");
+             ", where its range ends: a wider one tells, if that is permitted");
   }
   if (fit.never > 0)
     warn(std::to_string(fit.never) + " of " + std::to_string(fit.observed) +
          " observed trials ended as none of the model did where their numbers are likeliest: they "
          "are counted with their neighbours");
+  for (std::size_t k = 0; k < f.ranges.size(); ++k)
+    if (const lattice::FittedNumber& n = fit.numbers[k];
+        n.best < n.interval[0] || n.best > n.interval[1])
+      warn("the counts are likeliest outside the interval of " + f.ranges[k].key +
+           ": many other values fit nearly as well, and the ranges decide how many");
   if (fit.settled()) return all;
   double by_trials = 0.0;
   for (const lattice::FittedNumber& n : fit.numbers) by_trials = std::max(by_trials, n.by_runs);

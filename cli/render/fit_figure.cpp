@@ -37,11 +37,12 @@ double middle(std::size_t bin, const std::array<double, 2>& range) {
 Figure figure_of(const FittedScene& f) {
   const std::size_t numbers = f.ranges.size();
   constexpr double kLeft = 84, kTop = 40, kGap = 10;
-  const double side = std::min(300.0, (488.0 - kLeft + kGap) / static_cast<double>(numbers) - kGap);
+  const double side = std::min(300.0, (478.0 - kLeft + kGap) / static_cast<double>(numbers) - kGap);
   const Sheet sheet{static_cast<int>(kTop + static_cast<double>(numbers) * (side + kGap) + 60)};
   std::string out =
       std::string("set multiplot\n") + kSequential +
-      sheet.text("posterior after " + std::to_string(f.fit.observed) + " trials, with 95 %", 8, 18);
+      sheet.text("posterior after " + std::to_string(f.fit.observed) + " trials; dashed: 95 %", 8,
+                 18);
   std::vector<std::array<double, 2>> ranges;
   for (std::size_t k = 0; k < numbers; ++k) ranges.push_back(shown_range(f, k));
   const Eigen::Index draws = f.fit.draws.rows();
@@ -57,7 +58,7 @@ Figure figure_of(const FittedScene& f) {
         return literal(numbers > 2 ? key.substr(key.rfind('.') + 1) : key);
       };
       const auto steps = [](const std::array<double, 2>& range) {
-        return digits(tic_step(range[1] - range[0], 2.0));
+        return digits(tic_step(range[1] - range[0], 3.0));
       };
       out += sheet.margins({left, left + side, top, top + side}) + kFrame + "set xrange [" +
              digits(ranges[right][0]) + ":" + digits(ranges[right][1]) + "]\nset xtics " +

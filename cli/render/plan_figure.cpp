@@ -96,7 +96,7 @@ Figure figure_of(const PlannedField& p) {
           Sheet::map_axes(map.rows.first + map.rows.count) +
           sheet.text("most frequent action in each gate, and its % of the visits", 8, 18) +
           colours_of(p, sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
-          types.legend(sheet, legend, !marks.data.empty()) + plot + marks.plot +
+          types.legend(sheet, legend, marks.fits) + plot + marks.plot +
           "\nunset label\nunset colorbox\n" +
           sheet.text("crossed, %, by the plan and by each action all the time", 8, bars_top - 14) +
           share_bars(sheet, bars_box, "$crossed", bars) + "unset multiplot\n",

@@ -83,7 +83,7 @@ TypeMarks::Drawn TypeMarks::on(const FieldMap& map, double width, double height,
   // In the upper left corner, where it leaves room for a number.
   const double left = std::max(0.0, 0.5 - kAside / width),
                up = std::max(0.0, 0.5 - kAside / height);
-  Drawn drawn;
+  Drawn drawn{.data = {}, .plot = {}, .fits = true};
   for (std::size_t type = 1; type < map_.types.size(); ++type) {
     std::string rows;
     for (Eigen::Index r = 0; r < map.rows.count; ++r)

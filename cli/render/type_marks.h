@@ -26,6 +26,7 @@ class TypeMarks {
   /// data of one map from another's.
   struct Drawn {
     std::string data, plot;
+    bool fits = false;  // there is room for them
   };
   [[nodiscard]] Drawn on(const FieldMap& map, double width, double height,
                          const std::string& tag) const;

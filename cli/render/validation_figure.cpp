@@ -96,7 +96,7 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
       const TypeMarks::Drawn marks =
           types.on(row.map, kMapWidth / static_cast<double>(row.chain.cols()),
                    row.height / static_cast<double>(row.chain.rows()), block.substr(1));
-      marked = marked || !marks.data.empty();
+      marked = marked || marks.fits;
       if (last && i == 2) out += types.legend(sheet, end + 60, marked);
       out += data_block(block, data) + marks.data +
              sheet.margins({left_of(i), left_of(i) + kMapWidth, row.top, row.top + row.height}) +

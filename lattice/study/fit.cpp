@@ -503,7 +503,7 @@ class Fitter {
     const double by_length = differences.squaredNorm() / static_cast<double>(4 * kWalks);
     const double between = (means.array() - means.mean()).square().sum() / (kWalks - 1.0);
     if (number.sd > 0.0)
-      number.by_runs = std::max(0.0, between - by_length) / (number.sd * number.sd);
+      number.by_runs = std::clamp((between - by_length) / (number.sd * number.sd), 0.0, 1.0);
     // Gelman and Rubin's, of the halves of walks.
     if (within > 0.0)
       fit_.mixing = std::max(fit_.mixing, std::sqrt(1.0 + 2.0 * by_length / within));

@@ -142,7 +142,7 @@ class SameAsTheProgram(unittest.TestCase):
             table.write_text("ending,count\ncrossed,20\ntrapped,60\nleft side,2\n")
             self.check(seen, "fit", FIELD, table, "--free", "forces.propulsion_N=5:9", "--trials", 12288, "--set", "field.rows=3", "--set",
                        "run.method=moreau")
-        with self.assertRaises(gw.UsageError):
+        with self.assertRaises(gw.SceneError):
             gw.fit(FIELD, {"crossed": 20, "trapped": 60}, free={"forces.push": (5, 9)})
 
     def test_landscape(self):
