@@ -49,6 +49,15 @@ for name in predict lattice validate analyze walk; do
   grep -q 'unmarked: \.<' ../mixed_$name.svg || { echo "mixed_$name.svg does not name the types of gates"; exit 1; }
 done
 grep -q 'too small to be marked' ../mixed_small.svg || { echo "mixed_small.svg does not say why it marks no types"; exit 1; }
+run plan "$field" --set run.method=moreau --set field.rows=3 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --figure ../plan.svg
+run design "${mixed[@]}" --set field.rows=3 --changes 2 --types s,. --accuracy 0.2 --figure ../design.svg
+printf 'ending,count\ncrossed,9\nleft side,3\nright side,2\ntrapped,40\ncut off,0\n' >counts.csv
+free=(--free forces.propulsion_N=5:9)
+for more in forces.random_N=20:60 beams.stiffness_left_Nm_per_rad=300:500 beams.stiffness_right_Nm_per_rad=300:500; do
+  run fit "$field" counts.csv --set run.method=moreau --set field.rows=3 "${free[@]}" --trials 50000 --figure ../fit_${#free[@]}.svg
+  free+=(--free $more)
+done
+run fit "$field" counts.csv --set run.method=moreau --set field.rows=3 "${free[@]}" --trials 50000 --figure ../fit_${#free[@]}.svg
 run rare "$field" --set run.method=moreau --row 8 --accuracy 0.2 --gate-runs 40000 --trials 2000 --figure ../rare.svg
 run trace "$scenes/soft_left.toml" --trials 5 --figure ../trace.svg
 run trace "$field" --field --trials 4 --figure ../trace_field.svg

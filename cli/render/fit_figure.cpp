@@ -32,6 +32,40 @@ double middle(std::size_t bin, const std::array<double, 2>& range) {
          (static_cast<double>(bin) + 0.5) / static_cast<double>(kBins) * (range[1] - range[0]);
 }
 
+/// Numbers that stand clear of each other, and of those of the next panel: none at its very ends.
+std::string tics_of(const std::array<double, 2>& range, double side) {
+  constexpr double kLetter = 8.0, kApart = 14.0, kAside = 12.0;  // points
+  const double span = range[1] - range[0];
+  std::string list;
+  for (double parts = 4.0; parts > 0.4; parts -= 0.5) {
+    const double step = tic_step(span, parts);
+    std::size_t longest = 0;
+    list.clear();
+    for (double at = std::ceil(range[0] / step); at * step <= range[1]; at += 1.0) {
+      const double from_end = std::min(at * step - range[0], range[1] - at * step);
+      const std::string number = digits(at * step);
+      if (from_end / span * side < kAside) continue;
+      list += (list.empty() ? "" : ", ") + number;
+      longest = std::max(longest, number.size());
+    }
+    if (step / span * side > kLetter * static_cast<double>(longest) + kApart) break;
+  }
+  if (list.find(',') == list.npos) {  // one number makes no scale
+    const double step = tic_step(span, 8.0);
+    const auto near = [&](double share) {
+      return digits(std::round((range[0] + share * span) / step) * step);
+    };
+    list = near(0.25) + ", " + near(0.75);
+  }
+  return "(" + list + ")";
+}
+
+/// Where there are many, a letter, which the upper right corner explains.
+std::string axis_name(const FittedScene& f, std::size_t k) {
+  return literal(f.ranges.size() > 2 ? std::string(1, static_cast<char>('a' + k))
+                                     : f.ranges[k].key);
+}
+
 }  // namespace
 
 Figure figure_of(const FittedScene& f) {
@@ -43,6 +77,10 @@ Figure figure_of(const FittedScene& f) {
       std::string("set multiplot\n") + kSequential +
       sheet.text("posterior after " + std::to_string(f.fit.observed) + " trials; dashed: 95 %", 8,
                  18);
+  if (numbers > 2)
+    for (std::size_t k = 0; k < numbers; ++k)
+      out += sheet.text(std::string(1, static_cast<char>('a' + k)) + ": " + f.ranges[k].key,
+                        kLeft + side + kGap, kTop + 10 + 20 * static_cast<double>(k), kSmallFont);
   std::vector<std::array<double, 2>> ranges;
   for (std::size_t k = 0; k < numbers; ++k) ranges.push_back(shown_range(f, k));
   const Eigen::Index draws = f.fit.draws.rows();
@@ -52,18 +90,10 @@ Figure figure_of(const FittedScene& f) {
                    top = kTop + static_cast<double>(down) * (side + kGap);
       const std::string name = "$p" + std::to_string(down) + "_" + std::to_string(right);
       const bool lowest = down + 1 == numbers;
-      // Names of many letters, read from the last dot on where panels are small.
-      const auto axis_name = [&](std::size_t k) {
-        const std::string& key = f.ranges[k].key;
-        return literal(numbers > 2 ? key.substr(key.rfind('.') + 1) : key);
-      };
-      const auto steps = [](const std::array<double, 2>& range) {
-        return digits(tic_step(range[1] - range[0], 3.0));
-      };
       out += sheet.margins({left, left + side, top, top + side}) + kFrame + "set xrange [" +
              digits(ranges[right][0]) + ":" + digits(ranges[right][1]) + "]\nset xtics " +
-             steps(ranges[right]) + "\n" + (lowest ? "" : "set format x ''\n") +
-             (lowest ? Sheet::x_axis(axis_name(right)) : "set xlabel\n");
+             tics_of(ranges[right], side) + "\n" + (lowest ? "" : "set format x ''\n") +
+             (lowest ? Sheet::x_axis(axis_name(f, right)) : "set xlabel\n");
       if (right == down) {
         std::vector<double> counts(kBins, 0.0);
         for (Eigen::Index i = 0; i < draws; ++i)
@@ -97,12 +127,12 @@ Figure figure_of(const FittedScene& f) {
         const auto half = [](const std::array<double, 2>& range) {
           return 0.5 * (range[1] - range[0]) / static_cast<double>(kBins);
         };
-        out += data_block(name, data) + "set yrange [" + digits(ranges[down][0]) + ":" +
-               digits(ranges[down][1]) + "]\nset ytics " + steps(ranges[down]) + "\n" +
-               (right == 0 ? "set format y '%g'\nset ylabel " + axis_name(down) + " offset 0.8,0\n"
-                           : "set format y ''\nset ylabel\n") +
-               "unset colorbox\nplot " + name + cells(half(ranges[right]), half(ranges[down])) +
-               "\n";
+        out +=
+            data_block(name, data) + "set yrange [" + digits(ranges[down][0]) + ":" +
+            digits(ranges[down][1]) + "]\nset ytics " + tics_of(ranges[down], side) + "\n" +
+            (right == 0 ? "set format y '%g'\nset ylabel " + axis_name(f, down) + " offset 0.8,0\n"
+                        : "set format y ''\nset ylabel\n") +
+            "unset colorbox\nplot " + name + cells(half(ranges[right]), half(ranges[down])) + "\n";
       }
       out += "unset label\nset format x '%g'\nset format y '%g'\n";
     }

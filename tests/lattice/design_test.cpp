@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/lane.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::lattice {
@@ -18,27 +18,7 @@ using namespace dynamics;
 constexpr double kFair = 0.6, kGood = 0.9, kBad = 0.3;
 const std::vector<int> kOwn{0, 2, 0, 2, 0};
 
-/// A lane of cells of three types, each of which lets bodies through by a chance of its own.
-Problem lane() {
-  Section section;
-  section.faces = {{"S", 0, 1, 0, 1, "from below", {}}};
-  section.coordinates = {{"x", "x", "1", "place", 1.0}};
-  Problem problem;
-  problem.cells.map.section = section;
-  for (const double chance : {kFair, kGood, kBad}) {
-    problem.cells.cells.push_back(std::make_shared<FunctionCell>(section, [chance](Body& body) {
-      const Fate fate = body.random.uniform() < chance ? Fate::left : Fate::trapped;
-      body.entry = {0, {2.0 * body.random.uniform() - 1.0}};
-      return Passage{fate, body.entry};
-    }));
-    problem.cells.map.types.push_back({});
-  }
-  problem.cells.map.columns = 1;
-  problem.cells.map.type_of_cell = kOwn;
-  problem.field = {1, static_cast<int>(kOwn.size()), 0};
-  problem.start = {0, {0.5}};
-  return problem;
-}
+Problem lane() { return test::lane({kFair, kGood, kBad}, kOwn); }
 
 bool holds(const std::array<double, 2>& interval, double value) {
   return interval[0] <= value && value <= interval[1];

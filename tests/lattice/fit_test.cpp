@@ -3,13 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
-#include <memory>
 #include <stdexcept>
-#include <string>
+#include <utility>
 #include <vector>
 
+#include "tests/support/lane.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::lattice {
@@ -17,28 +18,13 @@ namespace {
 
 using namespace dynamics;
 
-constexpr int kLane = 8;
+constexpr int kLaneRows = 8;
 
-/// A lane whose cells let bodies through by a chance, those of even and of odd rows by another.
+/// Cells of even rows let bodies through by one chance, those of odd rows by another.
 Problem two_lane(double even, double odd) {
-  Section section;
-  section.faces = {{"S", 0, 1, 0, 1, "from below", {}}};
-  section.coordinates = {{"x", "x", "1", "place", 1.0}};
-  Problem problem;
-  problem.cells.map.section = section;
-  for (const double chance : {even, odd}) {
-    problem.cells.cells.push_back(std::make_shared<FunctionCell>(section, [chance](Body& body) {
-      const Fate fate = body.random.uniform() < chance ? Fate::left : Fate::trapped;
-      body.entry = {0, {2.0 * body.random.uniform() - 1.0}};
-      return Passage{fate, body.entry};
-    }));
-    problem.cells.map.types.push_back({});
-  }
-  problem.cells.map.columns = 1;
-  for (int row = 0; row < kLane; ++row) problem.cells.map.type_of_cell.push_back(row % 2);
-  problem.field = {1, kLane, 0};
-  problem.start = {0, {0.5}};
-  return problem;
+  std::vector<int> types;
+  for (int row = 0; row < kLaneRows; ++row) types.push_back(row % 2);
+  return test::lane({even, odd}, std::move(types));
 }
 
 /// Of trials in that lane.
@@ -48,7 +34,7 @@ Observed experiment(const Problem& problem, std::int64_t trials, std::uint64_t s
       run_field(problem.cells, problem.field, problem.start, seed, {1'000'000'000, trials}, &each);
   Observed o;
   o.seen = {tally.final_gates, tally.endings};
-  o.gates_by_ending.fill(CellCounts::Zero(kLane, 1));
+  o.gates_by_ending.fill(CellCounts::Zero(kLaneRows, 1));
   for (std::size_t i = 0; i < each.endings.size(); ++i)
     ++o.gates_by_ending[static_cast<std::size_t>(*each.endings[i])](each.final_gates[i], 0);
   return o;
@@ -58,7 +44,7 @@ Observed experiment(const Problem& problem, std::int64_t trials, std::uint64_t s
 std::array<std::int64_t, 2> passes(const Observed& o, int odd) {
   const auto crossed = static_cast<std::size_t>(markov::Ending::far_edge);
   std::int64_t met = 0, went_on = 0, here = o.seen.trials();
-  for (int row = 0; row < kLane; ++row) {
+  for (int row = 0; row < kLaneRows; ++row) {
     const std::int64_t on =
         here - (o.seen.final_gates(row, 0) - o.gates_by_ending[crossed](row, 0));
     if (row % 2 == odd) {
@@ -143,6 +129,16 @@ TEST(Fit, SeesThatNoNumberFits) {
       above, {.trials = 100'000, .seed = 6});
   EXPECT_TRUE(edge.numbers[0].goes_on[1]);
   EXPECT_FALSE(edge.numbers[0].goes_on[0]);
+}
+
+TEST(Fit, CountsWhatNoBodyOfTheModelDoes) {
+  Observed o = experiment(two_lane(0.8, 0.8), 300, 14);
+  o.gates_by_ending[static_cast<std::size_t>(markov::Ending::left_edge)](2, 0) = 5;
+  const Fit f = fit(
+      1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
+      {.trials = 50'000, .seed = 7});
+  EXPECT_EQ(f.never, 5);
+  EXPECT_EQ(f.observed, 305);
 }
 
 TEST(Fit, RanksOfTheTruthAreUniform) {  // simulation-based calibration (Talts et al. 2018)
