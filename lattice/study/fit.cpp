@@ -182,9 +182,10 @@ class Fitter {
   [[nodiscard]] MatrixXd new_points(Index count) {
     Random chance = random(1);
     MatrixXd from(numbers_, count);
-    const Index known = inside_.cols();
+    const MatrixXd& more = draws_.cols() > 0 ? draws_ : inside_;
     for (Index i = 0; i < count; ++i)
-      from.col(i) = i < known ? VectorXd(inside_.col(i)) : VectorXd(draws_.col(i % draws_.cols()));
+      from.col(i) =
+          i < inside_.cols() ? VectorXd(inside_.col(i)) : VectorXd(more.col(i % more.cols()));
     Ensemble walk([this](const VectorXd& at) { return inside(at) ? 0.0 : -HUGE_VAL; },
                   std::move(from));
     for (int step = 0; step < kFirstSteps; ++step) walk.step(chance);
