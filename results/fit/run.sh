@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Do posteriors of gatewalk fit say what they should?   [BUILD=build] [EXPERIMENTS=300] [TRIALS=100000] results/fit/run.sh
-# An hour and a half on two cores. experiments.csv: made-up experiments whose four numbers are known (study.py); calibration.txt: how
+# Forty minutes on two cores. experiments.csv: made-up experiments whose four numbers are known (study.py); calibration.txt: how
 # often intervals hold them, and whether their ranks are uniform. field.txt: four numbers of the whole field, with the time.
 set -euo pipefail
 root=$(realpath "$(dirname "$0")/../..")
