@@ -204,7 +204,8 @@ def test(program, filters, binary, folder):
             if status is None:
                 return "time limit"
             failed = re.search(r"FAILED  \] ([\w./]+)", output)
-            return failed[1] if failed else output.strip().splitlines()[-1] if output.strip() else f"status {status}"
+            said = output.replace(f"{folder}/", "").replace(f"{ROOT}/", "").strip().splitlines()
+            return failed[1] if failed else said[-1] if said else f"status {status}"
     return None
 
 

@@ -5,7 +5,7 @@
 # often intervals hold them, and whether their ranks are uniform. field.txt: four numbers of the whole field, with the time.
 set -euo pipefail
 root=$(realpath "$(dirname "$0")/../..")
-gatewalk=${BUILD:-$root/build}/gatewalk
+gatewalk=$(realpath "${BUILD:-$root/build}/gatewalk")
 out=$root/results/fit
 . "$root/results/manifest.sh"
 work=$(mktemp -d)
@@ -22,7 +22,8 @@ jq -r '"gate_x,gate_y,count", (.final_gates | to_entries[] | .key as $y | .value
   "$work/truth.json" >"$work/gates.csv"
 {
   manifest "results/fit/run.sh"
-  "$gatewalk" fit "$root/scenes/field.toml" "$work/gates.csv" --free forces.propulsion_N=5:9 --free forces.random_N=10:40 \
+  cp "$root/scenes/field.toml" "$work" && cd "$work"  # names of files stand in the picture
+  "$gatewalk" fit field.toml gates.csv --free forces.propulsion_N=5:9 --free forces.random_N=10:40 \
     --free beams.stiffness_left_Nm_per_rad=300:500 --free beams.stiffness_right_Nm_per_rad=300:500 --force \
     --figure "$out/field.svg"
 } >"$work/field.txt"
