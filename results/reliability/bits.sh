@@ -21,7 +21,7 @@ work=$root/build-bits
 some='gate (field.toml --trials|single|soft|stiff|robot|own|over)|sweep own|build (field.toml --trials|own|mixed)'
 some+='|walk (own|mixed)|predict (matrix.nc --json|own|mixed.nc --set terrain|robot|field.toml --accuracy|map)'
 some+='|lattice (field.toml --trials|own|map|mixed)|analyze tree.nc --runs|rare mixed|validate own'
-some+='|power field.toml --accuracy 0.1 --trials|plan|analyze field.toml .*--over'
+some+='|power field.toml --accuracy 0.1 --trials|plan|design|fit|analyze field.toml .*--over'
 lines=${LINES:-"^0 ($some)"}
 . "$root/results/manifest.sh"
 . "$root/.ci/prepare"
