@@ -7,6 +7,7 @@
 #include "cli/subject.h"
 #include "lattice/cells/recorded_pool.h"
 #include "lattice/scene/scene_trials.h"
+#include "lattice/scene/table4.h"
 #include "lattice/study/plan.h"
 #include "lattice/study/trials.h"
 
@@ -76,9 +77,8 @@ FieldRun run_policy(const Options& options) {
   Subject s = open_subject(options, "scene");
   if (!s.scene || s.file)
     throw UsageError(s.path + ": is no scene of gates, which a policy is made for");
-  std::vector<std::optional<lattice::Settled>> methods;
   const std::vector<lattice::Action> actions =
-      actions_of(options, *s.scene, s.problem.start, methods);
+      actions_of(options, *s.scene, s.problem.start).actions;
   const lattice::Policy policy = read_policy(options.text("policy"), *s.scene);
   FieldRun run = run_of(options, s);
   run.tally = lattice::policy_trials(actions, policy, options.trial_range(), options.seed(),
@@ -88,6 +88,17 @@ FieldRun run_policy(const Options& options) {
 }
 
 }  // namespace
+
+lattice::ChosenGates policy_gates(const Options& options, const lattice::Scene& scene,
+                                  std::vector<std::string>& actions) {
+  Actions all = actions_of(options, scene, lattice::own_start(scene).entry());
+  for (const lattice::Action& action : all.actions) actions.push_back(action.name);
+  return lattice::chosen_gates(std::move(all.scenes),
+                               [policy = read_policy(options.text("policy"), scene)](
+                                   const lattice::Place& at, const dynamics::Entry& entry) {
+                                 return policy.action(at, entry);
+                               });
+}
 
 FieldRun field_run(const Options& options) {
   if (options.has("policy")) return run_policy(options);

@@ -4,11 +4,14 @@
 /// out.
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/render/field_runs.h"
 #include "lattice/exits.h"
 #include "lattice/field_costs.h"
+#include "lattice/scene/recording.h"
 
 namespace gatewalk::cli {
 
@@ -22,6 +25,10 @@ struct FieldRun {
   std::optional<RunScene> scene{};  // of gates
   lattice::FieldTally tally;
 };
+/// The scene's gates, in which bodies do what the file of --policy says; `actions` takes the names
+/// of what they may do.
+[[nodiscard]] lattice::ChosenGates policy_gates(const Options& options, const lattice::Scene& scene,
+                                                std::vector<std::string>& actions);
 /// As --trials says; writes the tables of --passages and --cell-file.
 [[nodiscard]] FieldRun field_run(const Options& options);
 

@@ -131,11 +131,13 @@ std::vector<std::string> chosen_methods(const Options& options) {
 }
 
 lattice::RecordingOptions recording_options(const Options& options) {
-  const lattice::RecordingOptions wanted{.seed = options.seed(),
-                                         .first = options.count("trial", 0),
-                                         .trials = options.trials(),
-                                         .across_field = options.has("field"),
-                                         .only = options.text("only")};
+  const lattice::RecordingOptions wanted{
+      .seed = options.seed(),
+      .first = options.count("trial", 0),
+      .trials = options.trials(),
+      .across_field = options.has("field") || options.has("policy"),
+      .only = options.text("only"),
+      .chosen = {}};
   check_option(options, "only", [&](const std::string& only) {
     lattice::require_ending(only, wanted.across_field);
   });

@@ -111,11 +111,13 @@ struct Place {
   std::int32_t column = 0, row = 0, passed = 0;
   std::int64_t trial = 0;
 };
+/// A type of cells, for a body that enters there so.
+using CellChoice = std::function<int(const Place& place, const dynamics::Entry& entry)>;
 /// Which of a field's types of cells a body meets that enters there, where its map does not say.
 /// All trials begin by `start`.
 struct TypeChoice {
   dynamics::Entry start{};
-  std::function<int(const Place& place, const dynamics::Entry& entry)> type{};  // empty: the map's
+  CellChoice type{};  // empty: the map's
 };
 
 /// Puts the body of trial number i of a range, from 0, there, as it enters its first cell.

@@ -50,13 +50,15 @@ class Designer {
       require(type >= 0 && type < types, "a cell cannot become what the chain does not have");
     may_become_.assign(static_cast<std::size_t>(types), options.become.empty());
     for (const int type : options.become) may_become_[static_cast<std::size_t>(type)] = 1;
+    require(options.kind_of_type.empty() || std::ssize(options.kind_of_type) == types,
+            "there is a kind for each type");
     for (int row = 0; row < field.rows; ++row)
       for (int column = 0; column < field.columns; ++column)
         own_.push_back(chain.type_of(column, row));
     for (const Map& map : options.from) {
       require(map.size() == cells_, "a map to search from is of another field");
       for (std::size_t c = 0; c < cells_; ++c)
-        require(map[c] == own_[c] || (map[c] >= 0 && map[c] < types && may(map[c])),
+        require(map[c] == own_[c] || (map[c] >= 0 && map[c] < types && may(c, map[c])),
                 "a map to search from has types that no cell may become");
       require(changes_of(map) <= options.most_changes, "a map to search from changes more cells");
     }
@@ -96,8 +98,13 @@ class Designer {
   static constexpr std::int64_t kMostDraws = 10000;  // the same, where walks circle
   static constexpr double kRounding = 1e-12;         // of a gain
 
-  [[nodiscard]] bool may(int type) const {
-    return may_become_[static_cast<std::size_t>(type)] != 0;
+  /// Whether the cell may become of that type.
+  [[nodiscard]] bool may(std::size_t cell, int type) const {
+    const std::vector<int>& kinds = options_.kind_of_type;
+    return type == own_[cell] ||
+           (may_become_[static_cast<std::size_t>(type)] != 0 &&
+            (kinds.empty() ||
+             kinds[static_cast<std::size_t>(type)] == kinds[static_cast<std::size_t>(own_[cell])]));
   }
   /// The changes of a map, by which it is known.
   [[nodiscard]] std::vector<std::size_t> key_of(const Map& map) const {
@@ -114,6 +121,9 @@ class Designer {
   [[nodiscard]] std::size_t at(std::int64_t column, std::int64_t row, int input) const {
     return static_cast<std::size_t>(row * field_.columns + column) * inputs_ +
            static_cast<std::size_t>(input);
+  }
+  [[nodiscard]] bool all_may_change() const {
+    return static_cast<std::size_t>(options_.most_changes) == cells_;
   }
   /// Sets of values: one for each number of draws made, or one for all.
   [[nodiscard]] std::size_t levels() const {
@@ -192,8 +202,7 @@ class Designer {
           limited ? (level + 1 < levels() ? values[level + 1].data() : nullptr) : now;
       tbb::parallel_for(std::size_t{0}, cells_, [&](std::size_t cell) {
         for (std::size_t type = 0; type < types; ++type)
-          if (static_cast<int>(type) != map[cell] &&
-              (may_become_[type] != 0 || static_cast<int>(type) == own_[cell]))
+          if (static_cast<int>(type) != map[cell] && may(cell, static_cast<int>(type)))
             for (std::size_t input = 0; input < inputs_; ++input)
               if (const double visits = here[cell * inputs_ + input]; visits > 0.0)
                 gradient.of[cell * types + type] +=
@@ -234,10 +243,10 @@ class Designer {
     for (std::size_t cell = 0; cell < cells_; ++cell)
       for (std::size_t type = 0; type < types && gradient.visited[cell] != 0; ++type) {
         const auto to = static_cast<int>(type);
-        if (to == map[cell] || (to != own_[cell] && !may(to))) continue;
+        if (to == map[cell] || !may(cell, to)) continue;
         const Change one{sign_ * gradient.of[cell * types + type], static_cast<int>(cell), to};
         if (more || map[cell] != own_[cell]) changes.push_back(one);
-        if (map[cell] != own_[cell]) continue;
+        if (map[cell] != own_[cell] || all_may_change()) continue;
         for (std::size_t other = 0; other < cells_; ++other)
           if (map[other] != own_[other]) {
             Change two = one;
@@ -249,6 +258,24 @@ class Designer {
     std::stable_sort(changes.begin(), changes.end(),
                      [](const Change& a, const Change& b) { return a.says > b.says; });
     return changes;
+  }
+
+  /// The map with the more promising 1/n of the changes that the gradient says to be gains, of each
+  /// cell the best.
+  [[nodiscard]] Map changed_at_once(const Map& map, const std::vector<Change>& changes,
+                                    std::size_t n) const {
+    std::vector<const Change*> best;
+    std::vector<char> taken(cells_, 0);
+    for (const Change& change : changes)
+      if (char& is = taken[static_cast<std::size_t>(change.cell)]; change.says > 0.0 && is == 0) {
+        is = 1;
+        best.push_back(&change);
+      }
+    best.resize((best.size() + n - 1) / n);
+    Map changed = map;
+    for (const Change* change : best)
+      changed[static_cast<std::size_t>(change->cell)] = change->type;
+    return changed;
   }
 
   /// Where a search ends that others have come by before, these have ended too.
@@ -276,11 +303,15 @@ class Designer {
           if (const int undone = changes[i].undone; undone >= 0)
             maps.back()[static_cast<std::size_t>(undone)] = own_[static_cast<std::size_t>(undone)];
         }
+        const std::size_t single = maps.size();
+        if (first == 0 && all_may_change())
+          for (const std::size_t n : {1, 2, 4, 8}) maps.push_back(changed_at_once(map, changes, n));
         if (options_.told) options_.told(search_);
         const std::vector<double> gains = solved_of(maps);
         for (std::size_t i = 0; i < maps.size(); ++i) {
           if (!std::isfinite(gains[i])) continue;
-          error = std::max(error, std::abs(gains[i] - gain - changes[first + i].says));
+          if (i < single)
+            error = std::max(error, std::abs(gains[i] - gain - changes[first + i].says));
           if (gains[i] > most + kRounding * std::max(std::abs(most), std::abs(gains[i]))) {
             most = gains[i];
             better = maps[i];

@@ -17,6 +17,8 @@ struct DesignOptions {
   bool least = false;         // what walks gain shall be as little as it can
   int most_changes = 1;       // cells whose type may be another than the field has there
   std::vector<int> become{};  // types that a cell may be changed to; empty: all
+  /// By type: its kind; a cell may be changed to types of its own one only. Empty: all are alike.
+  std::vector<int> kind_of_type{};
   /// Maps of types to search from, beside the field's own: (rows * columns), within most_changes.
   std::vector<std::vector<int>> from{};
   /// Told before maps are solved, with the number of the search; may throw to stop.
@@ -43,7 +45,8 @@ struct Designs {
 /// At each step changes of one cell that walks come to and exchanges of two are tried in the order
 /// of what the gradient says, eight at a time, and the best of the first eight that gain is made; a
 /// search ends once what is left says so little that not even the largest error so far of what the
-/// gradient said would make it a gain. A map in which walks can circle almost for ever is not
+/// gradient said would make it a gain. Where all cells may change there are no
+/// exchanges, but many changes at once. A map in which walks can circle almost for ever is not
 /// taken. The same on any number of threads. Gains are found by predict.
 /// Throws std::invalid_argument where field, start, gains and options cannot belong together and
 /// where draws have gains; std::runtime_error where values of all draws take more than 2 GB, and

@@ -28,27 +28,35 @@ int run_plan(const Arguments& arguments) {
   options.scene();
   add_choosing(options);
   options.output_file("policy", "FILE.json",
-                      "write what to do in each gate, for gatewalk lattice --policy");
+                      "write what to do in each gate, for --policy of gatewalk lattice and trace");
+  options.output_file("gate-policy", "FILE.json",
+                      "the same of the best that knows the gate alone, not the way in");
   options.add_figure("the actions by gate, and how often bodies cross");
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
   take_choosing(options, how);
   Subject s = scene_to_run(options, "a plan is made");
-  if (options.has("policy")) require_file_for(*s.scene);
-  std::vector<std::optional<lattice::Settled>> methods;
-  const std::vector<lattice::Action> actions =
-      actions_of(options, *s.scene, s.problem.start, methods);
+  if (options.has("policy") || options.has("gate-policy")) require_file_for(*s.scene);
+  Actions all = actions_of(options, *s.scene, s.problem.start);
   std::vector<std::string> names;
-  for (const lattice::Action& action : actions) names.push_back(action.name);
+  for (const lattice::Action& action : all.actions) names.push_back(action.name);
   const dynamics::Stopwatch watch;
-  lattice::Plan plan = lattice::make_plan(actions, how, options.work());
-  const PlannedField planned{s.shown(), std::move(names), std::move(methods), std::move(plan),
+  lattice::Plan plan = lattice::make_plan(all.actions, how, options.work());
+  const PlannedField planned{s.shown(), std::move(names), std::move(all.methods), std::move(plan),
                              watch.seconds()};
   Json json = to_json(planned);
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(planned));
   if (options.has("policy"))
     options.write(options.text("policy"), policy_text(planned.plan.policy, *s.scene));
+  if (options.has("gate-policy")) {
+    if (!planned.plan.by_cell)
+      throw std::runtime_error(
+          "--gate-policy: there is none: values of so many gates, states and gates passed do not "
+          "fit "
+          "into memory");
+    options.write(options.text("gate-policy"), policy_text(planned.plan.by_cell->policy, *s.scene));
+  }
   options.warn(few_crossings(planned.plan.crossings));
   if (!planned.plan.settled)
     options.warn("choosing was not finished after " + std::to_string(planned.plan.gate_runs) +

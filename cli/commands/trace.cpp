@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/arguments.h"
+#include "cli/field_run.h"
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
 #include "cli/parsers.h"
@@ -25,6 +29,8 @@ void declare(Options& options) {
       "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with "
       "--field crossed, 'left side', 'right side', departed (any of these), trapped, 'cut off'");
   options.add_flag("field", "cross the field, gate after gate, instead of one gate");
+  options.input_file("policy",
+                     "cross the field and do what this file of gatewalk plan says (FILE.json)");
   options.output_file("csv", "FILE", "write all samples as CSV; - is standard output");
   options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
   options.output_file("replay", "FILE.html", "write a page that plays the runs");
@@ -61,21 +67,25 @@ int run_trace(const Arguments& arguments) {
                   "--replay runs.html --csv runs.csv");
   declare(options);
   if (!options.parse(arguments)) return kFine;
-  const lattice::RecordingOptions wanted = recording_options(options);
+  lattice::RecordingOptions wanted = recording_options(options);
   lattice::Scene scene = options.read_scene();
   const std::optional<double> speed = video_speed(options, scene);
-  const auto settled =
-      settle_method(options, scene,
-                    wanted.across_field ? lattice::RunsFrom::everywhere : lattice::RunsFrom::start);
+  std::optional<lattice::Settled> settled;
+  std::vector<std::string> actions;
+  if (options.has("policy"))
+    wanted.chosen = policy_gates(options, scene, actions);
+  else
+    settled = settle_method(
+        options, scene,
+        wanted.across_field ? lattice::RunsFrom::everywhere : lattice::RunsFrom::start);
   const lattice::Recordings recordings = lattice::record_trials(scene, wanted, options.work());
 
   const Json made_by = to_json(options.provenance(scene));
-  if (options.has("csv")) options.write(options.text("csv"), csv_of(scene, recordings));
-  if (options.has("netcdf"))
-    options.write(options.text("netcdf"), netcdf_of(scene, recordings, made_by));
+  if (options.has("csv")) options.write(options.text("csv"), csv_of(recordings));
+  if (options.has("netcdf")) options.write(options.text("netcdf"), netcdf_of(recordings, made_by));
   Json json = Json::object();
   if (options.has("replay") || options.has("video") || options.has("json")) {
-    const Film film = film_of(scene, recordings);
+    const Film film = film_of(scene, recordings, std::move(actions));
     if (options.has("replay") || options.has("json")) json = to_json(film);
     if (options.has("replay")) options.write(options.text("replay"), replay_page(json));
     if (options.has("video")) {
@@ -84,7 +94,7 @@ int run_trace(const Arguments& arguments) {
     }
     if (options.has("json"))
       for (std::size_t i = 0; i < recordings.runs.size(); ++i)
-        json["runs"][i].update(details_of(scene, recordings.runs[i], wanted.across_field));
+        json["runs"][i].update(details_of(scene, recordings, recordings.runs[i]));
   }
   json["recorded"] = recordings.runs.size();
   json["trials"] = recordings.trials;

@@ -2,6 +2,7 @@
 #include "cli/film/film.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
@@ -12,8 +13,13 @@ namespace {
 using dynamics::kLeft;
 using dynamics::kRight;
 
-std::string title_of(const lattice::Scene& scene) {
+std::string title_of(const lattice::Scene& scene, const std::vector<std::string>& actions) {
   const dynamics::GateParams& p = scene.gate;
+  if (!actions.empty()) {
+    std::string all;
+    for (const std::string& action : actions) all += (all.empty() ? "" : ", ") + action;
+    return scene.source + ": actions " + all;
+  }
   return scene.source + ": F " + quantity(p.forces.propulsion, "N", 7) + ", Rm " +
          quantity(p.forces.random, "N", 7) + ", k " + digits(p.beams.stiffness_left) + " / " +
          digits(p.beams.stiffness_right) + ", d " + digits(p.beams.damping) + ", " + p.run.method;
@@ -33,6 +39,7 @@ FilmStep film_step(const lattice::Moment& m, const dynamics::Scale& scale) {
   return {.time = seven_digits(m.time, scale.time),
           .i_x = m.i_x,
           .i_y = m.i_y,
+          .type = m.type,
           .body = {seven_digits(body.x, scale.length), seven_digits(body.y, scale.length),
                    seven_digits(body.vx, scale.speed()), seven_digits(body.vy, scale.speed())},
           .angle = {seven_digits(beams[kLeft].theta, 1.0), seven_digits(beams[kRight].theta, 1.0)},
@@ -47,13 +54,14 @@ FilmStep film_step(const lattice::Moment& m, const dynamics::Scale& scale) {
 
 }  // namespace
 
-Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings) {
+Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings,
+             std::vector<std::string> actions) {
   Film film;
-  film.title = title_of(scene);
+  film.title = title_of(scene, actions);
   film.gate = scene.gate;
   if (recordings.across_field) film.field = scene.field;
-  if (const lattice::RunGates gates(scene, recordings.across_field); gates.all().types().size() > 1)
-    film.types = gates.all();
+  if (recordings.gates.types().size() > 1) film.types = recordings.gates;
+  film.actions = std::move(actions);
   const dynamics::Scale scale = dynamics::scale_of(scene.gate);
   for (const lattice::Recording& r : recordings.runs) {
     FilmRun run{label_of(r, recordings.across_field, scale), r.ending, {}};

@@ -15,6 +15,7 @@ namespace gatewalk::cli {
 struct FilmStep {
   double time = 0.0;                               // s, uneven steps allowed
   int i_x = 0, i_y = 0;                            // the gate that the body is in
+  int type = 0;                                    // of Film::types, if there are
   dynamics::BodyState body;                        // in that gate's frame
   std::array<double, 2> angle{};                   // rad, of its beams, > 0 deflected forward
   std::array<dynamics::ContactMode, 2> contact{};  // holds until the next step
@@ -34,6 +35,7 @@ struct Film {
   std::string title;
   dynamics::GateParams gate;
   std::optional<lattice::FieldGates> types{};  // of the field's gates, if there are several
+  std::vector<std::string> actions{};  // of a policy: type number t is taken with t % actions
   lattice::FieldParams field{.columns = 1, .rows = 1};  // 1 x 1: a gate alone
   std::vector<FilmRun> runs;
 
@@ -43,10 +45,19 @@ struct Film {
   [[nodiscard]] const dynamics::GateParams& gate_at(int i_x, int i_y) const {
     return types ? types->at(i_x + field.start_column(), i_y) : gate;
   }
+  /// The gate that the body is in.
+  [[nodiscard]] const dynamics::GateParams& gate_of(const FilmStep& step) const {
+    return types ? types->types()[static_cast<std::size_t>(step.type)] : gate;
+  }
+  /// What the body does, of several actions.
+  [[nodiscard]] const std::string& action_of(const FilmStep& step) const {
+    return actions[static_cast<std::size_t>(step.type) % actions.size()];
+  }
   [[nodiscard]] bool is_field() const { return field.columns * field.rows > 1; }
 };
 
 /// All runs as a film, with seven digits in the scene's own units.
-[[nodiscard]] Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings);
+[[nodiscard]] Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings,
+                           std::vector<std::string> actions = {});
 
 }  // namespace gatewalk::cli

@@ -184,14 +184,15 @@ void Picture::trail(const View& view, const Scenery& s) {
 
 /// A beam of the gate that the body is in, with what touches it and its last hit.
 void Picture::moving_beam(const View& view, const Scenery& s, Side side) {
-  const Segment beam = beam_of(film_, s.i_x, s.i_y, side, s.angle[side]);
+  const FilmStep& step = run_.steps()[s.at.i];
+  const Segment beam = beam_of(film_, step, side, s.angle[side]);
   const Colour own = colour_of(side);
   const bool held = s.contact[side] == ContactMode::held;
   painter_.line(view(beam.joint), view(beam.tip), own, held ? 1.5 * view.thick : view.thick);
   painter_.circle(view(beam.joint), 1.1 * view.thick);
   painter_.fill(kEdge);
   if (held) {
-    painter_.circle(view(nearest_point(film_, s.i_x, s.i_y, side, s.angle[side], s.body)),
+    painter_.circle(view(nearest_point(film_, step, side, s.angle[side], s.body)),
                     1.5 * view.thick);
     painter_.fill_and_stroke(kStage, 1.0, own, 0.7 * view.thick);
   }
@@ -202,7 +203,7 @@ void Picture::moving_beam(const View& view, const Scenery& s, Side side) {
   const double grown = (s.time - hit.time) / flash;
   if (grown > 1.0) return;
   const Point place =
-      nearest_point(film_, hit.i_x, hit.i_y, side, hit.angle[side], run_.place(*s.last_hit[side]));
+      nearest_point(film_, hit, side, hit.angle[side], run_.place(*s.last_hit[side]));
   painter_.circle(view(place), view.thick * (1.6 + 2.6 * grown));
   painter_.stroke(own, 2.0, 0.9 * (1.0 - grown));
 }
@@ -211,9 +212,10 @@ void Picture::forces(const View& view, const Scenery& s) {
   const Point body = view(s.body);
   const double random = run_.steps()[s.at.i].random_force;
   painter_.arrow(body, {body.x + arrow_ * random * view.scale, body.y}, kGrey, view.thick);
-  painter_.arrow(
-      body, {body.x, body.y - arrow_ * film_.gate_at(s.i_x, s.i_y).forces.propulsion * view.scale},
-      kOrange, view.thick);
+  painter_.arrow(body,
+                 {body.x, body.y - arrow_ * film_.gate_of(run_.steps()[s.at.i]).forces.propulsion *
+                                       view.scale},
+                 kOrange, view.thick);
   painter_.circle(body, std::max(1.5, 0.6 * view.thick));
   painter_.fill(kEdge);
 }
@@ -238,7 +240,10 @@ void Picture::panel(double x, const Scenery& now, const Scenery& said) {
   if (now.time >= run_.end())
     text(x, 154, 17, "ended: " + about_.ending, kText, true, kRightEdge - x);
   else if (film_.is_field())
-    text(x, 154, 17, "gate: column " + whole(said.i_x) + ", row " + whole(said.i_y), kMuted);
+    text(x, 154, 17,
+         "gate: column " + whole(said.i_x) + ", row " + whole(said.i_y) +
+             (film_.actions.empty() ? "" : ", " + film_.action_of(run_.steps()[said.at.i])),
+         kMuted, false, kRightEdge - x);
   double y = 196;
   legend(x, y, said);
   y += 48;
@@ -279,7 +284,7 @@ void Picture::legend(double x, double& y, const Scenery& said) {
     words(name, with_minus(reading(newton, "N", 0.1 * unit_.force())));
     y += 27;
   };
-  force(kOrange, "propulsion", film_.gate_at(said.i_x, said.i_y).forces.propulsion);
+  force(kOrange, "propulsion", film_.gate_of(run_.steps()[said.at.i]).forces.propulsion);
   force(kGrey, "random force", run_.steps()[said.at.i].random_force);
   const auto velocity = [&](double dynamics::BodyState::*member) {
     return said.at([&](std::size_t i) { return run_.steps()[i].body.*member; });

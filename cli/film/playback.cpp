@@ -32,17 +32,29 @@ bool is_finite(const FilmStep& s) {
 
 }  // namespace
 
-Segment beam_of(const Film& film, int i_x, int i_y, Side side, double angle) {
-  const dynamics::Beams& beams = film.gate_at(i_x, i_y).beams;
+namespace {
+
+Segment beam_of(const Film& film, const dynamics::Beams& beams, int i_x, int i_y, Side side,
+                double angle) {
   const double sign = side == kLeft ? 1.0 : -1.0;
   const auto along = dynamics::Direction::of(angle);
   const Point joint{-sign * beams.joint_x + film.width() * i_x, beams.joint_y + film.depth() * i_y};
   return {joint, {joint.x + sign * beams.length * along.c, joint.y + beams.length * along.s}};
 }
 
-Point nearest_point(const Film& film, int i_x, int i_y, Side side, double angle, Point body) {
-  const dynamics::BodyState at{body.x - film.width() * i_x, body.y - film.depth() * i_y};
-  const dynamics::Touch touch = dynamics::nearest(film.gate_at(i_x, i_y), side, at, angle);
+}  // namespace
+
+Segment beam_of(const Film& film, int i_x, int i_y, Side side, double angle) {
+  return beam_of(film, film.gate_at(i_x, i_y).beams, i_x, i_y, side, angle);
+}
+
+Segment beam_of(const Film& film, const FilmStep& step, Side side, double angle) {
+  return beam_of(film, film.gate_of(step).beams, step.i_x, step.i_y, side, angle);
+}
+
+Point nearest_point(const Film& film, const FilmStep& step, Side side, double angle, Point body) {
+  const dynamics::BodyState at{body.x - film.width() * step.i_x, body.y - film.depth() * step.i_y};
+  const dynamics::Touch touch = dynamics::nearest(film.gate_of(step), side, at, angle);
   const double distance = touch.gap + film.gate.body.radius;
   return {body.x - distance * touch.nx, body.y - distance * touch.ny};
 }

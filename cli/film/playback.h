@@ -22,9 +22,12 @@ struct Segment {
 /// A beam of gate (i_x, i_y) at an angle (rad), in the field's frame (m).
 [[nodiscard]] Segment beam_of(const Film& film, int i_x, int i_y, dynamics::Side side,
                               double angle);
+/// The same of the gate that a step is in.
+[[nodiscard]] Segment beam_of(const Film& film, const FilmStep& step, dynamics::Side side,
+                              double angle);
 /// The point of that beam which is nearest to the body with its centre at `body`; all in the
 /// field's frame (m).
-[[nodiscard]] Point nearest_point(const Film& film, int i_x, int i_y, dynamics::Side side,
+[[nodiscard]] Point nearest_point(const Film& film, const FilmStep& step, dynamics::Side side,
                                   double angle, Point body);
 
 /// The last step at or before a time, and how far it is from there to the next.

@@ -61,12 +61,15 @@ Json to_json(const Film& film) {
           {{"beam_m", type.beams.length}, {"propulsion_N", type.forces.propulsion}});
     json["type_of_gate"] = film.types->type_of_cell();
   }
+  if (!film.actions.empty()) json["actions"] = film.actions;
   for (const FilmRun& run : film.runs) {
     Json of{{"label", run.label}, {"ending", run.ending}, {"propulsion_N", p.forces.propulsion}};
     for (const auto& [name, value] : kArrays) {
       Json& values = of[name] = Json::array();
       for (const FilmStep& step : run.steps) values.push_back(value(step));
     }
+    if (!film.actions.empty())
+      for (const FilmStep& step : run.steps) of["type"].push_back(step.type);
     json["runs"].push_back(std::move(of));
   }
   return json;

@@ -9,6 +9,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/quantity.h"
 #include "cli/render/text.h"
 #include "lattice/text/digits.h"
 #include "markov/formats/netcdf.h"
@@ -88,7 +89,7 @@ Json to_json(const FittedScene& f) {
   for (const lattice::OutcomeGroup& g : fit.groups)
     json["outcomes"].push_back({{"outcomes", words_of(f, g)},
                                 {"observed", g.observed},
-                                {"expected", g.expected},
+                                {"expected", seven_digits(g.expected, 1.0)},
                                 {"interval_95", g.interval}});
   json["draws"] = fit.draws.rows();
   json["settled"] = fit.settled();

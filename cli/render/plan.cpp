@@ -71,6 +71,23 @@ std::string verdict(const PlannedField& p) {
          " points; a smaller --accuracy\nshows a smaller gain, if there is one\n";
 }
 
+/// The action that a policy of gates alone takes in each: (rows x columns).
+Json by_gate_of(const PlannedField& p) {
+  if (!p.plan.by_cell) return {};
+  const auto& [policy, crossings, worth] = *p.plan.by_cell;
+  Json json{{"crossed", crossings.share()},
+            {"interval_95", crossings.interval_95()},
+            {"gain", worth.difference},
+            {"gain_95", worth.interval_95}};
+  const markov::Decisions& d = policy.decisions;
+  for (int r = 0; r < d.field.rows; ++r) {
+    Json row;
+    for (int c = 0; c < d.field.columns; ++c) row.push_back(p.actions[d.action[d.at(c, r, 0)]]);
+    json["action"].push_back(std::move(row));
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string gain_text(const lattice::Gain& gain) {
@@ -142,6 +159,7 @@ Json to_json(const PlannedField& p) {
     }
     json["most_taken"].push_back(std::move(row));
   }
+  json["by_gate"] = by_gate_of(p);
   json["rounds"] = plan.rounds;
   json["settled"] = plan.settled;
   json["gate_runs"] = plan.gate_runs;
@@ -152,7 +170,7 @@ Json to_json(const PlannedField& p) {
 
 std::string table_of(const PlannedField& p) {
   const lattice::Plan& plan = p.plan;
-  std::size_t width = 6;
+  std::size_t width = plan.by_cell ? 10 : 6;
   for (const std::string& name : p.actions) width = std::max(width, name.size());
   const int name_width = -static_cast<int>(width) - 2;
   std::string table =
@@ -168,6 +186,12 @@ std::string table_of(const PlannedField& p) {
              padded(with_interval(plan.alone[a].share(), plan.alone[a].interval_95()), 22) +
              padded(gain_text(plan.gains[a]), 28) +
              padded(fixed(100.0 * usage_of(p, a).sum() / all, 1) + " %", 20) + "\n";
+  if (plan.by_cell)
+    table += "    " + padded("gate alone", name_width) +
+             padded(with_interval(plan.by_cell->crossings.share(),
+                                  plan.by_cell->crossings.interval_95()),
+                    22) +
+             padded(gain_text(plan.by_cell->worth), 28) + "\n";
   return table + map_text(p) + std::to_string(plan.gate_runs) + " gate runs in " +
          std::to_string(plan.rounds) + (plan.rounds == 1 ? " round, " : " rounds, ") +
          fixed(p.seconds, 1) + " s\n";

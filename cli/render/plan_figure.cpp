@@ -62,6 +62,9 @@ Figure figure_of(const PlannedField& p) {
   std::vector<ShareBar> bars{{"plan", p.plan.crossings.share(), p.plan.crossings.interval_95()}};
   for (std::size_t a = 0; a < p.actions.size(); ++a)
     bars.push_back({plain(p.actions[a]), p.plan.alone[a].share(), p.plan.alone[a].interval_95()});
+  if (const auto& by_cell = p.plan.by_cell)
+    bars.insert(bars.begin() + 1,
+                {"gate alone", by_cell->crossings.share(), by_cell->crossings.interval_95()});
   const Box bars_box{130, 330, bars_top, bars_top + height_of_bars(bars.size())};
   const Sheet sheet{static_cast<int>(std::ceil(bars_box.bottom + 12))};
 
@@ -87,20 +90,21 @@ Figure figure_of(const PlannedField& p) {
   if (width / columns >= 26 && height / rows >= 15)
     plot += ", '' using 1:2:4:" + ink(static_cast<double>(p.actions.size() - 1)) +
             " with labels tc rgb variable font ',12'";
-  return {
-      Sheet::kWidth, sheet.height,
-      "set multiplot\n" + data_block("$actions", data) + marks.data + sheet.margins(box) + kFrame +
-          "set xrange " + range_of(map.columns) + "\nset yrange " + range_of(map.rows) +
-          "\nset xtics " + tics_of(map.columns, map.middle_column, width, 30) + "\nset ytics " +
-          tics_of(map.rows, 0, height, 22) + "\n" +
-          Sheet::map_axes(map.rows.first + map.rows.count) +
-          sheet.text("most frequent action in each gate, and its % of the visits", 8, 18) +
-          colours_of(p, sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
-          types.legend(sheet, legend, marks.fits) + plot + marks.plot +
-          "\nunset label\nunset colorbox\n" +
-          sheet.text("crossed, %, by the plan and by each action all the time", 8, bars_top - 14) +
-          share_bars(sheet, bars_box, "$crossed", bars) + "unset multiplot\n",
-      kFont};
+  return {Sheet::kWidth, sheet.height,
+          "set multiplot\n" + data_block("$actions", data) + marks.data + sheet.margins(box) +
+              kFrame + "set xrange " + range_of(map.columns) + "\nset yrange " +
+              range_of(map.rows) + "\nset xtics " +
+              tics_of(map.columns, map.middle_column, width, 30) + "\nset ytics " +
+              tics_of(map.rows, 0, height, 22) + "\n" +
+              Sheet::map_axes(map.rows.first + map.rows.count) +
+              sheet.text("most frequent action in each gate, and its % of the visits", 8, 18) +
+              colours_of(p, sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
+              types.legend(sheet, legend, marks.fits) + plot + marks.plot +
+              "\nunset label\nunset colorbox\n" +
+              sheet.text("crossed, %, by the plan, by the gate alone and by each action", 8,
+                         bars_top - 14) +
+              share_bars(sheet, bars_box, "$crossed", bars) + "unset multiplot\n",
+          kFont};
 }
 
 }  // namespace gatewalk::cli

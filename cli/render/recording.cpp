@@ -80,14 +80,13 @@ void put_runs(int nc, const Recordings& recordings) {
 }
 
 /// A column of all runs: codes as bytes, what is counted as whole numbers.
-void put_column(int nc, int sample, const Column& c, const lattice::RunGates& gates,
-                const Recordings& recordings) {
+void put_column(int nc, int sample, const Column& c, const Recordings& recordings) {
   using namespace markov::netcdf;
   const auto put = [&](auto zero) {
     std::vector<decltype(zero)> values;
     for (const Recording& r : recordings.runs)
       for (const Moment& m : r.moments)
-        values.push_back(static_cast<decltype(zero)>(c.value({gates.of(m), r.trial, m})));
+        values.push_back(static_cast<decltype(zero)>(c.value({recordings.of(m), r.trial, m})));
     return put_variable(nc, std::string(c.name), sample, values, std::string(c.unit),
                         std::string(c.meaning));
   };
@@ -128,8 +127,7 @@ std::string table_of(const lattice::Scene& scene, const Recordings& recordings) 
   return text;
 }
 
-std::string csv_of(const lattice::Scene& scene, const Recordings& recordings) {
-  const lattice::RunGates gates(scene, recordings.across_field);
+std::string csv_of(const Recordings& recordings) {
   std::string text;
   for (const Column& c : lattice::columns())
     text += (text.empty() ? "" : ",") + std::string(c.name);
@@ -138,7 +136,7 @@ std::string csv_of(const lattice::Scene& scene, const Recordings& recordings) {
     for (const Moment& m : r.moments) {
       std::string row;
       for (const Column& c : lattice::columns()) {
-        const double x = c.value({gates.of(m), r.trial, m});
+        const double x = c.value({recordings.of(m), r.trial, m});
         row += row.empty() ? "" : ",";
         if (!c.words.empty())
           row += c.words[static_cast<std::size_t>(x)];
@@ -151,9 +149,7 @@ std::string csv_of(const lattice::Scene& scene, const Recordings& recordings) {
   return text;
 }
 
-std::string netcdf_of(const lattice::Scene& scene, const Recordings& recordings,
-                      const Json& made_by) {
-  const lattice::RunGates gates(scene, recordings.across_field);
+std::string netcdf_of(const Recordings& recordings, const Json& made_by) {
   using namespace markov::netcdf;
   Image nc;
   nc.create();
@@ -164,21 +160,20 @@ std::string netcdf_of(const lattice::Scene& scene, const Recordings& recordings,
   for (const Recording& r : recordings.runs) samples += r.moments.size();
   const int sample = define_dimension(nc, "sample", samples);
   put_runs(nc, recordings);
-  for (const Column& c : lattice::columns()) put_column(nc, sample, c, gates, recordings);
+  for (const Column& c : lattice::columns()) put_column(nc, sample, c, recordings);
   const std::vector<char> bytes = nc.close_image();
   return {bytes.begin(), bytes.end()};
 }
 
-Json details_of(const lattice::Scene& scene, const Recording& recording, bool across_field) {
-  const lattice::RunGates gates(scene, across_field);
+Json details_of(const lattice::Scene& scene, const Recordings& recordings, const Recording& run) {
   const double joule = dynamics::scale_of(scene.gate).energy();
-  Json details{{"trial", recording.trial}, {"hits", recording.health.impacts}};
+  Json details{{"trial", run.trial}, {"hits", run.health.impacts}};
   for (const char* name : {"potential_J", "elastic_left_J", "elastic_right_J", "landscape_J",
                            "landscape_left_J", "landscape_right_J"}) {
     const Column& c = lattice::column(name);
     Json& values = details[name] = Json::array();
-    for (const Moment& m : recording.moments)
-      values.push_back(seven_digits(c.value({gates.of(m), recording.trial, m}), joule));
+    for (const Moment& m : run.moments)
+      values.push_back(seven_digits(c.value({recordings.of(m), run.trial, m}), joule));
   }
   return details;
 }

@@ -15,24 +15,22 @@ namespace gatewalk::cli {
                                    const lattice::Recordings& recordings);
 
 /// One line per moment; the first line names the columns with their units.
-[[nodiscard]] std::string csv_of(const lattice::Scene& scene,
-                                 const lattice::Recordings& recordings);
+[[nodiscard]] std::string csv_of(const lattice::Recordings& recordings);
 
 /// NetCDF-4: dimension sample, all runs one after the other, and run (trial, ending, samples of
 /// each: a contiguous ragged array). The entries of `made_by` are text
 /// attributes.
-[[nodiscard]] std::string netcdf_of(const lattice::Scene& scene,
-                                    const lattice::Recordings& recordings, const Json& made_by);
+[[nodiscard]] std::string netcdf_of(const lattice::Recordings& recordings, const Json& made_by);
 
 /// The ways of the runs, of at most kMostDrawn: over the landscape of their gate, Eq. (15), or
 /// through the field.
 inline constexpr std::size_t kMostDrawn = 20;
 [[nodiscard]] Figure figure_of(const lattice::Scene& scene, const lattice::Recordings& recordings);
 
-/// What a film does not show of one of its runs: trial, hits, and the arrays potential_J,
+/// What a film does not show of one of these runs: trial, hits, and the arrays potential_J,
 /// elastic_left_J, elastic_right_J, landscape_J, landscape_left_J, landscape_right_J (null where
 /// there is no way to stand), with seven digits in the scene's own units.
-[[nodiscard]] Json details_of(const lattice::Scene& scene, const lattice::Recording& recording,
-                              bool across_field = false);
+[[nodiscard]] Json details_of(const lattice::Scene& scene, const lattice::Recordings& recordings,
+                              const lattice::Recording& run);
 
 }  // namespace gatewalk::cli

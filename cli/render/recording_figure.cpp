@@ -42,7 +42,7 @@ Window window_of(const Scene& scene, const std::vector<const Recording*>& runs) 
 }
 
 /// Beams at rest of every gate in the window: "x y dx dy" from joint to tip.
-std::string beams_of(const Scene& scene, const lattice::RunGates& gates, const Window& w,
+std::string beams_of(const Scene& scene, const lattice::FieldGates& gates, const Window& w,
                      double metre) {
   const auto& b = scene.gate.beams;  // joints, which all gates have in common
   std::string out;
@@ -51,7 +51,9 @@ std::string beams_of(const Scene& scene, const lattice::RunGates& gates, const W
   const long first = std::lround(w.left / (2.0 * b.joint_x) + 0.5);  // i_x
   for (long r = 0; r < rows; ++r)
     for (long c = 0; c < columns; ++c) {
-      const double beam = gates.at(static_cast<int>(first + c), static_cast<int>(r)).beams.length;
+      const double beam =
+          gates.at(static_cast<int>(first + c) + scene.field.start_column(), static_cast<int>(r))
+              .beams.length;
       const double middle = w.left + static_cast<double>(2 * c + 1) * b.joint_x,
                    y = b.joint_y + static_cast<double>(r) * scene.gate.run.traverse_y;
       for (const double side : {-1.0, 1.0})
@@ -118,19 +120,18 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
                 (runs.size() < recordings.runs.size()
                      ? " of " + std::to_string(recordings.runs.size())
                      : "");
-  return {
-      Sheet::kWidth, sheet.height,
-      data + data_block("$ends", ends) +
-          data_block("$beams", beams_of(scene, {scene, recordings.across_field}, w, metre.size)) +
-          out + sheet.margins(box) + sheet.text(title + "; disc: where it ended", 8, 18) + notes +
-          kFrame + "set border 15\n" +
-          Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
-          length(w.left) + ":" + length(w.right) + "]\nset yrange [" + length(w.bottom) + ":" +
-          length(w.top) + "]\nset xtics " +
-          digits(tic_step(wide / metre.size, std::max(1.0, (box.right - box.left) / 70.0))) + "\n" +
-          plot + "$ends using 1:2:3 with circles " +
-          (over_landscape ? "lc rgb '#ffffff'" : "lt -1") + " fs empty border\n",
-      kFont};
+  return {Sheet::kWidth, sheet.height,
+          data + data_block("$ends", ends) +
+              data_block("$beams", beams_of(scene, recordings.gates, w, metre.size)) + out +
+              sheet.margins(box) + sheet.text(title + "; disc: where it ended", 8, 18) + notes +
+              kFrame + "set border 15\n" +
+              Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
+              length(w.left) + ":" + length(w.right) + "]\nset yrange [" + length(w.bottom) + ":" +
+              length(w.top) + "]\nset xtics " +
+              digits(tic_step(wide / metre.size, std::max(1.0, (box.right - box.left) / 70.0))) +
+              "\n" + plot + "$ends using 1:2:3 with circles " +
+              (over_landscape ? "lc rgb '#ffffff'" : "lt -1") + " fs empty border\n",
+          kFont};
 }
 
 }  // namespace gatewalk::cli

@@ -19,10 +19,10 @@ const gatewalkReplay = (() => {
   ];
   const kFilmKeys = ['title', 'scale', 'radius_m', 'beam_m', 'joint_x_m', 'joint_y_m', 'gate_m', 'columns', 'rows',
     'start_column', 'runs'];
-  const kOptionalFilmKeys = ['types', 'type_of_gate'];
+  const kOptionalFilmKeys = ['types', 'type_of_gate', 'actions'];
   const kArrays = ['t', 'gx', 'gy', 'x', 'y', 'vx', 'vy', 'left', 'right', 'contact_left', 'contact_right',
     'random_N', 'body_J', 'beams_J', 'elastic_J', 'work_J', 'lost_J'];
-  const kOptionalArrays = ['lost_in_hits_J'];
+  const kOptionalArrays = ['lost_in_hits_J', 'type'];
   const kContacts = ['free', 'hit', 'held'];
   // In the scene's own units of time:
   const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];  // a second
@@ -110,6 +110,8 @@ const gatewalkReplay = (() => {
           !film.type_of_gate.every((type) => film.types?.[type] !== undefined))
         faults.push('type_of_gate is not a type for each gate');
     }
+    if (film.actions !== undefined && (!Array.isArray(film.actions) || film.actions.length === 0 ||
+        !film.actions.every((name) => typeof name === 'string'))) faults.push('actions is not a list of names');
     if (!Array.isArray(film.runs) || film.runs.length === 0) faults.push('runs is missing or empty');
     else film.runs.forEach((run, index) => examineRun(run, `run ${index + 1}: `, film, faults, remarks));
     return {faults, remarks: [...new Set(remarks)]};
@@ -145,6 +147,8 @@ const gatewalkReplay = (() => {
     expect('gy', (i) => Number.isInteger(i) && i >= 0 && i < film.rows, 'is no row of the field');
     for (const name of ['contact_left', 'contact_right'])
       expect(name, (c) => kContacts[c] !== undefined, 'is none of 0 (free), 1 (hit), 2 (held)');
+    if (run.type) expect('type', (type) => film.types?.[type] !== undefined, 'is none of the types');
+    else if (film.actions) faults.push(`${where}type is missing`);
   }
 
   // ---- Where everything is at a time
@@ -214,13 +218,18 @@ const gatewalkReplay = (() => {
     return film.types?.[film.type_of_gate[gy * film.columns + gx + film.start_column]] ?? {};
   }
 
+  /** The same of the gate that the body is in at a step; a policy chooses its type. */
+  function typeAt(film, run, i) {
+    return run.type ? film.types[run.type[i]] : typeOf(film, run.gx[i], run.gy[i]);
+  }
+
   function propulsionAt(film, run, state) {
-    return typeOf(film, state.gx, state.gy).propulsion_N ?? run.propulsion_N;
+    return typeAt(film, run, state.i).propulsion_N ?? run.propulsion_N;
   }
 
   /** Joint and tip of a beam in a gate; at rest both lie on the line between the joints. */
-  function beamOf(film, gx, gy, side, angle) {
-    const sign = side === 'left' ? 1 : -1, length = typeOf(film, gx, gy).beam_m ?? film.beam_m;
+  function beamOf(film, gx, gy, side, angle, type = typeOf(film, gx, gy)) {
+    const sign = side === 'left' ? 1 : -1, length = type.beam_m ?? film.beam_m;
     const x = -sign * film.joint_x_m + film.gate_m[0] * gx, y = film.joint_y_m + film.gate_m[1] * gy;
     return [x, y, x + sign * length * Math.cos(angle), y + length * Math.sin(angle)];
   }
@@ -411,7 +420,7 @@ const gatewalkReplay = (() => {
 
     // Its gate's beams, with what touches.
     for (const side of ['left', 'right']) {
-      const beam = beamOf(film, state.gx, state.gy, side, state[side]), colour = side === 'left' ? c.blue : c.red;
+      const beam = beamOf(film, state.gx, state.gy, side, state[side], typeAt(film, run, state.i)), colour = side === 'left' ? c.blue : c.red;
       const held = state.contact[side] === 2;
       line([[beam[0], beam[1]], [beam[2], beam[3]]], colour, held ? 1.5 * thick : thick);
       ctx.beginPath(); ctx.arc(px(beam[0]), py(beam[1]), 1.1 * thick, 0, 2 * Math.PI);
@@ -425,7 +434,7 @@ const gatewalkReplay = (() => {
     for (const side of ['left', 'right']) {
       const i = run.lastHit[side][state.i], age = time - run.t[i];
       if (i < 0 || age > flash) continue;
-      const beam = beamOf(film, run.gx[i], run.gy[i], side, run[side][i]);
+      const beam = beamOf(film, run.gx[i], run.gy[i], side, run[side][i], typeAt(film, run, i));
       const [x, y] = nearest(beam, run.X[i], run.Y[i]), grown = age / flash;
       ctx.beginPath(); ctx.arc(px(x), py(y), thick * (1.6 + 2.6 * grown), 0, 2 * Math.PI);
       ctx.globalAlpha = 0.9 * (1 - grown); ctx.strokeStyle = side === 'left' ? c.blue : c.red; ctx.lineWidth = 2;
@@ -611,7 +620,8 @@ const gatewalkReplay = (() => {
     legend.append(row('left', swatch('blue', []), 'left beam'), row('right', swatch('red', []), 'right beam'),
       row('propulsion', swatch('orange', [], true), 'propulsion'), row('random', swatch('grey', [], true), 'random force'),
       row('speed', made('span', 'gwr-blank'), 'speed of the body'),
-      ...(field ? [row('gate', made('span', 'gwr-blank'), 'gate (column, row)')] : []));
+      ...(field ? [row('gate', made('span', 'gwr-blank'), 'gate (column, row)')] : []),
+      ...(film.actions ? [row('action', made('span', 'gwr-blank'), 'action')] : []));
     root.append(
       made('div', 'gwr-columns', {},
         made('div', '', {}, made('div', 'gwr-status', {}, clock, mode), stageBox, bar,
@@ -665,6 +675,7 @@ const gatewalkReplay = (() => {
       put(values.random, reading(state.random, units.force));
       put(values.speed, reading(Math.hypot(state.vx, state.vy), units.speed));
       if (field) put(values.gate, `${whole(state.gx)}, ${state.gy}`);
+      if (film.actions) put(values.action, film.actions[run.type[state.i] % film.actions.length]);
     }
 
     function tick(now) {

@@ -89,24 +89,32 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
 }
 
 FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const BodyState& start,
-                       std::uint64_t seed, std::int64_t trial, std::size_t most_samples) {
+                       std::uint64_t seed, std::int64_t trial, std::size_t most_samples,
+                       const CellChoice& choice) {
   if (field.fidelity != Fidelity::active)
     throw wrong_fidelity(field, "only \"active\" can be traced");
   for (const GateParams& p : gates.types()) validate(p, field);
   const CellMap map = gates.map();
   map.require_fits(field.columns, field.rows);
-  const GateParams& first = gates.at(field.start_column(), 0);
   RunningTrial t(field);
+  const auto type_at = [&](const Entry& entry) {
+    return choice ? choice({t.column(), t.row(), t.passed(), trial}, entry)
+                  : gates.type_of(t.column(), t.row());
+  };
+  int type = type_at(entry_of(start));
+  const GateParams& first = gates.types().at(static_cast<std::size_t>(type));
   RandomForce force(first.forces, field_random(first, start, seed, trial));
   FieldTrace trace;
   for (BodyState from = start;;) {
-    const GateParams& p = gates.at(t.column(), t.row());
+    const GateParams& p = gates.types().at(static_cast<std::size_t>(type));
     force.enter(p.forces);
     trace.visits.push_back(
-        {t.column(), t.row(), trace_gate(p, *make_method(p), from, force, most_samples)});
+        {t.column(), t.row(), type, trace_gate(p, *make_method(p), from, force, most_samples)});
     most_samples -= trace.visits.back().trace.samples.size();
     const GateRun& run = trace.visits.back().trace.run;
-    if (!t.follow(map, field, passage_of(p, run), false)) break;
+    const auto next = t.follow(map, field, passage_of(p, run), false, type);
+    if (!next) break;
+    type = type_at(*next);
     from = shifted_into_next(p, run.ending, run.exit);
   }
   trace.ending = t.ending();

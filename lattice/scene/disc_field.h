@@ -30,7 +30,7 @@ namespace gatewalk::lattice {
 /// A trial through the field in full.
 struct FieldTrace {
   struct Visit {
-    int column = 0, row = 0;
+    int column = 0, row = 0, type = 0;  // the gate's, of the field's types
     dynamics::GateTrace
         trace;  // in the gate's own frame and time, work and losses from its entry on
   };
@@ -38,11 +38,13 @@ struct FieldTrace {
   std::optional<markov::Ending> ending;  // none: a run stopped being finite
 };
 
-/// Trial number `trial` of run_field, the same to the last bit. Throws InvalidParameter, also for
-/// another fidelity than `active`, and TraceTooLong when all visits together have more samples.
+/// Trial number `trial` of run_field, the same to the last bit; with a `choice` of types of gates
+/// that of chosen_trials from this start. Throws InvalidParameter, also for another fidelity than
+/// `active`, and TraceTooLong when all visits together have more samples.
 [[nodiscard]] FieldTrace trace_field(
     const FieldGates& gates, const FieldParams& field, const dynamics::BodyState& start,
     std::uint64_t seed, std::int64_t trial,
-    std::size_t most_samples = std::numeric_limits<std::size_t>::max());
+    std::size_t most_samples = std::numeric_limits<std::size_t>::max(),
+    const CellChoice& choice = {});
 
 }  // namespace gatewalk::lattice

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "lattice/scene/disc_field.h"
 #include "lattice/scene/settle.h"
+#include "lattice/scene/terrain.h"
 #include "lattice/statistics/ending_shares.h"
 
 namespace gatewalk::lattice {
@@ -41,7 +43,7 @@ dynamics::Energies together(const dynamics::Energies& before, dynamics::Energies
   return now;
 }
 
-void append(Recording& r, const dynamics::GateTrace& trace, int i_x, int i_y) {
+void append(Recording& r, const dynamics::GateTrace& trace, int i_x, int i_y, int type) {
   dynamics::Energies before;
   double clock = 0.0;
   if (!r.moments.empty()) {
@@ -52,7 +54,7 @@ void append(Recording& r, const dynamics::GateTrace& trace, int i_x, int i_y) {
     before.lost += last.energy.mechanical() - trace.samples.front().energy.mechanical();
   }
   for (const dynamics::TraceSample& s : trace.samples)
-    r.moments.push_back({i_x, i_y, clock + s.time, s, together(before, s.energy)});
+    r.moments.push_back({i_x, i_y, type, clock + s.time, s, together(before, s.energy)});
 }
 
 std::string named(std::int64_t first, std::int64_t last) {
@@ -68,9 +70,27 @@ std::invalid_argument too_long(const std::string& what, bool across_field) {
 
 }  // namespace
 
-RunGates::RunGates(const Scene& scene, bool across_field)
-    : gates_(across_field ? gates_of(scene) : scene.gate),
-      start_column_(scene.field.start_column()) {}
+ChosenGates chosen_gates(std::vector<Scene> taken, CellChoice action) {
+  const auto n = static_cast<int>(taken.size());
+  std::vector<FieldGates> each;
+  for (const Scene& scene : taken) each.push_back(all_gates_of(scene));
+  const FieldGates& first = each.front();
+  std::vector<dynamics::GateParams> types;
+  for (std::size_t t = 0; t < first.types().size(); ++t)
+    for (const FieldGates& gates : each) types.push_back(gates.types()[t]);
+  const FieldParams field = taken.front().field;
+  std::vector<int> type_of_cell;
+  for (int row = 0; row < field.rows; ++row)
+    for (int column = 0; column < field.columns; ++column)
+      type_of_cell.push_back(first.type_of(column, row) * n);
+  return {FieldGates::by_cell(std::move(types), field.columns, type_of_cell),
+          [type_of_cell, columns = field.columns, action = std::move(action)](
+              const Place& at, const dynamics::Entry& entry) {
+            return type_of_cell[static_cast<std::size_t>(at.row * columns + at.column)] +
+                   action(at, entry);
+          },
+          std::move(taken)};
+}
 
 std::vector<std::string> endings(bool across_field) {
   std::vector<std::string> names;
@@ -101,15 +121,16 @@ void require_ending(const std::string& only, bool across_field) {
 }
 
 Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, bool across_field,
-                 std::size_t most_moments) {
+                 std::size_t most_moments, const ChosenGates* chosen) {
   Recording r;
   r.trial = trial;
   if (across_field) {
-    const FieldGates gates = gates_of(scene);
-    const FieldTrace t = trace_field(gates, scene.field, scene.start, seed, trial, most_moments);
+    const FieldGates gates = chosen ? chosen->gates : gates_of(scene);
+    const FieldTrace t = trace_field(gates, scene.field, scene.start, seed, trial, most_moments,
+                                     chosen ? chosen->type : CellChoice{});
     for (const auto& visit : t.visits) {
-      append(r, visit.trace, visit.column - scene.field.start_column(), visit.row);
-      add_run(r.health, gates.at(visit.column, visit.row), visit.trace.run);
+      append(r, visit.trace, visit.column - scene.field.start_column(), visit.row, visit.type);
+      add_run(r.health, gates.types()[static_cast<std::size_t>(visit.type)], visit.trace.run);
     }
     r.gates = static_cast<int>(t.visits.size());
     r.ending = field_ending(t.ending);
@@ -117,7 +138,7 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
     const auto method = dynamics::make_method(scene.gate);
     dynamics::RandomForce force = dynamics::gate_force(scene.gate, seed, trial);
     const auto t = dynamics::trace_gate(scene.gate, *method, scene.start, force, most_moments);
-    append(r, t, 0, 0);
+    append(r, t, 0, 0, 0);
     add_run(r.health, scene.gate, t.run);
     r.ending = dynamics::name_of(dynamics::outcome_of(t.run));
   }
@@ -128,14 +149,19 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
 Recordings record_trials(const Scene& scene, const RecordingOptions& options,
                          const dynamics::Work& work) {
   if (!options.only.empty()) require_ending(options.only, options.across_field);
-  Recordings kept;
-  kept.across_field = options.across_field;
-  kept.trials = options.trials;
+  const ChosenGates* const chosen = options.chosen ? &*options.chosen : nullptr;
+  Recordings kept{.gates = chosen                 ? chosen->gates
+                           : options.across_field ? gates_of(scene)
+                                                  : FieldGates(scene.gate),
+                  .across_field = options.across_field,
+                  .trials = options.trials,
+                  .runs = {},
+                  .health = {}};
   std::size_t moments = 0;
   const auto take = [&](std::int64_t trial) {
     Recording r;
     try {
-      r = record(scene, options.seed, trial, options.across_field, kMostMoments);
+      r = record(scene, options.seed, trial, options.across_field, kMostMoments, chosen);
     } catch (const dynamics::TraceTooLong&) {
       throw too_long("trial " + std::to_string(trial) + " alone has", options.across_field);
     }
@@ -155,8 +181,14 @@ Recordings record_trials(const Scene& scene, const RecordingOptions& options,
   if (kept.runs.empty())
     throw std::runtime_error("none of " + named(options.first, options.first + options.trials - 1) +
                              " ends '" + options.only + "': nothing was written");
-  check_outcomes(scene, options.across_field ? RunsFrom::everywhere : RunsFrom::start, options.seed,
-                 std::max(options.trials, kCheckedAs), kept.health, work);
+  const std::int64_t checked = std::max(options.trials, kCheckedAs);
+  if (chosen)
+    for (const Scene& taken : chosen->taken)
+      check_outcomes(taken, RunsFrom::all_types, options.seed,
+                     checked / std::ssize(chosen->taken) + 1, kept.health, work);
+  else
+    check_outcomes(scene, options.across_field ? RunsFrom::everywhere : RunsFrom::start,
+                   options.seed, checked, kept.health, work);
   return kept;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "dynamics/base/work.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/trace.h"
+#include "lattice/reference.h"
+#include "lattice/scene/gates.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {
@@ -21,6 +24,7 @@ namespace gatewalk::lattice {
 /// began.
 struct Moment {
   int i_x = 0, i_y = 0;          // the gate, as the paper counts
+  int type = 0;                  // of Recordings::gates
   double time = 0.0;             // s
   dynamics::TraceSample sample;  // of that gate
   dynamics::Energies energy;     // of the whole trial: beams left behind count as lost
@@ -38,27 +42,26 @@ struct Recording {
 
 /// Trials of one scene.
 struct Recordings {
+  FieldGates gates;  // that they run through: those of the field, or the scene's own alone
   bool across_field = false;
   std::int64_t trials = 0;      // that were run; those that end otherwise are not kept
   std::vector<Recording> runs;  // in the order of their trials, at least one
   dynamics::Health health;      // of `runs`; a sample was run again by a better method
-};
-
-/// The gates that trials of a scene run through: those of its field, or its own alone.
-class RunGates {
- public:
-  RunGates(const Scene& scene, bool across_field);
-  [[nodiscard]] const FieldGates& all() const { return gates_; }
-  [[nodiscard]] const dynamics::GateParams& at(int i_x, int i_y) const {
-    return gates_.at(i_x + start_column_, i_y);
-  }
   /// The gate of a moment.
-  [[nodiscard]] const dynamics::GateParams& of(const Moment& m) const { return at(m.i_x, m.i_y); }
-
- private:
-  FieldGates gates_;
-  int start_column_;
+  [[nodiscard]] const dynamics::GateParams& of(const Moment& m) const {
+    return gates.types()[static_cast<std::size_t>(m.type)];
+  }
 };
+
+/// Gates of which a body that enters one chooses the type, as it does what a policy says.
+struct ChosenGates {
+  FieldGates gates;
+  CellChoice type;
+  std::vector<Scene> taken;  // the scene while each action is taken (with_action)
+};
+/// `action`: which of these a body takes where it enters. The gates have all types with all
+/// actions, numbered as cells_of (study/plan.h) does.
+[[nodiscard]] ChosenGates chosen_gates(std::vector<Scene> taken, CellChoice action);
 
 /// Every ending that a recording may have, in the order of their codes.
 [[nodiscard]] std::vector<std::string> endings(bool across_field);
@@ -70,11 +73,13 @@ class RunGates {
 /// Throws std::invalid_argument, with all of them, unless an ending is what `only` says.
 void require_ending(const std::string& only, bool across_field);
 
-/// Trial `trial` of run_gate_trials (across_field: of run_field), the same to the last bit. Throws
-/// dynamics::TraceTooLong when it has more moments, InvalidParameter as these do.
+/// Trial `trial` of run_gate_trials (across_field: of run_field; chosen: of policy_trials), the
+/// same to the last bit. Throws dynamics::TraceTooLong when it has more moments, InvalidParameter
+/// as these do.
 [[nodiscard]] Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial,
                                bool across_field,
-                               std::size_t most_moments = std::numeric_limits<std::size_t>::max());
+                               std::size_t most_moments = std::numeric_limits<std::size_t>::max(),
+                               const ChosenGates* chosen = nullptr);
 
 inline constexpr std::int64_t kMostRecordings = 1000;
 inline constexpr std::size_t kMostMoments =
@@ -84,7 +89,8 @@ struct RecordingOptions {
   std::uint64_t seed = 1;
   std::int64_t first = 0, trials = 1;  // trials first to first + trials - 1
   bool across_field = false;
-  std::string only = {};  // keep those that end so (ends_so); empty: all
+  std::string only = {};                   // keep those that end so (ends_so); empty: all
+  std::optional<ChosenGates> chosen = {};  // across the field, in place of the scene's own gates
 };
 /// Throws std::invalid_argument for an ending that there is not, more than kMostRecordings runs or
 /// kMostMoments moments to keep, std::runtime_error when no trial ends as wanted, InvalidParameter

@@ -4,7 +4,6 @@
 /// that something is to be chosen by.
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "dynamics/base/work.h"
@@ -14,9 +13,6 @@
 #include "lattice/study/crossings.h"
 
 namespace gatewalk::lattice {
-
-/// A type of cells, for a body that enters there so.
-using CellChoice = std::function<int(const Place& place, const dynamics::Entry& entry)>;
 
 /// Trials of `first` in cells of these types; with the noise that field_trials of these numbers
 /// have.

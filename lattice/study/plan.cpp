@@ -13,6 +13,7 @@
 #include "lattice/gate_chain.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/study/chosen_trials.h"
+#include "markov/design.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -108,6 +109,7 @@ class Planner {
           },
           count_));
     }
+    best->by_cell = choose_by_cell();
     judge(*best);
     return std::move(*best);
   }
@@ -115,6 +117,7 @@ class Planner {
  private:
   static constexpr std::uint64_t kTries = 4;   // other actions are tried: once in so many cells
   static constexpr double kMostBytes = 8.0e9;  // of decisions
+  static constexpr double kMostBytesByCell = 2.0e9;  // of values, as markov::design has them
 
   [[nodiscard]] int actions() const { return static_cast<int>(actions_.size()); }
   [[nodiscard]] std::uint64_t word(const Place& at, std::uint64_t what) const {
@@ -136,6 +139,12 @@ class Planner {
            space.size();
   }
 
+  [[nodiscard]] static markov::Gains crossing() {
+    markov::Gains gains;
+    gains.ending[static_cast<std::size_t>(markov::Ending::far_edge)] = 1.0;
+    return gains;
+  }
+
   [[nodiscard]] Plan choose(int per_leaf) const {
     Kernel kernel = kernel_of(cells_.map, trials_.pool(), per_leaf);
     if (4.0 * bytes_of(kernel.space) > kMostBytes)  // of three sizes of leaves, and the best so far
@@ -150,13 +159,50 @@ class Planner {
                                                       exits_of(kernel.space)));
       chains.push_back(field_chain(first_.map(), std::move(of_types)));
     }
-    markov::Gains gains;
-    gains.ending[static_cast<std::size_t>(markov::Ending::far_edge)] = 1.0;
     markov::Decisions best = markov::decide(chains, {first_.field.columns, first_.field.rows},
-                                            gains, {.max_cells = first_.field.max_gates});
+                                            crossing(), {.max_cells = first_.field.max_gates});
     const double says = best.value[best.at(first_.field.start_column(), 0,
                                            kernel.space.index_of(first_.start).state)];
     return {.policy = {std::move(kernel.space), std::move(best)}, .chain_says = says};
+  }
+
+  /// A map of types, all of them with all actions: searches from each action everywhere.
+  [[nodiscard]] std::optional<Plan::ByCell> choose_by_cell() const {
+    const FieldParams& field = first_.field;
+    const Kernel kernel = kernel_of(cells_.map, trials_.pool(), 8 * options_.per_leaf);
+    if (4.0 * bytes_of(kernel.space) > kMostBytesByCell) return {};  // a number for a decision
+    std::vector<markov::Chain> chains;
+    for (const markov::Counts& counts : kernel.counts)
+      chains.push_back(markov::Chain::from_counts(counts, exits_of(kernel.space)));
+    std::vector<std::vector<int>> everywhere(actions_.size());
+    for (int row = 0; row < field.rows; ++row)
+      for (int column = 0; column < field.columns; ++column)
+        for (int a = 0; a < actions(); ++a)
+          everywhere[static_cast<std::size_t>(a)].push_back(cells_.map.type_of(column, row) + a);
+    markov::DesignOptions how{.max_cells = field.max_gates,
+                              .most_changes = field.columns * field.rows,
+                              .from = {everywhere.begin() + 1, everywhere.end()}};
+    for (int type = 0; type < std::ssize(cells_.map.types); ++type)
+      how.kind_of_type.push_back(type / actions());
+    how.told = [this](std::size_t search) {
+      work_.tell("searches for actions by gate", static_cast<std::int64_t>(search), actions());
+    };
+    const markov::Field size{field.columns, field.rows};
+    const std::vector<int> best =
+        markov::design(
+            markov::FieldChain::by_cell(std::move(chains), field.columns, everywhere.front()), size,
+            chain_start(kernel.space, field, first_.start).start, crossing(), how)
+            .optima.front()
+            .type_of_cell;
+    const Section& section = kernel.space.section();
+    StateSpace space(section, std::vector<Tree>(section.faces.size()), {});  // a leaf for each face
+    markov::Decisions decisions{
+        .field = size, .inputs = space.size(), .max_cells = field.max_gates};
+    for (int draw = 0; draw < std::max(1, field.max_gates); ++draw)
+      for (const int type : best)
+        decisions.action.insert(decisions.action.end(), static_cast<std::size_t>(space.size()),
+                                static_cast<std::uint16_t>(type % actions()));
+    return Plan::ByCell{.policy = {std::move(space), std::move(decisions)}};
   }
 
   [[nodiscard]] static Plan always(int action, const Plan& like) {
@@ -173,6 +219,15 @@ class Planner {
     const FieldTrials own = run(choice_of(plan), count_);
     plan.crossings = crossings_of(own);
     plan.usage = usage_of(own);
+    if (plan.by_cell) {
+      trials_.go_back_to(first);
+      const FieldTrials by_cell =
+          run([&policy = plan.by_cell->policy](
+                  const Place& at, const Entry& entry) { return policy.action(at, entry); },
+              count_);
+      plan.by_cell->crossings = crossings_of(by_cell);
+      plan.by_cell->worth = gain_over(own, by_cell);
+    }
     for (int a = 0; a < actions(); ++a) {
       trials_.go_back_to(first);
       const FieldTrials alone = run([a](const Place&, const Entry&) { return a; }, count_);

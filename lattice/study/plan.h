@@ -60,7 +60,17 @@ struct Plan {
   /// under the same noise as far as bodies take the same ways.
   Crossings crossings{};
   std::vector<Crossings> alone{};
-  std::vector<Gain> gains{};    // over each action alone
+  std::vector<Gain> gains{};  // over each action alone
+  /// The best that was found of policies that know the cell alone, which choose the same action
+  /// however a body enters and how many it has passed; how often it crosses in the same trials, and
+  /// what the plan gains over it: what knowing the way in is worth. None where the chain's values
+  /// do not fit into memory.
+  struct ByCell {
+    Policy policy;
+    Crossings crossings{};
+    Gain worth{};
+  };
+  std::optional<ByCell> by_cell{};
   std::vector<double> usage{};  // (actions x cells) how often it is taken there, per trial
   int rounds = 0;               // of trials and choosing again
   bool settled = false;  // the last round gained less than half of the accuracy, and than chance

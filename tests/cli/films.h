@@ -57,6 +57,9 @@ inline Film small_mixed_film() {
   other.beams.length = 15.0;
   other.forces.propulsion = 9.0;
   film.types = lattice::FieldGates::by_cell({film.gate, other}, 3, {0, 0, 0, 1, 1, 1, 0, 0, 0});
+  for (FilmRun& run : film.runs)
+    for (FilmStep& step : run.steps)
+      step.type = film.types->type_of(step.i_x + film.field.start_column(), step.i_y);
   return film;
 }
 

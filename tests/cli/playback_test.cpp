@@ -27,6 +27,14 @@ Film three_steps() {
   return film;
 }
 
+FilmStep step_in(const Film& film, int i_x, int i_y) {
+  FilmStep step;
+  step.i_x = i_x;
+  step.i_y = i_y;
+  if (film.types) step.type = film.types->type_of(i_x + film.field.start_column(), i_y);
+  return step;
+}
+
 // Joints at (-25, 30) and (25, 30), beams of 25 m: both tips meet in the middle.
 TEST(Playback, BeamsOfAnyGate) {
   const Film film = small_film(0);
@@ -45,19 +53,26 @@ TEST(Playback, BeamsAreThoseOfTheirGatesType) {
   EXPECT_EQ(beam_of(film, 0, 0, kLeft, 0.0).tip.x, 0.0);
   EXPECT_EQ(beam_of(film, -1, 1, kLeft, 0.0).tip.x, -60.0);
   EXPECT_EQ(beam_of(film, 1, 2, kLeft, 0.0).tip.x, 50.0);
-  const Point tip = nearest_point(film, 0, 1, kLeft, 0.0, {0.0, 90.0});
+  const Point tip = nearest_point(film, step_in(film, 0, 1), kLeft, 0.0, {0.0, 90.0});
   EXPECT_NEAR(tip.x, -10.0, 1e-12);
+  // A policy may choose another type there.
+  FilmStep chosen = step_in(film, 0, 0);
+  EXPECT_EQ(beam_of(film, chosen, kLeft, 0.0).tip.x, 0.0);
+  EXPECT_EQ(film.gate_of(chosen).forces.propulsion, film.gate.forces.propulsion);
+  chosen.type = 1;
+  EXPECT_EQ(beam_of(film, chosen, kLeft, 0.0).tip.x, -10.0);
+  EXPECT_EQ(film.gate_of(chosen).forces.propulsion, 9.0);
 }
 
 TEST(Playback, NearestPointOfABeam) {
   const Film film = small_film(0);
-  const Point along = nearest_point(film, 0, 0, kLeft, 0.0, {-10.0, 15.0});
+  const Point along = nearest_point(film, step_in(film, 0, 0), kLeft, 0.0, {-10.0, 15.0});
   EXPECT_NEAR(along.x, -10.0, 1e-12);
   EXPECT_NEAR(along.y, 30.0, 1e-12);
-  const Point tip = nearest_point(film, 1, 1, kLeft, 0.0, {60.0, 70.0});
+  const Point tip = nearest_point(film, step_in(film, 1, 1), kLeft, 0.0, {60.0, 70.0});
   EXPECT_NEAR(tip.x, 50.0, 1e-12);
   EXPECT_NEAR(tip.y, 90.0, 1e-12);
-  const Point joint = nearest_point(film, 0, 0, kRight, 0.0, {40.0, 20.0});
+  const Point joint = nearest_point(film, step_in(film, 0, 0), kRight, 0.0, {40.0, 20.0});
   EXPECT_NEAR(joint.x, 25.0, 1e-12);
   EXPECT_NEAR(joint.y, 30.0, 1e-12);
 }

@@ -12,6 +12,7 @@
 #include "cli/film/replay.h"
 #include "cli/render/json.h"
 #include "dynamics/disc/landscape.h"
+#include "lattice/scene/terrain.h"
 #include "tests/cli/films.h"
 
 namespace gatewalk::cli {
@@ -45,8 +46,11 @@ std::vector<std::vector<std::string>> table(const std::string& csv) {
 
 Recordings trials(const lattice::Scene& s, std::vector<std::int64_t> numbers, std::uint64_t seed,
                   bool across_field = false) {
-  Recordings recordings;
-  recordings.across_field = across_field;
+  Recordings recordings{.gates = across_field ? lattice::gates_of(s) : lattice::FieldGates(s.gate),
+                        .across_field = across_field,
+                        .trials = std::ssize(numbers),
+                        .runs = {},
+                        .health = {}};
   for (const std::int64_t trial : numbers)
     recordings.runs.push_back(lattice::record(s, seed, trial, across_field));
   return recordings;
@@ -56,7 +60,7 @@ TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
   const lattice::Scene s = scene();
   const Recordings recordings = trials(s, {0, 2}, 1);
   const auto& runs = recordings.runs;
-  const auto rows = table(csv_of(s, recordings));
+  const auto rows = table(csv_of(recordings));
   ASSERT_EQ(rows.size(), 1 + runs[0].moments.size() + runs[1].moments.size());
   const auto column = [&](const char* name) {
     const auto at = std::find(rows[0].begin(), rows[0].end(), name);
@@ -100,7 +104,7 @@ TEST(Recording, FilmHasTheForceThatComes) {
   const Json json = to_json(film)["runs"][0];
   EXPECT_EQ(json["random_N"].size(), moments.size());
   EXPECT_FALSE(json.contains("landscape_J"));
-  const Json details = details_of(s, recordings.runs[0]);
+  const Json details = details_of(s, recordings, recordings.runs[0]);
   EXPECT_EQ(details["landscape_J"].size(), moments.size());
   EXPECT_EQ(details["hits"], recordings.runs[0].health.impacts);
 }
@@ -179,15 +183,16 @@ TEST(Recording, InOtherUnitsHasTheSameNumbers) {
     for (const Twin& twin : kOtherUnits) {
       SCOPED_TRACE(testing::Message() << twin);
       const lattice::Scene other = in_other_units(s, twin);
-      const Recordings there = in_other_units(here, twin);
+      Recordings there = in_other_units(here, twin);
+      there.gates = across ? lattice::gates_of(other) : lattice::FieldGates(other.gate);
       EXPECT_TRUE(without_words(film_of(other, there)) ==
                   without_words(in_other_units(film_of(s, here), twin)));
-      Json details = details_of(s, here.runs[0]);
+      Json details = details_of(s, here, here.runs[0]);
       for (auto& [name, values] : details.items())
         for (Json& value : values)
           if (value.is_number_float()) value = value.get<double>() * twin.of(name);
-      EXPECT_TRUE(details_of(other, there.runs[0]).dump() == details.dump());
-      expect_same_numbers(table(csv_of(s, here)), table(csv_of(other, there)), twin);
+      EXPECT_TRUE(details_of(other, there, there.runs[0]).dump() == details.dump());
+      expect_same_numbers(table(csv_of(here)), table(csv_of(there)), twin);
     }
   }
 }

@@ -68,6 +68,13 @@ TEST(Plan, EachBodyTakesTheActionThatItsEntryAsksFor) {
       for (const double x : {-0.9, -0.5, -0.1, 0.1, 0.9}) {
         EXPECT_EQ(plan.policy.action({0, row, row}, {0, {x}}), x < 0.0 ? 0 : 1) << row << ' ' << x;
       }
+    // Who does not know the way in gets through a cell by chance, but the first.
+    ASSERT_TRUE(plan.by_cell);
+    const double blind = kGood * std::pow(either, kRows - 1);
+    EXPECT_TRUE(holds(plan.by_cell->crossings.interval_95(), blind));
+    EXPECT_TRUE(holds(plan.by_cell->worth.interval_95, best - blind));
+    for (const double x : {-0.5, 0.5})
+      EXPECT_EQ(plan.by_cell->policy.action({0, 0, 0}, {0, {x}}), 0);
     ASSERT_EQ(plan.usage.size(), 2U * kRows);
     EXPECT_NEAR(plan.usage[0], 1.0, 1e-12);  // at the start
     for (int row = 1; row < kRows; ++row) {
@@ -106,6 +113,25 @@ TEST(Plan, TypesOfCellsAreToldApart) {
   EXPECT_THROW((void)plan.policy.action({0, kRows, 0}, {0, {0.5}}), std::out_of_range);
   EXPECT_THROW((void)plan.policy.action({1, 0, 0}, {0, {0.5}}), std::out_of_range);
   EXPECT_THROW((void)plan.policy.action({0, 0, 0}, {1, {0.5}}), std::out_of_range);
+}
+
+// Where the way in tells nothing, to know the cell is enough.
+TEST(Plan, KnowsTheCellAlone) {
+  std::vector<Action> actions{lane("even", kGood, kGood), lane("odd", kBad, kBad)};
+  const std::vector<Action> others{lane("", kBad, kBad), lane("", kGood, kGood)};
+  for (std::size_t a = 0; a < 2; ++a) {
+    CellField& cells = actions[a].problem.cells;
+    cells.cells.push_back(others[a].problem.cells.cells[0]);
+    cells.map.types.push_back({});
+    cells.map.columns = 1;
+    for (int row = 0; row < kRows; ++row) cells.map.type_of_cell.push_back(row % 2);
+  }
+  const Plan plan = make_plan(actions, {.seed = 6});
+  ASSERT_TRUE(plan.by_cell);
+  EXPECT_NEAR(plan.by_cell->crossings.share(), std::pow(kGood, kRows), 0.04);
+  EXPECT_NEAR(plan.by_cell->worth.difference, 0.0, 0.02);
+  for (int row = 0; row < kRows; ++row)
+    EXPECT_EQ(plan.by_cell->policy.action({0, row, row}, {0, {0.5}}), row % 2) << row;
 }
 
 // To try again until the last cell, and there to rush.
@@ -158,6 +184,9 @@ TEST(Plan, TheSameOnAnyThreads) {
   EXPECT_EQ(one.rounds, three.rounds);
   EXPECT_EQ(one.policy.decisions.action, three.policy.decisions.action);
   EXPECT_EQ(one.usage, three.usage);
+  ASSERT_TRUE(one.by_cell && three.by_cell);
+  EXPECT_EQ(one.by_cell->policy.decisions.action, three.by_cell->policy.decisions.action);
+  EXPECT_EQ(one.by_cell->crossings.crossed, three.by_cell->crossings.crossed);
   EXPECT_EQ(one.gate_runs, three.gate_runs);
 }
 

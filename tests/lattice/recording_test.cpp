@@ -6,6 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <vector>
+
+#include "lattice/scene/scene_problem.h"
+#include "lattice/scene/terrain.h"
+#include "lattice/study/chosen_trials.h"
+#include "lattice/study/plan.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -90,6 +97,60 @@ TEST(Recording, KeepsTheTrialsThatEndSo) {
   EXPECT_THROW((void)record_trials(s, {.seed = 5, .trials = 2, .only = "traversed evenly"}),
                std::runtime_error);
   EXPECT_THROW((void)record_trials(s, {.only = "stuck"}), std::invalid_argument);
+}
+
+// Where a body chooses the types of its gates its trials are those that are counted so.
+TEST(Recording, DoesWhatAPolicySays) {
+  const Scene s = parse_scene(
+      "[run]\nmethod = \"moreau\"\n[field]\nrows = 3\nmax_gates = 9\n"
+      "[actions.push]\nforces.propulsion_N = 9\n[actions.wait]\nforces.random_N = 5\n"
+      "[actions.soft]\nbeams.stiffness_left_Nm_per_rad = 200\n"
+      "[terrain]\nrandom = { s = 0.5 }\n[terrain.types.s]\nbeams.length_m = 22\n",
+      "own.toml");
+  const CellChoice action = [](const Place& at, const dynamics::Entry& entry) {
+    return (at.passed + at.row + (entry.at[0] > 0.0 ? 1 : 0)) % 3;
+  };
+  std::vector<Scene> taken;
+  std::vector<Action> actions;
+  for (const Terrain::Type& type : s.actions) {
+    taken.push_back(with_action(s, type));
+    actions.push_back({type.name, problem_with_all_types(taken.back())});
+  }
+  const dynamics::CellField cells = cells_of(actions);
+  const Problem& first = actions.front().problem;
+  FieldTrials counted{.final_gates = {}, .keep_passages = true};
+  (void)chosen_trials(
+      cells, first,
+      [&](const Place& at, const dynamics::Entry& entry) {
+        return first.map().type_of(at.column, at.row) * 3 + action(at, entry);
+      },
+      4, {0, 30}, counted);
+  const Recordings all = record_trials(s, {.seed = 4,
+                                           .trials = 30,
+                                           .across_field = true,
+                                           .only = {},
+                                           .chosen = chosen_gates(taken, action)});
+  ASSERT_EQ(all.runs.size(), 30u);
+  std::set<int> met;
+  for (std::size_t i = 0; i < all.runs.size(); ++i) {
+    const Recording& run = all.runs[i];
+    const auto passages = counted.of_trial(i);
+    ASSERT_EQ(run.gates, static_cast<int>(passages.size()));
+    std::vector<int> types;
+    for (const Moment& m : run.moments)
+      if (types.empty() || m.sample.time == 0.0) types.push_back(m.type);
+    double seconds = 0.0;
+    std::size_t k = 0;
+    for (const CellPassage& passage : passages) {
+      EXPECT_EQ(types.at(k), passage.type);
+      met.insert(types[k++]);
+      seconds += passage.costs[0];
+    }
+    EXPECT_NEAR(run.seconds, seconds, 1e-9 * seconds);
+    EXPECT_EQ(all.of(run.moments.back()).forces.propulsion,
+              taken[static_cast<std::size_t>(types.back() % 3)].gate.forces.propulsion);
+  }
+  EXPECT_EQ(met.size(), 6u);
 }
 
 // A moment made by hand: 3 m beside the joint's height in gate (1, 2) of a field of 50 m x 65 m

@@ -116,6 +116,40 @@ TEST(Design, IsTheBestOfAllMapsOfSixteenCells) {
   }
 }
 
+// All cells may change, each among two of four types: the best of all 512 maps.
+TEST(Design, CellsStayOfTheirKind) {
+  const Field field{3, 3};
+  const Start start{1, 0, 0};
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    test::Words words(400 + seed);
+    const FieldChain chain = random_field(words, field, 4);
+    const std::vector<int> own = own_map(chain, field);
+    DesignOptions options;
+    options.max_cells = seed % 2 == 0 ? 5 : 0;
+    options.most_changes = 9;
+    options.kind_of_type = {7, 3, 7, 3};
+    double best = 0.0;
+    std::vector<std::vector<int>> maps;
+    for (int number = 0; number < 512; ++number) {
+      std::vector<int> map = own;
+      for (std::size_t c = 0; c < 9; ++c) map[c] = own[c] % 2 + 2 * (number >> c & 1);
+      best = std::max(best, crosses(chain, field, start, options.max_cells, map));
+      if (number % 32 == 0) maps.push_back(std::move(map));
+    }
+    options.from = maps;
+    const Designs found = design(chain, field, start, crossing(), options);
+    EXPECT_NEAR(found.optima[0].gain, best, 1e-11) << seed;
+    for (const FieldDesign& d : found.optima)
+      for (std::size_t c = 0; c < 9; ++c) EXPECT_EQ(d.type_of_cell[c] % 2, own[c] % 2);
+    options.from = {own};
+    options.from[0][4] = 1 - own[4] % 2;
+    EXPECT_THROW((void)design(chain, field, start, crossing(), options), std::invalid_argument);
+    options.from.clear();
+    options.kind_of_type = {0, 1};
+    EXPECT_THROW((void)design(chain, field, start, crossing(), options), std::invalid_argument);
+  }
+}
+
 // Walks that never come back to a cell: what a change alone does is linear in it.
 TEST(Design, TheGradientIsExactWhereNobodyComesBack) {
   test::Words words(11);

@@ -35,6 +35,18 @@ expect 0 '^crossed' "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json
 jq -s '.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' sides.json run.json | grep -q true || fail "the policy crosses less or more often than planned"
 "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 2000 --seed 3 --threads 1 --quiet --json again.json --force
 cmp -s run.json again.json || fail "a policy runs otherwise on one thread"
+# It can be watched: the very same trials; the film knows what is done in each step.
+"$gatewalk" trace "${sides[@]}" --policy sides.policy.json --trials 30 --seed 3 --quiet --json watched.json --replay watched.html
+"$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 30 --seed 3 --quiet --force --json few.json
+jq -s '(.[0].runs | map(.ending) | group_by(.) | map({key: (.[0] | gsub(" "; "_")), value: length}) | from_entries) == (.[1].endings | with_entries(select(.value > 0)))' watched.json few.json | grep -q true || fail "other trials are watched than counted"
+holds '.actions == ["left", "right"] and (.runs | map(.type | unique) | add | unique) == [0, 1] and .title == "sides.toml: actions left, right"' watched.json
+expect 2 'start.y_m' "$gatewalk" trace "${sides[@]}" --set start.y_m=1 --policy sides.policy.json
+expect 2 'sides.policy.json: was made for another scene: ' "$gatewalk" trace own.toml --policy sides.policy.json
+# Who knows the gate alone: a policy too.
+"$gatewalk" plan "${sides[@]}" --accuracy 0.05 --quiet --json gates.json --gate-policy gates.policy.json
+holds '.by_gate.crossed > 0 and .by_gate.gain_95[0] <= .by_gate.gain and (.by_gate.action | length) == 4 and (.by_gate.action[0] | length) == 9 and (.by_gate.action | add | unique | inside(["left", "right"]))' gates.json
+"$gatewalk" lattice "${sides[@]}" --policy gates.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
+jq -s '.[0].by_gate.interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' gates.json run.json | grep -q true || fail "the policy by gates crosses less or more often than planned"
 # One action all the time is the scene with its keys.
 "$gatewalk" plan "${small[@]}" "${actions[@]}" --quiet --policy fast.json
 "$gatewalk" lattice "${small[@]:0:5}" "${actions[@]}" --policy fast.json --trials 300 --quiet --json policy.json
