@@ -52,9 +52,8 @@ int run_plan(const Arguments& arguments) {
   if (options.has("gate-policy")) {
     if (!planned.plan.by_cell)
       throw std::runtime_error(
-          "--gate-policy: there is none: values of so many gates, states and gates passed do not "
-          "fit "
-          "into memory");
+          "--gate-policy: there is none: values of so many gates and states do not fit into "
+          "memory");
     options.write(options.text("gate-policy"), policy_text(planned.plan.by_cell->policy, *s.scene));
   }
   options.warn(few_crossings(planned.plan.crossings));

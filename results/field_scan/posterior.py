@@ -7,8 +7,9 @@ distribution at a scene is taken for normal (synthetic likelihood, Wood 2010, do
 mean and covariance of repeats of 100 trials against one matrix of 100 runs per row, at Sobol points of the ranges; polynomials in
 both forces pass between these. What is left of them beyond the repeats' own chance is what matrices differ by, of which the paper
 had one. Prior: uniform over the ranges. A second round of points lies where the first put 99.9 %.
-Takes OUT/points.csv, or writes it where there is none; writes OUT/posterior.csv, prints intervals, the check of Table IV (p) and that of the method: of
-made-up experiments at the points how many intervals hold their forces.
+Takes OUT/points.csv, or writes it where there is none; writes OUT/posterior.csv, prints intervals, the check of Table IV (p)
+and that of the method: of made-up experiments at the points how many intervals hold their forces. Walks have the
+correlations of the exact chain.
 """
 import csv
 import itertools

@@ -44,6 +44,18 @@ std::vector<Action> two_ways(FieldParams field = {1, kRows, 0}) {
   return {lane("left", kGood, kBad, field), lane("right", kBad, kGood, field)};
 }
 
+/// Lanes of two types of cells: every other row is that of `others`.
+std::vector<Action> in_turn(std::vector<Action> actions, const std::vector<Action>& others) {
+  for (std::size_t a = 0; a < 2; ++a) {
+    CellField& cells = actions[a].problem.cells;
+    cells.cells.push_back(others[a].problem.cells.cells[0]);
+    cells.map.types.push_back({});
+    cells.map.columns = 1;
+    for (int row = 0; row < kRows; ++row) cells.map.type_of_cell.push_back(row % 2);
+  }
+  return actions;
+}
+
 bool holds(const std::array<double, 2>& interval, double value) {
   return interval[0] <= value && value <= interval[1];
 }
@@ -95,15 +107,8 @@ TEST(Plan, WhereAllActionsAreAlikeNothingIsGained) {
 
 // In every other row what is left is right.
 TEST(Plan, TypesOfCellsAreToldApart) {
-  std::vector<Action> actions = two_ways();
-  const std::vector<Action> others{lane("", kBad, kGood), lane("", kGood, kBad)};
-  for (std::size_t a = 0; a < 2; ++a) {
-    CellField& cells = actions[a].problem.cells;
-    cells.cells.push_back(others[a].problem.cells.cells[0]);
-    cells.map.types.push_back({});
-    cells.map.columns = 1;
-    for (int row = 0; row < kRows; ++row) cells.map.type_of_cell.push_back(row % 2);
-  }
+  const std::vector<Action> actions =
+      in_turn(two_ways(), {lane("", kBad, kGood), lane("", kGood, kBad)});
   const Plan plan = make_plan(actions, {.seed = 6});
   // The best within the accuracy, and as much again by chance.
   EXPECT_NEAR(plan.crossings.share(), std::pow(kGood, kRows), 0.04);
@@ -117,15 +122,8 @@ TEST(Plan, TypesOfCellsAreToldApart) {
 
 // Where the way in tells nothing, to know the cell is enough.
 TEST(Plan, KnowsTheCellAlone) {
-  std::vector<Action> actions{lane("even", kGood, kGood), lane("odd", kBad, kBad)};
-  const std::vector<Action> others{lane("", kBad, kBad), lane("", kGood, kGood)};
-  for (std::size_t a = 0; a < 2; ++a) {
-    CellField& cells = actions[a].problem.cells;
-    cells.cells.push_back(others[a].problem.cells.cells[0]);
-    cells.map.types.push_back({});
-    cells.map.columns = 1;
-    for (int row = 0; row < kRows; ++row) cells.map.type_of_cell.push_back(row % 2);
-  }
+  const std::vector<Action> actions = in_turn({lane("even", kGood, kGood), lane("odd", kBad, kBad)},
+                                              {lane("", kBad, kBad), lane("", kGood, kGood)});
   const Plan plan = make_plan(actions, {.seed = 6});
   ASSERT_TRUE(plan.by_cell);
   EXPECT_NEAR(plan.by_cell->crossings.share(), std::pow(kGood, kRows), 0.04);
