@@ -141,9 +141,10 @@ survives analyze.json analyze "${field[@]}" --set run.method=moreau --accuracy 0
 survives rare.json rare "${field[@]}" --set run.method=moreau --row 4 --gate-runs 4000 --json rare.json
 pushes=("${field[@]}" --set run.method=moreau --set field.rows=2 --set actions.a.forces.propulsion_N=6
   --set actions.b.forces.propulsion_N=9)
-survives 'plan.json policy.json' plan "${pushes[@]}" --accuracy 0.2 --json plan.json --policy policy.json
+survives 'plan.json policy.json gate.json' plan "${pushes[@]}" --accuracy 0.2 --json plan.json --policy policy.json --gate-policy gate.json
 "$gatewalk" plan "${pushes[@]}" --accuracy 0.2 --policy chosen.json --quiet >/dev/null || fail "no policy"
 survives lattice.json lattice "${pushes[@]}" --policy chosen.json --trials 300 --json lattice.json
+survives 'followed.csv followed.json' trace "${pushes[@]}" --field --policy chosen.json --trials 4 --csv followed.csv --json followed.json
 survives 'design.json new.toml' design "$scenes/mixed.toml" --set run.method=moreau --set field.rows=2 --accuracy 0.2 --json design.json -o new.toml
 printf 'ending,count\ncrossed,9\ntrapped,20\nleft side,1\n' >counts.csv
 survives 'fit.json best.toml draws.csv fit.nc' fit "${field[@]}" counts.csv --set run.method=moreau --set field.rows=2 --free forces.propulsion_N=5:9 --trials 12288 --json fit.json -o best.toml --draws draws.csv --inference-data fit.nc

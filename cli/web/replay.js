@@ -111,7 +111,8 @@ const gatewalkReplay = (() => {
         faults.push('type_of_gate is not a type for each gate');
     }
     if (film.actions !== undefined && (!Array.isArray(film.actions) || film.actions.length === 0 ||
-        !film.actions.every((name) => typeof name === 'string'))) faults.push('actions is not a list of names');
+        !film.actions.every((name) => typeof name === 'string') || film.types?.length % film.actions.length !== 0))
+      faults.push('actions is not a list of names, one or several types for each');
     if (!Array.isArray(film.runs) || film.runs.length === 0) faults.push('runs is missing or empty');
     else film.runs.forEach((run, index) => examineRun(run, `run ${index + 1}: `, film, faults, remarks));
     return {faults, remarks: [...new Set(remarks)]};

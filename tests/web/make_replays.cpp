@@ -21,8 +21,13 @@ int main(int argc, char** argv) try {
   film["runs"][1]["ending"] = "trapped";
   write("gate.html", film);
   write("field.html", to_json(small_field_film()));
-  const Json mixed = to_json(small_mixed_film());
+  Film film_of_two = small_mixed_film();
+  const Json mixed = to_json(film_of_two);
   write("mixed.html", mixed);
+  film_of_two.actions = {"gently", "hard"};  // of one type of gate
+  write("chosen.html", to_json(film_of_two));
+  film_of_two.actions.push_back("sideways");
+  write("short-of-actions.html", to_json(film_of_two));
   Json short_of_types = mixed;
   short_of_types["types"].erase(1);
   short_of_types["types"][0]["beam_m"] = -1.0;

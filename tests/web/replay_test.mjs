@@ -238,6 +238,20 @@ test('gates of several types have beams and propulsion of their own', async () =
   });
 });
 
+test('a policy: the action that the body takes in its gate', async () => {
+  await seen('mixed.html', {}, async (page) => assert.equal(await page.getByRole('row', {name: /^action/}).count(), 0));
+  await seen('chosen.html', {}, async (page) => {
+    const row = page.getByRole('row', {name: /^action/}), push = page.getByRole('row', {name: /^propulsion/});
+    for (const [time, action, newtons] of [[0, 'gently', 7], [2.5, 'hard', 9], [4.9, 'gently', 7]]) {
+      await page.locator('.gwr-time').fill(String(time));
+      assert.equal(await row.textContent(), `action${action}`);
+      assert.match(await push.textContent(), new RegExp(`${newtons}(\\.0+)? N$`));
+    }
+  });
+  await seen('short-of-actions.html', {}, async (page) =>
+    assert.match(await page.getByRole('alert').textContent(), /actions is not a list of names, one or several types for each/));
+});
+
 test('what the page does not know is said, the rest is shown', () => seen('unknown.html', {}, async (page) => {
   assert.match(await page.getByRole('status').textContent(), /heat_J/);
   assert.equal(await page.locator('canvas').count(), 3);
