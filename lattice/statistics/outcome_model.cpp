@@ -55,7 +55,7 @@ MatrixXd curvature(const MatrixXd& terms, const VectorXd& trials, const MatrixXd
       VectorXd weights = -chances.col(a).cwiseProduct(chances.col(b));
       if (a == b) weights += chances.col(a);
       all.block(a * of_each, b * of_each, of_each, of_each).noalias() =
-          terms.transpose() * weights.cwiseProduct(trials).asDiagonal() * terms;
+          over_rows(terms, weights.cwiseProduct(trials).asDiagonal() * terms);
     }
   return all;
 }
@@ -84,7 +84,7 @@ OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree) : degree_(degr
   powers_ = all_powers(numbers, degree);
   middle_ = seen.points.colwise().mean();
   const MatrixXd from_middle = seen.points.rowwise() - middle_.transpose();
-  const Eigen::LLT<MatrixXd> spread(from_middle.transpose() * from_middle /
+  const Eigen::LLT<MatrixXd> spread(over_rows(from_middle, from_middle) /
                                     static_cast<double>(points));
   if (spread.info() != Eigen::Success)
     throw std::invalid_argument("OutcomeModel: the points lie in a plane");
@@ -109,7 +109,7 @@ OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree) : degree_(degr
   for (int step = 0;; ++step) {
     const MatrixXd chances = logs.array().exp();
     const MatrixXd slope =
-        (of_points.transpose() * (counts - trials.asDiagonal() * chances)).leftCols(outcomes - 1);
+        over_rows(of_points, counts - trials.asDiagonal() * chances).leftCols(outcomes - 1);
     const Eigen::LLT<MatrixXd> bent(curvature(of_points, trials, chances));
     const VectorXd change = bent.solve(slope.reshaped());
     const double gain = change.dot(slope.reshaped());  // twice that of Newton's step

@@ -10,6 +10,13 @@
 
 namespace gatewalk::lattice {
 
+/// a' b, each sum in the order of the rows: Eigen's own product adds in blocks whose size is that
+/// of the processor's caches, which the last digits show. For matrices of many more rows than
+/// columns.
+[[nodiscard]] inline Eigen::MatrixXd over_rows(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.transpose().lazyProduct(b);
+}
+
 /// What was counted where.
 struct OutcomeCounts {
   Eigen::MatrixXd points;  // (points x numbers), each with the same scale

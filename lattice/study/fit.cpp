@@ -450,7 +450,7 @@ class Fitter {
     const Index draws = fit_.draws.rows();
     const Eigen::RowVectorXd mean = fit_.draws.colwise().mean();
     const MatrixXd from_mean = fit_.draws.rowwise() - mean;
-    const MatrixXd covariance = from_mean.transpose() * from_mean / static_cast<double>(draws - 1);
+    const MatrixXd covariance = over_rows(from_mean, from_mean) / static_cast<double>(draws - 1);
     const VectorXd sd = covariance.diagonal().cwiseSqrt();
     const VectorXd by_sd = (sd.array() > 0.0).select(sd.cwiseInverse(), 0.0);
     fit_.correlation = by_sd.asDiagonal() * covariance * by_sd.asDiagonal();
