@@ -78,7 +78,9 @@ analyze field.toml --accuracy 0.2 --runs 0 --set field.max_gates=0 --lump 2,1,1
 lattice field.toml --trials 50
 lattice mixed.toml --trials 50
 rare field.toml --row 4 --accuracy 0.5
-plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2
+plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --policy policy.json --gate-policy gates.json
+lattice field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --policy policy.json --trials 20
+trace field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --policy policy.json --trials 2
 plan field.toml --set field.rows=2 --set run.method=auto --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2
 design mixed.toml --set field.rows=2 --changes 2 --accuracy 0.2
 design mixed.toml --set field.rows=2 --set run.method=auto --types s --least --accuracy 0.2
