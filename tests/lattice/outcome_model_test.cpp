@@ -40,6 +40,18 @@ OutcomeCounts counted(Index points, std::int64_t trials, double third_degree, Ra
   return seen;
 }
 
+// Bits of Eigen's own product of so many rows depend on the processor's caches.
+TEST(OutcomeModel, SumsOverRowsHaveTheOrderOfTheRows) {
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(20000, 3);
+  const Eigen::MatrixXd product = over_rows(a, a);
+  for (Eigen::Index i = 0; i < 3; ++i)
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      double sum = 0.0;
+      for (Eigen::Index row = 0; row < a.rows(); ++row) sum += a(row, i) * a(row, j);
+      EXPECT_EQ(product(i, j), sum);
+    }
+}
+
 TEST(OutcomeModel, FindsChancesThatItCanSay) {
   Random random(Purpose::fit, {1, 0, 0});
   const OutcomeModel model(counted(60, 20'000, 0.0, random), 2);
